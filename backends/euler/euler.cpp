@@ -1,0 +1,232 @@
+#include "backends/euler/euler.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "kernel/core/binary.hpp"
+#include "kernel/core/stopwatch.hpp"
+#include "kernel/time/jacobian_solver.hpp"
+#include "kernel/time/step_control.hpp"
+
+namespace traceraft {
+namespace {
+
+class Euler final : public Integrator {
+ public:
+  Euler(const DaeProblem& problem, const LinearSolverChoice& solvers,
+        std::shared_ptr<const ThreadTeam> team, const IntegratorSettings& settings)
+      : problem_(problem),
+        team_(std::move(team)),
+        settings_(settings),
+        first_(problem, solvers),
+        second_(problem, solvers) {}
+
+  std::string name() const override { return "euler"; }
+
+  Status start(double t0, ConstVec y0, ConstVec ydot0, double t_end) override {
+    t_ = t0;
+    t_end_ = t_end;
+    y_ = y0;
+    rate_ = ydot0;
+    control_ = StepControl(settings_, t_end - t0);
+    const double rate = problem_.norm(rate_), size = problem_.norm(y_);
+    // Small enough that the whole change of the first step is below the tolerance.
+    double first = settings_.initial_step;
+    if (!(first > 0)) first = rate > 0 ? 0.1 * settings_.tolerance * size / rate : t_end - t0;
+    next_ = control_.bounded(std::min(first, t_end - t0));
+    return {};
+  }
+
+  Status advance() override {
+    if (!(t_ < t_end_)) return Status::fatal("the end of the run has been reached");
+    double dt = next_;
+    while (true) {
+      const bool last = t_ + dt >= t_end_ * (1 - 1e-14);
+      if (last) dt = t_end_ - t_;
+      double error = 0;
+      const Status status = attempt(dt, error);
+      if (status.outcome == Outcome::fatal) return status;
+      if (status.ok() && error <= settings_.tolerance) {
+        accept(dt, last ? t_end_ : t_ + dt, error);
+        return {};
+      }
+      // NaN and failed solves end up here, too.
+      ++(status.ok() ? statistics_.rejected : statistics_.failures);
+      const double smaller = status.ok() ? control_.after_rejection(dt, error) : dt / 4;
+      if (!(smaller >= control_.min_step()))
+        return Status::fatal("no step size: " +
+                             (status.ok() ? "the error stays above the tolerance" : status.why) +
+                             " down to the smallest step");
+      dt = smaller;
+    }
+  }
+
+  Status interpolate(double t, VecRef y) const override {
+    if (!(t >= t_ - step_ && t <= t_)) return Status::fatal("interpolation outside the last step");
+    const double x = t - t_;  // Lagrange through (0, y_), (−step, previous_), (−step − before, …)
+    const double a = step_, b = step_ + step_before_;
+    if (steps_kept_ < 2) {
+      y = y_ + x / a * (y_ - previous_);
+      return {};
+    }
+    const double w1 = -x * (x + b) / (a * (b - a)), w2 = x * (x + a) / (b * (b - a));
+    y = y_ + w1 * (previous_ - y_) + w2 * (before_ - y_);
+    return {};
+  }
+
+  double time() const override { return t_; }
+  double step() const override { return step_; }
+  double next_step() const override { return next_; }
+  const Vec& state() const override { return y_; }
+  bool promises_energy_decay() const override { return !keeps_second(); }
+
+  IntegratorStatistics statistics() const override {
+    IntegratorStatistics result = statistics_;
+    for (const Corrector* corrector : {&first_, &second_}) {
+      const JacobianSolverStatistics& solver = corrector->solver.statistics();
+      result.residuals += corrector->residuals;
+      result.jacobians += solver.jacobians;
+      result.fallbacks += solver.fallbacks;
+      result.renewals += solver.renewals;
+      result.assembly_seconds += corrector->residual_seconds + solver.assembly_seconds;
+    }
+    return result;
+  }
+  LinearStatistics linear_statistics() const override {
+    return first_.solver.linear_statistics() + second_.solver.linear_statistics();
+  }
+
+  void save(std::ostream& out) const override {
+    write_binary(out, std::int64_t{steps_kept_});
+    for (const double value : {t_, t_end_, step_, step_before_, next_}) write_binary(out, value);
+    for (const Vec* vector : {&y_, &rate_}) write_binary(out, *vector);
+    if (steps_kept_ > 0) write_binary(out, previous_);
+    if (steps_kept_ > 1) write_binary(out, before_);
+    write_binary(out, statistics_);
+    first_.save(out);
+    second_.save(out);
+  }
+  void load(std::istream& in) override {
+    std::int64_t kept = 0;
+    read_binary(in, kept);
+    steps_kept_ = static_cast<int>(kept);
+    for (double* value : {&t_, &t_end_, &step_, &step_before_, &next_}) read_binary(in, *value);
+    for (Vec* vector : {&y_, &rate_}) read_binary(in, *vector, problem_.size());
+    if (steps_kept_ > 0) read_binary(in, previous_, problem_.size());
+    if (steps_kept_ > 1) read_binary(in, before_, problem_.size());
+    read_binary(in, statistics_);
+    control_ = StepControl(settings_, t_end_);
+    first_.load(in);
+    second_.load(in);
+  }
+
+ private:
+  bool keeps_second() const { return settings_.kept_solution != "first"; }
+
+  // One of the two solutions of a step: a solve with the stabilised tangent from a predictor.
+  struct Corrector {
+    Corrector(const DaeProblem& p, const LinearSolverChoice& solvers)
+        : problem(p), solver(p, solvers) {}
+
+    const DaeProblem& problem;
+    JacobianSolver solver;
+    Vec solution;
+    Status status;
+    long residuals = 0;
+    double residual_seconds = 0;
+
+    void correct(double t, const Vec& predictor, const Vec& rate, double shift, const Vec& guess,
+                 double tolerance) {
+      Vec right(problem.size());
+      {
+        const ScopedTimer timer(residual_seconds);
+        ++residuals;
+        status = problem.residual(t, predictor, rate, right);
+        if (!status.ok()) return;
+      }
+      right = -right;
+      Vec delta = guess - predictor;
+      status = solver.solve(t, predictor, rate, shift, Tangent::stabilised, right, delta, tolerance)
+                   .status;
+      solution = predictor + delta;
+    }
+    void save(std::ostream& out) const {
+      write_binary(out, residuals);
+      write_binary(out, residual_seconds);
+      solver.save(out);
+    }
+    void load(std::istream& in) {
+      read_binary(in, residuals);
+      read_binary(in, residual_seconds);
+      solver.load(in);
+    }
+  };
+
+  // y* and ẏ* of BDF2; linear extrapolation is also the guess for the first-order solution.
+  void predict(double dt, Vec& predictor, Vec& rate) const {
+    const double r = dt / step_;
+    predictor = (1 + r) * y_ - r * previous_;
+    rate = ((1 + 2 * r) / (1 + r) * predictor - (1 + r) * y_ + r * r / (1 + r) * previous_) / dt;
+  }
+
+  Status attempt(double dt, double& error) {
+    const Vec zero = Vec::Zero(y_.size());
+    if (steps_kept_ == 0) {
+      first_.correct(t_ + dt, y_, zero, 1 / dt, y_, settings_.linear_tolerance);
+      if (!first_.status.ok()) return first_.status;
+      second_.solution = first_.solution;
+      // Half the difference to explicit Euler: the leading term of the local error.
+      error = 0.5 * problem_.norm(first_.solution - y_ - dt * rate_) / problem_.norm(y_);
+    } else {
+      Vec predictor, rate;
+      predict(dt, predictor, rate);
+      const double r = dt / step_;
+      team_->run([&](int part) {
+        for (int which = part; which < 2; which += team_->size())
+          if (which == 0)
+            first_.correct(t_ + dt, y_, zero, 1 / dt, predictor, settings_.linear_tolerance);
+          else
+            second_.correct(t_ + dt, predictor, rate, (1 + 2 * r) / ((1 + r) * dt), predictor,
+                            settings_.linear_tolerance);
+      });
+      if (!first_.status.ok()) return first_.status;
+      if (!second_.status.ok()) return second_.status;
+      error = problem_.norm(second_.solution - first_.solution) / problem_.norm(second_.solution);
+    }
+    if (std::isnan(error)) return Status::retry("the error estimate is not a number");
+    return {};
+  }
+
+  void accept(double dt, double t, double error) {
+    before_.swap(previous_);
+    previous_.swap(y_);
+    y_ = keeps_second() ? second_.solution : first_.solution;
+    steps_kept_ = std::min(steps_kept_ + 1, 2);
+    step_before_ = step_;
+    step_ = dt;
+    t_ = t;
+    next_ = control_.after_acceptance(dt, error);
+    ++statistics_.steps;
+  }
+
+  const DaeProblem& problem_;
+  std::shared_ptr<const ThreadTeam> team_;
+  IntegratorSettings settings_;
+  StepControl control_;
+  IntegratorStatistics statistics_;
+  double t_ = 0, t_end_ = 0, step_ = 0, step_before_ = 0, next_ = 0;
+  int steps_kept_ = 0;             // how many of previous_, before_ are filled
+  Vec y_, previous_, before_, rate_;  // y_n, y_{n−1}, y_{n−2}, ẏ at the start
+  Corrector first_, second_;
+};
+
+}  // namespace
+
+IntegratorPtr make_euler(const DaeProblem& problem, const LinearSolverChoice& solvers,
+                         std::shared_ptr<const ThreadTeam> team,
+                         const IntegratorSettings& settings) {
+  return std::make_unique<Euler>(problem, solvers, std::move(team), settings);
+}
+
+}  // namespace traceraft

@@ -1,0 +1,51 @@
+#include "backends/list.hpp"
+
+#include "backends/euler/euler.hpp"
+#include "backends/suitesparse/cholmod_solver.hpp"
+#include "backends/suitesparse/direct_solver.hpp"
+#include "backends/sundials/spfgmr.hpp"
+#include "kernel/linear/block_solver.hpp"
+
+namespace traceraft {
+namespace {
+
+LinearSolverFactory block(const SurfaceSpace& space) {
+  return [spd = cholmod_factory(space.pattern), size = 2 * space.nodes(), team = space.team] {
+    return make_block_solver(spd, make_spfgmr(size), team);
+  };
+}
+
+LinearSolverFactory direct(const SurfaceSpace& space) {
+  return [pattern = space.pattern] { return make_direct_solver(pattern); };
+}
+
+}  // namespace
+
+const NamedList<LinearSolverEntry>& linear_solvers() {
+  static const NamedList<LinearSolverEntry> list(
+      "linear solver",
+      {
+          {"block", "SUNDIALS GMRES, two-solve preconditioner with CHOLMOD factors", "direct",
+           block},
+          {"direct", "UMFPACK factors of the whole system at every solve", "", direct},
+      });
+  return list;
+}
+
+const NamedList<IntegratorEntry>& integrators() {
+  static const NamedList<IntegratorEntry> list(
+      "integrator", {
+                        {"euler", "stabilised Euler/BDF2 pair with Gomez-Hughes steps", make_euler},
+                    });
+  return list;
+}
+
+LinearSolverChoice choose_linear_solver(const std::string& name, const SurfaceSpace& space) {
+  const LinearSolverEntry& entry = linear_solvers().find(name);
+  LinearSolverChoice choice{entry.make(space), nullptr};
+  if (!entry.fallback.empty())
+    choice.fallback = linear_solvers().find(entry.fallback).make(space);
+  return choice;
+}
+
+}  // namespace traceraft

@@ -1,0 +1,28 @@
+#include "backends/posix/folder_lock.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "kernel/core/error.hpp"
+
+namespace traceraft {
+
+FolderLock::FolderLock(const std::filesystem::path& folder) {
+  const std::filesystem::path path = folder / ".lock";
+  descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (descriptor_ < 0) throw IoError("cannot open " + path.string() + ": " + std::strerror(errno));
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+  const int error = errno;
+  ::close(descriptor_);
+  if (error == EWOULDBLOCK)
+    throw LockedError("another run is using " + folder.string() + "; wait for it or choose --out");
+  throw IoError("cannot lock " + path.string() + ": " + std::strerror(error));
+}
+
+FolderLock::~FolderLock() { ::close(descriptor_); }
+
+}  // namespace traceraft

@@ -1,0 +1,115 @@
+#include "backends/suitesparse/cholmod_solver.hpp"
+
+#include <suitesparse/cholmod.h>
+
+#include <cstring>
+#include <stdexcept>
+
+#include "backends/suitesparse/ordering.hpp"
+
+namespace traceraft {
+namespace {
+
+struct Workspace {
+  cholmod_common common;
+  Workspace() {
+    cholmod_start(&common);
+    common.print = 0;
+    common.supernodal = CHOLMOD_SUPERNODAL;
+    common.nmethods = 1;
+    common.postorder = 1;
+  }
+  ~Workspace() { cholmod_finish(&common); }
+  Workspace(const Workspace&) = delete;
+  Workspace& operator=(const Workspace&) = delete;
+};
+
+// The upper triangle of the pattern in compressed columns: the lower triangle of the CSR rows, as
+// the matrix is symmetric.
+cholmod_sparse* upper_triangle(const SparsityPattern& pattern, std::vector<int>* source,
+                               cholmod_common* common) {
+  const int n = pattern.rows();
+  const std::size_t entries = static_cast<std::size_t>(pattern.entries() + n) / 2;
+  cholmod_sparse* A = cholmod_allocate_sparse(n, n, entries, 1, 1, 1, CHOLMOD_REAL, common);
+  if (!A) throw std::bad_alloc();
+  int* begin = static_cast<int*>(A->p);
+  int* row = static_cast<int*>(A->i);
+  int at = 0;
+  for (int column = 0; column < n; ++column) {
+    begin[column] = at;
+    for (int k = pattern.row_begin[column]; k <= pattern.diagonal[column]; ++k) {
+      row[at++] = pattern.column[k];
+      if (source) source->push_back(k);
+    }
+  }
+  begin[n] = at;
+  return A;
+}
+
+class CholmodSolver final : public SpdSolver {
+ public:
+  CholmodSolver(const SparsityPattern& pattern, const std::vector<int>& ordering) {
+    cholmod_common* common = &workspace_.common;
+    matrix_ = upper_triangle(pattern, &source_, common);
+    common->method[0].ordering = CHOLMOD_GIVEN;
+    std::vector<int> permutation = ordering;
+    factor_ = cholmod_analyze_p(matrix_, permutation.data(), nullptr, 0, common);
+    right_ = cholmod_zeros(pattern.rows(), 1, CHOLMOD_REAL, common);
+    if (!factor_ || !right_) throw std::runtime_error("CHOLMOD: symbolic analysis failed");
+  }
+  ~CholmodSolver() override {
+    cholmod_common* common = &workspace_.common;
+    for (cholmod_dense** vector : {&right_, &solution_, &work_, &small_work_})
+      cholmod_free_dense(vector, common);
+    cholmod_free_factor(&factor_, common);
+    cholmod_free_sparse(&matrix_, common);
+  }
+
+  Status factorise(const CsrMatrix& A) override {
+    double* values = static_cast<double*>(matrix_->x);
+    for (std::size_t k = 0; k < source_.size(); ++k) values[k] = A.values[source_[k]];
+    workspace_.common.status = CHOLMOD_OK;
+    cholmod_factorize(matrix_, factor_, &workspace_.common);
+    if (workspace_.common.status == CHOLMOD_NOT_POSDEF || factor_->minor < factor_->n)
+      return Status::retry("CHOLMOD: the matrix is not positive definite");
+    if (workspace_.common.status < CHOLMOD_OK)
+      return Status::retry("CHOLMOD: error " + std::to_string(workspace_.common.status));
+    return {};
+  }
+
+  void solve(ConstVec b, VecRef x) override {
+    const std::size_t bytes = sizeof(double) * static_cast<std::size_t>(b.size());
+    std::memcpy(right_->x, b.data(), bytes);
+    cholmod_solve2(CHOLMOD_A, factor_, right_, nullptr, &solution_, nullptr, &work_, &small_work_,
+                   &workspace_.common);
+    std::memcpy(x.data(), solution_->x, bytes);
+  }
+
+ private:
+  Workspace workspace_;
+  cholmod_sparse* matrix_ = nullptr;
+  cholmod_factor* factor_ = nullptr;
+  cholmod_dense *right_ = nullptr, *solution_ = nullptr, *work_ = nullptr, *small_work_ = nullptr;
+  std::vector<int> source_;
+};
+
+}  // namespace
+
+std::vector<int> metis_ordering(const SparsityPattern& pattern) {
+  Workspace workspace;
+  cholmod_sparse* A = upper_triangle(pattern, nullptr, &workspace.common);
+  std::vector<int> ordering(pattern.rows());
+  const int ok = cholmod_metis(A, nullptr, 0, 1, ordering.data(), &workspace.common);
+  cholmod_free_sparse(&A, &workspace.common);
+  if (!ok) throw std::runtime_error("METIS could not order the matrix");
+  return ordering;
+}
+
+SpdSolverFactory cholmod_factory(PatternPtr pattern) {
+  return [pattern, ordering = std::make_shared<std::vector<int>>()]() -> SpdSolverPtr {
+    if (ordering->empty()) *ordering = metis_ordering(*pattern);
+    return std::make_unique<CholmodSolver>(*pattern, *ordering);
+  };
+}
+
+}  // namespace traceraft

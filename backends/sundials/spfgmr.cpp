@@ -1,0 +1,101 @@
+#include "backends/sundials/spfgmr.hpp"
+
+#include <nvector/nvector_serial.h>
+#include <sundials/sundials_context.h>
+#include <sunlinsol/sunlinsol_spfgmr.h>
+
+#include <cmath>
+#include <exception>
+#include <stdexcept>
+
+namespace traceraft {
+namespace {
+
+constexpr int kRestart = 30;
+
+Eigen::Map<Vec> view(N_Vector v) { return {N_VGetArrayPointer(v), N_VGetLength(v)}; }
+
+// The operators of one solve; an exception stops at the C boundary and is thrown again after it.
+struct Operators {
+  const LinearOperator& A;
+  const LinearOperator& preconditioner;
+  std::exception_ptr thrown;
+
+  int apply(const LinearOperator& op, N_Vector in, N_Vector out) noexcept {
+    try {
+      const Status status = op(view(in), view(out));
+      return status.ok() ? 0 : status.outcome == Outcome::retry ? 1 : -1;
+    } catch (...) {
+      thrown = std::current_exception();
+      return -1;
+    }
+  }
+};
+
+int times(void* data, N_Vector in, N_Vector out) {
+  auto* operators = static_cast<Operators*>(data);
+  return operators->apply(operators->A, in, out);
+}
+
+int precondition(void* data, N_Vector in, N_Vector out, double, int) {
+  auto* operators = static_cast<Operators*>(data);
+  return operators->apply(operators->preconditioner, in, out);
+}
+
+class Spfgmr final : public KrylovMethod {
+ public:
+  explicit Spfgmr(int size) {
+    if (SUNContext_Create(nullptr, &context_) != 0)
+      throw std::runtime_error("SUNDIALS: no context");
+    right_ = N_VNew_Serial(size, context_);
+    solution_ = N_VNew_Serial(size, context_);
+    solver_ = SUNLinSol_SPFGMR(solution_, SUN_PREC_RIGHT, kRestart, context_);
+    if (!right_ || !solution_ || !solver_) throw std::bad_alloc();
+    SUNLinSol_SPFGMRSetGSType(solver_, SUN_CLASSICAL_GS);
+  }
+  ~Spfgmr() override {
+    SUNLinSolFree(solver_);
+    N_VDestroy(right_);
+    N_VDestroy(solution_);
+    SUNContext_Free(&context_);
+  }
+
+  SolveReport solve(const LinearOperator& A, const LinearOperator& preconditioner, ConstVec b,
+                    VecRef x, double tolerance, int max_iterations) override {
+    Operators operators{A, preconditioner, nullptr};
+    const double norm = std::sqrt(dot(b, b));
+    if (norm == 0) {
+      x.setZero();
+      return {};
+    }
+    if (!std::isfinite(norm)) return {Status::retry("GMRES: the right-hand side is not finite")};
+    view(right_) = b;
+    view(solution_) = x;
+    SUNLinSolSetATimes(solver_, &operators, times);
+    SUNLinSolSetPreconditioner(solver_, &operators, nullptr, precondition);
+    SUNLinSol_SPFGMRSetMaxRestarts(solver_, (max_iterations + kRestart - 1) / kRestart - 1);
+    SUNLinSolInitialize(solver_);
+    SUNLinSolSetZeroGuess(solver_, x.isZero(0));
+    const int flag = SUNLinSolSolve(solver_, nullptr, solution_, right_, tolerance * norm);
+    if (operators.thrown) std::rethrow_exception(operators.thrown);
+    const int iterations = SUNLinSolNumIters(solver_);
+    // Anything but plain success, a merely reduced residual included, is no solution.
+    if (flag != SUNLS_SUCCESS)
+      return {Status::retry("GMRES: no convergence in " + std::to_string(iterations) +
+                            " iterations (SUNDIALS code " + std::to_string(flag) + ")"),
+              iterations};
+    x = view(solution_);
+    return {{}, iterations};
+  }
+
+ private:
+  SUNContext context_ = nullptr;
+  N_Vector right_ = nullptr, solution_ = nullptr;
+  SUNLinearSolver solver_ = nullptr;
+};
+
+}  // namespace
+
+std::unique_ptr<KrylovMethod> make_spfgmr(int size) { return std::make_unique<Spfgmr>(size); }
+
+}  // namespace traceraft

@@ -1,0 +1,13 @@
+// Flexible GMRES (SUNDIALS SPFGMR) as the kernel's Krylov method.
+#pragma once
+
+#include <memory>
+
+#include "kernel/linear/krylov.hpp"
+
+namespace traceraft {
+
+// `size`: length of the vectors; restarts after 30 iterations.
+std::unique_ptr<KrylovMethod> make_spfgmr(int size);
+
+}  // namespace traceraft

@@ -1,0 +1,12 @@
+#include "backends/zlib/checksum.hpp"
+
+#include <zlib.h>
+
+namespace traceraft {
+
+std::uint32_t crc32_of(std::string_view data) {
+  return static_cast<std::uint32_t>(
+      crc32_z(0, reinterpret_cast<const Bytef*>(data.data()), data.size()));
+}
+
+}  // namespace traceraft

@@ -1,0 +1,105 @@
+#include "backends/zlib/vtu_writer.hpp"
+
+#include <zlib.h>
+
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+
+#include "kernel/core/parameters.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr std::size_t kBlock = 1 << 16;  // bytes compressed at a time
+
+std::string base64(const std::string& data) {
+  static constexpr char digits[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((data.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < data.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, data.size() - i);
+    std::uint32_t bits = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      bits = bits << 8 | (k < count ? static_cast<unsigned char>(data[i + k]) : 0u);
+    for (std::size_t k = 0; k < 4; ++k)
+      text += k <= count ? digits[bits >> (18 - 6 * k) & 63] : '=';
+  }
+  return text;
+}
+
+// VTK's compressed array: a header with block counts and sizes, then the blocks, each in base64.
+template <class T>
+std::string encoded(const std::vector<T>& values) {
+  const auto* data = reinterpret_cast<const Bytef*>(values.data());
+  const std::size_t bytes = values.size() * sizeof(T);
+  std::string blocks;
+  std::vector<std::uint64_t> header = {(bytes + kBlock - 1) / kBlock, kBlock, bytes % kBlock};
+  for (std::size_t begin = 0; begin < bytes; begin += kBlock) {
+    const std::size_t size = std::min(kBlock, bytes - begin);
+    uLongf length = compressBound(size);
+    std::string block(length, '\0');
+    if (compress2(reinterpret_cast<Bytef*>(block.data()), &length, data + begin, size, 6) != Z_OK)
+      throw std::runtime_error("zlib could not compress a field");
+    blocks.append(block, 0, length);
+    header.push_back(length);
+  }
+  std::string head(reinterpret_cast<const char*>(header.data()),
+                   header.size() * sizeof(std::uint64_t));
+  return base64(head) + base64(blocks);
+}
+
+template <class T>
+std::string array(const char* type, const std::string& name, int components,
+                  const std::vector<T>& values) {
+  return "<DataArray type=\"" + std::string(type) + "\" Name=\"" + name +
+         "\" NumberOfComponents=\"" + std::to_string(components) + "\" format=\"binary\">\n" +
+         encoded(values) + "\n</DataArray>\n";
+}
+
+std::string file_head(const char* type) {
+  return "<?xml version=\"1.0\"?>\n<VTKFile type=\"" + std::string(type) +
+         "\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" "
+         "compressor=\"vtkZLibDataCompressor\">\n";
+}
+
+}  // namespace
+
+std::string vtu_text(const SurfaceSpace& space, double length,
+                     const std::vector<PointField>& fields) {
+  const CutSurface& surface = space.surface;
+  const std::size_t points = surface.points.size(), triangles = surface.triangles.size();
+  std::vector<float> coordinates;
+  for (std::size_t p = 0; p < points; ++p) {
+    const Point x = length * surface.position(space.mesh, static_cast<int>(p));
+    for (int axis = 0; axis < 3; ++axis) coordinates.push_back(static_cast<float>(x[axis]));
+  }
+  std::vector<std::int32_t> connectivity, offsets;
+  for (const auto& triangle : surface.triangles) {
+    connectivity.insert(connectivity.end(), triangle.begin(), triangle.end());
+    offsets.push_back(static_cast<std::int32_t>(connectivity.size()));
+  }
+  const std::vector<std::uint8_t> types(triangles, 5);  // VTK_TRIANGLE
+
+  std::string text = file_head("UnstructuredGrid") + "<UnstructuredGrid>\n<Piece NumberOfPoints=\"" +
+                     std::to_string(points) + "\" NumberOfCells=\"" + std::to_string(triangles) +
+                     "\">\n<PointData>\n";
+  for (const PointField& field : fields)
+    text += array("Float32", field.name, 1,
+                  std::vector<float>(field.values.begin(), field.values.end()));
+  text += "</PointData>\n<Points>\n" + array("Float32", "Points", 3, coordinates) +
+          "</Points>\n<Cells>\n" + array("Int32", "connectivity", 1, connectivity) +
+          array("Int32", "offsets", 1, offsets) + array("UInt8", "types", 1, types) +
+          "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
+  return text;
+}
+
+std::string pvd_text(const std::vector<std::pair<double, std::string>>& files) {
+  std::string text = file_head("Collection") + "<Collection>\n";
+  for (const auto& [time, file] : files)
+    text += "<DataSet timestep=\"" + format_number(time) + "\" part=\"0\" file=\"" + file + "\"/>\n";
+  return text + "</Collection>\n</VTKFile>\n";
+}
+
+}  // namespace traceraft

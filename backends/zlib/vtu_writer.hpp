@@ -1,0 +1,26 @@
+// Fields on Γ_h for ParaView: VTK XML files with zlib-compressed data.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kernel/core/types.hpp"
+#include "kernel/fem/surface_space.hpp"
+
+namespace traceraft {
+
+struct PointField {
+  std::string name;
+  Vec values;  // one per point of the surface
+};
+
+// The text of an UnstructuredGrid (.vtu) file: the triangles of Γ_h, coordinates times `length`.
+// 32-bit floats, which is what pictures need; tables keep full precision.
+std::string vtu_text(const SurfaceSpace& space, double length,
+                     const std::vector<PointField>& fields);
+
+// The text of a collection (.pvd): (time, file name relative to the collection).
+std::string pvd_text(const std::vector<std::pair<double, std::string>>& files);
+
+}  // namespace traceraft

@@ -1,0 +1,49 @@
+// The checkpoints of a run folder.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "kernel/core/types.hpp"
+
+namespace traceraft {
+
+// What one checkpoint file holds, besides magic, version and checksum.
+struct Checkpoint {
+  std::string configuration;                   // resolved, to recognise a changed run
+  std::map<std::string, std::uint64_t> tables;  // sizes of the tables when it was written
+  std::string state;                           // RunState::save
+  std::vector<double> concentration;           // c at the nodes, for --initial restart:DIR
+  long step = 0;
+  double wall_seconds = 0, cpu_seconds = 0;    // of the run so far, earlier processes included
+};
+
+class CheckpointStore {
+ public:
+  explicit CheckpointStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  // Durable before it returns; afterwards only the two newest are kept. Throws IoError.
+  void write(const Checkpoint& checkpoint);
+
+  // The newest checkpoint that is whole. A torn or damaged one is passed over and named in
+  // `refused`. Throws IoError if none is left.
+  Checkpoint newest(std::vector<std::string>& refused) const;
+
+ private:
+  std::vector<std::filesystem::path> files() const;  // oldest first
+  std::filesystem::path folder_;
+};
+
+// Encoding of a checkpoint file; decode throws IoError for anything but a whole, undamaged file of
+// this version.
+std::string encode(const Checkpoint& checkpoint);
+Checkpoint decode(const std::string& data);
+
+// c at the nodes in the newest checkpoint of another run's folder. Throws InputError if there is
+// none or it does not have `nodes` values.
+Vec final_concentration(const std::filesystem::path& run_folder, int nodes);
+
+}  // namespace traceraft

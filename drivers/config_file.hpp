@@ -1,0 +1,17 @@
+// Configuration files: TOML with the names of the flags as keys.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "drivers/configuration.hpp"
+
+namespace traceraft {
+
+// Throws InputError with file and line for anything that is no flat TOML table of known options.
+GivenValues read_config_file(const std::filesystem::path& path);
+
+// All options with their resolved values, each with its meaning: reads back as the same run.
+std::string config_text(const Configuration& configuration);
+
+}  // namespace traceraft

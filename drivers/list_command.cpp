@@ -1,0 +1,49 @@
+#include <cstdio>
+
+#include "backends/list.hpp"
+#include "drivers/cases.hpp"
+#include "drivers/commands.hpp"
+#include "drivers/exit_codes.hpp"
+#include "kernel/physics/mobility.hpp"
+#include "kernel/problem/initial_data.hpp"
+
+namespace traceraft {
+namespace {
+
+template <class Entry>
+void print_list(const char* title, const NamedList<Entry>& list) {
+  std::printf("%s\n", title);
+  for (const Entry& entry : list)
+    std::printf("  %-14s %s\n", entry.name.c_str(), entry.summary.c_str());
+  std::printf("\n");
+}
+
+template <class Entry>
+void print_list_with_parameters(const char* title, const NamedList<Entry>& list) {
+  std::printf("%s\n", title);
+  for (const Entry& entry : list) {
+    std::printf("  %-14s %s\n", entry.name.c_str(), entry.summary.c_str());
+    for (const ParameterSpec& p : entry.parameters)
+      std::printf("  %-14s   :%s=%s  %s [%s], %s to %s\n", "", p.name.c_str(),
+                  format_number(p.default_value).c_str(), p.meaning.c_str(),
+                  p.unit.empty() ? "1" : p.unit.c_str(), format_number(p.min).c_str(),
+                  format_number(p.max).c_str());
+  }
+  std::printf("\n");
+}
+
+}  // namespace
+
+int list_command() {
+  print_list("Cases (--case)", cases());
+  print_list_with_parameters("Surfaces (--surface)", surfaces());
+  std::printf("  %-14s %s\n\n", "formula", "any level set, from --surface-formula");
+  print_list_with_parameters("Mobility laws (--mobility)", mobilities());
+  print_list_with_parameters("Initial states (--initial)", initial_fields());
+  std::printf("  %-14s %s\n\n", "restart:DIR", "the last state of the run in DIR, on the same mesh");
+  print_list("Integrators (--integrator)", integrators());
+  print_list("Linear solvers (--linear-solver)", linear_solvers());
+  return kSuccess;
+}
+
+}  // namespace traceraft

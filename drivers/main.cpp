@@ -1,0 +1,133 @@
+// traceraft: the command line, and what becomes of exceptions.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "backends/posix/folder_lock.hpp"
+#include "backends/posix/process.hpp"
+#include "backends/suitesparse/blas.hpp"
+#include "drivers/commands.hpp"
+#include "drivers/exit_codes.hpp"
+#include "drivers/version.hpp"
+#include "kernel/core/error.hpp"
+#include "kernel/core/named_list.hpp"
+
+namespace traceraft {
+namespace {
+
+// Adds every option that `wanted` accepts as a flag whose text goes to `values`.
+template <class Wanted>
+void add_options(CLI::App* command, GivenValues& values, const Wanted& wanted) {
+  for (const OptionSpec& spec : run_options()) {
+    if (!wanted(spec)) continue;
+    const std::string flag = "--" + spec.name;
+    const auto store = [&values, name = spec.name, flag](const std::string& text) {
+      values[name] = {text, flag};
+    };
+    CLI::Option* option =
+        spec.kind == OptionKind::flag
+            ? command->add_flag_function(
+                  "--" + spec.name + ",!--no-" + spec.name,
+                  [store](std::int64_t count) { store(count > 0 ? "true" : "false"); }, spec.help)
+            : command->add_option_function<std::string>(flag, store, spec.help);
+    option->group(spec.group);
+    if (!spec.default_text.empty() && spec.kind != OptionKind::flag)
+      option->default_str(spec.default_text)->run_callback_for_default(false);
+  }
+}
+
+std::vector<std::string> flags_of(const CLI::App& command) {
+  std::vector<std::string> flags;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) flags.push_back("--" + name);
+  return flags;
+}
+
+// CLI11 collects what it does not know; the answer names the nearest flag.
+void refuse_unknown(const CLI::App& command) {
+  for (const std::string& word : command.remaining()) {
+    if (word.compare(0, 1, "-") != 0) throw InputError("unexpected '" + word + "'");
+    throw InputError(
+        unknown_name_message("flag", word.substr(0, word.find('=')), flags_of(command)));
+  }
+}
+
+int dispatch(int argc, char** argv) {
+  CLI::App app{"Predicts how lipid rafts form and coarsen on liposomes.", "traceraft"};
+  app.set_version_flag("--version", kVersion);
+  app.require_subcommand(1);
+  app.footer("Start with: traceraft run --case two-rafts");
+
+  RunRequest run;
+  CLI::App* run_app = app.add_subcommand("run", "run a simulation");
+  run_app->allow_extras();
+  run_app->add_option("--config", run.config_file, "TOML file with the flags' names as keys");
+  run_app->add_option("--out", run.out, "run folder; default: runs/<case>-<number>");
+  run_app->add_flag("--validate", run.validate, "check everything, then stop");
+  run_app->add_flag("--quiet", run.quiet, "print nothing but errors");
+  add_options(run_app, run.flags, [](const OptionSpec&) { return true; });
+  run_app->footer(
+      "Values come from defaults, then the case, then --config, then flags. Exit codes: 0 success,\n"
+      "2 bad input, 3 numerical failure, 4 input/output, 5 interrupted (checkpoint written),\n"
+      "6 folder in use.\n"
+      "Example: traceraft run --case guv-2to1 --cells 64 --epsilon 0.1 --t-end 100");
+
+  ResumeRequest resume;
+  CLI::App* resume_app = app.add_subcommand("resume", "go on with an interrupted run");
+  resume_app->allow_extras();
+  resume_app->add_option("folder", resume.folder, "run folder")->required();
+  resume_app->add_flag("--quiet", resume.quiet, "print nothing but errors");
+  add_options(resume_app, resume.flags, [](const OptionSpec& spec) { return !spec.numerical; });
+
+  CLI::App* list_app = app.add_subcommand("list", "list cases, surfaces, laws and methods");
+  list_app->allow_extras();
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {
+    return app.exit(asked);  // --help, --version
+  } catch (const CLI::RequiredError&) {
+    if (app.get_subcommands().empty() && argc > 1)
+      throw InputError(unknown_name_message("command", argv[1], {"run", "resume", "list"}));
+    throw InputError(app.get_subcommands().empty()
+                         ? "say what to do: run, resume or list (see traceraft --help)"
+                         : "resume: needs the run folder, as in: traceraft resume runs/guv-2to1-1");
+  } catch (const CLI::ExtrasError&) {
+    throw InputError(unknown_name_message("command", argv[1], {"run", "resume", "list"}));
+  } catch (const CLI::ParseError& error) {
+    throw InputError(error.what());
+  }
+  for (const CLI::App* command : app.get_subcommands()) refuse_unknown(*command);
+  if (run_app->parsed()) return run_command(run);
+  if (resume_app->parsed()) return resume_command(resume);
+  return list_command();
+}
+
+int guarded(int argc, char** argv) {
+  const auto complain = [](const char* what, int code) {
+    std::fflush(stdout);
+    std::fprintf(stderr, "traceraft: %s\n", what);
+    return code;
+  };
+  try {
+    return dispatch(argc, argv);
+  } catch (const InputError& error) {
+    return complain(error.what(), kBadInput);
+  } catch (const IoError& error) {
+    return complain(error.what(), kInputOutput);
+  } catch (const LockedError& error) {
+    return complain(error.what(), kLocked);
+  } catch (const std::bad_alloc&) {
+    return complain("out of memory; use fewer --cells", kInternalError);
+  } catch (const std::exception& error) {
+    return complain((std::string("internal error: ") + error.what()).c_str(), kInternalError);
+  }
+}
+
+}  // namespace
+}  // namespace traceraft
+
+int main(int argc, char** argv) {
+  traceraft::restart_with_environment("OPENBLAS_CORETYPE", traceraft::better_blas_core(), argv);
+  traceraft::use_one_blas_thread();
+  return traceraft::guarded(argc, argv);
+}

@@ -1,0 +1,91 @@
+#include "drivers/options.hpp"
+
+#include "kernel/core/error.hpp"
+#include "kernel/core/named_list.hpp"
+
+namespace traceraft {
+
+const std::vector<OptionSpec>& run_options() {
+  using K = OptionKind;
+  using D = Dimension;
+  static const std::vector<OptionSpec> table = {
+      {"case", K::text, "guv-2to1", "Case", "named set of defaults (see: traceraft list)"},
+      {"scaled", K::flag, "false", "Case",
+       "all inputs and outputs in units of R and R^2/D instead of um and s"},
+
+      {"surface", K::text, "sphere", "Surface",
+       "surface, with parameters as in torus:major=1,minor=0.4 (units of R), or formula"},
+      {"surface-formula", K::text, "", "Surface",
+       "level set phi(x,y,z), negative inside, for --surface formula (units of R)"},
+      {"radius", K::number, "5", "Surface", "surface scale R in um (half a vesicle's diameter)",
+       1e-6, 1e9},
+      {"cells", K::integer, "128", "Surface", "cells per edge of the box [-5/3 R, 5/3 R]^3", 4,
+       4096},
+
+      {"epsilon", K::number, "0.05", "Physics", "width of the phase boundary (um)", 1e-9, 1e9,
+       D::length},
+      {"diffusion", K::number, "1e-5", "Physics", "mobility prefactor D in cm^2/s", 1e-30, 1e30},
+      {"mobility", K::text, "degenerate", "Physics",
+       "mobility law in units of D: degenerate, constant:value=0.25"},
+      {"well", K::text, "rho=0.25,a=0,b=1", "Physics",
+       "free energy rho (c-a)^2 (b-c)^2 of a homogeneous mixture"},
+      {"potential", K::text, "consistent", "Physics",
+       "f0' by quadrature, the gradient of an energy (consistent), or nodal as in the paper's code"},
+      {"stabilisation", K::number, "1", "Physics",
+       "normal-gradient stabilisation, in units of the mesh size", 1e-6, 1e6},
+
+      {"initial", K::text, "noise", "Initial state",
+       "noise, band-limited:wavelength=0.3,amplitude=0.05, caps, formula, or restart:DIR"},
+      {"initial-formula", K::text, "", "Initial state", "c(x,y,z) for --initial formula (units of R)"},
+      {"initial-caps", K::text, "", "Initial state",
+       "rafts for --initial caps: \"x y z angle; ...\" with directions and half angles in degrees"},
+      {"raft-fraction", K::number, "0.16", "Initial state",
+       "mean of (c-a)/(b-a) for noise, met exactly", 0.0, 1.0},
+      {"noise-cells", K::integer, "0", "Initial state",
+       "cells per edge of the mesh on which noise is drawn, at most --cells; 0: a quarter of --cells",
+       0, 4096},
+      {"seed", K::integer, "1", "Initial state", "seed of the noise", 0, 9007199254740992.0},
+
+      {"t-end", K::number, "25000", "Time", "end of the run (s)", 1e-300, 1e300, D::time},
+      {"output-times", K::numbers, "", "Time",
+       "times of fields and observables.csv (s), comma-separated; default: 0 and 16 times up to "
+       "the end, evenly spaced in log t",
+       0, 1e300, D::time},
+      {"integrator", K::text, "euler", "Time", "time integrator (see: traceraft list)"},
+      {"tolerance", K::number, "5e-3", "Time", "relative error per step in L2 of the surface", 1e-12,
+       0.5},
+      {"initial-step", K::number, "0", "Time", "first step (s); 0: from the initial state", 0, 1e300,
+       D::time},
+      {"min-step", K::number, "0", "Time", "smallest step (s); 0: 1e-14 of the run", 0, 1e300,
+       D::time},
+      {"max-step", K::number, "0", "Time", "largest step (s); 0: unbounded", 0, 1e300, D::time},
+      {"keep", K::text, "second", "Time",
+       "which solution of the euler pair goes on: second (accuracy) or first (energy decay)"},
+
+      {"linear-solver", K::text, "block", "Linear algebra", "linear solver (see: traceraft list)"},
+      {"linear-tolerance", K::number, "1e-4", "Linear algebra",
+       "relative residual of each correction", 1e-14, 0.1},
+      {"threads", K::integer, "0", "Linear algebra",
+       "threads; 0: all processors, at most 2. Results do not depend on it", 0, 64, D::none, false},
+
+      {"checkpoint-interval", K::number, "30", "Output",
+       "wall-clock seconds between checkpoints; 0: after every step", 0, 1e9, D::none, false},
+      {"fields", K::flag, "true", "Output", "write fields for ParaView at the output times", 0, 0,
+       D::none, false},
+  };
+  return table;
+}
+
+std::vector<std::string> run_option_names() {
+  std::vector<std::string> names;
+  for (const OptionSpec& spec : run_options()) names.push_back(spec.name);
+  return names;
+}
+
+const OptionSpec& run_option(const std::string& name) {
+  for (const OptionSpec& spec : run_options())
+    if (spec.name == name) return spec;
+  throw InputError(unknown_name_message("option", name, run_option_names()));
+}
+
+}  // namespace traceraft

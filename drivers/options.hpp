@@ -1,0 +1,29 @@
+// The one table of options: every entry is a flag of `run` and a key of a configuration file.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace traceraft {
+
+enum class OptionKind { text, number, integer, flag, numbers /* comma-separated */ };
+
+// What an option measures: under --scaled, lengths are in R and times in R²/D.
+enum class Dimension { none, length, time };
+
+struct OptionSpec {
+  std::string name;
+  OptionKind kind;
+  std::string default_text;  // in µm and s
+  std::string group;
+  std::string help;
+  double min = 0, max = 0;  // of numbers, in µm and s; not checked if equal
+  Dimension dimension = Dimension::none;
+  bool numerical = true;  // does it change the numbers of a run?
+};
+
+const std::vector<OptionSpec>& run_options();
+const OptionSpec& run_option(const std::string& name);  // throws InputError
+std::vector<std::string> run_option_names();
+
+}  // namespace traceraft

@@ -1,0 +1,55 @@
+#include "drivers/run_folder.hpp"
+
+#include "backends/posix/durable_file.hpp"
+#include "drivers/config_file.hpp"
+#include "kernel/core/error.hpp"
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string first_free_folder(const std::string& name) {
+  for (int number = 1;; ++number) {
+    const std::string candidate = "runs/" + name + "-" + std::to_string(number);
+    if (!fs::exists(candidate)) return candidate;
+  }
+}
+
+}  // namespace
+
+RunFolder create_run_folder(const std::string& out, const Configuration& configuration) {
+  RunFolder folder;
+  folder.path = out.empty() ? first_free_folder(configuration.text("case")) : out;
+  try {
+    if (fs::exists(folder.path) && !fs::is_directory(folder.path))
+      throw InputError("--out: " + folder.path.string() + " is a file");
+    fs::create_directories(folder.path);
+    folder.lock = std::make_unique<FolderLock>(folder.path);
+    for (const fs::path& ours :
+         {folder.config(), folder.summary(), folder.fields(), folder.checkpoints(),
+          folder.table("series.csv"), folder.table("observables.csv"), folder.table("rafts.csv")})
+      if (fs::exists(ours))
+        throw InputError("--out: " + folder.path.string() + " already holds " +
+                         ours.filename().string() + "; go on with: traceraft resume " +
+                         folder.path.string() + ", or choose another folder");
+    fs::create_directories(folder.fields());
+    fs::create_directories(folder.checkpoints());
+    write_durably(folder.config(), config_text(configuration));
+  } catch (const fs::filesystem_error& error) {
+    throw IoError(std::string("--out: ") + error.what());
+  }
+  return folder;
+}
+
+RunFolder open_run_folder(const fs::path& path) {
+  RunFolder folder;
+  folder.path = path;
+  if (!fs::is_directory(path)) throw InputError(path.string() + " is no folder");
+  if (!fs::exists(folder.config()))
+    throw InputError(path.string() + " holds no run: there is no config.toml");
+  folder.lock = std::make_unique<FolderLock>(path);
+  return folder;
+}
+
+}  // namespace traceraft

@@ -1,0 +1,138 @@
+#include "drivers/run_outputs.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <sstream>
+
+#include "backends/posix/process.hpp"
+#include "backends/zlib/vtu_writer.hpp"
+#include "kernel/core/parameters.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr char kColumns[] =
+    "step,t,dt,mass,energy,perimeter,perimeter_level,rafts,raft_fraction,c_min,c_max,rejected,"
+    "linear_iterations\n";
+constexpr char kRaftColumns[] = "t,raft,area,perimeter,x,y,z\n";
+
+std::uint64_t size_of(const std::map<std::string, std::uint64_t>& sizes, const std::string& name) {
+  const auto found = sizes.find(name);
+  return found == sizes.end() ? 0 : found->second;
+}
+
+std::string csv_row(std::initializer_list<double> values) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "" : ",") + format_number(value);
+  return text + "\n";
+}
+
+std::string field_name(std::size_t index) {
+  char name[40];
+  std::snprintf(name, sizeof name, "field-%04zu.vtu", index);
+  return name;
+}
+
+}  // namespace
+
+TableWriter::TableWriter(const RunFolder& folder, const RunSetup& run,
+                         const std::map<std::string, std::uint64_t>& sizes)
+    : run_(run),
+      series_(folder.table("series.csv"), size_of(sizes, "series.csv")),
+      observables_(folder.table("observables.csv"), size_of(sizes, "observables.csv")),
+      rafts_(folder.table("rafts.csv"), size_of(sizes, "rafts.csv")) {
+  if (series_.size() == 0) series_.append(kColumns);
+  if (observables_.size() == 0) observables_.append(kColumns);
+  if (rafts_.size() == 0) rafts_.append(kRaftColumns);
+}
+
+std::string TableWriter::row_text(const Observables& row) const {
+  const Units& units = run_.units;
+  const Integrator& integrator = *run_.integrator;
+  const IntegratorStatistics statistics = integrator.statistics();
+  return csv_row({static_cast<double>(statistics.steps), row.t * units.time(),
+                  integrator.step() * units.time(), row.mass * units.area(),
+                  row.energy * units.area(), row.perimeter * units.length(),
+                  row.perimeter_level * units.length(), static_cast<double>(row.rafts),
+                  row.raft_fraction, row.c_min, row.c_max,
+                  static_cast<double>(statistics.rejected),
+                  static_cast<double>(integrator.linear_statistics().iterations)});
+}
+
+void TableWriter::on_step(const RunState& state) { series_.append(row_text(state.row)); }
+
+void TableWriter::on_output(const Observables& row, ConstVec y) {
+  const Units& units = run_.units;
+  observables_.append(row_text(row));
+  std::string text;
+  int number = 0;
+  for (const Raft& raft : run_.observer->rafts(y).rafts) {
+    const Point x = raft.centre * units.length();
+    text += csv_row({row.t * units.time(), static_cast<double>(++number), raft.area * units.area(),
+                     raft.perimeter * units.length(), x[0], x[1], x[2]});
+  }
+  rafts_.append(text);
+}
+
+void TableWriter::sync() {
+  for (AppendFile* table : {&series_, &observables_, &rafts_}) table->sync();
+}
+
+std::map<std::string, std::uint64_t> TableWriter::sizes() const {
+  return {{"series.csv", series_.size()},
+          {"observables.csv", observables_.size()},
+          {"rafts.csv", rafts_.size()}};
+}
+
+void FieldWriter::on_output(const Observables& row, ConstVec y) {
+  const CutSurface& surface = run_.space->surface;
+  const auto& times = run_.output_times;
+  const std::size_t index =
+      static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), row.t) - times.begin());
+  write_durably(folder_.fields() / field_name(index),
+                vtu_text(*run_.space, run_.units.length(),
+                         {{"c", surface.trace(run_.problem->c_of(y))},
+                          {"mu", surface.trace(run_.problem->mu_of(y))}}));
+  std::vector<std::pair<double, std::string>> files;
+  for (std::size_t i = 0; i <= index; ++i)
+    files.emplace_back(times[i] * run_.units.time(), "fields/" + field_name(i));
+  write_durably(folder_.path / "fields.pvd", pvd_text(files));
+}
+
+CheckpointWriter::CheckpointWriter(const RunFolder& folder, const RunSetup& run,
+                                   TableWriter& tables, std::string configuration, double interval,
+                                   double wall_before, double cpu_before)
+    : store_(folder.checkpoints()),
+      run_(run),
+      tables_(tables),
+      configuration_(std::move(configuration)),
+      interval_(interval),
+      wall_before_(wall_before),
+      cpu_before_(cpu_before - traceraft::cpu_seconds()) {}
+
+double CheckpointWriter::cpu_seconds() const { return cpu_before_ + traceraft::cpu_seconds(); }
+
+void CheckpointWriter::on_step(const RunState& state) {
+  if (!written_ || since_last_.seconds() >= interval_) write(state);
+}
+
+void CheckpointWriter::write(const RunState& state) {
+  // The rows that the checkpoint counts on are on the disk before it is.
+  tables_.sync();
+  Checkpoint checkpoint;
+  checkpoint.configuration = configuration_;
+  checkpoint.tables = tables_.sizes();
+  std::ostringstream out;
+  state.save(out);
+  checkpoint.state = out.str();
+  const auto c = run_.problem->c_of(state.integrator.state());
+  checkpoint.concentration.assign(c.data(), c.data() + c.size());
+  checkpoint.step = state.integrator.statistics().steps;
+  checkpoint.wall_seconds = wall_seconds();
+  checkpoint.cpu_seconds = cpu_seconds();
+  store_.write(checkpoint);
+  since_last_ = Stopwatch();
+  written_ = true;
+}
+
+}  // namespace traceraft

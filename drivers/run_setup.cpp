@@ -1,0 +1,202 @@
+#include "drivers/run_setup.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <thread>
+
+#include "backends/list.hpp"
+#include "backends/muparser/formula.hpp"
+#include "drivers/checkpoint_store.hpp"
+#include "kernel/problem/initial_data.hpp"
+
+namespace traceraft {
+namespace {
+
+// Runs `make`, so that what it finds wrong is said of the place where the option was given.
+template <class Make>
+auto said_of(const Configuration& configuration, const char* option, const Make& make) {
+  try {
+    return make();
+  } catch (const InputError& error) {
+    throw InputError(configuration.where(option) + ": " + error.what());
+  }
+}
+
+int thread_count(const Configuration& configuration) {
+  const int asked = static_cast<int>(configuration.integer("threads"));
+  if (asked > 0) return asked;
+  return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 2);
+}
+
+LevelSetPtr level_set(const Configuration& configuration) {
+  const std::string formula = configuration.text("surface-formula");
+  if (configuration.text("surface") == "formula") {
+    if (formula.empty())
+      throw InputError(configuration.where("surface") +
+                       ": formula needs --surface-formula, as in "
+                       "--surface-formula \"x^2+y^2+2*z^2-1\"");
+    return std::make_shared<FunctionLevelSet>(
+        parse_formula(configuration.where("surface-formula"), formula));
+  }
+  if (!formula.empty())
+    throw InputError(configuration.where("surface-formula") + ": it needs --surface formula");
+  return said_of(configuration, "surface",
+                 [&] { return make_surface(configuration.text("surface")); });
+}
+
+DoubleWell double_well(const Configuration& configuration) {
+  return said_of(configuration, "well", [&] {
+    const Parameters p =
+        parse_parameters("double well", configuration.text("well"),
+                         {{"rho", "", 0.25, 1e-12, 1e12, "height"},
+                          {"a", "", 0, -1e6, 1e6, "first minimum"},
+                          {"b", "", 1, -1e6, 1e6, "second minimum"}});
+    if (!(p["a"] < p["b"])) throw InputError("double well: a must be smaller than b");
+    return DoubleWell{p["rho"], p["a"], p["b"]};
+  });
+}
+
+CahnHilliardModel model(const Configuration& configuration, const Units& units) {
+  CahnHilliardModel result;
+  result.mobility = said_of(configuration, "mobility",
+                            [&] { return make_mobility(configuration.text("mobility")); });
+  result.well = double_well(configuration);
+  result.epsilon = configuration.number("epsilon") / units.length();
+  const std::string rule = configuration.text("potential");
+  if (rule != "consistent" && rule != "nodal")
+    throw InputError(configuration.where("potential") + ": " +
+                     unknown_name_message("potential", rule, {"consistent", "nodal"}));
+  result.rule = rule == "nodal" ? PotentialRule::nodal : PotentialRule::consistent;
+  result.stabilisation = configuration.number("stabilisation");
+  return result;
+}
+
+std::vector<CapRaft> parse_caps(const Configuration& configuration) {
+  std::vector<CapRaft> caps;
+  std::istringstream list(configuration.text("initial-caps"));
+  const std::string where = configuration.where("initial-caps");
+  for (std::string item; std::getline(list, item, ';');) {
+    std::istringstream words(item);
+    std::vector<double> numbers;
+    for (std::string word; words >> word;) numbers.push_back(parse_number(where, word));
+    if (numbers.empty()) continue;
+    if (numbers.size() != 4)
+      throw InputError(where + ": '" + item + "' needs four numbers, x y z angle");
+    const Point direction(numbers[0], numbers[1], numbers[2]);
+    if (direction.norm() == 0) throw InputError(where + ": a direction is zero in '" + item + "'");
+    if (!(numbers[3] > 0 && numbers[3] < 180))
+      throw InputError(where + ": an angle must lie between 0 and 180 degrees in '" + item + "'");
+    caps.push_back({direction, numbers[3] * std::acos(-1.0) / 180});
+  }
+  return caps;
+}
+
+InitialRequest initial_request(const Configuration& configuration, const CahnHilliardModel& model) {
+  InitialRequest request;
+  const long long cells = configuration.integer("cells");
+  request.raft_fraction = configuration.number("raft-fraction");
+  request.noise_cells = configuration.integer("noise-cells");
+  if (request.noise_cells > cells)
+    throw InputError(configuration.where("noise-cells") + ": " +
+                     std::to_string(request.noise_cells) + " is more than --cells " +
+                     std::to_string(cells));
+  if (request.noise_cells == 0) request.noise_cells = std::max(1LL, cells / 4);
+  request.seed = static_cast<std::uint64_t>(configuration.integer("seed"));
+  request.caps = parse_caps(configuration);
+  if (const std::string formula = configuration.text("initial-formula"); !formula.empty())
+    request.formula = parse_formula(configuration.where("initial-formula"), formula);
+  request.epsilon = model.epsilon;
+  request.well = model.well;
+  return request;
+}
+
+Vec initial_field(const Configuration& configuration, const CahnHilliardModel& model,
+                  const SurfaceSpace& space) {
+  const std::string kind = configuration.text("initial");
+  return said_of(configuration, "initial", [&] {
+    if (const auto [name, folder] = split_named_arguments(kind); name == "restart")
+      return final_concentration(folder, space.nodes());
+    return make_initial_field(kind, space, initial_request(configuration, model));
+  });
+}
+
+std::vector<double> output_times(const Configuration& configuration, const Units& units,
+                                 double t_end) {
+  constexpr int kDefaultTimes = 16;
+  std::vector<double> times;
+  for (const double time : configuration.numbers("output-times"))
+    times.push_back(time / units.time());
+  if (times.empty()) {
+    times.push_back(0);
+    for (int i = 1; i <= kDefaultTimes; ++i)  // four decades, t_end last
+      times.push_back(t_end * std::pow(10.0, 4.0 * (i - kDefaultTimes) / kDefaultTimes));
+  }
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  // Times like 20 s read back from µm and s can exceed the end by rounding only.
+  if (!times.empty() && times.back() > t_end && times.back() < t_end * (1 + 1e-12))
+    times.back() = t_end;
+  if (!times.empty() && times.back() > t_end)
+    throw InputError(configuration.where("output-times") + ": " +
+                     format_number(times.back() * units.time()) + " is after the end of the run, " +
+                     configuration.text("t-end"));
+  return times;
+}
+
+IntegratorSettings integrator_settings(const Configuration& configuration, const Units& units) {
+  IntegratorSettings settings;
+  settings.tolerance = configuration.number("tolerance");
+  settings.initial_step = configuration.number("initial-step") / units.time();
+  settings.min_step = configuration.number("min-step") / units.time();
+  settings.max_step = configuration.number("max-step") / units.time();
+  settings.linear_tolerance = configuration.number("linear-tolerance");
+  settings.kept_solution = configuration.text("keep");
+  if (settings.kept_solution != "first" && settings.kept_solution != "second")
+    throw InputError(configuration.where("keep") + ": " +
+                     unknown_name_message("solution", settings.kept_solution, {"first", "second"}));
+  if (settings.max_step > 0 && settings.min_step > settings.max_step)
+    throw InputError(configuration.where("min-step") + ": it is larger than --max-step");
+  return settings;
+}
+
+}  // namespace
+
+RunSetup build_run(const Configuration& configuration) {
+  RunSetup run;
+  run.units = configuration.units();
+  run.t_end = configuration.number("t-end") / run.units.time();
+  run.output_times = output_times(configuration, run.units, run.t_end);
+  const IntegratorSettings settings = integrator_settings(configuration, run.units);
+  const CahnHilliardModel physics = model(configuration, run.units);
+  const IntegratorEntry& integrator = said_of(configuration, "integrator", [&] {
+    return std::cref(integrators().find(configuration.text("integrator")));
+  });
+  said_of(configuration, "linear-solver",
+          [&] { return linear_solvers().find(configuration.text("linear-solver")).name; });
+
+  run.team = std::make_shared<ThreadTeam>(thread_count(configuration));
+  const LevelSetPtr surface = level_set(configuration);
+  run.space = said_of(configuration, "surface", [&] {
+    return std::make_shared<const SurfaceSpace>(*surface, configuration.integer("cells"), run.team,
+                                                std::make_shared<SerialCommunicator>());
+  });
+  run.problem = std::make_unique<CahnHilliard>(run.space, physics);
+  run.initial = initial_field(configuration, physics, *run.space);
+  run.observer = std::make_unique<Observer>(*run.problem, run.space);
+  run.integrator =
+      integrator.make(*run.problem,
+                      choose_linear_solver(configuration.text("linear-solver"), *run.space),
+                      run.team, settings);
+  return run;
+}
+
+Status start_run(RunSetup& run) {
+  Vec y(run.problem->size()), ydot(run.problem->size());
+  y.head(run.problem->block_size()) = run.initial;
+  if (Status status = run.problem->consistent_initial_state(0, y, ydot); !status.ok())
+    return status;
+  return run.integrator->start(0, y, ydot, run.t_end);
+}
+
+}  // namespace traceraft

@@ -1,0 +1,34 @@
+// From a configuration to everything a run needs: the one place where the chain is put together.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "drivers/configuration.hpp"
+#include "kernel/observables/observables.hpp"
+#include "kernel/problem/cahn_hilliard.hpp"
+#include "kernel/time/integrator.hpp"
+
+namespace traceraft {
+
+// Built in the order of the members; each is handed to the next by const reference.
+struct RunSetup {
+  Units units;
+  std::shared_ptr<const ThreadTeam> team;
+  std::shared_ptr<const SurfaceSpace> space;
+  std::unique_ptr<const CahnHilliard> problem;
+  Vec initial;  // projected c at the nodes
+  std::unique_ptr<Observer> observer;
+  IntegratorPtr integrator;          // not started
+  double t_end;                      // units of R²/D, as below
+  std::vector<double> output_times;  // ascending, within [0, t_end]
+};
+
+// Throws InputError for anything a run could not start with; creates no files.
+RunSetup build_run(const Configuration& configuration);
+
+// Computes the consistent state and hands it to the integrator.
+Status start_run(RunSetup& setup);
+
+}  // namespace traceraft

@@ -1,0 +1,162 @@
+#include "drivers/summary.hpp"
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "backends/posix/process.hpp"
+#include "backends/suitesparse/blas.hpp"
+#include "drivers/progress.hpp"
+#include "drivers/version.hpp"
+#include "kernel/core/parameters.hpp"
+
+namespace traceraft {
+namespace {
+
+const char* end_name(RunEnd end) {
+  switch (end) {
+    case RunEnd::finished:
+      return "finished";
+    case RunEnd::stopped:
+      return "stopped";
+    default:
+      return "failed";
+  }
+}
+
+void line(const char* label, const std::string& value) {
+  std::printf("  %-22s %s\n", label, value.c_str());
+}
+
+template <class... Values>
+std::string text(const char* format, Values... values) {
+  char buffer[256];
+  std::snprintf(buffer, sizeof buffer, format, values...);
+  return buffer;
+}
+
+}  // namespace
+
+std::string summary_json(const Configuration& configuration, const RunSetup& run,
+                         const RunState& state, const RunResult& result, const RunCost& cost) {
+  const Units& units = run.units;
+  const Observables& row = state.row;
+  const IntegratorStatistics steps = run.integrator->statistics();
+  const LinearStatistics linear = run.integrator->linear_statistics();
+  nlohmann::ordered_json json;
+  json["end"] = end_name(result.end);
+  if (!result.why.empty()) json["why"] = result.why;
+  json["version"] = kVersion;
+  json["case"] = configuration.text("case");
+  json["seed"] = configuration.integer("seed");
+  json["integrator"] = configuration.text("integrator");
+  json["linear_solver"] = configuration.text("linear-solver");
+  json["units"] = {{"scaled", units.scaled},
+                   {"radius_um", units.radius_um},
+                   {"diffusion_cm2_s", units.diffusion_cm2_s},
+                   {"seconds_per_unit", units.seconds_per_unit()}};
+  json["nodes"] = run.space->nodes();
+  json["unknowns"] = run.problem->size();
+  json["cut_tetrahedra"] = run.space->elements.size();
+  json["euler_characteristic"] = run.space->surface.euler_characteristic();
+  json["area"] = run.space->area * units.area();
+  json["h"] = run.space->h() * units.length();
+  json["t"] = row.t * units.time();
+  json["mass"] = row.mass * units.area();
+  json["mean_concentration"] = row.mass / run.space->area;
+  json["mass_drift"] = state.monitor.mass_drift();
+  json["energy"] = row.energy * units.area();
+  json["energy_rises"] = state.monitor.energy_rises();
+  json["largest_energy_rise"] = state.monitor.largest_rise();
+  json["energy_decay_promised"] =
+      run.problem->dissipates_energy() && run.integrator->promises_energy_decay();
+  json["perimeter"] = row.perimeter * units.length();
+  json["perimeter_level"] = row.perimeter_level * units.length();
+  json["rafts"] = row.rafts;
+  json["raft_fraction"] = row.raft_fraction;
+  json["c_min"] = row.c_min;
+  json["c_max"] = row.c_max;
+  json["steps"] = steps.steps;
+  json["rejected"] = steps.rejected;
+  json["failures"] = steps.failures;
+  json["renewals"] = steps.renewals;
+  json["fallbacks"] = steps.fallbacks;
+  json["residuals"] = steps.residuals;
+  json["jacobians"] = steps.jacobians;
+  json["linear_setups"] = linear.setups;
+  json["linear_solves"] = linear.solves;
+  json["linear_iterations"] = linear.iterations;
+  json["most_linear_iterations"] = linear.most_iterations;
+  json["assembly_s"] = steps.assembly_seconds;
+  json["linear_setup_s"] = linear.setup_seconds;
+  json["linear_solve_s"] = linear.solve_seconds;
+  json["wall_s"] = cost.wall_seconds;
+  json["cpu_s"] = cost.cpu_seconds;
+  json["peak_memory_mb"] = peak_memory_mb();
+  json["threads"] = run.team->size();
+  json["blas"] = blas_description();
+  return json.dump(2) + "\n";
+}
+
+void print_setup(const Configuration& configuration, const RunSetup& run) {
+  const Units& units = run.units;
+  const double h = run.space->h(), epsilon = run.problem->model().epsilon;
+  std::printf("traceraft %s\n", kVersion);
+  line("case", configuration.text("case"));
+  line("surface", text("%s, R = %g um, area %.6g %s", configuration.text("surface").c_str(),
+                       units.radius_um, run.space->area * units.area(),
+                       units.scaled ? "R^2" : "um^2"));
+  line("mesh", text("%lld cells per edge, %zu cut tetrahedra, %d nodes, %d unknowns",
+                    configuration.integer("cells"), run.space->elements.size(),
+                    run.space->nodes(), run.problem->size()));
+  line("phase boundary", text("epsilon = %g um = %g R, h/epsilon = %.2f",
+                              epsilon * units.radius_um, epsilon, h / epsilon));
+  line("mobility", text("%s, D = %g cm^2/s", configuration.text("mobility").c_str(),
+                        units.diffusion_cm2_s));
+  line("units", text("length R = %g um, time R^2/D = %g s; the run ends at %g s = %g R^2/D",
+                     units.radius_um, units.seconds_per_unit(),
+                     run.t_end * units.seconds_per_unit(), run.t_end));
+  line("initial state", text("%s, mean concentration %.6f, seed %lld",
+                             configuration.text("initial").c_str(),
+                             run.space->integral(run.initial) / run.space->area,
+                             configuration.integer("seed")));
+  line("method", text("%s with %s, tolerance %g, %d thread%s, %s",
+                      configuration.text("integrator").c_str(),
+                      configuration.text("linear-solver").c_str(),
+                      configuration.number("tolerance"), run.team->size(),
+                      run.team->size() == 1 ? "" : "s", blas_description().c_str()));
+}
+
+void print_summary(const Configuration&, const RunSetup& run, const RunState& state,
+                   const RunResult& result, const RunCost& cost, const RunFolder& folder) {
+  const Units& units = run.units;
+  const Observables& row = state.row;
+  const IntegratorStatistics steps = run.integrator->statistics();
+  const LinearStatistics linear = run.integrator->linear_statistics();
+  const char* length = units.scaled ? "R" : "um";
+  std::printf("\n%s at t = %.6g%s\n", end_name(result.end), row.t * units.time(),
+              units.scaled ? "" : " s");
+  if (!result.why.empty()) line("why", result.why);
+  line("rafts", text("%d", row.rafts));
+  line("raft fraction", text("%.4f of the area, mean concentration %.6f", row.raft_fraction,
+                             row.mass / run.space->area));
+  line("perimeter", text("%.5g %s (level curve %.5g %s)", row.perimeter * units.length(), length,
+                         row.perimeter_level * units.length(), length));
+  line("energy", text("%.6g, rises: %ld%s", row.energy * units.area(),
+                      state.monitor.energy_rises(),
+                      run.integrator->promises_energy_decay() ? "" : " (no decay promised)"));
+  line("mass drift", text("%.1e relative", state.monitor.mass_drift()));
+  line("c on the surface", text("%.3f to %.3f", row.c_min, row.c_max));
+  line("steps", text("%ld accepted, %ld rejected, %ld failed", steps.steps, steps.rejected,
+                     steps.failures));
+  line("linear solves", text("%ld, %.1f iterations each, %ld set-ups, %ld renewed, %ld fallbacks",
+                             linear.solves,
+                             static_cast<double>(linear.iterations) /
+                                 static_cast<double>(std::max(1L, linear.solves)),
+                             linear.setups, steps.renewals, steps.fallbacks));
+  line("time", text("%s wall, %s CPU, peak memory %.0f MB", clock_text(cost.wall_seconds).c_str(),
+                    clock_text(cost.cpu_seconds).c_str(), peak_memory_mb()));
+  line("tables", folder.table("series.csv").string());
+  line("open next", "paraview " + (folder.path / "fields.pvd").string());
+}
+
+}  // namespace traceraft

@@ -1,0 +1,23 @@
+// What a run ends with: summary.json for programs, a table for people.
+#pragma once
+
+#include <string>
+
+#include "drivers/run_setup.hpp"
+#include "drivers/run_folder.hpp"
+#include "kernel/simulation/run_loop.hpp"
+
+namespace traceraft {
+
+struct RunCost {
+  double wall_seconds, cpu_seconds;  // of the whole run, resumed parts included
+};
+
+std::string summary_json(const Configuration& configuration, const RunSetup& run,
+                         const RunState& state, const RunResult& result, const RunCost& cost);
+
+void print_setup(const Configuration& configuration, const RunSetup& run);
+void print_summary(const Configuration& configuration, const RunSetup& run, const RunState& state,
+                   const RunResult& result, const RunCost& cost, const RunFolder& folder);
+
+}  // namespace traceraft

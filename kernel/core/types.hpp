@@ -1,0 +1,14 @@
+// The vector types every interface uses.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace traceraft {
+
+using Point = Eigen::Vector3d;                       // coordinates in units of the surface scale R
+using Vec = Eigen::VectorXd;                         // owned, contiguous
+using VecRef = Eigen::Ref<Eigen::VectorXd>;          // written in place
+using ConstVec = const Eigen::Ref<const Vec>&;       // read only, no copy of contiguous data
+
+}  // namespace traceraft

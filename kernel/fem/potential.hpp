@@ -1,0 +1,30 @@
+// b(c)_i = ∫_Γ f0'(c_h) φ_i, its derivative, and ∫_Γ f0(c_h).
+#pragma once
+
+#include "kernel/fem/surface_space.hpp"
+#include "kernel/physics/double_well.hpp"
+
+namespace traceraft {
+
+enum class PotentialRule {
+  consistent,  // degree-4 quadrature on every triangle: b is the gradient of the discrete energy
+  nodal        // M f0'(c): the reference code's choice, not the gradient of any energy
+};
+
+// r += factor · b(c). `c` has ghosts.
+void add_potential(const SurfaceSpace& space, const DoubleWell& well, PotentialRule rule,
+                   double factor, ConstVec c, VecRef r);
+
+// matrix += factor · ∂b/∂c: ∫ f0''(c_h) φ_i φ_j, or M diag(f0''(c)) for the nodal rule.
+void add_potential_tangent(const SurfaceSpace& space, const DoubleWell& well, PotentialRule rule,
+                           double factor, ConstVec c, CsrMatrix& matrix);
+
+// r += factor · (∂b/∂c) v without assembling.
+void add_potential_tangent_product(const SurfaceSpace& space, const DoubleWell& well,
+                                   PotentialRule rule, double factor, ConstVec c, ConstVec v,
+                                   VecRef r);
+
+// ∫_Γ f0(c_h) on this rank's rows, exact for the quartic.
+double potential_energy(const SurfaceSpace& space, const DoubleWell& well, ConstVec c);
+
+}  // namespace traceraft

@@ -1,0 +1,138 @@
+#include "kernel/fem/surface_space.hpp"
+
+#include <cmath>
+
+namespace traceraft {
+namespace {
+
+ActiveMesh checked_mesh(const LevelSet& level_set, std::int64_t cells) {
+  ActiveMesh mesh = build_active_mesh(level_set, cells);
+  require_resolution(mesh, build_cut_surface(mesh));
+  return mesh;
+}
+
+CsrMatrix zero_row_sum_matrix(const SurfaceSpace& space,
+                              std::array<double, 6> CutElement::*off_diagonal) {
+  std::vector<double> edge(space.mesh.edges.size(), 0.0);
+  for (const CutElement& element : space.elements)
+    for (int e = 0; e < 6; ++e) edge[element.edge[e]] += (element.*off_diagonal)[e];
+  CsrMatrix matrix(space.pattern);
+  fill_zero_row_sum(edge, space.blocks, *space.team, matrix);
+  return matrix;
+}
+
+// M_T = Pᵀ M_Γ P: the mass matrix of each flat triangle, area/12 (1 + δ_ab), seen from the nodes.
+CsrMatrix mass_matrix(const SurfaceSpace& space) {
+  std::vector<double> edge(space.mesh.edges.size(), 0.0), diagonal(space.mesh.nodes(), 0.0);
+  for (const CutElement& element : space.elements) {
+    Eigen::Matrix4d nodal = Eigen::Matrix4d::Zero();  // rows: polygon vertices, columns: nodes
+    for (int v = 0; v < element.corners; ++v) {
+      const auto& [low, high] = kTetEdges[element.cut_edge[v]];
+      nodal(v, low) = 1 - element.s[v];
+      nodal(v, high) = element.s[v];
+    }
+    Eigen::Matrix4d surface = Eigen::Matrix4d::Zero();
+    for (int t = 0; t < element.triangles(); ++t)
+      for (const int a : kPolygonTriangles[t])
+        for (const int b : kPolygonTriangles[t])
+          surface(a, b) += element.triangle_area[t] / (a == b ? 6 : 12);
+    const Eigen::Matrix4d local = nodal.transpose() * surface * nodal;
+    for (int i = 0; i < 4; ++i) diagonal[element.node[i]] += local(i, i);
+    for (int e = 0; e < 6; ++e)
+      edge[element.edge[e]] += local(kTetEdges[e][0], kTetEdges[e][1]);
+  }
+  CsrMatrix matrix(space.pattern);
+  fill_symmetric(edge, diagonal, matrix);
+  return matrix;
+}
+
+}  // namespace
+
+void fill_symmetric(const std::vector<double>& edge, const std::vector<double>& diagonal,
+                    CsrMatrix& matrix) {
+  const SparsityPattern& pattern = *matrix.pattern;
+  for (int k = 0; k < pattern.entries(); ++k) {
+    const int e = pattern.edge_of_entry[k];
+    matrix.values[k] = e >= 0 ? edge[e] : diagonal[pattern.column[k]];
+  }
+}
+
+void fill_zero_row_sum(const std::vector<double>& edge, const std::vector<RowBlock>& blocks,
+                       const ThreadTeam& team, CsrMatrix& matrix) {
+  const SparsityPattern& pattern = *matrix.pattern;
+  team.run([&](int part) {
+    for (int i = blocks[part].row_begin; i < blocks[part].row_end; ++i) {
+      double sum = 0;
+      for (int k = pattern.row_begin[i]; k < pattern.row_begin[i + 1]; ++k) {
+        const int e = pattern.edge_of_entry[k];
+        if (e < 0) continue;
+        matrix.values[k] = edge[e];
+        sum += edge[e];
+      }
+      matrix.values[pattern.diagonal[i]] = -sum;
+    }
+  });
+}
+
+SurfaceSpace::SurfaceSpace(const LevelSet& level_set, std::int64_t cells,
+                           std::shared_ptr<const ThreadTeam> team_,
+                           std::shared_ptr<const Communicator> communicator_)
+    : mesh(checked_mesh(level_set, cells)),
+      surface(build_cut_surface(mesh)),
+      elements(build_cut_elements(mesh)),
+      team(std::move(team_)),
+      communicator(std::move(communicator_)),
+      blocks(split_rows(mesh, team->size())),
+      pattern(build_pattern(mesh)),
+      mass(mass_matrix(*this)),
+      stiffness(zero_row_sum_matrix(*this, &CutElement::stiffness)),
+      normal(zero_row_sum_matrix(*this, &CutElement::normal)),
+      stabilised_mass(combine(1.0, mass, h(), normal)),
+      node_area(Vec::Zero(nodes())) {
+  mass.multiply(Vec::Ones(mesh.nodes()), node_area, *team);
+  area = communicator->sum(node_area.sum());
+}
+
+Eigen::Ref<const Vec> SurfaceSpace::with_ghosts(ConstVec owned, Vec& buffer) const {
+  if (mesh.nodes() == mesh.owned_nodes) return owned;
+  buffer.resize(mesh.nodes());
+  buffer.head(mesh.owned_nodes) = owned;
+  communicator->update_ghosts(mesh.halo, buffer);
+  return buffer;
+}
+
+double SurfaceSpace::inner(ConstVec u, ConstVec v) const {
+  Vec buffer;
+  Vec product(nodes());
+  mass.multiply(with_ghosts(v, buffer), product, *team);
+  return communicator->sum(dot(u, product));
+}
+
+Status SurfaceSpace::solve_mass(ConstVec b, VecRef x) const {
+  const auto global_dot = [&](const Vec& u, const Vec& v) { return communicator->sum(dot(u, v)); };
+  Vec inverse_diagonal(nodes());
+  for (int i = 0; i < nodes(); ++i)
+    inverse_diagonal[i] = 1 / stabilised_mass.values[pattern->diagonal[i]];
+  Vec residual = b, preconditioned = inverse_diagonal.cwiseProduct(residual);
+  Vec direction = preconditioned, product(nodes()), buffer;
+  x.setZero();
+  double rho = global_dot(residual, preconditioned);
+  const double target = 1e-28 * rho;
+  int iteration = 0;
+  for (; rho > target && iteration < 500; ++iteration) {
+    stabilised_mass.multiply(with_ghosts(direction, buffer), product, *team);
+    const double alpha = rho / global_dot(direction, product);
+    x += alpha * direction;
+    residual -= alpha * product;
+    preconditioned = inverse_diagonal.cwiseProduct(residual);
+    const double next = global_dot(residual, preconditioned);
+    direction = preconditioned + (next / rho) * direction;
+    rho = next;
+  }
+  if (!(rho <= target)) return Status::fatal("the mass matrix could not be inverted");
+  const double defect = communicator->sum(b.sum()) - integral(x);
+  x.array() += defect / area;
+  return {};
+}
+
+}  // namespace traceraft

@@ -1,0 +1,24 @@
+// Quadrature on a triangle, exact for polynomials of degree 4: six points (Dunavant 1985).
+#pragma once
+
+#include <array>
+
+namespace traceraft {
+
+struct TrianglePoint {
+  std::array<double, 3> at;  // barycentric coordinates
+  double weight;             // sums to one
+};
+
+inline constexpr std::array<TrianglePoint, 6> kDegreeFourRule = [] {
+  constexpr double a = 0.445948490915965, wa = 0.223381589678011;
+  constexpr double b = 0.091576213509771, wb = 0.109951743655322;
+  return std::array<TrianglePoint, 6>{{{{{1 - 2 * a, a, a}}, wa},
+                                       {{{a, 1 - 2 * a, a}}, wa},
+                                       {{{a, a, 1 - 2 * a}}, wa},
+                                       {{{1 - 2 * b, b, b}}, wb},
+                                       {{{b, 1 - 2 * b, b}}, wb},
+                                       {{{b, b, 1 - 2 * b}}, wb}}};
+}();
+
+}  // namespace traceraft

@@ -1,0 +1,24 @@
+#include "kernel/linear/block_jacobian.hpp"
+
+namespace traceraft {
+
+void BlockJacobian::multiply(ConstVec x, VecRef y, const ThreadTeam& team) const {
+  const SparsityPattern& p = *cc.pattern;
+  const int n = p.rows();
+  const double* c = x.data();
+  const double* mu = x.data() + n;
+  team.for_range(n, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      double first = 0, second = 0;
+      for (int k = p.row_begin[i]; k < p.row_begin[i + 1]; ++k) {
+        const int j = p.column[k];
+        first += cc.values[k] * c[j] + cm.values[k] * mu[j];
+        second += mc.values[k] * c[j] + mm.values[k] * mu[j];
+      }
+      y[i] = first;
+      y[n + i] = second;
+    }
+  });
+}
+
+}  // namespace traceraft

@@ -1,0 +1,15 @@
+// --linear-solver block: a Krylov method with the two-solve preconditioner.
+#pragma once
+
+#include <memory>
+
+#include "kernel/linear/krylov.hpp"
+
+namespace traceraft {
+
+// Old factors are kept as long as the iterations they cost extra stay below the price of new ones.
+LinearSolverPtr make_block_solver(const SpdSolverFactory& make_spd_solver,
+                                  std::unique_ptr<KrylovMethod> krylov,
+                                  std::shared_ptr<const ThreadTeam> team);
+
+}  // namespace traceraft

@@ -1,0 +1,37 @@
+// What the kernel's block solver needs from a library: an iterative method and a factorisation.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "kernel/core/status.hpp"
+#include "kernel/fem/csr.hpp"
+#include "kernel/linear/linear_solver.hpp"
+
+namespace traceraft {
+
+// out = A in, or out = P⁻¹ in. retry if it cannot be applied.
+using LinearOperator = std::function<Status(ConstVec in, VecRef out)>;
+
+// A Krylov method with a right (flexible) preconditioner, so that the residual it stops on is the
+// true one. ok only if ‖b − A x‖₂ ≤ tolerance · ‖b‖₂; x comes in as the initial guess.
+class KrylovMethod {
+ public:
+  virtual ~KrylovMethod() = default;
+  virtual SolveReport solve(const LinearOperator& A, const LinearOperator& preconditioner,
+                            ConstVec b, VecRef x, double tolerance, int max_iterations) = 0;
+};
+
+// Factorises symmetric positive definite matrices of one pattern, again and again. Different
+// objects may be used from different threads at the same time.
+class SpdSolver {
+ public:
+  virtual ~SpdSolver() = default;
+  virtual Status factorise(const CsrMatrix& A) = 0;  // retry: not positive definite
+  virtual void solve(ConstVec b, VecRef x) = 0;
+};
+
+using SpdSolverPtr = std::unique_ptr<SpdSolver>;
+using SpdSolverFactory = std::function<SpdSolverPtr()>;
+
+}  // namespace traceraft

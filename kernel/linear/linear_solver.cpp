@@ -1,0 +1,39 @@
+#include "kernel/linear/linear_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace traceraft {
+
+LinearStatistics operator+(const LinearStatistics& a, const LinearStatistics& b) {
+  return {a.setups + b.setups,
+          a.solves + b.solves,
+          a.iterations + b.iterations,
+          std::max(a.most_iterations, b.most_iterations),
+          a.setup_seconds + b.setup_seconds,
+          a.solve_seconds + b.solve_seconds};
+}
+
+double scaled_norm(const BlockJacobian& J, ConstVec b) {
+  const int n = J.block_size();
+  const double scale = J.shift > 0 ? 1 / J.shift : 1.0;
+  return std::sqrt(scale * scale * dot(b.head(n), b.head(n)) + dot(b.tail(n), b.tail(n)));
+}
+
+void restore_mass(const BlockJacobian& J, ConstVec b, VecRef x) {
+  const int n = J.block_size();
+  const SparsityPattern& pattern = *J.cc.pattern;
+  double held = 0, weight = 0;
+  for (int i = 0; i < n; ++i)
+    for (int k = pattern.row_begin[i]; k < pattern.row_begin[i + 1]; ++k) {
+      const int j = pattern.column[k];
+      held += J.cc.values[k] * x[j] + J.cm.values[k] * x[n + j];
+      weight += J.cc.values[k];
+    }
+  if (weight == 0) return;
+  double wanted = 0;
+  for (int i = 0; i < n; ++i) wanted += b[i];
+  x.head(n).array() += (wanted - held) / weight;
+}
+
+}  // namespace traceraft

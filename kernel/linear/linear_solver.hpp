@@ -1,0 +1,67 @@
+// What a time integrator asks of a linear solver.
+#pragma once
+
+#include <functional>
+#include <iosfwd>
+#include <memory>
+#include <string>
+
+#include "kernel/core/status.hpp"
+#include "kernel/core/types.hpp"
+#include "kernel/linear/block_jacobian.hpp"
+
+namespace traceraft {
+
+struct SolveReport {
+  Status status;
+  int iterations = 0;
+};
+
+struct LinearStatistics {
+  long setups = 0;
+  long solves = 0;
+  long iterations = 0;
+  int most_iterations = 0;
+  double setup_seconds = 0;
+  double solve_seconds = 0;
+};
+LinearStatistics operator+(const LinearStatistics& a, const LinearStatistics& b);
+
+// Contract
+// - setup(J) prepares (factorises) for J; may be called any number of times.
+// - solve(J, b, x, tolerance) solves J x = b for a J of the same pattern as the last set-up, or a
+//   later one if wants_setup(J) is false. x comes in as the initial guess. On ok
+//   ‖D (b − J x)‖₂ ≤ tolerance ‖D b‖₂ with D scaling the first block row by 1/σ, and the sum of the
+//   first block row holds to roundoff, so mass is exact whatever the tolerance. Otherwise x is
+//   unspecified and the status says why; a wrong x is never reported as ok.
+// - wants_setup(J) depends on what was passed in and on counts, never on time, so that a repeated
+//   run decides alike; save and load carry those counts over a restart.
+class LinearSolver {
+ public:
+  virtual ~LinearSolver() = default;
+  virtual std::string name() const = 0;
+  virtual Status setup(const BlockJacobian& J) = 0;
+  virtual bool wants_setup(const BlockJacobian& J) const = 0;
+  virtual SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance) = 0;
+  virtual LinearStatistics statistics() const = 0;
+  virtual void save(std::ostream& out) const = 0;
+  virtual void load(std::istream& in) = 0;
+};
+
+using LinearSolverPtr = std::unique_ptr<LinearSolver>;
+using LinearSolverFactory = std::function<LinearSolverPtr()>;
+
+// How an integrator gets its solvers: the one asked for and, possibly empty, the one to fall back on.
+struct LinearSolverChoice {
+  LinearSolverFactory primary;
+  LinearSolverFactory fallback;
+};
+
+// D of the contract: the first block row is divided by the shift so that one norm judges both.
+double scaled_norm(const BlockJacobian& J, ConstVec b);
+
+// Shifts the differential half of x by a constant so that 1ᵀ(cc δc + cm δμ) = 1ᵀb₁ exactly. The
+// stiffness terms drop out of that sum, so it is the mass balance of the step.
+void restore_mass(const BlockJacobian& J, ConstVec b, VecRef x);
+
+}  // namespace traceraft

@@ -1,0 +1,51 @@
+// The part of the background mesh that carries unknowns: the cut tetrahedra, their vertices (the
+// nodes of the P1 space) and their edges.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "kernel/core/communicator.hpp"
+#include "kernel/geometry/level_set.hpp"
+#include "kernel/mesh/cube_mesh.hpp"
+
+namespace traceraft {
+
+struct ActiveTet {
+  std::array<int, 4> node;  // in Kuhn order
+  std::array<int, 6> edge;  // in the order of kTetEdges
+  int kuhn;                 // which of the six tetrahedra of its cell
+};
+
+struct ActiveEdge {
+  int low, high;  // nodes; low is the smaller lattice point
+};
+
+// Nodes and tetrahedra are in ascending global order, so sums over them do not depend on how the
+// mesh is distributed. Nodes [0, owned_nodes) belong to this rank, the rest are ghosts.
+struct ActiveMesh {
+  CubeMesh cube;
+  std::vector<std::int64_t> node_id;  // global vertex id of each node
+  std::vector<double> phi;            // level set at the nodes; never zero
+  std::vector<ActiveTet> tets;
+  std::vector<ActiveEdge> edges;  // ascending in `low`
+  int owned_nodes = 0;
+  HaloPlan halo;
+
+  int nodes() const { return static_cast<int>(node_id.size()); }
+  Point position(int node) const {
+    return cube.position(cube.vertex(node_id[static_cast<std::size_t>(node)]));
+  }
+};
+
+// Nodal values closer to zero than 1e-10 of the largest are moved to that distance, keeping their
+// sign: Γ never passes exactly through a vertex, edge or face, no piece of it is counted twice, and
+// its area changes by less than 1e-9.
+// Throws InputError (see find_cut_cells).
+ActiveMesh build_active_mesh(const LevelSet& surface, std::int64_t cells);
+
+// Gradients of the barycentric coordinates of a Kuhn tetrahedron, times h: row i is h ∇λ_i.
+Eigen::Matrix<double, 4, 3> scaled_gradients(int kuhn);
+
+}  // namespace traceraft

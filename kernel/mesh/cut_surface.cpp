@@ -1,0 +1,128 @@
+#include "kernel/mesh/cut_surface.hpp"
+
+#include <cmath>
+#include <sstream>
+
+#include "kernel/core/error.hpp"
+
+namespace traceraft {
+namespace {
+
+int edge_between(int i, int j) {
+  static constexpr int table[4][4] = {{-1, 0, 1, 2}, {0, -1, 3, 4}, {1, 3, -1, 5}, {2, 4, 5, -1}};
+  return table[i][j];
+}
+
+// Is the permutation that Kuhn tetrahedron k comes from odd, i.e. is the tetrahedron left-handed?
+bool left_handed(int kuhn) { return kuhn == 1 || kuhn == 2 || kuhn == 5; }
+
+double cut_fraction(double phi_low, double phi_high) { return phi_low / (phi_low - phi_high); }
+
+}  // namespace
+
+CutPolygon cut_polygon(const ActiveMesh& mesh, const ActiveTet& tet) {
+  std::array<int, 4> order{};  // negative vertices first
+  int negatives = 0, filled = 0;
+  for (int sign = 0; sign < 2; ++sign)
+    for (int i = 0; i < 4; ++i)
+      if ((mesh.phi[tet.node[i]] < 0) == (sign == 0)) {
+        order[filled++] = i;
+        negatives += sign == 0;
+      }
+  const auto& [a, b, c, d] = order;
+  CutPolygon polygon;
+  if (negatives == 1)
+    polygon = {3, {edge_between(a, b), edge_between(a, c), edge_between(a, d)}};
+  else if (negatives == 3)
+    polygon = {3, {edge_between(a, d), edge_between(c, d), edge_between(b, d)}};
+  else
+    polygon = {4, {edge_between(a, c), edge_between(a, d), edge_between(b, d), edge_between(b, c)}};
+  // The lists above are counter-clockwise from outside if (a, b, c, d) is right-handed.
+  bool odd = left_handed(tet.kuhn);
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < i; ++j) odd ^= order[j] > order[i];
+  if (odd) std::swap(polygon.edge[1], polygon.edge[polygon.count - 1]);
+  return polygon;
+}
+
+Point cut_normal(const ActiveMesh& mesh, const ActiveTet& tet) {
+  Point gradient = Point::Zero();
+  const auto gradients = scaled_gradients(tet.kuhn);
+  for (int i = 0; i < 4; ++i) gradient += mesh.phi[tet.node[i]] * gradients.row(i).transpose();
+  return gradient.normalized();
+}
+
+CutSurface build_cut_surface(const ActiveMesh& mesh) {
+  CutSurface surface;
+  std::vector<int> point_on_edge(mesh.edges.size(), -1);
+  for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
+    const auto [low, high] = mesh.edges[e];
+    const double phi_low = mesh.phi[low], phi_high = mesh.phi[high];
+    if ((phi_low < 0) == (phi_high < 0)) continue;
+    point_on_edge[e] = static_cast<int>(surface.points.size());
+    surface.points.push_back({low, high, cut_fraction(phi_low, phi_high)});
+  }
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const CutPolygon polygon = cut_polygon(mesh, mesh.tets[t]);
+    const auto point = [&](int i) { return point_on_edge[mesh.tets[t].edge[polygon.edge[i]]]; };
+    for (int i = 2; i < polygon.count; ++i) {
+      surface.triangles.push_back({point(0), point(i - 1), point(i)});
+      surface.triangle_tet.push_back(static_cast<int>(t));
+    }
+  }
+  return surface;
+}
+
+Vec CutSurface::trace(ConstVec nodal) const {
+  Vec values(points.size());
+  for (std::size_t p = 0; p < points.size(); ++p)
+    values[p] = (1 - points[p].s) * nodal[points[p].low] + points[p].s * nodal[points[p].high];
+  return values;
+}
+
+Point CutSurface::position(const ActiveMesh& mesh, int point) const {
+  const auto& [low, high, s] = points[point];
+  return (1 - s) * mesh.position(low) + s * mesh.position(high);
+}
+
+int CutSurface::euler_characteristic() const {
+  // Γ_h is closed: every edge belongs to two triangles.
+  return static_cast<int>(points.size()) - static_cast<int>(triangles.size()) / 2;
+}
+
+Resolution surface_resolution(const ActiveMesh& mesh, const CutSurface& surface) {
+  std::vector<Point> turned(mesh.nodes(), Point::Zero());
+  std::vector<double> total(mesh.nodes(), 0.0);
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const auto& [a, b, c] = surface.triangles[t];
+    const Point origin = surface.position(mesh, a);
+    const double area = 0.5 * (surface.position(mesh, b) - origin)
+                                  .cross(surface.position(mesh, c) - origin)
+                                  .norm();
+    const ActiveTet& tet = mesh.tets[surface.triangle_tet[t]];
+    const Point normal = cut_normal(mesh, tet);
+    for (const int node : tet.node) {
+      turned[node] += area * normal;
+      total[node] += area;
+    }
+  }
+  Resolution result{1.0, Point::Zero()};
+  for (int node = 0; node < mesh.nodes(); ++node) {
+    const double ratio = turned[node].norm() / total[node];
+    if (ratio < result.worst) result = {ratio, mesh.position(node)};
+  }
+  return result;
+}
+
+void require_resolution(const ActiveMesh& mesh, const CutSurface& surface) {
+  const Resolution resolution = surface_resolution(mesh, surface);
+  if (resolution.worst >= kCoarsestResolution) return;
+  std::ostringstream text;
+  text.precision(3);
+  text << "cells: " << mesh.cube.cells << " per edge are too coarse for this surface near ("
+       << resolution.where[0] << ", " << resolution.where[1] << ", " << resolution.where[2]
+       << "); try --cells " << 2 * mesh.cube.cells;
+  throw InputError(text.str());
+}
+
+}  // namespace traceraft

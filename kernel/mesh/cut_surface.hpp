@@ -1,0 +1,55 @@
+// The discrete surface Γ_h: the zero level of the P1 interpolant of φ, as triangles whose vertices
+// lie on edges of the active mesh and are shared between neighbours.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "kernel/mesh/active_mesh.hpp"
+
+namespace traceraft {
+
+// Where Γ_h cuts one tetrahedron: 3 or 4 local edges, in cyclic order, seen counter-clockwise from
+// the positive side. Four of them split into the triangles (0,1,2) and (0,2,3).
+struct CutPolygon {
+  int count = 0;
+  std::array<int, 4> edge{};
+};
+CutPolygon cut_polygon(const ActiveMesh& mesh, const ActiveTet& tet);
+
+// Unit normal of Γ_h in a tetrahedron, ∇φ_h/|∇φ_h|, pointing to φ > 0.
+Point cut_normal(const ActiveMesh& mesh, const ActiveTet& tet);
+
+struct CutPoint {
+  int low, high;  // nodes of the edge
+  double s;       // x = (1 − s) x_low + s x_high
+};
+
+struct CutSurface {
+  std::vector<CutPoint> points;
+  std::vector<std::array<int, 3>> triangles;  // counter-clockwise seen from outside
+  std::vector<int> triangle_tet;              // ascending
+
+  // A nodal field at the points: the trace c|Γ_h.
+  Vec trace(ConstVec nodal) const;
+  Point position(const ActiveMesh& mesh, int point) const;
+  // Points − edges + triangles; 2 for each sphere, 0 for each torus.
+  int euler_characteristic() const;
+};
+
+CutSurface build_cut_surface(const ActiveMesh& mesh);
+
+// How well the mesh follows the surface: the smallest, over all nodes, of |Σ A n| / Σ A with the
+// areas A and normals n around the node. 1 for a plane; below kCoarsestResolution the surface turns
+// by some 90° within one basis function.
+inline constexpr double kCoarsestResolution = 0.7;
+struct Resolution {
+  double worst;
+  Point where;
+};
+Resolution surface_resolution(const ActiveMesh& mesh, const CutSurface& surface);
+
+// Throws InputError naming the place and a number of cells to try if the mesh is too coarse.
+void require_resolution(const ActiveMesh& mesh, const CutSurface& surface);
+
+}  // namespace traceraft

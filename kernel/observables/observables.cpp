@@ -1,0 +1,35 @@
+#include "kernel/observables/observables.hpp"
+
+namespace traceraft {
+
+Observer::Observer(const CahnHilliard& problem, std::shared_ptr<const SurfaceSpace> space)
+    : interface_energy(problem.model().well.interface_energy()),
+      problem_(problem),
+      finder_(std::move(space)) {}
+
+double Observer::level() const {
+  return 0.5 * (problem_.model().well.a + problem_.model().well.b);
+}
+
+RaftReport Observer::rafts(ConstVec y) const { return finder_.find(problem_.c_of(y), level()); }
+
+Observables Observer::measure(double t, ConstVec y) const {
+  const SurfaceSpace& space = problem_.space();
+  const auto c = problem_.c_of(y);
+  const RaftReport report = rafts(y);
+  const double gradient =
+      problem_.model().epsilon * space.stiffness.quadratic(c, c, *space.team);
+  Observables row;
+  row.t = t;
+  row.mass = problem_.mass(y);
+  row.energy = problem_.energy(y);
+  row.perimeter = gradient / interface_energy;
+  row.perimeter_level = report.perimeter;
+  row.rafts = static_cast<int>(report.rafts.size());
+  row.raft_fraction = report.area / space.area;
+  row.c_min = report.c_min;
+  row.c_max = report.c_max;
+  return row;
+}
+
+}  // namespace traceraft

@@ -1,0 +1,42 @@
+// The numbers that a row of series.csv holds.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "kernel/observables/rafts.hpp"
+#include "kernel/problem/cahn_hilliard.hpp"
+
+namespace traceraft {
+
+// In units of R and R²/D.
+struct Observables {
+  double t = 0;
+  double mass = 0;             // ∫ c
+  double energy = 0;           // ∫ f0 + ½ ε² |∇c|²
+  double perimeter = 0;        // p0 ∫ ε |∇_Γ c|²
+  double perimeter_level = 0;  // length of the curve c = (a + b)/2
+  int rafts = 0;
+  double raft_fraction = 0;    // area of {c > (a + b)/2} over |Γ|
+  double c_min = 0, c_max = 0;
+};
+
+class Observer {
+ public:
+  explicit Observer(const CahnHilliard& problem, std::shared_ptr<const SurfaceSpace> space);
+
+  // p0: what ∫ ε|∇c|² per unit length of phase boundary is divided by. Starts as the exact value
+  // for a flat, fully resolved boundary, √(2ρ)(b − a)³/6.
+  double interface_energy = 0;
+
+  Observables measure(double t, ConstVec y) const;
+  RaftReport rafts(ConstVec y) const;
+  double level() const;
+
+ private:
+  const CahnHilliard& problem_;
+  RaftFinder finder_;
+};
+
+}  // namespace traceraft

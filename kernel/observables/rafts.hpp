@@ -1,0 +1,37 @@
+// Rafts: the connected components of {c > level} on Γ_h.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "kernel/fem/surface_space.hpp"
+
+namespace traceraft {
+
+struct Raft {
+  double area;
+  double perimeter;  // length of its boundary, the level curve
+  Point centre;      // the point of the raft nearest to its centre of area
+};
+
+struct RaftReport {
+  std::vector<Raft> rafts;  // largest first
+  double area = 0;          // of {c > level}
+  double perimeter = 0;     // length of the level curve
+  double c_min = 0, c_max = 0;  // on Γ_h, where nodal values mean nothing
+};
+
+// c_h is linear on every triangle of Γ_h, so {c > level} is a convex piece of each: areas and
+// lengths are exact, and two triangles belong to one raft exactly if they share a vertex above the
+// level. Coordinates, areas and lengths in units of R.
+class RaftFinder {
+ public:
+  explicit RaftFinder(std::shared_ptr<const SurfaceSpace> space);
+  RaftReport find(ConstVec c, double level) const;
+
+ private:
+  std::shared_ptr<const SurfaceSpace> space_;
+  std::vector<Point> position_;
+};
+
+}  // namespace traceraft

@@ -1,0 +1,20 @@
+#include "kernel/physics/mobility.hpp"
+
+namespace traceraft {
+
+const NamedList<MobilityEntry>& mobilities() {
+  static const NamedList<MobilityEntry> list("mobility", {
+                                                             degenerate_mobility(),
+                                                             constant_mobility(),
+                                                         });
+  return list;
+}
+
+MobilityPtr make_mobility(const std::string& specification) {
+  const NamedArguments request = split_named_arguments(specification);
+  const MobilityEntry& entry = mobilities().find(request.name);
+  return entry.make(
+      parse_parameters("mobility '" + entry.name + "'", request.arguments, entry.parameters));
+}
+
+}  // namespace traceraft

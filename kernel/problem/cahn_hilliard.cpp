@@ -1,0 +1,218 @@
+#include "kernel/problem/cahn_hilliard.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/fem/mobility_stiffness.hpp"
+
+namespace traceraft {
+namespace {
+
+// K_T μ_T: the flux of unit mobility through the nodes of an element.
+std::array<double, 4> unit_flux(const CutElement& element, ConstVec mu) {
+  std::array<double, 4> flux{};
+  for (int k = 0; k < 6; ++k) {
+    const auto& [i, j] = kTetEdges[k];
+    const double along = element.stiffness[k] * (mu[element.node[j]] - mu[element.node[i]]);
+    flux[i] += along;
+    flux[j] -= along;
+  }
+  return flux;
+}
+
+}  // namespace
+
+CahnHilliard::CahnHilliard(std::shared_ptr<const SurfaceSpace> space, CahnHilliardModel model)
+    : space_(std::move(space)),
+      model_(std::move(model)),
+      gradient_energy_(
+          combine(model_.epsilon * model_.epsilon, space_->stiffness,
+                  model_.epsilon * model_.epsilon * model_.stabilisation * space_->h(),
+                  space_->normal)) {}
+
+double CahnHilliard::flux_stabilisation() const {
+  return model_.stabilisation * space_->h() * model_.mobility->scale();
+}
+
+Status CahnHilliard::residual(double t, ConstVec y, ConstVec ydot, VecRef r) const {
+  const SurfaceSpace& space = *space_;
+  const int n = block_size();
+  Vec c_buffer, mu_buffer, rate_buffer;
+  const auto c = space.with_ghosts(c_of(y), c_buffer);
+  const auto mu = space.with_ghosts(mu_of(y), mu_buffer);
+  const auto rate = space.with_ghosts(c_of(ydot), rate_buffer);
+  r.setZero();
+  VecRef first = r.head(n), second = r.tail(n);
+
+  std::vector<double> mean;
+  mean_mobility(space, *model_.mobility, c, mean);
+  space.stabilised_mass.multiply_add(1, rate, first, *space.team);
+  add_mobility_flux(space, mean, mu, first);
+  space.normal.multiply_add(flux_stabilisation(), mu, first, *space.team);
+
+  space.stabilised_mass.multiply_add(1, mu, second, *space.team);
+  add_potential(space, model_.well, model_.rule, -1, c, second);
+  gradient_energy_.multiply_add(-1, c, second, *space.team);
+
+  for (const EffectPtr& effect : model_.effects)
+    effect->add_residual(space, t, c, mu, first, second);
+  if (!std::isfinite(dot(r, r))) return Status::retry("the residual is not finite");
+  return {};
+}
+
+void CahnHilliard::fill_curvature(ConstVec c, Tangent tangent, BlockJacobian& J) const {
+  if (tangent == Tangent::stabilised) {
+    J.curvature = model_.beta();
+    for (std::size_t k = 0; k < J.mc.values.size(); ++k)
+      J.mc.values[k] = -gradient_energy_.values[k] - J.curvature * J.mm.values[k];
+    return;
+  }
+  for (std::size_t k = 0; k < J.mc.values.size(); ++k) J.mc.values[k] = -gradient_energy_.values[k];
+  add_potential_tangent(*space_, model_.well, model_.rule, -1, c, J.mc);
+  double convex = 0;
+  for (int i = 0; i < block_size(); ++i)
+    convex += space_->node_area[i] * std::max(0.0, model_.well.second(c[i]));
+  J.curvature = space_->communicator->sum(convex) / space_->area;
+}
+
+void CahnHilliard::add_mobility_derivative(ConstVec mu,
+                                           const std::vector<std::array<double, 4>>& gradient,
+                                           CsrMatrix& matrix) const {
+  const SurfaceSpace& space = *space_;
+  space.team->run([&](int part) {
+    const RowBlock& block = space.blocks[part];
+    for (int e = block.element_begin; e < block.element_end; ++e) {
+      const CutElement& element = space.elements[e];
+      const std::array<double, 4> flux = unit_flux(element, mu);
+      const std::array<double, 4>& slope = gradient[e];
+      for (int i = 0; i < 4; ++i)
+        if (block.owns(element.node[i]))
+          matrix.values[space.pattern->diagonal[element.node[i]]] += flux[i] * slope[i];
+      for (int k = 0; k < 6; ++k) {
+        const auto& [i, j] = kTetEdges[k];
+        if (block.owns(element.node[i]))
+          matrix.values[space.pattern->low_high[element.edge[k]]] += flux[i] * slope[j];
+        if (block.owns(element.node[j]))
+          matrix.values[space.pattern->high_low[element.edge[k]]] += flux[j] * slope[i];
+      }
+    }
+  });
+}
+
+Status CahnHilliard::jacobian(double t, ConstVec y, ConstVec, double shift, Tangent tangent,
+                              BlockJacobian& J) const {
+  const SurfaceSpace& space = *space_;
+  Vec c_buffer, mu_buffer;
+  const auto c = space.with_ghosts(c_of(y), c_buffer);
+  const auto mu = space.with_ghosts(mu_of(y), mu_buffer);
+  J.shift = shift;
+  J.tangent = tangent;
+  J.stiffness = model_.epsilon * model_.epsilon;
+  J.mm.values = space.stabilised_mass.values;
+  for (std::size_t k = 0; k < J.cc.values.size(); ++k)
+    J.cc.values[k] = shift * space.stabilised_mass.values[k];
+
+  std::vector<double> mean;
+  if (tangent == Tangent::exact) {
+    std::vector<std::array<double, 4>> gradient;
+    mean_mobility(space, *model_.mobility, c, mean, gradient);
+    add_mobility_derivative(mu, gradient, J.cc);
+  } else {
+    mean_mobility(space, *model_.mobility, c, mean);
+  }
+  assemble_mobility_stiffness(space, mean, J.cm);
+  for (std::size_t k = 0; k < J.cm.values.size(); ++k)
+    J.cm.values[k] += flux_stabilisation() * space.normal.values[k];
+  double weighted = 0;
+  for (std::size_t e = 0; e < mean.size(); ++e) weighted += mean[e] * space.elements[e].area();
+  J.mobility = space.communicator->sum(weighted) / space.area;
+
+  fill_curvature(c, tangent, J);
+  if (tangent == Tangent::exact)
+    for (const EffectPtr& effect : model_.effects) effect->add_tangent(space, t, c, mu, J);
+  if (!std::isfinite(J.mobility) || !std::isfinite(J.curvature))
+    return Status::retry("the Jacobian is not finite");
+  return {};
+}
+
+Status CahnHilliard::jacobian_product(double t, ConstVec y, ConstVec, double shift, Tangent tangent,
+                                      ConstVec v, VecRef product) const {
+  const SurfaceSpace& space = *space_;
+  const int n = block_size();
+  Vec buffers[4];
+  const auto c = space.with_ghosts(c_of(y), buffers[0]);
+  const auto mu = space.with_ghosts(mu_of(y), buffers[1]);
+  const auto vc = space.with_ghosts(c_of(v), buffers[2]);
+  const auto vmu = space.with_ghosts(mu_of(v), buffers[3]);
+  product.setZero();
+  VecRef first = product.head(n), second = product.tail(n);
+  space.stabilised_mass.multiply_add(shift, vc, first, *space.team);
+  space.normal.multiply_add(flux_stabilisation(), vmu, first, *space.team);
+  space.stabilised_mass.multiply_add(1, vmu, second, *space.team);
+  gradient_energy_.multiply_add(-1, vc, second, *space.team);
+
+  std::vector<double> mean;
+  if (tangent == Tangent::stabilised) {
+    mean_mobility(space, *model_.mobility, c, mean);
+    add_mobility_flux(space, mean, vmu, first);
+    space.stabilised_mass.multiply_add(-model_.beta(), vc, second, *space.team);
+    return {};
+  }
+  std::vector<std::array<double, 4>> gradient;
+  mean_mobility(space, *model_.mobility, c, mean, gradient);
+  add_mobility_flux(space, mean, vmu, first);
+  for_each_row_contribution(
+      space.elements, space.blocks, *space.team,
+      [&](const CutElement& element, int e) {
+        double change = 0;
+        for (int i = 0; i < 4; ++i) change += gradient[e][i] * vc[element.node[i]];
+        std::array<double, 4> load = unit_flux(element, mu);
+        for (double& value : load) value *= change;
+        return load;
+      },
+      [&](int row, double value) { first[row] += value; });
+  add_potential_tangent_product(space, model_.well, model_.rule, -1, c, vc, second);
+  for (const EffectPtr& effect : model_.effects)
+    effect->add_tangent_product(space, t, c, mu, vc, vmu, first, second);
+  return {};
+}
+
+Status CahnHilliard::consistent_initial_state(double t, VecRef y, VecRef ydot) const {
+  const int n = block_size();
+  y.tail(n).setZero();
+  ydot.setZero();
+  Vec r(size());
+  if (Status status = residual(t, y, ydot, r); !status.ok()) return status;
+  Vec mu(n);
+  if (Status status = space_->solve_mass(-r.tail(n), mu); !status.ok()) return status;
+  y.tail(n) = mu;
+  if (Status status = residual(t, y, ydot, r); !status.ok()) return status;
+  Vec rate(n);
+  if (Status status = space_->solve_mass(-r.head(n), rate); !status.ok()) return status;
+  ydot.head(n) = rate;
+  return {};
+}
+
+double CahnHilliard::norm(ConstVec y) const {
+  return std::sqrt(std::max(0.0, space_->inner(c_of(y), c_of(y))));
+}
+
+double CahnHilliard::energy(ConstVec y) const {
+  Vec buffer;
+  const auto c = space_->with_ghosts(c_of(y), buffer);
+  const double local = potential_energy(*space_, model_.well, c) +
+                       0.5 * gradient_energy_.quadratic(c, c, *space_->team);
+  return space_->communicator->sum(local);
+}
+
+bool CahnHilliard::conserves_mass() const {
+  return std::all_of(model_.effects.begin(), model_.effects.end(),
+                     [](const EffectPtr& effect) { return effect->conserves_mass(); });
+}
+
+bool CahnHilliard::dissipates_energy() const {
+  return std::all_of(model_.effects.begin(), model_.effects.end(),
+                     [](const EffectPtr& effect) { return effect->dissipates_energy(); });
+}
+
+}  // namespace traceraft

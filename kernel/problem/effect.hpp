@@ -1,0 +1,42 @@
+// A term added to the base model. One file per effect, one line in its list.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "kernel/fem/surface_space.hpp"
+#include "kernel/linear/block_jacobian.hpp"
+
+namespace traceraft {
+
+// Where the weak form ∫ (…) v of an effect enters:
+//   F1 = M̃ċ + K_M(c) μ + ρ S μ + source + flux,   F2 = M̃μ − b(c) − ε²(K + ρ S)c − potential.
+enum class Slot { source, flux, potential };
+
+// Contract: adds its own contribution and nothing else; a pure function of (t, c, μ); the tangent is
+// the exact derivative of the residual. c and μ are local fields (with ghosts).
+class Effect {
+ public:
+  virtual ~Effect() = default;
+  virtual std::string name() const = 0;
+  virtual bool conserves_mass() const = 0;
+  virtual bool dissipates_energy() const = 0;
+
+  virtual void add_residual(const SurfaceSpace& space, double t, ConstVec c, ConstVec mu,
+                            VecRef residual_c, VecRef residual_mu) const = 0;
+  virtual void add_tangent(const SurfaceSpace& space, double t, ConstVec c, ConstVec mu,
+                           BlockJacobian& J) const = 0;
+  virtual void add_tangent_product(const SurfaceSpace& space, double t, ConstVec c, ConstVec mu,
+                                   ConstVec direction_c, ConstVec direction_mu, VecRef product_c,
+                                   VecRef product_mu) const = 0;
+};
+
+using EffectPtr = std::shared_ptr<const Effect>;
+
+// A prescribed density g(x, t) on Γ_h: a source ∫ g v in F1 or a potential ∫ g v in F2.
+// Manufactured solutions are driven by these.
+EffectPtr prescribed_density(std::string name, Slot slot,
+                             std::function<double(const Point&, double)> density);
+
+}  // namespace traceraft

@@ -1,0 +1,56 @@
+// Initial concentrations. All are projected, M̃ c₀ = M c, because nodal values away from Γ_h would
+// otherwise act as extra data; the projection keeps ∫c exactly.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "kernel/core/named_list.hpp"
+#include "kernel/core/parameters.hpp"
+#include "kernel/fem/surface_space.hpp"
+#include "kernel/physics/double_well.hpp"
+
+namespace traceraft {
+
+struct CapRaft {
+  Point direction;  // of the centre, seen from the origin
+  double angle;     // half opening angle in radians
+};
+
+// What an initial state may be made of; each kind uses its part.
+struct InitialRequest {
+  double raft_fraction = 0.5;    // mean of (c − a)/(b − a)
+  std::int64_t noise_cells = 0;  // cells per edge of the mesh on which noise is drawn; 0: the mesh
+  std::uint64_t seed = 1;
+  std::vector<CapRaft> caps;
+  std::function<double(const Point&)> formula;
+  double epsilon = 0.05;
+  DoubleWell well;
+};
+
+struct InitialEntry {
+  std::string name;
+  std::string summary;
+  std::vector<ParameterSpec> parameters;
+  // Nodal values before projection.
+  std::function<Vec(const SurfaceSpace&, const InitialRequest&, const Parameters&)> make;
+};
+
+InitialEntry bernoulli_noise();
+InitialEntry band_limited_noise();
+InitialEntry cap_rafts();
+InitialEntry formula_field();
+
+const NamedList<InitialEntry>& initial_fields();
+
+// "band-limited:wavelength=0.3" -> projected nodal concentrations. Throws InputError.
+Vec make_initial_field(const std::string& specification, const SurfaceSpace& space,
+                       const InitialRequest& request);
+
+// L² projection with the stabilised mass matrix: M̃ c = M nodal. Throws InputError if the data are
+// not finite.
+Vec project(const SurfaceSpace& space, ConstVec nodal);
+
+}  // namespace traceraft

@@ -1,0 +1,60 @@
+#include "kernel/simulation/run_loop.hpp"
+
+#include "kernel/core/binary.hpp"
+
+namespace traceraft {
+
+void RunState::save(std::ostream& out) const {
+  write_binary(out, monitor);
+  write_binary(out, static_cast<std::uint64_t>(next_output));
+  write_binary(out, row);
+  integrator.save(out);
+}
+
+void RunState::load(std::istream& in) {
+  std::uint64_t next = 0;
+  read_binary(in, monitor);
+  read_binary(in, next);
+  read_binary(in, row);
+  next_output = static_cast<std::size_t>(next);
+  integrator.load(in);
+}
+
+void begin_run(RunState& state, const Observer& observer, const std::vector<double>& output_times,
+               const std::vector<RunListener*>& listeners) {
+  const Integrator& integrator = state.integrator;
+  state.row = observer.measure(integrator.time(), integrator.state());
+  state.monitor.start(state.row);
+  for (; state.next_output < output_times.size() &&
+         output_times[state.next_output] <= integrator.time();
+       ++state.next_output)
+    for (RunListener* listener : listeners) listener->on_output(state.row, integrator.state());
+  for (RunListener* listener : listeners) listener->on_step(state);
+}
+
+RunResult continue_run(RunState& state, const Observer& observer, double t_end,
+                       const std::vector<double>& output_times,
+                       const std::vector<RunListener*>& listeners,
+                       const std::function<bool()>& stop) {
+  Integrator& integrator = state.integrator;
+  while (integrator.time() < t_end) {
+    if (stop()) return {RunEnd::stopped, ""};
+    if (Status status = integrator.advance(); !status.ok()) return {RunEnd::failed, status.why};
+    state.row = observer.measure(integrator.time(), integrator.state());
+    state.monitor.accept(state.row);
+    for (; state.next_output < output_times.size() &&
+           output_times[state.next_output] <= integrator.time();
+         ++state.next_output) {
+      Vec y(integrator.state().size());
+      const double t = output_times[state.next_output];
+      if (Status status = integrator.interpolate(t, y); !status.ok())
+        return {RunEnd::failed, status.why};
+      const Observables row = observer.measure(t, y);
+      for (RunListener* listener : listeners) listener->on_output(row, y);
+    }
+    for (RunListener* listener : listeners) listener->on_step(state);
+  }
+  return {RunEnd::finished, ""};
+}
+
+}  // namespace traceraft

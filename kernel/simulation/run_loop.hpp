@@ -1,0 +1,52 @@
+// From a consistent state to the end of a run: steps, results at requested times, listeners.
+#pragma once
+
+#include <functional>
+#include <iosfwd>
+#include <vector>
+
+#include "kernel/observables/observables.hpp"
+#include "kernel/simulation/run_monitor.hpp"
+#include "kernel/time/integrator.hpp"
+
+namespace traceraft {
+
+// Everything that changes during a run; what a checkpoint holds.
+struct RunState {
+  Integrator& integrator;
+  RunMonitor monitor;
+  std::size_t next_output = 0;  // first requested time not yet delivered
+  Observables row;              // at the last accepted step
+
+  void save(std::ostream& out) const;
+  void load(std::istream& in);  // throws IoError
+};
+
+// Listeners see the run and do not change it. They may throw (a full disk): the run ends there.
+class RunListener {
+ public:
+  virtual ~RunListener() = default;
+  // After every accepted step, and once before the first one.
+  virtual void on_step(const RunState&) {}
+  // At a requested time, interpolated within the last step: results never bend the steps.
+  virtual void on_output(const Observables&, ConstVec /*y*/) {}
+};
+
+enum class RunEnd { finished, stopped, failed };
+
+struct RunResult {
+  RunEnd end;
+  std::string why;  // of a failure
+};
+
+// Measures the initial state and tells the listeners, unless the state was loaded.
+void begin_run(RunState& state, const Observer& observer, const std::vector<double>& output_times,
+               const std::vector<RunListener*>& listeners);
+
+// Advances to t_end. `stop` is asked after every step. `output_times` ascend.
+RunResult continue_run(RunState& state, const Observer& observer, double t_end,
+                       const std::vector<double>& output_times,
+                       const std::vector<RunListener*>& listeners,
+                       const std::function<bool()>& stop);
+
+}  // namespace traceraft

@@ -1,0 +1,41 @@
+// Watches what a solution must keep: mass, and energy that does not grow.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/observables/observables.hpp"
+
+namespace traceraft {
+
+class RunMonitor {
+ public:
+  static constexpr double kRise = 1e-10;  // relative growth of the energy that counts as a rise
+
+  void start(const Observables& row) {
+    initial_mass_ = row.mass;
+    initial_energy_ = row.energy;
+    energy_ = row.energy;
+  }
+  void accept(const Observables& row) {
+    drift_ = std::max(drift_, std::fabs(relative_drift(row)));
+    const double rise = (row.energy - energy_) / std::fabs(initial_energy_);
+    if (rise > kRise) ++rises_;
+    largest_rise_ = std::max(largest_rise_, rise);
+    energy_ = row.energy;
+  }
+
+  // (mass − initial mass)/|initial mass|
+  double relative_drift(const Observables& row) const {
+    return initial_mass_ == 0 ? row.mass : (row.mass - initial_mass_) / std::fabs(initial_mass_);
+  }
+  double mass_drift() const { return drift_; }  // largest so far
+  long energy_rises() const { return rises_; }
+  double largest_rise() const { return largest_rise_; }  // relative to the initial energy
+
+ private:
+  double initial_mass_ = 0, initial_energy_ = 1, energy_ = 0, drift_ = 0, largest_rise_ = 0;
+  long rises_ = 0;
+};
+
+}  // namespace traceraft
