@@ -43,8 +43,7 @@ const NamedList<IntegratorEntry>& integrators() {
 LinearSolverChoice choose_linear_solver(const std::string& name, const SurfaceSpace& space) {
   const LinearSolverEntry& entry = linear_solvers().find(name);
   LinearSolverChoice choice{entry.make(space), nullptr};
-  if (!entry.fallback.empty())
-    choice.fallback = linear_solvers().find(entry.fallback).make(space);
+  if (!entry.fallback.empty()) choice.fallback = linear_solvers().find(entry.fallback).make(space);
   return choice;
 }
 

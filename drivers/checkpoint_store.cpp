@@ -158,9 +158,8 @@ Vec final_concentration(const std::filesystem::path& run_folder, int nodes) {
   }
   if (checkpoint.concentration.size() != static_cast<std::size_t>(nodes))
     throw InputError("restart: " + run_folder.string() + " has " +
-                     std::to_string(checkpoint.concentration.size()) +
-                     " nodes, this run has " + std::to_string(nodes) +
-                     "; surface and --cells must be the same");
+                     std::to_string(checkpoint.concentration.size()) + " nodes, this run has " +
+                     std::to_string(nodes) + "; surface and --cells must be the same");
   return Eigen::Map<const Vec>(checkpoint.concentration.data(), nodes);
 }
 

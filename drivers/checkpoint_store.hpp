@@ -13,12 +13,12 @@ namespace traceraft {
 
 // What one checkpoint file holds, besides magic, version and checksum.
 struct Checkpoint {
-  std::string configuration;                   // resolved, to recognise a changed run
+  std::string configuration;                    // resolved, to recognise a changed run
   std::map<std::string, std::uint64_t> tables;  // sizes of the tables when it was written
-  std::string state;                           // RunState::save
-  std::vector<double> concentration;           // c at the nodes, for --initial restart:DIR
+  std::string state;                            // RunState::save
+  std::vector<double> concentration;            // c at the nodes, for --initial restart:DIR
   long step = 0;
-  double wall_seconds = 0, cpu_seconds = 0;    // of the run so far, earlier processes included
+  double wall_seconds = 0, cpu_seconds = 0;  // of the run so far, earlier processes included
 };
 
 class CheckpointStore {
@@ -27,6 +27,9 @@ class CheckpointStore {
 
   // Durable before it returns; afterwards only the two newest are kept. Throws IoError.
   void write(const Checkpoint& checkpoint);
+
+  // Has none been finished yet?
+  bool empty() const { return files().empty(); }
 
   // The newest checkpoint that is whole. A torn or damaged one is passed over and named in
   // `refused`. Throws IoError if none is left.

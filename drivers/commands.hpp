@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "drivers/configuration.hpp"
 
@@ -23,6 +24,12 @@ struct ResumeRequest {
   bool quiet = false;
 };
 int resume_command(const ResumeRequest& request);
+
+struct VerifyRequest {
+  std::vector<std::string> studies;  // names, or "all"
+  bool quick = false;
+};
+int verify_command(const VerifyRequest& request);
 
 int list_command();
 

@@ -111,10 +111,16 @@ std::string config_text(const Configuration& configuration) {
   for (const OptionSpec& spec : run_options()) {
     if (spec.group != group) text += "\n# " + spec.group + "\n";
     group = spec.group;
-    text += spec.name + " = " + toml_value(spec, configuration) + "  # " +
-            spec.help + "\n";
+    text += spec.name + " = " + toml_value(spec, configuration) + "  # " + spec.help + "\n";
   }
   return text.substr(1);
+}
+
+std::string numerical_identity(const Configuration& configuration) {
+  std::string identity;
+  for (const OptionSpec& spec : run_options())
+    if (spec.numerical) identity += spec.name + " = " + toml_value(spec, configuration) + "\n";
+  return identity;
 }
 
 }  // namespace traceraft

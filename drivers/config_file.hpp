@@ -14,4 +14,7 @@ GivenValues read_config_file(const std::filesystem::path& path);
 // All options with their resolved values, each with its meaning: reads back as the same run.
 std::string config_text(const Configuration& configuration);
 
+// The options that decide the numbers of a run, in a normal form: equal text, equal run.
+std::string numerical_identity(const Configuration& configuration);
+
 }  // namespace traceraft

@@ -42,9 +42,9 @@ double checked_number(const OptionSpec& spec, const GivenValue& value, const std
   if (spec.kind == OptionKind::integer && number != std::floor(number))
     throw InputError(value.where + ": '" + text + "' is not a whole number");
   if (spec.min < spec.max && !(number >= spec.min / unit && number <= spec.max / unit))
-    throw InputError(value.where + ": " + text + " is out of range (allowed: " +
-                     format_number(spec.min / unit) + " to " + format_number(spec.max / unit) +
-                     ")");
+    throw InputError(value.where + ": " + text +
+                     " is out of range (allowed: " + format_number(spec.min / unit) + " to " +
+                     format_number(spec.max / unit) + ")");
   return number;
 }
 
@@ -87,8 +87,7 @@ Configuration::Configuration(const GivenValues& file, const GivenValues& flags) 
     }
     std::string text = defaults[spec.name];
     if (scaled_units.scaled && spec.dimension != Dimension::none && !text.empty()) {
-      const double unit =
-          spec.dimension == Dimension::length ? physical.length() : physical.time();
+      const double unit = spec.dimension == Dimension::length ? physical.length() : physical.time();
       text = format_number(parse_number(spec.name, text) / unit);
     }
     set(spec, {text, "--" + spec.name});
@@ -124,9 +123,13 @@ void Configuration::set(const OptionSpec& spec, const GivenValue& value) {
   values_[spec.name] = value;
 }
 
-std::string Configuration::text(const std::string& name) const { return values_.at(name).text; }
+std::string Configuration::text(const std::string& name) const {
+  return values_.at(name).text;
+}
 
-std::string Configuration::where(const std::string& name) const { return values_.at(name).where; }
+std::string Configuration::where(const std::string& name) const {
+  return values_.at(name).where;
+}
 
 double Configuration::number(const std::string& name) const {
   return parse_number(name, text(name));
@@ -136,7 +139,9 @@ long long Configuration::integer(const std::string& name) const {
   return static_cast<long long>(number(name));
 }
 
-bool Configuration::flag(const std::string& name) const { return text(name) == "true"; }
+bool Configuration::flag(const std::string& name) const {
+  return text(name) == "true";
+}
 
 std::vector<double> Configuration::numbers(const std::string& name) const {
   std::vector<double> values;
@@ -144,6 +149,8 @@ std::vector<double> Configuration::numbers(const std::string& name) const {
   return values;
 }
 
-Units Configuration::units() const { return {number("radius"), number("diffusion"), flag("scaled")}; }
+Units Configuration::units() const {
+  return {number("radius"), number("diffusion"), flag("scaled")};
+}
 
 }  // namespace traceraft

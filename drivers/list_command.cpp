@@ -6,6 +6,7 @@
 #include "drivers/exit_codes.hpp"
 #include "kernel/physics/mobility.hpp"
 #include "kernel/problem/initial_data.hpp"
+#include "verification/studies.hpp"
 
 namespace traceraft {
 namespace {
@@ -40,9 +41,11 @@ int list_command() {
   std::printf("  %-14s %s\n\n", "formula", "any level set, from --surface-formula");
   print_list_with_parameters("Mobility laws (--mobility)", mobilities());
   print_list_with_parameters("Initial states (--initial)", initial_fields());
-  std::printf("  %-14s %s\n\n", "restart:DIR", "the last state of the run in DIR, on the same mesh");
+  std::printf("  %-14s %s\n\n", "restart:DIR",
+              "the last state of the run in DIR, on the same mesh");
   print_list("Integrators (--integrator)", integrators());
   print_list("Linear solvers (--linear-solver)", linear_solvers());
+  print_list("Studies (verify)", studies());
   return kSuccess;
 }
 

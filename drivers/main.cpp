@@ -66,7 +66,8 @@ int dispatch(int argc, char** argv) {
   run_app->add_flag("--quiet", run.quiet, "print nothing but errors");
   add_options(run_app, run.flags, [](const OptionSpec&) { return true; });
   run_app->footer(
-      "Values come from defaults, then the case, then --config, then flags. Exit codes: 0 success,\n"
+      "Values come from defaults, then the case, then --config, then flags. Exit codes: 0 "
+      "success,\n"
       "2 bad input, 3 numerical failure, 4 input/output, 5 interrupted (checkpoint written),\n"
       "6 folder in use.\n"
       "Example: traceraft run --case guv-2to1 --cells 64 --epsilon 0.1 --t-end 100");
@@ -78,6 +79,13 @@ int dispatch(int argc, char** argv) {
   resume_app->add_flag("--quiet", resume.quiet, "print nothing but errors");
   add_options(resume_app, resume.flags, [](const OptionSpec& spec) { return !spec.numerical; });
 
+  VerifyRequest verify;
+  CLI::App* verify_app = app.add_subcommand("verify", "measure what the program claims");
+  verify_app->allow_extras();
+  verify_app->add_option("studies", verify.studies, "studies (see: traceraft list), or all")
+      ->default_str("all");
+  verify_app->add_flag("--quick", verify.quick, "coarser meshes, minutes in total");
+
   CLI::App* list_app = app.add_subcommand("list", "list cases, surfaces, laws and methods");
   list_app->allow_extras();
 
@@ -87,18 +95,23 @@ int dispatch(int argc, char** argv) {
     return app.exit(asked);  // --help, --version
   } catch (const CLI::RequiredError&) {
     if (app.get_subcommands().empty() && argc > 1)
-      throw InputError(unknown_name_message("command", argv[1], {"run", "resume", "list"}));
+      throw InputError(
+          unknown_name_message("command", argv[1], {"run", "resume", "verify", "list"}));
     throw InputError(app.get_subcommands().empty()
-                         ? "say what to do: run, resume or list (see traceraft --help)"
+                         ? "say what to do: run, resume, verify or list (see traceraft --help)"
                          : "resume: needs the run folder, as in: traceraft resume runs/guv-2to1-1");
   } catch (const CLI::ExtrasError&) {
-    throw InputError(unknown_name_message("command", argv[1], {"run", "resume", "list"}));
+    throw InputError(unknown_name_message("command", argv[1], {"run", "resume", "verify", "list"}));
   } catch (const CLI::ParseError& error) {
     throw InputError(error.what());
   }
   for (const CLI::App* command : app.get_subcommands()) refuse_unknown(*command);
   if (run_app->parsed()) return run_command(run);
   if (resume_app->parsed()) return resume_command(resume);
+  if (verify_app->parsed()) {
+    if (verify.studies.empty()) verify.studies = {"all"};
+    return verify_command(verify);
+  }
   return list_command();
 }
 

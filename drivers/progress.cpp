@@ -60,8 +60,8 @@ void Progress::on_step(const RunState& state) {
     std::printf("%3.0f %%  %s\n", 100 * share, line);
   } else {
     const int columns = terminal_columns() - 1;
-    const int width = std::clamp(columns - static_cast<int>(std::char_traits<char>::length(line)) - 3,
-                                 0, 24);
+    const int width =
+        std::clamp(columns - static_cast<int>(std::char_traits<char>::length(line)) - 3, 0, 24);
     std::string bar(static_cast<std::size_t>(width), '.');
     std::fill_n(bar.begin(), static_cast<std::size_t>(share * width), '#');
     std::printf("\r\033[K%.*s", columns, ((width ? "[" + bar + "] " : "") + line).c_str());

@@ -13,14 +13,6 @@
 namespace traceraft {
 namespace {
 
-// The options that decide the numbers of a run: equal text, equal run.
-std::string numerical_identity(const Configuration& configuration) {
-  std::string identity;
-  for (const OptionSpec& spec : run_options())
-    if (spec.numerical) identity += spec.name + "=" + configuration.text(spec.name) + "\n";
-  return identity;
-}
-
 int exit_code(const RunResult& result) {
   switch (result.end) {
     case RunEnd::finished:
@@ -55,12 +47,11 @@ int carry_out(const Configuration& configuration, RunSetup& run, const RunFolder
     state.load(saved);
   } else {
     if (Status status = start_run(run); !status.ok()) result = {RunEnd::failed, status.why};
-    if (result.end != RunEnd::failed)
-      begin_run(state, *run.observer, run.output_times, listeners);
+    if (result.end != RunEnd::failed) begin_run(state, *run.observer, run.output_times, listeners);
   }
   if (result.end != RunEnd::failed)
-    result = continue_run(state, *run.observer, run.t_end, run.output_times, listeners,
-                          stop_requested);
+    result =
+        continue_run(state, *run.observer, run.t_end, run.output_times, listeners, stop_requested);
   progress.finish();
   if (run.integrator->statistics().steps > 0) checkpoints.write(state);
   const RunCost cost{checkpoints.wall_seconds(), checkpoints.cpu_seconds()};
@@ -96,15 +87,16 @@ int resume_command(const ResumeRequest& request) {
   const Configuration configuration(read_config_file(folder.config()), request.flags);
   RunSetup run = build_run(configuration);
   std::optional<Checkpoint> checkpoint;
-  if (!std::filesystem::is_empty(folder.checkpoints())) {
+  if (const CheckpointStore store(folder.checkpoints()); !store.empty()) {
     std::vector<std::string> refused;
-    checkpoint = CheckpointStore(folder.checkpoints()).newest(refused);
+    checkpoint = store.newest(refused);
     for (const std::string& why : refused)
       std::fprintf(stderr, "traceraft: refused %s; using the checkpoint before it\n", why.c_str());
     if (checkpoint->configuration != numerical_identity(configuration))
       throw InputError(folder.config().string() +
                        " is not what the checkpoint was written with; restore it, or start a new "
-                       "run with --initial restart:" + folder.path.string());
+                       "run with --initial restart:" +
+                       folder.path.string());
   }
   if (!request.quiet) {
     print_setup(configuration, run);

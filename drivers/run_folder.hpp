@@ -21,9 +21,9 @@ struct RunFolder {
   std::filesystem::path table(const std::string& name) const { return path / name; }
 };
 
-// A folder for a new run, locked, holding its resolved configuration. Files of others in it are left
-// alone. An empty `out` means runs/<case>-<first free number>.
-// Throws InputError if it holds a run already, LockedError if one is going on, IoError.
+// A folder for a new run, locked, holding its resolved configuration. Files of others in it are
+// left alone. An empty `out` means runs/<case>-<first free number>. Throws InputError if it holds a
+// run already, LockedError if one is going on, IoError.
 RunFolder create_run_folder(const std::string& out, const Configuration& configuration);
 
 // The folder of an earlier run, locked. Throws InputError if there is none, LockedError, IoError.

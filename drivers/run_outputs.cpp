@@ -27,6 +27,11 @@ std::string csv_row(std::initializer_list<double> values) {
   return text + "\n";
 }
 
+std::size_t output_index(const RunSetup& run, double t) {
+  const auto& times = run.output_times;
+  return static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), t) - times.begin());
+}
+
 std::string field_name(std::size_t index) {
   char name[40];
   std::snprintf(name, sizeof name, "field-%04zu.vtu", index);
@@ -46,29 +51,31 @@ TableWriter::TableWriter(const RunFolder& folder, const RunSetup& run,
   if (rafts_.size() == 0) rafts_.append(kRaftColumns);
 }
 
-std::string TableWriter::row_text(const Observables& row) const {
+std::string TableWriter::row_text(const Observables& row, double t) const {
   const Units& units = run_.units;
   const Integrator& integrator = *run_.integrator;
   const IntegratorStatistics statistics = integrator.statistics();
-  return csv_row({static_cast<double>(statistics.steps), row.t * units.time(),
-                  integrator.step() * units.time(), row.mass * units.area(),
-                  row.energy * units.area(), row.perimeter * units.length(),
-                  row.perimeter_level * units.length(), static_cast<double>(row.rafts),
-                  row.raft_fraction, row.c_min, row.c_max,
+  return csv_row({static_cast<double>(statistics.steps), t, integrator.step() * units.time(),
+                  row.mass * units.area(), row.energy * units.area(),
+                  row.perimeter * units.length(), row.perimeter_level * units.length(),
+                  static_cast<double>(row.rafts), row.raft_fraction, row.c_min, row.c_max,
                   static_cast<double>(statistics.rejected),
                   static_cast<double>(integrator.linear_statistics().iterations)});
 }
 
-void TableWriter::on_step(const RunState& state) { series_.append(row_text(state.row)); }
+void TableWriter::on_step(const RunState& state) {
+  series_.append(row_text(state.row, state.row.t * run_.units.time()));
+}
 
 void TableWriter::on_output(const Observables& row, ConstVec y) {
   const Units& units = run_.units;
-  observables_.append(row_text(row));
+  const double t = run_.output_labels[output_index(run_, row.t)];
+  observables_.append(row_text(row, t));
   std::string text;
   int number = 0;
   for (const Raft& raft : run_.observer->rafts(y).rafts) {
     const Point x = raft.centre * units.length();
-    text += csv_row({row.t * units.time(), static_cast<double>(++number), raft.area * units.area(),
+    text += csv_row({t, static_cast<double>(++number), raft.area * units.area(),
                      raft.perimeter * units.length(), x[0], x[1], x[2]});
   }
   rafts_.append(text);
@@ -86,16 +93,14 @@ std::map<std::string, std::uint64_t> TableWriter::sizes() const {
 
 void FieldWriter::on_output(const Observables& row, ConstVec y) {
   const CutSurface& surface = run_.space->surface;
-  const auto& times = run_.output_times;
-  const std::size_t index =
-      static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), row.t) - times.begin());
+  const std::size_t index = output_index(run_, row.t);
   write_durably(folder_.fields() / field_name(index),
                 vtu_text(*run_.space, run_.units.length(),
                          {{"c", surface.trace(run_.problem->c_of(y))},
                           {"mu", surface.trace(run_.problem->mu_of(y))}}));
   std::vector<std::pair<double, std::string>> files;
   for (std::size_t i = 0; i <= index; ++i)
-    files.emplace_back(times[i] * run_.units.time(), "fields/" + field_name(i));
+    files.emplace_back(run_.output_labels[i], "fields/" + field_name(i));
   write_durably(folder_.path / "fields.pvd", pvd_text(files));
 }
 
@@ -110,7 +115,9 @@ CheckpointWriter::CheckpointWriter(const RunFolder& folder, const RunSetup& run,
       wall_before_(wall_before),
       cpu_before_(cpu_before - traceraft::cpu_seconds()) {}
 
-double CheckpointWriter::cpu_seconds() const { return cpu_before_ + traceraft::cpu_seconds(); }
+double CheckpointWriter::cpu_seconds() const {
+  return cpu_before_ + traceraft::cpu_seconds();
+}
 
 void CheckpointWriter::on_step(const RunState& state) {
   if (!written_ || since_last_.seconds() >= interval_) write(state);

@@ -28,7 +28,7 @@ class TableWriter final : public RunListener {
   std::map<std::string, std::uint64_t> sizes() const;
 
  private:
-  std::string row_text(const Observables& row) const;
+  std::string row_text(const Observables& row, double t) const;
 
   const RunSetup& run_;
   AppendFile series_, observables_, rafts_;

@@ -47,11 +47,10 @@ LevelSetPtr level_set(const Configuration& configuration) {
 
 DoubleWell double_well(const Configuration& configuration) {
   return said_of(configuration, "well", [&] {
-    const Parameters p =
-        parse_parameters("double well", configuration.text("well"),
-                         {{"rho", "", 0.25, 1e-12, 1e12, "height"},
-                          {"a", "", 0, -1e6, 1e6, "first minimum"},
-                          {"b", "", 1, -1e6, 1e6, "second minimum"}});
+    const Parameters p = parse_parameters("double well", configuration.text("well"),
+                                          {{"rho", "", 0.25, 1e-12, 1e12, "height"},
+                                           {"a", "", 0, -1e6, 1e6, "first minimum"},
+                                           {"b", "", 1, -1e6, 1e6, "second minimum"}});
     if (!(p["a"] < p["b"])) throw InputError("double well: a must be smaller than b");
     return DoubleWell{p["rho"], p["a"], p["b"]};
   });
@@ -121,26 +120,21 @@ Vec initial_field(const Configuration& configuration, const CahnHilliardModel& m
   });
 }
 
-std::vector<double> output_times(const Configuration& configuration, const Units& units,
-                                 double t_end) {
+// In the user's units.
+std::vector<double> output_labels(const Configuration& configuration) {
   constexpr int kDefaultTimes = 16;
-  std::vector<double> times;
-  for (const double time : configuration.numbers("output-times"))
-    times.push_back(time / units.time());
+  const double end = configuration.number("t-end");
+  std::vector<double> times = configuration.numbers("output-times");
   if (times.empty()) {
     times.push_back(0);
-    for (int i = 1; i <= kDefaultTimes; ++i)  // four decades, t_end last
-      times.push_back(t_end * std::pow(10.0, 4.0 * (i - kDefaultTimes) / kDefaultTimes));
+    for (int i = 1; i <= kDefaultTimes; ++i)  // four decades, the end last
+      times.push_back(end * std::pow(10.0, 4.0 * (i - kDefaultTimes) / kDefaultTimes));
   }
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
-  // Times like 20 s read back from µm and s can exceed the end by rounding only.
-  if (!times.empty() && times.back() > t_end && times.back() < t_end * (1 + 1e-12))
-    times.back() = t_end;
-  if (!times.empty() && times.back() > t_end)
-    throw InputError(configuration.where("output-times") + ": " +
-                     format_number(times.back() * units.time()) + " is after the end of the run, " +
-                     configuration.text("t-end"));
+  if (times.back() > end)
+    throw InputError(configuration.where("output-times") + ": " + format_number(times.back()) +
+                     " is after the end of the run, " + configuration.text("t-end"));
   return times;
 }
 
@@ -166,7 +160,9 @@ RunSetup build_run(const Configuration& configuration) {
   RunSetup run;
   run.units = configuration.units();
   run.t_end = configuration.number("t-end") / run.units.time();
-  run.output_times = output_times(configuration, run.units, run.t_end);
+  run.output_labels = output_labels(configuration);
+  for (const double label : run.output_labels)
+    run.output_times.push_back(std::min(label / run.units.time(), run.t_end));
   const IntegratorSettings settings = integrator_settings(configuration, run.units);
   const CahnHilliardModel physics = model(configuration, run.units);
   const IntegratorEntry& integrator = said_of(configuration, "integrator", [&] {
@@ -184,10 +180,9 @@ RunSetup build_run(const Configuration& configuration) {
   run.problem = std::make_unique<CahnHilliard>(run.space, physics);
   run.initial = initial_field(configuration, physics, *run.space);
   run.observer = std::make_unique<Observer>(*run.problem, run.space);
-  run.integrator =
-      integrator.make(*run.problem,
-                      choose_linear_solver(configuration.text("linear-solver"), *run.space),
-                      run.team, settings);
+  run.integrator = integrator.make(
+      *run.problem, choose_linear_solver(configuration.text("linear-solver"), *run.space), run.team,
+      settings);
   return run;
 }
 

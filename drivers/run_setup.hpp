@@ -20,9 +20,10 @@ struct RunSetup {
   std::unique_ptr<const CahnHilliard> problem;
   Vec initial;  // projected c at the nodes
   std::unique_ptr<Observer> observer;
-  IntegratorPtr integrator;          // not started
-  double t_end;                      // units of R²/D, as below
-  std::vector<double> output_times;  // ascending, within [0, t_end]
+  IntegratorPtr integrator;           // not started
+  double t_end;                       // units of R²/D, as below
+  std::vector<double> output_times;   // ascending, within [0, t_end]
+  std::vector<double> output_labels;  // the same as the user wrote them, in the user's units
 };
 
 // Throws InputError for anything a run could not start with; creates no files.

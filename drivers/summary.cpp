@@ -102,28 +102,26 @@ void print_setup(const Configuration& configuration, const RunSetup& run) {
   const double h = run.space->h(), epsilon = run.problem->model().epsilon;
   std::printf("traceraft %s\n", kVersion);
   line("case", configuration.text("case"));
-  line("surface", text("%s, R = %g um, area %.6g %s", configuration.text("surface").c_str(),
-                       units.radius_um, run.space->area * units.area(),
-                       units.scaled ? "R^2" : "um^2"));
+  line("surface",
+       text("%s, R = %g um, area %.6g %s", configuration.text("surface").c_str(), units.radius_um,
+            run.space->area * units.area(), units.scaled ? "R^2" : "um^2"));
   line("mesh", text("%lld cells per edge, %zu cut tetrahedra, %d nodes, %d unknowns",
-                    configuration.integer("cells"), run.space->elements.size(),
-                    run.space->nodes(), run.problem->size()));
-  line("phase boundary", text("epsilon = %g um = %g R, h/epsilon = %.2f",
-                              epsilon * units.radius_um, epsilon, h / epsilon));
-  line("mobility", text("%s, D = %g cm^2/s", configuration.text("mobility").c_str(),
-                        units.diffusion_cm2_s));
-  line("units", text("length R = %g um, time R^2/D = %g s; the run ends at %g s = %g R^2/D",
-                     units.radius_um, units.seconds_per_unit(),
-                     run.t_end * units.seconds_per_unit(), run.t_end));
-  line("initial state", text("%s, mean concentration %.6f, seed %lld",
-                             configuration.text("initial").c_str(),
-                             run.space->integral(run.initial) / run.space->area,
-                             configuration.integer("seed")));
-  line("method", text("%s with %s, tolerance %g, %d thread%s, %s",
-                      configuration.text("integrator").c_str(),
-                      configuration.text("linear-solver").c_str(),
-                      configuration.number("tolerance"), run.team->size(),
-                      run.team->size() == 1 ? "" : "s", blas_description().c_str()));
+                    configuration.integer("cells"), run.space->elements.size(), run.space->nodes(),
+                    run.problem->size()));
+  line("phase boundary", text("epsilon = %g um = %g R, h/epsilon = %.2f", epsilon * units.radius_um,
+                              epsilon, h / epsilon));
+  line("mobility",
+       text("%s, D = %g cm^2/s", configuration.text("mobility").c_str(), units.diffusion_cm2_s));
+  line("units",
+       text("length R = %g um, time R^2/D = %g s; the run ends at %g s = %g R^2/D", units.radius_um,
+            units.seconds_per_unit(), run.t_end * units.seconds_per_unit(), run.t_end));
+  line("initial state",
+       text("%s, mean concentration %.6f, seed %lld", configuration.text("initial").c_str(),
+            run.space->integral(run.initial) / run.space->area, configuration.integer("seed")));
+  line("method",
+       text("%s with %s, tolerance %g, %d thread%s, %s", configuration.text("integrator").c_str(),
+            configuration.text("linear-solver").c_str(), configuration.number("tolerance"),
+            run.team->size(), run.team->size() == 1 ? "" : "s", blas_description().c_str()));
 }
 
 void print_summary(const Configuration&, const RunSetup& run, const RunState& state,
@@ -141,18 +139,17 @@ void print_summary(const Configuration&, const RunSetup& run, const RunState& st
                              row.mass / run.space->area));
   line("perimeter", text("%.5g %s (level curve %.5g %s)", row.perimeter * units.length(), length,
                          row.perimeter_level * units.length(), length));
-  line("energy", text("%.6g, rises: %ld%s", row.energy * units.area(),
-                      state.monitor.energy_rises(),
+  line("energy", text("%.6g, rises: %ld%s", row.energy * units.area(), state.monitor.energy_rises(),
                       run.integrator->promises_energy_decay() ? "" : " (no decay promised)"));
   line("mass drift", text("%.1e relative", state.monitor.mass_drift()));
   line("c on the surface", text("%.3f to %.3f", row.c_min, row.c_max));
-  line("steps", text("%ld accepted, %ld rejected, %ld failed", steps.steps, steps.rejected,
-                     steps.failures));
-  line("linear solves", text("%ld, %.1f iterations each, %ld set-ups, %ld renewed, %ld fallbacks",
-                             linear.solves,
-                             static_cast<double>(linear.iterations) /
-                                 static_cast<double>(std::max(1L, linear.solves)),
-                             linear.setups, steps.renewals, steps.fallbacks));
+  line("steps",
+       text("%ld accepted, %ld rejected, %ld failed", steps.steps, steps.rejected, steps.failures));
+  line("linear solves",
+       text("%ld, %.1f iterations each, %ld set-ups, %ld renewed, %ld fallbacks", linear.solves,
+            static_cast<double>(linear.iterations) /
+                static_cast<double>(std::max(1L, linear.solves)),
+            linear.setups, steps.renewals, steps.fallbacks));
   line("time", text("%s wall, %s CPU, peak memory %.0f MB", clock_text(cost.wall_seconds).c_str(),
                     clock_text(cost.cpu_seconds).c_str(), peak_memory_mb()));
   line("tables", folder.table("series.csv").string());

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "drivers/run_setup.hpp"
 #include "drivers/run_folder.hpp"
+#include "drivers/run_setup.hpp"
 #include "kernel/simulation/run_loop.hpp"
 
 namespace traceraft {

@@ -55,9 +55,9 @@ class Euler final : public Integrator {
       ++(status.ok() ? statistics_.rejected : statistics_.failures);
       const double smaller = status.ok() ? control_.after_rejection(dt, error) : dt / 4;
       if (!(smaller >= control_.min_step()))
-        return Status::fatal("no step size: " +
-                             (status.ok() ? "the error stays above the tolerance" : status.why) +
-                             " down to the smallest step");
+        return Status::fatal(
+            "no step size: " + (status.ok() ? "the error stays above the tolerance" : status.why) +
+            " down to the smallest step");
       dt = smaller;
     }
   }
@@ -216,7 +216,7 @@ class Euler final : public Integrator {
   StepControl control_;
   IntegratorStatistics statistics_;
   double t_ = 0, t_end_ = 0, step_ = 0, step_before_ = 0, next_ = 0;
-  int steps_kept_ = 0;             // how many of previous_, before_ are filled
+  int steps_kept_ = 0;                // how many of previous_, before_ are filled
   Vec y_, previous_, before_, rate_;  // y_n, y_{n−1}, y_{n−2}, ẏ at the start
   Corrector first_, second_;
 };

@@ -83,7 +83,9 @@ AppendFile::AppendFile(std::filesystem::path path, std::uint64_t size)
   }
 }
 
-AppendFile::~AppendFile() { ::close(descriptor_); }
+AppendFile::~AppendFile() {
+  ::close(descriptor_);
+}
 
 void AppendFile::append(const std::string& record) {
   write_all(descriptor_, record, path_);

@@ -23,6 +23,8 @@ FolderLock::FolderLock(const std::filesystem::path& folder) {
   throw IoError("cannot lock " + path.string() + ": " + std::strerror(error));
 }
 
-FolderLock::~FolderLock() { ::close(descriptor_); }
+FolderLock::~FolderLock() {
+  ::close(descriptor_);
+}
 
 }  // namespace traceraft

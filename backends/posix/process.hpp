@@ -5,10 +5,10 @@
 
 namespace traceraft {
 
-double cpu_seconds();          // user and system time of all threads
-double peak_memory_mb();       // largest resident set so far
+double cpu_seconds();     // user and system time of all threads
+double peak_memory_mb();  // largest resident set so far
 bool stdout_is_terminal();
-int terminal_columns();        // 80 if unknown
+int terminal_columns();  // 80 if unknown
 
 // From now on SIGINT and SIGTERM only set a flag; a second one ends the process at once.
 void catch_stop_signals();

@@ -8,7 +8,9 @@ char* openblas_get_corename();
 
 namespace traceraft {
 
-void use_one_blas_thread() { openblas_set_num_threads(1); }
+void use_one_blas_thread() {
+  openblas_set_num_threads(1);
+}
 
 std::string blas_description() {
   const std::string config = openblas_get_config();  // "OpenBLAS 0.3.21 NO_LAPACKE …"

@@ -13,7 +13,9 @@ namespace {
 
 constexpr int kRestart = 30;
 
-Eigen::Map<Vec> view(N_Vector v) { return {N_VGetArrayPointer(v), N_VGetLength(v)}; }
+Eigen::Map<Vec> view(N_Vector v) {
+  return {N_VGetArrayPointer(v), N_VGetLength(v)};
+}
 
 // The operators of one solve; an exception stops at the C boundary and is thrown again after it.
 struct Operators {
@@ -96,6 +98,8 @@ class Spfgmr final : public KrylovMethod {
 
 }  // namespace
 
-std::unique_ptr<KrylovMethod> make_spfgmr(int size) { return std::make_unique<Spfgmr>(size); }
+std::unique_ptr<KrylovMethod> make_spfgmr(int size) {
+  return std::make_unique<Spfgmr>(size);
+}
 
 }  // namespace traceraft

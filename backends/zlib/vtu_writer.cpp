@@ -82,9 +82,9 @@ std::string vtu_text(const SurfaceSpace& space, double length,
   }
   const std::vector<std::uint8_t> types(triangles, 5);  // VTK_TRIANGLE
 
-  std::string text = file_head("UnstructuredGrid") + "<UnstructuredGrid>\n<Piece NumberOfPoints=\"" +
-                     std::to_string(points) + "\" NumberOfCells=\"" + std::to_string(triangles) +
-                     "\">\n<PointData>\n";
+  std::string text = file_head("UnstructuredGrid") +
+                     "<UnstructuredGrid>\n<Piece NumberOfPoints=\"" + std::to_string(points) +
+                     "\" NumberOfCells=\"" + std::to_string(triangles) + "\">\n<PointData>\n";
   for (const PointField& field : fields)
     text += array("Float32", field.name, 1,
                   std::vector<float>(field.values.begin(), field.values.end()));
@@ -98,7 +98,8 @@ std::string vtu_text(const SurfaceSpace& space, double length,
 std::string pvd_text(const std::vector<std::pair<double, std::string>>& files) {
   std::string text = file_head("Collection") + "<Collection>\n";
   for (const auto& [time, file] : files)
-    text += "<DataSet timestep=\"" + format_number(time) + "\" part=\"0\" file=\"" + file + "\"/>\n";
+    text +=
+        "<DataSet timestep=\"" + format_number(time) + "\" part=\"0\" file=\"" + file + "\"/>\n";
   return text + "</Collection>\n</VTKFile>\n";
 }
 

@@ -20,8 +20,8 @@ std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> x,
 double uniform_random(std::uint64_t seed, std::uint64_t stream, std::uint64_t index) {
   const auto low = [](std::uint64_t v) { return static_cast<std::uint32_t>(v); };
   const auto high = [](std::uint64_t v) { return static_cast<std::uint32_t>(v >> 32); };
-  const auto bits = philox4x32({low(index), high(index), low(stream), high(stream)},
-                               {low(seed), high(seed)});
+  const auto bits =
+      philox4x32({low(index), high(index), low(stream), high(stream)}, {low(seed), high(seed)});
   const std::uint64_t mantissa = (std::uint64_t{bits[1]} << 32 | bits[0]) >> 11;
   return (static_cast<double>(mantissa) + 0.5) * 0x1p-53;
 }

@@ -6,9 +6,9 @@
 
 namespace traceraft {
 
-using Point = Eigen::Vector3d;                       // coordinates in units of the surface scale R
-using Vec = Eigen::VectorXd;                         // owned, contiguous
-using VecRef = Eigen::Ref<Eigen::VectorXd>;          // written in place
-using ConstVec = const Eigen::Ref<const Vec>&;       // read only, no copy of contiguous data
+using Point = Eigen::Vector3d;                  // coordinates in units of the surface scale R
+using Vec = Eigen::VectorXd;                    // owned, contiguous
+using VecRef = Eigen::Ref<Eigen::VectorXd>;     // written in place
+using ConstVec = const Eigen::Ref<const Vec>&;  // read only, no copy of contiguous data
 
 }  // namespace traceraft

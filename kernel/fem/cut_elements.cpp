@@ -49,11 +49,10 @@ std::vector<CutElement> build_cut_elements(const ActiveMesh& mesh) {
 std::vector<RowBlock> split_rows(const ActiveMesh& mesh, int parts) {
   std::vector<RowBlock> blocks;
   const auto edge_from = [&](int node) {
-    return static_cast<int>(std::lower_bound(mesh.edges.begin(), mesh.edges.end(), node,
-                                             [](const ActiveEdge& edge, int low) {
-                                               return edge.low < low;
-                                             }) -
-                            mesh.edges.begin());
+    return static_cast<int>(
+        std::lower_bound(mesh.edges.begin(), mesh.edges.end(), node,
+                         [](const ActiveEdge& edge, int low) { return edge.low < low; }) -
+        mesh.edges.begin());
   };
   for (int part = 0; part < parts; ++part) {
     RowBlock block{};

@@ -13,13 +13,13 @@ namespace traceraft {
 // matrix is (mean weight) · K_T and any ∫ f(c_h) v needs only the traces at the polygon's vertices.
 struct CutElement {
   std::array<int, 4> node;
-  std::array<int, 6> edge;               // active edges, order of kTetEdges
-  std::array<double, 6> stiffness;       // K_T off the diagonal: |Γ_T| ∇_Γλ_i·∇_Γλ_j
-  std::array<double, 6> normal;          // S_T off the diagonal: |T| (n·∇λ_i)(n·∇λ_j)
-  std::array<double, 4> s;               // cut fractions at the polygon's vertices
-  std::array<signed char, 4> cut_edge;   // local edges at the polygon's vertices
-  std::array<double, 2> triangle_area;   // (0,1,2) and, for quadrilaterals, (0,2,3)
-  int corners;                           // 3 or 4
+  std::array<int, 6> edge;              // active edges, order of kTetEdges
+  std::array<double, 6> stiffness;      // K_T off the diagonal: |Γ_T| ∇_Γλ_i·∇_Γλ_j
+  std::array<double, 6> normal;         // S_T off the diagonal: |T| (n·∇λ_i)(n·∇λ_j)
+  std::array<double, 4> s;              // cut fractions at the polygon's vertices
+  std::array<signed char, 4> cut_edge;  // local edges at the polygon's vertices
+  std::array<double, 2> triangle_area;  // (0,1,2) and, for quadrilaterals, (0,2,3)
+  int corners;                          // 3 or 4
   double area() const { return triangle_area[0] + triangle_area[1]; }
   int triangles() const { return corners - 2; }
 

@@ -54,10 +54,10 @@ void evaluate_means(const SurfaceSpace& space, const Mobility& law, ConstVec c,
       for (std::size_t e = first; e < last; ++e) {
         const CutElement& element = space.elements[e];
         const double unfloored = mean_of(element, value + at);
-        mean[e] = std::max(0.0, unfloored);
+        mean[e] = unfloored <= 0 ? 0.0 : unfloored;  // NaN stays NaN
         if (gradient)
-          (*gradient)[e] = unfloored > 0 ? gradient_of(element, slope + at)
-                                         : std::array<double, 4>{};
+          (*gradient)[e] =
+              unfloored > 0 ? gradient_of(element, slope + at) : std::array<double, 4>{};
         at += 3 * element.triangles();
       }
     }

@@ -24,10 +24,11 @@ void for_each_point(const CutElement& element, const std::array<double, 4>& corn
 std::array<double, 4> local_potential(const CutElement& element, const DoubleWell& well,
                                       double factor, ConstVec c) {
   std::array<double, 4> load{}, nodal{};
-  for_each_point(element, element.trace(c), [&](const auto& v, double value, const auto& at, double w) {
-    const double density = factor * w * well.derivative(value);
-    for (int k = 0; k < 3; ++k) load[v[k]] += density * at[k];
-  });
+  for_each_point(element, element.trace(c),
+                 [&](const auto& v, double value, const auto& at, double w) {
+                   const double density = factor * w * well.derivative(value);
+                   for (int k = 0; k < 3; ++k) load[v[k]] += density * at[k];
+                 });
   element.distribute(load, nodal);
   return nodal;
 }
@@ -35,11 +36,12 @@ std::array<double, 4> local_potential(const CutElement& element, const DoubleWel
 // ∫ f0''(c_h) λ_a λ_b between the polygon's vertices.
 Eigen::Matrix4d polygon_tangent(const CutElement& element, const DoubleWell& well, ConstVec c) {
   Eigen::Matrix4d tangent = Eigen::Matrix4d::Zero();
-  for_each_point(element, element.trace(c), [&](const auto& v, double value, const auto& at, double w) {
-    const double density = w * well.second(value);
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b) tangent(v[a], v[b]) += density * at[a] * at[b];
-  });
+  for_each_point(element, element.trace(c),
+                 [&](const auto& v, double value, const auto& at, double w) {
+                   const double density = w * well.second(value);
+                   for (int a = 0; a < 3; ++a)
+                     for (int b = 0; b < 3; ++b) tangent(v[a], v[b]) += density * at[a] * at[b];
+                 });
   return tangent;
 }
 
@@ -109,8 +111,8 @@ void add_potential_tangent_product(const SurfaceSpace& space, const DoubleWell& 
                                    PotentialRule rule, double factor, ConstVec c, ConstVec v,
                                    VecRef r) {
   if (rule == PotentialRule::nodal) {
-    const Vec scaled =
-        c.binaryExpr(v, [&](double value, double direction) { return well.second(value) * direction; });
+    const Vec scaled = c.binaryExpr(
+        v, [&](double value, double direction) { return well.second(value) * direction; });
     space.mass.multiply_add(factor, scaled, r, *space.team);
     return;
   }

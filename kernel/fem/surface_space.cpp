@@ -38,8 +38,7 @@ CsrMatrix mass_matrix(const SurfaceSpace& space) {
           surface(a, b) += element.triangle_area[t] / (a == b ? 6 : 12);
     const Eigen::Matrix4d local = nodal.transpose() * surface * nodal;
     for (int i = 0; i < 4; ++i) diagonal[element.node[i]] += local(i, i);
-    for (int e = 0; e < 6; ++e)
-      edge[element.edge[e]] += local(kTetEdges[e][0], kTetEdges[e][1]);
+    for (int e = 0; e < 6; ++e) edge[element.edge[e]] += local(kTetEdges[e][0], kTetEdges[e][1]);
   }
   CsrMatrix matrix(space.pattern);
   fill_symmetric(edge, diagonal, matrix);

@@ -30,12 +30,12 @@ class SurfaceSpace {
   const std::vector<RowBlock> blocks;  // one per thread
   const PatternPtr pattern;
 
-  CsrMatrix mass;       // M_ij = ∫_Γ φ_i φ_j: singular, see stabilised_mass
-  CsrMatrix stiffness;  // K_ij = ∫_Γ ∇_Γφ_i·∇_Γφ_j
-  CsrMatrix normal;     // S_ij = ∫_cut tets (n·∇φ_i)(n·∇φ_j) dx; S·1 = 0
+  CsrMatrix mass;             // M_ij = ∫_Γ φ_i φ_j: singular, see stabilised_mass
+  CsrMatrix stiffness;        // K_ij = ∫_Γ ∇_Γφ_i·∇_Γφ_j
+  CsrMatrix normal;           // S_ij = ∫_cut tets (n·∇φ_i)(n·∇φ_j) dx; S·1 = 0
   CsrMatrix stabilised_mass;  // M̃ = M + h S
-  Vec node_area;        // w_i = ∫_Γ φ_i, so ∫_Γ c_h = w·c
-  double area;          // |Γ_h|
+  Vec node_area;              // w_i = ∫_Γ φ_i, so ∫_Γ c_h = w·c
+  double area;                // |Γ_h|
 
   double h() const { return mesh.cube.h(); }
   int nodes() const { return mesh.owned_nodes; }

@@ -37,7 +37,8 @@ class FunctionLevelSet final : public LevelSet {
 // on how the mesh cuts the surface.
 class ShiftedLevelSet final : public LevelSet {
  public:
-  ShiftedLevelSet(LevelSetPtr base, const Point& offset) : base_(std::move(base)), offset_(offset) {}
+  ShiftedLevelSet(LevelSetPtr base, const Point& offset)
+      : base_(std::move(base)), offset_(offset) {}
   double value(const Point& x) const override { return base_->value(x - offset_); }
 
  private:

@@ -85,8 +85,8 @@ class BlockSolver final : public LinearSolver {
   LinearStatistics statistics_;
   bool ready_ = false;
   double setup_shift_ = 0;
-  long best_ = -1;   // fewest iterations since the last set-up
-  long extra_ = 0;   // iterations beyond that, summed
+  long best_ = -1;  // fewest iterations since the last set-up
+  long extra_ = 0;  // iterations beyond that, summed
   Vec scaled_;
 };
 

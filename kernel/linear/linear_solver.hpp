@@ -51,7 +51,8 @@ class LinearSolver {
 using LinearSolverPtr = std::unique_ptr<LinearSolver>;
 using LinearSolverFactory = std::function<LinearSolverPtr()>;
 
-// How an integrator gets its solvers: the one asked for and, possibly empty, the one to fall back on.
+// How an integrator gets its solvers: the one asked for and, possibly empty, the one to fall back
+// on.
 struct LinearSolverChoice {
   LinearSolverFactory primary;
   LinearSolverFactory fallback;

@@ -5,8 +5,7 @@
 
 namespace traceraft {
 
-TwoSolveShifts two_solve_shifts(double sigma, double mobility, double stiffness,
-                                double curvature) {
+TwoSolveShifts two_solve_shifts(double sigma, double mobility, double stiffness, double curvature) {
   const double ratio = sigma / (mobility * stiffness);  // r₁ r₂
   const double half_sum = curvature / (2 * stiffness);  // (r₁ + r₂) / 2
   const double discriminant = half_sum * half_sum - ratio;

@@ -67,7 +67,8 @@ class NodeLookup {
       : row_length_(mesh.cells + 1), node_id_(node_id) {
     const auto rows = static_cast<std::size_t>(row_length_ * row_length_);
     row_begin_.assign(rows + 1, 0);
-    for (const std::int64_t id : node_id) ++row_begin_[static_cast<std::size_t>(id / row_length_) + 1];
+    for (const std::int64_t id : node_id)
+      ++row_begin_[static_cast<std::size_t>(id / row_length_) + 1];
     for (std::size_t row = 0; row < rows; ++row) row_begin_[row + 1] += row_begin_[row];
   }
   int operator()(std::int64_t id) const {
@@ -83,7 +84,8 @@ class NodeLookup {
   std::vector<int> row_begin_;
 };
 
-// A Kuhn edge is its smaller node and one of seven directions, so edges are numbered without a sort.
+// A Kuhn edge is its smaller node and one of seven directions, so edges are numbered without a
+// sort.
 void number_edges(ActiveMesh& mesh) {
   const auto key = [](const ActiveTet& tet, std::size_t e) {
     const auto& corner = kKuhnCorners[static_cast<std::size_t>(tet.kuhn)];
@@ -118,10 +120,10 @@ ActiveMesh build_active_mesh(const LevelSet& surface, std::int64_t cells) {
   const NodeLookup node(mesh.cube, mesh.node_id);
   mesh.tets.reserve(cut.size());
   for (const GlobalTet& tet : cut)
-    mesh.tets.push_back({{node(tet.vertex[0]), node(tet.vertex[1]), node(tet.vertex[2]),
-                          node(tet.vertex[3])},
-                         {},
-                         tet.kuhn});
+    mesh.tets.push_back(
+        {{node(tet.vertex[0]), node(tet.vertex[1]), node(tet.vertex[2]), node(tet.vertex[3])},
+         {},
+         tet.kuhn});
   number_edges(mesh);
   return mesh;
 }

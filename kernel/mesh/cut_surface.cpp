@@ -14,9 +14,13 @@ int edge_between(int i, int j) {
 }
 
 // Is the permutation that Kuhn tetrahedron k comes from odd, i.e. is the tetrahedron left-handed?
-bool left_handed(int kuhn) { return kuhn == 1 || kuhn == 2 || kuhn == 5; }
+bool left_handed(int kuhn) {
+  return kuhn == 1 || kuhn == 2 || kuhn == 5;
+}
 
-double cut_fraction(double phi_low, double phi_high) { return phi_low / (phi_low - phi_high); }
+double cut_fraction(double phi_low, double phi_high) {
+  return phi_low / (phi_low - phi_high);
+}
 
 }  // namespace
 
@@ -34,7 +38,7 @@ CutPolygon cut_polygon(const ActiveMesh& mesh, const ActiveTet& tet) {
   if (negatives == 1)
     polygon = {3, {edge_between(a, b), edge_between(a, c), edge_between(a, d)}};
   else if (negatives == 3)
-    polygon = {3, {edge_between(a, d), edge_between(c, d), edge_between(b, d)}};
+    polygon = {3, {edge_between(a, d), edge_between(b, d), edge_between(c, d)}};
   else
     polygon = {4, {edge_between(a, c), edge_between(a, d), edge_between(b, d), edge_between(b, c)}};
   // The lists above are counter-clockwise from outside if (a, b, c, d) is right-handed.
@@ -96,9 +100,8 @@ Resolution surface_resolution(const ActiveMesh& mesh, const CutSurface& surface)
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
     const auto& [a, b, c] = surface.triangles[t];
     const Point origin = surface.position(mesh, a);
-    const double area = 0.5 * (surface.position(mesh, b) - origin)
-                                  .cross(surface.position(mesh, c) - origin)
-                                  .norm();
+    const double area =
+        0.5 * (surface.position(mesh, b) - origin).cross(surface.position(mesh, c) - origin).norm();
     const ActiveTet& tet = mesh.tets[surface.triangle_tet[t]];
     const Point normal = cut_normal(mesh, tet);
     for (const int node : tet.node) {

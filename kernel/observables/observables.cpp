@@ -11,14 +11,15 @@ double Observer::level() const {
   return 0.5 * (problem_.model().well.a + problem_.model().well.b);
 }
 
-RaftReport Observer::rafts(ConstVec y) const { return finder_.find(problem_.c_of(y), level()); }
+RaftReport Observer::rafts(ConstVec y) const {
+  return finder_.find(problem_.c_of(y), level());
+}
 
 Observables Observer::measure(double t, ConstVec y) const {
   const SurfaceSpace& space = problem_.space();
   const auto c = problem_.c_of(y);
   const RaftReport report = rafts(y);
-  const double gradient =
-      problem_.model().epsilon * space.stiffness.quadratic(c, c, *space.team);
+  const double gradient = problem_.model().epsilon * space.stiffness.quadratic(c, c, *space.team);
   Observables row;
   row.t = t;
   row.mass = problem_.mass(y);

@@ -18,7 +18,7 @@ struct Observables {
   double perimeter = 0;        // p0 ∫ ε |∇_Γ c|²
   double perimeter_level = 0;  // length of the curve c = (a + b)/2
   int rafts = 0;
-  double raft_fraction = 0;    // area of {c > (a + b)/2} over |Γ|
+  double raft_fraction = 0;  // area of {c > (a + b)/2} over |Γ|
   double c_min = 0, c_max = 0;
 };
 

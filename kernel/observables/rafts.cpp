@@ -43,8 +43,7 @@ Piece piece_above(const std::array<Point, 3>& x, const std::array<double, 3>& va
   }
   Piece piece;
   for (int i = 2; i < corners; ++i) {
-    const double area =
-        0.5 * (corner[i - 1] - corner[0]).cross(corner[i] - corner[0]).norm();
+    const double area = 0.5 * (corner[i - 1] - corner[0]).cross(corner[i] - corner[0]).norm();
     piece.area += area;
     piece.moment += area / 3 * (corner[0] + corner[i - 1] + corner[i]);
   }

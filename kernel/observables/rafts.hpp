@@ -15,9 +15,9 @@ struct Raft {
 };
 
 struct RaftReport {
-  std::vector<Raft> rafts;  // largest first
-  double area = 0;          // of {c > level}
-  double perimeter = 0;     // length of the level curve
+  std::vector<Raft> rafts;      // largest first
+  double area = 0;              // of {c > level}
+  double perimeter = 0;         // length of the level curve
   double c_min = 0, c_max = 0;  // on Γ_h, where nodal values mean nothing
 };
 

@@ -1,6 +1,6 @@
-#include "kernel/physics/mobility.hpp"
-
 #include <algorithm>
+
+#include "kernel/physics/mobility.hpp"
 
 namespace traceraft {
 namespace {

@@ -4,14 +4,12 @@
 namespace traceraft {
 
 struct Units {
-  double radius_um = 5.0;       // R in µm
+  double radius_um = 5.0;         // R in µm
   double diffusion_cm2_s = 1e-5;  // D in cm²/s
-  bool scaled = false;          // true: inputs and outputs are in units of R and R²/D
+  bool scaled = false;            // true: inputs and outputs are in units of R and R²/D
 
   static constexpr double kUm2PerCm2 = 1e8;
-  double seconds_per_unit() const {
-    return radius_um * radius_um / (diffusion_cm2_s * kUm2PerCm2);
-  }
+  double seconds_per_unit() const { return radius_um * radius_um / (diffusion_cm2_s * kUm2PerCm2); }
   // Factors from the program's units to those of inputs and outputs.
   double length() const { return scaled ? 1.0 : radius_um; }
   double area() const { return length() * length(); }

@@ -14,8 +14,8 @@ namespace traceraft {
 //   F1 = M̃ċ + K_M(c) μ + ρ S μ + source + flux,   F2 = M̃μ − b(c) − ε²(K + ρ S)c − potential.
 enum class Slot { source, flux, potential };
 
-// Contract: adds its own contribution and nothing else; a pure function of (t, c, μ); the tangent is
-// the exact derivative of the residual. c and μ are local fields (with ghosts).
+// Contract: adds its own contribution and nothing else; a pure function of (t, c, μ); the tangent
+// is the exact derivative of the residual. c and μ are local fields (with ghosts).
 class Effect {
  public:
   virtual ~Effect() = default;

@@ -40,8 +40,9 @@ InitialEntry formula_field() {
           {},
           [](const SurfaceSpace& space, const InitialRequest& request, const Parameters&) {
             if (!request.formula)
-              throw InputError("initial 'formula': needs --initial-formula, as in "
-                               "--initial-formula \"0.5+0.1*z\"");
+              throw InputError(
+                  "initial 'formula': needs --initial-formula, as in "
+                  "--initial-formula \"0.5+0.1*z\"");
             Vec c(space.nodes());
             for (int i = 0; i < space.nodes(); ++i) c[i] = request.formula(space.mesh.position(i));
             return c;
@@ -54,8 +55,9 @@ InitialEntry cap_rafts() {
           {},
           [](const SurfaceSpace& space, const InitialRequest& request, const Parameters&) {
             if (request.caps.empty())
-              throw InputError("initial 'caps': needs --initial-caps, as in "
-                               "--initial-caps \"0 0 1 40; 1 0 0 25\" (direction and angle)");
+              throw InputError(
+                  "initial 'caps': needs --initial-caps, as in "
+                  "--initial-caps \"0 0 1 40; 1 0 0 25\" (direction and angle)");
             Vec c(space.nodes());
             for (int i = 0; i < space.nodes(); ++i) {
               const Point x = space.mesh.position(i);

@@ -24,8 +24,8 @@ Interpolation interpolate(const CubeMesh& coarse, const CubeMesh& fine, const La
   for (int axis = 0; axis < 3; ++axis) {
     const std::int64_t scaled = v[axis] * coarse.cells;
     corner[axis] = std::min(scaled / fine.cells, coarse.cells - 1);
-    fraction[axis] = static_cast<double>(scaled - corner[axis] * fine.cells) /
-                     static_cast<double>(fine.cells);
+    fraction[axis] =
+        static_cast<double>(scaled - corner[axis] * fine.cells) / static_cast<double>(fine.cells);
   }
   // The Kuhn tetrahedron of a point follows the axes in the order of falling coordinates.
   std::array<int, 3> order = {0, 1, 2};
@@ -80,14 +80,14 @@ Vec bernoulli(const SurfaceSpace& space, const InitialRequest& request) {
       const std::int64_t vertex = rows.back().vertex[k];
       const auto [entry, added] = index.try_emplace(vertex, draws.size());
       if (added)
-        draws.push_back({uniform_random(request.seed, kBernoulliStream,
-                                        static_cast<std::uint64_t>(vertex)),
-                         0});
+        draws.push_back(
+            {uniform_random(request.seed, kBernoulliStream, static_cast<std::uint64_t>(vertex)),
+             0});
       draws[entry->second].weight += rows.back().weight[k] * space.node_area[i];
     }
   }
-  const Threshold threshold = find_threshold(
-      request.raft_fraction * space.area, space.area, [&](double theta) {
+  const Threshold threshold =
+      find_threshold(request.raft_fraction * space.area, space.area, [&](double theta) {
         double sum = 0;
         for (const Draw& draw : draws)
           if (draw.u <= theta) sum += draw.weight;
@@ -124,8 +124,8 @@ Vec band_limited(const SurfaceSpace& space, const InitialRequest& request,
     };
     const double z = 2 * draw(0) - 1, around = 2 * kPi * draw(1), r = std::sqrt(1 - z * z);
     const double length = 2 * kPi / parameters["wavelength"] * (0.8 + 0.4 * draw(2));
-    waves.push_back({length * Point(r * std::cos(around), r * std::sin(around), z),
-                     2 * kPi * draw(3)});
+    waves.push_back(
+        {length * Point(r * std::cos(around), r * std::sin(around), z), 2 * kPi * draw(3)});
   }
   Vec c(space.nodes());
   for (int i = 0; i < space.nodes(); ++i) {

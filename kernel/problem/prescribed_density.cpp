@@ -6,7 +6,8 @@ namespace {
 
 class PrescribedDensity final : public Effect {
  public:
-  PrescribedDensity(std::string name, Slot slot, std::function<double(const Point&, double)> density)
+  PrescribedDensity(std::string name, Slot slot,
+                    std::function<double(const Point&, double)> density)
       : name_(std::move(name)), slot_(slot), density_(std::move(density)) {}
 
   std::string name() const override { return name_; }

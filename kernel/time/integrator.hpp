@@ -21,13 +21,13 @@ struct IntegratorSettings {
 };
 
 struct IntegratorStatistics {
-  long steps = 0;      // accepted
-  long rejected = 0;   // error too large
-  long failures = 0;   // a solve or an evaluation failed and the step was retried
+  long steps = 0;     // accepted
+  long rejected = 0;  // error too large
+  long failures = 0;  // a solve or an evaluation failed and the step was retried
   long residuals = 0;
   long jacobians = 0;
-  long renewals = 0;   // factors renewed because a solve with old ones failed
-  long fallbacks = 0;  // solves left to the fallback solver
+  long renewals = 0;            // factors renewed because a solve with old ones failed
+  long fallbacks = 0;           // solves left to the fallback solver
   double assembly_seconds = 0;  // residuals and Jacobians
 };
 

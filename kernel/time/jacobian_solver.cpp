@@ -91,8 +91,7 @@ void JacobianSolver::load(std::istream& in) {
     read_binary(in, anchor.ydot, problem_.size());
     Status status =
         problem_.jacobian(anchor.t, anchor.y, anchor.ydot, anchor.shift, anchor.tangent, J_);
-    if (status.ok())
-      status = renew(anchor.t, anchor.y, anchor.ydot, anchor.shift, anchor.tangent);
+    if (status.ok()) status = renew(anchor.t, anchor.y, anchor.ydot, anchor.shift, anchor.tangent);
     if (!status.ok()) throw IoError("checkpoint: its factors cannot be recomputed: " + status.why);
   }
   primary_->load(in);

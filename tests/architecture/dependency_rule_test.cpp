@@ -1,0 +1,136 @@
+// Dependencies point one way: drivers → verification, backends → kernel. The kernel includes the
+// standard library and Eigen only; a backend folder includes the kernel and one library.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Include {
+  std::string file;    // relative to the root
+  std::string target;  // what stands between the quotes or brackets
+  bool quoted;
+};
+
+std::vector<Include> includes_below(const std::string& folder) {
+  const fs::path root = TRACERAFT_ROOT;
+  static const std::regex pattern("^\\s*#\\s*include\\s*([<\"])([^>\"]+)[>\"]");
+  std::vector<Include> result;
+  for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+    const std::string extension = entry.path().extension();
+    if (extension != ".hpp" && extension != ".cpp") continue;
+    std::ifstream file(entry.path());
+    for (std::string line; std::getline(file, line);) {
+      std::smatch match;
+      if (std::regex_search(line, match, pattern))
+        result.push_back({fs::relative(entry.path(), root).string(), match[2], match[1] == "\""});
+    }
+  }
+  EXPECT_FALSE(result.empty()) << folder;
+  return result;
+}
+
+bool starts_with(const std::string& text, const std::string& start) {
+  return text.compare(0, start.size(), start) == 0;
+}
+
+bool is_standard(const std::string& header) {
+  return header.find('/') == std::string::npos && header.find('.') == std::string::npos;
+}
+
+// The top folder of an include, or "" for the standard library.
+std::string library_of(const Include& include) {
+  if (include.quoted) return include.target.substr(0, include.target.find('/'));
+  if (is_standard(include.target)) return "";
+  if (starts_with(include.target, "Eigen/")) return "Eigen";
+  return include.target;
+}
+
+TEST(DependencyRule, KernelKnowsTheStandardLibraryAndEigenOnly) {
+  for (const Include& include : includes_below("kernel")) {
+    const std::string library = library_of(include);
+    EXPECT_TRUE(library.empty() || library == "Eigen" || library == "kernel")
+        << include.file << " includes " << include.target;
+  }
+}
+
+TEST(DependencyRule, EveryBackendKnowsTheKernelAndItsOwnLibrary) {
+  const std::map<std::string, std::string> own = {
+      {"euler", "^$"},
+      {"suitesparse", "^suitesparse/"},
+      {"sundials", "^(nvector|sundials|sunlinsol|sunmatrix|ida|idas|arkode)/"},
+      {"muparser", "^muParser\\.h$"},
+      {"posix", "^(fcntl|unistd)\\.h$|^sys/(file|stat|ioctl|resource)\\.h$"},
+      {"zlib", "^zlib\\.h$"}};
+  for (const auto& entry : fs::directory_iterator(fs::path(TRACERAFT_ROOT) / "backends")) {
+    if (!entry.is_directory()) continue;
+    const std::string name = entry.path().filename();
+    ASSERT_TRUE(own.count(name)) << "say here which library backends/" << name << " is for";
+    for (const Include& include : includes_below("backends/" + name)) {
+      if (include.quoted) {
+        EXPECT_TRUE(starts_with(include.target, "kernel/") ||
+                    starts_with(include.target, "backends/" + name + "/"))
+            << include.file << " includes " << include.target;
+      } else if (!is_standard(include.target) && !starts_with(include.target, "Eigen/")) {
+        EXPECT_TRUE(std::regex_search(include.target, std::regex(own.at(name))))
+            << include.file << " includes " << include.target;
+      }
+    }
+  }
+}
+
+TEST(DependencyRule, VerificationDoesNotKnowTheDrivers) {
+  for (const Include& include : includes_below("verification"))
+    EXPECT_FALSE(starts_with(include.target, "drivers/")) << include.file;
+  for (const char* folder : {"kernel", "backends", "verification", "drivers"})
+    for (const Include& include : includes_below(folder))
+      EXPECT_FALSE(starts_with(include.target, "tests/")) << include.file;
+}
+
+TEST(DependencyRule, KernelFoldersHaveNoCycles) {
+  std::map<std::string, std::set<std::string>> uses;
+  const auto folder_of = [](const std::string& path) {
+    const std::size_t first = path.find('/') + 1;
+    return path.substr(first, path.find('/', first) - first);
+  };
+  for (const Include& include : includes_below("kernel"))
+    if (starts_with(include.target, "kernel/"))
+      uses[folder_of(include.file)].insert(folder_of(include.target));
+  std::set<std::string> done;
+  bool progress = true;
+  while (progress) {
+    progress = false;
+    for (const auto& [folder, targets] : uses) {
+      bool ready = done.count(folder) == 0;
+      for (const std::string& target : targets)
+        ready = ready && (target == folder || done.count(target) || !uses.count(target));
+      if (ready) {
+        done.insert(folder);
+        progress = true;
+      }
+    }
+  }
+  for (const auto& [folder, targets] : uses)
+    EXPECT_TRUE(done.count(folder)) << "kernel/" << folder << " is part of a cycle";
+}
+
+TEST(TopLevelFolders, AreFixed) {
+  const std::set<std::string> expected = {"kernel", "backends",     "drivers",
+                                          "tests",  "verification", "docs"};
+  for (const auto& entry : fs::directory_iterator(TRACERAFT_ROOT)) {
+    const std::string name = entry.path().filename();
+    if (entry.is_directory() && name[0] != '.' && name != "build" && name != "runs") {
+      EXPECT_TRUE(expected.count(name)) << name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace traceraft

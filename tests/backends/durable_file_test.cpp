@@ -1,0 +1,82 @@
+#include "backends/posix/durable_file.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+
+#include "backends/posix/folder_lock.hpp"
+#include "kernel/core/error.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace traceraft {
+namespace {
+
+using testing::TemporaryFolder;
+
+// Files cannot grow beyond `bytes` while this lives: what a full disk looks like to a writer.
+class SmallDisk {
+ public:
+  explicit SmallDisk(rlim_t bytes) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    rlimit small = before_;
+    small.rlim_cur = bytes;
+    setrlimit(RLIMIT_FSIZE, &small);
+  }
+  ~SmallDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
+TEST(DurableFile, ReplacesTheWholeContent) {
+  const TemporaryFolder folder;
+  write_durably(folder.path / "a", "first");
+  write_durably(folder.path / "a", "second, longer");
+  EXPECT_EQ(read_file(folder.path / "a", 100), "second, longer");
+  EXPECT_EQ(folder.entries(), 1u) << "a temporary file was left";
+  EXPECT_THROW(read_file(folder.path / "a", 3), IoError);
+  EXPECT_THROW(read_file(folder.path / "b", 100), IoError);
+  EXPECT_THROW(write_durably(folder.path / "missing" / "a", "x"), IoError);
+}
+
+TEST(DurableFile, KeepsTheOldContentWhenTheDiskIsFull) {
+  const TemporaryFolder folder;
+  write_durably(folder.path / "a", "old");
+  {
+    const SmallDisk disk(1000);
+    EXPECT_THROW(write_durably(folder.path / "a", std::string(5000, 'x')), IoError);
+  }
+  EXPECT_EQ(read_file(folder.path / "a", 100), "old");
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+TEST(AppendFile, GrowsByRecordsAndIsCutToASize) {
+  const TemporaryFolder folder;
+  {
+    AppendFile file(folder.path / "t", 0);
+    file.append("one\n");
+    file.append("two\n");
+    EXPECT_EQ(file.size(), 8u);
+  }
+  AppendFile file(folder.path / "t", 4);
+  file.append("three\n");
+  file.sync();
+  EXPECT_EQ(read_file(folder.path / "t", 100), "one\nthree\n");
+  const SmallDisk disk(12);
+  EXPECT_THROW(file.append("four\n"), IoError);
+}
+
+TEST(FolderLock, IsHeldByOne) {
+  const TemporaryFolder folder;
+  {
+    const FolderLock lock(folder.path);
+    EXPECT_THROW(FolderLock again(folder.path), LockedError);
+  }
+  EXPECT_NO_THROW(FolderLock later(folder.path));
+  EXPECT_THROW(FolderLock none(folder.path / "missing"), IoError);
+}
+
+}  // namespace
+}  // namespace traceraft

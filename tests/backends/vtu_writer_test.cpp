@@ -1,0 +1,82 @@
+#include "backends/zlib/vtu_writer.hpp"
+
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "backends/zlib/checksum.hpp"
+#include "tests/support/spaces.hpp"
+
+namespace traceraft {
+namespace {
+
+std::string from_base64(const std::string& text) {
+  static const std::string digits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes;
+  std::uint32_t bits = 0;
+  int count = 0;
+  for (const char ch : text) {
+    if (ch == '=') break;
+    bits = bits << 6 | static_cast<std::uint32_t>(digits.find(ch));
+    if (++count % 4 != 1) bytes += static_cast<char>(bits >> (6 - 2 * ((count - 1) % 4)));
+  }
+  return bytes;
+}
+
+// Reads an array back as VTK does: base64 of the header, base64 of all blocks.
+template <class T>
+std::vector<T> array_named(const std::string& file, const std::string& name) {
+  const std::size_t tag = file.find("Name=\"" + name + "\"");
+  EXPECT_NE(tag, std::string::npos) << name;
+  const std::size_t begin = file.find(">\n", tag) + 2, end = file.find('\n', begin);
+  const std::string text = file.substr(begin, end - begin);
+  std::uint64_t first[3];
+  const std::string head = from_base64(text.substr(0, 32));
+  std::memcpy(first, head.data(), sizeof first);
+  const std::size_t header_bytes = (3 + first[0]) * 8, header_text = (header_bytes + 2) / 3 * 4;
+  const std::string header = from_base64(text.substr(0, header_text));
+  const std::string blocks = from_base64(text.substr(header_text));
+  std::string data;
+  std::size_t at = 0;
+  for (std::uint64_t block = 0; block < first[0]; ++block) {
+    std::uint64_t length;
+    std::memcpy(&length, header.data() + 8 * (3 + block), 8);
+    uLongf size = block + 1 < first[0] || first[2] == 0 ? first[1] : first[2];
+    std::string plain(size, '\0');
+    EXPECT_EQ(uncompress(reinterpret_cast<Bytef*>(plain.data()), &size,
+                         reinterpret_cast<const Bytef*>(blocks.data() + at), length),
+              Z_OK);
+    data += plain;
+    at += length;
+  }
+  std::vector<T> values(data.size() / sizeof(T));
+  std::memcpy(values.data(), data.data(), values.size() * sizeof(T));
+  return values;
+}
+
+TEST(VtuWriter, WritesTheSurfaceAndItsFields) {
+  const auto space = testing::make_space(32);
+  const Vec field = testing::random_vector(space->nodes(), 1);
+  const Vec trace = space->surface.trace(field);
+  const std::string file = vtu_text(*space, 5.0, {{"c", trace}});
+  const auto c = array_named<float>(file, "c");
+  ASSERT_EQ(c.size(), space->surface.points.size());
+  for (std::size_t p = 0; p < c.size(); ++p) ASSERT_EQ(c[p], static_cast<float>(trace[p]));
+  const auto points = array_named<float>(file, "Points");
+  for (std::size_t p = 0; p < c.size(); ++p)
+    ASSERT_NEAR(std::hypot(points[3 * p], points[3 * p + 1], points[3 * p + 2]), 5.0, 0.02);
+  const auto connectivity = array_named<std::int32_t>(file, "connectivity");
+  ASSERT_EQ(connectivity.size(), 3 * space->surface.triangles.size());
+  EXPECT_EQ(connectivity[5], space->surface.triangles[1][2]);
+  EXPECT_EQ(array_named<std::uint8_t>(file, "types").size(), space->surface.triangles.size());
+}
+
+TEST(Checksum, IsCrc32) {
+  EXPECT_EQ(crc32_of("123456789"), 0xCBF43926u);
+}
+
+}  // namespace
+}  // namespace traceraft

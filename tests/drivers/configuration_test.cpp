@@ -1,0 +1,158 @@
+#include "drivers/configuration.hpp"
+
+#include <gtest/gtest.h>
+
+#include "backends/posix/durable_file.hpp"
+#include "drivers/cases.hpp"
+#include "drivers/config_file.hpp"
+#include "drivers/run_setup.hpp"
+#include "kernel/core/error.hpp"
+#include "kernel/core/random.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace traceraft {
+namespace {
+
+using testing::TemporaryFolder;
+
+GivenValues flags(std::initializer_list<std::pair<std::string, std::string>> values) {
+  GivenValues result;
+  for (const auto& [name, text] : values) result[name] = {text, "--" + name};
+  return result;
+}
+
+template <class Action>
+std::string complaint(const Action& action) {
+  try {
+    action();
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+GivenValues read_text(const std::string& text) {
+  const TemporaryFolder folder;
+  write_durably(folder.path / "run.toml", text);
+  return read_config_file(folder.path / "run.toml");
+}
+
+TEST(Configuration, FlagsBeatTheFileWhichBeatsTheCaseWhichBeatsDefaults) {
+  const GivenValues file = read_text("case = \"spinodal\"\ncells = 48\ntolerance = 1e-3\n");
+  const Configuration c(file, flags({{"tolerance", "1e-4"}}));
+  EXPECT_EQ(c.number("tolerance"), 1e-4);
+  EXPECT_EQ(c.integer("cells"), 48);
+  EXPECT_EQ(c.number("raft-fraction"), 0.5);
+  EXPECT_EQ(c.text("integrator"), "euler");
+}
+
+TEST(Configuration, ConvertsDefaultsUnderScaled) {
+  const Configuration physical({}, flags({{"case", "guv-3to1"}}));
+  EXPECT_EQ(physical.number("epsilon"), 0.05);
+  EXPECT_NEAR(physical.units().seconds_per_unit(), 0.025, 1e-15);
+  const Configuration scaled({}, flags({{"case", "guv-3to1"}, {"scaled", "true"}}));
+  EXPECT_NEAR(scaled.number("epsilon"), 0.01, 1e-15);
+  EXPECT_NEAR(scaled.number("t-end"), 1e6, 1e-6);
+  const Configuration given({}, flags({{"scaled", "true"}, {"epsilon", "0.05"}, {"t-end", "20"}}));
+  EXPECT_EQ(given.number("epsilon"), 0.05);
+  EXPECT_EQ(given.number("t-end"), 20);
+}
+
+TEST(Configuration, NamesWhatIsWrongAndWhatIsAllowed) {
+  const auto of = [](const std::string& name, const std::string& text) {
+    return complaint([&] { Configuration({}, flags({{name, text}})); });
+  };
+  EXPECT_EQ(of("cells", "abc"), "--cells: 'abc' is not a finite number");
+  EXPECT_EQ(of("cells", "12.5"), "--cells: '12.5' is not a whole number");
+  EXPECT_EQ(of("cells", "2"), "--cells: 2 is out of range (allowed: 4 to 4096)");
+  EXPECT_EQ(of("epsilon", "nan"), "--epsilon: 'nan' is not a finite number");
+  EXPECT_EQ(of("raft-fraction", "1.5"), "--raft-fraction: 1.5 is out of range (allowed: 0 to 1)");
+  EXPECT_NE(of("case", "guv").find("--case: unknown case 'guv'; did you mean"), std::string::npos);
+  EXPECT_NE(of("output-times", "1,x").find("--output-times: 'x'"), std::string::npos);
+  EXPECT_NE(of("initial-formula", "a\nb").find("control character"), std::string::npos);
+  EXPECT_NE(of("initial-formula", "\xff\xfe").find("UTF-8"), std::string::npos);
+}
+
+TEST(ConfigFile, NamesFileLineAndKey) {
+  const auto of = [](const std::string& text) { return complaint([&] { read_text(text); }); };
+  EXPECT_NE(of("cells = 48\nepsilom = 0.1\n")
+                .find("run.toml:2: unknown key 'epsilom'; did you mean 'epsilon'?"),
+            std::string::npos);
+  EXPECT_NE(of("cells = \"48\"\n").find("run.toml:1: cells: a number is needed here"),
+            std::string::npos);
+  EXPECT_NE(of("cells = 48\ncells = 32\n").find("run.toml:2"), std::string::npos);
+  EXPECT_NE(of("surface = sphere\n").find("run.toml:1"), std::string::npos);
+  EXPECT_NE(of("output-times = 3\n").find("a list of numbers"), std::string::npos);
+  EXPECT_NE(of("scaled = 1\n").find("true or false"), std::string::npos);
+  EXPECT_NE(of("[section]\ncells = 3\n").find("unknown key 'section'"), std::string::npos);
+  EXPECT_NE(of(std::string("cells = 3\0\n", 11)).find("not a text file"), std::string::npos);
+  EXPECT_NE(of(std::string(3 << 20, ' ')).find("more than the"), std::string::npos);
+  EXPECT_NE(complaint([] { read_config_file("/nonexistent/run.toml"); }).find("cannot open"),
+            std::string::npos);
+  const GivenValues nan = read_text("epsilon = nan\n");
+  EXPECT_NE(complaint([&] { Configuration(nan, {}); }).find("not a finite number"),
+            std::string::npos);
+}
+
+TEST(ConfigFile, TheResolvedConfigurationReadsBackAsTheSameRun) {
+  for (const CaseEntry& entry : cases()) {
+    const Configuration first({}, flags({{"case", entry.name},
+                                         {"output-times", "0.5, 1,2"},
+                                         {"initial-formula", "0.5*\"x\\y\""},
+                                         {"epsilon", ".3"}}));
+    const Configuration second(read_text(config_text(first)), {});
+    EXPECT_EQ(numerical_identity(first), numerical_identity(second));
+    EXPECT_EQ(config_text(first), config_text(second));
+  }
+}
+
+TEST(ConfigFile, SurvivesRandomDamage) {
+  const std::string good = config_text(Configuration({}, {}));
+  int refused = 0;
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    std::string text = good;
+    for (int k = 0; k < 3; ++k) {
+      const auto at = static_cast<std::size_t>(uniform_random(seed, 3 * k, 0) * text.size());
+      text[at] = static_cast<char>(256 * uniform_random(seed, 3 * k, 1));
+    }
+    if (uniform_random(seed, 99, 0) < 0.3)
+      text.resize(static_cast<std::size_t>(uniform_random(seed, 99, 1) * text.size()));
+    const std::string answer = complaint([&] { Configuration(read_text(text), {}); });
+    refused += !answer.empty();
+    EXPECT_EQ(answer.find('\n'), std::string::npos);
+  }
+  EXPECT_GT(refused, 500);
+}
+
+TEST(RunSetup, ChecksEverythingBeforeAnythingRuns) {
+  const auto of = [](std::initializer_list<std::pair<std::string, std::string>> values) {
+    GivenValues given = flags(values);
+    given.emplace("cells", GivenValue{"16", "--cells"});
+    return complaint([&] { build_run(Configuration({}, given)); });
+  };
+  EXPECT_EQ(of({{"epsilon", "0.5"}}), "");
+  EXPECT_EQ(of({{"surface", "spere"}}).find("--surface: unknown surface 'spere'; did you mean"),
+            0u);
+  EXPECT_EQ(of({{"surface", "torus:major=9"}}).find("--surface: surface 'torus': major=9"), 0u);
+  EXPECT_EQ(of({{"surface", "formula"}}).find("--surface: formula needs"), 0u);
+  EXPECT_EQ(of({{"surface-formula", "x"}}).find("--surface-formula: it needs"), 0u);
+  EXPECT_EQ(of({{"surface", "formula"}, {"surface-formula", "x^2+"}}).find("--surface-formula"),
+            0u);
+  EXPECT_EQ(of({{"surface", "formula"}, {"surface-formula", "x"}}).find("--surface: surface"), 0u);
+  EXPECT_EQ(of({{"mobility", "degenrate"}}).find("--mobility: unknown mobility"), 0u);
+  EXPECT_EQ(of({{"well", "a=1,b=0"}}).find("--well: "), 0u);
+  EXPECT_EQ(of({{"initial", "noize"}}).find("--initial: unknown initial field"), 0u);
+  EXPECT_EQ(of({{"initial", "caps"}}).find("--initial: "), 0u);
+  EXPECT_EQ(of({{"initial", "caps"}, {"initial-caps", "0 0 1"}}).find("--initial"), 0u);
+  EXPECT_EQ(of({{"initial", "restart:/nonexistent"}}).find("--initial: restart: "), 0u);
+  EXPECT_EQ(of({{"noise-cells", "99"}}).find("--initial: --noise-cells: "), 0u);
+  EXPECT_EQ(of({{"integrator", "eular"}}).find("--integrator: unknown integrator"), 0u);
+  EXPECT_EQ(of({{"linear-solver", "blok"}}).find("--linear-solver: unknown linear solver"), 0u);
+  EXPECT_EQ(of({{"keep", "third"}}).find("--keep: unknown solution"), 0u);
+  EXPECT_EQ(of({{"potential", "x"}}).find("--potential: "), 0u);
+  EXPECT_EQ(of({{"output-times", "1,1e9"}}).find("--output-times: "), 0u);
+  EXPECT_EQ(of({{"min-step", "2"}, {"max-step", "1"}}).find("--min-step: "), 0u);
+}
+
+}  // namespace
+}  // namespace traceraft

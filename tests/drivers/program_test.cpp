@@ -1,0 +1,297 @@
+// The program as a user meets it: exit codes, files, interruption.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "backends/posix/durable_file.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace traceraft {
+namespace {
+
+using testing::TemporaryFolder;
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int code;
+  std::string output;  // stdout and stderr
+};
+
+Outcome shell(const std::string& command) {
+  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+  std::string output;
+  char buffer[4096];
+  while (const std::size_t count = fread(buffer, 1, sizeof buffer, pipe))
+    output.append(buffer, count);
+  const int status = pclose(pipe);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), output};
+}
+
+Outcome traceraft(const std::string& arguments) {
+  return shell(std::string(TRACERAFT_PROGRAM) + " " + arguments);
+}
+
+std::string content(const fs::path& path) {
+  return read_file(path, 1 << 28);
+}
+
+long lines_of(const fs::path& path) {
+  if (!fs::exists(path)) return 0;
+  const std::string text = content(path);
+  return std::count(text.begin(), text.end(), '\n');
+}
+
+class ProgramTest : public ::testing::Test {
+ protected:
+  TemporaryFolder folder;
+  // About 60 steps in a second or two.
+  const std::string quick = "--case two-rafts --cells 16 --epsilon 0.8 --t-end 0.5 ";
+  std::string out(const std::string& name) const { return (folder.path / name).string(); }
+
+  // Starts a run in the background; the caller ends it.
+  pid_t start(const std::string& name, const std::string& more = "") {
+    const pid_t child = fork();
+    if (child == 0) {
+      const std::string command = "exec " + std::string(TRACERAFT_PROGRAM) + " run " + quick +
+                                  more + " --checkpoint-interval 0 --quiet --out " + out(name);
+      execl("/bin/sh", "sh", "-c", command.c_str(), static_cast<char*>(nullptr));
+      _exit(127);
+    }
+    return child;
+  }
+  void wait_for_rows(const std::string& name, long rows) const {
+    for (int i = 0; i < 6000 && lines_of(folder.path / name / "series.csv") < rows; ++i)
+      usleep(10000);
+    ASSERT_GE(lines_of(folder.path / name / "series.csv"), rows);
+  }
+  void expect_same_results(const std::string& a, const std::string& b) const {
+    for (const char* table : {"series.csv", "observables.csv", "rafts.csv"})
+      EXPECT_EQ(content(folder.path / a / table), content(folder.path / b / table)) << table;
+    for (const auto& entry : fs::directory_iterator(folder.path / a / "fields"))
+      EXPECT_EQ(content(entry.path()),
+                content(folder.path / b / "fields" / entry.path().filename()));
+  }
+};
+
+TEST_F(ProgramTest, RunsAndWritesWhatItPromises) {
+  const Outcome run = traceraft("run " + quick + "--output-times 0,0.1,0.5 --out " + out("a"));
+  ASSERT_EQ(run.code, 0) << run.output;
+  for (const char* word :
+       {"rafts", "perimeter", "raft fraction", "mass drift", "energy", "open next", "R^2/D"})
+    EXPECT_NE(run.output.find(word), std::string::npos) << word;
+  EXPECT_EQ(run.output.find('\r'), std::string::npos) << "no terminal, no rewriting of lines";
+  const auto summary = nlohmann::json::parse(content(folder.path / "a/summary.json"));
+  for (const char* key : {"nodes", "unknowns", "steps", "rejected", "mass_drift", "energy_rises",
+                          "energy", "perimeter", "rafts", "cpu_s", "wall_s", "peak_memory_mb",
+                          "integrator", "linear_solver", "seed", "version"})
+    EXPECT_TRUE(summary.contains(key)) << key;
+  EXPECT_LT(summary["mass_drift"].get<double>(), 1e-12);
+  const std::string series = content(folder.path / "a/series.csv");
+  EXPECT_EQ(series.find("step,t,dt,mass,energy,perimeter,perimeter_level,rafts,raft_fraction,c_min,"
+                        "c_max"),
+            0u);
+  EXPECT_EQ(lines_of(folder.path / "a/series.csv"), summary["steps"].get<long>() + 2);
+  const std::string observables = content(folder.path / "a/observables.csv");
+  EXPECT_EQ(lines_of(folder.path / "a/observables.csv"), 4);
+  EXPECT_NE(observables.find(",0.1,"), std::string::npos);
+  EXPECT_TRUE(fs::exists(folder.path / "a/fields/field-0002.vtu"));
+  EXPECT_NE(content(folder.path / "a/fields.pvd").find("fields/field-0002.vtu"), std::string::npos);
+}
+
+TEST_F(ProgramTest, RepeatsItselfBitwiseOnAnyNumberOfThreads) {
+  ASSERT_EQ(traceraft("run --quiet --threads 1 " + quick + "--out " + out("a")).code, 0);
+  ASSERT_EQ(traceraft("run --quiet --threads 2 " + quick + "--out " + out("b")).code, 0);
+  expect_same_results("a", "b");
+}
+
+TEST_F(ProgramTest, ContinuesBitwiseAfterBeingKilledAtAnyMoment) {
+  ASSERT_EQ(traceraft("run --quiet " + quick + "--out " + out("whole")).code, 0);
+  for (const long rows : {2, 9, 30}) {
+    const std::string name = "killed" + std::to_string(rows);
+    const pid_t child = start(name);
+    wait_for_rows(name, rows);
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    const Outcome resumed = traceraft("resume --quiet " + out(name));
+    ASSERT_EQ(resumed.code, 0) << resumed.output;
+    expect_same_results("whole", name);
+  }
+}
+
+TEST_F(ProgramTest, StopsCleanlyWhenAskedToAndContinues) {
+  ASSERT_EQ(traceraft("run --quiet " + quick + "--out " + out("whole")).code, 0);
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const std::string name = "stopped" + std::to_string(signal);
+    const pid_t child = start(name);
+    wait_for_rows(name, 10);
+    kill(child, signal);
+    int status = 0;
+    waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 5);
+    EXPECT_EQ(nlohmann::json::parse(content(folder.path / name / "summary.json"))["end"],
+              "stopped");
+    ASSERT_EQ(traceraft("resume --quiet " + out(name)).code, 0);
+    expect_same_results("whole", name);
+  }
+}
+
+TEST_F(ProgramTest, RefusesADamagedCheckpointAndUsesTheOneBefore) {
+  ASSERT_EQ(traceraft("run --quiet " + quick + "--out " + out("whole")).code, 0);
+  const pid_t child = start("a");
+  wait_for_rows("a", 12);
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder.path / "a/checkpoints"))
+    if (entry.path().extension() == ".ckpt") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  ASSERT_EQ(files.size(), 2u);
+  std::string data = content(files[1]);
+  data[data.size() / 2] ^= 1;
+  write_durably(files[1], data);
+  const Outcome resumed = traceraft("resume --quiet " + out("a"));
+  EXPECT_EQ(resumed.code, 0);
+  EXPECT_NE(resumed.output.find("refused " + files[1].string() + ": it is damaged"),
+            std::string::npos)
+      << resumed.output;
+  expect_same_results("whole", "a");
+}
+
+TEST_F(ProgramTest, RefusesAllDamagedCheckpoints) {
+  ASSERT_EQ(traceraft("run --quiet " + quick + "--out " + out("a")).code, 0);
+  for (const auto& entry : fs::directory_iterator(folder.path / "a/checkpoints"))
+    write_durably(entry.path(), "rubbish");
+  EXPECT_EQ(traceraft("resume " + out("a")).code, 4);
+}
+
+TEST_F(ProgramTest, LocksItsFolder) {
+  const pid_t child = start("a");
+  wait_for_rows("a", 3);
+  EXPECT_EQ(traceraft("resume " + out("a")).code, 6);
+  EXPECT_EQ(traceraft("run " + quick + "--out " + out("a")).code, 6);
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  const Outcome again = traceraft("run " + quick + "--out " + out("a"));
+  EXPECT_EQ(again.code, 2);
+  EXPECT_NE(again.output.find("traceraft resume"), std::string::npos);
+}
+
+TEST_F(ProgramTest, LeavesForeignFilesAlone) {
+  fs::create_directories(folder.path / "a/checkpoints-of-mine");
+  write_durably(folder.path / "a/notes.txt", "mine");
+  ASSERT_EQ(traceraft("run --quiet " + quick + "--out " + out("a")).code, 0);
+  EXPECT_EQ(content(folder.path / "a/notes.txt"), "mine");
+  EXPECT_TRUE(fs::exists(folder.path / "a/checkpoints-of-mine"));
+}
+
+TEST_F(ProgramTest, AFullDiskIsAnInputOutputErrorAndKeepsTheOldCheckpoint) {
+  // A limit on file sizes (in blocks of 512 bytes), reached by the growing table in mid-run.
+  const Outcome run = shell("ulimit -f 100; exec " + std::string(TRACERAFT_PROGRAM) +
+                            " run --quiet --checkpoint-interval 0 --no-fields --case two-rafts "
+                            "--cells 8 --epsilon 1.5 --mobility constant:value=0.01 "
+                            "--tolerance 1e-5 --out " +
+                            out("a"));
+  ASSERT_EQ(run.code, 4) << run.output;
+  EXPECT_NE(run.output.find("cannot write"), std::string::npos);
+  // With room again it goes on, as if nothing had happened.
+  const Outcome resumed = traceraft("resume --quiet " + out("a"));
+  EXPECT_EQ(resumed.code, 0) << resumed.output;
+  ASSERT_EQ(traceraft("run --quiet --no-fields --case two-rafts --cells 8 --epsilon 1.5 "
+                      "--mobility constant:value=0.01 --tolerance 1e-5 --out " +
+                      out("whole"))
+                .code,
+            0);
+  expect_same_results("whole", "a");
+}
+
+TEST_F(ProgramTest, NumericalFailureExitsWithThree) {
+  const Outcome run =
+      traceraft("run " + quick + "--tolerance 1e-9 --min-step 0.01 --out " + out("a"));
+  EXPECT_EQ(run.code, 3);
+  EXPECT_NE(run.output.find("no step size"), std::string::npos);
+  EXPECT_EQ(nlohmann::json::parse(content(folder.path / "a/summary.json"))["end"], "failed");
+}
+
+TEST_F(ProgramTest, RestartsFromAnotherRun) {
+  ASSERT_EQ(traceraft("run --quiet " + quick + "--out " + out("a")).code, 0);
+  const std::string same_mesh = "run --quiet --case two-rafts --epsilon 0.8 --t-end 0.01 ";
+  const Outcome next =
+      traceraft(same_mesh + "--cells 16 --initial restart:" + out("a") + " --out " + out("b"));
+  ASSERT_EQ(next.code, 0) << next.output;
+  const auto first = nlohmann::json::parse(content(folder.path / "a/summary.json"));
+  const auto second = nlohmann::json::parse(content(folder.path / "b/summary.json"));
+  EXPECT_NEAR(second["mass"].get<double>() / first["mass"].get<double>(), 1, 1e-12);
+  EXPECT_EQ(
+      traceraft(same_mesh + "--cells 24 --initial restart:" + out("a") + " --out " + out("c")).code,
+      2);
+}
+
+// Bad input: exit 2, one line that names the place, and no folder.
+class BadInput : public ProgramTest,
+                 public ::testing::WithParamInterface<std::pair<const char*, const char*>> {};
+
+TEST_P(BadInput, IsAnsweredInOneLineBeforeAnyFolderIsMade) {
+  const auto [arguments, expected] = GetParam();
+  const Outcome run =
+      shell("cd " + folder.path.string() +
+            " && printf 'cells = 16\\ncells = 8\\n' > "
+            "twice.toml && printf 'cells = \"x\"\\n' > type.toml && head -c 3000000 "
+            "/dev/zero > huge.toml && head -c 3000 /dev/urandom > binary.toml && " +
+            TRACERAFT_PROGRAM + " " + arguments);
+  EXPECT_EQ(run.code, 2) << run.output;
+  EXPECT_NE(run.output.find(expected), std::string::npos) << run.output;
+  EXPECT_EQ(std::count(run.output.begin(), run.output.end(), '\n'), 1) << run.output;
+  EXPECT_FALSE(fs::exists(folder.path / "runs"));
+  EXPECT_FALSE(fs::exists(folder.path / "new"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BadInput,
+    ::testing::Values(std::pair{"run --cels 16", "unknown flag '--cels'; did you mean '--cells'?"},
+                      std::pair{"run --cells=16 --seeed=3", "did you mean '--seed'?"},
+                      std::pair{"run surplus", "unexpected 'surplus'"},
+                      std::pair{"rum", "unknown command 'rum'; did you mean 'run'?"},
+                      std::pair{"", "say what to do"}, std::pair{"resume", "needs the run folder"},
+                      std::pair{"resume missing", "missing is no folder"},
+                      std::pair{"resume .", "holds no run"}, std::pair{"run --cells", "--cells"},
+                      std::pair{"run --cells abc", "--cells: 'abc'"},
+                      std::pair{"run --cells 3", "allowed: 4 to 4096"},
+                      std::pair{"run --epsilon nan", "--epsilon: 'nan'"},
+                      std::pair{"run --epsilon -1", "--epsilon: -1 is out of range"},
+                      std::pair{"run --case guv", "did you mean"},
+                      std::pair{"run --cells 8 --surface biconcave", "too coarse"},
+                      std::pair{"run --config missing.toml", "--config"},
+                      std::pair{"run --config twice.toml", "twice.toml:2"},
+                      std::pair{"run --config type.toml", "type.toml:1: cells"},
+                      std::pair{"run --config huge.toml", "huge.toml"},
+                      std::pair{"run --config binary.toml", "binary.toml"},
+                      std::pair{"run --config .", "--config"},
+                      std::pair{"run --cells 16 --cells 8", "--cells"},
+                      std::pair{"run --seed 1.5", "--seed: '1.5' is not a whole number"},
+                      std::pair{"verify everything", "unknown study"}));
+
+TEST_F(ProgramTest, ValidateStopsAfterChecking) {
+  const Outcome run = traceraft("run --validate " + quick + "--out " + out("new"));
+  EXPECT_EQ(run.code, 0);
+  EXPECT_NE(run.output.find("everything is valid"), std::string::npos);
+  EXPECT_FALSE(fs::exists(folder.path / "new"));
+}
+
+TEST_F(ProgramTest, HelpAndListNameEverything) {
+  const std::string help = traceraft("run --help").output, list = traceraft("list").output;
+  for (const char* word : {"--case", "--epsilon", "--linear-solver", "--scaled", "Exit codes"})
+    EXPECT_NE(help.find(word), std::string::npos) << word;
+  for (const char* word : {"guv-3to1", "biconcave", "degenerate", "euler", "block", "direct"})
+    EXPECT_NE(list.find(word), std::string::npos) << word;
+  EXPECT_EQ(traceraft("--version").code, 0);
+}
+
+}  // namespace
+}  // namespace traceraft

@@ -1,0 +1,205 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
+
+#include "kernel/fem/mobility_stiffness.hpp"
+#include "kernel/fem/potential.hpp"
+#include "kernel/fem/triangle_rule.hpp"
+#include "tests/support/spaces.hpp"
+
+namespace traceraft {
+namespace {
+
+using testing::make_space;
+using testing::random_vector;
+
+Eigen::MatrixXd dense(const CsrMatrix& matrix) {
+  const SparsityPattern& p = *matrix.pattern;
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(p.rows(), p.rows());
+  for (int i = 0; i < p.rows(); ++i)
+    for (int k = p.row_begin[i]; k < p.row_begin[i + 1]; ++k)
+      result(i, p.column[k]) += matrix.values[k];
+  return result;
+}
+
+// ∫_Γ f(x, c_h, ∇c_h) by brute force over the triangles of Γ_h: slow and easy to check by hand.
+template <class F>
+double integrate(const SurfaceSpace& space, const Vec& c, const F& f) {
+  const Vec trace = space.surface.trace(c);
+  double sum = 0;
+  for (std::size_t k = 0; k < space.surface.triangles.size(); ++k) {
+    const auto& [i, j, l] = space.surface.triangles[k];
+    const Point a = space.surface.position(space.mesh, i),
+                b = space.surface.position(space.mesh, j),
+                d = space.surface.position(space.mesh, l);
+    const double area = 0.5 * (b - a).cross(d - a).norm();
+    const ActiveTet& tet = space.mesh.tets[space.surface.triangle_tet[k]];
+    Point gradient = Point::Zero();
+    for (int v = 0; v < 4; ++v)
+      gradient += c[tet.node[v]] / space.h() * scaled_gradients(tet.kuhn).row(v).transpose();
+    const Point normal = cut_normal(space.mesh, tet);
+    gradient -= gradient.dot(normal) * normal;
+    for (const auto& [at, weight] : kDegreeFourRule)
+      sum += weight * area *
+             f(Point(at[0] * a + at[1] * b + at[2] * d),
+               at[0] * trace[i] + at[1] * trace[j] + at[2] * trace[l], gradient);
+  }
+  return sum;
+}
+
+class OperatorTest : public ::testing::TestWithParam<std::string> {
+ protected:
+  std::shared_ptr<const SurfaceSpace> space =
+      make_space(GetParam() == "sphere" ? 12 : 24, GetParam());
+  Vec c = random_vector(space->nodes(), 1), d = random_vector(space->nodes(), 2);
+};
+
+TEST_P(OperatorTest, MatricesAreTheIntegralsTheyStandFor) {
+  const auto product = [&](const Point&, double v, const Point&) { return v * v; };
+  const auto slope = [&](const Point&, double, const Point& g) { return g.squaredNorm(); };
+  EXPECT_NEAR(space->mass.quadratic(c, c, *space->team) / integrate(*space, c, product), 1, 1e-12);
+  EXPECT_NEAR(space->stiffness.quadratic(c, c, *space->team) / integrate(*space, c, slope), 1,
+              1e-12);
+  EXPECT_NEAR(space->integral(c),
+              integrate(*space, c, [](const Point&, double v, const Point&) { return v; }), 1e-12);
+}
+
+TEST_P(OperatorTest, MatricesAreSymmetricAndVanishOnConstants) {
+  const Vec one = Vec::Ones(space->nodes());
+  for (const CsrMatrix* matrix : {&space->stiffness, &space->normal}) {
+    Vec r(space->nodes());
+    matrix->multiply(one, r, *space->team);
+    EXPECT_LT(r.cwiseAbs().maxCoeff(), 1e-13);
+  }
+  for (const CsrMatrix* matrix : {&space->mass, &space->stiffness, &space->normal}) {
+    const Eigen::MatrixXd full = dense(*matrix);
+    EXPECT_EQ((full - full.transpose()).cwiseAbs().maxCoeff(), 0);
+  }
+}
+
+// The prototype measured 14–26, nearly independent of h: that is what the stabilisation is for.
+TEST_P(OperatorTest, StabilisedMassIsWellConditionedAfterDiagonalScaling) {
+  Eigen::MatrixXd full = dense(space->stabilised_mass);
+  const Vec scale = full.diagonal().cwiseSqrt().cwiseInverse();
+  full = scale.asDiagonal() * full * scale.asDiagonal();
+  const Vec eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(full).eigenvalues();
+  EXPECT_GT(eigenvalues.minCoeff(), 0);
+  EXPECT_LT(eigenvalues.maxCoeff() / eigenvalues.minCoeff(), 40);
+}
+
+TEST_P(OperatorTest, MassIsInverted) {
+  Vec b(space->nodes()), x(space->nodes());
+  space->stabilised_mass.multiply(c, b, *space->team);
+  ASSERT_TRUE(space->solve_mass(b, x).ok());
+  EXPECT_LT((x - c).norm() / c.norm(), 1e-11);
+  EXPECT_NEAR(space->integral(x), b.sum(), 1e-14 * b.cwiseAbs().sum());
+}
+
+TEST_P(OperatorTest, MobilityStiffnessIsTheWeightedIntegral) {
+  const MobilityPtr law = make_mobility("degenerate");
+  std::vector<double> mean;
+  mean_mobility(*space, *law, c, mean);
+  // Reference: tetrahedron by tetrahedron mean of c(1 − c), floored at zero.
+  std::vector<double> integral(space->elements.size(), 0.0);
+  const Vec trace = space->surface.trace(c);
+  for (std::size_t k = 0; k < space->surface.triangles.size(); ++k) {
+    const auto& triangle = space->surface.triangles[k];
+    const Point a = space->surface.position(space->mesh, triangle[0]);
+    const double area = 0.5 * (space->surface.position(space->mesh, triangle[1]) - a)
+                                  .cross(space->surface.position(space->mesh, triangle[2]) - a)
+                                  .norm();
+    for (const auto& [at, weight] : kDegreeFourRule) {
+      double value = 0;
+      for (int v = 0; v < 3; ++v) value += at[v] * trace[triangle[v]];
+      integral[space->surface.triangle_tet[k]] += weight * area * value * (1 - value);
+    }
+  }
+  int floored = 0;
+  for (std::size_t e = 0; e < mean.size(); ++e) {
+    const double expected = std::max(0.0, integral[e] / space->elements[e].area());
+    EXPECT_NEAR(mean[e], expected, 1e-12);
+    floored += expected == 0;
+  }
+  EXPECT_GT(floored, 10) << "the floor was not tried";
+
+  CsrMatrix matrix(space->pattern);
+  assemble_mobility_stiffness(*space, mean, matrix);
+  Vec assembled(space->nodes()), direct = Vec::Zero(space->nodes());
+  matrix.multiply(d, assembled, *space->team);
+  add_mobility_flux(*space, mean, d, direct);
+  EXPECT_LT((assembled - direct).norm(), 1e-13 * direct.norm());
+  EXPECT_LT(std::fabs(direct.sum()), 1e-14 * direct.cwiseAbs().sum()) << "mass leaks";
+  const Eigen::MatrixXd full = dense(matrix);
+  EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(full).eigenvalues().minCoeff(), -1e-12);
+}
+
+TEST_P(OperatorTest, PotentialIsTheGradientOfItsEnergy) {
+  const DoubleWell well{0.7, -0.3, 1.1};
+  Vec b = Vec::Zero(space->nodes());
+  add_potential(*space, well, PotentialRule::consistent, 1, c, b);
+  const double step = 1e-5;
+  const double difference = (potential_energy(*space, well, c + step * d) -
+                             potential_energy(*space, well, c - step * d)) /
+                            (2 * step);
+  EXPECT_NEAR(b.dot(d) / difference, 1, 1e-8);
+  EXPECT_NEAR(potential_energy(*space, well, c) /
+                  integrate(*space, c,
+                            [&](const Point&, double v, const Point&) { return well.energy(v); }),
+              1, 1e-12);
+}
+
+INSTANTIATE_TEST_SUITE_P(Surfaces, OperatorTest, ::testing::Values("sphere", "torus", "dziuk"));
+
+TEST(Threads, DoNotChangeABit) {
+  const auto one = make_space(24, "sphere", 1), three = make_space(24, "sphere", 3);
+  const auto model = testing::make_model();
+  const CahnHilliard first(one, model), second(three, model);
+  const Vec y = testing::random_state(first, 5), ydot = random_vector(first.size(), 6);
+  Vec r1(first.size()), r2(first.size());
+  ASSERT_TRUE(first.residual(0, y, ydot, r1).ok());
+  ASSERT_TRUE(second.residual(0, y, ydot, r2).ok());
+  EXPECT_EQ(r1, r2);
+  EXPECT_EQ(first.energy(y), second.energy(y));
+  BlockJacobian J1 = first.make_jacobian(), J2 = second.make_jacobian();
+  ASSERT_TRUE(first.jacobian(0, y, ydot, 2.5, Tangent::exact, J1).ok());
+  ASSERT_TRUE(second.jacobian(0, y, ydot, 2.5, Tangent::exact, J2).ok());
+  EXPECT_EQ(J1.cc.values, J2.cc.values);
+  EXPECT_EQ(J1.cm.values, J2.cm.values);
+  EXPECT_EQ(J1.mc.values, J2.mc.values);
+}
+
+TEST(DoubleWell, HasTheDerivativesItClaims) {
+  const DoubleWell well{0.4, -1, 2};
+  for (double c = -1.5; c < 2.5; c += 0.1) {
+    const double h = 1e-5;
+    EXPECT_NEAR(well.derivative(c), (well.energy(c + h) - well.energy(c - h)) / (2 * h), 1e-7);
+    EXPECT_NEAR(well.second(c), (well.derivative(c + h) - well.derivative(c - h)) / (2 * h), 1e-7);
+  }
+  // ∫ √(2 f0) dc between the wells.
+  double integral = 0;
+  for (int i = 0; i < 30000; ++i)
+    integral += 1e-4 * std::sqrt(2 * well.energy(-1 + (i + 0.5) * 1e-4));
+  EXPECT_NEAR(well.interface_energy(), integral, 1e-6);
+  EXPECT_NEAR(DoubleWell{}.interface_energy(), 1 / (6 * std::sqrt(2.0)), 1e-15);
+  // The profile solves ε² c'' = f0'(c).
+  const double e = 0.3, s = 0.17, h = 1e-3;
+  const double second =
+      (well.profile(s + h, e) - 2 * well.profile(s, e) + well.profile(s - h, e)) / (h * h);
+  EXPECT_NEAR(e * e * second, well.derivative(well.profile(s, e)), 1e-4);
+}
+
+TEST(Mobilities, HaveTheDerivativesTheyClaim) {
+  for (const MobilityEntry& entry : mobilities()) {
+    const MobilityPtr law = make_mobility(entry.name);
+    for (double c = -0.3; c < 1.3; c += 0.05) {
+      const double at[3] = {c - 1e-6, c, c + 1e-6};
+      double value[3], slope[3];
+      law->evaluate(at, 3, value, slope);
+      EXPECT_NEAR(slope[1], (value[2] - value[0]) / 2e-6, 1e-8) << entry.name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace traceraft

@@ -1,0 +1,168 @@
+// What every linear solver promises (kernel/linear/linear_solver.hpp).
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "backends/list.hpp"
+#include "kernel/linear/two_solve_preconditioner.hpp"
+#include "tests/support/spaces.hpp"
+
+namespace traceraft {
+namespace {
+
+using testing::make_model;
+using testing::make_space;
+using testing::noise_state;
+using testing::random_vector;
+
+class LinearSolverContract : public ::testing::TestWithParam<std::string> {
+ protected:
+  LinearSolverContract()
+      : space(make_space(16)),
+        problem(space, make_model("degenerate", 0.1)),
+        solver(linear_solvers().find(GetParam()).make(*space)()),
+        J(problem.make_jacobian()) {}
+
+  void assemble(double shift, std::uint64_t seed = 1) {
+    const testing::StartState start = noise_state(problem, seed);
+    ASSERT_TRUE(problem.jacobian(0, start.y, start.ydot, shift, Tangent::stabilised, J).ok());
+  }
+  double relative_residual(const Vec& b, const Vec& x) const {
+    Vec product(b.size());
+    J.multiply(x, product, *space->team);
+    return scaled_norm(J, b - product) / scaled_norm(J, b);
+  }
+
+  std::shared_ptr<const SurfaceSpace> space;
+  CahnHilliard problem;
+  LinearSolverPtr solver;
+  BlockJacobian J;
+};
+
+TEST_P(LinearSolverContract, SolvesOverManyStepSizes) {
+  const Vec b = random_vector(problem.size(), 3);
+  for (double shift = 1e5; shift > 1e-4; shift /= 10) {
+    assemble(shift);
+    ASSERT_TRUE(solver->setup(J).ok());
+    Vec x = Vec::Zero(b.size());
+    const SolveReport report = solver->solve(J, b, x, 1e-8);
+    ASSERT_TRUE(report.status.ok()) << report.status.why;
+    EXPECT_LE(relative_residual(b, x), 1.01e-8) << "shift " << shift;
+    EXPECT_LE(report.iterations, 20) << "shift " << shift;
+  }
+}
+
+TEST_P(LinearSolverContract, KeepsTheMassOfTheRightHandSide) {
+  for (const double tolerance : {1e-2, 1e-8}) {
+    assemble(50);
+    ASSERT_TRUE(solver->setup(J).ok());
+    const Vec b = random_vector(problem.size(), 4);
+    Vec x = Vec::Zero(b.size());
+    ASSERT_TRUE(solver->solve(J, b, x, tolerance).status.ok());
+    const int n = problem.block_size();
+    // 1ᵀ(σ M̃ δc + A δμ) = σ ∫δc
+    EXPECT_NEAR(J.shift * space->integral(x.head(n)), b.head(n).sum(),
+                1e-12 * b.head(n).cwiseAbs().sum());
+  }
+}
+
+TEST_P(LinearSolverContract, UsesOlderFactorsOnlyWhenItSaysSo) {
+  assemble(50);
+  ASSERT_TRUE(solver->setup(J).ok());
+  const Vec b = random_vector(problem.size(), 5);
+  assemble(60, 2);  // another state and step
+  if (solver->wants_setup(J)) {
+    ASSERT_TRUE(solver->setup(J).ok());
+  }
+  Vec x = Vec::Zero(b.size());
+  ASSERT_TRUE(solver->solve(J, b, x, 1e-8).status.ok());
+  EXPECT_LE(relative_residual(b, x), 1.01e-8);
+}
+
+TEST_P(LinearSolverContract, AcceptsAZeroRightHandSideAndAGoodGuess) {
+  assemble(50);
+  ASSERT_TRUE(solver->setup(J).ok());
+  Vec b = Vec::Zero(problem.size()), x = random_vector(problem.size(), 6);
+  ASSERT_TRUE(solver->solve(J, b, x, 1e-8).status.ok());
+  EXPECT_LT(x.norm(), 1e-12);
+  const Vec exact = random_vector(problem.size(), 7);
+  J.multiply(exact, b, *space->team);
+  x = exact;
+  const SolveReport report = solver->solve(J, b, x, 1e-8);
+  ASSERT_TRUE(report.status.ok());
+  EXPECT_LE(report.iterations, 1);
+  EXPECT_LT((x - exact).norm(), 1e-6 * exact.norm());
+}
+
+TEST_P(LinearSolverContract, NeverReportsAWrongSolutionAsGood) {
+  assemble(50);
+  // Singular: the first block row is zero.
+  std::fill(J.cc.values.begin(), J.cc.values.end(), 0.0);
+  std::fill(J.cm.values.begin(), J.cm.values.end(), 0.0);
+  const Vec b = random_vector(problem.size(), 8);
+  Vec x = Vec::Zero(b.size());
+  bool solved = solver->setup(J).ok() && solver->solve(J, b, x, 1e-8).status.ok();
+  EXPECT_FALSE(solved);
+  // Not finite.
+  assemble(50);
+  J.cm.values[7] = std::nan("");
+  solved = solver->setup(J).ok() && solver->solve(J, b, x, 1e-8).status.ok();
+  EXPECT_FALSE(solved);
+  assemble(50);
+  ASSERT_TRUE(solver->setup(J).ok()) << "a failure must not outlive its matrix";
+  Vec poisoned = b;
+  poisoned[3] = std::nan("");
+  EXPECT_FALSE(solver->solve(J, poisoned, x, 1e-8).status.ok());
+  x.setZero();
+  EXPECT_TRUE(solver->solve(J, b, x, 1e-8).status.ok());
+}
+
+TEST_P(LinearSolverContract, CountsWhatItDoes) {
+  assemble(50);
+  ASSERT_TRUE(solver->setup(J).ok());
+  Vec b = random_vector(problem.size(), 9), x = Vec::Zero(b.size());
+  ASSERT_TRUE(solver->solve(J, b, x, 1e-8).status.ok());
+  const LinearStatistics statistics = solver->statistics();
+  EXPECT_EQ(statistics.setups, 1);
+  EXPECT_EQ(statistics.solves, 1);
+  std::stringstream saved;
+  solver->save(saved);
+  LinearSolverPtr other = linear_solvers().find(GetParam()).make(*space)();
+  other->load(saved);
+  EXPECT_EQ(other->statistics().iterations, statistics.iterations);
+  EXPECT_EQ(other->statistics().setup_seconds, statistics.setup_seconds);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, LinearSolverContract, ::testing::ValuesIn(linear_solvers().names()));
+
+TEST(TwoSolve, ShiftsAreTheRootsTheyStandFor) {
+  for (double sigma = 1e-6; sigma < 1e6; sigma *= 7) {
+    const double m = 0.2, e2 = 1e-4, beta = 1;
+    const TwoSolveShifts shifts = two_solve_shifts(sigma, m, e2, beta);
+    const double r1 = shifts.p / m, r2 = (beta - shifts.q) / e2;
+    EXPECT_NEAR(r1 * r2 / (sigma / (m * e2)), 1, 1e-12);
+    if (beta * beta > 4 * sigma * e2 / m) {
+      EXPECT_NEAR((r1 + r2) * e2 / beta, 1, 1e-12);
+    }
+    EXPECT_GE(shifts.p, 0);
+  }
+}
+
+TEST(TwoSolve, IsTheExactInverseForConstantMobility) {
+  // ρ S enters A without the mobility's scale in the degenerate case only; here A = m (K + ρS).
+  const auto space = make_space(12);
+  const CahnHilliard problem(space, make_model("constant:value=0.25", 0.2));
+  const testing::StartState start = noise_state(problem);
+  BlockJacobian J = problem.make_jacobian();
+  ASSERT_TRUE(problem.jacobian(0, start.y, start.ydot, 1.0, Tangent::stabilised, J).ok());
+  const LinearSolverPtr block = linear_solvers().find("block").make(*space)();
+  ASSERT_TRUE(block->setup(J).ok());
+  const Vec b = random_vector(problem.size(), 2);
+  Vec x = Vec::Zero(b.size());
+  const SolveReport report = block->solve(J, b, x, 1e-9);
+  ASSERT_TRUE(report.status.ok());
+  EXPECT_EQ(report.iterations, 1);
+}
+
+}  // namespace
+}  // namespace traceraft

@@ -1,0 +1,92 @@
+#include "kernel/observables/rafts.hpp"
+
+#include <gtest/gtest.h>
+
+#include "kernel/observables/observables.hpp"
+#include "tests/support/spaces.hpp"
+
+namespace traceraft {
+namespace {
+
+using testing::make_space;
+
+Vec nodal(const SurfaceSpace& space, const std::function<double(const Point&)>& f) {
+  Vec c(space.nodes());
+  for (int i = 0; i < space.nodes(); ++i) c[i] = f(space.mesh.position(i));
+  return c;
+}
+
+TEST(Rafts, OfALinearFieldAreExactOnThePolyhedron) {
+  // {z > 0.3} on the sphere: a cap of height 0.7 and a circle of radius √(1 − 0.09).
+  const auto space = make_space(64);
+  const RaftReport report =
+      RaftFinder(space).find(nodal(*space, [](const Point& x) { return x[2] + 0.2; }), 0.5);
+  ASSERT_EQ(report.rafts.size(), 1u);
+  EXPECT_NEAR(report.area, 2 * M_PI * 0.7, 4e-3);
+  EXPECT_NEAR(report.perimeter, 2 * M_PI * std::sqrt(1 - 0.09), 4e-3);
+  EXPECT_NEAR(report.c_max, 1.2, 1e-3);
+  EXPECT_NEAR(report.c_min, -0.8, 1e-3);
+}
+
+TEST(Rafts, AreCountedAndSorted) {
+  const auto space = make_space(48);
+  // Eight octants, of which those with xyz > 0 are rafts: four of them.
+  const RaftReport report = RaftFinder(space).find(
+      nodal(*space, [](const Point& x) { return 0.45 + x[0] * x[1] * x[2]; }), 0.5);
+  ASSERT_EQ(report.rafts.size(), 4u);
+  double area = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_GT(report.rafts[i].centre.prod(), 0.15);
+    if (i > 0) {
+      EXPECT_LE(report.rafts[i].area, report.rafts[i - 1].area);
+    }
+    area += report.rafts[i].area;
+  }
+  EXPECT_NEAR(area, report.area, 1e-12);
+}
+
+TEST(Rafts, OfExtremeFields) {
+  const auto space = make_space(16);
+  const RaftFinder finder(space);
+  EXPECT_EQ(finder.find(Vec::Zero(space->nodes()), 0.5).rafts.size(), 0u);
+  const RaftReport all = finder.find(Vec::Ones(space->nodes()), 0.5);
+  ASSERT_EQ(all.rafts.size(), 1u);
+  EXPECT_NEAR(all.area, space->area, 1e-12);
+  EXPECT_EQ(all.perimeter, 0);
+  // Exactly on the level everywhere: not above it.
+  EXPECT_EQ(finder.find(Vec::Constant(space->nodes(), 0.5), 0.5).rafts.size(), 0u);
+}
+
+TEST(Rafts, DoNotDependOnThePositionOfTheSurface) {
+  for (int i = 0; i < 20; ++i) {
+    const Point offset =
+        0.1 * Point(uniform_random(9, 0, i), uniform_random(9, 1, i), uniform_random(9, 2, i));
+    const auto space = make_space(32, "sphere", 1, offset);
+    const RaftReport report = RaftFinder(space).find(
+        nodal(*space, [&](const Point& x) { return (x - offset)[2] + 0.2; }), 0.5);
+    ASSERT_EQ(report.rafts.size(), 1u);
+    EXPECT_NEAR(report.area, 2 * M_PI * 0.7, 0.02);
+    EXPECT_NEAR(report.perimeter, 2 * M_PI * std::sqrt(1 - 0.09), 0.02);
+  }
+}
+
+TEST(Observables, PerimetersAgreeForAnEquilibriumProfile) {
+  const auto space = make_space(96);
+  const CahnHilliard problem(space, testing::make_model("degenerate", 0.06));
+  Vec y = Vec::Zero(problem.size());
+  y.head(problem.block_size()) = nodal(*space, [](const Point& x) {
+    return DoubleWell{}.profile(std::acos(x[2] / x.norm()) - M_PI / 2, 0.06);
+  });
+  const Observables row = Observer(problem, space).measure(1.5, y);
+  EXPECT_EQ(row.t, 1.5);
+  EXPECT_EQ(row.rafts, 1);
+  EXPECT_NEAR(row.perimeter_level, 2 * M_PI, 0.01);
+  EXPECT_NEAR(row.perimeter, 2 * M_PI, 0.1);
+  EXPECT_NEAR(row.raft_fraction, 0.5, 1e-3);
+  EXPECT_NEAR(row.mass, 2 * M_PI, 0.01);
+  // Half of the interface energy is f0, half is gradient: E = ε · length / (6√2).
+  EXPECT_NEAR(row.energy, 0.06 * 2 * M_PI / (6 * std::sqrt(2.0)), 1e-3);
+}
+
+}  // namespace
+}  // namespace traceraft

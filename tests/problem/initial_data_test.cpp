@@ -1,0 +1,120 @@
+#include "kernel/problem/initial_data.hpp"
+
+#include <gtest/gtest.h>
+
+#include "kernel/observables/rafts.hpp"
+#include "tests/support/spaces.hpp"
+
+namespace traceraft {
+namespace {
+
+using testing::make_space;
+
+double mean(const SurfaceSpace& space, const Vec& c) {
+  return space.integral(c) / space.area;
+}
+
+TEST(Noise, MeetsTheFractionExactlyWithoutRedrawing) {
+  const auto space = make_space(16);
+  for (const double fraction : {0.0, 0.1, 0.16, 0.5, 0.999, 1.0})
+    for (const std::int64_t cells : {16, 8, 5, 4})
+      for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        InitialRequest request;
+        request.raft_fraction = fraction;
+        request.noise_cells = cells;
+        request.seed = seed;
+        EXPECT_NEAR(mean(*space, make_initial_field("noise", *space, request)), fraction, 1e-13);
+      }
+}
+
+TEST(Noise, IsTheSameFieldOnARefinedMesh) {
+  const auto coarse = make_space(16), fine = make_space(32);
+  InitialRequest request;
+  request.noise_cells = 8;
+  const Vec on_coarse = bernoulli_noise().make(*coarse, request, Parameters({}, {}));
+  const Vec on_fine = bernoulli_noise().make(*fine, request, Parameters({}, {}));
+  int compared = 0, different = 0;
+  for (int i = 0; i < coarse->nodes(); ++i)
+    for (int j = 0; j < fine->nodes(); ++j) {
+      if ((coarse->mesh.position(i) - fine->mesh.position(j)).norm() > 1e-12) continue;
+      ++compared;
+      different += std::fabs(on_coarse[i] - on_fine[j]) > 1e-12;
+    }
+  EXPECT_GT(compared, 200);
+  // Only nodes near the one on the threshold may differ: the two meshes weigh it differently.
+  EXPECT_LT(different, compared / 20);
+}
+
+TEST(Noise, DependsOnTheSeedAndNotOnThreads) {
+  const auto one = make_space(16, "sphere", 1), two = make_space(16, "sphere", 2);
+  InitialRequest request;
+  const Vec first = make_initial_field("noise", *one, request);
+  EXPECT_EQ(first, make_initial_field("noise", *two, request));
+  request.seed = 2;
+  EXPECT_GT((first - make_initial_field("noise", *one, request)).norm(), 1);
+}
+
+TEST(Noise, OfNodesIsABernoulliDraw) {
+  const auto space = make_space(24);
+  InitialRequest request;
+  request.raft_fraction = 0.3;
+  const Vec raw = bernoulli_noise().make(*space, request, Parameters({}, {}));
+  int ones = 0, partly = 0;
+  for (const double value : raw) {
+    ones += value == 1;
+    partly += value != 0 && value != 1;
+  }
+  EXPECT_LE(partly, 1);
+  EXPECT_NEAR(static_cast<double>(ones) / space->nodes(), 0.3, 0.04);
+}
+
+TEST(BandLimitedNoise, HasItsMeanAndItsSpread) {
+  const auto space = make_space(24);
+  InitialRequest request;
+  request.raft_fraction = 0.4;
+  const Vec c = make_initial_field("band-limited:wavelength=0.8,amplitude=0.1", *space, request);
+  EXPECT_NEAR(mean(*space, c), 0.4, 1e-13);
+  const Vec deviation = c.array() - 0.4;
+  EXPECT_NEAR(std::sqrt(space->inner(deviation, deviation) / space->area), 0.1, 0.04);
+}
+
+TEST(Caps, ArePlacedWhereTheyWereAskedFor) {
+  const auto space = make_space(48);
+  InitialRequest request;
+  request.epsilon = 0.04;
+  request.caps = {{{0, 0, 1}, 0.8}, {{2, 0, -1}, 0.5}};
+  const Vec c = make_initial_field("caps", *space, request);
+  const RaftReport report = RaftFinder(space).find(c, 0.5);
+  ASSERT_EQ(report.rafts.size(), 2u);
+  EXPECT_NEAR(report.rafts[0].area, 2 * M_PI * (1 - std::cos(0.8)), 0.02);
+  EXPECT_NEAR(report.rafts[0].perimeter, 2 * M_PI * std::sin(0.8), 0.05);
+  EXPECT_NEAR(report.rafts[1].area, 2 * M_PI * (1 - std::cos(0.5)), 0.02);
+  EXPECT_NEAR(report.rafts[1].perimeter, 2 * M_PI * std::sin(0.5), 0.05);
+  EXPECT_LT((report.rafts[0].centre - Point(0, 0, 1)).norm(), 0.1);
+  EXPECT_LT((report.rafts[1].centre - Point(2, 0, -1).normalized()).norm(), 0.1);
+}
+
+TEST(Formula, IsProjected) {
+  const auto space = make_space(32);
+  InitialRequest request;
+  EXPECT_THROW(make_initial_field("formula", *space, request), InputError);
+  request.formula = [](const Point& x) { return 0.5 + 0.3 * x[2]; };
+  const Vec c = make_initial_field("formula", *space, request);
+  const Vec trace = space->surface.trace(c);
+  double worst = 0;
+  for (int p = 0; p < trace.size(); ++p)
+    worst = std::max(
+        worst, std::fabs(trace[p] - request.formula(space->surface.position(space->mesh, p))));
+  EXPECT_LT(worst, 0.02);
+  request.formula = [](const Point& x) { return 1 / (x[0] - x[0]); };
+  EXPECT_THROW(make_initial_field("formula", *space, request), InputError);
+}
+
+TEST(InitialFields, UnknownNamesAreAnswered) {
+  const auto space = make_space(8);
+  EXPECT_THROW(make_initial_field("noize", *space, {}), InputError);
+  EXPECT_THROW(make_initial_field("band-limited:wavelength=-1", *space, {}), InputError);
+}
+
+}  // namespace
+}  // namespace traceraft

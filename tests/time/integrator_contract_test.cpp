@@ -1,0 +1,373 @@
+// What every integrator promises (kernel/time/integrator.hpp), and what it does when things fail.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <sstream>
+
+#include "backends/list.hpp"
+#include "kernel/time/jacobian_solver.hpp"
+#include "tests/support/spaces.hpp"
+#include "verification/manufactured.hpp"
+
+namespace traceraft {
+namespace {
+
+using testing::make_model;
+using testing::make_space;
+using testing::noise_state;
+
+// A linear solver that fails on chosen calls.
+class Faulty final : public LinearSolver {
+ public:
+  struct Plan {
+    std::function<bool(long)> setup_fails = [](long) { return false; };
+    std::function<bool(long)> solve_fails = [](long) { return false; };
+    bool lazy = false;  // never asks for a set-up by itself
+  };
+  Faulty(LinearSolverPtr inner, Plan plan) : inner_(std::move(inner)), plan_(std::move(plan)) {}
+
+  std::string name() const override { return "faulty"; }
+  Status setup(const BlockJacobian& J) override {
+    if (plan_.setup_fails(setups_++)) return Status::retry("injected set-up failure");
+    return inner_->setup(J);
+  }
+  bool wants_setup(const BlockJacobian& J) const override {
+    return !plan_.lazy && inner_->wants_setup(J);
+  }
+  SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance) override {
+    if (plan_.solve_fails(solves_++)) {
+      x.setConstant(std::nan(""));  // as a failed solve may leave anything behind
+      return {Status::retry("injected solve failure"), 3};
+    }
+    return inner_->solve(J, b, x, tolerance);
+  }
+  LinearStatistics statistics() const override { return inner_->statistics(); }
+  void save(std::ostream& out) const override { inner_->save(out); }
+  void load(std::istream& in) override { inner_->load(in); }
+
+ private:
+  LinearSolverPtr inner_;
+  Plan plan_;
+  long setups_ = 0, solves_ = 0;
+};
+
+// A problem whose residual is not a number from some evaluation on, or at all large steps.
+class Poisoned final : public DaeProblem {
+ public:
+  Poisoned(const DaeProblem& inner, std::function<bool(double)> poisoned_at)
+      : inner_(inner), poisoned_at_(std::move(poisoned_at)) {}
+  int block_size() const override { return inner_.block_size(); }
+  Status residual(double t, ConstVec y, ConstVec ydot, VecRef r) const override {
+    if (poisoned_at_(t)) return Status::retry("injected NaN");
+    return inner_.residual(t, y, ydot, r);
+  }
+  Status jacobian(double t, ConstVec y, ConstVec ydot, double shift, Tangent tangent,
+                  BlockJacobian& J) const override {
+    return inner_.jacobian(t, y, ydot, shift, tangent, J);
+  }
+  Status jacobian_product(double t, ConstVec y, ConstVec ydot, double shift, Tangent tangent,
+                          ConstVec v, VecRef product) const override {
+    return inner_.jacobian_product(t, y, ydot, shift, tangent, v, product);
+  }
+  BlockJacobian make_jacobian() const override { return inner_.make_jacobian(); }
+  Status consistent_initial_state(double t, VecRef y, VecRef ydot) const override {
+    return inner_.consistent_initial_state(t, y, ydot);
+  }
+  double norm(ConstVec y) const override { return inner_.norm(y); }
+  double mass(ConstVec y) const override { return inner_.mass(y); }
+  bool conserves_mass() const override { return inner_.conserves_mass(); }
+  double energy(ConstVec y) const override { return inner_.energy(y); }
+  bool dissipates_energy() const override { return inner_.dissipates_energy(); }
+
+ private:
+  const DaeProblem& inner_;
+  std::function<bool(double)> poisoned_at_;
+};
+
+class IntegratorContract : public ::testing::TestWithParam<std::string> {
+ protected:
+  IntegratorContract() : space(make_space(12)), problem(space, make_model()) {}
+
+  IntegratorPtr make(const DaeProblem& dae, const std::string& solver = "direct",
+                     IntegratorSettings settings = {}) const {
+    return integrators()
+        .find(GetParam())
+        .make(dae, choose_linear_solver(solver, *space), space->team, settings);
+  }
+  IntegratorPtr started(const DaeProblem& dae, double t_end, const LinearSolverChoice& choice,
+                        IntegratorSettings settings = {}) const {
+    IntegratorPtr integrator =
+        integrators().find(GetParam()).make(dae, choice, space->team, settings);
+    const testing::StartState start = noise_state(problem);
+    EXPECT_TRUE(integrator->start(0, start.y, start.ydot, t_end).ok());
+    return integrator;
+  }
+  static Status run(Integrator& integrator, double t_end) {
+    Status status;
+    while (status.ok() && integrator.time() < t_end) status = integrator.advance();
+    return status;
+  }
+  LinearSolverChoice faulty(Faulty::Plan plan, bool with_fallback) const {
+    LinearSolverChoice choice = choose_linear_solver("block", *space);
+    LinearSolverFactory inner = choice.primary;
+    choice.primary = [inner, plan] { return std::make_unique<Faulty>(inner(), plan); };
+    if (!with_fallback) choice.fallback = nullptr;
+    return choice;
+  }
+
+  std::shared_ptr<const SurfaceSpace> space;
+  CahnHilliard problem;
+};
+
+TEST_P(IntegratorContract, EndsExactlyAtTheEndAndGoesNoFurther) {
+  const IntegratorPtr integrator = started(problem, 0.7, choose_linear_solver("block", *space));
+  ASSERT_TRUE(run(*integrator, 0.7).ok());
+  EXPECT_EQ(integrator->time(), 0.7);
+  EXPECT_EQ(integrator->advance().outcome, Outcome::fatal);
+  EXPECT_EQ(integrator->time(), 0.7);
+}
+
+TEST_P(IntegratorContract, KeepsMassWithEverySolver) {
+  for (const std::string& solver : linear_solvers().names())
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      const IntegratorPtr integrator = make(problem, solver);
+      const testing::StartState start = noise_state(problem, seed, 0.3);
+      ASSERT_TRUE(integrator->start(0, start.y, start.ydot, 20).ok());
+      ASSERT_TRUE(run(*integrator, 20).ok());
+      EXPECT_NEAR(problem.mass(integrator->state()) / problem.mass(start.y), 1, 1e-12) << solver;
+    }
+}
+
+TEST_P(IntegratorContract, SolversGiveTheSameTrajectory) {
+  IntegratorSettings settings;
+  settings.linear_tolerance = 1e-10;
+  const IntegratorPtr block = started(problem, 5, choose_linear_solver("block", *space), settings);
+  const IntegratorPtr direct =
+      started(problem, 5, choose_linear_solver("direct", *space), settings);
+  ASSERT_TRUE(run(*block, 5).ok());
+  ASSERT_TRUE(run(*direct, 5).ok());
+  EXPECT_LT(problem.norm(block->state() - direct->state()), 1e-6);
+}
+
+TEST_P(IntegratorContract, InterpolatesItsLastStepWithoutLosingMass) {
+  const IntegratorPtr integrator = started(problem, 5, choose_linear_solver("block", *space));
+  const double mass = problem.mass(integrator->state());
+  Vec before = integrator->state(), y(problem.size());
+  for (int step = 0; step < 30; ++step) {
+    ASSERT_TRUE(integrator->advance().ok());
+    const double t1 = integrator->time(), t0 = t1 - integrator->step();
+    ASSERT_TRUE(integrator->interpolate(t1, y).ok());
+    EXPECT_EQ(y, integrator->state());
+    ASSERT_TRUE(integrator->interpolate(t0 + 1e-12 * (t1 - t0), y).ok());
+    EXPECT_LT(problem.norm(y - before), 1e-9);
+    ASSERT_TRUE(integrator->interpolate(t0 + 0.4 * (t1 - t0), y).ok());
+    EXPECT_NEAR(problem.mass(y) / mass, 1, 1e-13);
+    EXPECT_FALSE(integrator->interpolate(t1 + integrator->step(), y).ok());
+    EXPECT_FALSE(integrator->interpolate(t0 - integrator->step(), y).ok());
+    before = integrator->state();
+  }
+}
+
+TEST_P(IntegratorContract, ContinuesBitwiseFromWhatItSaved) {
+  for (const std::string& solver : linear_solvers().names()) {
+    const IntegratorPtr whole = started(problem, 3, choose_linear_solver(solver, *space));
+    std::vector<std::string> saved;
+    for (int step = 0; step < 25; ++step) {
+      std::ostringstream out;
+      whole->save(out);
+      saved.push_back(out.str());
+      ASSERT_TRUE(whole->advance().ok());
+    }
+    const Vec expected = whole->state();
+    for (const int step : {0, 1, 2, 3, 11, 24}) {
+      const IntegratorPtr resumed = make(problem, solver);
+      std::istringstream in(saved[step]);
+      resumed->load(in);
+      for (int left = step; left < 25; ++left) ASSERT_TRUE(resumed->advance().ok());
+      EXPECT_EQ(resumed->time(), whole->time());
+      EXPECT_EQ(resumed->state(), expected) << solver << " from step " << step;
+      EXPECT_EQ(resumed->linear_statistics().iterations, whole->linear_statistics().iterations);
+    }
+  }
+}
+
+TEST_P(IntegratorContract, RefusesDataThatAreNotItsOwn) {
+  const IntegratorPtr integrator = started(problem, 3, choose_linear_solver("block", *space));
+  ASSERT_TRUE(integrator->advance().ok());
+  std::ostringstream out;
+  integrator->save(out);
+  const std::string data = out.str();
+  for (const std::size_t size :
+       {std::size_t{0}, std::size_t{5}, data.size() / 2, data.size() - 1}) {
+    std::istringstream torn(data.substr(0, size));
+    EXPECT_THROW(make(problem, "block")->load(torn), IoError) << size;
+  }
+  const CahnHilliard other(make_space(16), make_model());
+  std::istringstream in(data);
+  const IntegratorPtr larger =
+      integrators()
+          .find(GetParam())
+          .make(other, choose_linear_solver("block", other.space()), other.space().team, {});
+  EXPECT_THROW(larger->load(in), IoError);
+}
+
+TEST_P(IntegratorContract, RenewsFactorsBeforeItFallsBack) {
+  Faulty::Plan plan;
+  plan.lazy = true;  // old factors until they fail
+  plan.solve_fails = [](long call) { return call % 7 == 5; };
+  const IntegratorPtr integrator = started(problem, 2, faulty(plan, true));
+  ASSERT_TRUE(run(*integrator, 2).ok());
+  EXPECT_GT(integrator->statistics().renewals, 0);
+  EXPECT_EQ(integrator->statistics().fallbacks, 0);
+  EXPECT_EQ(integrator->statistics().failures, 0);
+}
+
+TEST_P(IntegratorContract, FallsBackAndStaysRight) {
+  IntegratorSettings settings;
+  settings.linear_tolerance = 1e-10;
+  const IntegratorPtr good = started(problem, 2, choose_linear_solver("block", *space), settings);
+  ASSERT_TRUE(run(*good, 2).ok());
+  for (const bool setup : {true, false}) {
+    Faulty::Plan plan;
+    (setup ? plan.setup_fails : plan.solve_fails) = [](long) { return true; };
+    const IntegratorPtr integrator = started(problem, 2, faulty(plan, true), settings);
+    ASSERT_TRUE(run(*integrator, 2).ok());
+    const IntegratorStatistics statistics = integrator->statistics();
+    EXPECT_EQ(statistics.fallbacks, statistics.jacobians);
+    EXPECT_LT(problem.norm(integrator->state() - good->state()), 1e-6);
+  }
+}
+
+TEST_P(IntegratorContract, EndsWhenNoSolverWorksAndKeepsTheLastState) {
+  Faulty::Plan plan;
+  plan.solve_fails = [](long call) { return call >= 20; };
+  const IntegratorPtr integrator = started(problem, 2, faulty(plan, false));
+  const Status status = run(*integrator, 2);
+  EXPECT_EQ(status.outcome, Outcome::fatal);
+  EXPECT_NE(status.why.find("injected solve failure"), std::string::npos) << status.why;
+  EXPECT_GT(integrator->statistics().failures, 0);
+  EXPECT_GT(integrator->statistics().steps, 0);
+  EXPECT_TRUE(integrator->state().allFinite());
+}
+
+TEST_P(IntegratorContract, CutsTheStepWhenTheModelFailsAndEndsWhenItAlwaysFails) {
+  const Poisoned late(problem, [](double t) { return t > 0.5; });
+  const IntegratorPtr integrator = started(late, 2, choose_linear_solver("block", *space));
+  const Status status = run(*integrator, 2);
+  EXPECT_EQ(status.outcome, Outcome::fatal);
+  EXPECT_NE(status.why.find("injected NaN"), std::string::npos) << status.why;
+  EXPECT_LE(integrator->time(), 0.5);
+  EXPECT_GT(integrator->time(), 0.49);
+  EXPECT_TRUE(integrator->state().allFinite());
+}
+
+TEST_P(IntegratorContract, ReportsAStepSizeThatCollapses) {
+  IntegratorSettings settings;
+  settings.tolerance = 1e-9;
+  settings.min_step = 0.01;  // far too large for that tolerance
+  const IntegratorPtr integrator =
+      started(problem, 2, choose_linear_solver("block", *space), settings);
+  const Status status = run(*integrator, 2);
+  EXPECT_EQ(status.outcome, Outcome::fatal);
+  EXPECT_NE(status.why.find("no step size"), std::string::npos) << status.why;
+  EXPECT_EQ(integrator->statistics().steps, 0) << "a step above the tolerance was accepted";
+}
+
+TEST_P(IntegratorContract, TighterTolerancesGiveSmallerErrors) {
+  std::vector<Vec> states;
+  for (const double tolerance : {1e-2, 1e-3, 1e-5}) {
+    IntegratorSettings settings;
+    settings.tolerance = tolerance;
+    settings.linear_tolerance = 1e-8;
+    const IntegratorPtr integrator =
+        started(problem, 1, choose_linear_solver("block", *space), settings);
+    ASSERT_TRUE(run(*integrator, 1).ok());
+    states.push_back(integrator->state());
+  }
+  const double loose = problem.norm(states[0] - states[2]);
+  const double tight = problem.norm(states[1] - states[2]);
+  EXPECT_LT(tight, 0.5 * loose);
+  EXPECT_LT(tight, 5e-3 * problem.norm(states[2]));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, IntegratorContract, ::testing::ValuesIn(integrators().names()));
+
+TEST(Euler, FirstOrderSolutionNeverGainsEnergy) {
+  const auto space = make_space(16);
+  for (const char* mobility : {"degenerate", "constant"})
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      const CahnHilliard problem(space, make_model(mobility, 0.1));
+      IntegratorSettings settings;
+      settings.kept_solution = "first";
+      settings.tolerance = 0.05;  // large steps are where an unstable scheme would show
+      const IntegratorPtr integrator = integrators().find("euler").make(
+          problem, choose_linear_solver("block", *space), space->team, settings);
+      EXPECT_TRUE(integrator->promises_energy_decay());
+      const testing::StartState start = noise_state(problem, seed, 0.4);
+      ASSERT_TRUE(integrator->start(0, start.y, start.ydot, 1000).ok());
+      const double scale = problem.energy(start.y);
+      double energy = scale;
+      while (integrator->time() < 1000) {
+        ASSERT_TRUE(integrator->advance().ok());
+        const double next = problem.energy(integrator->state());
+        ASSERT_LE(next, energy + 1e-10 * scale) << "at t = " << integrator->time();
+        energy = next;
+      }
+    }
+}
+
+TEST(Euler, OneStepIsTheHandAssembledStabilisedScheme) {
+  // (M̃/Δt + …): M̃ (c − c_n)/Δt + A μ = 0, M̃ μ = b(c_n) + β M̃ (c − c_n) + ε² (K + ρS) c, as one
+  // dense system.
+  const auto space = make_space(8);
+  const CahnHilliard problem(space, make_model());
+  const int n = problem.block_size();
+  const testing::StartState start = noise_state(problem);
+  IntegratorSettings settings;
+  settings.initial_step = 1e-3;
+  settings.tolerance = 0.5;
+  const IntegratorPtr integrator = integrators().find("euler").make(
+      problem, choose_linear_solver("direct", *space), space->team, settings);
+  ASSERT_TRUE(integrator->start(0, start.y, start.ydot, 1).ok());
+  ASSERT_TRUE(integrator->advance().ok());
+  ASSERT_EQ(integrator->time(), 1e-3);
+
+  BlockJacobian J = problem.make_jacobian();
+  ASSERT_TRUE(problem.jacobian(0, start.y, start.ydot, 1e3, Tangent::stabilised, J).ok());
+  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(2 * n, 2 * n);
+  const SparsityPattern& p = *space->pattern;
+  for (int i = 0; i < n; ++i)
+    for (int k = p.row_begin[i]; k < p.row_begin[i + 1]; ++k) {
+      system(i, p.column[k]) = 1e3 * space->stabilised_mass.values[k];
+      system(i, n + p.column[k]) = J.cm.values[k];
+      system(n + i, n + p.column[k]) = space->stabilised_mass.values[k];
+      system(n + i, p.column[k]) =
+          -0.04 * (space->stiffness.values[k] + space->h() * space->normal.values[k]) -
+          space->stabilised_mass.values[k];
+    }
+  Vec right = Vec::Zero(2 * n);
+  const Vec c = start.y.head(n);
+  space->stabilised_mass.multiply_add(1e3, c, right.head(n), *space->team);
+  add_potential(*space, problem.model().well, PotentialRule::consistent, 1, c, right.tail(n));
+  space->stabilised_mass.multiply_add(-1, c, right.tail(n), *space->team);
+  const Vec expected = system.partialPivLu().solve(right);
+  EXPECT_LT((integrator->state() - expected).norm(), 1e-10 * expected.norm());
+}
+
+TEST(Euler, DoesNotDependOnThreads) {
+  Vec states[2];
+  for (const int threads : {1, 2}) {
+    const auto space = make_space(12, "sphere", threads);
+    const CahnHilliard problem(space, make_model());
+    const testing::StartState start = noise_state(problem);
+    const IntegratorPtr integrator = integrators().find("euler").make(
+        problem, choose_linear_solver("block", *space), space->team, {});
+    ASSERT_TRUE(integrator->start(0, start.y, start.ydot, 1).ok());
+    while (integrator->time() < 1) ASSERT_TRUE(integrator->advance().ok());
+    states[threads - 1] = integrator->state();
+  }
+  EXPECT_EQ(states[0], states[1]);
+}
+
+}  // namespace
+}  // namespace traceraft
