@@ -10,13 +10,15 @@ namespace traceraft {
 namespace {
 
 LinearSolverFactory block(const SurfaceSpace& space) {
-  return [spd = cholmod_factory(space.pattern), size = 2 * space.nodes(), team = space.team] {
-    return make_block_solver(spd, make_spfgmr(size), team);
+  return [spd = cholmod_factory(space.pattern), size = 2 * space.nodes(),
+          team = space.team](int lanes) {
+    return make_block_solver(
+        spd, [size] { return make_spfgmr(size); }, team, lanes);
   };
 }
 
 LinearSolverFactory direct(const SurfaceSpace& space) {
-  return [pattern = space.pattern] { return make_direct_solver(pattern); };
+  return [pattern = space.pattern](int lanes) { return make_direct_solver(pattern, lanes); };
 }
 
 }  // namespace

@@ -140,7 +140,8 @@ int guarded(int argc, char** argv) {
 }  // namespace traceraft
 
 int main(int argc, char** argv) {
-  traceraft::restart_with_environment("OPENBLAS_CORETYPE", traceraft::better_blas_core(), argv);
+  // Read by OpenBLAS and by CHOLMOD's OpenMP when they are loaded, hence before anything else.
+  traceraft::restart_with_environment(traceraft::preferred_environment(), argv);
   traceraft::use_one_blas_thread();
   return traceraft::guarded(argc, argv);
 }

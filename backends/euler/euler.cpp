@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "kernel/core/binary.hpp"
 #include "kernel/core/stopwatch.hpp"
@@ -19,8 +21,7 @@ class Euler final : public Integrator {
       : problem_(problem),
         team_(std::move(team)),
         settings_(settings),
-        first_(problem, solvers),
-        second_(problem, solvers) {}
+        solver_(problem, solvers, 2, team_) {}
 
   std::string name() const override { return "euler"; }
 
@@ -83,19 +84,13 @@ class Euler final : public Integrator {
 
   IntegratorStatistics statistics() const override {
     IntegratorStatistics result = statistics_;
-    for (const Corrector* corrector : {&first_, &second_}) {
-      const JacobianSolverStatistics& solver = corrector->solver.statistics();
-      result.residuals += corrector->residuals;
-      result.jacobians += solver.jacobians;
-      result.fallbacks += solver.fallbacks;
-      result.renewals += solver.renewals;
-      result.assembly_seconds += corrector->residual_seconds + solver.assembly_seconds;
-    }
+    result.jacobians = solver_.statistics().jacobians;
+    result.fallbacks = solver_.statistics().fallbacks;
+    result.renewals = solver_.statistics().renewals;
+    result.assembly_seconds += solver_.statistics().assembly_seconds;
     return result;
   }
-  LinearStatistics linear_statistics() const override {
-    return first_.solver.linear_statistics() + second_.solver.linear_statistics();
-  }
+  LinearStatistics linear_statistics() const override { return solver_.linear_statistics(); }
 
   void save(std::ostream& out) const override {
     write_binary(out, std::int64_t{steps_kept_});
@@ -104,8 +99,7 @@ class Euler final : public Integrator {
     if (steps_kept_ > 0) write_binary(out, previous_);
     if (steps_kept_ > 1) write_binary(out, before_);
     write_binary(out, statistics_);
-    first_.save(out);
-    second_.save(out);
+    solver_.save(out);
   }
   void load(std::istream& in) override {
     std::int64_t kept = 0;
@@ -117,83 +111,57 @@ class Euler final : public Integrator {
     if (steps_kept_ > 1) read_binary(in, before_, problem_.size());
     read_binary(in, statistics_);
     control_ = StepControl(settings_, t_end_);
-    first_.load(in);
-    second_.load(in);
+    solver_.load(in);
   }
 
  private:
   bool keeps_second() const { return settings_.kept_solution != "first"; }
 
-  // One of the two solutions of a step: a solve with the stabilised tangent from a predictor.
-  struct Corrector {
-    Corrector(const DaeProblem& p, const LinearSolverChoice& solvers)
-        : problem(p), solver(p, solvers) {}
+  // The system whose solution added to the predictor y is one of the two solutions of a step.
+  static NewtonSystem correction(double t, double shift, Vec predictor, Vec rate) {
+    NewtonSystem system;
+    system.t = t;
+    system.shift = shift;
+    system.tangent = Tangent::stabilised;
+    system.y = std::move(predictor);
+    system.ydot = std::move(rate);
+    system.x = Vec::Zero(system.y.size());
+    return system;
+  }
 
-    const DaeProblem& problem;
-    JacobianSolver solver;
-    Vec solution;
-    Status status;
-    long residuals = 0;
-    double residual_seconds = 0;
-
-    void correct(double t, const Vec& predictor, const Vec& rate, double shift, const Vec& guess,
-                 double tolerance) {
-      Vec right(problem.size());
-      {
-        const ScopedTimer timer(residual_seconds);
-        ++residuals;
-        status = problem.residual(t, predictor, rate, right);
-        if (!status.ok()) return;
-      }
-      right = -right;
-      Vec delta = guess - predictor;
-      status = solver.solve(t, predictor, rate, shift, Tangent::stabilised, right, delta, tolerance)
-                   .status;
-      solution = predictor + delta;
+  Status evaluate_residuals() {
+    const ScopedTimer timer(statistics_.assembly_seconds);
+    for (NewtonSystem& system : systems_) {
+      ++statistics_.residuals;
+      system.b.resize(problem_.size());
+      const Status status = problem_.residual(system.t, system.y, system.ydot, system.b);
+      if (!status.ok()) return status;
+      system.b = -system.b;
     }
-    void save(std::ostream& out) const {
-      write_binary(out, residuals);
-      write_binary(out, residual_seconds);
-      solver.save(out);
-    }
-    void load(std::istream& in) {
-      read_binary(in, residuals);
-      read_binary(in, residual_seconds);
-      solver.load(in);
-    }
-  };
-
-  // y* and ẏ* of BDF2; linear extrapolation is also the guess for the first-order solution.
-  void predict(double dt, Vec& predictor, Vec& rate) const {
-    const double r = dt / step_;
-    predictor = (1 + r) * y_ - r * previous_;
-    rate = ((1 + 2 * r) / (1 + r) * predictor - (1 + r) * y_ + r * r / (1 + r) * previous_) / dt;
+    return {};
   }
 
   Status attempt(double dt, double& error) {
-    const Vec zero = Vec::Zero(y_.size());
-    if (steps_kept_ == 0) {
-      first_.correct(t_ + dt, y_, zero, 1 / dt, y_, settings_.linear_tolerance);
-      if (!first_.status.ok()) return first_.status;
-      second_.solution = first_.solution;
-      // Half the difference to explicit Euler: the leading term of the local error.
-      error = 0.5 * problem_.norm(first_.solution - y_ - dt * rate_) / problem_.norm(y_);
-    } else {
-      Vec predictor, rate;
-      predict(dt, predictor, rate);
-      const double r = dt / step_;
-      team_->run([&](int part) {
-        for (int which = part; which < 2; which += team_->size())
-          if (which == 0)
-            first_.correct(t_ + dt, y_, zero, 1 / dt, predictor, settings_.linear_tolerance);
-          else
-            second_.correct(t_ + dt, predictor, rate, (1 + 2 * r) / ((1 + r) * dt), predictor,
-                            settings_.linear_tolerance);
-      });
-      if (!first_.status.ok()) return first_.status;
-      if (!second_.status.ok()) return second_.status;
-      error = problem_.norm(second_.solution - first_.solution) / problem_.norm(second_.solution);
+    const double t = t_ + dt, r = dt / step_;
+    systems_.clear();
+    systems_.push_back(correction(t, 1 / dt, y_, Vec::Zero(y_.size())));
+    if (steps_kept_ > 0) {
+      const Vec predictor = (1 + r) * y_ - r * previous_;
+      const Vec rate =
+          ((1 + 2 * r) / (1 + r) * predictor - (1 + r) * y_ + r * r / (1 + r) * previous_) / dt;
+      systems_[0].x = predictor - y_;  // linear extrapolation is a good guess
+      systems_.push_back(correction(t, (1 + 2 * r) / ((1 + r) * dt), predictor, rate));
     }
+    if (Status status = evaluate_residuals(); !status.ok()) return status;
+    solver_.solve(systems_, settings_.linear_tolerance);
+    for (const NewtonSystem& system : systems_)
+      if (!system.report.status.ok()) return system.report.status;
+
+    first_ = systems_[0].y + systems_[0].x;
+    second_ = systems_.back().y + systems_.back().x;
+    // At the start, half the difference to explicit Euler: the leading term of the local error.
+    error = steps_kept_ > 0 ? problem_.norm(second_ - first_) / problem_.norm(second_)
+                            : 0.5 * problem_.norm(first_ - y_ - dt * rate_) / problem_.norm(y_);
     if (std::isnan(error)) return Status::retry("the error estimate is not a number");
     return {};
   }
@@ -201,7 +169,7 @@ class Euler final : public Integrator {
   void accept(double dt, double t, double error) {
     before_.swap(previous_);
     previous_.swap(y_);
-    y_ = keeps_second() ? second_.solution : first_.solution;
+    y_ = keeps_second() ? second_ : first_;
     steps_kept_ = std::min(steps_kept_ + 1, 2);
     step_before_ = step_;
     step_ = dt;
@@ -218,7 +186,9 @@ class Euler final : public Integrator {
   double t_ = 0, t_end_ = 0, step_ = 0, step_before_ = 0, next_ = 0;
   int steps_kept_ = 0;                // how many of previous_, before_ are filled
   Vec y_, previous_, before_, rate_;  // y_n, y_{n−1}, y_{n−2}, ẏ at the start
-  Corrector first_, second_;
+  JacobianSolver solver_;
+  std::vector<NewtonSystem> systems_;  // of an attempt: first and second order
+  Vec first_, second_;                 // and what they give
 };
 
 }  // namespace

@@ -61,10 +61,13 @@ void ignore_file_size_signal() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-void restart_with_environment(const std::string& name, const std::string& value, char** argv) {
-  if (value.empty() || std::getenv(name.c_str())) return;
-  setenv(name.c_str(), value.c_str(), 1);
-  execv("/proc/self/exe", argv);
+void restart_with_environment(const std::vector<std::pair<std::string, std::string>>& variables,
+                              char** argv) {
+  bool changed = false;
+  for (const auto& [name, value] : variables)
+    if (!std::getenv(name.c_str()))
+      changed = setenv(name.c_str(), value.c_str(), 1) == 0 || changed;
+  if (changed) execv("/proc/self/exe", argv);
 }
 
 }  // namespace traceraft

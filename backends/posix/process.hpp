@@ -2,6 +2,8 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace traceraft {
 
@@ -16,8 +18,9 @@ bool stop_requested();
 // Writing beyond a file size limit becomes an error of the write instead of a signal.
 void ignore_file_size_signal();
 
-// Starts this program anew with name=value in its environment, unless the value is empty or the
-// name is set already. Returns if there is nothing to do or the system refuses.
-void restart_with_environment(const std::string& name, const std::string& value, char** argv);
+// Starts this program anew with these variables in its environment, unless all are set already.
+// Values that the user has set are kept. Returns if there is nothing to do or the system refuses.
+void restart_with_environment(const std::vector<std::pair<std::string, std::string>>& variables,
+                              char** argv);
 
 }  // namespace traceraft

@@ -12,24 +12,27 @@
 namespace traceraft {
 namespace {
 
-class DirectSolver final : public LinearSolver {
+// The factors of one lane. Nothing is allocated before the first set-up: a fallback may never be
+// needed.
+class Lane {
  public:
-  explicit DirectSolver(PatternPtr pattern) : pattern_(std::move(pattern)) {
+  explicit Lane(PatternPtr pattern) : pattern_(std::move(pattern)) {
     umfpack_di_defaults(control_);
     control_[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
-    build_rows();
   }
-  ~DirectSolver() override {
+  ~Lane() {
     umfpack_di_free_symbolic(&symbolic_);
     umfpack_di_free_numeric(&numeric_);
   }
+  Lane(const Lane&) = delete;
+  Lane& operator=(const Lane&) = delete;
 
-  std::string name() const override { return "direct"; }
-  bool wants_setup(const BlockJacobian&) const override { return true; }
+  LinearStatistics statistics;
 
-  Status setup(const BlockJacobian& J) override {
-    const ScopedTimer timer(statistics_.setup_seconds);
-    ++statistics_.setups;
+  Status setup(const BlockJacobian& J) {
+    const ScopedTimer timer(statistics.setup_seconds);
+    ++statistics.setups;
+    if (begin_.empty()) build_rows();
     umfpack_di_free_numeric(&numeric_);
     if (!(J.shift > 0)) return Status::fatal("direct: the shift must be positive");
     fill_values(J);
@@ -48,9 +51,9 @@ class DirectSolver final : public LinearSolver {
     return {};
   }
 
-  SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance) override {
-    const ScopedTimer timer(statistics_.solve_seconds);
-    ++statistics_.solves;
+  SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance) {
+    const ScopedTimer timer(statistics.solve_seconds);
+    ++statistics.solves;
     if (!numeric_) return {Status::retry("direct: there is no factorisation")};
     const int n = J.block_size();
     const double root = std::sqrt(J.shift);
@@ -65,12 +68,10 @@ class DirectSolver final : public LinearSolver {
     x.head(n) = solution.head(n);
     x.tail(n) = root * solution.tail(n);
     restore_mass(J, b, x);
+    ++statistics.iterations;
+    statistics.most_iterations = 1;
     return {verify(J, b, x, tolerance), 1};
   }
-
-  LinearStatistics statistics() const override { return statistics_; }
-  void save(std::ostream& out) const override { write_binary(out, statistics_); }
-  void load(std::istream& in) override { read_binary(in, statistics_); }
 
  private:
   void build_rows() {
@@ -119,7 +120,7 @@ class DirectSolver final : public LinearSolver {
     J.multiply(x, defect, ThreadTeam(1));
     defect = b - defect;
     const double relative = scaled_norm(J, defect) / scaled_norm(J, b);
-    if (b.isZero(0) || relative <= std::max(tolerance, 1e-6)) return {};
+    if (b.isZero(0) || relative <= tolerance) return {};
     return Status::retry("UMFPACK: relative residual " + std::to_string(relative));
   }
 
@@ -128,13 +129,41 @@ class DirectSolver final : public LinearSolver {
   std::vector<double> values_;
   double control_[UMFPACK_CONTROL];
   void *symbolic_ = nullptr, *numeric_ = nullptr;
-  LinearStatistics statistics_;
+};
+
+class DirectSolver final : public LinearSolver {
+ public:
+  DirectSolver(const PatternPtr& pattern, int lanes) {
+    for (int lane = 0; lane < lanes; ++lane) lanes_.push_back(std::make_unique<Lane>(pattern));
+  }
+  std::string name() const override { return "direct"; }
+  bool shares_factors() const override { return false; }
+  bool wants_setup(const BlockJacobian&, int) const override { return true; }
+  Status setup(const BlockJacobian& J, int lane) override { return lanes_[lane]->setup(J); }
+  SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance,
+                    int lane) override {
+    return lanes_[lane]->solve(J, b, x, tolerance);
+  }
+  LinearStatistics statistics() const override {
+    LinearStatistics total;
+    for (const auto& lane : lanes_) total = total + lane->statistics;
+    return total;
+  }
+  void save(std::ostream& out) const override {
+    for (const auto& lane : lanes_) write_binary(out, lane->statistics);
+  }
+  void load(std::istream& in) override {
+    for (const auto& lane : lanes_) read_binary(in, lane->statistics);
+  }
+
+ private:
+  std::vector<std::unique_ptr<Lane>> lanes_;
 };
 
 }  // namespace
 
-LinearSolverPtr make_direct_solver(PatternPtr pattern) {
-  return std::make_unique<DirectSolver>(std::move(pattern));
+LinearSolverPtr make_direct_solver(const PatternPtr& pattern, int lanes) {
+  return std::make_unique<DirectSolver>(pattern, lanes);
 }
 
 }  // namespace traceraft

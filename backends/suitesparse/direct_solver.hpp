@@ -5,11 +5,11 @@
 
 namespace traceraft {
 
-// Factorises for every J. With μ = √σ ν the system is arranged as
+// Factorises for every J, each lane on its own. With μ = √σ ν the system is arranged as
 //   [ B     −√σ M̃ ] [δc]   [ −b₂    ]
 //   [ √σ M̃   A    ] [δν] = [ b₁/√σ ]
 // which is quasi-definite for the stabilised tangent: any symmetric pivot order is stable, so the
 // METIS order of the n×n pattern, expanded to (c, μ) pairs, can be kept.
-LinearSolverPtr make_direct_solver(PatternPtr pattern);
+LinearSolverPtr make_direct_solver(const PatternPtr& pattern, int lanes);
 
 }  // namespace traceraft

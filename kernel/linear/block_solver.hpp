@@ -7,9 +7,10 @@
 
 namespace traceraft {
 
-// Old factors are kept as long as the iterations they cost extra stay below the price of new ones.
+// All lanes share the factors. Old factors are kept as long as the iterations they cost extra stay
+// below the price of new ones.
 LinearSolverPtr make_block_solver(const SpdSolverFactory& make_spd_solver,
-                                  std::unique_ptr<KrylovMethod> krylov,
-                                  std::shared_ptr<const ThreadTeam> team);
+                                  const KrylovFactory& make_krylov,
+                                  std::shared_ptr<const ThreadTeam> team, int lanes);
 
 }  // namespace traceraft

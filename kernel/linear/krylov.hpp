@@ -23,15 +23,16 @@ class KrylovMethod {
 };
 
 // Factorises symmetric positive definite matrices of one pattern, again and again. Different
-// objects may be used from different threads at the same time.
+// objects may be used from different threads at the same time, and so may the lanes of solve.
 class SpdSolver {
  public:
   virtual ~SpdSolver() = default;
   virtual Status factorise(const CsrMatrix& A) = 0;  // retry: not positive definite
-  virtual void solve(ConstVec b, VecRef x) = 0;
+  virtual void solve(ConstVec b, VecRef x, int lane) = 0;
 };
 
+using KrylovFactory = std::function<std::unique_ptr<KrylovMethod>()>;
 using SpdSolverPtr = std::unique_ptr<SpdSolver>;
-using SpdSolverFactory = std::function<SpdSolverPtr()>;
+using SpdSolverFactory = std::function<SpdSolverPtr(int lanes)>;
 
 }  // namespace traceraft

@@ -28,28 +28,33 @@ struct LinearStatistics {
 LinearStatistics operator+(const LinearStatistics& a, const LinearStatistics& b);
 
 // Contract
-// - setup(J) prepares (factorises) for J; may be called any number of times.
-// - solve(J, b, x, tolerance) solves J x = b for a J of the same pattern as the last set-up, or a
-//   later one if wants_setup(J) is false. x comes in as the initial guess. On ok
+// - A solver has lanes: systems of one pattern that may be solved at the same time from different
+//   threads. Factors of one set-up serve either all lanes or the lane they were made for.
+// - setup(J, lane) prepares (factorises) for J; may be called any number of times. With shared
+//   factors it is never called while another lane solves.
+// - solve(J, b, x, tolerance, lane) solves J x = b for the J of the last set-up, or a later one of
+//   the same pattern if wants_setup(J, lane) is false. x comes in as the initial guess. On ok
 //   ‖D (b − J x)‖₂ ≤ tolerance ‖D b‖₂ with D scaling the first block row by 1/σ, and the sum of the
 //   first block row holds to roundoff, so mass is exact whatever the tolerance. Otherwise x is
 //   unspecified and the status says why; a wrong x is never reported as ok.
-// - wants_setup(J) depends on what was passed in and on counts, never on time, so that a repeated
-//   run decides alike; save and load carry those counts over a restart.
+// - wants_setup(J, lane) depends on what was passed in and on counts, never on time, so that a
+//   repeated run decides alike; save and load carry those counts over a restart.
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
   virtual std::string name() const = 0;
-  virtual Status setup(const BlockJacobian& J) = 0;
-  virtual bool wants_setup(const BlockJacobian& J) const = 0;
-  virtual SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance) = 0;
+  virtual bool shares_factors() const = 0;
+  virtual Status setup(const BlockJacobian& J, int lane = 0) = 0;
+  virtual bool wants_setup(const BlockJacobian& J, int lane = 0) const = 0;
+  virtual SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance,
+                            int lane = 0) = 0;
   virtual LinearStatistics statistics() const = 0;
   virtual void save(std::ostream& out) const = 0;
   virtual void load(std::istream& in) = 0;
 };
 
 using LinearSolverPtr = std::unique_ptr<LinearSolver>;
-using LinearSolverFactory = std::function<LinearSolverPtr()>;
+using LinearSolverFactory = std::function<LinearSolverPtr(int lanes)>;
 
 // How an integrator gets its solvers: the one asked for and, possibly empty, the one to fall back
 // on.

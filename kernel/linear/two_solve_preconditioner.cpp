@@ -35,15 +35,16 @@ Status TwoSolvePreconditioner::setup(const BlockJacobian& J, const ThreadTeam& t
 }
 
 void TwoSolvePreconditioner::apply(const BlockJacobian& J, ConstVec r, VecRef z,
-                                   const ThreadTeam& team) {
+                                   const ThreadTeam& team, int lane) {
   const int n = J.block_size();
-  v_.resize(n);
-  right_ = r.head(n) + p_ * r.tail(n);
-  first_->solve(right_, v_);
-  J.mm.multiply(v_, right_, team);
-  right_ -= r.tail(n);
-  second_->solve(right_, z.head(n));
-  z.tail(n) = v_ + q_ * z.head(n);
+  auto& [right, v] = work_[lane];
+  v.resize(n);
+  right = r.head(n) + p_ * r.tail(n);
+  first_->solve(right, v, lane);
+  J.mm.multiply(v, right, team);
+  right -= r.tail(n);
+  second_->solve(right, z.head(n), lane);
+  z.tail(n) = v + q_ * z.head(n);
 }
 
 }  // namespace traceraft

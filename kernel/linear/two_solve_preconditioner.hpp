@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "kernel/linear/krylov.hpp"
 
@@ -16,20 +17,23 @@ namespace traceraft {
 // GMRES iterations over Δt = 1e-5…1e3 and h = 1/10…1/40.
 class TwoSolvePreconditioner {
  public:
-  explicit TwoSolvePreconditioner(const SpdSolverFactory& make_solver)
-      : first_(make_solver()), second_(make_solver()) {}
+  TwoSolvePreconditioner(const SpdSolverFactory& make_solver, int lanes)
+      : first_(make_solver(lanes)), second_(make_solver(lanes)), work_(lanes) {}
 
   // J: the stabilised tangent, whose blocks are symmetric. The two factorisations run concurrently
   // if the team has two threads.
   Status setup(const BlockJacobian& J, const ThreadTeam& team);
 
-  // z ≈ J⁻¹ r, with M taken from `J`.
-  void apply(const BlockJacobian& J, ConstVec r, VecRef z, const ThreadTeam& team);
+  // z ≈ J⁻¹ r, with M taken from `J`. Lanes may be used at the same time.
+  void apply(const BlockJacobian& J, ConstVec r, VecRef z, const ThreadTeam& team, int lane);
 
  private:
   SpdSolverPtr first_, second_;
   double p_ = 0, q_ = 0;
-  Vec right_, v_;
+  struct Work {
+    Vec right, v;
+  };
+  std::vector<Work> work_;  // per lane
 };
 
 struct TwoSolveShifts {

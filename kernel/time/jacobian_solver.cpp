@@ -5,59 +5,92 @@
 
 namespace traceraft {
 
-JacobianSolver::JacobianSolver(const DaeProblem& problem, const LinearSolverChoice& choice)
+JacobianSolver::JacobianSolver(const DaeProblem& problem, const LinearSolverChoice& choice,
+                               int lanes, std::shared_ptr<const ThreadTeam> team)
     : problem_(problem),
-      primary_(choice.primary()),
-      fallback_(choice.fallback ? choice.fallback() : nullptr),
-      J_(problem.make_jacobian()) {}
+      primary_(choice.primary(lanes)),
+      fallback_(choice.fallback ? choice.fallback(lanes) : nullptr),
+      team_(std::move(team)),
+      J_(static_cast<std::size_t>(lanes), problem.make_jacobian()) {}
 
-Status JacobianSolver::renew(double t, ConstVec y, ConstVec ydot, double shift, Tangent tangent) {
-  anchor_.t = t;
-  anchor_.shift = shift;
-  anchor_.tangent = tangent;
-  anchor_.y = y;
-  anchor_.ydot = ydot;
-  const Status status = primary_->setup(J_);
-  ready_ = status.ok();
+template <class Action>
+void JacobianSolver::for_each_lane(std::size_t count, const Action& action) {
+  team_->run([&](int part) {
+    for (std::size_t lane = part; lane < count; lane += team_->size())
+      action(static_cast<int>(lane));
+  });
+}
+
+void JacobianSolver::assemble(std::vector<NewtonSystem>& systems) {
+  const ScopedTimer timer(statistics_.assembly_seconds);
+  for_each_lane(systems.size(), [&](int lane) {
+    NewtonSystem& s = systems[lane];
+    s.report = {problem_.jacobian(s.t, s.y, s.ydot, s.shift, s.tangent, J_[lane])};
+  });
+  statistics_.jacobians += static_cast<long>(systems.size());
+}
+
+Status JacobianSolver::renew(const NewtonSystem& system, int lane) {
+  const Status status = primary_->setup(J_[lane], lane);
+  if (primary_->shares_factors()) {
+    anchor_ = {system.t, system.shift, system.tangent, system.y, system.ydot};
+    anchored_ = status.ok();
+  }
   return status;
 }
 
-SolveReport JacobianSolver::solve(double t, ConstVec y, ConstVec ydot, double shift,
-                                  Tangent tangent, ConstVec b, VecRef x, double tolerance) {
-  {
-    const ScopedTimer timer(statistics_.assembly_seconds);
-    ++statistics_.jacobians;
-    if (Status status = problem_.jacobian(t, y, ydot, shift, tangent, J_); !status.ok())
-      return {status};
-  }
-  const Vec guess = x;
-  int iterations = 0;
-  std::string why;
-  if (ready_ && !primary_->wants_setup(J_)) {
-    SolveReport report = primary_->solve(J_, b, x, tolerance);
-    if (report.status.ok()) return report;
-    ++statistics_.renewals;
-    iterations += report.iterations;
-    x = guess;
-  }
-  Status fresh = renew(t, y, ydot, shift, tangent);
-  if (fresh.ok()) {
-    SolveReport report = primary_->solve(J_, b, x, tolerance);
-    report.iterations += iterations;
-    if (report.status.ok()) return report;
-    fresh = report.status;
-  }
-  why = primary_->name() + ": " + fresh.why;
-  if (!fallback_) return {Status::retry(why), iterations};
+void JacobianSolver::solve_with_factors(std::vector<NewtonSystem>& systems, double tolerance,
+                                        bool fresh) {
+  for_each_lane(systems.size(), [&](int lane) {
+    NewtonSystem& s = systems[lane];
+    if (fresh && !primary_->shares_factors()) s.report.status = primary_->setup(J_[lane], lane);
+    if (s.report.status.ok()) s.report = primary_->solve(J_[lane], s.b, s.x, tolerance, lane);
+  });
+}
 
-  const ScopedTimer timer(statistics_.fallback_seconds);
+// What failed at the same time as others is repeated alone.
+void JacobianSolver::repair(NewtonSystem& system, const Vec& guess, int lane, double tolerance,
+                            bool fresh) {
+  if (!fresh) {
+    ++statistics_.renewals;
+    system.x = guess;
+    system.report.status = renew(system, lane);
+    if (system.report.status.ok())
+      system.report = primary_->solve(J_[lane], system.b, system.x, tolerance, lane);
+    if (system.report.status.ok()) return;
+  }
+  const std::string why = primary_->name() + ": " + system.report.status.why;
+  if (!fallback_) {
+    system.report.status = Status::retry(why);
+    return;
+  }
   ++statistics_.fallbacks;
-  x = guess;
-  SolveReport report{fallback_->setup(J_)};
-  if (report.status.ok()) report = fallback_->solve(J_, b, x, tolerance);
-  if (!report.status.ok())
-    report.status = Status::retry(why + "; " + fallback_->name() + ": " + report.status.why);
-  return report;
+  system.x = guess;
+  system.report = {fallback_->setup(J_[lane], lane)};
+  if (system.report.status.ok())
+    system.report = fallback_->solve(J_[lane], system.b, system.x, tolerance, lane);
+  if (!system.report.status.ok())
+    system.report.status =
+        Status::retry(why + "; " + fallback_->name() + ": " + system.report.status.why);
+}
+
+void JacobianSolver::solve(std::vector<NewtonSystem>& systems, double tolerance) {
+  assemble(systems);
+  for (const NewtonSystem& system : systems)
+    if (!system.report.status.ok()) return;
+  std::vector<Vec> guesses;
+  for (const NewtonSystem& system : systems) guesses.push_back(system.x);
+
+  bool fresh = !primary_->shares_factors();
+  if (!fresh && (!anchored_ || primary_->wants_setup(J_[0], 0))) {
+    fresh = true;
+    if (Status status = renew(systems[0], 0); !status.ok())
+      for (NewtonSystem& system : systems) system.report.status = status;
+  }
+  solve_with_factors(systems, tolerance, fresh);
+  for (std::size_t lane = 0; lane < systems.size(); ++lane)
+    if (!systems[lane].report.status.ok())
+      repair(systems[lane], guesses[lane], static_cast<int>(lane), tolerance, fresh);
 }
 
 LinearStatistics JacobianSolver::linear_statistics() const {
@@ -66,8 +99,8 @@ LinearStatistics JacobianSolver::linear_statistics() const {
 
 void JacobianSolver::save(std::ostream& out) const {
   write_binary(out, statistics_);
-  write_binary(out, ready_);
-  if (ready_) {
+  write_binary(out, anchored_);
+  if (anchored_) {
     write_binary(out, anchor_.t);
     write_binary(out, anchor_.shift);
     write_binary(out, anchor_.tangent);
@@ -79,24 +112,22 @@ void JacobianSolver::save(std::ostream& out) const {
 }
 
 void JacobianSolver::load(std::istream& in) {
-  JacobianSolverStatistics statistics;
-  read_binary(in, statistics);
-  read_binary(in, ready_);
-  if (ready_) {
-    Anchor anchor;
-    read_binary(in, anchor.t);
-    read_binary(in, anchor.shift);
-    read_binary(in, anchor.tangent);
-    read_binary(in, anchor.y, problem_.size());
-    read_binary(in, anchor.ydot, problem_.size());
+  read_binary(in, statistics_);
+  read_binary(in, anchored_);
+  if (anchored_) {
+    NewtonSystem system;
+    read_binary(in, system.t);
+    read_binary(in, system.shift);
+    read_binary(in, system.tangent);
+    read_binary(in, system.y, problem_.size());
+    read_binary(in, system.ydot, problem_.size());
     Status status =
-        problem_.jacobian(anchor.t, anchor.y, anchor.ydot, anchor.shift, anchor.tangent, J_);
-    if (status.ok()) status = renew(anchor.t, anchor.y, anchor.ydot, anchor.shift, anchor.tangent);
+        problem_.jacobian(system.t, system.y, system.ydot, system.shift, system.tangent, J_[0]);
+    if (status.ok()) status = renew(system, 0);
     if (!status.ok()) throw IoError("checkpoint: its factors cannot be recomputed: " + status.why);
   }
   primary_->load(in);
   if (fallback_) fallback_->load(in);
-  statistics_ = statistics;
 }
 
 }  // namespace traceraft

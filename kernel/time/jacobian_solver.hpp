@@ -1,32 +1,43 @@
-// Solves with the Jacobian of a DAE and decides when to renew factors and when to fall back.
+// Solves with Jacobians of a DAE and decides when to renew factors and when to fall back.
 #pragma once
 
 #include <iosfwd>
+#include <vector>
 
 #include "kernel/linear/linear_solver.hpp"
 #include "kernel/problem/dae_problem.hpp"
 
 namespace traceraft {
 
-struct JacobianSolverStatistics {
-  long jacobians = 0;
-  long renewals = 0;   // set-ups forced by a solve that failed with old factors
-  long fallbacks = 0;  // solves that the second solver had to do
-  double assembly_seconds = 0;
-  double fallback_seconds = 0;
+// J(t, y, ẏ, σ) x = b, where J is the given tangent.
+struct NewtonSystem {
+  double t = 0, shift = 0;
+  Tangent tangent = Tangent::exact;
+  Vec y, ydot;
+  Vec b;
+  Vec x;  // initial guess in, solution out
+  SolveReport report;
 };
 
-// Remembers at which state the factors in use were computed (the anchor), so that a restart can
-// recompute them and go on bitwise like the run that wrote the checkpoint.
+struct JacobianSolverStatistics {
+  long jacobians = 0;
+  long renewals = 0;   // solves that failed with old factors and were repeated with fresh ones
+  long fallbacks = 0;  // solves that the second solver had to do
+  double assembly_seconds = 0;
+};
+
+// Solves up to `lanes` systems at the same time, one per thread of the team. Remembers at which
+// state the factors in use were computed (the anchor), so that a restart can recompute them and go
+// on bitwise like the run that wrote the checkpoint.
 class JacobianSolver {
  public:
   // The problem must outlive this object.
-  JacobianSolver(const DaeProblem& problem, const LinearSolverChoice& choice);
+  JacobianSolver(const DaeProblem& problem, const LinearSolverChoice& choice, int lanes,
+                 std::shared_ptr<const ThreadTeam> team);
 
-  // Solves J(t, y, ẏ, σ) x = b; x comes in as the initial guess. Tries, in this order: the factors
-  // at hand, fresh ones, the fallback. retry: none of them worked, with every reason.
-  SolveReport solve(double t, ConstVec y, ConstVec ydot, double shift, Tangent tangent, ConstVec b,
-                    VecRef x, double tolerance);
+  // Solves the systems, at most `lanes`. For each it tries, in this order: the factors at hand,
+  // fresh ones, the fallback. A report of retry gives every reason.
+  void solve(std::vector<NewtonSystem>& systems, double tolerance);
 
   LinearStatistics linear_statistics() const;
   const JacobianSolverStatistics& statistics() const { return statistics_; }
@@ -34,18 +45,25 @@ class JacobianSolver {
   void load(std::istream& in);
 
  private:
+  // The state behind factors that outlive a call: only solvers that share them have such.
   struct Anchor {
     double t = 0, shift = 0;
     Tangent tangent = Tangent::exact;
     Vec y, ydot;
   };
-  Status renew(double t, ConstVec y, ConstVec ydot, double shift, Tangent tangent);
+  template <class Action>
+  void for_each_lane(std::size_t count, const Action& action);
+  void assemble(std::vector<NewtonSystem>& systems);
+  Status renew(const NewtonSystem& system, int lane);
+  void solve_with_factors(std::vector<NewtonSystem>& systems, double tolerance, bool fresh);
+  void repair(NewtonSystem& system, const Vec& guess, int lane, double tolerance, bool fresh);
 
   const DaeProblem& problem_;
   LinearSolverPtr primary_, fallback_;
-  BlockJacobian J_;
+  std::shared_ptr<const ThreadTeam> team_;
+  std::vector<BlockJacobian> J_;  // per lane
   Anchor anchor_;
-  bool ready_ = false;  // the primary holds usable factors
+  bool anchored_ = false;  // the primary holds usable shared factors, made at the anchor
   JacobianSolverStatistics statistics_;
 };
 

@@ -1,9 +1,11 @@
 // What every linear solver promises (kernel/linear/linear_solver.hpp).
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <sstream>
 
 #include "backends/list.hpp"
+#include "backends/suitesparse/cholmod_solver.hpp"
 #include "kernel/linear/two_solve_preconditioner.hpp"
 #include "tests/support/spaces.hpp"
 
@@ -20,7 +22,7 @@ class LinearSolverContract : public ::testing::TestWithParam<std::string> {
   LinearSolverContract()
       : space(make_space(16)),
         problem(space, make_model("degenerate", 0.1)),
-        solver(linear_solvers().find(GetParam()).make(*space)()),
+        solver(linear_solvers().find(GetParam()).make(*space)(1)),
         J(problem.make_jacobian()) {}
 
   void assemble(double shift, std::uint64_t seed = 1) {
@@ -127,7 +129,7 @@ TEST_P(LinearSolverContract, CountsWhatItDoes) {
   EXPECT_EQ(statistics.solves, 1);
   std::stringstream saved;
   solver->save(saved);
-  LinearSolverPtr other = linear_solvers().find(GetParam()).make(*space)();
+  LinearSolverPtr other = linear_solvers().find(GetParam()).make(*space)(1);
   other->load(saved);
   EXPECT_EQ(other->statistics().iterations, statistics.iterations);
   EXPECT_EQ(other->statistics().setup_seconds, statistics.setup_seconds);
@@ -148,20 +150,67 @@ TEST(TwoSolve, ShiftsAreTheRootsTheyStandFor) {
   }
 }
 
-TEST(TwoSolve, IsTheExactInverseForConstantMobility) {
-  // ρ S enters A without the mobility's scale in the degenerate case only; here A = m (K + ρS).
+// Dense Cholesky: exact to roundoff, and checkable by hand.
+class DenseSolver final : public SpdSolver {
+ public:
+  Status factorise(const CsrMatrix& A) override {
+    const SparsityPattern& p = *A.pattern;
+    Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(p.rows(), p.rows());
+    for (int i = 0; i < p.rows(); ++i)
+      for (int k = p.row_begin[i]; k < p.row_begin[i + 1]; ++k) dense(i, p.column[k]) = A.values[k];
+    factor_.compute(dense);
+    return factor_.info() == Eigen::Success ? Status{} : Status::retry("not positive definite");
+  }
+  void solve(ConstVec b, VecRef x, int) override { x = factor_.solve(b); }
+
+ private:
+  Eigen::LLT<Eigen::MatrixXd> factor_;
+};
+
+TEST(TwoSolve, IsTheExactInverseForConstantMobilityAndRealRoots) {
   const auto space = make_space(12);
   const CahnHilliard problem(space, make_model("constant:value=0.25", 0.2));
   const testing::StartState start = noise_state(problem);
   BlockJacobian J = problem.make_jacobian();
-  ASSERT_TRUE(problem.jacobian(0, start.y, start.ydot, 1.0, Tangent::stabilised, J).ok());
-  const LinearSolverPtr block = linear_solvers().find("block").make(*space)();
-  ASSERT_TRUE(block->setup(J).ok());
+  TwoSolvePreconditioner inverse([](int) { return std::make_unique<DenseSolver>(); }, 1);
   const Vec b = random_vector(problem.size(), 2);
-  Vec x = Vec::Zero(b.size());
-  const SolveReport report = block->solve(J, b, x, 1e-9);
-  ASSERT_TRUE(report.status.ok());
-  EXPECT_EQ(report.iterations, 1);
+  for (const double shift : {1.0, 0.01, 100.0}) {
+    ASSERT_TRUE(problem.jacobian(0, start.y, start.ydot, shift, Tangent::stabilised, J).ok());
+    ASSERT_TRUE(inverse.setup(J, *space->team).ok());
+    Vec x(b.size()), back(b.size());
+    inverse.apply(J, b, x, *space->team, 0);
+    J.multiply(x, back, *space->team);
+    const bool real_roots = J.curvature * J.curvature > 4 * shift * J.stiffness / J.mobility;
+    EXPECT_EQ(real_roots, shift <= 1);
+    const double defect = (back - b).norm() / b.norm();
+    if (real_roots) {
+      EXPECT_LT(defect, 1e-10) << shift;
+    } else {
+      EXPECT_GT(defect, 1e-3) << shift;
+    }
+  }
+}
+
+TEST(Cholmod, SolvesToThePrecisionOfItsCopyOnEveryLane) {
+  const auto space = make_space(24);
+  const CsrMatrix A = combine(1, space->stabilised_mass, 0.01, space->stiffness);
+  const SpdSolverPtr solver = cholmod_factory(space->pattern)(2);
+  DenseSolver reference;
+  ASSERT_TRUE(solver->factorise(A).ok());
+  ASSERT_TRUE(reference.factorise(A).ok());
+  const Vec b = random_vector(space->nodes(), 3);
+  Vec expected(b.size()), first(b.size()), second(b.size());
+  reference.solve(b, expected, 0);
+  solver->solve(b, first, 0);
+  solver->solve(b, second, 1);
+  EXPECT_LT((first - expected).norm(), 1e-5 * expected.norm());
+  EXPECT_EQ(first, second);
+  CsrMatrix indefinite = A;
+  for (const int k : space->pattern->diagonal) indefinite.values[k] *= -1;
+  EXPECT_EQ(solver->factorise(indefinite).outcome, Outcome::retry);
+  ASSERT_TRUE(solver->factorise(A).ok());
+  solver->solve(b, second, 1);
+  EXPECT_EQ(first, second);
 }
 
 }  // namespace

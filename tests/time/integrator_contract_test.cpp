@@ -27,19 +27,21 @@ class Faulty final : public LinearSolver {
   Faulty(LinearSolverPtr inner, Plan plan) : inner_(std::move(inner)), plan_(std::move(plan)) {}
 
   std::string name() const override { return "faulty"; }
-  Status setup(const BlockJacobian& J) override {
+  bool shares_factors() const override { return inner_->shares_factors(); }
+  Status setup(const BlockJacobian& J, int lane) override {
     if (plan_.setup_fails(setups_++)) return Status::retry("injected set-up failure");
-    return inner_->setup(J);
+    return inner_->setup(J, lane);
   }
-  bool wants_setup(const BlockJacobian& J) const override {
-    return !plan_.lazy && inner_->wants_setup(J);
+  bool wants_setup(const BlockJacobian& J, int lane) const override {
+    return !plan_.lazy && inner_->wants_setup(J, lane);
   }
-  SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance) override {
+  SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance,
+                    int lane) override {
     if (plan_.solve_fails(solves_++)) {
       x.setConstant(std::nan(""));  // as a failed solve may leave anything behind
       return {Status::retry("injected solve failure"), 3};
     }
-    return inner_->solve(J, b, x, tolerance);
+    return inner_->solve(J, b, x, tolerance, lane);
   }
   LinearStatistics statistics() const override { return inner_->statistics(); }
   void save(std::ostream& out) const override { inner_->save(out); }
@@ -110,7 +112,9 @@ class IntegratorContract : public ::testing::TestWithParam<std::string> {
   LinearSolverChoice faulty(Faulty::Plan plan, bool with_fallback) const {
     LinearSolverChoice choice = choose_linear_solver("block", *space);
     LinearSolverFactory inner = choice.primary;
-    choice.primary = [inner, plan] { return std::make_unique<Faulty>(inner(), plan); };
+    choice.primary = [inner, plan](int lanes) {
+      return std::make_unique<Faulty>(inner(lanes), plan);
+    };
     if (!with_fallback) choice.fallback = nullptr;
     return choice;
   }
