@@ -48,7 +48,10 @@ void Progress::on_step(const RunState& state) {
   since_line_ = Stopwatch();
 
   const double left = estimated_seconds_left(state), elapsed = watch_.seconds();
-  const double share = integrator.time() >= run_.t_end ? 1 : elapsed / (elapsed + left + 1e-9);
+  const bool started = integrator.statistics().steps > first_step_;
+  const double share = integrator.time() >= run_.t_end ? 1
+                       : started                       ? elapsed / (elapsed + left)
+                                                       : 0;
   const char* unit = run_.units.scaled ? "" : " s";
   char line[256];
   std::snprintf(line, sizeof line,
