@@ -120,6 +120,18 @@ Vec initial_field(const Configuration& configuration, const CahnHilliardModel& m
   });
 }
 
+// On the run's own mesh if it is a sphere, else on a sphere of the same mesh size.
+PerimeterCalibration perimeter_calibration(const Configuration& configuration,
+                                           const CahnHilliardModel& model,
+                                           const std::shared_ptr<const SurfaceSpace>& space) {
+  const auto sphere = configuration.text("surface") == "sphere"
+                          ? space
+                          : std::make_shared<const SurfaceSpace>(*make_surface("sphere"),
+                                                                 configuration.integer("cells"),
+                                                                 space->team, space->communicator);
+  return calibrate_perimeter(*sphere, model);
+}
+
 // In the user's units.
 std::vector<double> output_labels(const Configuration& configuration) {
   constexpr int kDefaultTimes = 16;
@@ -179,7 +191,9 @@ RunSetup build_run(const Configuration& configuration) {
   });
   run.problem = std::make_unique<CahnHilliard>(run.space, physics);
   run.initial = initial_field(configuration, physics, *run.space);
-  run.observer = std::make_unique<Observer>(*run.problem, run.space);
+  run.perimeter = perimeter_calibration(configuration, physics, run.space);
+  run.observer =
+      std::make_unique<Observer>(*run.problem, run.space, run.perimeter.interface_energy);
   run.integrator = integrator.make(
       *run.problem, choose_linear_solver(configuration.text("linear-solver"), *run.space), run.team,
       settings);

@@ -7,6 +7,7 @@
 
 #include "drivers/configuration.hpp"
 #include "kernel/observables/observables.hpp"
+#include "kernel/observables/perimeter_calibration.hpp"
 #include "kernel/problem/cahn_hilliard.hpp"
 #include "kernel/time/integrator.hpp"
 
@@ -19,6 +20,7 @@ struct RunSetup {
   std::shared_ptr<const SurfaceSpace> space;
   std::unique_ptr<const CahnHilliard> problem;
   Vec initial;  // projected c at the nodes
+  PerimeterCalibration perimeter;
   std::unique_ptr<Observer> observer;
   IntegratorPtr integrator;           // not started
   double t_end;                       // units of R²/D, as below

@@ -108,8 +108,9 @@ void print_setup(const Configuration& configuration, const RunSetup& run) {
   line("mesh", text("%lld cells per edge, %zu cut tetrahedra, %d nodes, %d unknowns",
                     configuration.integer("cells"), run.space->elements.size(), run.space->nodes(),
                     run.problem->size()));
-  line("phase boundary", text("epsilon = %g um = %g R, h/epsilon = %.2f", epsilon * units.radius_um,
-                              epsilon, h / epsilon));
+  line("phase boundary",
+       text("epsilon = %g um = %g R, h/epsilon = %.2f, %.1f %% of its energy resolved",
+            epsilon * units.radius_um, epsilon, h / epsilon, 100 * run.perimeter.resolved));
   line("mobility",
        text("%s, D = %g cm^2/s", configuration.text("mobility").c_str(), units.diffusion_cm2_s));
   line("units",

@@ -107,19 +107,18 @@ double SurfaceSpace::inner(ConstVec u, ConstVec v) const {
   return communicator->sum(dot(u, product));
 }
 
-Status SurfaceSpace::solve_mass(ConstVec b, VecRef x) const {
+Status SurfaceSpace::solve_spd(const CsrMatrix& A, ConstVec b, VecRef x, double tolerance) const {
   const auto global_dot = [&](const Vec& u, const Vec& v) { return communicator->sum(dot(u, v)); };
   Vec inverse_diagonal(nodes());
-  for (int i = 0; i < nodes(); ++i)
-    inverse_diagonal[i] = 1 / stabilised_mass.values[pattern->diagonal[i]];
+  for (int i = 0; i < nodes(); ++i) inverse_diagonal[i] = 1 / A.values[pattern->diagonal[i]];
   Vec residual = b, preconditioned = inverse_diagonal.cwiseProduct(residual);
   Vec direction = preconditioned, product(nodes()), buffer;
   x.setZero();
   double rho = global_dot(residual, preconditioned);
-  const double target = 1e-28 * rho;
+  const double target = tolerance * tolerance * rho;
   int iteration = 0;
   for (; rho > target && iteration < 500; ++iteration) {
-    stabilised_mass.multiply(with_ghosts(direction, buffer), product, *team);
+    A.multiply(with_ghosts(direction, buffer), product, *team);
     const double alpha = rho / global_dot(direction, product);
     x += alpha * direction;
     residual -= alpha * product;
@@ -128,7 +127,12 @@ Status SurfaceSpace::solve_mass(ConstVec b, VecRef x) const {
     direction = preconditioned + (next / rho) * direction;
     rho = next;
   }
-  if (!(rho <= target)) return Status::fatal("the mass matrix could not be inverted");
+  if (!(rho <= target)) return Status::fatal("conjugate gradients did not converge");
+  return {};
+}
+
+Status SurfaceSpace::solve_mass(ConstVec b, VecRef x) const {
+  if (Status status = solve_spd(stabilised_mass, b, x, 1e-14); !status.ok()) return status;
   const double defect = communicator->sum(b.sum()) - integral(x);
   x.array() += defect / area;
   return {};

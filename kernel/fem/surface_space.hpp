@@ -48,8 +48,10 @@ class SurfaceSpace {
   // ∫_Γ c over all ranks.
   double integral(ConstVec c) const { return communicator->sum(dot(node_area, c)); }
 
-  // Solves M̃ x = b by conjugate gradients to 1e-14 relative (M̃'s condition number is 14–26 after
-  // diagonal scaling). Keeps 1ᵀM̃x = 1ᵀb exactly up to roundoff.
+  // Solves A x = b for a symmetric positive definite A that is as well conditioned as M̃ (14–26
+  // after diagonal scaling) by conjugate gradients, to a relative tolerance.
+  Status solve_spd(const CsrMatrix& A, ConstVec b, VecRef x, double tolerance) const;
+  // M̃ x = b, with ∫x = 1ᵀb exactly up to roundoff.
   Status solve_mass(ConstVec b, VecRef x) const;
 };
 

@@ -2,10 +2,9 @@
 
 namespace traceraft {
 
-Observer::Observer(const CahnHilliard& problem, std::shared_ptr<const SurfaceSpace> space)
-    : interface_energy(problem.model().well.interface_energy()),
-      problem_(problem),
-      finder_(std::move(space)) {}
+Observer::Observer(const CahnHilliard& problem, std::shared_ptr<const SurfaceSpace> space,
+                   double interface_energy)
+    : problem_(problem), interface_energy_(interface_energy), finder_(std::move(space)) {}
 
 double Observer::level() const {
   return 0.5 * (problem_.model().well.a + problem_.model().well.b);
@@ -24,7 +23,7 @@ Observables Observer::measure(double t, ConstVec y) const {
   row.t = t;
   row.mass = problem_.mass(y);
   row.energy = problem_.energy(y);
-  row.perimeter = gradient / interface_energy;
+  row.perimeter = gradient / interface_energy_;
   row.perimeter_level = report.perimeter;
   row.rafts = static_cast<int>(report.rafts.size());
   row.raft_fraction = report.area / space.area;

@@ -24,11 +24,10 @@ struct Observables {
 
 class Observer {
  public:
-  explicit Observer(const CahnHilliard& problem, std::shared_ptr<const SurfaceSpace> space);
-
-  // p0: what ∫ ε|∇c|² per unit length of phase boundary is divided by. Starts as the exact value
-  // for a flat, fully resolved boundary, √(2ρ)(b − a)³/6.
-  double interface_energy = 0;
+  // interface_energy: ∫ ε|∇c|² per unit length of phase boundary, see perimeter_calibration.hpp.
+  // The problem must outlive this object.
+  Observer(const CahnHilliard& problem, std::shared_ptr<const SurfaceSpace> space,
+           double interface_energy);
 
   Observables measure(double t, ConstVec y) const;
   RaftReport rafts(ConstVec y) const;
@@ -36,6 +35,7 @@ class Observer {
 
  private:
   const CahnHilliard& problem_;
+  double interface_energy_;
   RaftFinder finder_;
 };
 

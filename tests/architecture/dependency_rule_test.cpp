@@ -2,11 +2,13 @@
 // standard library and Eigen only; a backend folder includes the kernel and one library.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <regex>
 #include <set>
+#include <string>
+#include <vector>
 
 namespace traceraft {
 namespace {
@@ -21,16 +23,16 @@ struct Include {
 
 std::vector<Include> includes_below(const std::string& folder) {
   const fs::path root = TRACERAFT_ROOT;
-  static const std::regex pattern("^\\s*#\\s*include\\s*([<\"])([^>\"]+)[>\"]");
   std::vector<Include> result;
   for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
     const std::string extension = entry.path().extension();
     if (extension != ".hpp" && extension != ".cpp") continue;
     std::ifstream file(entry.path());
     for (std::string line; std::getline(file, line);) {
-      std::smatch match;
-      if (std::regex_search(line, match, pattern))
-        result.push_back({fs::relative(entry.path(), root).string(), match[2], match[1] == "\""});
+      if (line.compare(0, 9, "#include ") != 0) continue;
+      const bool quoted = line[9] == '"';
+      const std::string target = line.substr(10, line.find(quoted ? '"' : '>', 10) - 10);
+      result.push_back({fs::relative(entry.path(), root).string(), target, quoted});
     }
   }
   EXPECT_FALSE(result.empty()) << folder;
@@ -62,13 +64,13 @@ TEST(DependencyRule, KernelKnowsTheStandardLibraryAndEigenOnly) {
 }
 
 TEST(DependencyRule, EveryBackendKnowsTheKernelAndItsOwnLibrary) {
-  const std::map<std::string, std::string> own = {
-      {"euler", "^$"},
-      {"suitesparse", "^suitesparse/"},
-      {"sundials", "^(nvector|sundials|sunlinsol|sunmatrix|ida|idas|arkode)/"},
-      {"muparser", "^muParser\\.h$"},
-      {"posix", "^(fcntl|unistd)\\.h$|^sys/(file|stat|ioctl|resource)\\.h$"},
-      {"zlib", "^zlib\\.h$"}};
+  const std::map<std::string, std::vector<std::string>> own = {
+      {"euler", {}},
+      {"suitesparse", {"suitesparse/"}},
+      {"sundials", {"nvector/", "sundials/", "sunlinsol/", "sunmatrix/", "ida/", "arkode/"}},
+      {"muparser", {"muParser.h"}},
+      {"posix", {"fcntl.h", "unistd.h", "sys/"}},
+      {"zlib", {"zlib.h"}}};
   for (const auto& entry : fs::directory_iterator(fs::path(TRACERAFT_ROOT) / "backends")) {
     if (!entry.is_directory()) continue;
     const std::string name = entry.path().filename();
@@ -79,7 +81,10 @@ TEST(DependencyRule, EveryBackendKnowsTheKernelAndItsOwnLibrary) {
                     starts_with(include.target, "backends/" + name + "/"))
             << include.file << " includes " << include.target;
       } else if (!is_standard(include.target) && !starts_with(include.target, "Eigen/")) {
-        EXPECT_TRUE(std::regex_search(include.target, std::regex(own.at(name))))
+        const auto& allowed = own.at(name);
+        EXPECT_TRUE(std::any_of(
+            allowed.begin(), allowed.end(),
+            [&](const std::string& start) { return starts_with(include.target, start); }))
             << include.file << " includes " << include.target;
       }
     }

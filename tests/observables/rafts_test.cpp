@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "backends/list.hpp"
 #include "kernel/observables/observables.hpp"
+#include "kernel/observables/perimeter_calibration.hpp"
 #include "tests/support/spaces.hpp"
 
 namespace traceraft {
@@ -77,7 +79,7 @@ TEST(Observables, PerimetersAgreeForAnEquilibriumProfile) {
   y.head(problem.block_size()) = nodal(*space, [](const Point& x) {
     return DoubleWell{}.profile(std::acos(x[2] / x.norm()) - M_PI / 2, 0.06);
   });
-  const Observables row = Observer(problem, space).measure(1.5, y);
+  const Observables row = Observer(problem, space, DoubleWell{}.interface_energy()).measure(1.5, y);
   EXPECT_EQ(row.t, 1.5);
   EXPECT_EQ(row.rafts, 1);
   EXPECT_NEAR(row.perimeter_level, 2 * M_PI, 0.01);
@@ -86,6 +88,41 @@ TEST(Observables, PerimetersAgreeForAnEquilibriumProfile) {
   EXPECT_NEAR(row.mass, 2 * M_PI, 0.01);
   // Half of the interface energy is f0, half is gradient: E = ε · length / (6√2).
   EXPECT_NEAR(row.energy, 0.06 * 2 * M_PI / (6 * std::sqrt(2.0)), 1e-3);
+}
+
+TEST(PerimeterCalibration, KnowsHowMuchOfTheBoundaryTheMeshResolves) {
+  const auto space = make_space(64);
+  const auto resolved = [&](double h_over_epsilon, PotentialRule rule) {
+    CahnHilliardModel model = testing::make_model("degenerate", space->h() / h_over_epsilon);
+    model.rule = rule;
+    return calibrate_perimeter(*space, model).resolved;
+  };
+  // The independent prototype found 0.906 and 0.98 with the nodal potential on 128 cells, where ε
+  // is half as large beside R as here.
+  EXPECT_NEAR(resolved(2.6, PotentialRule::nodal), 0.906, 0.012);
+  EXPECT_NEAR(resolved(1.3, PotentialRule::nodal), 0.98, 0.02);
+  EXPECT_NEAR(resolved(2.6, PotentialRule::consistent), 0.98, 0.01);
+}
+
+TEST(PerimeterCalibration, MakesTheEquilibriumOfTwoHalvesTwoPi) {
+  const auto space = make_space(32);
+  CahnHilliardModel model = testing::make_model("constant:value=0.25", space->h() / 2);
+  const PerimeterCalibration calibration = calibrate_perimeter(*space, model);
+  const CahnHilliard problem(space, model);
+  Vec y = Vec::Zero(problem.size()), ydot(problem.size());
+  InitialRequest request;
+  request.epsilon = model.epsilon;
+  request.caps = {{{1, 2, 3}, M_PI / 2}};  // not along an axis of the mesh
+  y.head(problem.block_size()) = make_initial_field("caps", *space, request);
+  ASSERT_TRUE(problem.consistent_initial_state(0, y, ydot).ok());
+  const IntegratorPtr integrator = integrators().find("euler").make(
+      problem, choose_linear_solver("block", *space), space->team, {});
+  ASSERT_TRUE(integrator->start(0, y, ydot, 20).ok());
+  while (integrator->time() < 20) ASSERT_TRUE(integrator->advance().ok());
+  const Observables row =
+      Observer(problem, space, calibration.interface_energy).measure(20, integrator->state());
+  EXPECT_NEAR(row.perimeter / (2 * M_PI), 1, 0.01);
+  EXPECT_NEAR(row.perimeter_level / (2 * M_PI), 1, 0.01);
 }
 
 }  // namespace

@@ -20,12 +20,13 @@ int main() {
   y.head(problem.block_size()) = make_initial_field("noise", *space, {});
   if (!problem.consistent_initial_state(0, y, ydot).ok()) return 1;
 
-  const IntegratorPtr integrator = integrators().find("euler").make(
-      problem, choose_linear_solver("block", *space), team, {});
+  const IntegratorPtr integrator =
+      integrators().find("euler").make(problem, choose_linear_solver("block", *space), team, {});
   if (!integrator->start(0, y, ydot, 1.0).ok()) return 1;
   while (integrator->time() < 1.0)
     if (!integrator->advance().ok()) return 1;
-  const Observables row = Observer(problem, space).measure(1.0, integrator->state());
+  const Observables row =
+      Observer(problem, space, model.well.interface_energy()).measure(1.0, integrator->state());
   std::printf("rafts %d, mass %.12g\n", row.rafts, row.mass);
   return row.rafts > 0 ? 0 : 1;
 }
