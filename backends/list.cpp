@@ -24,21 +24,19 @@ LinearSolverFactory direct(const SurfaceSpace& space) {
 }  // namespace
 
 const NamedList<LinearSolverEntry>& linear_solvers() {
-  static const NamedList<LinearSolverEntry> list(
-      "linear solver",
-      {
-          {"block", "SUNDIALS GMRES, two-solve preconditioner with CHOLMOD factors", "direct",
-           block},
-          {"direct", "UMFPACK factors of the whole system at every solve", "", direct},
-      });
+  static const std::vector<LinearSolverEntry> entries = {
+      {"block", "SUNDIALS GMRES, two-solve preconditioner with CHOLMOD factors", "direct", block},
+      {"direct", "UMFPACK factors of the whole system at every solve", "", direct},
+  };
+  static const NamedList<LinearSolverEntry> list("linear solver", entries);
   return list;
 }
 
 const NamedList<IntegratorEntry>& integrators() {
-  static const NamedList<IntegratorEntry> list(
-      "integrator", {
-                        {"euler", "stabilised Euler/BDF2 pair with Gomez-Hughes steps", make_euler},
-                    });
+  static const std::vector<IntegratorEntry> entries = {
+      {"euler", "stabilised Euler/BDF2 pair with Gomez-Hughes steps", make_euler},
+  };
+  static const NamedList<IntegratorEntry> list("integrator", entries);
   return list;
 }
 

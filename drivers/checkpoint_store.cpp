@@ -1,7 +1,7 @@
 #include "drivers/checkpoint_store.hpp"
 
 #include <algorithm>
-#include <cstring>
+#include <cstdio>
 #include <sstream>
 
 #include "backends/posix/durable_file.hpp"
@@ -121,8 +121,7 @@ void CheckpointStore::write(const Checkpoint& checkpoint) {
 
 std::vector<std::filesystem::path> CheckpointStore::files() const {
   std::vector<std::filesystem::path> result;
-  std::error_code ignored;  // no folder, no checkpoints
-  for (const auto& entry : std::filesystem::directory_iterator(folder_, ignored)) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
     const std::string name = entry.path().filename();
     const bool ours = name.size() == 20 && name.compare(0, 5, "step-") == 0 &&
                       entry.path().extension() == ".ckpt" &&
@@ -155,7 +154,11 @@ Vec final_concentration(const std::filesystem::path& run_folder, int nodes) {
     checkpoint = CheckpointStore(run_folder / "checkpoints").newest(refused);
   } catch (const IoError& error) {
     throw InputError(std::string("restart: ") + error.what());
+  } catch (const std::filesystem::filesystem_error& error) {
+    throw InputError(std::string("restart: ") + error.what());
   }
+  for (const std::string& why : refused)
+    std::fprintf(stderr, "traceraft: refused %s; using the checkpoint before it\n", why.c_str());
   if (checkpoint.concentration.size() != static_cast<std::size_t>(nodes))
     throw InputError("restart: " + run_folder.string() + " has " +
                      std::to_string(checkpoint.concentration.size()) + " nodes, this run has " +

@@ -28,7 +28,7 @@ class CheckpointStore {
   // Durable before it returns; afterwards only the two newest are kept. Throws IoError.
   void write(const Checkpoint& checkpoint);
 
-  // Has none been finished yet?
+  // Has none been finished yet? Throws std::filesystem::filesystem_error if that cannot be told.
   bool empty() const { return files().empty(); }
 
   // The newest checkpoint that is whole. A torn or damaged one is passed over and named in

@@ -48,8 +48,8 @@ double checked_number(const OptionSpec& spec, const GivenValue& value, const std
   return number;
 }
 
-const GivenValue* given(const GivenValues& file, const GivenValues& flags,
-                        const std::string& name) {
+const GivenValue* find_given(const GivenValues& file, const GivenValues& flags,
+                             const std::string& name) {
   if (const auto found = flags.find(name); found != flags.end()) return &found->second;
   if (const auto found = file.find(name); found != file.end()) return &found->second;
   return nullptr;
@@ -59,7 +59,7 @@ const GivenValue* given(const GivenValues& file, const GivenValues& flags,
 
 Configuration::Configuration(const GivenValues& file, const GivenValues& flags) {
   const auto user_value = [&](const char* name) {
-    const GivenValue* value = given(file, flags, name);
+    const GivenValue* value = find_given(file, flags, name);
     return value ? *value : GivenValue{run_option(name).default_text, std::string("--") + name};
   };
   const GivenValue case_value = user_value("case");
@@ -74,15 +74,16 @@ Configuration::Configuration(const GivenValues& file, const GivenValues& flags) 
   for (const OptionSpec& spec : run_options()) defaults[spec.name] = spec.default_text;
   for (const auto& [name, text] : chosen->values) defaults[name] = text;
   for (const char* name : {"scaled", "radius", "diffusion"}) {
-    const GivenValue* value = given(file, flags, name);
+    const GivenValue* value = find_given(file, flags, name);
     set(run_option(name), value ? *value : GivenValue{defaults[name], std::string("--") + name});
   }
   const Units scaled_units = units();
   Units physical = scaled_units;
   physical.scaled = false;
   for (const OptionSpec& spec : run_options()) {
-    if (const GivenValue* value = given(file, flags, spec.name)) {
+    if (const GivenValue* value = find_given(file, flags, spec.name)) {
       set(spec, *value);
+      given_.insert(spec.name);
       continue;
     }
     std::string text = defaults[spec.name];

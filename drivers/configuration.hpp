@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -31,12 +32,16 @@ class Configuration {
   // Where a value was given, or "--name" for a default: starts every complaint about it.
   std::string where(const std::string& name) const;
 
+  // Was it given by the user rather than by a case or a default?
+  bool given(const std::string& name) const { return given_.count(name) != 0; }
+
   Units units() const;
 
  private:
   void set(const OptionSpec& spec, const GivenValue& value);
 
   std::map<std::string, GivenValue> values_;
+  std::set<std::string> given_;
 };
 
 }  // namespace traceraft

@@ -1,6 +1,7 @@
 // traceraft: the command line, and what becomes of exceptions.
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 
 #include "backends/posix/folder_lock.hpp"
 #include "backends/posix/process.hpp"
@@ -82,7 +83,9 @@ int dispatch(int argc, char** argv) {
   VerifyRequest verify;
   CLI::App* verify_app = app.add_subcommand("verify", "measure what the program claims");
   verify_app->allow_extras();
-  verify_app->add_option("studies", verify.studies, "studies (see: traceraft list), or all")
+  verify_app
+      ->add_option("studies", verify.studies,
+                   "studies (see: traceraft list), or all but the timed ones")
       ->default_str("all");
   verify_app->add_flag("--quick", verify.quick, "coarser meshes, minutes in total");
 
@@ -127,6 +130,8 @@ int guarded(int argc, char** argv) {
     return complain(error.what(), kBadInput);
   } catch (const IoError& error) {
     return complain(error.what(), kInputOutput);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return complain(error.what(), kInputOutput);
   } catch (const LockedError& error) {
     return complain(error.what(), kLocked);
   } catch (const std::bad_alloc&) {
@@ -142,6 +147,5 @@ int guarded(int argc, char** argv) {
 int main(int argc, char** argv) {
   // Read by OpenBLAS and by CHOLMOD's OpenMP when they are loaded, hence before anything else.
   traceraft::restart_with_environment(traceraft::preferred_environment(), argv);
-  traceraft::use_one_blas_thread();
   return traceraft::guarded(argc, argv);
 }

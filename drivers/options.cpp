@@ -62,8 +62,9 @@ const std::vector<OptionSpec>& run_options() {
       {"min-step", K::number, "0", "Time", "smallest step (s); 0: 1e-14 of the run", 0, 1e300,
        D::time},
       {"max-step", K::number, "0", "Time", "largest step (s); 0: unbounded", 0, 1e300, D::time},
-      {"keep", K::text, "second", "Time",
-       "which solution of the euler pair goes on: second (accuracy) or first (energy decay)"},
+      {"keep", K::text, "decaying", "Time",
+       "which solution of the euler pair goes on: second (as in the paper), first, or decaying: "
+       "second unless it gains energy"},
 
       {"linear-solver", K::text, "block", "Linear algebra", "linear solver (see: traceraft list)"},
       {"linear-tolerance", K::number, "1e-4", "Linear algebra",

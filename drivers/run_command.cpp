@@ -56,8 +56,8 @@ int carry_out(const Configuration& configuration, RunSetup& run, const RunFolder
   if (run.integrator->statistics().steps > 0) checkpoints.write(state);
   const RunCost cost{checkpoints.wall_seconds(), checkpoints.cpu_seconds()};
   write_durably(folder.summary(), summary_json(configuration, run, state, result, cost));
-  if (!quiet) print_summary(configuration, run, state, result, cost, folder);
-  if (result.end == RunEnd::stopped)
+  if (!quiet) print_summary(run, state, result, cost, folder);
+  if (result.end == RunEnd::stopped && !quiet)
     std::printf("  go on with             traceraft resume %s\n", folder.path.c_str());
   if (result.end == RunEnd::failed)
     std::fprintf(stderr, "traceraft: numerical failure at t = %g: %s\n",
@@ -71,7 +71,7 @@ int run_command(const RunRequest& request) {
   const GivenValues file =
       request.config_file.empty() ? GivenValues{} : read_config_file(request.config_file);
   const Configuration configuration(file, request.flags);
-  RunSetup run = build_run(configuration);
+  RunSetup run = build_run(configuration, InitialState::build);
   if (!request.quiet) print_setup(configuration, run);
   if (request.validate) {
     std::printf("everything is valid; nothing was run\n");
@@ -85,7 +85,6 @@ int run_command(const RunRequest& request) {
 int resume_command(const ResumeRequest& request) {
   const RunFolder folder = open_run_folder(request.folder);
   const Configuration configuration(read_config_file(folder.config()), request.flags);
-  RunSetup run = build_run(configuration);
   std::optional<Checkpoint> checkpoint;
   if (const CheckpointStore store(folder.checkpoints()); !store.empty()) {
     std::vector<std::string> refused;
@@ -98,6 +97,8 @@ int resume_command(const ResumeRequest& request) {
                        "run with --initial restart:" +
                        folder.path.string());
   }
+  RunSetup run =
+      build_run(configuration, checkpoint ? InitialState::from_checkpoint : InitialState::build);
   if (!request.quiet) {
     print_setup(configuration, run);
     std::printf("  %-22s %s from step %ld\n\n", "resumed", folder.path.c_str(),

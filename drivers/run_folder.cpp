@@ -16,6 +16,11 @@ std::string first_free_folder(const std::string& name) {
   }
 }
 
+void create_sub_folders(const RunFolder& folder) {
+  fs::create_directories(folder.fields());
+  fs::create_directories(folder.checkpoints());
+}
+
 }  // namespace
 
 RunFolder create_run_folder(const std::string& out, const Configuration& configuration) {
@@ -28,14 +33,15 @@ RunFolder create_run_folder(const std::string& out, const Configuration& configu
     folder.lock = std::make_unique<FolderLock>(folder.path);
     for (const fs::path& ours :
          {folder.config(), folder.summary(), folder.fields(), folder.checkpoints(),
-          folder.table("series.csv"), folder.table("observables.csv"), folder.table("rafts.csv")})
+          folder.table("view.png"), folder.table("fields.pvd"), folder.table("series.csv"),
+          folder.table("observables.csv"), folder.table("rafts.csv")})
       if (fs::exists(ours))
         throw InputError("--out: " + folder.path.string() + " already holds " +
                          ours.filename().string() + "; go on with: traceraft resume " +
                          folder.path.string() + ", or choose another folder");
-    fs::create_directories(folder.fields());
-    fs::create_directories(folder.checkpoints());
+    // First what makes it a run that can be resumed.
     write_durably(folder.config(), config_text(configuration));
+    create_sub_folders(folder);
   } catch (const fs::filesystem_error& error) {
     throw IoError(std::string("--out: ") + error.what());
   }
@@ -49,6 +55,7 @@ RunFolder open_run_folder(const fs::path& path) {
   if (!fs::exists(folder.config()))
     throw InputError(path.string() + " holds no run: there is no config.toml");
   folder.lock = std::make_unique<FolderLock>(path);
+  create_sub_folders(folder);
   return folder;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <sstream>
 
+#include "backends/png/png_writer.hpp"
 #include "backends/posix/process.hpp"
 #include "backends/zlib/vtu_writer.hpp"
 #include "kernel/core/parameters.hpp"
@@ -32,10 +33,16 @@ std::size_t output_index(const RunSetup& run, double t) {
   return static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), t) - times.begin());
 }
 
-std::string field_name(std::size_t index) {
+constexpr int kViewPixels = 480;
+
+std::string numbered(const char* stem, std::size_t index, const char* extension) {
   char name[40];
-  std::snprintf(name, sizeof name, "field-%04zu.vtu", index);
+  std::snprintf(name, sizeof name, "%s-%04zu.%s", stem, index, extension);
   return name;
+}
+
+std::string field_name(std::size_t index) {
+  return numbered("field", index, "vtu");
 }
 
 }  // namespace
@@ -98,6 +105,11 @@ void FieldWriter::on_output(const Observables& row, ConstVec y) {
                 vtu_text(*run_.space, run_.units.length(),
                          {{"c", surface.trace(run_.problem->c_of(y))},
                           {"mu", surface.trace(run_.problem->mu_of(y))}}));
+  const DoubleWell& well = run_.problem->model().well;
+  const std::string picture = png_bytes(draw_front_and_back(
+      *run_.space, surface.trace(run_.problem->c_of(y)), well.a, well.b, kViewPixels));
+  write_durably(folder_.fields() / numbered("view", index, "png"), picture);
+  write_durably(folder_.path / "view.png", picture);
   std::vector<std::pair<double, std::string>> files;
   for (std::size_t i = 0; i <= index; ++i)
     files.emplace_back(run_.output_labels[i], "fields/" + field_name(i));

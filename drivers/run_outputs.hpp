@@ -34,7 +34,8 @@ class TableWriter final : public RunListener {
   AppendFile series_, observables_, rafts_;
 };
 
-// fields/field-NNNN.vtu with c and mu on Γ_h, collected in fields.pvd.
+// fields/field-NNNN.vtu with c and mu on Γ_h, collected in fields.pvd, and a picture of front and
+// back as fields/view-NNNN.png; view.png is the newest.
 class FieldWriter final : public RunListener {
  public:
   FieldWriter(const RunFolder& folder, const RunSetup& run) : folder_(folder), run_(run) {}

@@ -61,6 +61,10 @@ CahnHilliardModel model(const Configuration& configuration, const Units& units) 
   result.mobility = said_of(configuration, "mobility",
                             [&] { return make_mobility(configuration.text("mobility")); });
   result.well = double_well(configuration);
+  if (!result.mobility->constant() && (result.well.a != 0 || result.well.b != 1))
+    throw InputError(configuration.where("well") +
+                     ": the degenerate mobility c(1-c) belongs to wells at 0 and 1; choose "
+                     "--mobility constant:value=0.25");
   result.epsilon = configuration.number("epsilon") / units.length();
   const std::string rule = configuration.text("potential");
   if (rule != "consistent" && rule != "nodal")
@@ -96,6 +100,8 @@ InitialRequest initial_request(const Configuration& configuration, const CahnHil
   const long long cells = configuration.integer("cells");
   request.raft_fraction = configuration.number("raft-fraction");
   request.noise_cells = configuration.integer("noise-cells");
+  if (!configuration.given("noise-cells"))  // a case's choice is for its own mesh
+    request.noise_cells = std::min<std::int64_t>(request.noise_cells, cells);
   if (request.noise_cells > cells)
     throw InputError(configuration.where("noise-cells") + ": " +
                      std::to_string(request.noise_cells) + " is more than --cells " +
@@ -158,9 +164,11 @@ IntegratorSettings integrator_settings(const Configuration& configuration, const
   settings.max_step = configuration.number("max-step") / units.time();
   settings.linear_tolerance = configuration.number("linear-tolerance");
   settings.kept_solution = configuration.text("keep");
-  if (settings.kept_solution != "first" && settings.kept_solution != "second")
-    throw InputError(configuration.where("keep") + ": " +
-                     unknown_name_message("solution", settings.kept_solution, {"first", "second"}));
+  if (settings.kept_solution != "first" && settings.kept_solution != "second" &&
+      settings.kept_solution != "decaying")
+    throw InputError(
+        configuration.where("keep") + ": " +
+        unknown_name_message("solution", settings.kept_solution, {"decaying", "second", "first"}));
   if (settings.max_step > 0 && settings.min_step > settings.max_step)
     throw InputError(configuration.where("min-step") + ": it is larger than --max-step");
   return settings;
@@ -168,7 +176,7 @@ IntegratorSettings integrator_settings(const Configuration& configuration, const
 
 }  // namespace
 
-RunSetup build_run(const Configuration& configuration) {
+RunSetup build_run(const Configuration& configuration, InitialState initial) {
   RunSetup run;
   run.units = configuration.units();
   run.t_end = configuration.number("t-end") / run.units.time();
@@ -190,7 +198,8 @@ RunSetup build_run(const Configuration& configuration) {
                                                 std::make_shared<SerialCommunicator>());
   });
   run.problem = std::make_unique<CahnHilliard>(run.space, physics);
-  run.initial = initial_field(configuration, physics, *run.space);
+  if (initial == InitialState::build)
+    run.initial = initial_field(configuration, physics, *run.space);
   run.perimeter = perimeter_calibration(configuration, physics, run.space);
   run.observer =
       std::make_unique<Observer>(*run.problem, run.space, run.perimeter.interface_energy);

@@ -28,8 +28,10 @@ struct RunSetup {
   std::vector<double> output_labels;  // the same as the user wrote them, in the user's units
 };
 
+enum class InitialState { build, from_checkpoint /* leaves RunSetup::initial empty */ };
+
 // Throws InputError for anything a run could not start with; creates no files.
-RunSetup build_run(const Configuration& configuration);
+RunSetup build_run(const Configuration& configuration, InitialState initial);
 
 // Computes the consistent state and hands it to the integrator.
 Status start_run(RunSetup& setup);

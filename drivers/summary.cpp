@@ -23,6 +23,10 @@ const char* end_name(RunEnd end) {
   }
 }
 
+bool decay_promised(const RunSetup& run) {
+  return run.integrator->promises_energy_decay();
+}
+
 void line(const char* label, const std::string& value) {
   std::printf("  %-22s %s\n", label, value.c_str());
 }
@@ -67,8 +71,7 @@ std::string summary_json(const Configuration& configuration, const RunSetup& run
   json["energy"] = row.energy * units.area();
   json["energy_rises"] = state.monitor.energy_rises();
   json["largest_energy_rise"] = state.monitor.largest_rise();
-  json["energy_decay_promised"] =
-      run.problem->dissipates_energy() && run.integrator->promises_energy_decay();
+  json["energy_decay_promised"] = decay_promised(run);
   json["perimeter"] = row.perimeter * units.length();
   json["perimeter_level"] = row.perimeter_level * units.length();
   json["rafts"] = row.rafts;
@@ -77,6 +80,7 @@ std::string summary_json(const Configuration& configuration, const RunSetup& run
   json["c_max"] = row.c_max;
   json["steps"] = steps.steps;
   json["rejected"] = steps.rejected;
+  json["first_order_steps"] = steps.first_order;
   json["failures"] = steps.failures;
   json["renewals"] = steps.renewals;
   json["fallbacks"] = steps.fallbacks;
@@ -116,17 +120,18 @@ void print_setup(const Configuration& configuration, const RunSetup& run) {
   line("units",
        text("length R = %g um, time R^2/D = %g s; the run ends at %g s = %g R^2/D", units.radius_um,
             units.seconds_per_unit(), run.t_end * units.seconds_per_unit(), run.t_end));
-  line("initial state",
-       text("%s, mean concentration %.6f, seed %lld", configuration.text("initial").c_str(),
-            run.space->integral(run.initial) / run.space->area, configuration.integer("seed")));
+  if (run.initial.size() > 0)
+    line("initial state",
+         text("%s, mean concentration %.6f, seed %lld", configuration.text("initial").c_str(),
+              run.space->integral(run.initial) / run.space->area, configuration.integer("seed")));
   line("method",
        text("%s with %s, tolerance %g, %d thread%s, %s", configuration.text("integrator").c_str(),
             configuration.text("linear-solver").c_str(), configuration.number("tolerance"),
             run.team->size(), run.team->size() == 1 ? "" : "s", blas_description().c_str()));
 }
 
-void print_summary(const Configuration&, const RunSetup& run, const RunState& state,
-                   const RunResult& result, const RunCost& cost, const RunFolder& folder) {
+void print_summary(const RunSetup& run, const RunState& state, const RunResult& result,
+                   const RunCost& cost, const RunFolder& folder) {
   const Units& units = run.units;
   const Observables& row = state.row;
   const IntegratorStatistics steps = run.integrator->statistics();
@@ -141,11 +146,11 @@ void print_summary(const Configuration&, const RunSetup& run, const RunState& st
   line("perimeter", text("%.5g %s (level curve %.5g %s)", row.perimeter * units.length(), length,
                          row.perimeter_level * units.length(), length));
   line("energy", text("%.6g, rises: %ld%s", row.energy * units.area(), state.monitor.energy_rises(),
-                      run.integrator->promises_energy_decay() ? "" : " (no decay promised)"));
+                      decay_promised(run) ? "" : " (no decay promised)"));
   line("mass drift", text("%.1e relative", state.monitor.mass_drift()));
   line("c on the surface", text("%.3f to %.3f", row.c_min, row.c_max));
-  line("steps",
-       text("%ld accepted, %ld rejected, %ld failed", steps.steps, steps.rejected, steps.failures));
+  line("steps", text("%ld accepted (%ld with the first-order solution), %ld rejected, %ld failed",
+                     steps.steps, steps.first_order, steps.rejected, steps.failures));
   line("linear solves",
        text("%ld, %.1f iterations each, %ld set-ups, %ld renewed, %ld fallbacks", linear.solves,
             static_cast<double>(linear.iterations) /
@@ -154,7 +159,10 @@ void print_summary(const Configuration&, const RunSetup& run, const RunState& st
   line("time", text("%s wall, %s CPU, peak memory %.0f MB", clock_text(cost.wall_seconds).c_str(),
                     clock_text(cost.cpu_seconds).c_str(), peak_memory_mb()));
   line("tables", folder.table("series.csv").string());
-  line("open next", "paraview " + (folder.path / "fields.pvd").string());
+  if (std::filesystem::exists(folder.path / "view.png")) {
+    line("open next", (folder.path / "view.png").string() + " (front and back at the end)");
+    line("or", "paraview " + (folder.path / "fields.pvd").string());
+  }
 }
 
 }  // namespace traceraft

@@ -3,10 +3,13 @@
 namespace traceraft {
 
 const NamedList<StudyEntry>& studies() {
-  static const NamedList<StudyEntry> list("study", {
-                                                       mesh_convergence_study(),
-                                                       time_order_study(),
-                                                   });
+  static const std::vector<StudyEntry> entries = {
+      mesh_convergence_study(),
+      time_order_study(),
+      operation_cost_study(),
+      step_cost_study(),
+  };
+  static const NamedList<StudyEntry> list("study", entries);
   return list;
 }
 

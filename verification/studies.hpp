@@ -31,10 +31,13 @@ struct StudyEntry {
   std::string name;
   std::string summary;
   std::function<StudyReport(const StudyRequest&)> run;
+  bool timed = false;  // claims about speed: for people to run, never part of the tests
 };
 
 StudyEntry mesh_convergence_study();
 StudyEntry time_order_study();
+StudyEntry operation_cost_study();
+StudyEntry step_cost_study();
 
 const NamedList<StudyEntry>& studies();
 

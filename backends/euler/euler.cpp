@@ -29,8 +29,10 @@ class Euler final : public Integrator {
     t_ = t0;
     t_end_ = t_end;
     y_ = y0;
+    energy_ = problem_.energy(y_);
     rate_ = ydot0;
-    control_ = StepControl(settings_, t_end - t0);
+    span_ = t_end - t0;
+    control_ = StepControl(settings_, span_);
     const double rate = problem_.norm(rate_), size = problem_.norm(y_);
     // Small enough that the whole change of the first step is below the tolerance.
     double first = settings_.initial_step;
@@ -55,6 +57,10 @@ class Euler final : public Integrator {
       // NaN and failed solves end up here, too.
       ++(status.ok() ? statistics_.rejected : statistics_.failures);
       const double smaller = status.ok() ? control_.after_rejection(dt, error) : dt / 4;
+      if (dt > control_.min_step() && smaller < control_.min_step()) {
+        dt = control_.min_step();
+        continue;
+      }
       if (!(smaller >= control_.min_step()))
         return Status::fatal(
             "no step size: " + (status.ok() ? "the error stays above the tolerance" : status.why) +
@@ -80,7 +86,9 @@ class Euler final : public Integrator {
   double step() const override { return step_; }
   double next_step() const override { return next_; }
   const Vec& state() const override { return y_; }
-  bool promises_energy_decay() const override { return !keeps_second(); }
+  bool promises_energy_decay() const override {
+    return problem_.dissipates_energy() && settings_.kept_solution != "second";
+  }
 
   IntegratorStatistics statistics() const override {
     IntegratorStatistics result = statistics_;
@@ -94,7 +102,8 @@ class Euler final : public Integrator {
 
   void save(std::ostream& out) const override {
     write_binary(out, std::int64_t{steps_kept_});
-    for (const double value : {t_, t_end_, step_, step_before_, next_}) write_binary(out, value);
+    for (const double value : {t_, t_end_, span_, step_, step_before_, next_})
+      write_binary(out, value);
     for (const Vec* vector : {&y_, &rate_}) write_binary(out, *vector);
     if (steps_kept_ > 0) write_binary(out, previous_);
     if (steps_kept_ > 1) write_binary(out, before_);
@@ -105,17 +114,23 @@ class Euler final : public Integrator {
     std::int64_t kept = 0;
     read_binary(in, kept);
     steps_kept_ = static_cast<int>(kept);
-    for (double* value : {&t_, &t_end_, &step_, &step_before_, &next_}) read_binary(in, *value);
+    for (double* value : {&t_, &t_end_, &span_, &step_, &step_before_, &next_})
+      read_binary(in, *value);
     for (Vec* vector : {&y_, &rate_}) read_binary(in, *vector, problem_.size());
     if (steps_kept_ > 0) read_binary(in, previous_, problem_.size());
     if (steps_kept_ > 1) read_binary(in, before_, problem_.size());
     read_binary(in, statistics_);
-    control_ = StepControl(settings_, t_end_);
+    energy_ = problem_.energy(y_);
+    control_ = StepControl(settings_, span_);
     solver_.load(in);
   }
 
  private:
-  bool keeps_second() const { return settings_.kept_solution != "first"; }
+  // The second-order solution is the more accurate one; the first-order one never gains energy.
+  bool keeps_second(double second_energy) const {
+    if (settings_.kept_solution != "decaying") return settings_.kept_solution == "second";
+    return !problem_.dissipates_energy() || second_energy <= energy_;
+  }
 
   // The system whose solution added to the predictor y is one of the two solutions of a step.
   static NewtonSystem correction(double t, double shift, Vec predictor, Vec rate) {
@@ -161,7 +176,9 @@ class Euler final : public Integrator {
     second_ = systems_.back().y + systems_.back().x;
     // At the start, half the difference to explicit Euler: the leading term of the local error.
     error = steps_kept_ > 0 ? problem_.norm(second_ - first_) / problem_.norm(second_)
-                            : 0.5 * problem_.norm(first_ - y_ - dt * rate_) / problem_.norm(y_);
+                            : 0.5 * problem_.norm(first_ - y_ - dt * rate_) /
+                                  std::max(problem_.norm(y_), 1e-300);
+    if (first_ == second_ && steps_kept_ > 0) error = 0;  // c = 0 everywhere is 0/0
     if (std::isnan(error)) return Status::retry("the error estimate is not a number");
     return {};
   }
@@ -169,7 +186,11 @@ class Euler final : public Integrator {
   void accept(double dt, double t, double error) {
     before_.swap(previous_);
     previous_.swap(y_);
-    y_ = keeps_second() ? second_ : first_;
+    const double second_energy = problem_.energy(second_);
+    const bool second = keeps_second(second_energy);
+    y_ = second ? second_ : first_;
+    energy_ = second ? second_energy : problem_.energy(first_);
+    statistics_.first_order += !second;
     steps_kept_ = std::min(steps_kept_ + 1, 2);
     step_before_ = step_;
     step_ = dt;
@@ -183,7 +204,8 @@ class Euler final : public Integrator {
   IntegratorSettings settings_;
   StepControl control_;
   IntegratorStatistics statistics_;
-  double t_ = 0, t_end_ = 0, step_ = 0, step_before_ = 0, next_ = 0;
+  double energy_ = 0;  // of y_n
+  double t_ = 0, t_end_ = 0, span_ = 0, step_ = 0, step_before_ = 0, next_ = 0;
   int steps_kept_ = 0;                // how many of previous_, before_ are filled
   Vec y_, previous_, before_, rate_;  // y_n, y_{n−1}, y_{n−2}, ẏ at the start
   JacobianSolver solver_;

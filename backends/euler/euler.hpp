@@ -18,6 +18,10 @@ namespace traceraft {
 // the run instead of being accepted; Δt grows at most twofold, so that BDF2 stays zero-stable; the
 // first step has an error estimate (half the difference to explicit Euler).
 //
+// Which solution goes on: the second-order one unless it would gain energy, else the first-order
+// one, whose energy never grows while |f0''| ≤ 2β (default, kept_solution "decaying"); always the
+// second, as the reference code does; or always the first.
+//
 // The two solves of a step do not depend on each other: each has factors of its own, and with two
 // threads they run at the same time. The result does not depend on the number of threads.
 IntegratorPtr make_euler(const DaeProblem& problem, const LinearSolverChoice& solvers,

@@ -20,6 +20,8 @@ class Formula {
     parser_.DefineConst("e", 2.71828182845904523536);
     parser_.SetExpr(text);
     parser_.Eval();  // compiles, so that errors show up here
+    if (parser_.GetNumResults() != 1)
+      throw mu::Parser::exception_type("it is a list; write decimal points, not commas");
   }
   double operator()(const Point& x) {
     // muParser evaluates with the variables it is bound to.

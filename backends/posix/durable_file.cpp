@@ -76,6 +76,12 @@ AppendFile::AppendFile(std::filesystem::path path, std::uint64_t size)
     : path_(std::move(path)), size_(size) {
   descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
   if (descriptor_ < 0) fail("cannot open", path_);
+  struct stat info {};
+  if (::fstat(descriptor_, &info) != 0 || static_cast<std::uint64_t>(info.st_size) < size) {
+    ::close(descriptor_);
+    throw IoError(path_.string() + " has lost rows: it is shorter than the " +
+                  std::to_string(size) + " bytes it had");
+  }
   if (::ftruncate(descriptor_, static_cast<off_t>(size)) != 0 ||
       ::lseek(descriptor_, 0, SEEK_END) < 0) {
     ::close(descriptor_);

@@ -3,8 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
-#include <iosfwd>
 #include <string>
 
 namespace traceraft {
@@ -17,7 +15,7 @@ void write_durably(const std::filesystem::path& path, const std::string& content
 // A file that only grows by whole records, e.g. a table.
 class AppendFile {
  public:
-  // Opens or creates `path` and cuts it to `size` bytes. Throws IoError.
+  // Opens or creates `path` and cuts it to `size` bytes. Throws IoError, also if it is shorter.
   AppendFile(std::filesystem::path path, std::uint64_t size);
   ~AppendFile();
   AppendFile(const AppendFile&) = delete;

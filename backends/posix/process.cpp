@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <ctime>
+#include <filesystem>
 
 namespace traceraft {
 namespace {
@@ -67,7 +68,11 @@ void restart_with_environment(const std::vector<std::pair<std::string, std::stri
   for (const auto& [name, value] : variables)
     if (!std::getenv(name.c_str()))
       changed = setenv(name.c_str(), value.c_str(), 1) == 0 || changed;
-  if (changed) execv("/proc/self/exe", argv);
+  if (!changed) return;
+  // By its own path, so that the process keeps its name.
+  std::error_code no_proc;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", no_proc);
+  if (!no_proc) execv(program.c_str(), argv);
 }
 
 }  // namespace traceraft

@@ -6,6 +6,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "backends/suitesparse/blas.hpp"
 #include "backends/suitesparse/ordering.hpp"
 #include "backends/suitesparse/supernodal_factor.hpp"
 
@@ -109,6 +110,7 @@ std::vector<int> metis_ordering(const SparsityPattern& pattern) {
 }
 
 SpdSolverFactory cholmod_factory(PatternPtr pattern) {
+  use_one_blas_thread();
   return [pattern, ordering = std::make_shared<std::vector<int>>()](int lanes) -> SpdSolverPtr {
     if (ordering->empty()) *ordering = metis_ordering(*pattern);
     return std::make_unique<CholmodSolver>(*pattern, *ordering, lanes);

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <mutex>
 
+#include "backends/suitesparse/blas.hpp"
 #include "backends/suitesparse/ordering.hpp"
 #include "kernel/core/binary.hpp"
 #include "kernel/core/stopwatch.hpp"
@@ -12,11 +15,26 @@
 namespace traceraft {
 namespace {
 
+// METIS draws from the process-wide random numbers of the C library: ordering once, for all lanes,
+// keeps two threads from sharing them and a resumed run on the same order.
+class SharedOrdering {
+ public:
+  const std::vector<int>& of(const SparsityPattern& pattern) {
+    std::call_once(once_, [&] { ordering_ = metis_ordering(pattern); });
+    return ordering_;
+  }
+
+ private:
+  std::once_flag once_;
+  std::vector<int> ordering_;
+};
+
 // The factors of one lane. Nothing is allocated before the first set-up: a fallback may never be
 // needed.
 class Lane {
  public:
-  explicit Lane(PatternPtr pattern) : pattern_(std::move(pattern)) {
+  Lane(PatternPtr pattern, std::shared_ptr<SharedOrdering> ordering)
+      : pattern_(std::move(pattern)), ordering_(std::move(ordering)) {
     umfpack_di_defaults(control_);
     control_[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
   }
@@ -107,7 +125,7 @@ class Lane {
 
   int analyse(double* info) {
     const int n = pattern_->rows();
-    const std::vector<int> order = metis_ordering(*pattern_);
+    const std::vector<int>& order = ordering_->of(*pattern_);
     std::vector<int> pairs;
     for (const int i : order) pairs.insert(pairs.end(), {i, i + n});
     return umfpack_di_qsymbolic(2 * n, 2 * n, begin_.data(), index_.data(), values_.data(),
@@ -125,6 +143,7 @@ class Lane {
   }
 
   PatternPtr pattern_;
+  std::shared_ptr<SharedOrdering> ordering_;
   std::vector<int> begin_, index_;
   std::vector<double> values_;
   double control_[UMFPACK_CONTROL];
@@ -134,7 +153,10 @@ class Lane {
 class DirectSolver final : public LinearSolver {
  public:
   DirectSolver(const PatternPtr& pattern, int lanes) {
-    for (int lane = 0; lane < lanes; ++lane) lanes_.push_back(std::make_unique<Lane>(pattern));
+    use_one_blas_thread();
+    const auto ordering = std::make_shared<SharedOrdering>();
+    for (int lane = 0; lane < lanes; ++lane)
+      lanes_.push_back(std::make_unique<Lane>(pattern, ordering));
   }
   std::string name() const override { return "direct"; }
   bool shares_factors() const override { return false; }

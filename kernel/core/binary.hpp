@@ -1,5 +1,5 @@
 // Plain binary reading and writing of numbers and vectors, for checkpoints of one program on one
-// machine type (the header of a checkpoint names the byte order and the version).
+// machine type.
 #pragma once
 
 #include <cstdint>

@@ -3,13 +3,10 @@
 namespace traceraft {
 
 const NamedList<SurfaceEntry>& surfaces() {
-  static const NamedList<SurfaceEntry> list("surface", {
-                                                           sphere_surface(),
-                                                           ellipsoid_surface(),
-                                                           torus_surface(),
-                                                           biconcave_surface(),
-                                                           dziuk_surface(),
-                                                       });
+  static const std::vector<SurfaceEntry> entries = {
+      sphere_surface(), ellipsoid_surface(), torus_surface(), biconcave_surface(), dziuk_surface(),
+  };
+  static const NamedList<SurfaceEntry> list("surface", entries);
   return list;
 }
 

@@ -41,7 +41,7 @@ struct ActiveMesh {
 
 // Nodal values closer to zero than 1e-10 of the largest are moved to that distance, keeping their
 // sign: Γ never passes exactly through a vertex, edge or face, no piece of it is counted twice, and
-// its area changes by less than 1e-9.
+// its area changes by some 1e-10 of itself (relative to the steepest part of φ).
 // Throws InputError (see find_cut_cells).
 ActiveMesh build_active_mesh(const LevelSet& surface, std::int64_t cells);
 

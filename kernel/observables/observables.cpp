@@ -10,6 +10,10 @@ double Observer::level() const {
   return 0.5 * (problem_.model().well.a + problem_.model().well.b);
 }
 
+double Observer::mass_scale() const {
+  return problem_.space().area * (problem_.model().well.b - problem_.model().well.a);
+}
+
 RaftReport Observer::rafts(ConstVec y) const {
   return finder_.find(problem_.c_of(y), level());
 }

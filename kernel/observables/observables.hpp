@@ -32,6 +32,7 @@ class Observer {
   Observables measure(double t, ConstVec y) const;
   RaftReport rafts(ConstVec y) const;
   double level() const;
+  double mass_scale() const;  // |Γ| (b − a)
 
  private:
   const CahnHilliard& problem_;

@@ -1,7 +1,6 @@
 // The free energy density of a homogeneous mixture.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 
 namespace traceraft {
@@ -20,13 +19,6 @@ struct DoubleWell {
   double second(double c) const {
     const double d = a + b - 2 * c;
     return 2 * rho * (d * d - 2 * (c - a) * (b - c));
-  }
-
-  // Largest |f0''| for c within `margin`·(b − a) of the wells; stabilised steps decay for
-  // β ≥ half of it.
-  double largest_curvature(double margin) const {
-    const double outside = a - margin * (b - a), middle = 0.5 * (a + b);
-    return std::max(std::fabs(second(outside)), std::fabs(second(middle)));
   }
 
   // ∫ ε|∇c|² per unit length of a flat interface: ∫_a^b √(2 f0) dc = √(2ρ) (b − a)³ / 6.

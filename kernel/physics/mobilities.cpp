@@ -3,10 +3,11 @@
 namespace traceraft {
 
 const NamedList<MobilityEntry>& mobilities() {
-  static const NamedList<MobilityEntry> list("mobility", {
-                                                             degenerate_mobility(),
-                                                             constant_mobility(),
-                                                         });
+  static const std::vector<MobilityEntry> entries = {
+      degenerate_mobility(),
+      constant_mobility(),
+  };
+  static const NamedList<MobilityEntry> list("mobility", entries);
   return list;
 }
 

@@ -209,7 +209,9 @@ bool CahnHilliard::conserves_mass() const {
 }
 
 bool CahnHilliard::dissipates_energy() const {
-  return std::all_of(model_.effects.begin(), model_.effects.end(),
+  // With the nodal rule F2 is not the gradient of the energy.
+  return model_.rule == PotentialRule::consistent &&
+         std::all_of(model_.effects.begin(), model_.effects.end(),
                      [](const EffectPtr& effect) { return effect->dissipates_energy(); });
 }
 

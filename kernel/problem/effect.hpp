@@ -1,4 +1,4 @@
-// A term added to the base model. One file per effect, one line in its list.
+// A term added to the base model.
 #pragma once
 
 #include <functional>

@@ -6,12 +6,13 @@
 namespace traceraft {
 
 const NamedList<InitialEntry>& initial_fields() {
-  static const NamedList<InitialEntry> list("initial field", {
-                                                                 bernoulli_noise(),
-                                                                 band_limited_noise(),
-                                                                 cap_rafts(),
-                                                                 formula_field(),
-                                                             });
+  static const std::vector<InitialEntry> entries = {
+      bernoulli_noise(),
+      band_limited_noise(),
+      cap_rafts(),
+      formula_field(),
+  };
+  static const NamedList<InitialEntry> list("initial field", entries);
   return list;
 }
 

@@ -1,3 +1,5 @@
+#include <stdexcept>
+
 #include "kernel/fem/triangle_rule.hpp"
 #include "kernel/problem/effect.hpp"
 
@@ -56,6 +58,7 @@ class PrescribedDensity final : public Effect {
 
 EffectPtr prescribed_density(std::string name, Slot slot,
                              std::function<double(const Point&, double)> density) {
+  if (slot == Slot::flux) throw std::invalid_argument("a prescribed density is no flux");
   return std::make_shared<PrescribedDensity>(std::move(name), slot, std::move(density));
 }
 

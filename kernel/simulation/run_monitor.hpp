@@ -12,8 +12,10 @@ class RunMonitor {
  public:
   static constexpr double kRise = 1e-10;  // relative growth of the energy that counts as a rise
 
-  void start(const Observables& row) {
+  // mass_scale: what a drift is relative to where the mass itself is nearly zero.
+  void start(const Observables& row, double mass_scale) {
     initial_mass_ = row.mass;
+    mass_scale_ = std::fabs(row.mass) > 1e-3 * mass_scale ? std::fabs(row.mass) : mass_scale;
     initial_energy_ = row.energy;
     energy_ = row.energy;
   }
@@ -25,16 +27,16 @@ class RunMonitor {
     energy_ = row.energy;
   }
 
-  // (mass − initial mass)/|initial mass|
   double relative_drift(const Observables& row) const {
-    return initial_mass_ == 0 ? row.mass : (row.mass - initial_mass_) / std::fabs(initial_mass_);
+    return (row.mass - initial_mass_) / mass_scale_;
   }
   double mass_drift() const { return drift_; }  // largest so far
   long energy_rises() const { return rises_; }
   double largest_rise() const { return largest_rise_; }  // relative to the initial energy
 
  private:
-  double initial_mass_ = 0, initial_energy_ = 1, energy_ = 0, drift_ = 0, largest_rise_ = 0;
+  double initial_mass_ = 0, mass_scale_ = 1, initial_energy_ = 1, energy_ = 0, drift_ = 0,
+         largest_rise_ = 0;
   long rises_ = 0;
 };
 

@@ -17,13 +17,14 @@ struct IntegratorSettings {
   double min_step = 0;             // below it: fatal "no step size"; 0: 1e-14 of the time span
   double max_step = 0;             // 0: unbounded
   double linear_tolerance = 1e-4;  // relative to each correction, see LinearSolver
-  std::string kept_solution = "second";  // euler: which of its pair goes on
+  std::string kept_solution = "decaying";  // euler: which of its pair goes on
 };
 
 struct IntegratorStatistics {
-  long steps = 0;     // accepted
-  long rejected = 0;  // error too large
-  long failures = 0;  // a solve or an evaluation failed and the step was retried
+  long steps = 0;        // accepted
+  long rejected = 0;     // error too large
+  long first_order = 0;  // accepted with the first-order solution, so that energy falls
+  long failures = 0;     // a solve or an evaluation failed and the step was retried
   long residuals = 0;
   long jacobians = 0;
   long renewals = 0;            // factors renewed because a solve with old ones failed

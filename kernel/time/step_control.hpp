@@ -18,8 +18,8 @@ class StepControl {
   StepControl() = default;
   StepControl(const IntegratorSettings& settings, double span)
       : tolerance_(settings.tolerance),
-        min_(settings.min_step > 0 ? settings.min_step : 1e-14 * span),
-        max_(settings.max_step > 0 ? settings.max_step : span) {}
+        max_(settings.max_step > 0 ? settings.max_step : span),
+        min_(std::min(max_, settings.min_step > 0 ? settings.min_step : 1e-14 * span)) {}
 
   double min_step() const { return min_; }
   double bounded(double dt) const { return std::clamp(dt, min_, max_); }
@@ -35,7 +35,7 @@ class StepControl {
   }
 
  private:
-  double tolerance_ = 1, min_ = 0, max_ = 0;
+  double tolerance_ = 1, max_ = 0, min_ = 0;
 };
 
 }  // namespace traceraft

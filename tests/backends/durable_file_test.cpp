@@ -64,6 +64,7 @@ TEST(AppendFile, GrowsByRecordsAndIsCutToASize) {
   file.append("three\n");
   file.sync();
   EXPECT_EQ(read_file(folder.path / "t", 100), "one\nthree\n");
+  EXPECT_THROW(AppendFile(folder.path / "t", 1000), IoError) << "a lost row went unnoticed";
   const SmallDisk disk(12);
   EXPECT_THROW(file.append("four\n"), IoError);
 }

@@ -16,7 +16,7 @@ TEST(Formula, IsEvaluated) {
 }
 
 TEST(Formula, SaysWhatItCannotRead) {
-  for (const char* bad : {"", "x+", "q*2", "sin(", "x y", "1,,2", "\xff"}) {
+  for (const char* bad : {"", "x+", "q*2", "sin(", "x y", "1,,2", "0,5+x", "\xff"}) {
     try {
       parse_formula("--initial-formula", bad);
       FAIL() << bad;

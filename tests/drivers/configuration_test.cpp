@@ -128,7 +128,7 @@ TEST(RunSetup, ChecksEverythingBeforeAnythingRuns) {
   const auto of = [](std::initializer_list<std::pair<std::string, std::string>> values) {
     GivenValues given = flags(values);
     given.emplace("cells", GivenValue{"16", "--cells"});
-    return complaint([&] { build_run(Configuration({}, given)); });
+    return complaint([&] { build_run(Configuration({}, given), InitialState::build); });
   };
   EXPECT_EQ(of({{"epsilon", "0.5"}}), "");
   EXPECT_EQ(of({{"surface", "spere"}}).find("--surface: unknown surface 'spere'; did you mean"),
@@ -141,6 +141,7 @@ TEST(RunSetup, ChecksEverythingBeforeAnythingRuns) {
   EXPECT_EQ(of({{"surface", "formula"}, {"surface-formula", "x"}}).find("--surface: surface"), 0u);
   EXPECT_EQ(of({{"mobility", "degenrate"}}).find("--mobility: unknown mobility"), 0u);
   EXPECT_EQ(of({{"well", "a=1,b=0"}}).find("--well: "), 0u);
+  EXPECT_EQ(of({{"well", "a=-1,b=1"}}).find("--well: the degenerate"), 0u);
   EXPECT_EQ(of({{"initial", "noize"}}).find("--initial: unknown initial field"), 0u);
   EXPECT_EQ(of({{"initial", "caps"}}).find("--initial: "), 0u);
   EXPECT_EQ(of({{"initial", "caps"}, {"initial-caps", "0 0 1"}}).find("--initial"), 0u);

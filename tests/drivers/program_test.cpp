@@ -55,7 +55,7 @@ class ProgramTest : public ::testing::Test {
   std::string out(const std::string& name) const { return (folder.path / name).string(); }
 
   // Starts a run in the background; the caller ends it.
-  pid_t start(const std::string& name, const std::string& more = "") {
+  pid_t start(const std::string& name, const std::string& more = "--threads 2") {
     const pid_t child = fork();
     if (child == 0) {
       const std::string command = "exec " + std::string(TRACERAFT_PROGRAM) + " run " + quick +
@@ -124,6 +124,26 @@ TEST_F(ProgramTest, ContinuesBitwiseAfterBeingKilledAtAnyMoment) {
   }
 }
 
+TEST_F(ProgramTest, ContinuesBitwiseWithFactorsOfTheWholeSystem) {
+  const std::string direct = "--linear-solver direct --threads 2 ";
+  ASSERT_EQ(traceraft("run --quiet " + quick + direct + "--out " + out("whole")).code, 0);
+  const pid_t child = start("killed", direct);
+  wait_for_rows("killed", 12);
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  ASSERT_EQ(traceraft("resume --quiet " + out("killed")).code, 0);
+  expect_same_results("whole", "killed");
+}
+
+TEST_F(ProgramTest, StartsAgainWhenKilledBeforeTheFirstCheckpoint) {
+  ASSERT_EQ(traceraft("run --quiet " + quick + "--out " + out("whole")).code, 0);
+  // As a kill right after the configuration was written leaves it.
+  fs::create_directory(folder.path / "early");
+  write_durably(folder.path / "early/config.toml", content(folder.path / "whole/config.toml"));
+  ASSERT_EQ(traceraft("resume --quiet " + out("early")).code, 0);
+  expect_same_results("whole", "early");
+}
+
 TEST_F(ProgramTest, StopsCleanlyWhenAskedToAndContinues) {
   ASSERT_EQ(traceraft("run --quiet " + quick + "--out " + out("whole")).code, 0);
   for (const int signal : {SIGINT, SIGTERM}) {
@@ -185,7 +205,11 @@ TEST_F(ProgramTest, LocksItsFolder) {
 
 TEST_F(ProgramTest, LeavesForeignFilesAlone) {
   fs::create_directories(folder.path / "a/checkpoints-of-mine");
+  fs::create_directories(folder.path / "mine");
   write_durably(folder.path / "a/notes.txt", "mine");
+  write_durably(folder.path / "mine/view.png", "mine");
+  EXPECT_EQ(traceraft("run --quiet " + quick + "--out " + out("mine")).code, 2);
+  EXPECT_EQ(content(folder.path / "mine/view.png"), "mine");
   ASSERT_EQ(traceraft("run --quiet " + quick + "--out " + out("a")).code, 0);
   EXPECT_EQ(content(folder.path / "a/notes.txt"), "mine");
   EXPECT_TRUE(fs::exists(folder.path / "a/checkpoints-of-mine"));
@@ -228,6 +252,10 @@ TEST_F(ProgramTest, RestartsFromAnotherRun) {
   const auto first = nlohmann::json::parse(content(folder.path / "a/summary.json"));
   const auto second = nlohmann::json::parse(content(folder.path / "b/summary.json"));
   EXPECT_NEAR(second["mass"].get<double>() / first["mass"].get<double>(), 1, 1e-12);
+  // The new run does not need the old one any more.
+  fs::rename(folder.path / "a", folder.path / "moved");
+  EXPECT_EQ(traceraft("resume --quiet " + out("b")).code, 0);
+  fs::rename(folder.path / "moved", folder.path / "a");
   EXPECT_EQ(
       traceraft(same_mesh + "--cells 24 --initial restart:" + out("a") + " --out " + out("c")).code,
       2);

@@ -95,7 +95,7 @@ TEST(PerimeterCalibration, KnowsHowMuchOfTheBoundaryTheMeshResolves) {
   const auto resolved = [&](double h_over_epsilon, PotentialRule rule) {
     CahnHilliardModel model = testing::make_model("degenerate", space->h() / h_over_epsilon);
     model.rule = rule;
-    return calibrate_perimeter(*space, model).resolved;
+    return relaxed_interface_energy(*space, model, Point(0, 0, 1)) / model.well.interface_energy();
   };
   // The independent prototype found 0.906 and 0.98 with the nodal potential on 128 cells, where ε
   // is half as large beside R as here.
@@ -104,7 +104,7 @@ TEST(PerimeterCalibration, KnowsHowMuchOfTheBoundaryTheMeshResolves) {
   EXPECT_NEAR(resolved(2.6, PotentialRule::consistent), 0.98, 0.01);
 }
 
-TEST(PerimeterCalibration, MakesTheEquilibriumOfTwoHalvesTwoPi) {
+TEST(PerimeterCalibration, MakesTheEquilibriumOfTwoHalvesTwoPiWithinThreePercent) {
   const auto space = make_space(32);
   CahnHilliardModel model = testing::make_model("constant:value=0.25", space->h() / 2);
   const PerimeterCalibration calibration = calibrate_perimeter(*space, model);
@@ -112,7 +112,7 @@ TEST(PerimeterCalibration, MakesTheEquilibriumOfTwoHalvesTwoPi) {
   Vec y = Vec::Zero(problem.size()), ydot(problem.size());
   InitialRequest request;
   request.epsilon = model.epsilon;
-  request.caps = {{{1, 2, 3}, M_PI / 2}};  // not along an axis of the mesh
+  request.caps = {{{1, 5, -2}, M_PI / 2}};  // none of the axes of the calibration
   y.head(problem.block_size()) = make_initial_field("caps", *space, request);
   ASSERT_TRUE(problem.consistent_initial_state(0, y, ydot).ok());
   const IntegratorPtr integrator = integrators().find("euler").make(
@@ -121,7 +121,7 @@ TEST(PerimeterCalibration, MakesTheEquilibriumOfTwoHalvesTwoPi) {
   while (integrator->time() < 20) ASSERT_TRUE(integrator->advance().ok());
   const Observables row =
       Observer(problem, space, calibration.interface_energy).measure(20, integrator->state());
-  EXPECT_NEAR(row.perimeter / (2 * M_PI), 1, 0.01);
+  EXPECT_NEAR(row.perimeter / (2 * M_PI), 1, 0.03);
   EXPECT_NEAR(row.perimeter_level / (2 * M_PI), 1, 0.01);
 }
 

@@ -1,0 +1,21 @@
+// A picture of a field on Γ_h: front and back of the surface side by side.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "kernel/fem/surface_space.hpp"
+
+namespace traceraft {
+
+struct Image {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;  // rows from the top, three bytes a pixel
+};
+
+// Parallel projection of the surface coloured by `values` (one per point of Γ_h), dark at `low` and
+// bright at `high`, on white. `size`: pixels per edge of each of the two squares.
+Image draw_front_and_back(const SurfaceSpace& space, const Vec& values, double low, double high,
+                          int size);
+
+}  // namespace traceraft
