@@ -18,10 +18,7 @@ class Euler final : public Integrator {
  public:
   Euler(const DaeProblem& problem, const LinearSolverChoice& solvers,
         std::shared_ptr<const ThreadTeam> team, const IntegratorSettings& settings)
-      : problem_(problem),
-        team_(std::move(team)),
-        settings_(settings),
-        solver_(problem, solvers, 2, team_) {}
+      : problem_(problem), settings_(settings), solver_(problem, solvers, 2, std::move(team)) {}
 
   std::string name() const override { return "euler"; }
 
@@ -127,9 +124,13 @@ class Euler final : public Integrator {
 
  private:
   // The second-order solution is the more accurate one; the first-order one never gains energy.
-  bool keeps_second(double second_energy) const {
-    if (settings_.kept_solution != "decaying") return settings_.kept_solution == "second";
-    return !problem_.dissipates_energy() || second_energy <= energy_;
+  bool keeps_second() {
+    if (settings_.kept_solution != "decaying" || !problem_.dissipates_energy())
+      return settings_.kept_solution != "first";
+    const double second_energy = problem_.energy(second_);
+    const bool decays = second_energy <= energy_;
+    energy_ = decays ? second_energy : problem_.energy(first_);
+    return decays;
   }
 
   // The system whose solution added to the predictor y is one of the two solutions of a step.
@@ -186,10 +187,8 @@ class Euler final : public Integrator {
   void accept(double dt, double t, double error) {
     before_.swap(previous_);
     previous_.swap(y_);
-    const double second_energy = problem_.energy(second_);
-    const bool second = keeps_second(second_energy);
+    const bool second = keeps_second();
     y_ = second ? second_ : first_;
-    energy_ = second ? second_energy : problem_.energy(first_);
     statistics_.first_order += !second;
     steps_kept_ = std::min(steps_kept_ + 1, 2);
     step_before_ = step_;
@@ -200,11 +199,10 @@ class Euler final : public Integrator {
   }
 
   const DaeProblem& problem_;
-  std::shared_ptr<const ThreadTeam> team_;
   IntegratorSettings settings_;
   StepControl control_;
   IntegratorStatistics statistics_;
-  double energy_ = 0;  // of y_n
+  double energy_ = 0;  // of y_n, where it decides which solution is kept
   double t_ = 0, t_end_ = 0, span_ = 0, step_ = 0, step_before_ = 0, next_ = 0;
   int steps_kept_ = 0;                // how many of previous_, before_ are filled
   Vec y_, previous_, before_, rate_;  // y_n, y_{n−1}, y_{n−2}, ẏ at the start

@@ -11,15 +11,12 @@ CutElement make_element(const ActiveMesh& mesh, const ActiveTet& tet) {
   element.edge = tet.edge;
   const CutPolygon polygon = cut_polygon(mesh, tet);
   element.corners = polygon.count;
-  std::array<Point, 4> corner;
   for (int v = 0; v < polygon.count; ++v) {
     const auto& [low, high] = kTetEdges[polygon.edge[v]];
-    const double phi_low = mesh.phi[tet.node[low]], phi_high = mesh.phi[tet.node[high]];
     element.cut_edge[v] = static_cast<signed char>(polygon.edge[v]);
-    element.s[v] = phi_low / (phi_low - phi_high);
-    corner[v] = (1 - element.s[v]) * mesh.position(tet.node[low]) +
-                element.s[v] * mesh.position(tet.node[high]);
+    element.s[v] = cut_fraction(mesh.phi[tet.node[low]], mesh.phi[tet.node[high]]);
   }
+  const std::array<Point, 4> corner = corners_of(mesh, element);
   for (int t = 0; t < element.triangles(); ++t) {
     const auto& [a, b, c] = kPolygonTriangles[t];
     element.triangle_area[t] = 0.5 * (corner[b] - corner[a]).cross(corner[c] - corner[a]).norm();
@@ -38,6 +35,16 @@ CutElement make_element(const ActiveMesh& mesh, const ActiveTet& tet) {
 }
 
 }  // namespace
+
+std::array<Point, 4> corners_of(const ActiveMesh& mesh, const CutElement& element) {
+  std::array<Point, 4> corner;
+  for (int v = 0; v < element.corners; ++v) {
+    const auto& [low, high] = kTetEdges[element.cut_edge[v]];
+    corner[v] = (1 - element.s[v]) * mesh.position(element.node[low]) +
+                element.s[v] * mesh.position(element.node[high]);
+  }
+  return corner;
+}
 
 std::vector<CutElement> build_cut_elements(const ActiveMesh& mesh) {
   std::vector<CutElement> elements;

@@ -44,6 +44,9 @@ struct CutElement {
 
 inline constexpr std::array<std::array<int, 3>, 2> kPolygonTriangles = {{{0, 1, 2}, {0, 2, 3}}};
 
+// The polygon's vertices; the fourth is undefined for triangles.
+std::array<Point, 4> corners_of(const ActiveMesh& mesh, const CutElement& element);
+
 std::vector<CutElement> build_cut_elements(const ActiveMesh& mesh);
 
 // Rows [row_begin, row_end) and a range of elements that contains every one touching them. A thread

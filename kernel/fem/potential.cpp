@@ -66,21 +66,6 @@ void add_nodal_tangent(const SurfaceSpace& space, const DoubleWell& well, double
     matrix.values[k] += factor * space.mass.values[k] * well.second(c[matrix.pattern->column[k]]);
 }
 
-void add_local(const CutElement& element, const Eigen::Matrix4d& local, const RowBlock& block,
-               CsrMatrix& matrix) {
-  const SparsityPattern& pattern = *matrix.pattern;
-  for (int i = 0; i < 4; ++i)
-    if (block.owns(element.node[i]))
-      matrix.values[pattern.diagonal[element.node[i]]] += local(i, i);
-  for (int e = 0; e < 6; ++e) {
-    const auto& [i, j] = kTetEdges[e];
-    if (block.owns(element.node[i]))
-      matrix.values[pattern.low_high[element.edge[e]]] += local(i, j);
-    if (block.owns(element.node[j]))
-      matrix.values[pattern.high_low[element.edge[e]]] += local(j, i);
-  }
-}
-
 }  // namespace
 
 void add_potential(const SurfaceSpace& space, const DoubleWell& well, PotentialRule rule,
@@ -99,12 +84,12 @@ void add_potential(const SurfaceSpace& space, const DoubleWell& well, PotentialR
 void add_potential_tangent(const SurfaceSpace& space, const DoubleWell& well, PotentialRule rule,
                            double factor, ConstVec c, CsrMatrix& matrix) {
   if (rule == PotentialRule::nodal) return add_nodal_tangent(space, well, factor, c, matrix);
-  space.team->run([&](int part) {
-    const RowBlock& block = space.blocks[part];
-    for (int e = block.element_begin; e < block.element_end; ++e)
-      add_local(space.elements[e], factor * local_tangent(space.elements[e], well, c), block,
-                matrix);
-  });
+  add_element_matrices(
+      space,
+      [&](const CutElement& element, int) -> Eigen::Matrix4d {
+        return factor * local_tangent(element, well, c);
+      },
+      matrix);
 }
 
 void add_potential_tangent_product(const SurfaceSpace& space, const DoubleWell& well,

@@ -5,10 +5,10 @@
 namespace traceraft {
 namespace {
 
-ActiveMesh checked_mesh(const LevelSet& level_set, std::int64_t cells) {
-  ActiveMesh mesh = build_active_mesh(level_set, cells);
-  require_resolution(mesh, build_cut_surface(mesh));
-  return mesh;
+CutSurface checked_surface(const ActiveMesh& mesh) {
+  CutSurface surface = build_cut_surface(mesh);
+  require_resolution(mesh, surface);
+  return surface;
 }
 
 CsrMatrix zero_row_sum_matrix(const SurfaceSpace& space,
@@ -47,6 +47,21 @@ CsrMatrix mass_matrix(const SurfaceSpace& space) {
 
 }  // namespace
 
+void add_element_matrix(const CutElement& element, const Eigen::Matrix4d& local,
+                        const RowBlock& block, CsrMatrix& matrix) {
+  const SparsityPattern& pattern = *matrix.pattern;
+  for (int i = 0; i < 4; ++i)
+    if (block.owns(element.node[i]))
+      matrix.values[pattern.diagonal[element.node[i]]] += local(i, i);
+  for (int e = 0; e < 6; ++e) {
+    const auto& [i, j] = kTetEdges[e];
+    if (block.owns(element.node[i]))
+      matrix.values[pattern.low_high[element.edge[e]]] += local(i, j);
+    if (block.owns(element.node[j]))
+      matrix.values[pattern.high_low[element.edge[e]]] += local(j, i);
+  }
+}
+
 void fill_symmetric(const std::vector<double>& edge, const std::vector<double>& diagonal,
                     CsrMatrix& matrix) {
   const SparsityPattern& pattern = *matrix.pattern;
@@ -76,8 +91,8 @@ void fill_zero_row_sum(const std::vector<double>& edge, const std::vector<RowBlo
 SurfaceSpace::SurfaceSpace(const LevelSet& level_set, std::int64_t cells,
                            std::shared_ptr<const ThreadTeam> team_,
                            std::shared_ptr<const Communicator> communicator_)
-    : mesh(checked_mesh(level_set, cells)),
-      surface(build_cut_surface(mesh)),
+    : mesh(build_active_mesh(level_set, cells)),
+      surface(checked_surface(mesh)),
       elements(build_cut_elements(mesh)),
       team(std::move(team_)),
       communicator(std::move(communicator_)),

@@ -55,6 +55,19 @@ class SurfaceSpace {
   Status solve_mass(ConstVec b, VecRef x) const;
 };
 
+// Adds the rows of a block that a 4×4 element matrix touches.
+void add_element_matrix(const CutElement& element, const Eigen::Matrix4d& local,
+                        const RowBlock& block, CsrMatrix& matrix);
+// matrix += Σ local(element, number), each row by one thread in element order.
+template <class Local>
+void add_element_matrices(const SurfaceSpace& space, const Local& local, CsrMatrix& matrix) {
+  space.team->run([&](int part) {
+    const RowBlock& block = space.blocks[part];
+    for (int e = block.element_begin; e < block.element_end; ++e)
+      add_element_matrix(space.elements[e], local(space.elements[e], e), block, matrix);
+  });
+}
+
 // Symmetric assembly: values of a matrix from one number per active edge and one per node.
 void fill_symmetric(const std::vector<double>& edge, const std::vector<double>& diagonal,
                     CsrMatrix& matrix);

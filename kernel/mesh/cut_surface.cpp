@@ -18,10 +18,6 @@ bool left_handed(int kuhn) {
   return kuhn == 1 || kuhn == 2 || kuhn == 5;
 }
 
-double cut_fraction(double phi_low, double phi_high) {
-  return phi_low / (phi_low - phi_high);
-}
-
 }  // namespace
 
 CutPolygon cut_polygon(const ActiveMesh& mesh, const ActiveTet& tet) {

@@ -17,6 +17,11 @@ struct CutPolygon {
 };
 CutPolygon cut_polygon(const ActiveMesh& mesh, const ActiveTet& tet);
 
+// Where Γ_h cuts an edge: x = (1 − s) x_low + s x_high.
+inline double cut_fraction(double phi_low, double phi_high) {
+  return phi_low / (phi_low - phi_high);
+}
+
 // Unit normal of Γ_h in a tetrahedron, ∇φ_h/|∇φ_h|, pointing to φ > 0.
 Point cut_normal(const ActiveMesh& mesh, const ActiveTet& tet);
 

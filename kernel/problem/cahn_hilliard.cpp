@@ -77,25 +77,14 @@ void CahnHilliard::fill_curvature(ConstVec c, Tangent tangent, BlockJacobian& J)
 void CahnHilliard::add_mobility_derivative(ConstVec mu,
                                            const std::vector<std::array<double, 4>>& gradient,
                                            CsrMatrix& matrix) const {
-  const SurfaceSpace& space = *space_;
-  space.team->run([&](int part) {
-    const RowBlock& block = space.blocks[part];
-    for (int e = block.element_begin; e < block.element_end; ++e) {
-      const CutElement& element = space.elements[e];
-      const std::array<double, 4> flux = unit_flux(element, mu);
-      const std::array<double, 4>& slope = gradient[e];
-      for (int i = 0; i < 4; ++i)
-        if (block.owns(element.node[i]))
-          matrix.values[space.pattern->diagonal[element.node[i]]] += flux[i] * slope[i];
-      for (int k = 0; k < 6; ++k) {
-        const auto& [i, j] = kTetEdges[k];
-        if (block.owns(element.node[i]))
-          matrix.values[space.pattern->low_high[element.edge[k]]] += flux[i] * slope[j];
-        if (block.owns(element.node[j]))
-          matrix.values[space.pattern->high_low[element.edge[k]]] += flux[j] * slope[i];
-      }
-    }
-  });
+  add_element_matrices(
+      *space_,
+      [&](const CutElement& element, int e) -> Eigen::Matrix4d {
+        const std::array<double, 4> flux = unit_flux(element, mu);
+        return Eigen::Map<const Eigen::Vector4d>(flux.data()) *
+               Eigen::Map<const Eigen::RowVector4d>(gradient[e].data());
+      },
+      matrix);
 }
 
 Status CahnHilliard::jacobian(double t, ConstVec y, ConstVec, double shift, Tangent tangent,

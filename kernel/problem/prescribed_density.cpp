@@ -23,12 +23,7 @@ class PrescribedDensity final : public Effect {
     for_each_row_contribution(
         space.elements, space.blocks, *space.team,
         [&](const CutElement& element, int) {
-          std::array<Point, 4> corner;
-          for (int v = 0; v < element.corners; ++v) {
-            const auto& [low, high] = kTetEdges[element.cut_edge[v]];
-            corner[v] = (1 - element.s[v]) * space.mesh.position(element.node[low]) +
-                        element.s[v] * space.mesh.position(element.node[high]);
-          }
+          const std::array<Point, 4> corner = corners_of(space.mesh, element);
           std::array<double, 4> load{}, nodal{};
           for (int k = 0; k < element.triangles(); ++k) {
             const auto& v = kPolygonTriangles[k];
