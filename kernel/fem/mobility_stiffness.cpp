@@ -2,113 +2,120 @@
 
 #include <algorithm>
 
+#include "kernel/fem/trace.hpp"
+
 namespace traceraft {
 namespace {
 
-constexpr int kBatch = 64;  // elements evaluated by one call of the mobility law
+constexpr int kBatch = 64;  // triangles evaluated by one call of the mobility law
 
-// Traces at the midpoints of the triangles' edges, three per triangle.
-int midpoint_traces(const CutElement& element, const std::array<double, 4>& corner, double* out) {
-  for (int t = 0; t < element.triangles(); ++t) {
-    const auto& [a, b, c] = kPolygonTriangles[t];
-    *out++ = 0.5 * (corner[a] + corner[b]);
-    *out++ = 0.5 * (corner[b] + corner[c]);
-    *out++ = 0.5 * (corner[c] + corner[a]);
+// Adds the derivative of one triangle's integral, given M' at the midpoints of its edges.
+void add_gradient(const SurfaceSpace& space, int triangle, const double* slope,
+                  std::array<double, 4>& gradient) {
+  const CutSurface& surface = space.surface;
+  const CutElement& element = space.elements[surface.triangle_tet[triangle]];
+  const double weight = surface.triangle_area[triangle] / 6;
+  const double at_corner[3] = {weight * (slope[0] + slope[2]), weight * (slope[0] + slope[1]),
+                               weight * (slope[1] + slope[2])};
+  for (int k = 0; k < 3; ++k) {
+    const int corner = kPolygonTriangles[triangle - element.first_triangle][k];
+    const auto& [low, high] = kTetEdges[element.cut_edge[corner]];
+    const double s = surface.points[surface.triangles[triangle][k]].s;
+    gradient[low] += (1 - s) * at_corner[k];
+    gradient[high] += s * at_corner[k];
   }
-  return 3 * element.triangles();
 }
 
-double mean_of(const CutElement& element, const double* value) {
-  double sum = element.triangle_area[0] * (value[0] + value[1] + value[2]);
-  if (element.corners == 4) sum += element.triangle_area[1] * (value[3] + value[4] + value[5]);
-  return sum / (3 * element.area());
-}
-
-std::array<double, 4> gradient_of(const CutElement& element, const double* slope) {
-  std::array<double, 4> corner{}, nodal{};
-  for (int t = 0; t < element.triangles(); ++t) {
-    const auto& [a, b, c] = kPolygonTriangles[t];
-    const double weight = element.triangle_area[t] / (6 * element.area());
-    corner[a] += weight * (slope[3 * t] + slope[3 * t + 2]);
-    corner[b] += weight * (slope[3 * t] + slope[3 * t + 1]);
-    corner[c] += weight * (slope[3 * t + 1] + slope[3 * t + 2]);
+// The integrals over triangles [begin, end), added to their elements; gradient may be null.
+void add_integrals(const SurfaceSpace& space, const Mobility& law, const Vec& point_value,
+                   int begin, int end, std::vector<double>& integral,
+                   std::vector<std::array<double, 4>>* gradient) {
+  const CutSurface& surface = space.surface;
+  double midpoint[3 * kBatch], value[3 * kBatch], slope[3 * kBatch];
+  for (int first = begin; first < end; first += kBatch) {
+    const int count = std::min(kBatch, end - first);
+    for (int t = 0; t < count; ++t) {
+      const auto& [i, j, k] = surface.triangles[first + t];
+      const double a = point_value[i], b = point_value[j], c = point_value[k];
+      midpoint[3 * t] = 0.5 * (a + b);
+      midpoint[3 * t + 1] = 0.5 * (b + c);
+      midpoint[3 * t + 2] = 0.5 * (c + a);
+    }
+    law.evaluate(midpoint, 3 * count, value, gradient ? slope : nullptr);
+    for (int t = 0; t < count; ++t) {
+      const int element = surface.triangle_tet[first + t];
+      integral[element] += surface.triangle_area[first + t] / 3 *
+                           (value[3 * t] + value[3 * t + 1] + value[3 * t + 2]);
+      if (gradient) add_gradient(space, first + t, slope + 3 * t, (*gradient)[element]);
+    }
   }
-  element.distribute(corner, nodal);
-  return nodal;
 }
 
-// Element by element in batches; gradient may be null.
-void evaluate_means(const SurfaceSpace& space, const Mobility& law, ConstVec c,
-                    std::vector<double>& mean, std::vector<std::array<double, 4>>* gradient) {
-  mean.resize(space.elements.size());
-  if (gradient) gradient->resize(space.elements.size());
-  space.team->for_range(space.elements.size(), [&](std::size_t begin, std::size_t end) {
-    double trace[6 * kBatch], value[6 * kBatch], slope[6 * kBatch];
-    for (std::size_t first = begin; first < end; first += kBatch) {
-      const std::size_t last = std::min(first + kBatch, end);
-      int count = 0;
-      for (std::size_t e = first; e < last; ++e)
-        count += midpoint_traces(space.elements[e], space.elements[e].trace(c), trace + count);
-      law.evaluate(trace, count, value, gradient ? slope : nullptr);
-      int at = 0;
-      for (std::size_t e = first; e < last; ++e) {
-        const CutElement& element = space.elements[e];
-        const double unfloored = mean_of(element, value + at);
-        mean[e] = unfloored <= 0 ? 0.0 : unfloored;  // NaN stays NaN
-        if (gradient)
-          (*gradient)[e] =
-              unfloored > 0 ? gradient_of(element, slope + at) : std::array<double, 4>{};
-        at += 3 * element.triangles();
-      }
+std::vector<double> evaluate_integrals(const SurfaceSpace& space, const Mobility& law, ConstVec c,
+                                       std::vector<std::array<double, 4>>* gradient) {
+  const std::size_t elements = space.elements.size();
+  const Vec point_value = trace(space, c);
+  std::vector<double> integral(elements, 0.0);
+  if (gradient) gradient->assign(elements, {});
+  space.team->for_range(elements, [&](std::size_t begin, std::size_t end) {
+    if (begin == end) return;
+    const int last = end < elements ? space.elements[end].first_triangle
+                                    : static_cast<int>(space.surface.triangles.size());
+    add_integrals(space, law, point_value, space.elements[begin].first_triangle, last, integral,
+                  gradient);
+    for (std::size_t e = begin; e < end; ++e) {
+      if (!(integral[e] <= 0)) continue;  // NaN stays NaN
+      integral[e] = 0;
+      if (gradient) (*gradient)[e] = {};
     }
   });
+  return integral;
+}
+
+// Entries of Σ_T I_T G_T off the diagonal, per active edge.
+std::vector<double> edge_weights(const SurfaceSpace& space, const std::vector<double>& integral) {
+  const EdgeCouplings& couplings = space.edge_couplings;
+  std::vector<double> weight(space.mesh.edges.size());
+  space.team->for_range(weight.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t e = begin; e < end; ++e) {
+      double sum = 0;
+      for (int k = couplings.begin[e]; k < couplings.begin[e + 1]; ++k)
+        sum += couplings.coupling[k] * integral[couplings.element[k]];
+      weight[e] = sum;
+    }
+  });
+  return weight;
 }
 
 }  // namespace
 
-void mean_mobility(const SurfaceSpace& space, const Mobility& law, ConstVec c,
-                   std::vector<double>& mean) {
-  evaluate_means(space, law, c, mean, nullptr);
+std::vector<double> mobility_integrals(const SurfaceSpace& space, const Mobility& law, ConstVec c) {
+  return evaluate_integrals(space, law, c, nullptr);
 }
 
-void mean_mobility(const SurfaceSpace& space, const Mobility& law, ConstVec c,
-                   std::vector<double>& mean, std::vector<std::array<double, 4>>& gradient) {
-  evaluate_means(space, law, c, mean, &gradient);
+std::vector<double> mobility_integrals(const SurfaceSpace& space, const Mobility& law, ConstVec c,
+                                       std::vector<std::array<double, 4>>& gradient) {
+  return evaluate_integrals(space, law, c, &gradient);
 }
 
-void assemble_mobility_stiffness(const SurfaceSpace& space, const std::vector<double>& mean,
+void assemble_mobility_stiffness(const SurfaceSpace& space, const std::vector<double>& integral,
                                  CsrMatrix& matrix) {
-  std::vector<double> weight(space.mesh.edges.size());
-  space.team->run([&](int part) {
-    const RowBlock& block = space.blocks[part];
-    for (int e = block.element_begin; e < block.element_end; ++e) {
-      const CutElement& element = space.elements[e];
-      for (int k = 0; k < 6; ++k) {
-        const int edge = element.edge[k];
-        if (edge >= block.edge_begin && edge < block.edge_end)
-          weight[edge] += mean[e] * element.stiffness[k];
-      }
+  fill_zero_row_sum(edge_weights(space, integral), space.blocks, *space.team, matrix);
+}
+
+void add_mobility_flux(const SurfaceSpace& space, const std::vector<double>& integral, ConstVec u,
+                       VecRef r) {
+  const SparsityPattern& pattern = *space.pattern;
+  const std::vector<double> weight = edge_weights(space, integral);
+  space.team->for_range(pattern.rows(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      double flux = 0;
+      for (int k = pattern.row_begin[i]; k < pattern.row_begin[i + 1]; ++k)
+        if (const int e = pattern.edge_of_entry[k]; e >= 0)
+          flux += weight[e] * (u[pattern.column[k]] - u[i]);
+      r[i] += flux;
     }
   });
-  fill_zero_row_sum(weight, space.blocks, *space.team, matrix);
-}
-
-void add_mobility_flux(const SurfaceSpace& space, const std::vector<double>& mean, ConstVec u,
-                       VecRef r) {
-  for_each_row_contribution(
-      space.elements, space.blocks, *space.team,
-      [&](const CutElement& element, int e) {
-        std::array<double, 4> load{};
-        for (int k = 0; k < 6; ++k) {
-          const auto& [i, j] = kTetEdges[k];
-          const double flux =
-              mean[e] * element.stiffness[k] * (u[element.node[j]] - u[element.node[i]]);
-          load[i] += flux;
-          load[j] -= flux;
-        }
-        return load;
-      },
-      [&](int row, double value) { r[row] += value; });
 }
 
 }  // namespace traceraft

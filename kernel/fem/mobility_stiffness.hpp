@@ -1,4 +1,6 @@
-// K_M(c): the stiffness matrix weighted with the mobility.
+// K_M(c): the stiffness matrix weighted with the mobility. K_M = Σ_T I_T G_T, where
+// I_T = max(0, ∫_T M(c_h)) and G_T = (∇_Γλ_i·∇_Γλ_j): each tetrahedron counts with its mean
+// mobility, floored at zero.
 #pragma once
 
 #include <vector>
@@ -8,21 +10,19 @@
 
 namespace traceraft {
 
-// Mean of M(c_h) over Γ_h in each tetrahedron, floored at zero: m̄_T = max(0, ∫_T M(c_h) / |Γ_T|),
-// by the edge-midpoint rule on each triangle (exact for quadratic M). `c` has ghosts.
-void mean_mobility(const SurfaceSpace& space, const Mobility& law, ConstVec c,
-                   std::vector<double>& mean);
+// I_T by the edge-midpoint rule on each triangle (exact for quadratic M). `c` has ghosts.
+std::vector<double> mobility_integrals(const SurfaceSpace& space, const Mobility& law, ConstVec c);
 
-// The same with ∂m̄_T/∂c_i at the four nodes (zero where floored).
-void mean_mobility(const SurfaceSpace& space, const Mobility& law, ConstVec c,
-                   std::vector<double>& mean, std::vector<std::array<double, 4>>& gradient);
+// The same with ∂I_T/∂c_i at the four nodes of each element (zero where floored).
+std::vector<double> mobility_integrals(const SurfaceSpace& space, const Mobility& law, ConstVec c,
+                                       std::vector<std::array<double, 4>>& gradient);
 
-// K_M = Σ_T m̄_T K_T. Rows sum to zero exactly, so 1ᵀ K_M = 0 conserves mass to roundoff.
-void assemble_mobility_stiffness(const SurfaceSpace& space, const std::vector<double>& mean,
+// Σ_T I_T G_T. Rows sum to zero exactly, so 1ᵀ K_M = 0 conserves mass to roundoff.
+void assemble_mobility_stiffness(const SurfaceSpace& space, const std::vector<double>& integral,
                                  CsrMatrix& matrix);
 
-// r += Σ_T m̄_T K_T u without assembling; each edge's flux is added once and subtracted once.
-void add_mobility_flux(const SurfaceSpace& space, const std::vector<double>& mean, ConstVec u,
+// r += Σ_T I_T G_T u without assembling; each edge's flux is added once and subtracted once.
+void add_mobility_flux(const SurfaceSpace& space, const std::vector<double>& integral, ConstVec u,
                        VecRef r);
 
 }  // namespace traceraft

@@ -3,61 +3,41 @@
 #include <algorithm>
 #include <array>
 
+#include "kernel/fem/trace.hpp"
 #include "kernel/fem/triangle_rule.hpp"
 
 namespace traceraft {
 namespace {
 
-// Calls use(corner indices, value at the point, barycentrics, area weight) for every quadrature
-// point of an element.
+// Calls use(value at the point, barycentrics, area weight) for every quadrature point of a triangle
+// whose corners have the traces given.
 template <class Use>
-void for_each_point(const CutElement& element, const std::array<double, 4>& corner,
-                    const Use& use) {
+void for_each_point(double area, const std::array<double, 3>& corner, const Use& use) {
+  for (const auto& [at, weight] : kDegreeFourRule)
+    use(at[0] * corner[0] + at[1] * corner[1] + at[2] * corner[2], at, weight * area);
+}
+
+std::array<double, 3> corners_of(const SurfaceSpace& space, int triangle, const Vec& point_value) {
+  const auto& [i, j, k] = space.surface.triangles[triangle];
+  return {point_value[i], point_value[j], point_value[k]};
+}
+
+// ∫ f0''(c_h) φ_i φ_j over one element.
+Eigen::Matrix4d local_tangent(const SurfaceSpace& space, const CutElement& element,
+                              const DoubleWell& well, const Vec& point_value) {
+  Eigen::Matrix4d polygon = Eigen::Matrix4d::Zero();
   for (int t = 0; t < element.triangles(); ++t) {
+    const int triangle = element.first_triangle + t;
     const auto& v = kPolygonTriangles[t];
-    for (const auto& [at, weight] : kDegreeFourRule)
-      use(v, at[0] * corner[v[0]] + at[1] * corner[v[1]] + at[2] * corner[v[2]], at,
-          weight * element.triangle_area[t]);
+    for_each_point(space.surface.triangle_area[triangle], corners_of(space, triangle, point_value),
+                   [&](double value, const auto& at, double w) {
+                     const double density = w * well.second(value);
+                     for (int a = 0; a < 3; ++a)
+                       for (int b = 0; b < 3; ++b) polygon(v[a], v[b]) += density * at[a] * at[b];
+                   });
   }
-}
-
-std::array<double, 4> local_potential(const CutElement& element, const DoubleWell& well,
-                                      double factor, ConstVec c) {
-  std::array<double, 4> load{}, nodal{};
-  for_each_point(element, element.trace(c),
-                 [&](const auto& v, double value, const auto& at, double w) {
-                   const double density = factor * w * well.derivative(value);
-                   for (int k = 0; k < 3; ++k) load[v[k]] += density * at[k];
-                 });
-  element.distribute(load, nodal);
-  return nodal;
-}
-
-// ∫ f0''(c_h) λ_a λ_b between the polygon's vertices.
-Eigen::Matrix4d polygon_tangent(const CutElement& element, const DoubleWell& well, ConstVec c) {
-  Eigen::Matrix4d tangent = Eigen::Matrix4d::Zero();
-  for_each_point(element, element.trace(c),
-                 [&](const auto& v, double value, const auto& at, double w) {
-                   const double density = w * well.second(value);
-                   for (int a = 0; a < 3; ++a)
-                     for (int b = 0; b < 3; ++b) tangent(v[a], v[b]) += density * at[a] * at[b];
-                 });
-  return tangent;
-}
-
-Eigen::Matrix4d local_tangent(const CutElement& element, const DoubleWell& well, ConstVec c) {
-  const Eigen::Matrix4d polygon = polygon_tangent(element, well, c);
-  Eigen::Matrix4d local = Eigen::Matrix4d::Zero();
-  for (int a = 0; a < element.corners; ++a)
-    for (int b = 0; b < element.corners; ++b) {
-      const auto& p = kTetEdges[element.cut_edge[a]];
-      const auto& q = kTetEdges[element.cut_edge[b]];
-      const double pa[2] = {1 - element.s[a], element.s[a]};
-      const double qb[2] = {1 - element.s[b], element.s[b]};
-      for (int i = 0; i < 2; ++i)
-        for (int j = 0; j < 2; ++j) local(p[i], q[j]) += pa[i] * polygon(a, b) * qb[j];
-    }
-  return local;
+  const Eigen::Matrix4d nodal = trace_matrix(space.surface, element);
+  return nodal.transpose() * polygon * nodal;
 }
 
 void add_nodal_tangent(const SurfaceSpace& space, const DoubleWell& well, double factor, ConstVec c,
@@ -75,19 +55,27 @@ void add_potential(const SurfaceSpace& space, const DoubleWell& well, PotentialR
     space.mass.multiply_add(factor, derivative, r, *space.team);
     return;
   }
-  for_each_row_contribution(
-      space.elements, space.blocks, *space.team,
-      [&](const CutElement& element, int) { return local_potential(element, well, factor, c); },
-      [&](int row, double value) { r[row] += value; });
+  const Vec point_value = trace(space, c);
+  const Vec load = point_loads(space, [&](int triangle) {
+    std::array<double, 3> corner_load{};
+    for_each_point(space.surface.triangle_area[triangle], corners_of(space, triangle, point_value),
+                   [&](double value, const auto& at, double w) {
+                     const double density = w * well.derivative(value);
+                     for (int k = 0; k < 3; ++k) corner_load[k] += density * at[k];
+                   });
+    return corner_load;
+  });
+  add_trace_transpose(space, factor, load, r);
 }
 
 void add_potential_tangent(const SurfaceSpace& space, const DoubleWell& well, PotentialRule rule,
                            double factor, ConstVec c, CsrMatrix& matrix) {
   if (rule == PotentialRule::nodal) return add_nodal_tangent(space, well, factor, c, matrix);
+  const Vec point_value = trace(space, c);
   add_element_matrices(
       space,
       [&](const CutElement& element, int) -> Eigen::Matrix4d {
-        return factor * local_tangent(element, well, c);
+        return factor * local_tangent(space, element, well, point_value);
       },
       matrix);
 }
@@ -101,36 +89,35 @@ void add_potential_tangent_product(const SurfaceSpace& space, const DoubleWell& 
     space.mass.multiply_add(factor, scaled, r, *space.team);
     return;
   }
-  for_each_row_contribution(
-      space.elements, space.blocks, *space.team,
-      [&](const CutElement& element, int) {
-        const std::array<double, 4> direction = element.trace(v);
-        std::array<double, 4> load{}, nodal{};
-        for_each_point(element, element.trace(c),
-                       [&](const auto& p, double value, const auto& at, double w) {
-                         double along = 0;
-                         for (int k = 0; k < 3; ++k) along += at[k] * direction[p[k]];
-                         const double density = factor * w * well.second(value) * along;
-                         for (int k = 0; k < 3; ++k) load[p[k]] += density * at[k];
-                       });
-        element.distribute(load, nodal);
-        return nodal;
-      },
-      [&](int row, double value) { r[row] += value; });
+  const Vec point_value = trace(space, c), point_direction = trace(space, v);
+  const Vec load = point_loads(space, [&](int triangle) {
+    const std::array<double, 3> direction = corners_of(space, triangle, point_direction);
+    std::array<double, 3> corner_load{};
+    for_each_point(space.surface.triangle_area[triangle], corners_of(space, triangle, point_value),
+                   [&](double value, const auto& at, double w) {
+                     const double along =
+                         at[0] * direction[0] + at[1] * direction[1] + at[2] * direction[2];
+                     const double density = w * well.second(value) * along;
+                     for (int k = 0; k < 3; ++k) corner_load[k] += density * at[k];
+                   });
+    return corner_load;
+  });
+  add_trace_transpose(space, factor, load, r);
 }
 
 double potential_energy(const SurfaceSpace& space, const DoubleWell& well, ConstVec c) {
   // Summed in chunks of fixed size so that the result does not depend on the number of threads.
   constexpr std::size_t kChunk = 1024;
-  std::vector<double> partial((space.elements.size() + kChunk - 1) / kChunk, 0.0);
+  const Vec point_value = trace(space, c);
+  const std::vector<double>& area = space.surface.triangle_area;
+  std::vector<double> partial((area.size() + kChunk - 1) / kChunk, 0.0);
   space.team->for_range(partial.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t chunk = begin; chunk < end; ++chunk) {
-      const std::size_t last = std::min((chunk + 1) * kChunk, space.elements.size());
-      for (std::size_t e = chunk * kChunk; e < last; ++e)
-        for_each_point(space.elements[e], space.elements[e].trace(c),
-                       [&](const auto&, double value, const auto&, double w) {
-                         partial[chunk] += w * well.energy(value);
-                       });
+      const std::size_t last = std::min((chunk + 1) * kChunk, area.size());
+      for (std::size_t t = chunk * kChunk; t < last; ++t)
+        for_each_point(
+            area[t], corners_of(space, static_cast<int>(t), point_value),
+            [&](double value, const auto&, double w) { partial[chunk] += w * well.energy(value); });
     }
   });
   double total = 0;

@@ -11,31 +11,43 @@ CutSurface checked_surface(const ActiveMesh& mesh) {
   return surface;
 }
 
-CsrMatrix zero_row_sum_matrix(const SurfaceSpace& space,
-                              std::array<double, 6> CutElement::*off_diagonal) {
+// From the entries off the diagonal, off_diagonal(element number) for the edges of an element.
+template <class OffDiagonal>
+CsrMatrix zero_row_sum_matrix(const SurfaceSpace& space, const OffDiagonal& off_diagonal) {
   std::vector<double> edge(space.mesh.edges.size(), 0.0);
-  for (const CutElement& element : space.elements)
-    for (int e = 0; e < 6; ++e) edge[element.edge[e]] += (element.*off_diagonal)[e];
+  for (std::size_t t = 0; t < space.elements.size(); ++t) {
+    const std::array<double, 6> value = off_diagonal(t);
+    for (int e = 0; e < 6; ++e) edge[space.elements[t].edge[e]] += value[e];
+  }
   CsrMatrix matrix(space.pattern);
   fill_zero_row_sum(edge, space.blocks, *space.team, matrix);
   return matrix;
+}
+
+CsrMatrix stiffness_matrix(const SurfaceSpace& space) {
+  return zero_row_sum_matrix(space, [&](std::size_t t) {
+    std::array<double, 6> value = space.elements[t].coupling;
+    for (double& entry : value) entry *= space.elements[t].area;
+    return value;
+  });
+}
+
+CsrMatrix normal_matrix(const SurfaceSpace& space) {
+  return zero_row_sum_matrix(
+      space, [&](std::size_t t) { return normal_coupling(space.mesh, space.mesh.tets[t]); });
 }
 
 // M_T = Pᵀ M_Γ P: the mass matrix of each flat triangle, area/12 (1 + δ_ab), seen from the nodes.
 CsrMatrix mass_matrix(const SurfaceSpace& space) {
   std::vector<double> edge(space.mesh.edges.size(), 0.0), diagonal(space.mesh.nodes(), 0.0);
   for (const CutElement& element : space.elements) {
-    Eigen::Matrix4d nodal = Eigen::Matrix4d::Zero();  // rows: polygon vertices, columns: nodes
-    for (int v = 0; v < element.corners; ++v) {
-      const auto& [low, high] = kTetEdges[element.cut_edge[v]];
-      nodal(v, low) = 1 - element.s[v];
-      nodal(v, high) = element.s[v];
-    }
+    const Eigen::Matrix4d nodal = trace_matrix(space.surface, element);
     Eigen::Matrix4d surface = Eigen::Matrix4d::Zero();
     for (int t = 0; t < element.triangles(); ++t)
       for (const int a : kPolygonTriangles[t])
         for (const int b : kPolygonTriangles[t])
-          surface(a, b) += element.triangle_area[t] / (a == b ? 6 : 12);
+          surface(a, b) +=
+              space.surface.triangle_area[element.first_triangle + t] / (a == b ? 6 : 12);
     const Eigen::Matrix4d local = nodal.transpose() * surface * nodal;
     for (int i = 0; i < 4; ++i) diagonal[element.node[i]] += local(i, i);
     for (int e = 0; e < 6; ++e) edge[element.edge[e]] += local(kTetEdges[e][0], kTetEdges[e][1]);
@@ -51,13 +63,13 @@ void add_element_matrix(const CutElement& element, const Eigen::Matrix4d& local,
                         const RowBlock& block, CsrMatrix& matrix) {
   const SparsityPattern& pattern = *matrix.pattern;
   for (int i = 0; i < 4; ++i)
-    if (block.owns(element.node[i]))
+    if (block.rows.contains(element.node[i]))
       matrix.values[pattern.diagonal[element.node[i]]] += local(i, i);
   for (int e = 0; e < 6; ++e) {
     const auto& [i, j] = kTetEdges[e];
-    if (block.owns(element.node[i]))
+    if (block.rows.contains(element.node[i]))
       matrix.values[pattern.low_high[element.edge[e]]] += local(i, j);
-    if (block.owns(element.node[j]))
+    if (block.rows.contains(element.node[j]))
       matrix.values[pattern.high_low[element.edge[e]]] += local(j, i);
   }
 }
@@ -75,7 +87,7 @@ void fill_zero_row_sum(const std::vector<double>& edge, const std::vector<RowBlo
                        const ThreadTeam& team, CsrMatrix& matrix) {
   const SparsityPattern& pattern = *matrix.pattern;
   team.run([&](int part) {
-    for (int i = blocks[part].row_begin; i < blocks[part].row_end; ++i) {
+    for (int i = blocks[part].rows.begin; i < blocks[part].rows.end; ++i) {
       double sum = 0;
       for (int k = pattern.row_begin[i]; k < pattern.row_begin[i + 1]; ++k) {
         const int e = pattern.edge_of_entry[k];
@@ -93,14 +105,15 @@ SurfaceSpace::SurfaceSpace(const LevelSet& level_set, std::int64_t cells,
                            std::shared_ptr<const Communicator> communicator_)
     : mesh(build_active_mesh(level_set, cells)),
       surface(checked_surface(mesh)),
-      elements(build_cut_elements(mesh)),
+      elements(build_cut_elements(mesh, surface)),
+      edge_couplings(build_edge_couplings(elements, mesh.edges.size())),
       team(std::move(team_)),
       communicator(std::move(communicator_)),
-      blocks(split_rows(mesh, team->size())),
+      blocks(split_rows(mesh, surface, elements, team->size())),
       pattern(build_pattern(mesh)),
       mass(mass_matrix(*this)),
-      stiffness(zero_row_sum_matrix(*this, &CutElement::stiffness)),
-      normal(zero_row_sum_matrix(*this, &CutElement::normal)),
+      stiffness(stiffness_matrix(*this)),
+      normal(normal_matrix(*this)),
       stabilised_mass(combine(1.0, mass, h(), normal)),
       node_area(Vec::Zero(nodes())) {
   mass.multiply(Vec::Ones(mesh.nodes()), node_area, *team);

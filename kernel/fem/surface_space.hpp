@@ -9,7 +9,7 @@
 #include "kernel/core/status.hpp"
 #include "kernel/core/thread_team.hpp"
 #include "kernel/fem/csr.hpp"
-#include "kernel/fem/cut_elements.hpp"
+#include "kernel/fem/row_blocks.hpp"
 #include "kernel/mesh/active_mesh.hpp"
 #include "kernel/mesh/cut_surface.hpp"
 
@@ -25,6 +25,7 @@ class SurfaceSpace {
   const ActiveMesh mesh;
   const CutSurface surface;
   const std::vector<CutElement> elements;
+  const EdgeCouplings edge_couplings;
   const std::shared_ptr<const ThreadTeam> team;
   const std::shared_ptr<const Communicator> communicator;
   const std::vector<RowBlock> blocks;  // one per thread
@@ -63,7 +64,7 @@ template <class Local>
 void add_element_matrices(const SurfaceSpace& space, const Local& local, CsrMatrix& matrix) {
   space.team->run([&](int part) {
     const RowBlock& block = space.blocks[part];
-    for (int e = block.element_begin; e < block.element_end; ++e)
+    for (int e = block.touching_elements.begin; e < block.touching_elements.end; ++e)
       add_element_matrix(space.elements[e], local(space.elements[e], e), block, matrix);
   });
 }

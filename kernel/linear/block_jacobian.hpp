@@ -24,7 +24,7 @@ struct BlockJacobian {
 
   // The scales from which preconditioners choose their shifts: A ≈ mobility · K and
   // B ≈ stiffness · K + curvature · M̃.
-  double mobility = 0;   // mean of M over Γ_h
+  double mobility = 0;   // mean of M(c_h): trace(K_M) / trace(K)
   double stiffness = 0;  // ε²
   double curvature = 0;  // β, or the mean of max(f0'', 0) for the exact tangent
 

@@ -70,13 +70,18 @@ CutSurface build_cut_surface(const ActiveMesh& mesh) {
       surface.triangle_tet.push_back(static_cast<int>(t));
     }
   }
+  std::vector<Point> position;
+  for (std::size_t p = 0; p < surface.points.size(); ++p)
+    position.push_back(surface.position(mesh, static_cast<int>(p)));
+  for (const auto& [a, b, c] : surface.triangles)
+    surface.triangle_area.push_back(
+        0.5 * (position[b] - position[a]).cross(position[c] - position[a]).norm());
   return surface;
 }
 
 Vec CutSurface::trace(ConstVec nodal) const {
   Vec values(points.size());
-  for (std::size_t p = 0; p < points.size(); ++p)
-    values[p] = (1 - points[p].s) * nodal[points[p].low] + points[p].s * nodal[points[p].high];
+  for (std::size_t p = 0; p < points.size(); ++p) values[p] = points[p].trace(nodal);
   return values;
 }
 
@@ -94,10 +99,7 @@ Resolution surface_resolution(const ActiveMesh& mesh, const CutSurface& surface)
   std::vector<Point> turned(mesh.nodes(), Point::Zero());
   std::vector<double> total(mesh.nodes(), 0.0);
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    const auto& [a, b, c] = surface.triangles[t];
-    const Point origin = surface.position(mesh, a);
-    const double area =
-        0.5 * (surface.position(mesh, b) - origin).cross(surface.position(mesh, c) - origin).norm();
+    const double area = surface.triangle_area[t];
     const ActiveTet& tet = mesh.tets[surface.triangle_tet[t]];
     const Point normal = cut_normal(mesh, tet);
     for (const int node : tet.node) {

@@ -28,12 +28,14 @@ Point cut_normal(const ActiveMesh& mesh, const ActiveTet& tet);
 struct CutPoint {
   int low, high;  // nodes of the edge
   double s;       // x = (1 − s) x_low + s x_high
+  double trace(ConstVec nodal) const { return (1 - s) * nodal[low] + s * nodal[high]; }
 };
 
 struct CutSurface {
-  std::vector<CutPoint> points;
+  std::vector<CutPoint> points;               // ascending in `low`
   std::vector<std::array<int, 3>> triangles;  // counter-clockwise seen from outside
   std::vector<int> triangle_tet;              // ascending
+  std::vector<double> triangle_area;
 
   // A nodal field at the points: the trace c|Γ_h.
   Vec trace(ConstVec nodal) const;

@@ -8,12 +8,12 @@
 namespace traceraft {
 namespace {
 
-// K_T μ_T: the flux of unit mobility through the nodes of an element.
+// G_T μ_T: the flux through the nodes of an element whose mobility integrates to one.
 std::array<double, 4> unit_flux(const CutElement& element, ConstVec mu) {
   std::array<double, 4> flux{};
   for (int k = 0; k < 6; ++k) {
     const auto& [i, j] = kTetEdges[k];
-    const double along = element.stiffness[k] * (mu[element.node[j]] - mu[element.node[i]]);
+    const double along = element.coupling[k] * (mu[element.node[j]] - mu[element.node[i]]);
     flux[i] += along;
     flux[j] -= along;
   }
@@ -43,10 +43,8 @@ Status CahnHilliard::residual(double t, ConstVec y, ConstVec ydot, VecRef r) con
   r.setZero();
   VecRef first = r.head(n), second = r.tail(n);
 
-  std::vector<double> mean;
-  mean_mobility(space, *model_.mobility, c, mean);
   space.stabilised_mass.multiply_add(1, rate, first, *space.team);
-  add_mobility_flux(space, mean, mu, first);
+  add_mobility_flux(space, mobility_integrals(space, *model_.mobility, c), mu, first);
   space.normal.multiply_add(flux_stabilisation(), mu, first, *space.team);
 
   space.stabilised_mass.multiply_add(1, mu, second, *space.team);
@@ -72,6 +70,15 @@ void CahnHilliard::fill_curvature(ConstVec c, Tangent tangent, BlockJacobian& J)
   for (int i = 0; i < block_size(); ++i)
     convex += space_->node_area[i] * std::max(0.0, model_.well.second(c[i]));
   J.curvature = space_->communicator->sum(convex) / space_->area;
+}
+
+double CahnHilliard::mean_mobility(const CsrMatrix& mobility_stiffness) const {
+  double weighted = 0, unweighted = 0;
+  for (const int k : space_->pattern->diagonal) {
+    weighted += mobility_stiffness.values[k];
+    unweighted += space_->stiffness.values[k];
+  }
+  return space_->communicator->sum(weighted) / space_->communicator->sum(unweighted);
 }
 
 void CahnHilliard::add_mobility_derivative(ConstVec mu,
@@ -101,20 +108,18 @@ Status CahnHilliard::jacobian(double t, ConstVec y, ConstVec, double shift, Tang
   for (std::size_t k = 0; k < J.cc.values.size(); ++k)
     J.cc.values[k] = shift * space.stabilised_mass.values[k];
 
-  std::vector<double> mean;
+  std::vector<double> integral;
   if (tangent == Tangent::exact) {
     std::vector<std::array<double, 4>> gradient;
-    mean_mobility(space, *model_.mobility, c, mean, gradient);
+    integral = mobility_integrals(space, *model_.mobility, c, gradient);
     add_mobility_derivative(mu, gradient, J.cc);
   } else {
-    mean_mobility(space, *model_.mobility, c, mean);
+    integral = mobility_integrals(space, *model_.mobility, c);
   }
-  assemble_mobility_stiffness(space, mean, J.cm);
+  assemble_mobility_stiffness(space, integral, J.cm);
+  J.mobility = mean_mobility(J.cm);
   for (std::size_t k = 0; k < J.cm.values.size(); ++k)
     J.cm.values[k] += flux_stabilisation() * space.normal.values[k];
-  double weighted = 0;
-  for (std::size_t e = 0; e < mean.size(); ++e) weighted += mean[e] * space.elements[e].area();
-  J.mobility = space.communicator->sum(weighted) / space.area;
 
   fill_curvature(c, tangent, J);
   if (tangent == Tangent::exact)
@@ -138,26 +143,21 @@ Status CahnHilliard::jacobian_product(double t, ConstVec y, ConstVec, double shi
   space.stabilised_mass.multiply_add(1, vmu, second, *space.team);
   gradient_energy_.multiply_add(-1, vc, second, *space.team);
 
-  std::vector<double> mean;
   if (tangent == Tangent::stabilised) {
-    mean_mobility(space, *model_.mobility, c, mean);
-    add_mobility_flux(space, mean, vmu, first);
+    add_mobility_flux(space, mobility_integrals(space, *model_.mobility, c), vmu, first);
     space.stabilised_mass.multiply_add(-model_.beta(), vc, second, *space.team);
     return {};
   }
   std::vector<std::array<double, 4>> gradient;
-  mean_mobility(space, *model_.mobility, c, mean, gradient);
-  add_mobility_flux(space, mean, vmu, first);
-  for_each_row_contribution(
-      space.elements, space.blocks, *space.team,
-      [&](const CutElement& element, int e) {
-        double change = 0;
-        for (int i = 0; i < 4; ++i) change += gradient[e][i] * vc[element.node[i]];
-        std::array<double, 4> load = unit_flux(element, mu);
-        for (double& value : load) value *= change;
-        return load;
-      },
-      [&](int row, double value) { first[row] += value; });
+  std::vector<double> integral = mobility_integrals(space, *model_.mobility, c, gradient);
+  add_mobility_flux(space, integral, vmu, first);
+  space.team->for_range(integral.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t e = begin; e < end; ++e) {
+      integral[e] = 0;
+      for (int i = 0; i < 4; ++i) integral[e] += gradient[e][i] * vc[space.elements[e].node[i]];
+    }
+  });
+  add_mobility_flux(space, integral, mu, first);
   add_potential_tangent_product(space, model_.well, model_.rule, -1, c, vc, second);
   for (const EffectPtr& effect : model_.effects)
     effect->add_tangent_product(space, t, c, mu, vc, vmu, first, second);

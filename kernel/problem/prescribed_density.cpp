@@ -1,5 +1,6 @@
 #include <stdexcept>
 
+#include "kernel/fem/trace.hpp"
 #include "kernel/fem/triangle_rule.hpp"
 #include "kernel/problem/effect.hpp"
 
@@ -20,23 +21,20 @@ class PrescribedDensity final : public Effect {
                     VecRef residual_mu) const override {
     VecRef target = slot_ == Slot::source ? residual_c : residual_mu;
     const double sign = slot_ == Slot::source ? 1 : -1;
-    for_each_row_contribution(
-        space.elements, space.blocks, *space.team,
-        [&](const CutElement& element, int) {
-          const std::array<Point, 4> corner = corners_of(space.mesh, element);
-          std::array<double, 4> load{}, nodal{};
-          for (int k = 0; k < element.triangles(); ++k) {
-            const auto& v = kPolygonTriangles[k];
-            for (const auto& [at, weight] : kDegreeFourRule) {
-              const Point x = at[0] * corner[v[0]] + at[1] * corner[v[1]] + at[2] * corner[v[2]];
-              const double value = sign * weight * element.triangle_area[k] * density_(x, t);
-              for (int a = 0; a < 3; ++a) load[v[a]] += value * at[a];
-            }
-          }
-          element.distribute(load, nodal);
-          return nodal;
-        },
-        [&](int row, double value) { target[row] += value; });
+    const CutSurface& surface = space.surface;
+    const Vec load = point_loads(space, [&](int triangle) {
+      const auto& [i, j, k] = surface.triangles[triangle];
+      const Point corner[3] = {surface.position(space.mesh, i), surface.position(space.mesh, j),
+                               surface.position(space.mesh, k)};
+      std::array<double, 3> corner_load{};
+      for (const auto& [at, weight] : kDegreeFourRule) {
+        const Point x = at[0] * corner[0] + at[1] * corner[1] + at[2] * corner[2];
+        const double value = weight * surface.triangle_area[triangle] * density_(x, t);
+        for (int a = 0; a < 3; ++a) corner_load[a] += value * at[a];
+      }
+      return corner_load;
+    });
+    add_trace_transpose(space, sign, load, target);
   }
   void add_tangent(const SurfaceSpace&, double, ConstVec, ConstVec, BlockJacobian&) const override {
   }

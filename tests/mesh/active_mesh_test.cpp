@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include "kernel/core/random.hpp"
@@ -31,9 +32,8 @@ class Counting final : public LevelSet {
 };
 
 double area_of(const ActiveMesh& mesh) {
-  double area = 0;
-  for (const CutElement& element : build_cut_elements(mesh)) area += element.area();
-  return area;
+  const CutSurface surface = build_cut_surface(mesh);
+  return std::accumulate(surface.triangle_area.begin(), surface.triangle_area.end(), 0.0);
 }
 
 std::string complaint(const LevelSet& surface, int cells) {
