@@ -77,8 +77,8 @@ std::string encode(const Checkpoint& checkpoint) {
   out.write(reinterpret_cast<const char*>(checkpoint.concentration.data()),
             static_cast<std::streamsize>(sizeof(double) * checkpoint.concentration.size()));
   write_binary(out, static_cast<std::int64_t>(checkpoint.step));
-  write_binary(out, checkpoint.wall_seconds);
-  write_binary(out, checkpoint.cpu_seconds);
+  write_binary(out, checkpoint.cost.wall_seconds);
+  write_binary(out, checkpoint.cost.cpu_seconds);
   const std::string body = out.str();
   std::ostringstream head;
   head << kMagic;
@@ -106,8 +106,8 @@ Checkpoint decode(const std::string& data) {
   checkpoint.state = in.text();
   checkpoint.concentration = in.numbers();
   checkpoint.step = static_cast<long>(in.number<std::int64_t>());
-  checkpoint.wall_seconds = in.number<double>();
-  checkpoint.cpu_seconds = in.number<double>();
+  checkpoint.cost.wall_seconds = in.number<double>();
+  checkpoint.cost.cpu_seconds = in.number<double>();
   return checkpoint;
 }
 
@@ -148,6 +148,10 @@ Checkpoint CheckpointStore::newest(std::vector<std::string>& refused) const {
 }
 
 Vec final_concentration(const std::filesystem::path& run_folder, int nodes) {
+  std::error_code unreadable;
+  if (!std::filesystem::is_directory(run_folder / "checkpoints", unreadable))
+    throw InputError("restart: " + run_folder.string() +
+                     " is not the folder of a run: it has no checkpoints");
   std::vector<std::string> refused;
   Checkpoint checkpoint;
   try {

@@ -11,6 +11,11 @@
 
 namespace traceraft {
 
+// What a run has cost so far, in all processes that worked on it, set-up included.
+struct RunCost {
+  double wall_seconds = 0, cpu_seconds = 0;
+};
+
 // What one checkpoint file holds, besides magic, version and checksum.
 struct Checkpoint {
   std::string configuration;                    // resolved, to recognise a changed run
@@ -18,7 +23,7 @@ struct Checkpoint {
   std::string state;                            // RunState::save
   std::vector<double> concentration;            // c at the nodes, for --initial restart:DIR
   long step = 0;
-  double wall_seconds = 0, cpu_seconds = 0;  // of the run so far, earlier processes included
+  RunCost cost;
 };
 
 class CheckpointStore {

@@ -1,6 +1,7 @@
 #include "drivers/configuration.hpp"
 
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -122,6 +123,10 @@ void Configuration::set(const OptionSpec& spec, const GivenValue& value) {
       break;
   }
   values_[spec.name] = value;
+  // A run folder stays resumable from everywhere.
+  if (const NamedArguments parts = split_named_arguments(value.text);
+      spec.name == "initial" && parts.name == "restart")
+    values_[spec.name].text = "restart:" + std::filesystem::absolute(parts.arguments).string();
 }
 
 std::string Configuration::text(const std::string& name) const {

@@ -34,8 +34,7 @@ int carry_out(const Configuration& configuration, RunSetup& run, const RunFolder
   FieldWriter fields(folder, run);
   CheckpointWriter checkpoints(folder, run, tables, numerical_identity(configuration),
                                configuration.number("checkpoint-interval"),
-                               checkpoint ? checkpoint->wall_seconds : 0,
-                               checkpoint ? checkpoint->cpu_seconds : cpu_seconds());
+                               checkpoint ? checkpoint->cost : RunCost{});
   Progress progress(run, quiet);
   std::vector<RunListener*> listeners = {&tables};
   if (configuration.flag("fields")) listeners.push_back(&fields);
@@ -54,7 +53,7 @@ int carry_out(const Configuration& configuration, RunSetup& run, const RunFolder
         continue_run(state, *run.observer, run.t_end, run.output_times, listeners, stop_requested);
   progress.finish();
   if (run.integrator->statistics().steps > 0) checkpoints.write(state);
-  const RunCost cost{checkpoints.wall_seconds(), checkpoints.cpu_seconds()};
+  const RunCost cost = checkpoints.cost();
   write_durably(folder.summary(), summary_json(configuration, run, state, result, cost));
   if (!quiet) print_summary(run, state, result, cost, folder);
   if (result.end == RunEnd::stopped && !quiet)

@@ -118,17 +118,16 @@ void FieldWriter::on_output(const Observables& row, ConstVec y) {
 
 CheckpointWriter::CheckpointWriter(const RunFolder& folder, const RunSetup& run,
                                    TableWriter& tables, std::string configuration, double interval,
-                                   double wall_before, double cpu_before)
+                                   const RunCost& before)
     : store_(folder.checkpoints()),
       run_(run),
       tables_(tables),
       configuration_(std::move(configuration)),
       interval_(interval),
-      wall_before_(wall_before),
-      cpu_before_(cpu_before - traceraft::cpu_seconds()) {}
+      before_(before) {}
 
-double CheckpointWriter::cpu_seconds() const {
-  return cpu_before_ + traceraft::cpu_seconds();
+RunCost CheckpointWriter::cost() const {
+  return {before_.wall_seconds + wall_seconds(), before_.cpu_seconds + cpu_seconds()};
 }
 
 void CheckpointWriter::on_step(const RunState& state) {
@@ -147,8 +146,7 @@ void CheckpointWriter::write(const RunState& state) {
   const auto c = run_.problem->c_of(state.integrator.state());
   checkpoint.concentration.assign(c.data(), c.data() + c.size());
   checkpoint.step = state.integrator.statistics().steps;
-  checkpoint.wall_seconds = wall_seconds();
-  checkpoint.cpu_seconds = cpu_seconds();
+  checkpoint.cost = cost();
   store_.write(checkpoint);
   since_last_ = Stopwatch();
   written_ = true;

@@ -50,20 +50,19 @@ class FieldWriter final : public RunListener {
 class CheckpointWriter final : public RunListener {
  public:
   CheckpointWriter(const RunFolder& folder, const RunSetup& run, TableWriter& tables,
-                   std::string configuration, double interval, double wall_before,
-                   double cpu_before);
+                   std::string configuration, double interval, const RunCost& before);
   void on_step(const RunState& state) override;
   void write(const RunState& state);
-  double wall_seconds() const { return wall_before_ + watch_.seconds(); }
-  double cpu_seconds() const;
+  RunCost cost() const;  // of the whole run: earlier processes and this one
 
  private:
   CheckpointStore store_;
   const RunSetup& run_;
   TableWriter& tables_;
   std::string configuration_;
-  double interval_, wall_before_, cpu_before_;
-  Stopwatch watch_, since_last_;
+  double interval_;
+  RunCost before_;
+  Stopwatch since_last_;
   bool written_ = false;
 };
 

@@ -41,8 +41,11 @@ LevelSetPtr level_set(const Configuration& configuration) {
   }
   if (!formula.empty())
     throw InputError(configuration.where("surface-formula") + ": it needs --surface formula");
-  return said_of(configuration, "surface",
-                 [&] { return make_surface(configuration.text("surface")); });
+  return said_of(configuration, "surface", [&] {
+    const std::string specification = configuration.text("surface");
+    (void)surfaces().find(split_named_arguments(specification).name, {"formula"});
+    return make_surface(specification);
+  });
 }
 
 DoubleWell double_well(const Configuration& configuration) {
@@ -95,6 +98,13 @@ std::vector<CapRaft> parse_caps(const Configuration& configuration) {
   return caps;
 }
 
+// Data for another kind of initial state than the case's are a mistake, not something to ignore.
+void require_kind(const Configuration& configuration, const char* option, const char* kind) {
+  if (configuration.given(option) && !configuration.given("initial") &&
+      split_named_arguments(configuration.text("initial")).name != kind)
+    throw InputError(configuration.where(option) + ": it needs --initial " + kind);
+}
+
 InitialRequest initial_request(const Configuration& configuration, const CahnHilliardModel& model) {
   InitialRequest request;
   const long long cells = configuration.integer("cells");
@@ -119,10 +129,14 @@ InitialRequest initial_request(const Configuration& configuration, const CahnHil
 Vec initial_field(const Configuration& configuration, const CahnHilliardModel& model,
                   const SurfaceSpace& space) {
   const std::string kind = configuration.text("initial");
+  require_kind(configuration, "initial-formula", "formula");
+  require_kind(configuration, "initial-caps", "caps");
+  const InitialRequest request = initial_request(configuration, model);
   return said_of(configuration, "initial", [&] {
-    if (const auto [name, folder] = split_named_arguments(kind); name == "restart")
-      return final_concentration(folder, space.nodes());
-    return make_initial_field(kind, space, initial_request(configuration, model));
+    const auto [name, folder] = split_named_arguments(kind);
+    if (name == "restart") return final_concentration(folder, space.nodes());
+    (void)initial_fields().find(name, {"restart:DIR"});
+    return make_initial_field(kind, space, request);
   });
 }
 

@@ -3,15 +3,12 @@
 
 #include <string>
 
+#include "drivers/checkpoint_store.hpp"
 #include "drivers/run_folder.hpp"
 #include "drivers/run_setup.hpp"
 #include "kernel/simulation/run_loop.hpp"
 
 namespace traceraft {
-
-struct RunCost {
-  double wall_seconds, cpu_seconds;  // of the whole run, resumed parts included
-};
 
 std::string summary_json(const Configuration& configuration, const RunSetup& run,
                          const RunState& state, const RunResult& result, const RunCost& cost);

@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <ctime>
@@ -13,6 +14,7 @@ namespace traceraft {
 namespace {
 
 volatile std::sig_atomic_t stop_flag = 0;
+const auto process_start = std::chrono::steady_clock::now();
 
 void on_stop(int signal) {
   if (stop_flag) {
@@ -23,6 +25,10 @@ void on_stop(int signal) {
 }
 
 }  // namespace
+
+double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - process_start).count();
+}
 
 double cpu_seconds() {
   timespec now{};

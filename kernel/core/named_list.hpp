@@ -25,11 +25,13 @@ class NamedList {
   NamedList(std::string kind, std::vector<Entry> entries)
       : kind_(std::move(kind)), entries_(std::move(entries)) {}
 
-  // Throws InputError when no entry has that name.
-  const Entry& find(std::string_view name) const {
+  // Throws InputError when no entry has that name; `elsewhere` are names valid beside the list's.
+  const Entry& find(std::string_view name, const std::vector<std::string>& elsewhere = {}) const {
     for (const Entry& entry : entries_)
       if (entry.name == name) return entry;
-    throw InputError(unknown_name_message(kind_, name, names()));
+    std::vector<std::string> valid = names();
+    valid.insert(valid.end(), elsewhere.begin(), elsewhere.end());
+    throw InputError(unknown_name_message(kind_, name, valid));
   }
 
   std::vector<std::string> names() const {

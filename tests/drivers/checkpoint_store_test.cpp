@@ -19,8 +19,8 @@ Checkpoint sample(long step) {
   checkpoint.state = std::string(5000, 'q') + std::to_string(step);
   checkpoint.concentration = {0.25, 0.5, 1.0 / 3};
   checkpoint.step = step;
-  checkpoint.wall_seconds = 1.5;
-  checkpoint.cpu_seconds = 2.5;
+  checkpoint.cost.wall_seconds = 1.5;
+  checkpoint.cost.cpu_seconds = 2.5;
   return checkpoint;
 }
 
@@ -37,8 +37,8 @@ TEST(Checkpoint, RoundTrips) {
   EXPECT_EQ(a.state, b.state);
   EXPECT_EQ(a.concentration, b.concentration);
   EXPECT_EQ(a.step, b.step);
-  EXPECT_EQ(a.wall_seconds, b.wall_seconds);
-  EXPECT_EQ(a.cpu_seconds, b.cpu_seconds);
+  EXPECT_EQ(a.cost.wall_seconds, b.cost.wall_seconds);
+  EXPECT_EQ(a.cost.cpu_seconds, b.cost.cpu_seconds);
 }
 
 TEST(Checkpoint, AnyDamageIsRefused) {

@@ -146,7 +146,9 @@ TEST(RunSetup, ChecksEverythingBeforeAnythingRuns) {
   EXPECT_EQ(of({{"initial", "caps"}}).find("--initial: "), 0u);
   EXPECT_EQ(of({{"initial", "caps"}, {"initial-caps", "0 0 1"}}).find("--initial"), 0u);
   EXPECT_EQ(of({{"initial", "restart:/nonexistent"}}).find("--initial: restart: "), 0u);
-  EXPECT_EQ(of({{"noise-cells", "99"}}).find("--initial: --noise-cells: "), 0u);
+  EXPECT_EQ(of({{"noise-cells", "99"}}).find("--noise-cells: "), 0u);
+  EXPECT_EQ(of({{"initial-caps", "0 0 1 20"}}).find("--initial-caps: it needs --initial caps"), 0u);
+  EXPECT_NE(of({{"surface", "formla"}}).find("did you mean 'formula'"), std::string::npos);
   EXPECT_EQ(of({{"integrator", "eular"}}).find("--integrator: unknown integrator"), 0u);
   EXPECT_EQ(of({{"linear-solver", "blok"}}).find("--linear-solver: unknown linear solver"), 0u);
   EXPECT_EQ(of({{"keep", "third"}}).find("--keep: unknown solution"), 0u);

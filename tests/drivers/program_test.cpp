@@ -172,13 +172,13 @@ TEST_F(ProgramTest, RefusesADamagedCheckpointAndUsesTheOneBefore) {
   for (const auto& entry : fs::directory_iterator(folder.path / "a/checkpoints"))
     if (entry.path().extension() == ".ckpt") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
-  ASSERT_EQ(files.size(), 2u);
-  std::string data = content(files[1]);
+  ASSERT_GE(files.size(), 2u);  // three, if killed before the oldest was removed
+  std::string data = content(files.back());
   data[data.size() / 2] ^= 1;
-  write_durably(files[1], data);
+  write_durably(files.back(), data);
   const Outcome resumed = traceraft("resume --quiet " + out("a"));
   EXPECT_EQ(resumed.code, 0);
-  EXPECT_NE(resumed.output.find("refused " + files[1].string() + ": it is damaged"),
+  EXPECT_NE(resumed.output.find("refused " + files.back().string() + ": it is damaged"),
             std::string::npos)
       << resumed.output;
   expect_same_results("whole", "a");
