@@ -25,8 +25,9 @@ Status TwoSolvePreconditioner::setup(const BlockJacobian& J, const ThreadTeam& t
   q_ = shifts.q;
   Status status[2];
   const auto factorise = [&](int which) {
-    status[which] = which == 0 ? first_->factorise(combine(1, J.cm, p_, J.mm))
-                               : second_->factorise(combine(-1, J.mc, -q_, J.mm));
+    status[which] =
+        which == 0 ? first_->factorise(combine(1, J.cm, p_, J.mm))
+                   : second_->factorise(combine(1, *J.gradient_energy, J.curvature - q_, J.mm));
   };
   team.run([&](int part) {
     for (int which = part; which < 2; which += team.size()) factorise(which);

@@ -20,8 +20,9 @@ class TwoSolvePreconditioner {
   TwoSolvePreconditioner(const SpdSolverFactory& make_solver, int lanes)
       : first_(make_solver(lanes)), second_(make_solver(lanes)), work_(lanes) {}
 
-  // J: the stabilised tangent, whose blocks are symmetric. The two factorisations run concurrently
-  // if the team has two threads.
+  // Either tangent: A is the cm block, and B enters through ε² (K + ρS) and the scalar β =
+  // curvature only, B − q M = ε² (K + ρS) + ε² r₂ M, so both matrices are positive definite
+  // whatever the state. The two factorisations run concurrently if the team has two threads.
   Status setup(const BlockJacobian& J, const ThreadTeam& team);
 
   // z ≈ J⁻¹ r, with M taken from `J`. Lanes may be used at the same time.
