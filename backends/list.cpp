@@ -3,6 +3,7 @@
 #include "backends/euler/euler.hpp"
 #include "backends/suitesparse/cholmod_solver.hpp"
 #include "backends/suitesparse/direct_solver.hpp"
+#include "backends/sundials/ida.hpp"
 #include "backends/sundials/spfgmr.hpp"
 #include "kernel/linear/block_solver.hpp"
 
@@ -35,6 +36,8 @@ const NamedList<LinearSolverEntry>& linear_solvers() {
 const NamedList<IntegratorEntry>& integrators() {
   static const std::vector<IntegratorEntry> entries = {
       {"euler", "stabilised Euler/BDF2 pair with Gomez-Hughes steps", make_euler},
+      {"ida", "SUNDIALS IDA: BDF of variable order, Newton with the exact Jacobian", make_ida,
+       ida_parameters()},
   };
   static const NamedList<IntegratorEntry> list("integrator", entries);
   return list;

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "kernel/core/named_list.hpp"
+#include "kernel/core/parameters.hpp"
 #include "kernel/fem/surface_space.hpp"
 #include "kernel/time/integrator.hpp"
 
@@ -24,6 +25,7 @@ struct IntegratorEntry {
   std::function<IntegratorPtr(const DaeProblem&, const LinearSolverChoice&,
                               std::shared_ptr<const ThreadTeam>, const IntegratorSettings&)>
       make;
+  std::vector<ParameterSpec> parameters = {};  // its own options: --<name>-<parameter>
 };
 
 const NamedList<LinearSolverEntry>& linear_solvers();

@@ -1,14 +1,36 @@
 #include "drivers/options.hpp"
 
+#include "backends/list.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/named_list.hpp"
 
 namespace traceraft {
 
+namespace {
+
+// After the general options, those that only one integrator has.
+std::vector<OptionSpec> with_integrator_options(std::vector<OptionSpec> table) {
+  for (const IntegratorEntry& integrator : integrators())
+    for (const ParameterSpec& p : integrator.parameters) {
+      const bool time = p.unit == "s";
+      table.push_back({integrator_option(integrator, p), OptionKind::number,
+                       format_number(p.default_value), "Integrator " + integrator.name,
+                       p.meaning + (time ? " (s)" : ""), p.min, p.max,
+                       time ? Dimension::time : Dimension::none});
+    }
+  return table;
+}
+
+}  // namespace
+
+std::string integrator_option(const IntegratorEntry& integrator, const ParameterSpec& parameter) {
+  return integrator.name + "-" + parameter.name;
+}
+
 const std::vector<OptionSpec>& run_options() {
   using K = OptionKind;
   using D = Dimension;
-  static const std::vector<OptionSpec> table = {
+  static const std::vector<OptionSpec> table = with_integrator_options({
       {"case", K::text, "guv-2to1", "Case", "named set of defaults (see: traceraft list)"},
       {"scaled", K::flag, "false", "Case",
        "all inputs and outputs in units of R and R^2/D instead of um and s"},
@@ -67,8 +89,9 @@ const std::vector<OptionSpec>& run_options() {
        "second unless it gains energy"},
 
       {"linear-solver", K::text, "block", "Linear algebra", "linear solver (see: traceraft list)"},
-      {"linear-tolerance", K::number, "1e-4", "Linear algebra",
-       "relative residual of each correction", 1e-14, 0.1},
+      {"linear-tolerance", K::number, "0", "Linear algebra",
+       "relative residual of each correction; 0: the integrator's choice (euler 1e-4, ida 1e-2)", 0,
+       0.5},
       {"threads", K::integer, "0", "Linear algebra",
        "threads; 0: all processors, at most 2. Results do not depend on it", 0, 64, D::none, false},
 
@@ -76,7 +99,7 @@ const std::vector<OptionSpec>& run_options() {
        "wall-clock seconds between checkpoints; 0: after every step", 0, 1e9, D::none, false},
       {"fields", K::flag, "true", "Output", "write fields for ParaView at the output times", 0, 0,
        D::none, false},
-  };
+  });
   return table;
 }
 

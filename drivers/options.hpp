@@ -22,6 +22,11 @@ struct OptionSpec {
   bool numerical = true;  // does it change the numbers of a run?
 };
 
+struct IntegratorEntry;
+struct ParameterSpec;
+// "ida-maxord": the name of an option that one integrator has.
+std::string integrator_option(const IntegratorEntry& integrator, const ParameterSpec& parameter);
+
 const std::vector<OptionSpec>& run_options();
 const OptionSpec& run_option(const std::string& name);  // throws InputError
 std::vector<std::string> run_option_names();

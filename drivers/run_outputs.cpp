@@ -14,7 +14,7 @@ namespace {
 
 constexpr char kColumns[] =
     "step,t,dt,mass,energy,perimeter,perimeter_level,rafts,raft_fraction,c_min,c_max,rejected,"
-    "linear_iterations\n";
+    "failures,newton_iterations,linear_iterations,linear_setups,order\n";
 constexpr char kRaftColumns[] = "t,raft,area,perimeter,x,y,z\n";
 
 std::uint64_t size_of(const std::map<std::string, std::uint64_t>& sizes, const std::string& name) {
@@ -62,12 +62,15 @@ std::string TableWriter::row_text(const Observables& row, double t) const {
   const Units& units = run_.units;
   const Integrator& integrator = *run_.integrator;
   const IntegratorStatistics statistics = integrator.statistics();
-  return csv_row({static_cast<double>(statistics.steps), t, integrator.step() * units.time(),
-                  row.mass * units.area(), row.energy * units.area(),
-                  row.perimeter * units.length(), row.perimeter_level * units.length(),
-                  static_cast<double>(row.rafts), row.raft_fraction, row.c_min, row.c_max,
-                  static_cast<double>(statistics.rejected),
-                  static_cast<double>(integrator.linear_statistics().iterations)});
+  const LinearStatistics linear = integrator.linear_statistics();
+  return csv_row(
+      {static_cast<double>(statistics.steps), t, integrator.step() * units.time(),
+       row.mass * units.area(), row.energy * units.area(), row.perimeter * units.length(),
+       row.perimeter_level * units.length(), static_cast<double>(row.rafts), row.raft_fraction,
+       row.c_min, row.c_max, static_cast<double>(statistics.rejected),
+       static_cast<double>(statistics.failures), static_cast<double>(statistics.newton_iterations),
+       static_cast<double>(linear.iterations), static_cast<double>(linear.setups),
+       static_cast<double>(statistics.order)});
 }
 
 void TableWriter::on_step(const RunState& state) {

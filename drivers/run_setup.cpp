@@ -170,8 +170,12 @@ std::vector<double> output_labels(const Configuration& configuration) {
   return times;
 }
 
-IntegratorSettings integrator_settings(const Configuration& configuration, const Units& units) {
+IntegratorSettings integrator_settings(const Configuration& configuration,
+                                       const IntegratorEntry& integrator, const Units& units) {
   IntegratorSettings settings;
+  for (const ParameterSpec& parameter : integrator.parameters)
+    settings.own[parameter.name] = configuration.number(integrator_option(integrator, parameter)) /
+                                   (parameter.unit == "s" ? units.time() : 1);
   settings.tolerance = configuration.number("tolerance");
   settings.initial_step = configuration.number("initial-step") / units.time();
   settings.min_step = configuration.number("min-step") / units.time();
@@ -197,11 +201,11 @@ RunSetup build_run(const Configuration& configuration, InitialState initial) {
   run.output_labels = output_labels(configuration);
   for (const double label : run.output_labels)
     run.output_times.push_back(std::min(label / run.units.time(), run.t_end));
-  const IntegratorSettings settings = integrator_settings(configuration, run.units);
   const CahnHilliardModel physics = model(configuration, run.units);
   const IntegratorEntry& integrator = said_of(configuration, "integrator", [&] {
     return std::cref(integrators().find(configuration.text("integrator")));
   });
+  const IntegratorSettings settings = integrator_settings(configuration, integrator, run.units);
   said_of(configuration, "linear-solver",
           [&] { return linear_solvers().find(configuration.text("linear-solver")).name; });
 

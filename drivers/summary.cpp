@@ -86,6 +86,8 @@ std::string summary_json(const Configuration& configuration, const RunSetup& run
   json["fallbacks"] = steps.fallbacks;
   json["residuals"] = steps.residuals;
   json["jacobians"] = steps.jacobians;
+  json["newton_iterations"] = steps.newton_iterations;
+  json["order"] = steps.order;
   json["linear_setups"] = linear.setups;
   json["linear_solves"] = linear.solves;
   json["linear_iterations"] = linear.iterations;
@@ -151,6 +153,9 @@ void print_summary(const RunSetup& run, const RunState& state, const RunResult& 
   line("c on the surface", text("%.3f to %.3f", row.c_min, row.c_max));
   line("steps", text("%ld accepted (%ld with the first-order solution), %ld rejected, %ld failed",
                      steps.steps, steps.first_order, steps.rejected, steps.failures));
+  if (steps.newton_iterations > 0)
+    line("Newton iterations",
+         text("%ld, order of the last step %d", steps.newton_iterations, steps.order));
   line("linear solves",
        text("%ld, %.1f iterations each, %ld set-ups, %ld renewed, %ld fallbacks", linear.solves,
             static_cast<double>(linear.iterations) /

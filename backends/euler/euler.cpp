@@ -14,6 +14,8 @@
 namespace traceraft {
 namespace {
 
+constexpr double kLinearTolerance = 1e-4;
+
 class Euler final : public Integrator {
  public:
   Euler(const DaeProblem& problem, const LinearSolverChoice& solvers,
@@ -169,7 +171,8 @@ class Euler final : public Integrator {
       systems_.push_back(correction(t, (1 + 2 * r) / ((1 + r) * dt), predictor, rate));
     }
     if (Status status = evaluate_residuals(); !status.ok()) return status;
-    solver_.solve(systems_, settings_.linear_tolerance);
+    solver_.solve(systems_,
+                  settings_.linear_tolerance > 0 ? settings_.linear_tolerance : kLinearTolerance);
     for (const NewtonSystem& system : systems_)
       if (!system.report.status.ok()) return system.report.status;
 
@@ -190,6 +193,7 @@ class Euler final : public Integrator {
     const bool second = keeps_second();
     y_ = second ? second_ : first_;
     statistics_.first_order += !second;
+    statistics_.order = second && steps_kept_ > 0 ? 2 : 1;
     steps_kept_ = std::min(steps_kept_ + 1, 2);
     step_before_ = step_;
     step_ = dt;

@@ -1,6 +1,5 @@
 #include "backends/sundials/spfgmr.hpp"
 
-#include <nvector/nvector_serial.h>
 #include <sundials/sundials_context.h>
 #include <sunlinsol/sunlinsol_spfgmr.h>
 
@@ -8,27 +7,15 @@
 #include <exception>
 #include <stdexcept>
 
+#include "backends/sundials/state_vector.hpp"
+
 namespace traceraft {
 namespace {
 
 constexpr int kRestart = 30;
 
-Eigen::Map<Vec> view(N_Vector v) {
-  return {N_VGetArrayPointer(v), N_VGetLength(v)};
-}
-
-// SUNDIALS' own dot product adds in one chain, which waits for every addition; Gram–Schmidt made it
-// a third of the time of a solve.
-double dot_product(N_Vector x, N_Vector y) {
-  return dot(view(x), view(y));
-}
-
-N_Vector new_vector(int size, SUNContext context) {
-  N_Vector v = N_VNew_Serial(size, context);
-  if (!v) throw std::bad_alloc();
-  v->ops->nvdotprod = dot_product;  // clones inherit it
-  return v;
-}
+// GMRES takes no weighted norms.
+const FieldNorm no_norm;
 
 // The operators of one solve; an exception stops at the C boundary and is thrown again after it.
 struct Operators {
@@ -62,8 +49,8 @@ class Spfgmr final : public KrylovMethod {
   explicit Spfgmr(int size) {
     if (SUNContext_Create(nullptr, &context_) != 0)
       throw std::runtime_error("SUNDIALS: no context");
-    right_ = new_vector(size, context_);
-    solution_ = new_vector(size, context_);
+    right_ = new_state_vector(size, no_norm, context_);
+    solution_ = new_state_vector(size, no_norm, context_);
     solver_ = SUNLinSol_SPFGMR(solution_, SUN_PREC_RIGHT, kRestart, context_);
     if (!solver_) throw std::bad_alloc();
     SUNLinSol_SPFGMRSetGSType(solver_, SUN_CLASSICAL_GS);

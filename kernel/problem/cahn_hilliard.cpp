@@ -185,6 +185,13 @@ double CahnHilliard::norm(ConstVec y) const {
   return std::sqrt(std::max(0.0, space_->inner(c_of(y), c_of(y))));
 }
 
+double CahnHilliard::field_norm(ConstVec half) const {
+  Vec buffer;
+  const auto v = space_->with_ghosts(half, buffer);
+  return std::sqrt(std::max(
+      0.0, space_->communicator->sum(space_->stabilised_mass.quadratic(v, v, *space_->team))));
+}
+
 double CahnHilliard::energy(ConstVec y) const {
   Vec buffer;
   const auto c = space_->with_ghosts(c_of(y), buffer);

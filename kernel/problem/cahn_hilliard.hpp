@@ -44,6 +44,7 @@ class CahnHilliard final : public DaeProblem {
   BlockJacobian make_jacobian() const override { return BlockJacobian(gradient_energy_); }
   Status consistent_initial_state(double t, VecRef y, VecRef ydot) const override;
   double norm(ConstVec y) const override;
+  double field_norm(ConstVec half) const override;  // √(vᵀ M̃ v)
   double mass(ConstVec y) const override { return space_->integral(c_of(y)); }
   bool conserves_mass() const override;
   double energy(ConstVec y) const override;

@@ -41,6 +41,10 @@ class DaeProblem {
   // Norm of the differential part in L²(Γ_h): independent of the mesh.
   virtual double norm(ConstVec y) const = 0;
 
+  // Norm of one half of a state vector, c or μ, that sees every mode of it (in L²(Γ_h) a function
+  // that vanishes on the surface has none) and does not depend on the mesh.
+  virtual double field_norm(ConstVec half) const = 0;
+
   // A linear functional of y that every solution keeps (the mass), and whether the model keeps it.
   virtual double mass(ConstVec y) const = 0;
   virtual bool conserves_mass() const = 0;

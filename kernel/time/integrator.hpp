@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <iosfwd>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -12,12 +13,13 @@
 namespace traceraft {
 
 struct IntegratorSettings {
-  double tolerance = 5e-3;         // relative, in L²(Γ): each method documents what it bounds
-  double initial_step = 0;         // 0: chosen from the initial state
-  double min_step = 0;             // below it: fatal "no step size"; 0: 1e-14 of the time span
-  double max_step = 0;             // 0: unbounded
-  double linear_tolerance = 1e-4;  // relative to each correction, see LinearSolver
+  double tolerance = 5e-3;      // relative, in L²(Γ): each method documents what it bounds
+  double initial_step = 0;      // 0: chosen from the initial state
+  double min_step = 0;          // below it: fatal "no step size"; 0: 1e-14 of the time span
+  double max_step = 0;          // 0: unbounded
+  double linear_tolerance = 0;  // relative residual of each correction; 0: the method's choice
   std::string kept_solution = "decaying";  // euler: which of its pair goes on
+  std::map<std::string, double> own;       // options of one method only, by its names for them
 };
 
 struct IntegratorStatistics {
@@ -27,6 +29,8 @@ struct IntegratorStatistics {
   long failures = 0;     // a solve or an evaluation failed and the step was retried
   long residuals = 0;
   long jacobians = 0;
+  long newton_iterations = 0;   // 0 for methods that need none
+  int order = 0;                // of the last step
   long renewals = 0;            // factors renewed because a solve with old ones failed
   long fallbacks = 0;           // solves left to the fallback solver
   double assembly_seconds = 0;  // residuals and Jacobians

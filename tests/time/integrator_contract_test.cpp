@@ -79,6 +79,7 @@ class Poisoned final : public DaeProblem {
     return inner_.consistent_initial_state(t, y, ydot);
   }
   double norm(ConstVec y) const override { return inner_.norm(y); }
+  double field_norm(ConstVec half) const override { return inner_.field_norm(half); }
   double mass(ConstVec y) const override { return inner_.mass(y); }
   bool conserves_mass() const override { return inner_.conserves_mass(); }
   double energy(ConstVec y) const override { return inner_.energy(y); }

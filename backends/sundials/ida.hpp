@@ -1,0 +1,27 @@
+// --integrator ida: SUNDIALS IDA, variable-order BDF for the DAE.
+#pragma once
+
+#include <vector>
+
+#include "kernel/core/parameters.hpp"
+#include "kernel/time/integrator.hpp"
+
+namespace traceraft {
+
+// The tolerance bounds the local error of c in each step, in L²(Γ_h) and relative to c:
+// ‖error‖ ≤ rtol ‖c‖ + atol √|Γ|. Algebraic variables stay out of the test by default; with them it
+// demands the same of μ.
+//
+// Every Newton correction solves with the exact Jacobian of the current iterate; when its factors
+// are renewed is decided by the kernel's JacobianSolver, so IDA makes no set-ups of its own.
+// Corrections keep the mass exactly, and so do IDA's predictors: linear combinations of states.
+//
+// Between the steps the solution is IDA's interpolant; the end of the run is met exactly.
+IntegratorPtr make_ida(const DaeProblem& problem, const LinearSolverChoice& solvers,
+                       std::shared_ptr<const ThreadTeam> team, const IntegratorSettings& settings);
+
+// The options that IDA has beyond the general ones, under IDA's names. 0 leaves an option that has
+// a general counterpart to that.
+std::vector<ParameterSpec> ida_parameters();
+
+}  // namespace traceraft
