@@ -48,7 +48,7 @@ const std::vector<OptionSpec>& run_options() {
        D::length},
       {"diffusion", K::number, "1e-5", "Physics", "mobility prefactor D in cm^2/s", 1e-30, 1e30},
       {"mobility", K::text, "degenerate", "Physics",
-       "mobility law in units of D: degenerate, constant:value=0.25"},
+       "mobility law in units of D: degenerate, degenerate:outside=-1, constant:value=0.25"},
       {"well", K::text, "rho=0.25,a=0,b=1", "Physics",
        "free energy rho (c-a)^2 (b-c)^2 of a homogeneous mixture"},
       {"potential", K::text, "consistent", "Physics",
@@ -84,7 +84,7 @@ const std::vector<OptionSpec>& run_options() {
       {"min-step", K::number, "0", "Time", "smallest step (s); 0: 1e-14 of the run", 0, 1e300,
        D::time},
       {"max-step", K::number, "0", "Time", "largest step (s); 0: unbounded", 0, 1e300, D::time},
-      {"keep", K::text, "decaying", "Time",
+      {"keep", K::text, "second", "Time",
        "which solution of the euler pair goes on: second (as in the paper), first, or decaying: "
        "second unless it gains energy"},
 

@@ -12,7 +12,7 @@
 namespace traceraft {
 namespace {
 
-constexpr int kRestart = 30;
+constexpr int kRestart = 50;
 
 // GMRES takes no weighted norms.
 const FieldNorm no_norm;

@@ -7,7 +7,7 @@
 
 namespace traceraft {
 
-// `size`: length of the vectors; restarts after 30 iterations.
+// `size`: length of the vectors; restarts after 50 iterations.
 std::unique_ptr<KrylovMethod> make_spfgmr(int size);
 
 }  // namespace traceraft

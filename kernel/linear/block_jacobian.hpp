@@ -1,8 +1,6 @@
 // The Jacobian ∂F/∂y + σ ∂F/∂ẏ of the surface Cahn–Hilliard DAE in its 2×2 block structure.
 #pragma once
 
-#include <memory>
-
 #include "kernel/fem/csr.hpp"
 
 namespace traceraft {
@@ -17,16 +15,10 @@ enum class Tangent {
 //                                       [ mc  mm ] [δμ]
 // cc = σ M̃ (+ mobility derivative), cm = K_M + ρ S =: A, mc = −(b' + ε² (K + ρ S)) =: −B, mm = M̃.
 struct BlockJacobian {
-  // gradient_energy: ε² (K + ρ S), the part of −mc that does not depend on the state.
-  explicit BlockJacobian(std::shared_ptr<const CsrMatrix> constant_part)
-      : cc(constant_part->pattern),
-        cm(constant_part->pattern),
-        mc(constant_part->pattern),
-        mm(constant_part->pattern),
-        gradient_energy(std::move(constant_part)) {}
+  explicit BlockJacobian(const PatternPtr& pattern)
+      : cc(pattern), cm(pattern), mc(pattern), mm(pattern) {}
 
   CsrMatrix cc, cm, mc, mm;
-  std::shared_ptr<const CsrMatrix> gradient_energy;
   double shift = 0;  // σ
   Tangent tangent = Tangent::exact;
 

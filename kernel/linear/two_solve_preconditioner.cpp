@@ -20,17 +20,34 @@ TwoSolveShifts two_solve_shifts(double sigma, double mobility, double stiffness,
 Status TwoSolvePreconditioner::setup(const BlockJacobian& J, const ThreadTeam& team) {
   // The mean mobility of a nearly pure state tends to zero; its floor keeps the shifts finite.
   const double mobility = std::max(J.mobility, 1e-8);
+  if (J.tangent == Tangent::exact) return setup_exact(J, mobility, team);
   const TwoSolveShifts shifts = two_solve_shifts(J.shift, mobility, J.stiffness, J.curvature);
   p_ = shifts.p;
   q_ = shifts.q;
+  return factorise(combine(1, J.cm, p_, J.mm), combine(-1, J.mc, -q_, J.mm), team);
+}
+
+Status TwoSolvePreconditioner::setup_exact(const BlockJacobian& J, double mobility,
+                                           const ThreadTeam& team) {
+  // A state inside the spinodal has a very negative f0''; a shift above its size always suffices.
+  constexpr int kMostShifts = 12;
+  double s = 1.5 * std::sqrt(J.stiffness * J.shift / mobility);
+  Status status;
+  for (int attempt = 0; attempt < kMostShifts; ++attempt, s *= 2) {
+    p_ = 2 * J.shift / (J.curvature + s);
+    q_ = -s;
+    status = factorise(combine(1, J.cm, p_, J.mm), combine(-1, J.mc, s, J.mm), team);
+    if (status.ok()) break;
+  }
+  return status;
+}
+
+Status TwoSolvePreconditioner::factorise(const CsrMatrix& first, const CsrMatrix& second,
+                                         const ThreadTeam& team) {
   Status status[2];
-  const auto factorise = [&](int which) {
-    status[which] =
-        which == 0 ? first_->factorise(combine(1, J.cm, p_, J.mm))
-                   : second_->factorise(combine(1, *J.gradient_energy, J.curvature - q_, J.mm));
-  };
   team.run([&](int part) {
-    for (int which = part; which < 2; which += team.size()) factorise(which);
+    for (int which = part; which < 2; which += team.size())
+      status[which] = which == 0 ? first_->factorise(first) : second_->factorise(second);
   });
   return status[0].ok() ? status[1] : status[0];
 }

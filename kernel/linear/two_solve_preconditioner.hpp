@@ -15,20 +15,29 @@ namespace traceraft {
 //   (A + p M) v = R₁ + p R₂,   (B − q M) δc = M v − R₂,   δμ = v + q δc,
 // invert J exactly for constant mobility and real roots, and are close to it otherwise: 2–12
 // GMRES iterations over Δt = 1e-5…1e3 and h = 1/10…1/40.
+//
+// With the exact tangent B = ε² K + (f0'') is nearly singular on shifts of the phase boundaries,
+// which no constant β is right for: there the second matrix is B itself plus a shift s M, that is
+// q = −s, just large enough to be positive definite, s = 1.5 ε √(σ/m), and p = 2σ/(β + s). The
+// spectrum is then bounded on the boundaries, where A is large and S ≈ A M⁻¹ (B + σ M A⁻¹ M), as
+// well as in the phases, where it is small and S ≈ σ M. The factors 1.5 and 2 were measured, see
+// docs/results.md.
 class TwoSolvePreconditioner {
  public:
   TwoSolvePreconditioner(const SpdSolverFactory& make_solver, int lanes)
       : first_(make_solver(lanes)), second_(make_solver(lanes)), work_(lanes) {}
 
-  // Either tangent: A is the cm block, and B enters through ε² (K + ρS) and the scalar β =
-  // curvature only, B − q M = ε² (K + ρS) + ε² r₂ M, so both matrices are positive definite
-  // whatever the state. The two factorisations run concurrently if the team has two threads.
+  // The two factorisations run concurrently if the team has two threads. retry: no shift makes the
+  // second matrix positive definite.
   Status setup(const BlockJacobian& J, const ThreadTeam& team);
 
   // z ≈ J⁻¹ r, with M taken from `J`. Lanes may be used at the same time.
   void apply(const BlockJacobian& J, ConstVec r, VecRef z, const ThreadTeam& team, int lane);
 
  private:
+  Status setup_exact(const BlockJacobian& J, double mobility, const ThreadTeam& team);
+  Status factorise(const CsrMatrix& first, const CsrMatrix& second, const ThreadTeam& team);
+
   SpdSolverPtr first_, second_;
   double p_ = 0, q_ = 0;
   struct Work {

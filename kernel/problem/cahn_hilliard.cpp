@@ -25,9 +25,9 @@ std::array<double, 4> unit_flux(const CutElement& element, ConstVec mu) {
 CahnHilliard::CahnHilliard(std::shared_ptr<const SurfaceSpace> space, CahnHilliardModel model)
     : space_(std::move(space)),
       model_(std::move(model)),
-      gradient_energy_(std::make_shared<CsrMatrix>(combine(
-          model_.epsilon * model_.epsilon, space_->stiffness,
-          model_.epsilon * model_.epsilon * model_.stabilisation * space_->h(), space_->normal))) {}
+      gradient_energy_(combine(model_.epsilon * model_.epsilon, space_->stiffness,
+                               model_.epsilon * model_.epsilon * model_.stabilisation * space_->h(),
+                               space_->normal)) {}
 
 double CahnHilliard::flux_stabilisation() const {
   return model_.stabilisation * space_->h() * model_.mobility->scale();
@@ -49,7 +49,7 @@ Status CahnHilliard::residual(double t, ConstVec y, ConstVec ydot, VecRef r) con
 
   space.stabilised_mass.multiply_add(1, mu, second, *space.team);
   add_potential(space, model_.well, model_.rule, -1, c, second);
-  gradient_energy_->multiply_add(-1, c, second, *space.team);
+  gradient_energy_.multiply_add(-1, c, second, *space.team);
 
   for (const EffectPtr& effect : model_.effects)
     effect->add_residual(space, t, c, mu, first, second);
@@ -61,11 +61,10 @@ void CahnHilliard::fill_curvature(ConstVec c, Tangent tangent, BlockJacobian& J)
   if (tangent == Tangent::stabilised) {
     J.curvature = model_.beta();
     for (std::size_t k = 0; k < J.mc.values.size(); ++k)
-      J.mc.values[k] = -gradient_energy_->values[k] - J.curvature * J.mm.values[k];
+      J.mc.values[k] = -gradient_energy_.values[k] - J.curvature * J.mm.values[k];
     return;
   }
-  for (std::size_t k = 0; k < J.mc.values.size(); ++k)
-    J.mc.values[k] = -gradient_energy_->values[k];
+  for (std::size_t k = 0; k < J.mc.values.size(); ++k) J.mc.values[k] = -gradient_energy_.values[k];
   add_potential_tangent(*space_, model_.well, model_.rule, -1, c, J.mc);
   double convex = 0;
   for (int i = 0; i < block_size(); ++i)
@@ -142,7 +141,7 @@ Status CahnHilliard::jacobian_product(double t, ConstVec y, ConstVec, double shi
   space.stabilised_mass.multiply_add(shift, vc, first, *space.team);
   space.normal.multiply_add(flux_stabilisation(), vmu, first, *space.team);
   space.stabilised_mass.multiply_add(1, vmu, second, *space.team);
-  gradient_energy_->multiply_add(-1, vc, second, *space.team);
+  gradient_energy_.multiply_add(-1, vc, second, *space.team);
 
   if (tangent == Tangent::stabilised) {
     add_mobility_flux(space, mobility_integrals(space, *model_.mobility, c), vmu, first);
@@ -196,7 +195,7 @@ double CahnHilliard::energy(ConstVec y) const {
   Vec buffer;
   const auto c = space_->with_ghosts(c_of(y), buffer);
   const double local = potential_energy(*space_, model_.well, c) +
-                       0.5 * gradient_energy_->quadratic(c, c, *space_->team);
+                       0.5 * gradient_energy_.quadratic(c, c, *space_->team);
   return space_->communicator->sum(local);
 }
 

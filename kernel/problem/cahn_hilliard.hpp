@@ -41,7 +41,7 @@ class CahnHilliard final : public DaeProblem {
                   BlockJacobian& J) const override;
   Status jacobian_product(double t, ConstVec y, ConstVec ydot, double shift, Tangent tangent,
                           ConstVec v, VecRef product) const override;
-  BlockJacobian make_jacobian() const override { return BlockJacobian(gradient_energy_); }
+  BlockJacobian make_jacobian() const override { return BlockJacobian(space_->pattern); }
   Status consistent_initial_state(double t, VecRef y, VecRef ydot) const override;
   double norm(ConstVec y) const override;
   double field_norm(ConstVec half) const override;  // √(vᵀ M̃ v)
@@ -66,7 +66,7 @@ class CahnHilliard final : public DaeProblem {
 
   std::shared_ptr<const SurfaceSpace> space_;
   CahnHilliardModel model_;
-  std::shared_ptr<const CsrMatrix> gradient_energy_;  // ε² (K + ρ S)
+  CsrMatrix gradient_energy_;  // ε² (K + ρ S)
 };
 
 }  // namespace traceraft

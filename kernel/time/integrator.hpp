@@ -18,7 +18,7 @@ struct IntegratorSettings {
   double min_step = 0;          // below it: fatal "no step size"; 0: 1e-14 of the time span
   double max_step = 0;          // 0: unbounded
   double linear_tolerance = 0;  // relative residual of each correction; 0: the method's choice
-  std::string kept_solution = "decaying";  // euler: which of its pair goes on
+  std::string kept_solution = "second";  // euler: which of its pair goes on
   std::map<std::string, double> own;       // options of one method only, by its names for them
 };
 

@@ -97,7 +97,7 @@ TEST_P(OperatorTest, MassIsInverted) {
 }
 
 TEST_P(OperatorTest, MobilityStiffnessIsTheWeightedIntegral) {
-  const MobilityPtr law = make_mobility("degenerate");
+  const MobilityPtr law = make_mobility("degenerate:outside=-1");  // needs the floor
   const std::vector<double> integral = mobility_integrals(*space, *law, c);
   // Reference: ∫ c(1 − c) tetrahedron by tetrahedron.
   std::vector<double> expected(space->elements.size(), 0.0);
@@ -190,7 +190,7 @@ TEST(DoubleWell, HasTheDerivativesItClaims) {
 TEST(Mobilities, HaveTheDerivativesTheyClaim) {
   for (const MobilityEntry& entry : mobilities()) {
     const MobilityPtr law = make_mobility(entry.name);
-    for (double c = -0.3; c < 1.3; c += 0.05) {
+    for (double c = -0.325; c < 1.3; c += 0.05) {  // not at the kinks 0 and 1
       const double at[3] = {c - 1e-6, c, c + 1e-6};
       double value[3], slope[3];
       law->evaluate(at, 3, value, slope);

@@ -115,7 +115,7 @@ TEST(PerimeterCalibration, MakesTheEquilibriumOfTwoHalvesTwoPiWithinThreePercent
   request.caps = {{{1, 5, -2}, M_PI / 2}};  // none of the axes of the calibration
   y.head(problem.block_size()) = make_initial_field("caps", *space, request);
   ASSERT_TRUE(problem.consistent_initial_state(0, y, ydot).ok());
-  const IntegratorPtr integrator = integrators().find("euler").make(
+  const IntegratorPtr integrator = integrators().find("ida").make(
       problem, choose_linear_solver("block", *space), space->team, {});
   ASSERT_TRUE(integrator->start(0, y, ydot, 20).ok());
   while (integrator->time() < 20) ASSERT_TRUE(integrator->advance().ok());
