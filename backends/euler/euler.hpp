@@ -18,9 +18,11 @@ namespace traceraft {
 // the run instead of being accepted; Δt grows at most twofold, so that BDF2 stays zero-stable; the
 // first step has an error estimate (half the difference to explicit Euler).
 //
-// Which solution goes on: the second-order one unless it would gain energy, else the first-order
-// one, whose energy never grows while |f0''| ≤ 2β (default, kept_solution "decaying"); always the
-// second, as the reference code does; or always the first.
+// Which solution goes on (kept_solution): the second, as in the reference code; the first, whose
+// energy never grows while |f0''| ≤ 2β; or "decaying", the second unless it would gain energy.
+//
+// With large Δt the stabilisation holds both solutions back alike, which their difference does not
+// show: at loose tolerances coarsening comes out late (docs/decisions/0006-keep-second.md).
 //
 // The two solves of a step do not depend on each other: each has factors of its own, and with two
 // threads they run at the same time. The result does not depend on the number of threads.

@@ -22,22 +22,43 @@ std::array<double, 3> corners_of(const SurfaceSpace& space, int triangle, const 
   return {point_value[i], point_value[j], point_value[k]};
 }
 
-// ∫ f0''(c_h) φ_i φ_j over one element.
+// ∫ f0''(c_h) λ_a λ_b between the corners of a triangle.
+std::array<std::array<double, 3>, 3> triangle_tangent(double area,
+                                                      const std::array<double, 3>& corner,
+                                                      const DoubleWell& well) {
+  std::array<std::array<double, 3>, 3> tangent{};
+  for_each_point(area, corner, [&](double value, const auto& at, double w) {
+    const double density = w * well.second(value);
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b <= a; ++b) tangent[a][b] += density * at[a] * at[b];
+  });
+  for (int a = 0; a < 3; ++a)
+    for (int b = a + 1; b < 3; ++b) tangent[a][b] = tangent[b][a];
+  return tangent;
+}
+
+// ∫ f0''(c_h) φ_i φ_j over one element, times a factor.
 Eigen::Matrix4d local_tangent(const SurfaceSpace& space, const CutElement& element,
-                              const DoubleWell& well, const Vec& point_value) {
-  Eigen::Matrix4d polygon = Eigen::Matrix4d::Zero();
+                              const DoubleWell& well, double factor, const Vec& point_value) {
+  Eigen::Matrix4d local = Eigen::Matrix4d::Zero();
   for (int t = 0; t < element.triangles(); ++t) {
     const int triangle = element.first_triangle + t;
-    const auto& v = kPolygonTriangles[t];
-    for_each_point(space.surface.triangle_area[triangle], corners_of(space, triangle, point_value),
-                   [&](double value, const auto& at, double w) {
-                     const double density = w * well.second(value);
-                     for (int a = 0; a < 3; ++a)
-                       for (int b = 0; b < 3; ++b) polygon(v[a], v[b]) += density * at[a] * at[b];
-                   });
+    const auto tangent = triangle_tangent(factor * space.surface.triangle_area[triangle],
+                                          corners_of(space, triangle, point_value), well);
+    std::array<int, 2> node[3];       // at the ends of the corner's edge,
+    std::array<double, 2> weight[3];  // and their traces at the corner
+    for (int k = 0; k < 3; ++k) {
+      node[k] = kTetEdges[element.cut_edge[kPolygonTriangles[t][k]]];
+      const double s = space.surface.points[space.surface.triangles[triangle][k]].s;
+      weight[k] = {1 - s, s};
+    }
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b)
+        for (int i = 0; i < 2; ++i)
+          for (int j = 0; j < 2; ++j)
+            local(node[a][i], node[b][j]) += weight[a][i] * tangent[a][b] * weight[b][j];
   }
-  const Eigen::Matrix4d nodal = trace_matrix(space.surface, element);
-  return nodal.transpose() * polygon * nodal;
+  return local;
 }
 
 void add_nodal_tangent(const SurfaceSpace& space, const DoubleWell& well, double factor, ConstVec c,
@@ -75,7 +96,7 @@ void add_potential_tangent(const SurfaceSpace& space, const DoubleWell& well, Po
   add_element_matrices(
       space,
       [&](const CutElement& element, int) -> Eigen::Matrix4d {
-        return factor * local_tangent(space, element, well, point_value);
+        return local_tangent(space, element, well, factor, point_value);
       },
       matrix);
 }
