@@ -1,6 +1,7 @@
 #include "backends/list.hpp"
 
 #include "backends/euler/euler.hpp"
+#include "backends/rosenbrock/rosenbrock.hpp"
 #include "backends/suitesparse/cholmod_solver.hpp"
 #include "backends/suitesparse/direct_solver.hpp"
 #include "backends/sundials/ida.hpp"
@@ -38,6 +39,7 @@ const NamedList<IntegratorEntry>& integrators() {
       {"euler", "stabilised Euler/BDF2 pair with Gomez-Hughes steps", make_euler},
       {"ida", "SUNDIALS IDA: BDF of variable order, Newton with the exact Jacobian", make_ida,
        ida_parameters()},
+      {"rosenbrock", "ROS34PW2: linearly implicit, order 3, no Newton iteration", make_rosenbrock},
   };
   static const NamedList<IntegratorEntry> list("integrator", entries);
   return list;

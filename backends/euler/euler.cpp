@@ -31,7 +31,7 @@ class Euler final : public Integrator {
     energy_ = problem_.energy(y_);
     rate_ = ydot0;
     span_ = t_end - t0;
-    control_ = StepControl(settings_, span_);
+    control_ = StepControl(settings_, span_, 2);
     const double rate = problem_.norm(rate_), size = problem_.norm(y_);
     // Small enough that the whole change of the first step is below the tolerance.
     double first = settings_.initial_step;
@@ -41,31 +41,10 @@ class Euler final : public Integrator {
   }
 
   Status advance() override {
-    if (!(t_ < t_end_)) return Status::fatal("the end of the run has been reached");
-    double dt = next_;
-    while (true) {
-      const bool last = t_ + dt >= t_end_ * (1 - 1e-14);
-      if (last) dt = t_end_ - t_;
-      double error = 0;
-      const Status status = attempt(dt, error);
-      if (status.outcome == Outcome::fatal) return status;
-      if (status.ok() && error <= settings_.tolerance) {
-        accept(dt, last ? t_end_ : t_ + dt, error);
-        return {};
-      }
-      // NaN and failed solves end up here, too.
-      ++(status.ok() ? statistics_.rejected : statistics_.failures);
-      const double smaller = status.ok() ? control_.after_rejection(dt, error) : dt / 4;
-      if (dt > control_.min_step() && smaller < control_.min_step()) {
-        dt = control_.min_step();
-        continue;
-      }
-      if (!(smaller >= control_.min_step()))
-        return Status::fatal(
-            "no step size: " + (status.ok() ? "the error stays above the tolerance" : status.why) +
-            " down to the smallest step");
-      dt = smaller;
-    }
+    return take_step(
+        control_, t_, t_end_, next_, statistics_,
+        [&](double dt, double& error) { return attempt(dt, error); },
+        [&](double dt, double t, double error) { accept(dt, t, error); });
   }
 
   Status interpolate(double t, VecRef y) const override {
@@ -89,14 +68,7 @@ class Euler final : public Integrator {
     return problem_.dissipates_energy() && settings_.kept_solution != "second";
   }
 
-  IntegratorStatistics statistics() const override {
-    IntegratorStatistics result = statistics_;
-    result.jacobians = solver_.statistics().jacobians;
-    result.fallbacks = solver_.statistics().fallbacks;
-    result.renewals = solver_.statistics().renewals;
-    result.assembly_seconds += solver_.statistics().assembly_seconds;
-    return result;
-  }
+  IntegratorStatistics statistics() const override { return solver_.added_to(statistics_); }
   LinearStatistics linear_statistics() const override { return solver_.linear_statistics(); }
 
   void save(std::ostream& out) const override {
@@ -120,7 +92,7 @@ class Euler final : public Integrator {
     if (steps_kept_ > 1) read_binary(in, before_, problem_.size());
     read_binary(in, statistics_);
     energy_ = problem_.energy(y_);
-    control_ = StepControl(settings_, span_);
+    control_ = StepControl(settings_, span_, 2);
     solver_.load(in);
   }
 

@@ -118,12 +118,8 @@ class Ida final : public Integrator {
     IDAGetNumStepSolveFails(memory_, &result.failures);
     IDAGetLastOrder(memory_, &result.order);
     result.residuals = residuals_;
-    const JacobianSolverStatistics& solves = solver_.statistics();
-    result.jacobians = solves.jacobians;
-    result.renewals = solves.renewals;
-    result.fallbacks = solves.fallbacks;
-    result.assembly_seconds = residual_seconds_ + solves.assembly_seconds;
-    return result;
+    result.assembly_seconds = residual_seconds_;
+    return solver_.added_to(result);
   }
   LinearStatistics linear_statistics() const override { return solver_.linear_statistics(); }
 

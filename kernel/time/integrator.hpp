@@ -19,7 +19,7 @@ struct IntegratorSettings {
   double max_step = 0;          // 0: unbounded
   double linear_tolerance = 0;  // relative residual of each correction; 0: the method's choice
   std::string kept_solution = "second";  // euler: which of its pair goes on
-  std::map<std::string, double> own;       // options of one method only, by its names for them
+  std::map<std::string, double> own;     // options of one method only, by its names for them
 };
 
 struct IntegratorStatistics {

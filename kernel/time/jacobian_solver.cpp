@@ -11,7 +11,8 @@ JacobianSolver::JacobianSolver(const DaeProblem& problem, const LinearSolverChoi
       primary_(choice.primary(lanes)),
       fallback_(choice.fallback ? choice.fallback(lanes) : nullptr),
       team_(std::move(team)),
-      J_(static_cast<std::size_t>(lanes), problem.make_jacobian()) {}
+      J_(static_cast<std::size_t>(lanes), problem.make_jacobian()),
+      origins_(static_cast<std::size_t>(lanes)) {}
 
 template <class Action>
 void JacobianSolver::for_each_lane(std::size_t count, const Action& action) {
@@ -26,14 +27,15 @@ void JacobianSolver::assemble(std::vector<NewtonSystem>& systems) {
   for_each_lane(systems.size(), [&](int lane) {
     NewtonSystem& s = systems[lane];
     s.report = {problem_.jacobian(s.t, s.y, s.ydot, s.shift, s.tangent, J_[lane])};
+    origins_[lane] = {s.t, s.shift, s.tangent, s.y, s.ydot};
   });
   statistics_.jacobians += static_cast<long>(systems.size());
 }
 
-Status JacobianSolver::renew(const NewtonSystem& system, int lane) {
+Status JacobianSolver::renew(int lane) {
   const Status status = primary_->setup(J_[lane], lane);
   if (primary_->shares_factors()) {
-    anchor_ = {system.t, system.shift, system.tangent, system.y, system.ydot};
+    anchor_ = origins_[lane];
     anchored_ = status.ok();
   }
   return status;
@@ -54,7 +56,7 @@ void JacobianSolver::repair(NewtonSystem& system, const Vec& guess, int lane, do
   if (!fresh) {
     ++statistics_.renewals;
     system.x = guess;
-    system.report.status = renew(system, lane);
+    system.report.status = renew(lane);
     if (system.report.status.ok())
       system.report = primary_->solve(J_[lane], system.b, system.x, tolerance, lane);
     if (system.report.status.ok()) return;
@@ -78,13 +80,23 @@ void JacobianSolver::solve(std::vector<NewtonSystem>& systems, double tolerance)
   assemble(systems);
   for (const NewtonSystem& system : systems)
     if (!system.report.status.ok()) return;
+  solve_assembled(systems, tolerance, true);
+}
+
+void JacobianSolver::solve_again(std::vector<NewtonSystem>& systems, double tolerance) {
+  for (NewtonSystem& system : systems) system.report = {};
+  solve_assembled(systems, tolerance, false);
+}
+
+void JacobianSolver::solve_assembled(std::vector<NewtonSystem>& systems, double tolerance,
+                                     bool new_jacobians) {
   std::vector<Vec> guesses;
   for (const NewtonSystem& system : systems) guesses.push_back(system.x);
 
-  bool fresh = !primary_->shares_factors();
-  if (!fresh && (!anchored_ || primary_->wants_setup(J_[0], 0))) {
+  bool fresh = new_jacobians && !primary_->shares_factors();
+  if (primary_->shares_factors() && (!anchored_ || primary_->wants_setup(J_[0], 0))) {
     fresh = true;
-    if (Status status = renew(systems[0], 0); !status.ok())
+    if (Status status = renew(0); !status.ok())
       for (NewtonSystem& system : systems) system.report.status = status;
   }
   solve_with_factors(systems, tolerance, fresh);
@@ -95,6 +107,14 @@ void JacobianSolver::solve(std::vector<NewtonSystem>& systems, double tolerance)
 
 LinearStatistics JacobianSolver::linear_statistics() const {
   return fallback_ ? primary_->statistics() + fallback_->statistics() : primary_->statistics();
+}
+
+IntegratorStatistics JacobianSolver::added_to(IntegratorStatistics statistics) const {
+  statistics.jacobians += statistics_.jacobians;
+  statistics.fallbacks += statistics_.fallbacks;
+  statistics.renewals += statistics_.renewals;
+  statistics.assembly_seconds += statistics_.assembly_seconds;
+  return statistics;
 }
 
 void JacobianSolver::save(std::ostream& out) const {
@@ -115,15 +135,15 @@ void JacobianSolver::load(std::istream& in) {
   read_binary(in, statistics_);
   read_binary(in, anchored_);
   if (anchored_) {
-    NewtonSystem system;
-    read_binary(in, system.t);
-    read_binary(in, system.shift);
-    read_binary(in, system.tangent);
-    read_binary(in, system.y, problem_.size());
-    read_binary(in, system.ydot, problem_.size());
+    Origin& origin = origins_[0];
+    read_binary(in, origin.t);
+    read_binary(in, origin.shift);
+    read_binary(in, origin.tangent);
+    read_binary(in, origin.y, problem_.size());
+    read_binary(in, origin.ydot, problem_.size());
     Status status =
-        problem_.jacobian(system.t, system.y, system.ydot, system.shift, system.tangent, J_[0]);
-    if (status.ok()) status = renew(system, 0);
+        problem_.jacobian(origin.t, origin.y, origin.ydot, origin.shift, origin.tangent, J_[0]);
+    if (status.ok()) status = renew(0);
     if (!status.ok()) throw IoError("checkpoint: its factors cannot be recomputed: " + status.why);
   }
   primary_->load(in);

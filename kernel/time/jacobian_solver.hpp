@@ -6,6 +6,7 @@
 
 #include "kernel/linear/linear_solver.hpp"
 #include "kernel/problem/dae_problem.hpp"
+#include "kernel/time/integrator.hpp"
 
 namespace traceraft {
 
@@ -39,14 +40,19 @@ class JacobianSolver {
   // fresh ones, the fallback. A report of retry gives every reason.
   void solve(std::vector<NewtonSystem>& systems, double tolerance);
 
+  // Solves with the Jacobians of the last call, whatever the states of the systems.
+  void solve_again(std::vector<NewtonSystem>& systems, double tolerance);
+
   LinearStatistics linear_statistics() const;
+  // An integrator's statistics with what happened here.
+  IntegratorStatistics added_to(IntegratorStatistics statistics) const;
   const JacobianSolverStatistics& statistics() const { return statistics_; }
   void save(std::ostream& out) const;
   void load(std::istream& in);
 
  private:
-  // The state behind factors that outlive a call: only solvers that share them have such.
-  struct Anchor {
+  // The state at which a Jacobian was assembled.
+  struct Origin {
     double t = 0, shift = 0;
     Tangent tangent = Tangent::exact;
     Vec y, ydot;
@@ -54,7 +60,8 @@ class JacobianSolver {
   template <class Action>
   void for_each_lane(std::size_t count, const Action& action);
   void assemble(std::vector<NewtonSystem>& systems);
-  Status renew(const NewtonSystem& system, int lane);
+  Status renew(int lane);
+  void solve_assembled(std::vector<NewtonSystem>& systems, double tolerance, bool new_jacobians);
   void solve_with_factors(std::vector<NewtonSystem>& systems, double tolerance, bool fresh);
   void repair(NewtonSystem& system, const Vec& guess, int lane, double tolerance, bool fresh);
 
@@ -62,8 +69,9 @@ class JacobianSolver {
   LinearSolverPtr primary_, fallback_;
   std::shared_ptr<const ThreadTeam> team_;
   std::vector<BlockJacobian> J_;  // per lane
-  Anchor anchor_;
-  bool anchored_ = false;  // the primary holds usable shared factors, made at the anchor
+  std::vector<Origin> origins_;   // per lane
+  Origin anchor_;                 // of the factors in use, if they outlive a call: shared ones
+  bool anchored_ = false;         // the primary holds usable shared factors, made at the anchor
   JacobianSolverStatistics statistics_;
 };
 

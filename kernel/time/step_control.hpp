@@ -8,7 +8,8 @@
 
 namespace traceraft {
 
-// Gomez–Hughes: Δt ← 0.9 √(tolerance/error) Δt, within bounds.
+// Δt ← 0.9 (tolerance/error)^(1/power) Δt, within bounds, for an error that grows like Δt^power
+// (power 2: Gomez–Hughes).
 class StepControl {
  public:
   static constexpr double kSafety = 0.9;
@@ -16,26 +17,60 @@ class StepControl {
   static constexpr double kMaxCut = 0.1;
 
   StepControl() = default;
-  StepControl(const IntegratorSettings& settings, double span)
+  StepControl(const IntegratorSettings& settings, double span, double power)
       : tolerance_(settings.tolerance),
+        power_(power),
         max_(settings.max_step > 0 ? settings.max_step : span),
         min_(std::min(max_, settings.min_step > 0 ? settings.min_step : 1e-14 * span)) {}
 
   double min_step() const { return min_; }
+  bool accepts(double error) const { return error <= tolerance_; }  // not if it is NaN
   double bounded(double dt) const { return std::clamp(dt, min_, max_); }
 
   double after_acceptance(double dt, double error) const {
-    const double factor = error > 0 ? kSafety * std::sqrt(tolerance_ / error) : kMaxGrowth;
+    const double factor = error > 0 ? change(error) : kMaxGrowth;
     return bounded(dt * std::clamp(factor, kMaxCut, kMaxGrowth));
   }
   // May return less than min_step(): then there is no step size.
   double after_rejection(double dt, double error) const {
-    const double factor = kSafety * std::sqrt(tolerance_ / error);
-    return dt * std::clamp(factor, kMaxCut, kSafety);
+    return dt * std::clamp(change(error), kMaxCut, kSafety);
   }
 
  private:
-  double tolerance_ = 1, max_ = 0, min_ = 0;
+  double change(double error) const { return kSafety * std::pow(tolerance_ / error, 1 / power_); }
+
+  double tolerance_ = 1, power_ = 2, max_ = 0, min_ = 0;
 };
+
+// One accepted step from t with the proposed size dt, cut until attempt(dt, error) succeeds with an
+// error that is accepted. Calls accept(dt, new t, error); fatal if there is no step size.
+template <class Attempt, class Accept>
+Status take_step(const StepControl& control, double t, double t_end, double dt,
+                 IntegratorStatistics& statistics, const Attempt& attempt, const Accept& accept) {
+  if (!(t < t_end)) return Status::fatal("the end of the run has been reached");
+  while (true) {
+    const bool last = t + dt >= t_end * (1 - 1e-14);
+    if (last) dt = t_end - t;
+    double error = 0;
+    const Status status = attempt(dt, error);
+    if (status.outcome == Outcome::fatal) return status;
+    if (status.ok() && control.accepts(error)) {
+      accept(dt, last ? t_end : t + dt, error);
+      return {};
+    }
+    // NaN and failed solves end up here, too.
+    ++(status.ok() ? statistics.rejected : statistics.failures);
+    const double smaller = status.ok() ? control.after_rejection(dt, error) : dt / 4;
+    if (dt > control.min_step() && smaller < control.min_step()) {
+      dt = control.min_step();
+      continue;
+    }
+    if (!(smaller >= control.min_step()))
+      return Status::fatal(
+          "no step size: " + (status.ok() ? "the error stays above the tolerance" : status.why) +
+          " down to the smallest step");
+    dt = smaller;
+  }
+}
 
 }  // namespace traceraft

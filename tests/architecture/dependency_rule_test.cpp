@@ -66,6 +66,7 @@ TEST(DependencyRule, KernelKnowsTheStandardLibraryAndEigenOnly) {
 TEST(DependencyRule, EveryBackendKnowsTheKernelAndItsOwnLibrary) {
   const std::map<std::string, std::vector<std::string>> own = {
       {"euler", {}},
+      {"rosenbrock", {}},
       {"suitesparse", {"suitesparse/"}},
       {"sundials", {"sundials/", "sunlinsol/", "sunnonlinsol/", "ida/"}},
       {"muparser", {"muParser.h"}},

@@ -1,0 +1,206 @@
+#include "backends/rosenbrock/rosenbrock.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "kernel/core/binary.hpp"
+#include "kernel/core/stopwatch.hpp"
+#include "kernel/time/history.hpp"
+#include "kernel/time/jacobian_solver.hpp"
+#include "kernel/time/step_control.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr int kStages = 4;
+constexpr double kLinearTolerance = 1e-3;
+
+// The method in the variables u = Γ k, which need no product with the Jacobian.
+struct Tableau {
+  double gamma;
+  Eigen::Matrix4d a, c;                        // strictly lower triangular
+  Eigen::Vector4d weights, error, at, gammas;  // gammas: row sums of Γ, at: of α
+};
+
+// Coefficients of ROS34PW2 (Rang and Angermann 2005, table 4.2).
+const Tableau& ros34pw2() {
+  static const Tableau tableau = [] {
+    constexpr double g = 4.3586652150845900e-01;
+    Eigen::Matrix4d alpha, Gamma;
+    alpha << 0, 0, 0, 0,                                        //
+        8.7173304301691801e-01, 0, 0, 0,                        //
+        8.4457060015369423e-01, -1.1299064236484185e-01, 0, 0,  //
+        0, 0, 1, 0;
+    Gamma << g, 0, 0, 0,                                        //
+        -8.7173304301691801e-01, g, 0, 0,                       //
+        -9.0338057013044082e-01, 5.4180672388095326e-02, g, 0,  //
+        2.4212380706095346e-01, -1.2232505839045147e+00, 5.4526025533510214e-01, g;
+    const Eigen::RowVector4d b(2.4212380706095346e-01, -1.2232505839045147e+00,
+                               1.5452602553351020e+00, g);
+    const Eigen::RowVector4d b_hat(3.7810903145819369e-01, -9.6042292212423178e-02, 0.5,
+                                   2.1793326075422950e-01);
+    const Eigen::Matrix4d inverse = Gamma.inverse();
+    Tableau t;
+    t.gamma = g;
+    t.a = alpha * inverse;
+    t.c = Eigen::Matrix4d(inverse.diagonal().asDiagonal()) - inverse;
+    t.weights = (b * inverse).transpose();
+    t.error = ((b - b_hat) * inverse).transpose();
+    t.at = alpha.rowwise().sum();
+    t.gammas = Gamma.rowwise().sum();
+    return t;
+  }();
+  return tableau;
+}
+
+class Rosenbrock final : public Integrator {
+ public:
+  Rosenbrock(const DaeProblem& problem, const LinearSolverChoice& solvers,
+             std::shared_ptr<const ThreadTeam> team, const IntegratorSettings& settings)
+      : problem_(problem), settings_(settings), solver_(problem, solvers, 1, std::move(team)) {}
+
+  std::string name() const override { return "rosenbrock"; }
+
+  Status start(double t0, ConstVec y0, ConstVec ydot0, double t_end) override {
+    history_.clear();
+    history_.add(t0, y0);
+    t_end_ = t_end;
+    span_ = t_end - t0;
+    control_ = StepControl(settings_, span_, 3);
+    const double rate = problem_.norm(ydot0), size = problem_.norm(y0);
+    // Small enough that the whole change of the first step is about the tolerance.
+    double first = settings_.initial_step;
+    if (!(first > 0)) first = rate > 0 ? settings_.tolerance * size / rate : span_;
+    next_ = control_.bounded(std::min(first, span_));
+    return {};
+  }
+
+  Status advance() override {
+    return take_step(
+        control_, time(), t_end_, next_, statistics_,
+        [&](double dt, double& error) { return attempt(dt, error); },
+        [&](double dt, double t, double error) { accept(dt, t, error); });
+  }
+
+  Status interpolate(double t, VecRef y) const override {
+    if (!(t >= time() - step_ && t <= time()))
+      return Status::fatal("interpolation outside the last step");
+    history_.interpolate(t, y);
+    return {};
+  }
+
+  double time() const override { return history_.time(0); }
+  double step() const override { return step_; }
+  double next_step() const override { return next_; }
+  const Vec& state() const override { return history_.state(0); }
+  bool promises_energy_decay() const override { return false; }
+
+  IntegratorStatistics statistics() const override { return solver_.added_to(statistics_); }
+  LinearStatistics linear_statistics() const override { return solver_.linear_statistics(); }
+
+  void save(std::ostream& out) const override {
+    for (const double value : {t_end_, span_, step_, next_}) write_binary(out, value);
+    history_.save(out);
+    write_binary(out, statistics_);
+    solver_.save(out);
+  }
+  void load(std::istream& in) override {
+    for (double* value : {&t_end_, &span_, &step_, &next_}) read_binary(in, *value);
+    history_.load(in, problem_.size());
+    if (history_.size() == 0) throw IoError("checkpoint: it holds no state");
+    read_binary(in, statistics_);
+    control_ = StepControl(settings_, span_, 3);
+    solver_.load(in);
+  }
+
+ private:
+  Status residual(double t, ConstVec y, ConstVec ydot, Vec& r) {
+    const ScopedTimer timer(statistics_.assembly_seconds);
+    ++statistics_.residuals;
+    r.resize(problem_.size());
+    return problem_.residual(t, y, ydot, r);
+  }
+
+  // Solves stage i for u_i; `drift` is ∂F/∂t.
+  Status solve_stage(int i, double dt, const Vec& drift) {
+    const Tableau& tableau = ros34pw2();
+    NewtonSystem& system = systems_[0];
+    Vec y = state(), rate = Vec::Zero(y.size());
+    for (int j = 0; j < i; ++j) {
+      y += tableau.a(i, j) * stage_[j];
+      rate -= tableau.c(i, j) / dt * stage_[j];
+    }
+    const Status status = residual(time() + tableau.at[i] * dt, y, rate, system.b);
+    if (!status.ok()) return status;
+    system.b = -system.b - tableau.gammas[i] * dt * drift;
+    system.x = Vec::Zero(y.size());
+    const double tolerance =
+        settings_.linear_tolerance > 0 ? settings_.linear_tolerance : kLinearTolerance;
+    if (i == 0) {
+      solver_.solve(systems_, tolerance);
+    } else {
+      solver_.solve_again(systems_, tolerance);
+    }
+    stage_[i] = system.x;
+    return system.report.status;
+  }
+
+  Status attempt(double dt, double& error) {
+    NewtonSystem& system = systems_[0];
+    system.t = time();
+    system.shift = 1 / (ros34pw2().gamma * dt);
+    system.tangent = Tangent::exact;
+    system.y = state();
+    system.ydot = Vec::Zero(state().size());
+    Vec drift, later;
+    // ∂F/∂t by a difference; exactly zero for an autonomous model.
+    const double delta = 1e-6 * dt;
+    if (Status status = residual(time(), system.y, system.ydot, drift); !status.ok()) return status;
+    if (Status status = residual(time() + delta, system.y, system.ydot, later); !status.ok())
+      return status;
+    drift = (later - drift) / delta;
+    for (int i = 0; i < kStages; ++i)
+      if (Status status = solve_stage(i, dt, drift); !status.ok()) return status;
+    proposal_ = state();
+    Vec defect = Vec::Zero(proposal_.size());
+    for (int i = 0; i < kStages; ++i) {
+      proposal_ += ros34pw2().weights[i] * stage_[i];
+      defect += ros34pw2().error[i] * stage_[i];
+    }
+    error = problem_.norm(defect) / std::max(problem_.norm(proposal_), 1e-300);
+    if (std::isnan(error)) return Status::retry("the error estimate is not a number");
+    return {};
+  }
+
+  void accept(double dt, double t, double error) {
+    history_.add(t, proposal_);
+    step_ = dt;
+    next_ = control_.after_acceptance(dt, error);
+    ++statistics_.steps;
+    statistics_.order = 3;
+  }
+
+  const DaeProblem& problem_;
+  IntegratorSettings settings_;
+  StepControl control_;
+  IntegratorStatistics statistics_;
+  double t_end_ = 0, span_ = 0, step_ = 0, next_ = 0;
+  History history_{4};  // interpolates to order 3
+  JacobianSolver solver_;
+  std::vector<NewtonSystem> systems_ = std::vector<NewtonSystem>(1);
+  std::array<Vec, kStages> stage_;
+  Vec proposal_;
+};
+
+}  // namespace
+
+IntegratorPtr make_rosenbrock(const DaeProblem& problem, const LinearSolverChoice& solvers,
+                              std::shared_ptr<const ThreadTeam> team,
+                              const IntegratorSettings& settings) {
+  return std::make_unique<Rosenbrock>(problem, solvers, std::move(team), settings);
+}
+
+}  // namespace traceraft

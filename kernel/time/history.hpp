@@ -1,0 +1,39 @@
+// The last accepted states of a run, for interpolation between them.
+#pragma once
+
+#include <deque>
+#include <iosfwd>
+
+#include "kernel/core/types.hpp"
+
+namespace traceraft {
+
+// Keeps the newest states, at most `most`, with their times.
+class History {
+ public:
+  explicit History(std::size_t most) : most_(most) {}
+
+  void clear() { entries_.clear(); }
+  void add(double t, Vec y);
+  std::size_t size() const { return entries_.size(); }
+  // 0: the newest
+  double time(std::size_t back) const { return entries_[entries_.size() - 1 - back].t; }
+  const Vec& state(std::size_t back) const { return entries_[entries_.size() - 1 - back].y; }
+
+  // The polynomial through all kept states. Its weights sum to one, so every linear functional that
+  // the states share (the mass) is kept. Exactly a state at its time.
+  void interpolate(double t, VecRef y) const;
+
+  void save(std::ostream& out) const;
+  void load(std::istream& in, Eigen::Index length);  // throws IoError
+
+ private:
+  struct Entry {
+    double t;
+    Vec y;
+  };
+  std::size_t most_;
+  std::deque<Entry> entries_;  // oldest first
+};
+
+}  // namespace traceraft
