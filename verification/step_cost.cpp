@@ -1,6 +1,7 @@
 // What a step of the euler integrator costs on one core and on two.
 #include <algorithm>
 #include <memory>
+#include <stdexcept>
 
 #include "backends/list.hpp"
 #include "kernel/core/stopwatch.hpp"
@@ -10,6 +11,10 @@
 
 namespace traceraft {
 namespace {
+
+void require(const Status& status) {
+  if (!status.ok()) throw std::runtime_error("step-cost: " + status.why);
+}
 
 // One run that is advanced step by step, beside others.
 struct TimedRun {
@@ -32,14 +37,14 @@ struct TimedRun {
     request.raft_fraction = 0.16;
     request.noise_cells = cells / 4;
     y.head(problem->block_size()) = make_initial_field("noise", *space, request);
-    (void)problem->consistent_initial_state(0, y, ydot);
+    require(problem->consistent_initial_state(0, y, ydot));
     integrator =
         integrators().find("euler").make(*problem, choose_linear_solver(solver, *space), team, {});
-    (void)integrator->start(0, y, ydot, 1e6);
+    require(integrator->start(0, y, ydot, 1e6));
   }
   void advance() {
     const Stopwatch watch;
-    (void)integrator->advance();
+    require(integrator->advance());
     steps.push_back(watch.seconds());
   }
   std::vector<double> row(double solver) {
