@@ -124,15 +124,18 @@ TEST_F(ProgramTest, ContinuesBitwiseAfterBeingKilledAtAnyMoment) {
   }
 }
 
-TEST_F(ProgramTest, ContinuesBitwiseWithFactorsOfTheWholeSystem) {
-  const std::string direct = "--linear-solver direct --threads 2 ";
-  ASSERT_EQ(traceraft("run --quiet " + quick + direct + "--out " + out("whole")).code, 0);
-  const pid_t child = start("killed", direct);
-  wait_for_rows("killed", 12);
-  kill(child, SIGKILL);
-  waitpid(child, nullptr, 0);
-  ASSERT_EQ(traceraft("resume --quiet " + out("killed")).code, 0);
-  expect_same_results("whole", "killed");
+TEST_F(ProgramTest, ContinuesBitwiseWithOtherMethods) {
+  for (const char* method : {"--linear-solver direct --threads 2 ", "--integrator ida ",
+                             "--integrator rosenbrock --tolerance 1e-4 "}) {
+    const std::string name = std::to_string(std::string(method).size());
+    ASSERT_EQ(traceraft("run --quiet " + quick + method + "--out " + out("whole" + name)).code, 0);
+    const pid_t child = start("killed" + name, method);
+    wait_for_rows("killed" + name, 12);
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    ASSERT_EQ(traceraft("resume --quiet " + out("killed" + name)).code, 0);
+    expect_same_results("whole" + name, "killed" + name);
+  }
 }
 
 TEST_F(ProgramTest, StartsAgainWhenKilledBeforeTheFirstCheckpoint) {
