@@ -147,22 +147,27 @@ Checkpoint CheckpointStore::newest(std::vector<std::string>& refused) const {
   throw IoError(message);
 }
 
+Checkpoint CheckpointStore::newest() const {
+  std::vector<std::string> refused;
+  Checkpoint checkpoint = newest(refused);
+  for (const std::string& why : refused)
+    std::fprintf(stderr, "traceraft: refused %s; using the checkpoint before it\n", why.c_str());
+  return checkpoint;
+}
+
 Vec final_concentration(const std::filesystem::path& run_folder, int nodes) {
   std::error_code unreadable;
   if (!std::filesystem::is_directory(run_folder / "checkpoints", unreadable))
     throw InputError("restart: " + run_folder.string() +
                      " is not the folder of a run: it has no checkpoints");
-  std::vector<std::string> refused;
   Checkpoint checkpoint;
   try {
-    checkpoint = CheckpointStore(run_folder / "checkpoints").newest(refused);
+    checkpoint = CheckpointStore(run_folder / "checkpoints").newest();
   } catch (const IoError& error) {
     throw InputError(std::string("restart: ") + error.what());
   } catch (const std::filesystem::filesystem_error& error) {
     throw InputError(std::string("restart: ") + error.what());
   }
-  for (const std::string& why : refused)
-    std::fprintf(stderr, "traceraft: refused %s; using the checkpoint before it\n", why.c_str());
   if (checkpoint.concentration.size() != static_cast<std::size_t>(nodes))
     throw InputError("restart: " + run_folder.string() + " has " +
                      std::to_string(checkpoint.concentration.size()) + " nodes, this run has " +

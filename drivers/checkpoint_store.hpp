@@ -39,6 +39,8 @@ class CheckpointStore {
   // The newest checkpoint that is whole. A torn or damaged one is passed over and named in
   // `refused`. Throws IoError if none is left.
   Checkpoint newest(std::vector<std::string>& refused) const;
+  // The same; what was refused is said on stderr.
+  Checkpoint newest() const;
 
  private:
   std::vector<std::filesystem::path> files() const;  // oldest first

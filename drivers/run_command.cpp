@@ -86,10 +86,7 @@ int resume_command(const ResumeRequest& request) {
   const Configuration configuration(read_config_file(folder.config()), request.flags);
   std::optional<Checkpoint> checkpoint;
   if (const CheckpointStore store(folder.checkpoints()); !store.empty()) {
-    std::vector<std::string> refused;
-    checkpoint = store.newest(refused);
-    for (const std::string& why : refused)
-      std::fprintf(stderr, "traceraft: refused %s; using the checkpoint before it\n", why.c_str());
+    checkpoint = store.newest();
     if (checkpoint->configuration != numerical_identity(configuration))
       throw InputError(folder.config().string() +
                        " is not what the checkpoint was written with; restore it, or start a new "

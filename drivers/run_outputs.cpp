@@ -8,6 +8,7 @@
 #include "backends/posix/process.hpp"
 #include "backends/zlib/vtu_writer.hpp"
 #include "kernel/core/parameters.hpp"
+#include "kernel/fem/trace.hpp"
 
 namespace traceraft {
 namespace {
@@ -102,15 +103,14 @@ std::map<std::string, std::uint64_t> TableWriter::sizes() const {
 }
 
 void FieldWriter::on_output(const Observables& row, ConstVec y) {
-  const CutSurface& surface = run_.space->surface;
   const std::size_t index = output_index(run_, row.t);
+  const Vec c = trace(*run_.space, run_.problem->c_of(y));
   write_durably(folder_.fields() / field_name(index),
                 vtu_text(*run_.space, run_.units.length(),
-                         {{"c", surface.trace(run_.problem->c_of(y))},
-                          {"mu", surface.trace(run_.problem->mu_of(y))}}));
+                         {{"c", c}, {"mu", trace(*run_.space, run_.problem->mu_of(y))}}));
   const DoubleWell& well = run_.problem->model().well;
-  const std::string picture = png_bytes(draw_front_and_back(
-      *run_.space, surface.trace(run_.problem->c_of(y)), well.a, well.b, kViewPixels));
+  const std::string picture =
+      png_bytes(draw_front_and_back(*run_.space, c, well.a, well.b, kViewPixels));
   write_durably(folder_.fields() / numbered("view", index, "png"), picture);
   write_durably(folder_.path / "view.png", picture);
   std::vector<std::pair<double, std::string>> files;

@@ -2,19 +2,20 @@
 
 #include <cmath>
 
+#include "kernel/fem/trace.hpp"
 #include "kernel/fem/triangle_rule.hpp"
 
 namespace traceraft {
 
 ErrorNorms error_norms(const SurfaceSpace& space, ConstVec nodal, const ExactFunction& exact) {
-  const Vec trace = space.surface.trace(nodal);
+  const Vec values = trace(space, nodal);
   double l2 = 0, h1 = 0;
   for (std::size_t k = 0; k < space.surface.triangles.size(); ++k) {
     const auto& corner = space.surface.triangles[k];
     const ActiveTet& tet = space.mesh.tets[space.surface.triangle_tet[k]];
     std::array<Point, 3> x;
-    for (int v = 0; v < 3; ++v) x[v] = space.surface.position(space.mesh, corner[v]);
-    const double area = 0.5 * (x[1] - x[0]).cross(x[2] - x[0]).norm();
+    for (int v = 0; v < 3; ++v) x[v] = space.surface.position[corner[v]];
+    const double area = space.surface.triangle_area[k];
     const Point normal = cut_normal(space.mesh, tet);
     const auto gradients = scaled_gradients(tet.kuhn);
     Point gradient = Point::Zero();
@@ -25,7 +26,7 @@ ErrorNorms error_norms(const SurfaceSpace& space, ConstVec nodal, const ExactFun
       double value = 0;
       for (int v = 0; v < 3; ++v) {
         point += at[v] * x[v];
-        value += at[v] * trace[corner[v]];
+        value += at[v] * values[corner[v]];
       }
       const double difference = value - exact.value(point);
       Point slope = gradient - exact.gradient(point);

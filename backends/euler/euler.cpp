@@ -8,6 +8,7 @@
 
 #include "kernel/core/binary.hpp"
 #include "kernel/core/stopwatch.hpp"
+#include "kernel/time/history.hpp"
 #include "kernel/time/jacobian_solver.hpp"
 #include "kernel/time/step_control.hpp"
 
@@ -25,45 +26,37 @@ class Euler final : public Integrator {
   std::string name() const override { return "euler"; }
 
   Status start(double t0, ConstVec y0, ConstVec ydot0, double t_end) override {
-    t_ = t0;
+    history_.clear();
+    history_.add(t0, y0);
     t_end_ = t_end;
-    y_ = y0;
-    energy_ = problem_.energy(y_);
+    energy_ = problem_.energy(y0);
     rate_ = ydot0;
     span_ = t_end - t0;
     control_ = StepControl(settings_, span_, 2);
-    const double rate = problem_.norm(rate_), size = problem_.norm(y_);
-    // Small enough that the whole change of the first step is below the tolerance.
-    double first = settings_.initial_step;
-    if (!(first > 0)) first = rate > 0 ? 0.1 * settings_.tolerance * size / rate : t_end - t0;
-    next_ = control_.bounded(std::min(first, t_end - t0));
+    // A tenth of the tolerance is the whole change of the first step.
+    const double change = 0.1 * settings_.tolerance * problem_.norm(y0);
+    next_ = control_.bounded(first_step(settings_, span_, change, problem_.norm(rate_)));
     return {};
   }
 
   Status advance() override {
     return take_step(
-        control_, t_, t_end_, next_, statistics_,
+        control_, time(), t_end_, next_, statistics_,
         [&](double dt, double& error) { return attempt(dt, error); },
         [&](double dt, double t, double error) { accept(dt, t, error); });
   }
 
   Status interpolate(double t, VecRef y) const override {
-    if (!(t >= t_ - step_ && t <= t_)) return Status::fatal("interpolation outside the last step");
-    const double x = t - t_;  // Lagrange through (0, y_), (−step, previous_), (−step − before, …)
-    const double a = step_, b = step_ + step_before_;
-    if (steps_kept_ < 2) {
-      y = y_ + x / a * (y_ - previous_);
-      return {};
-    }
-    const double w1 = -x * (x + b) / (a * (b - a)), w2 = x * (x + a) / (b * (b - a));
-    y = y_ + w1 * (previous_ - y_) + w2 * (before_ - y_);
+    if (!(t >= time() - step_ && t <= time()))
+      return Status::fatal("interpolation outside the last step");
+    history_.interpolate(t, y);
     return {};
   }
 
-  double time() const override { return t_; }
+  double time() const override { return history_.time(0); }
   double step() const override { return step_; }
   double next_step() const override { return next_; }
-  const Vec& state() const override { return y_; }
+  const Vec& state() const override { return history_.state(0); }
   bool promises_energy_decay() const override {
     return problem_.dissipates_energy() && settings_.kept_solution != "second";
   }
@@ -72,31 +65,25 @@ class Euler final : public Integrator {
   LinearStatistics linear_statistics() const override { return solver_.linear_statistics(); }
 
   void save(std::ostream& out) const override {
-    write_binary(out, std::int64_t{steps_kept_});
-    for (const double value : {t_, t_end_, span_, step_, step_before_, next_})
-      write_binary(out, value);
-    for (const Vec* vector : {&y_, &rate_}) write_binary(out, *vector);
-    if (steps_kept_ > 0) write_binary(out, previous_);
-    if (steps_kept_ > 1) write_binary(out, before_);
+    for (const double value : {t_end_, span_, step_, next_}) write_binary(out, value);
+    history_.save(out);
+    write_binary(out, rate_);
     write_binary(out, statistics_);
     solver_.save(out);
   }
   void load(std::istream& in) override {
-    std::int64_t kept = 0;
-    read_binary(in, kept);
-    steps_kept_ = static_cast<int>(kept);
-    for (double* value : {&t_, &t_end_, &span_, &step_, &step_before_, &next_})
-      read_binary(in, *value);
-    for (Vec* vector : {&y_, &rate_}) read_binary(in, *vector, problem_.size());
-    if (steps_kept_ > 0) read_binary(in, previous_, problem_.size());
-    if (steps_kept_ > 1) read_binary(in, before_, problem_.size());
+    for (double* value : {&t_end_, &span_, &step_, &next_}) read_binary(in, *value);
+    history_.load(in, problem_.size());
+    read_binary(in, rate_, problem_.size());
     read_binary(in, statistics_);
-    energy_ = problem_.energy(y_);
+    energy_ = problem_.energy(state());
     control_ = StepControl(settings_, span_, 2);
     solver_.load(in);
   }
 
  private:
+  bool started() const { return history_.size() > 1; }
+
   // The second-order solution is the more accurate one; the first-order one never gains energy.
   bool keeps_second() {
     if (settings_.kept_solution != "decaying" || !problem_.dissipates_energy())
@@ -132,44 +119,40 @@ class Euler final : public Integrator {
   }
 
   Status attempt(double dt, double& error) {
-    const double t = t_ + dt, r = dt / step_;
+    const double t = time() + dt, r = dt / step_;
+    const Vec& y = state();
     systems_.clear();
-    systems_.push_back(correction(t, 1 / dt, y_, Vec::Zero(y_.size())));
-    if (steps_kept_ > 0) {
-      const Vec predictor = (1 + r) * y_ - r * previous_;
+    systems_.push_back(correction(t, 1 / dt, y, Vec::Zero(y.size())));
+    if (started()) {
+      const Vec& previous = history_.state(1);
+      const Vec predictor = (1 + r) * y - r * previous;
       const Vec rate =
-          ((1 + 2 * r) / (1 + r) * predictor - (1 + r) * y_ + r * r / (1 + r) * previous_) / dt;
-      systems_[0].x = predictor - y_;  // linear extrapolation is a good guess
+          ((1 + 2 * r) / (1 + r) * predictor - (1 + r) * y + r * r / (1 + r) * previous) / dt;
+      systems_[0].x = predictor - y;  // linear extrapolation is a good guess
       systems_.push_back(correction(t, (1 + 2 * r) / ((1 + r) * dt), predictor, rate));
     }
     if (Status status = evaluate_residuals(); !status.ok()) return status;
-    solver_.solve(systems_,
-                  settings_.linear_tolerance > 0 ? settings_.linear_tolerance : kLinearTolerance);
+    solver_.solve(systems_, settings_.linear_tolerance_or(kLinearTolerance));
     for (const NewtonSystem& system : systems_)
       if (!system.report.status.ok()) return system.report.status;
 
     first_ = systems_[0].y + systems_[0].x;
     second_ = systems_.back().y + systems_.back().x;
     // At the start, half the difference to explicit Euler: the leading term of the local error.
-    error = steps_kept_ > 0 ? problem_.norm(second_ - first_) / problem_.norm(second_)
-                            : 0.5 * problem_.norm(first_ - y_ - dt * rate_) /
-                                  std::max(problem_.norm(y_), 1e-300);
-    if (first_ == second_ && steps_kept_ > 0) error = 0;  // c = 0 everywhere is 0/0
+    error = started()
+                ? problem_.norm(second_ - first_) / problem_.norm(second_)
+                : 0.5 * problem_.norm(first_ - y - dt * rate_) / std::max(problem_.norm(y), 1e-300);
+    if (first_ == second_ && started()) error = 0;  // c = 0 everywhere is 0/0
     if (std::isnan(error)) return Status::retry("the error estimate is not a number");
     return {};
   }
 
   void accept(double dt, double t, double error) {
-    before_.swap(previous_);
-    previous_.swap(y_);
     const bool second = keeps_second();
-    y_ = second ? second_ : first_;
     statistics_.first_order += !second;
-    statistics_.order = second && steps_kept_ > 0 ? 2 : 1;
-    steps_kept_ = std::min(steps_kept_ + 1, 2);
-    step_before_ = step_;
+    statistics_.order = second && started() ? 2 : 1;
+    history_.add(t, second ? second_ : first_);
     step_ = dt;
-    t_ = t;
     next_ = control_.after_acceptance(dt, error);
     ++statistics_.steps;
   }
@@ -179,9 +162,9 @@ class Euler final : public Integrator {
   StepControl control_;
   IntegratorStatistics statistics_;
   double energy_ = 0;  // of y_n, where it decides which solution is kept
-  double t_ = 0, t_end_ = 0, span_ = 0, step_ = 0, step_before_ = 0, next_ = 0;
-  int steps_kept_ = 0;                // how many of previous_, before_ are filled
-  Vec y_, previous_, before_, rate_;  // y_n, y_{n−1}, y_{n−2}, ẏ at the start
+  double t_end_ = 0, span_ = 0, step_ = 0, next_ = 0;
+  History history_{3};  // interpolates to order 2
+  Vec rate_;            // ẏ at the start
   JacobianSolver solver_;
   std::vector<NewtonSystem> systems_;  // of an attempt: first and second order
   Vec first_, second_;                 // and what they give

@@ -70,11 +70,9 @@ class Rosenbrock final : public Integrator {
     t_end_ = t_end;
     span_ = t_end - t0;
     control_ = StepControl(settings_, span_, 3);
-    const double rate = problem_.norm(ydot0), size = problem_.norm(y0);
-    // Small enough that the whole change of the first step is about the tolerance.
-    double first = settings_.initial_step;
-    if (!(first > 0)) first = rate > 0 ? settings_.tolerance * size / rate : span_;
-    next_ = control_.bounded(std::min(first, span_));
+    // The tolerance is about the change of the first step.
+    const double change = settings_.tolerance * problem_.norm(y0);
+    next_ = control_.bounded(first_step(settings_, span_, change, problem_.norm(ydot0)));
     return {};
   }
 
@@ -124,21 +122,29 @@ class Rosenbrock final : public Integrator {
     return problem_.residual(t, y, ydot, r);
   }
 
-  // Solves stage i for u_i; `drift` is ∂F/∂t.
-  Status solve_stage(int i, double dt, const Vec& drift) {
+  // F at stage i. At the first one it is `at_start`, which is known.
+  Status stage_residual(int i, double dt, const Vec& at_start, Vec& r) {
+    if (i == 0) {
+      r = at_start;
+      return {};
+    }
     const Tableau& tableau = ros34pw2();
-    NewtonSystem& system = systems_[0];
     Vec y = state(), rate = Vec::Zero(y.size());
     for (int j = 0; j < i; ++j) {
       y += tableau.a(i, j) * stage_[j];
       rate -= tableau.c(i, j) / dt * stage_[j];
     }
-    const Status status = residual(time() + tableau.at[i] * dt, y, rate, system.b);
+    return residual(time() + tableau.at[i] * dt, y, rate, r);
+  }
+
+  // Solves stage i for u_i; `drift` is ∂F/∂t.
+  Status solve_stage(int i, double dt, const Vec& at_start, const Vec& drift) {
+    NewtonSystem& system = systems_[0];
+    const Status status = stage_residual(i, dt, at_start, system.b);
     if (!status.ok()) return status;
-    system.b = -system.b - tableau.gammas[i] * dt * drift;
-    system.x = Vec::Zero(y.size());
-    const double tolerance =
-        settings_.linear_tolerance > 0 ? settings_.linear_tolerance : kLinearTolerance;
+    system.b = -system.b - ros34pw2().gammas[i] * dt * drift;
+    system.x = Vec::Zero(system.b.size());
+    const double tolerance = settings_.linear_tolerance_or(kLinearTolerance);
     if (i == 0) {
       solver_.solve(systems_, tolerance);
     } else {
@@ -155,15 +161,15 @@ class Rosenbrock final : public Integrator {
     system.tangent = Tangent::exact;
     system.y = state();
     system.ydot = Vec::Zero(state().size());
-    Vec drift, later;
+    Vec at_start, later;
     // ∂F/∂t by a difference; exactly zero for an autonomous model.
     const double delta = 1e-6 * dt;
-    if (Status status = residual(time(), system.y, system.ydot, drift); !status.ok()) return status;
-    if (Status status = residual(time() + delta, system.y, system.ydot, later); !status.ok())
-      return status;
-    drift = (later - drift) / delta;
+    Status status = residual(time(), system.y, system.ydot, at_start);
+    if (status.ok()) status = residual(time() + delta, system.y, system.ydot, later);
+    if (!status.ok()) return status;
+    const Vec drift = (later - at_start) / delta;
     for (int i = 0; i < kStages; ++i)
-      if (Status status = solve_stage(i, dt, drift); !status.ok()) return status;
+      if (status = solve_stage(i, dt, at_start, drift); !status.ok()) return status;
     proposal_ = state();
     Vec defect = Vec::Zero(proposal_.size());
     for (int i = 0; i < kStages; ++i) {

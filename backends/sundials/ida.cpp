@@ -14,6 +14,7 @@
 #include "kernel/core/binary.hpp"
 #include "kernel/core/stopwatch.hpp"
 #include "kernel/time/jacobian_solver.hpp"
+#include "kernel/time/step_control.hpp"
 
 namespace traceraft {
 namespace {
@@ -57,7 +58,7 @@ class Ida final : public Integrator {
   Status start(double t0, ConstVec y0, ConstVec ydot0, double t_end) override {
     t_end_ = t_end;
     span_ = t_end - t0;
-    first_step_ = first_step(y0, ydot0);
+    first_step_ = choose_first_step(y0, ydot0);
     create(t0, y0, ydot0);
     y_ = y0;
     t_ = t0;
@@ -112,9 +113,7 @@ class Ida final : public Integrator {
     IntegratorStatistics result;
     IDAGetNumSteps(memory_, &result.steps);
     IDAGetNumErrTestFails(memory_, &result.rejected);
-    long newton_failures = 0;
     IDAGetNumNonlinSolvIters(memory_, &result.newton_iterations);
-    IDAGetNumNonlinSolvConvFails(memory_, &newton_failures);
     IDAGetNumStepSolveFails(memory_, &result.failures);
     IDAGetLastOrder(memory_, &result.order);
     result.residuals = residuals_;
@@ -146,16 +145,15 @@ class Ida final : public Integrator {
   double either(const char* name, double general) const {
     return option(name) > 0 ? option(name) : general;
   }
-  double first_step(ConstVec y, ConstVec ydot) const {
-    if (const double given = either("initstep", settings_.initial_step); given > 0) return given;
+  double choose_first_step(ConstVec y, ConstVec ydot) const {
+    if (option("initstep") > 0) return option("initstep");
     const int n = problem_.block_size();
-    const double rate = problem_.field_norm(ydot.head(n)), size = problem_.field_norm(y.head(n));
-    // Small enough that the whole change of the first step is below the tolerance.
-    return rate > 0 ? std::min(span_, 0.1 * rtol() * size / rate) : span_;
+    // A tenth of the tolerance is the whole change of the first step.
+    return first_step(settings_, span_, 0.1 * rtol() * problem_.field_norm(y.head(n)),
+                      problem_.field_norm(ydot.head(n)));
   }
   double linear_tolerance() const {
-    return either("epslin",
-                  settings_.linear_tolerance > 0 ? settings_.linear_tolerance : kLinearTolerance);
+    return either("epslin", settings_.linear_tolerance_or(kLinearTolerance));
   }
   double rtol() const { return either("rtol", settings_.tolerance); }
 
@@ -275,11 +273,17 @@ class Ida final : public Integrator {
     return self.guarded(-1, [&] {
       const Eigen::Index n = self.problem_.block_size();
       const double floor = self.either("atol", 1e-10) * self.unit_;
-      for (const Eigen::Index half : {Eigen::Index{0}, n})
+      const auto set = [&](Eigen::Index half) {
         view(weights).segment(half, n).setConstant(
             1 / (self.rtol() * self.problem_.field_norm(view(y).segment(half, n)) + floor));
+      };
+      set(0);
       // Newton's method is judged by what the error test is about.
-      if (self.option("suppressalg") != 0) view(weights).tail(n).setZero();
+      if (self.option("suppressalg") != 0) {
+        view(weights).tail(n).setZero();
+      } else {
+        set(n);
+      }
       return 0;
     });
   }

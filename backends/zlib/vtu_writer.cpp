@@ -72,7 +72,7 @@ std::string vtu_text(const SurfaceSpace& space, double length,
   const std::size_t points = surface.points.size(), triangles = surface.triangles.size();
   std::vector<float> coordinates;
   for (std::size_t p = 0; p < points; ++p) {
-    const Point x = length * surface.position(space.mesh, static_cast<int>(p));
+    const Point x = length * surface.position[p];
     for (int axis = 0; axis < 3; ++axis) coordinates.push_back(static_cast<float>(x[axis]));
   }
   std::vector<std::int32_t> connectivity, offsets;

@@ -2,6 +2,8 @@
 // points of the cut surface, c|Γ = P c and every load vector is Pᵀ of loads at the points.
 #pragma once
 
+#include <array>
+
 #include "kernel/fem/surface_space.hpp"
 
 namespace traceraft {

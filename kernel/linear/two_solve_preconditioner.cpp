@@ -24,7 +24,7 @@ Status TwoSolvePreconditioner::setup(const BlockJacobian& J, const ThreadTeam& t
   const TwoSolveShifts shifts = two_solve_shifts(J.shift, mobility, J.stiffness, J.curvature);
   p_ = shifts.p;
   q_ = shifts.q;
-  return factorise(combine(1, J.cm, p_, J.mm), combine(-1, J.mc, -q_, J.mm), team);
+  return factorise(J, team);
 }
 
 Status TwoSolvePreconditioner::setup_exact(const BlockJacobian& J, double mobility,
@@ -36,18 +36,18 @@ Status TwoSolvePreconditioner::setup_exact(const BlockJacobian& J, double mobili
   for (int attempt = 0; attempt < kMostShifts; ++attempt, s *= 2) {
     p_ = 2 * J.shift / (J.curvature + s);
     q_ = -s;
-    status = factorise(combine(1, J.cm, p_, J.mm), combine(-1, J.mc, s, J.mm), team);
+    status = factorise(J, team);
     if (status.ok()) break;
   }
   return status;
 }
 
-Status TwoSolvePreconditioner::factorise(const CsrMatrix& first, const CsrMatrix& second,
-                                         const ThreadTeam& team) {
+Status TwoSolvePreconditioner::factorise(const BlockJacobian& J, const ThreadTeam& team) {
   Status status[2];
   team.run([&](int part) {
     for (int which = part; which < 2; which += team.size())
-      status[which] = which == 0 ? first_->factorise(first) : second_->factorise(second);
+      status[which] = which == 0 ? first_->factorise(combine(1, J.cm, p_, J.mm))
+                                 : second_->factorise(combine(-1, J.mc, -q_, J.mm));
   });
   return status[0].ok() ? status[1] : status[0];
 }

@@ -21,7 +21,7 @@ namespace traceraft {
 // q = −s, just large enough to be positive definite, s = 1.5 ε √(σ/m), and p = 2σ/(β + s). The
 // spectrum is then bounded on the boundaries, where A is large and S ≈ A M⁻¹ (B + σ M A⁻¹ M), as
 // well as in the phases, where it is small and S ≈ σ M. The factors 1.5 and 2 were measured, see
-// docs/results.md.
+// docs/decisions/0009-exact-tangent-preconditioner.md.
 class TwoSolvePreconditioner {
  public:
   TwoSolvePreconditioner(const SpdSolverFactory& make_solver, int lanes)
@@ -36,7 +36,7 @@ class TwoSolvePreconditioner {
 
  private:
   Status setup_exact(const BlockJacobian& J, double mobility, const ThreadTeam& team);
-  Status factorise(const CsrMatrix& first, const CsrMatrix& second, const ThreadTeam& team);
+  Status factorise(const BlockJacobian& J, const ThreadTeam& team);  // with p_ and q_
 
   SpdSolverPtr first_, second_;
   double p_ = 0, q_ = 0;

@@ -60,7 +60,9 @@ CutSurface build_cut_surface(const ActiveMesh& mesh) {
     const double phi_low = mesh.phi[low], phi_high = mesh.phi[high];
     if ((phi_low < 0) == (phi_high < 0)) continue;
     point_on_edge[e] = static_cast<int>(surface.points.size());
-    surface.points.push_back({low, high, cut_fraction(phi_low, phi_high)});
+    const double s = cut_fraction(phi_low, phi_high);
+    surface.points.push_back({low, high, s});
+    surface.position.push_back((1 - s) * mesh.position(low) + s * mesh.position(high));
   }
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     const CutPolygon polygon = cut_polygon(mesh, mesh.tets[t]);
@@ -70,24 +72,11 @@ CutSurface build_cut_surface(const ActiveMesh& mesh) {
       surface.triangle_tet.push_back(static_cast<int>(t));
     }
   }
-  std::vector<Point> position;
-  for (std::size_t p = 0; p < surface.points.size(); ++p)
-    position.push_back(surface.position(mesh, static_cast<int>(p)));
+  const std::vector<Point>& position = surface.position;
   for (const auto& [a, b, c] : surface.triangles)
     surface.triangle_area.push_back(
         0.5 * (position[b] - position[a]).cross(position[c] - position[a]).norm());
   return surface;
-}
-
-Vec CutSurface::trace(ConstVec nodal) const {
-  Vec values(points.size());
-  for (std::size_t p = 0; p < points.size(); ++p) values[p] = points[p].trace(nodal);
-  return values;
-}
-
-Point CutSurface::position(const ActiveMesh& mesh, int point) const {
-  const auto& [low, high, s] = points[point];
-  return (1 - s) * mesh.position(low) + s * mesh.position(high);
 }
 
 int CutSurface::euler_characteristic() const {

@@ -33,13 +33,11 @@ struct CutPoint {
 
 struct CutSurface {
   std::vector<CutPoint> points;               // ascending in `low`
+  std::vector<Point> position;                // of each point
   std::vector<std::array<int, 3>> triangles;  // counter-clockwise seen from outside
   std::vector<int> triangle_tet;              // ascending
   std::vector<double> triangle_area;
 
-  // A nodal field at the points: the trace c|Γ_h.
-  Vec trace(ConstVec nodal) const;
-  Point position(const ActiveMesh& mesh, int point) const;
   // Points − edges + triangles; 2 for each sphere, 0 for each torus.
   int euler_characteristic() const;
 };

@@ -26,9 +26,8 @@ Vec half_and_half(const SurfaceSpace& sphere, const DoubleWell& well, double eps
 double relaxed_interface_energy(const SurfaceSpace& sphere, const CahnHilliardModel& model,
                                 const Point& axis) {
   const DoubleWell& well = model.well;
-  const double epsilon = model.epsilon, e2 = epsilon * epsilon;
-  const CsrMatrix gradient_energy =
-      combine(e2, sphere.stiffness, e2 * model.stabilisation * sphere.h(), sphere.normal);
+  const double epsilon = model.epsilon;
+  const CsrMatrix gradient_energy = gradient_energy_matrix(sphere, model);
   // Descent of the energy at fixed mass, (ε²(K + ρS) + βM̃) δ = −(b + ε²(K + ρS)c − λw): the profile
   // settles within some tens of steps, long before the boundary as a whole could move.
   const CsrMatrix descent = combine(1, gradient_energy, model.beta(), sphere.stabilised_mass);

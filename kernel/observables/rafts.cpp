@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "kernel/fem/trace.hpp"
+
 namespace traceraft {
 namespace {
 
@@ -53,14 +55,12 @@ Piece piece_above(const std::array<Point, 3>& x, const std::array<double, 3>& va
 
 }  // namespace
 
-RaftFinder::RaftFinder(std::shared_ptr<const SurfaceSpace> space) : space_(std::move(space)) {
-  for (int p = 0; p < static_cast<int>(space_->surface.points.size()); ++p)
-    position_.push_back(space_->surface.position(space_->mesh, p));
-}
+RaftFinder::RaftFinder(std::shared_ptr<const SurfaceSpace> space) : space_(std::move(space)) {}
 
 RaftReport RaftFinder::find(ConstVec c, double level) const {
   const CutSurface& surface = space_->surface;
-  const Vec value = surface.trace(c);
+  const std::vector<Point>& position = surface.position;
+  const Vec value = trace(*space_, c);
   RaftReport report;
   report.c_min = value.minCoeff();
   report.c_max = value.maxCoeff();
@@ -92,8 +92,8 @@ RaftReport RaftFinder::find(ConstVec c, double level) const {
     for (const int p : triangle) raft = std::max(raft, raft_of_point[p]);
     if (raft < 0) continue;
     const auto& [i, j, k] = triangle;
-    const Piece piece = piece_above({position_[i], position_[j], position_[k]},
-                                    {value[i], value[j], value[k]}, level);
+    const Piece piece =
+        piece_above({position[i], position[j], position[k]}, {value[i], value[j], value[k]}, level);
     report.rafts[raft].area += piece.area;
     report.rafts[raft].perimeter += piece.curve;
     moment[raft] += piece.moment;
@@ -102,10 +102,10 @@ RaftReport RaftFinder::find(ConstVec c, double level) const {
   for (std::size_t p = 0; p < raft_of_point.size(); ++p) {
     const int raft = raft_of_point[p];
     if (raft < 0) continue;
-    const double distance = (position_[p] - moment[raft] / report.rafts[raft].area).norm();
+    const double distance = (position[p] - moment[raft] / report.rafts[raft].area).norm();
     if (distance < nearest[raft]) {
       nearest[raft] = distance;
-      report.rafts[raft].centre = position_[p];
+      report.rafts[raft].centre = position[p];
     }
   }
   for (const Raft& raft : report.rafts) {

@@ -31,7 +31,6 @@ class RaftFinder {
 
  private:
   std::shared_ptr<const SurfaceSpace> space_;
-  std::vector<Point> position_;
 };
 
 }  // namespace traceraft

@@ -96,12 +96,9 @@ class View {
 Image draw_front_and_back(const SurfaceSpace& space, const Vec& values, double low, double high,
                           int size) {
   const CutSurface& surface = space.surface;
-  std::vector<Point> position;
+  const std::vector<Point>& position = surface.position;
   double farthest = 0;
-  for (int p = 0; p < static_cast<int>(surface.points.size()); ++p) {
-    position.push_back(surface.position(space.mesh, p));
-    farthest = std::max(farthest, position.back().norm());
-  }
+  for (const Point& x : position) farthest = std::max(farthest, x.norm());
   const Point towards_viewer(1, -0.8, 0.5);
   Image image{2 * size, size, std::vector<std::uint8_t>(6 * static_cast<std::size_t>(size) * size)};
   View front(size, 1.05 * farthest, towards_viewer), back(size, 1.05 * farthest, -towards_viewer);

@@ -11,8 +11,8 @@
 
 namespace traceraft {
 
-// Contract: M is continuous; it may be negative outside [0, 1]. What enters the equations is the mean
-// of M(c_h) over Γ_h in each tetrahedron, floored at zero there (fem/mobility_stiffness.hpp):
+// Contract: M is continuous; it may be negative outside [0, 1]. What enters the equations is the
+// mean of M(c_h) over Γ_h in each tetrahedron, floored at zero there (fem/mobility_stiffness.hpp):
 // without the floor a slightly negative mobility amplifies itself without bound.
 class Mobility {
  public:

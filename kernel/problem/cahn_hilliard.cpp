@@ -22,12 +22,15 @@ std::array<double, 4> unit_flux(const CutElement& element, ConstVec mu) {
 
 }  // namespace
 
+CsrMatrix gradient_energy_matrix(const SurfaceSpace& space, const CahnHilliardModel& model) {
+  const double e2 = model.epsilon * model.epsilon;
+  return combine(e2, space.stiffness, e2 * model.stabilisation * space.h(), space.normal);
+}
+
 CahnHilliard::CahnHilliard(std::shared_ptr<const SurfaceSpace> space, CahnHilliardModel model)
     : space_(std::move(space)),
       model_(std::move(model)),
-      gradient_energy_(combine(model_.epsilon * model_.epsilon, space_->stiffness,
-                               model_.epsilon * model_.epsilon * model_.stabilisation * space_->h(),
-                               space_->normal)) {}
+      gradient_energy_(gradient_energy_matrix(*space_, model_)) {}
 
 double CahnHilliard::flux_stabilisation() const {
   return model_.stabilisation * space_->h() * model_.mobility->scale();

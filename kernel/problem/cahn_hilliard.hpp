@@ -25,6 +25,9 @@ struct CahnHilliardModel {
   double beta() const { return 4 * well.rho * (well.b - well.a) * (well.b - well.a); }
 };
 
+// ε² (K + ρ S): the gradient energy is half its quadratic form.
+CsrMatrix gradient_energy_matrix(const SurfaceSpace& space, const CahnHilliardModel& model);
+
 // y = (c, μ):
 //   F1 = M̃ ċ + K_M(c) μ + ρ m S μ                (m: scale of the mobility law)
 //   F2 = M̃ μ − b(c) − ε² (K + ρ S) c

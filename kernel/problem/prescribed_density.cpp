@@ -24,8 +24,7 @@ class PrescribedDensity final : public Effect {
     const CutSurface& surface = space.surface;
     const Vec load = point_loads(space, [&](int triangle) {
       const auto& [i, j, k] = surface.triangles[triangle];
-      const Point corner[3] = {surface.position(space.mesh, i), surface.position(space.mesh, j),
-                               surface.position(space.mesh, k)};
+      const Point corner[3] = {surface.position[i], surface.position[j], surface.position[k]};
       std::array<double, 3> corner_load{};
       for (const auto& [at, weight] : kDegreeFourRule) {
         const Point x = at[0] * corner[0] + at[1] * corner[1] + at[2] * corner[2];

@@ -1,6 +1,7 @@
 // The last accepted states of a run, for interpolation between them.
 #pragma once
 
+#include <cstddef>
 #include <deque>
 #include <iosfwd>
 

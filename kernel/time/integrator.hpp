@@ -20,6 +20,10 @@ struct IntegratorSettings {
   double linear_tolerance = 0;  // relative residual of each correction; 0: the method's choice
   std::string kept_solution = "second";  // euler: which of its pair goes on
   std::map<std::string, double> own;     // options of one method only, by its names for them
+
+  double linear_tolerance_or(double choice) const {
+    return linear_tolerance > 0 ? linear_tolerance : choice;
+  }
 };
 
 struct IntegratorStatistics {

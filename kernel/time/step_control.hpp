@@ -42,6 +42,14 @@ class StepControl {
   double tolerance_ = 1, power_ = 2, max_ = 0, min_ = 0;
 };
 
+// The first step of a run over `span`: as asked for, or such that a solution that moves with `rate`
+// changes by `change`.
+inline double first_step(const IntegratorSettings& settings, double span, double change,
+                         double rate) {
+  if (settings.initial_step > 0) return std::min(settings.initial_step, span);
+  return rate > 0 ? std::min(change / rate, span) : span;
+}
+
 // One accepted step from t with the proposed size dt, cut until attempt(dt, error) succeeds with an
 // error that is accepted. Calls accept(dt, new t, error); fatal if there is no step size.
 template <class Attempt, class Accept>

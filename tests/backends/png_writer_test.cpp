@@ -21,7 +21,7 @@ TEST(SurfaceView, ShowsFrontAndBack) {
   const Point viewer(1, -0.8, 0.5);
   Vec values(space->surface.points.size());
   for (int p = 0; p < values.size(); ++p)
-    values[p] = space->surface.position(space->mesh, p).dot(viewer) > 0 ? 1 : 0;
+    values[p] = space->surface.position[p].dot(viewer) > 0 ? 1 : 0;
   const int size = 100;
   const Image image = draw_front_and_back(*space, values, 0, 1, size);
   ASSERT_EQ(image.width, 2 * size);

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "backends/zlib/checksum.hpp"
+#include "kernel/fem/trace.hpp"
 #include "tests/support/spaces.hpp"
 
 namespace traceraft {
@@ -60,7 +61,7 @@ std::vector<T> array_named(const std::string& file, const std::string& name) {
 TEST(VtuWriter, WritesTheSurfaceAndItsFields) {
   const auto space = testing::make_space(32);
   const Vec field = testing::random_vector(space->nodes(), 1);
-  const Vec trace = space->surface.trace(field);
+  const Vec trace = traceraft::trace(*space, field);
   const std::string file = vtu_text(*space, 5.0, {{"c", trace}});
   const auto c = array_named<float>(file, "c");
   ASSERT_EQ(c.size(), space->surface.points.size());

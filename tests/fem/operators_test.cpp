@@ -5,6 +5,7 @@
 
 #include "kernel/fem/mobility_stiffness.hpp"
 #include "kernel/fem/potential.hpp"
+#include "kernel/fem/trace.hpp"
 #include "kernel/fem/triangle_rule.hpp"
 #include "tests/support/spaces.hpp"
 
@@ -26,13 +27,12 @@ Eigen::MatrixXd dense(const CsrMatrix& matrix) {
 // ∫_Γ f(x, c_h, ∇c_h) by brute force over the triangles of Γ_h: slow and easy to check by hand.
 template <class F>
 double integrate(const SurfaceSpace& space, const Vec& c, const F& f) {
-  const Vec trace = space.surface.trace(c);
+  const Vec trace = traceraft::trace(space, c);
   double sum = 0;
   for (std::size_t k = 0; k < space.surface.triangles.size(); ++k) {
     const auto& [i, j, l] = space.surface.triangles[k];
-    const Point a = space.surface.position(space.mesh, i),
-                b = space.surface.position(space.mesh, j),
-                d = space.surface.position(space.mesh, l);
+    const Point a = space.surface.position[i], b = space.surface.position[j],
+                d = space.surface.position[l];
     const double area = 0.5 * (b - a).cross(d - a).norm();
     const ActiveTet& tet = space.mesh.tets[space.surface.triangle_tet[k]];
     Point gradient = Point::Zero();
@@ -101,12 +101,12 @@ TEST_P(OperatorTest, MobilityStiffnessIsTheWeightedIntegral) {
   const std::vector<double> integral = mobility_integrals(*space, *law, c);
   // Reference: ∫ c(1 − c) tetrahedron by tetrahedron.
   std::vector<double> expected(space->elements.size(), 0.0);
-  const Vec trace = space->surface.trace(c);
+  const Vec trace = traceraft::trace(*space, c);
   for (std::size_t k = 0; k < space->surface.triangles.size(); ++k) {
     const auto& triangle = space->surface.triangles[k];
-    const Point a = space->surface.position(space->mesh, triangle[0]);
-    const double area = 0.5 * (space->surface.position(space->mesh, triangle[1]) - a)
-                                  .cross(space->surface.position(space->mesh, triangle[2]) - a)
+    const Point a = space->surface.position[triangle[0]];
+    const double area = 0.5 * (space->surface.position[triangle[1]] - a)
+                                  .cross(space->surface.position[triangle[2]] - a)
                                   .norm();
     for (const auto& [at, weight] : kDegreeFourRule) {
       double value = 0;

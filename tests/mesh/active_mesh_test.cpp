@@ -137,8 +137,8 @@ TEST(CutGeometry, AgreesBetweenElementsAndSurface) {
   double area = 0;
   for (std::size_t k = 0; k < surface.triangles.size(); ++k) {
     const auto [a, b, c] = surface.triangles[k];
-    const Point x = surface.position(mesh, a);
-    const Point vector = 0.5 * (surface.position(mesh, b) - x).cross(surface.position(mesh, c) - x);
+    const Point x = surface.position[a];
+    const Point vector = 0.5 * (surface.position[b] - x).cross(surface.position[c] - x);
     area += vector.norm();
     // Counter-clockwise seen from outside.
     EXPECT_GE(vector.dot(cut_normal(mesh, mesh.tets[surface.triangle_tet[k]])), -1e-18);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "kernel/fem/trace.hpp"
 #include "kernel/observables/rafts.hpp"
 #include "tests/support/spaces.hpp"
 
@@ -100,11 +101,10 @@ TEST(Formula, IsProjected) {
   EXPECT_THROW(make_initial_field("formula", *space, request), InputError);
   request.formula = [](const Point& x) { return 0.5 + 0.3 * x[2]; };
   const Vec c = make_initial_field("formula", *space, request);
-  const Vec trace = space->surface.trace(c);
+  const Vec trace = traceraft::trace(*space, c);
   double worst = 0;
   for (int p = 0; p < trace.size(); ++p)
-    worst = std::max(
-        worst, std::fabs(trace[p] - request.formula(space->surface.position(space->mesh, p))));
+    worst = std::max(worst, std::fabs(trace[p] - request.formula(space->surface.position[p])));
   EXPECT_LT(worst, 0.02);
   request.formula = [](const Point& x) { return 1 / (x[0] - x[0]); };
   EXPECT_THROW(make_initial_field("formula", *space, request), InputError);

@@ -242,7 +242,8 @@ TEST_P(IntegratorContract, FallsBackAndStaysRight) {
     const IntegratorPtr integrator = started(problem, 2, faulty(plan, true), settings);
     ASSERT_TRUE(run(*integrator, 2).ok());
     const IntegratorStatistics statistics = integrator->statistics();
-    EXPECT_GE(statistics.fallbacks, statistics.jacobians);
+    EXPECT_GT(statistics.fallbacks, 0);
+    EXPECT_EQ(statistics.fallbacks, integrator->linear_statistics().solves);  // every one
     EXPECT_LT(problem.norm(integrator->state() - good->state()), 1e-6);
   }
 }
