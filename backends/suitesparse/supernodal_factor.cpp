@@ -31,61 +31,73 @@ class FlushSubnormals {
 
 using Real = SupernodalFactor::Real;
 
-// y += a0 x0 + a1 x1 + a2 x2 + a3 x3, four columns of L at a time.
-TRACERAFT_CLONES
-void add_four(int n, const Real* __restrict l, int stride, const Real* a, Real* __restrict y) {
-  const Real *l0 = l, *l1 = l + stride, *l2 = l1 + stride, *l3 = l2 + stride;
-  for (int i = 0; i < n; ++i) y[i] += a[0] * l0[i] + a[1] * l1[i] + a[2] * l2[i] + a[3] * l3[i];
-}
-
-TRACERAFT_CLONES
-void add_one(int n, const Real* __restrict l, Real a, Real* __restrict y) {
-  for (int i = 0; i < n; ++i) y[i] += a * l[i];
-}
+#define TRACERAFT_INLINE __attribute__((always_inline)) inline
 
 // Eight numbers at a time, summed in one fixed order.
 constexpr int kWide = 8;
 using Wide =
     Real __attribute__((vector_size(kWide * sizeof(Real)), aligned(alignof(Real)), may_alias));
-const Wide& wide(const Real* at) {
-  return *reinterpret_cast<const Wide*>(at);
-}
 
-Real sum_of(const Wide& v) {
+TRACERAFT_INLINE Real sum_of(const Wide& v) {
   return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
 }
 
-TRACERAFT_CLONES
-Real dot_one(int n, const Real* l, const Real* y) {
-  Wide sum = {};
-  int i = 0;
-  for (; i + kWide <= n; i += kWide) sum += wide(l + i) * wide(y + i);
-  Real total = sum_of(sum);
-  for (; i < n; ++i) total += l[i] * y[i];
-  return total;
+// The leading K columns of a trapezoid of L, `rows` from the diagonal of the first one downwards.
+// Solves for the first K numbers of x and subtracts what they contribute to the others.
+template <int K>
+TRACERAFT_INLINE void eliminate(const Real* l, int stride, int rows, Real* __restrict x) {
+  Real solved[K];
+  for (int a = 0; a < K; ++a) {
+    for (int b = 0; b < a; ++b) x[a] -= l[b * stride + a] * solved[b];
+    solved[a] = x[a] /= l[a * stride + a];
+  }
+  for (int i = K; i < rows; ++i) {
+    Real sum = 0;
+    for (int a = 0; a < K; ++a) sum += solved[a] * l[a * stride + i];
+    x[i] -= sum;
+  }
 }
 
-// result -= Lᵀ y for four columns.
+// Solves for the first K numbers of x, given the others, with the transpose.
+template <int K>
+TRACERAFT_INLINE void substitute(const Real* l, int stride, int rows, Real* __restrict x) {
+  Wide sum[K] = {};
+  int i = K;
+  for (; i + kWide <= rows; i += kWide)
+    for (int a = 0; a < K; ++a)
+      sum[a] += *reinterpret_cast<const Wide*>(l + a * stride + i) *
+                *reinterpret_cast<const Wide*>(x + i);
+  Real total[K];
+  for (int a = 0; a < K; ++a) total[a] = sum_of(sum[a]);
+  for (; i < rows; ++i)
+    for (int a = 0; a < K; ++a) total[a] += l[a * stride + i] * x[i];
+  for (int a = K - 1; a >= 0; --a) {
+    x[a] -= total[a];
+    for (int b = a + 1; b < K; ++b) x[a] -= l[a * stride + b] * x[b];
+    x[a] /= l[a * stride + a];
+  }
+}
+
+// A supernode's columns in groups of four, after those that make no group. x: a contiguous copy of
+// what belongs to its rows; L is stored column by column, `rows` apart.
 TRACERAFT_CLONES
-void subtract_dot_four(int n, const Real* l, int stride, const Real* y, Real* result) {
-  const Real *l0 = l, *l1 = l + stride, *l2 = l1 + stride, *l3 = l2 + stride;
-  Wide sum0 = {}, sum1 = {}, sum2 = {}, sum3 = {};
-  int i = 0;
-  for (; i + kWide <= n; i += kWide) {
-    const Wide value = wide(y + i);
-    sum0 += wide(l0 + i) * value;
-    sum1 += wide(l1 + i) * value;
-    sum2 += wide(l2 + i) * value;
-    sum3 += wide(l3 + i) * value;
-  }
-  Real total[4] = {sum_of(sum0), sum_of(sum1), sum_of(sum2), sum_of(sum3)};
-  for (; i < n; ++i) {
-    total[0] += l0[i] * y[i];
-    total[1] += l1[i] * y[i];
-    total[2] += l2[i] * y[i];
-    total[3] += l3[i] * y[i];
-  }
-  for (int c = 0; c < 4; ++c) result[c] -= total[c];
+void forward_dense(const Real* l, int columns, int rows, Real* x) {
+  const auto at = [&](int j) { return l + static_cast<std::size_t>(j) * (rows + 1); };
+  int j = columns % 4;
+  if (j == 1) eliminate<1>(l, rows, rows, x);
+  if (j == 2) eliminate<2>(l, rows, rows, x);
+  if (j == 3) eliminate<3>(l, rows, rows, x);
+  for (; j < columns; j += 4) eliminate<4>(at(j), rows, rows - j, x + j);
+}
+
+TRACERAFT_CLONES
+void backward_dense(const Real* l, int columns, int rows, Real* x) {
+  const auto at = [&](int j) { return l + static_cast<std::size_t>(j) * (rows + 1); };
+  const int single = columns % 4;
+  for (int j = columns - 4; j >= single; j -= 4) substitute<4>(at(j), rows, rows - j, x + j);
+  if (single == 3) substitute<3>(l, rows, rows, x);
+  if (single == 2) substitute<2>(l, rows, rows, x);
+  if (single == 1) substitute<1>(l, rows, rows, x);
 }
 
 }  // namespace
@@ -110,45 +122,23 @@ void SupernodalFactor::copy(const cholmod_factor& factor) {
                  [](double value) { return static_cast<Real>(value); });
 }
 
-void SupernodalFactor::forward(const Supernode& node, Real* x, Real* below) const {
-  const Real* l = values_.data() + node.value_begin;
+void SupernodalFactor::forward(const Supernode& node, Real* x, Real* work) const {
   const int* row = rows_.data() + node.row_begin;
   Real* own = x + node.first_column;
-  const int count = node.rows - node.columns;
-  // The triangle, column by column.
-  for (int j = 0; j < node.columns; ++j) {
-    const Real* column = l + static_cast<std::size_t>(j) * node.rows;
-    own[j] /= column[j];
-    add_one(node.columns - j - 1, column + j + 1, -own[j], own + j + 1);
-  }
-  std::fill(below, below + count, Real{0});
-  const Real* rectangle = l + node.columns;
-  int j = 0;
-  for (; j + 4 <= node.columns; j += 4)
-    add_four(count, rectangle + static_cast<std::size_t>(j) * node.rows, node.rows, own + j, below);
-  for (; j < node.columns; ++j)
-    add_one(count, rectangle + static_cast<std::size_t>(j) * node.rows, own[j], below);
-  for (int i = 0; i < count; ++i) x[row[node.columns + i]] -= below[i];
+  std::copy(own, own + node.columns, work);
+  std::fill(work + node.columns, work + node.rows, Real{0});
+  forward_dense(values_.data() + node.value_begin, node.columns, node.rows, work);
+  std::copy(work, work + node.columns, own);
+  for (int i = node.columns; i < node.rows; ++i) x[row[i]] += work[i];
 }
 
-void SupernodalFactor::backward(const Supernode& node, Real* x, Real* below) const {
-  const Real* l = values_.data() + node.value_begin;
+void SupernodalFactor::backward(const Supernode& node, Real* x, Real* work) const {
   const int* row = rows_.data() + node.row_begin;
   Real* own = x + node.first_column;
-  const int count = node.rows - node.columns;
-  for (int i = 0; i < count; ++i) below[i] = x[row[node.columns + i]];
-  const Real* rectangle = l + node.columns;
-  int j = 0;
-  for (; j + 4 <= node.columns; j += 4)
-    subtract_dot_four(count, rectangle + static_cast<std::size_t>(j) * node.rows, node.rows, below,
-                      own + j);
-  for (; j < node.columns; ++j)
-    own[j] -= dot_one(count, rectangle + static_cast<std::size_t>(j) * node.rows, below);
-  for (j = node.columns - 1; j >= 0; --j) {
-    const Real* column = l + static_cast<std::size_t>(j) * node.rows;
-    own[j] -= dot_one(node.columns - j - 1, column + j + 1, own + j + 1);
-    own[j] /= column[j];
-  }
+  std::copy(own, own + node.columns, work);
+  for (int i = node.columns; i < node.rows; ++i) work[i] = x[row[i]];
+  backward_dense(values_.data() + node.value_begin, node.columns, node.rows, work);
+  std::copy(work, work + node.columns, own);
 }
 
 void SupernodalFactor::solve(ConstVec b, VecRef x, Work& work) const {

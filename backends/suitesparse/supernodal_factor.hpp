@@ -33,8 +33,8 @@ class SupernodalFactor {
     std::size_t row_begin;            // in rows_
     std::size_t value_begin;          // in values_, column by column
   };
-  void forward(const Supernode& node, Real* x, Real* below) const;
-  void backward(const Supernode& node, Real* x, Real* below) const;
+  void forward(const Supernode& node, Real* x, Real* work) const;
+  void backward(const Supernode& node, Real* x, Real* work) const;
 
   std::vector<int> permutation_;
   std::vector<Supernode> supernodes_;

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "backends/sundials/ida_memory.hpp"
+#include "backends/sundials/newton_test.hpp"
 #include "backends/sundials/state_vector.hpp"
 #include "kernel/core/binary.hpp"
 #include "kernel/core/stopwatch.hpp"
@@ -128,6 +129,7 @@ class Ida final : public Integrator {
     write_binary(out, residuals_);
     write_binary(out, y_);
     save_ida_memory(memory_, out);
+    newton_test_.save(out);
     solver_.save(out);
   }
   void load(std::istream& in) override {
@@ -137,6 +139,7 @@ class Ida final : public Integrator {
     read_binary(in, y_, problem_.size());
     create(t_, y_, Vec::Zero(y_.size()));
     load_ida_memory(memory_, in);
+    newton_test_.load(in);
     solver_.load(in);
   }
 
@@ -220,25 +223,19 @@ class Ida final : public Integrator {
     linear_->ops->resnorm = [](SUNLinearSolver) { return 0.0; };
   }
 
-  // IDA's own test judges the first correction of a step by a convergence rate of earlier steps, a
-  // leftover of frozen Jacobians: it accepted nearly every first correction, lost accuracy where
-  // nonlinearity matters, and made steps fail later. With the exact Jacobian what the first
-  // correction leaves is of the order of its square, so it suffices if it is below the bound
-  // itself.
   static int converged(SUNNonlinearSolver newton, N_Vector, N_Vector correction, double bound,
                        N_Vector weights, void* data) {
-    auto& self = *static_cast<Ida*>(data);
-    const double norm = N_VWrmsNorm(correction, weights);
     int iteration = 0;
     SUNNonlinSolGetCurIter(newton, &iteration);
-    if (!std::isfinite(norm)) return SUN_NLS_CONV_RECVR;
-    if (iteration == 0) {
-      self.first_correction_ = norm;
-      return norm <= bound ? SUN_NLS_SUCCESS : SUN_NLS_CONTINUE;
+    switch (static_cast<Ida*>(data)->newton_test_.judge(iteration, N_VWrmsNorm(correction, weights),
+                                                        bound)) {
+      case NewtonTest::Verdict::converged:
+        return SUN_NLS_SUCCESS;
+      case NewtonTest::Verdict::go_on:
+        return SUN_NLS_CONTINUE;
+      default:
+        return SUN_NLS_CONV_RECVR;
     }
-    const double rate = std::pow(norm / self.first_correction_, 1.0 / iteration);
-    if (rate > 0.9) return SUN_NLS_CONV_RECVR;
-    return rate / (1 - rate) * norm <= bound ? SUN_NLS_SUCCESS : SUN_NLS_CONTINUE;
   }
 
   // What IDA is told of a status. A listed code: 6.4 takes any other for success.
@@ -305,8 +302,11 @@ class Ida final : public Integrator {
       int iteration = 0;
       SUNNonlinSolGetCurIter(self.newton_.get(), &iteration);
       const double tolerance = self.linear_tolerance();
-      self.solver_.solve(self.systems_,
-                         iteration == 0 ? tolerance : std::min(0.5, kLaterFactor * tolerance));
+      if (iteration == 0) {
+        self.solver_.solve(self.systems_, tolerance);
+      } else {
+        self.solver_.solve_again(self.systems_, std::min(0.5, kLaterFactor * tolerance));
+      }
       const Status& status = system.report.status;
       if (status.ok() && !system.x.allFinite()) return SUNLS_PACKAGE_FAIL_REC;
       view(x) = system.x;
@@ -348,7 +348,7 @@ class Ida final : public Integrator {
   std::vector<NewtonSystem> systems_;
   double t_ = 0, t_end_ = 0, span_ = 0, first_step_ = 0, unit_ = 1;
   Vec y_;
-  double first_correction_ = 0;  // norm of the first correction of a step
+  NewtonTest newton_test_;
   long residuals_ = 0;
   double residual_seconds_ = 0;
   std::string message_, why_;  // IDA's last complaint, and what made a callback fail

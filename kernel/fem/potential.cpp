@@ -22,19 +22,29 @@ std::array<double, 3> corners_of(const SurfaceSpace& space, int triangle, const 
   return {point_value[i], point_value[j], point_value[k]};
 }
 
+// λ_a λ_b times the weight at every point of the rule, for the six pairs of corners.
+constexpr int kPairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
+constexpr auto kPairWeights = [] {
+  std::array<std::array<double, 6>, kDegreeFourRule.size()> table{};
+  for (std::size_t p = 0; p < table.size(); ++p)
+    for (int k = 0; k < 6; ++k)
+      table[p][k] = kDegreeFourRule[p].weight * kDegreeFourRule[p].at[kPairs[k][0]] *
+                    kDegreeFourRule[p].at[kPairs[k][1]];
+  return table;
+}();
+
 // ∫ f0''(c_h) λ_a λ_b between the corners of a triangle.
 std::array<std::array<double, 3>, 3> triangle_tangent(double area,
                                                       const std::array<double, 3>& corner,
                                                       const DoubleWell& well) {
-  std::array<std::array<double, 3>, 3> tangent{};
-  for_each_point(area, corner, [&](double value, const auto& at, double w) {
-    const double density = w * well.second(value);
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b <= a; ++b) tangent[a][b] += density * at[a] * at[b];
-  });
-  for (int a = 0; a < 3; ++a)
-    for (int b = a + 1; b < 3; ++b) tangent[a][b] = tangent[b][a];
-  return tangent;
+  std::array<double, 6> sum{};
+  for (std::size_t p = 0; p < kDegreeFourRule.size(); ++p) {
+    const auto& at = kDegreeFourRule[p].at;
+    const double second =
+        area * well.second(at[0] * corner[0] + at[1] * corner[1] + at[2] * corner[2]);
+    for (int k = 0; k < 6; ++k) sum[k] += second * kPairWeights[p][k];
+  }
+  return {{{sum[0], sum[3], sum[5]}, {sum[3], sum[1], sum[4]}, {sum[5], sum[4], sum[2]}}};
 }
 
 // ∫ f0''(c_h) φ_i φ_j over one element, times a factor.
