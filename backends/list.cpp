@@ -6,6 +6,7 @@
 #include "backends/suitesparse/direct_solver.hpp"
 #include "backends/sundials/ida.hpp"
 #include "backends/sundials/spfgmr.hpp"
+#include "kernel/core/error.hpp"
 #include "kernel/linear/block_solver.hpp"
 
 namespace traceraft {
@@ -20,7 +21,23 @@ LinearSolverFactory block(const SurfaceSpace& space) {
 }
 
 LinearSolverFactory direct(const SurfaceSpace& space) {
-  return [pattern = space.pattern](int lanes) { return make_direct_solver(pattern, lanes); };
+  return [pattern = space.pattern](int lanes) {
+    return make_direct_solver("direct", make_umfpack_lu, pattern, lanes);
+  };
+}
+
+// KLU works on columns one by one, without dense blocks: on larger meshes it takes many times as
+// long as UMFPACK.
+LinearSolverFactory klu(const SurfaceSpace& space) {
+  constexpr int kMost = 25000;
+  const int unknowns = 2 * space.nodes();
+  if (unknowns > kMost)
+    throw InputError("klu is for small systems, at most " + std::to_string(kMost) +
+                     " unknowns, and this mesh has " + std::to_string(unknowns) +
+                     "; choose block (the fastest), direct, or fewer --cells");
+  return [pattern = space.pattern](int lanes) {
+    return make_direct_solver("klu", make_klu_lu, pattern, lanes);
+  };
 }
 
 }  // namespace
@@ -29,6 +46,7 @@ const NamedList<LinearSolverEntry>& linear_solvers() {
   static const std::vector<LinearSolverEntry> entries = {
       {"block", "SUNDIALS GMRES, two-solve preconditioner with CHOLMOD factors", "direct", block},
       {"direct", "UMFPACK factors of the whole system at every solve", "", direct},
+      {"klu", "KLU factors of the whole system at every solve, for small meshes", "", klu},
   };
   static const NamedList<LinearSolverEntry> list("linear solver", entries);
   return list;

@@ -88,6 +88,9 @@ const std::vector<OptionSpec>& run_options() {
        "which solution of the euler pair goes on: second (as in the paper), first, or decaying: "
        "second unless it gains energy"},
 
+      {"energy-guard", K::text, "warn", "Time",
+       "steps that gain energy where the model can only lose it: warn, reject, or off"},
+
       {"linear-solver", K::text, "block", "Linear algebra", "linear solver (see: traceraft list)"},
       {"linear-tolerance", K::number, "0", "Linear algebra",
        "relative residual of each correction; 0: the integrator's choice (euler 1e-4, ida 1e-2)", 0,

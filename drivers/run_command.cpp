@@ -55,7 +55,7 @@ int carry_out(const Configuration& configuration, RunSetup& run, const RunFolder
   if (run.integrator->statistics().steps > 0) checkpoints.write(state);
   const RunCost cost = checkpoints.cost();
   write_durably(folder.summary(), summary_json(configuration, run, state, result, cost));
-  if (!quiet) print_summary(run, state, result, cost, folder);
+  if (!quiet) print_summary(configuration, run, state, result, cost, folder);
   if (result.end == RunEnd::stopped && !quiet)
     std::printf("  go on with             traceraft resume %s\n", folder.path.c_str());
   if (result.end == RunEnd::failed)

@@ -23,6 +23,15 @@ auto said_of(const Configuration& configuration, const char* option, const Make&
   }
 }
 
+// The text of an option that must be one of a few words.
+std::string one_of(const Configuration& configuration, const char* option, const char* kind,
+                   const std::vector<std::string>& words) {
+  const std::string word = configuration.text(option);
+  if (std::find(words.begin(), words.end(), word) == words.end())
+    throw InputError(configuration.where(option) + ": " + unknown_name_message(kind, word, words));
+  return word;
+}
+
 int thread_count(const Configuration& configuration) {
   const int asked = static_cast<int>(configuration.integer("threads"));
   if (asked > 0) return asked;
@@ -69,11 +78,9 @@ CahnHilliardModel model(const Configuration& configuration, const Units& units) 
                      ": the degenerate mobility c(1-c) belongs to wells at 0 and 1; choose "
                      "--mobility constant:value=0.25");
   result.epsilon = configuration.number("epsilon") / units.length();
-  const std::string rule = configuration.text("potential");
-  if (rule != "consistent" && rule != "nodal")
-    throw InputError(configuration.where("potential") + ": " +
-                     unknown_name_message("potential", rule, {"consistent", "nodal"}));
-  result.rule = rule == "nodal" ? PotentialRule::nodal : PotentialRule::consistent;
+  result.rule = one_of(configuration, "potential", "potential", {"consistent", "nodal"}) == "nodal"
+                    ? PotentialRule::nodal
+                    : PotentialRule::consistent;
   result.stabilisation = configuration.number("stabilisation");
   return result;
 }
@@ -181,12 +188,10 @@ IntegratorSettings integrator_settings(const Configuration& configuration,
   settings.min_step = configuration.number("min-step") / units.time();
   settings.max_step = configuration.number("max-step") / units.time();
   settings.linear_tolerance = configuration.number("linear-tolerance");
-  settings.kept_solution = configuration.text("keep");
-  if (settings.kept_solution != "first" && settings.kept_solution != "second" &&
-      settings.kept_solution != "decaying")
-    throw InputError(
-        configuration.where("keep") + ": " +
-        unknown_name_message("solution", settings.kept_solution, {"decaying", "second", "first"}));
+  settings.kept_solution =
+      one_of(configuration, "keep", "solution", {"decaying", "second", "first"});
+  settings.reject_energy_rises =
+      one_of(configuration, "energy-guard", "guard", {"warn", "reject", "off"}) == "reject";
   if (settings.max_step > 0 && settings.min_step > settings.max_step)
     throw InputError(configuration.where("min-step") + ": it is larger than --max-step");
   return settings;
@@ -216,14 +221,19 @@ RunSetup build_run(const Configuration& configuration, InitialState initial) {
                                                 std::make_shared<SerialCommunicator>());
   });
   run.problem = std::make_unique<CahnHilliard>(run.space, physics);
+  if (settings.reject_energy_rises && !run.problem->dissipates_energy())
+    throw InputError(configuration.where("energy-guard") +
+                     ": reject is for models that can only lose energy, and this one need not; "
+                     "choose warn or off");
   if (initial == InitialState::build)
     run.initial = initial_field(configuration, physics, *run.space);
   run.perimeter = perimeter_calibration(configuration, physics, run.space);
   run.observer =
       std::make_unique<Observer>(*run.problem, run.space, run.perimeter.interface_energy);
-  run.integrator = integrator.make(
-      *run.problem, choose_linear_solver(configuration.text("linear-solver"), *run.space), run.team,
-      settings);
+  const LinearSolverChoice solvers = said_of(configuration, "linear-solver", [&] {
+    return choose_linear_solver(configuration.text("linear-solver"), *run.space);
+  });
+  run.integrator = integrator.make(*run.problem, solvers, run.team, settings);
   return run;
 }
 

@@ -38,6 +38,21 @@ std::string text(const char* format, Values... values) {
   return buffer;
 }
 
+// The energy, and what became of steps that gained some.
+std::string energy_text(const Configuration& configuration, const RunSetup& run,
+                        const RunState& state) {
+  const std::string energy = text("%.6g", state.row.energy * run.units.area());
+  if (!run.problem->dissipates_energy()) return energy + " (the model need not lose energy)";
+  if (configuration.text("energy-guard") == "off") return energy;
+  const long refused = run.integrator->statistics().energy_rises;
+  const std::string cut = refused > 0 ? text(", %ld steps cut because it grew", refused) : "";
+  if (state.monitor.energy_rises() == 0) return energy + ", falls in every step" + cut;
+  return energy +
+         text(", GROWS in %ld steps, by at most %.0e of the initial energy;",
+              state.monitor.energy_rises(), state.monitor.largest_rise()) +
+         " a smaller --tolerance or --energy-guard reject prevents that";
+}
+
 }  // namespace
 
 std::string summary_json(const Configuration& configuration, const RunSetup& run,
@@ -71,6 +86,8 @@ std::string summary_json(const Configuration& configuration, const RunSetup& run
   json["energy"] = row.energy * units.area();
   json["energy_rises"] = state.monitor.energy_rises();
   json["largest_energy_rise"] = state.monitor.largest_rise();
+  json["energy_guard"] = configuration.text("energy-guard");
+  json["energy_rises_refused"] = steps.energy_rises;
   json["energy_decay_promised"] = decay_promised(run);
   json["perimeter"] = row.perimeter * units.length();
   json["perimeter_level"] = row.perimeter_level * units.length();
@@ -132,8 +149,8 @@ void print_setup(const Configuration& configuration, const RunSetup& run) {
             run.team->size(), run.team->size() == 1 ? "" : "s", blas_description().c_str()));
 }
 
-void print_summary(const RunSetup& run, const RunState& state, const RunResult& result,
-                   const RunCost& cost, const RunFolder& folder) {
+void print_summary(const Configuration& configuration, const RunSetup& run, const RunState& state,
+                   const RunResult& result, const RunCost& cost, const RunFolder& folder) {
   const Units& units = run.units;
   const Observables& row = state.row;
   const IntegratorStatistics steps = run.integrator->statistics();
@@ -147,8 +164,7 @@ void print_summary(const RunSetup& run, const RunState& state, const RunResult& 
                              row.mass / run.space->area));
   line("perimeter", text("%.5g %s (level curve %.5g %s)", row.perimeter * units.length(), length,
                          row.perimeter_level * units.length(), length));
-  line("energy", text("%.6g, rises: %ld%s", row.energy * units.area(), state.monitor.energy_rises(),
-                      decay_promised(run) ? "" : " (no decay promised)"));
+  line("energy", energy_text(configuration, run, state));
   line("mass drift", text("%.1e relative", state.monitor.mass_drift()));
   line("c on the surface", text("%.3f to %.3f", row.c_min, row.c_max));
   line("steps", text("%ld accepted (%ld with the first-order solution), %ld rejected, %ld failed",

@@ -14,7 +14,7 @@ std::string summary_json(const Configuration& configuration, const RunSetup& run
                          const RunState& state, const RunResult& result, const RunCost& cost);
 
 void print_setup(const Configuration& configuration, const RunSetup& run);
-void print_summary(const RunSetup& run, const RunState& state, const RunResult& result,
-                   const RunCost& cost, const RunFolder& folder);
+void print_summary(const Configuration& configuration, const RunSetup& run, const RunState& state,
+                   const RunResult& result, const RunCost& cost, const RunFolder& folder);
 
 }  // namespace traceraft

@@ -8,6 +8,7 @@
 
 #include "kernel/core/binary.hpp"
 #include "kernel/core/stopwatch.hpp"
+#include "kernel/time/energy_guard.hpp"
 #include "kernel/time/history.hpp"
 #include "kernel/time/jacobian_solver.hpp"
 #include "kernel/time/step_control.hpp"
@@ -21,7 +22,10 @@ class Euler final : public Integrator {
  public:
   Euler(const DaeProblem& problem, const LinearSolverChoice& solvers,
         std::shared_ptr<const ThreadTeam> team, const IntegratorSettings& settings)
-      : problem_(problem), settings_(settings), solver_(problem, solvers, 2, std::move(team)) {}
+      : problem_(problem),
+        settings_(settings),
+        guard_(problem, settings),
+        solver_(problem, solvers, 2, std::move(team)) {}
 
   std::string name() const override { return "euler"; }
 
@@ -30,6 +34,7 @@ class Euler final : public Integrator {
     history_.add(t0, y0);
     t_end_ = t_end;
     energy_ = problem_.energy(y0);
+    guard_.start(y0);
     rate_ = ydot0;
     span_ = t_end - t0;
     control_ = StepControl(settings_, span_, 2);
@@ -61,7 +66,11 @@ class Euler final : public Integrator {
     return problem_.dissipates_energy() && settings_.kept_solution != "second";
   }
 
-  IntegratorStatistics statistics() const override { return solver_.added_to(statistics_); }
+  IntegratorStatistics statistics() const override {
+    IntegratorStatistics result = solver_.added_to(statistics_);
+    result.energy_rises = guard_.refused();
+    return result;
+  }
   LinearStatistics linear_statistics() const override { return solver_.linear_statistics(); }
 
   void save(std::ostream& out) const override {
@@ -69,6 +78,7 @@ class Euler final : public Integrator {
     history_.save(out);
     write_binary(out, rate_);
     write_binary(out, statistics_);
+    guard_.save(out);
     solver_.save(out);
   }
   void load(std::istream& in) override {
@@ -78,6 +88,7 @@ class Euler final : public Integrator {
     read_binary(in, statistics_);
     energy_ = problem_.energy(state());
     control_ = StepControl(settings_, span_, 2);
+    guard_.load(in);
     solver_.load(in);
   }
 
@@ -144,14 +155,19 @@ class Euler final : public Integrator {
                 : 0.5 * problem_.norm(first_ - y - dt * rate_) / std::max(problem_.norm(y), 1e-300);
     if (first_ == second_ && started()) error = 0;  // c = 0 everywhere is 0/0
     if (std::isnan(error)) return Status::retry("the error estimate is not a number");
-    return {};
+    return control_.accepts(error) ? choose_solution() : Status{};
+  }
+
+  Status choose_solution() {
+    kept_second_ = keeps_second();
+    return guard_.judge(kept_second_ ? second_ : first_);
   }
 
   void accept(double dt, double t, double error) {
-    const bool second = keeps_second();
-    statistics_.first_order += !second;
-    statistics_.order = second && started() ? 2 : 1;
-    history_.add(t, second ? second_ : first_);
+    guard_.accept();
+    statistics_.first_order += !kept_second_;
+    statistics_.order = kept_second_ && started() ? 2 : 1;
+    history_.add(t, kept_second_ ? second_ : first_);
     step_ = dt;
     next_ = control_.after_acceptance(dt, error);
     ++statistics_.steps;
@@ -161,13 +177,15 @@ class Euler final : public Integrator {
   IntegratorSettings settings_;
   StepControl control_;
   IntegratorStatistics statistics_;
+  EnergyGuard guard_;
   double energy_ = 0;  // of y_n, where it decides which solution is kept
   double t_end_ = 0, span_ = 0, step_ = 0, next_ = 0;
   History history_{3};  // interpolates to order 2
   Vec rate_;            // ẏ at the start
   JacobianSolver solver_;
   std::vector<NewtonSystem> systems_;  // of an attempt: first and second order
-  Vec first_, second_;                 // and what they give
+  Vec first_, second_;                 // and what they give,
+  bool kept_second_ = true;            // of which one goes on
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "kernel/core/binary.hpp"
 #include "kernel/core/stopwatch.hpp"
+#include "kernel/time/energy_guard.hpp"
 #include "kernel/time/history.hpp"
 #include "kernel/time/jacobian_solver.hpp"
 #include "kernel/time/step_control.hpp"
@@ -60,13 +61,17 @@ class Rosenbrock final : public Integrator {
  public:
   Rosenbrock(const DaeProblem& problem, const LinearSolverChoice& solvers,
              std::shared_ptr<const ThreadTeam> team, const IntegratorSettings& settings)
-      : problem_(problem), settings_(settings), solver_(problem, solvers, 1, std::move(team)) {}
+      : problem_(problem),
+        settings_(settings),
+        guard_(problem, settings),
+        solver_(problem, solvers, 1, std::move(team)) {}
 
   std::string name() const override { return "rosenbrock"; }
 
   Status start(double t0, ConstVec y0, ConstVec ydot0, double t_end) override {
     history_.clear();
     history_.add(t0, y0);
+    guard_.start(y0);
     t_end_ = t_end;
     span_ = t_end - t0;
     control_ = StepControl(settings_, span_, 3);
@@ -96,13 +101,18 @@ class Rosenbrock final : public Integrator {
   const Vec& state() const override { return history_.state(0); }
   bool promises_energy_decay() const override { return false; }
 
-  IntegratorStatistics statistics() const override { return solver_.added_to(statistics_); }
+  IntegratorStatistics statistics() const override {
+    IntegratorStatistics result = solver_.added_to(statistics_);
+    result.energy_rises = guard_.refused();
+    return result;
+  }
   LinearStatistics linear_statistics() const override { return solver_.linear_statistics(); }
 
   void save(std::ostream& out) const override {
     for (const double value : {t_end_, span_, step_, next_}) write_binary(out, value);
     history_.save(out);
     write_binary(out, statistics_);
+    guard_.save(out);
     solver_.save(out);
   }
   void load(std::istream& in) override {
@@ -111,6 +121,7 @@ class Rosenbrock final : public Integrator {
     if (history_.size() == 0) throw IoError("checkpoint: it holds no state");
     read_binary(in, statistics_);
     control_ = StepControl(settings_, span_, 3);
+    guard_.load(in);
     solver_.load(in);
   }
 
@@ -178,10 +189,11 @@ class Rosenbrock final : public Integrator {
     }
     error = problem_.norm(defect) / std::max(problem_.norm(proposal_), 1e-300);
     if (std::isnan(error)) return Status::retry("the error estimate is not a number");
-    return {};
+    return control_.accepts(error) ? guard_.judge(proposal_) : Status{};
   }
 
   void accept(double dt, double t, double error) {
+    guard_.accept();
     history_.add(t, proposal_);
     step_ = dt;
     next_ = control_.after_acceptance(dt, error);
@@ -193,6 +205,7 @@ class Rosenbrock final : public Integrator {
   IntegratorSettings settings_;
   StepControl control_;
   IntegratorStatistics statistics_;
+  EnergyGuard guard_;
   double t_end_ = 0, span_ = 0, step_ = 0, next_ = 0;
   History history_{4};  // interpolates to order 3
   JacobianSolver solver_;

@@ -1,15 +1,14 @@
-// --linear-solver direct: sparse LU of the whole block system (UMFPACK).
+// Linear solver: LU factors of the whole system, made afresh for every Jacobian.
 #pragma once
 
+#include <string>
+
+#include "backends/suitesparse/sparse_lu.hpp"
 #include "kernel/linear/linear_solver.hpp"
 
 namespace traceraft {
 
-// Factorises for every J, each lane on its own. With μ = √σ ν the system is arranged as
-//   [ B     −√σ M̃ ] [δc]   [ −b₂    ]
-//   [ √σ M̃   A    ] [δν] = [ b₁/√σ ]
-// which is quasi-definite for the stabilised tangent: any symmetric pivot order is stable, so the
-// METIS order of the n×n pattern, expanded to (c, μ) pairs, can be kept.
-LinearSolverPtr make_direct_solver(const PatternPtr& pattern, int lanes);
+LinearSolverPtr make_direct_solver(const std::string& name, const SparseLuFactory& make_lu,
+                                   const PatternPtr& pattern, int lanes);
 
 }  // namespace traceraft

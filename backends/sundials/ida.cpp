@@ -14,6 +14,7 @@
 #include "backends/sundials/state_vector.hpp"
 #include "kernel/core/binary.hpp"
 #include "kernel/core/stopwatch.hpp"
+#include "kernel/time/energy_guard.hpp"
 #include "kernel/time/jacobian_solver.hpp"
 #include "kernel/time/step_control.hpp"
 
@@ -39,6 +40,7 @@ class Ida final : public Integrator {
       std::shared_ptr<const ThreadTeam> team, const IntegratorSettings& settings)
       : problem_(problem),
         settings_(settings),
+        guard_(problem, settings),
         solver_(problem, solvers, 1, std::move(team)),
         norm_([this](ConstVec half) { return problem_.field_norm(half); }) {
     if (SUNContext_Create(nullptr, &context_) != 0)
@@ -63,11 +65,13 @@ class Ida final : public Integrator {
     create(t0, y0, ydot0);
     y_ = y0;
     t_ = t0;
+    guard_.start(y0);
     if (option("calcic") == 0) return {};
     if (IDACalcIC(memory_, IDA_YA_YDP_INIT, t0 + first_step_) != IDA_SUCCESS)
       return Status::fatal("IDACalcIC: " + message_);
     IDAGetConsistentIC(memory_, yy_.get(), yp_.get());
     y_ = view(yy_.get());
+    guard_.start(y_);
     return {};
   }
 
@@ -81,6 +85,7 @@ class Ida final : public Integrator {
     if (flag != IDA_SUCCESS && flag != IDA_TSTOP_RETURN) return failure(flag);
     t_ = t;
     y_ = view(yy_.get());
+    guard_.accept();
     return {};
   }
 
@@ -117,6 +122,7 @@ class Ida final : public Integrator {
     IDAGetNumNonlinSolvIters(memory_, &result.newton_iterations);
     IDAGetNumStepSolveFails(memory_, &result.failures);
     IDAGetLastOrder(memory_, &result.order);
+    result.energy_rises = guard_.refused();
     result.residuals = residuals_;
     result.assembly_seconds = residual_seconds_;
     return solver_.added_to(result);
@@ -130,6 +136,7 @@ class Ida final : public Integrator {
     write_binary(out, y_);
     save_ida_memory(memory_, out);
     newton_test_.save(out);
+    guard_.save(out);
     solver_.save(out);
   }
   void load(std::istream& in) override {
@@ -140,6 +147,7 @@ class Ida final : public Integrator {
     create(t_, y_, Vec::Zero(y_.size()));
     load_ida_memory(memory_, in);
     newton_test_.load(in);
+    guard_.load(in);
     solver_.load(in);
   }
 
@@ -223,19 +231,29 @@ class Ida final : public Integrator {
     linear_->ops->resnorm = [](SUNLinearSolver) { return 0.0; };
   }
 
-  static int converged(SUNNonlinearSolver newton, N_Vector, N_Vector correction, double bound,
+  static int converged(SUNNonlinearSolver newton, N_Vector total, N_Vector correction, double bound,
                        N_Vector weights, void* data) {
+    auto& self = *static_cast<Ida*>(data);
     int iteration = 0;
     SUNNonlinSolGetCurIter(newton, &iteration);
-    switch (static_cast<Ida*>(data)->newton_test_.judge(iteration, N_VWrmsNorm(correction, weights),
-                                                        bound)) {
+    switch (self.newton_test_.judge(iteration, N_VWrmsNorm(correction, weights), bound)) {
       case NewtonTest::Verdict::converged:
-        return SUN_NLS_SUCCESS;
+        return self.permits(total) ? SUN_NLS_SUCCESS : SUN_NLS_CONV_RECVR;
       case NewtonTest::Verdict::go_on:
         return SUN_NLS_CONTINUE;
       default:
         return SUN_NLS_CONV_RECVR;
     }
+  }
+
+  // May the predictor with this total correction become the next state? If not, IDA retries with a
+  // smaller step, as if Newton's method had failed.
+  bool permits(N_Vector total) {
+    const int refused = guarded(1, [&] {
+      IDAComputeY(memory_, total, work_.get());
+      return code(guard_.judge(view(work_.get())), 1, 1);
+    });
+    return refused == 0;
   }
 
   // What IDA is told of a status. A listed code: 6.4 takes any other for success.
@@ -308,7 +326,6 @@ class Ida final : public Integrator {
         self.solver_.solve_again(self.systems_, std::min(0.5, kLaterFactor * tolerance));
       }
       const Status& status = system.report.status;
-      if (status.ok() && !system.x.allFinite()) return SUNLS_PACKAGE_FAIL_REC;
       view(x) = system.x;
       return self.code(status, SUNLS_PACKAGE_FAIL_REC, SUNLS_PACKAGE_FAIL_UNREC);
     });
@@ -338,6 +355,7 @@ class Ida final : public Integrator {
 
   const DaeProblem& problem_;
   IntegratorSettings settings_;
+  EnergyGuard guard_;
   JacobianSolver solver_;
   FieldNorm norm_;
   SUNContext context_ = nullptr;

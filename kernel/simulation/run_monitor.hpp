@@ -5,13 +5,12 @@
 #include <cmath>
 
 #include "kernel/observables/observables.hpp"
+#include "kernel/time/energy_guard.hpp"
 
 namespace traceraft {
 
 class RunMonitor {
  public:
-  static constexpr double kRise = 1e-10;  // relative growth of the energy that counts as a rise
-
   // mass_scale: what a drift is relative to where the mass itself is nearly zero.
   void start(const Observables& row, double mass_scale) {
     initial_mass_ = row.mass;
@@ -22,7 +21,7 @@ class RunMonitor {
   void accept(const Observables& row) {
     drift_ = std::max(drift_, std::fabs(relative_drift(row)));
     const double rise = (row.energy - energy_) / std::fabs(initial_energy_);
-    if (rise > kRise) ++rises_;
+    if (rise > EnergyGuard::kRise) ++rises_;
     largest_rise_ = std::max(largest_rise_, rise);
     energy_ = row.energy;
   }

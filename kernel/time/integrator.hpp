@@ -19,6 +19,7 @@ struct IntegratorSettings {
   double max_step = 0;          // 0: unbounded
   double linear_tolerance = 0;  // relative residual of each correction; 0: the method's choice
   std::string kept_solution = "second";  // euler: which of its pair goes on
+  bool reject_energy_rises = false;      // of a model that can only lose energy
   std::map<std::string, double> own;     // options of one method only, by its names for them
 
   double linear_tolerance_or(double choice) const {
@@ -27,10 +28,11 @@ struct IntegratorSettings {
 };
 
 struct IntegratorStatistics {
-  long steps = 0;        // accepted
-  long rejected = 0;     // error too large
-  long first_order = 0;  // accepted with the first-order solution, so that energy falls
-  long failures = 0;     // a solve or an evaluation failed and the step was retried
+  long steps = 0;         // accepted
+  long rejected = 0;      // error too large
+  long first_order = 0;   // accepted with the first-order solution, so that energy falls
+  long failures = 0;      // a solve or an evaluation failed and the step was retried
+  long energy_rises = 0;  // of the failures, those because the energy grew
   long residuals = 0;
   long jacobians = 0;
   long newton_iterations = 0;   // 0 for methods that need none

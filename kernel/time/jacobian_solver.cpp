@@ -41,12 +41,20 @@ Status JacobianSolver::renew(int lane) {
   return status;
 }
 
+// Whatever a solver says: error estimates look at c only, and μ must be a number, too.
+void JacobianSolver::solve_with(LinearSolver& solver, NewtonSystem& system, double tolerance,
+                                int lane) {
+  system.report = solver.solve(J_[lane], system.b, system.x, tolerance, lane);
+  if (system.report.status.ok() && !system.x.allFinite())
+    system.report.status = Status::retry("the solution is not finite");
+}
+
 void JacobianSolver::solve_with_factors(std::vector<NewtonSystem>& systems, double tolerance,
                                         bool fresh) {
   for_each_lane(systems.size(), [&](int lane) {
     NewtonSystem& s = systems[lane];
     if (fresh && !primary_->shares_factors()) s.report.status = primary_->setup(J_[lane], lane);
-    if (s.report.status.ok()) s.report = primary_->solve(J_[lane], s.b, s.x, tolerance, lane);
+    if (s.report.status.ok()) solve_with(*primary_, s, tolerance, lane);
   });
 }
 
@@ -57,8 +65,7 @@ void JacobianSolver::repair(NewtonSystem& system, const Vec& guess, int lane, do
     ++statistics_.renewals;
     system.x = guess;
     system.report.status = renew(lane);
-    if (system.report.status.ok())
-      system.report = primary_->solve(J_[lane], system.b, system.x, tolerance, lane);
+    if (system.report.status.ok()) solve_with(*primary_, system, tolerance, lane);
     if (system.report.status.ok()) return;
   }
   const std::string why = primary_->name() + ": " + system.report.status.why;
@@ -69,8 +76,7 @@ void JacobianSolver::repair(NewtonSystem& system, const Vec& guess, int lane, do
   ++statistics_.fallbacks;
   system.x = guess;
   system.report = {fallback_->setup(J_[lane], lane)};
-  if (system.report.status.ok())
-    system.report = fallback_->solve(J_[lane], system.b, system.x, tolerance, lane);
+  if (system.report.status.ok()) solve_with(*fallback_, system, tolerance, lane);
   if (!system.report.status.ok())
     system.report.status =
         Status::retry(why + "; " + fallback_->name() + ": " + system.report.status.why);

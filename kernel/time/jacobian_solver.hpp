@@ -62,6 +62,7 @@ class JacobianSolver {
   void assemble(std::vector<NewtonSystem>& systems);
   Status renew(int lane);
   void solve_assembled(std::vector<NewtonSystem>& systems, double tolerance, bool new_jacobians);
+  void solve_with(LinearSolver& solver, NewtonSystem& system, double tolerance, int lane);
   void solve_with_factors(std::vector<NewtonSystem>& systems, double tolerance, bool fresh);
   void repair(NewtonSystem& system, const Vec& guess, int lane, double tolerance, bool fresh);
 

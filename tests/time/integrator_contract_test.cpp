@@ -307,6 +307,35 @@ TEST_P(IntegratorContract, TighterTolerancesGiveSmallerErrors) {
   EXPECT_LT(tight, 5e-3 * problem.norm(states[2]));
 }
 
+TEST_P(IntegratorContract, RefusesStepsThatGainEnergyIfAskedTo) {
+  // Steps far too large: without the guard the energy does grow.
+  long gained[2] = {0, 0}, refused[2] = {0, 0};
+  for (const bool reject : {false, true})
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      const CahnHilliard model(space, make_model("degenerate", 0.1));
+      IntegratorSettings settings;
+      settings.reject_energy_rises = reject;
+      settings.tolerance = 0.3;
+      const IntegratorPtr integrator = make(model, "block", settings);
+      const testing::StartState start = noise_state(model, seed, 0.4);
+      ASSERT_TRUE(integrator->start(0, start.y, start.ydot, 1000).ok());
+      const double scale = model.energy(start.y);
+      double energy = scale;
+      while (integrator->time() < 1000) {
+        const Status status = integrator->advance();
+        ASSERT_TRUE(status.ok()) << status.why;
+        const double next = model.energy(integrator->state());
+        gained[reject] += next > energy + 1e-10 * scale;
+        energy = next;
+      }
+      refused[reject] += integrator->statistics().energy_rises;
+    }
+  EXPECT_GT(gained[0], 0) << "the test is too gentle to need a guard";
+  EXPECT_EQ(refused[0], 0);
+  EXPECT_EQ(gained[1], 0);
+  EXPECT_GT(refused[1], 0);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, IntegratorContract, ::testing::ValuesIn(integrators().names()));
 
 TEST(Euler, NeverGainsEnergyWhereItPromisesSo) {

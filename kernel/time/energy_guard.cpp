@@ -1,0 +1,33 @@
+#include "kernel/time/energy_guard.hpp"
+
+#include <cmath>
+
+#include "kernel/core/binary.hpp"
+
+namespace traceraft {
+
+void EnergyGuard::start(ConstVec y) {
+  if (!active_) return;
+  energy_ = candidate_ = problem_.energy(y);
+  scale_ = std::fabs(energy_);
+}
+
+Status EnergyGuard::judge(ConstVec y) {
+  if (!active_) return {};
+  candidate_ = problem_.energy(y);
+  if (candidate_ <= energy_ + kRise * scale_) return {};  // not if it is NaN
+  ++refused_;
+  return Status::retry("the energy grows");
+}
+
+void EnergyGuard::save(std::ostream& out) const {
+  for (const double value : {scale_, energy_}) write_binary(out, value);
+  write_binary(out, refused_);
+}
+
+void EnergyGuard::load(std::istream& in) {
+  for (double* value : {&scale_, &energy_}) read_binary(in, *value);
+  read_binary(in, refused_);
+}
+
+}  // namespace traceraft

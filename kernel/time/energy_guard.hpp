@@ -1,0 +1,38 @@
+// Refuses steps that gain energy where the model can only lose it.
+#pragma once
+
+#include <iosfwd>
+
+#include "kernel/problem/dae_problem.hpp"
+#include "kernel/time/integrator.hpp"
+
+namespace traceraft {
+
+// Between accepted states the energy of a model with a mobility ≥ 0 falls; a step that lets it grow
+// by more than roundoff is wrong whatever its error estimate says. Does nothing unless the settings
+// ask for it.
+class EnergyGuard {
+ public:
+  static constexpr double kRise = 1e-10;  // relative to the first energy: what counts as growth
+
+  EnergyGuard(const DaeProblem& problem, const IntegratorSettings& settings)
+      : problem_(problem), active_(settings.reject_energy_rises && problem.dissipates_energy()) {}
+
+  void start(ConstVec y);
+  // retry if the energy of y, the result of a step, is larger than that of the last accepted state.
+  Status judge(ConstVec y);
+  // The state judged last is accepted.
+  void accept() { energy_ = candidate_; }
+
+  long refused() const { return refused_; }
+  void save(std::ostream& out) const;
+  void load(std::istream& in);
+
+ private:
+  const DaeProblem& problem_;
+  bool active_;
+  double scale_ = 1, energy_ = 0, candidate_ = 0;
+  long refused_ = 0;
+};
+
+}  // namespace traceraft

@@ -1,0 +1,172 @@
+// A failure at any single call of the model or of the linear solver, and what becomes of the run.
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "backends/list.hpp"
+#include "tests/support/spaces.hpp"
+
+namespace traceraft {
+namespace {
+
+using testing::make_model;
+using testing::make_space;
+using testing::noise_state;
+
+enum class Site { residual, silent_residual, jacobian, setup, solve, silent_solve };
+constexpr Site kSites[] = {Site::residual, Site::silent_residual, Site::jacobian,
+                           Site::setup,    Site::solve,           Site::silent_solve};
+
+// Which calls of a site fail: those in [first, last].
+struct Fault {
+  Site site;
+  long first, last;
+  long calls = 0;
+
+  bool strikes(Site at) {
+    if (at != site) return false;
+    const long call = calls++;
+    return call >= first && call <= last;
+  }
+};
+
+class FaultyProblem final : public DaeProblem {
+ public:
+  FaultyProblem(const DaeProblem& inner, Fault& fault) : inner_(inner), fault_(fault) {}
+  int block_size() const override { return inner_.block_size(); }
+  Status residual(double t, ConstVec y, ConstVec ydot, VecRef r) const override {
+    if (fault_.strikes(Site::residual)) return Status::retry("injected failure");
+    const Status status = inner_.residual(t, y, ydot, r);
+    if (fault_.strikes(Site::silent_residual)) r[r.size() / 3] = std::nan("");
+    return status;
+  }
+  Status jacobian(double t, ConstVec y, ConstVec ydot, double shift, Tangent tangent,
+                  BlockJacobian& J) const override {
+    if (fault_.strikes(Site::jacobian)) return Status::retry("injected failure");
+    return inner_.jacobian(t, y, ydot, shift, tangent, J);
+  }
+  Status jacobian_product(double t, ConstVec y, ConstVec ydot, double shift, Tangent tangent,
+                          ConstVec v, VecRef product) const override {
+    return inner_.jacobian_product(t, y, ydot, shift, tangent, v, product);
+  }
+  BlockJacobian make_jacobian() const override { return inner_.make_jacobian(); }
+  Status consistent_initial_state(double t, VecRef y, VecRef ydot) const override {
+    return inner_.consistent_initial_state(t, y, ydot);
+  }
+  double norm(ConstVec y) const override { return inner_.norm(y); }
+  double field_norm(ConstVec half) const override { return inner_.field_norm(half); }
+  double mass(ConstVec y) const override { return inner_.mass(y); }
+  bool conserves_mass() const override { return inner_.conserves_mass(); }
+  double energy(ConstVec y) const override { return inner_.energy(y); }
+  bool dissipates_energy() const override { return inner_.dissipates_energy(); }
+
+ private:
+  const DaeProblem& inner_;
+  Fault& fault_;
+};
+
+class FaultySolver final : public LinearSolver {
+ public:
+  FaultySolver(LinearSolverPtr inner, Fault& fault) : inner_(std::move(inner)), fault_(fault) {}
+  std::string name() const override { return "faulty"; }
+  bool shares_factors() const override { return inner_->shares_factors(); }
+  bool wants_setup(const BlockJacobian& J, int lane) const override {
+    return inner_->wants_setup(J, lane);
+  }
+  Status setup(const BlockJacobian& J, int lane) override {
+    if (fault_.strikes(Site::setup)) return Status::retry("injected failure");
+    return inner_->setup(J, lane);
+  }
+  SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance,
+                    int lane) override {
+    if (fault_.strikes(Site::solve)) {
+      x.setConstant(1e68);  // as a failed solve may leave anything behind
+      return {Status::retry("injected failure"), 3};
+    }
+    const SolveReport report = inner_->solve(J, b, x, tolerance, lane);
+    // A solver that breaks its contract is caught as long as what it returns is no number.
+    if (fault_.strikes(Site::silent_solve)) x[x.size() / 3] = std::nan("");
+    return report;
+  }
+  LinearStatistics statistics() const override { return inner_->statistics(); }
+  void save(std::ostream& out) const override { inner_->save(out); }
+  void load(std::istream& in) override { inner_->load(in); }
+
+ private:
+  LinearSolverPtr inner_;
+  Fault& fault_;
+};
+
+class FaultInjection : public ::testing::TestWithParam<std::string> {
+ protected:
+  static constexpr double kEnd = 0.3;
+  FaultInjection() : space(make_space(12)), problem(space, make_model()) {}
+
+  struct Outcome {
+    Status status;
+    Vec state;
+    IntegratorStatistics statistics;
+  };
+  Outcome run(Fault& fault, bool with_fallback) const {
+    const FaultyProblem faulty(problem, fault);
+    LinearSolverChoice choice = choose_linear_solver("block", *space);
+    choice.primary = [inner = choice.primary, &fault](int lanes) {
+      return std::make_unique<FaultySolver>(inner(lanes), fault);
+    };
+    if (!with_fallback) choice.fallback = nullptr;
+    IntegratorSettings settings;
+    settings.tolerance = 1e-2;
+    settings.linear_tolerance = 1e-6;
+    const IntegratorPtr integrator =
+        integrators().find(GetParam()).make(faulty, choice, space->team, settings);
+    const testing::StartState start = noise_state(problem);
+    Status status = integrator->start(0, start.y, start.ydot, kEnd);
+    while (status.ok() && integrator->time() < kEnd) status = integrator->advance();
+    return {status, integrator->state(), integrator->statistics()};
+  }
+
+  std::shared_ptr<const SurfaceSpace> space;
+  CahnHilliard problem;
+};
+
+TEST_P(FaultInjection, OneFailureAtAnyCallChangesNothingButTheSteps) {
+  Fault none{Site::residual, 1, 0};
+  const Outcome good = run(none, false);
+  ASSERT_TRUE(good.status.ok());
+  for (const Site site : kSites) {
+    long call = 0;
+    for (; call < 400; call += 1 + call / 4) {
+      Fault fault{site, call, call};
+      const Outcome outcome = run(fault, false);
+      if (fault.calls <= call) break;  // the run has fewer calls than that
+      SCOPED_TRACE("site " + std::to_string(static_cast<int>(site)) + ", call " +
+                   std::to_string(call));
+      ASSERT_TRUE(outcome.status.ok()) << outcome.status.why;
+      const IntegratorStatistics& s = outcome.statistics;
+      EXPECT_GT(s.failures + s.rejected + s.renewals, 0) << "the failure went unnoticed";
+      EXPECT_LT(problem.norm(outcome.state - good.state), 0.05 * problem.norm(good.state));
+      EXPECT_NEAR(problem.mass(outcome.state) / problem.mass(good.state), 1, 1e-12);
+    }
+    EXPECT_GT(call, 0) << "site " << static_cast<int>(site) << " is never called";
+  }
+}
+
+TEST_P(FaultInjection, FailuresWithoutEndEndTheRunAtItsLastState) {
+  for (const Site site : kSites)
+    for (const long first : {0L, 1L, 2L, 7L}) {
+      Fault fault{site, first, 1L << 40};
+      const Outcome outcome = run(fault, false);
+      SCOPED_TRACE("site " + std::to_string(static_cast<int>(site)) + ", from call " +
+                   std::to_string(first));
+      if (fault.calls <= first) continue;
+      EXPECT_EQ(outcome.status.outcome, traceraft::Outcome::fatal);
+      EXPECT_NE(outcome.status.why.find("no step size"), std::string::npos) << outcome.status.why;
+      ASSERT_TRUE(outcome.state.allFinite());
+      EXPECT_LT(outcome.state.cwiseAbs().maxCoeff(), 1e3);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FaultInjection, ::testing::ValuesIn(integrators().names()));
+
+}  // namespace
+}  // namespace traceraft
