@@ -155,7 +155,19 @@ Checkpoint CheckpointStore::newest() const {
   return checkpoint;
 }
 
-Vec final_concentration(const std::filesystem::path& run_folder, int nodes) {
+namespace {
+
+// The line of an option in a numerical identity.
+std::string line_of(const std::string& identity, const std::string& option) {
+  const std::size_t begin = ("\n" + identity).find("\n" + option + " = ");
+  return begin == std::string::npos ? ""
+                                    : identity.substr(begin, identity.find('\n', begin) - begin);
+}
+
+}  // namespace
+
+Vec final_concentration(const std::filesystem::path& run_folder, int nodes,
+                        const std::string& identity) {
   std::error_code unreadable;
   if (!std::filesystem::is_directory(run_folder / "checkpoints", unreadable))
     throw InputError("restart: " + run_folder.string() +
@@ -167,6 +179,13 @@ Vec final_concentration(const std::filesystem::path& run_folder, int nodes) {
     throw InputError(std::string("restart: ") + error.what());
   } catch (const std::filesystem::filesystem_error& error) {
     throw InputError(std::string("restart: ") + error.what());
+  }
+  for (const char* option : {"surface", "surface-formula", "cells"}) {
+    const std::string theirs = line_of(checkpoint.configuration, option);
+    const std::string ours = line_of(identity, option);
+    if (theirs != ours)
+      throw InputError("restart: " + run_folder.string() + " has " + theirs + ", this run has " +
+                       ours);
   }
   if (checkpoint.concentration.size() != static_cast<std::size_t>(nodes))
     throw InputError("restart: " + run_folder.string() + " has " +

@@ -53,7 +53,9 @@ std::string encode(const Checkpoint& checkpoint);
 Checkpoint decode(const std::string& data);
 
 // c at the nodes in the newest checkpoint of another run's folder. Throws InputError if there is
-// none or it does not have `nodes` values.
-Vec final_concentration(const std::filesystem::path& run_folder, int nodes);
+// none or it is on another mesh: surface and cells are compared with the numerical identity of this
+// run.
+Vec final_concentration(const std::filesystem::path& run_folder, int nodes,
+                        const std::string& identity);
 
 }  // namespace traceraft

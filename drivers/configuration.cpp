@@ -125,8 +125,12 @@ void Configuration::set(const OptionSpec& spec, const GivenValue& value) {
   values_[spec.name] = value;
   // A run folder stays resumable from everywhere.
   if (const NamedArguments parts = split_named_arguments(value.text);
-      spec.name == "initial" && parts.name == "restart")
+      spec.name == "initial" && parts.name == "restart") {
+    if (parts.arguments.empty())
+      throw InputError(value.where +
+                       ": restart needs the folder of a run, as in restart:runs/earlier");
     values_[spec.name].text = "restart:" + std::filesystem::absolute(parts.arguments).string();
+  }
 }
 
 std::string Configuration::text(const std::string& name) const {

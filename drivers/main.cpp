@@ -107,6 +107,8 @@ int dispatch(int argc, char** argv) {
     throw InputError(unknown_name_message("command", argv[1], {"run", "resume", "verify", "list"}));
   } catch (const CLI::ParseError& error) {
     throw InputError(error.what());
+  } catch (const std::logic_error&) {  // CLI11 on --no-fields=perhaps: std::stoll's exceptions
+    throw InputError("a flag takes no value but true or false");
   }
   for (const CLI::App* command : app.get_subcommands()) refuse_unknown(*command);
   if (run_app->parsed()) return run_command(run);

@@ -13,7 +13,8 @@ std::vector<OptionSpec> with_integrator_options(std::vector<OptionSpec> table) {
   for (const IntegratorEntry& integrator : integrators())
     for (const ParameterSpec& p : integrator.parameters) {
       const bool time = p.unit == "s";
-      table.push_back({integrator_option(integrator, p), OptionKind::number,
+      table.push_back({integrator_option(integrator, p),
+                       p.integer ? OptionKind::integer : OptionKind::number,
                        format_number(p.default_value), "Integrator " + integrator.name,
                        p.meaning + (time ? " (s)" : ""), p.min, p.max,
                        time ? Dimension::time : Dimension::none});
@@ -93,15 +94,17 @@ const std::vector<OptionSpec>& run_options() {
 
       {"linear-solver", K::text, "block", "Linear algebra", "linear solver (see: traceraft list)"},
       {"linear-tolerance", K::number, "0", "Linear algebra",
-       "relative residual of each correction; 0: the integrator's choice (euler 1e-4, ida 1e-2)", 0,
-       0.5},
+       "relative residual of each correction; 0: the integrator's choice (euler 1e-4, ida 1e-2, "
+       "rosenbrock up to 1e-3)",
+       0, 0.5},
       {"threads", K::integer, "0", "Linear algebra",
        "threads; 0: all processors, at most 2. Results do not depend on it", 0, 64, D::none, false},
 
       {"checkpoint-interval", K::number, "30", "Output",
        "wall-clock seconds between checkpoints; 0: after every step", 0, 1e9, D::none, false},
-      {"fields", K::flag, "true", "Output", "write fields for ParaView at the output times", 0, 0,
-       D::none, false},
+      {"fields", K::flag, "true", "Output",
+       "write fields for ParaView at the output times (on unless --no-fields)", 0, 0, D::none,
+       false},
   });
   return table;
 }

@@ -115,7 +115,8 @@ void FieldWriter::on_output(const Observables& row, ConstVec y) {
   write_durably(folder_.path / "view.png", picture);
   std::vector<std::pair<double, std::string>> files;
   for (std::size_t i = 0; i <= index; ++i)
-    files.emplace_back(run_.output_labels[i], "fields/" + field_name(i));
+    if (std::filesystem::exists(folder_.fields() / field_name(i)))  // not if fields were off
+      files.emplace_back(run_.output_labels[i], "fields/" + field_name(i));
   write_durably(folder_.path / "fields.pvd", pvd_text(files));
 }
 

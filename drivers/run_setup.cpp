@@ -8,6 +8,7 @@
 #include "backends/list.hpp"
 #include "backends/muparser/formula.hpp"
 #include "drivers/checkpoint_store.hpp"
+#include "drivers/config_file.hpp"
 #include "kernel/problem/initial_data.hpp"
 
 namespace traceraft {
@@ -107,7 +108,9 @@ std::vector<CapRaft> parse_caps(const Configuration& configuration) {
 
 // Data for another kind of initial state than the case's are a mistake, not something to ignore.
 void require_kind(const Configuration& configuration, const char* option, const char* kind) {
-  if (configuration.given(option) && !configuration.given("initial") &&
+  // A configuration file holds every option.
+  const bool flag = configuration.where(option).compare(0, 2, "--") == 0;
+  if (configuration.given(option) && (flag || !configuration.given("initial")) &&
       split_named_arguments(configuration.text("initial")).name != kind)
     throw InputError(configuration.where(option) + ": it needs --initial " + kind);
 }
@@ -141,7 +144,8 @@ Vec initial_field(const Configuration& configuration, const CahnHilliardModel& m
   const InitialRequest request = initial_request(configuration, model);
   return said_of(configuration, "initial", [&] {
     const auto [name, folder] = split_named_arguments(kind);
-    if (name == "restart") return final_concentration(folder, space.nodes());
+    if (name == "restart")
+      return final_concentration(folder, space.nodes(), numerical_identity(configuration));
     (void)initial_fields().find(name, {"restart:DIR"});
     return make_initial_field(kind, space, request);
   });
@@ -192,8 +196,10 @@ IntegratorSettings integrator_settings(const Configuration& configuration,
       one_of(configuration, "keep", "solution", {"decaying", "second", "first"});
   settings.reject_energy_rises =
       one_of(configuration, "energy-guard", "guard", {"warn", "reject", "off"}) == "reject";
-  if (settings.max_step > 0 && settings.min_step > settings.max_step)
-    throw InputError(configuration.where("min-step") + ": it is larger than --max-step");
+  for (const char* largest : {"max-step", "ida-maxstep"})
+    if (const double most = configuration.number(largest) / units.time();
+        most > 0 && settings.min_step > most)
+      throw InputError(configuration.where("min-step") + ": it is larger than --" + largest);
   return settings;
 }
 

@@ -181,7 +181,8 @@ void print_summary(const Configuration& configuration, const RunSetup& run, cons
                     clock_text(cost.cpu_seconds).c_str(), peak_memory_mb()));
   line("tables", folder.table("series.csv").string());
   if (std::filesystem::exists(folder.path / "view.png")) {
-    line("open next", (folder.path / "view.png").string() + " (front and back at the end)");
+    line("open next",
+         (folder.path / "view.png").string() + " (front and back at the latest output time)");
     line("or", "paraview " + (folder.path / "fields.pvd").string());
   }
 }

@@ -52,7 +52,7 @@ class Euler final : public Integrator {
   }
 
   Status interpolate(double t, VecRef y) const override {
-    if (!(t >= time() - step_ && t <= time()))
+    if (!(history_.size() > 1 && t >= history_.time(1) && t <= time()))
       return Status::fatal("interpolation outside the last step");
     history_.interpolate(t, y);
     return {};

@@ -17,7 +17,11 @@ namespace traceraft {
 namespace {
 
 constexpr int kStages = 4;
-constexpr double kLinearTolerance = 1e-3;
+
+// A stage is about tolerance^(1/3) of the state and must be solved to a tenth of the tolerance.
+double linear_tolerance(const IntegratorSettings& settings) {
+  return settings.linear_tolerance_or(std::min(1e-3, 0.1 * std::pow(settings.tolerance, 2.0 / 3)));
+}
 
 // The method in the variables u = Γ k, which need no product with the Jacobian.
 struct Tableau {
@@ -89,7 +93,7 @@ class Rosenbrock final : public Integrator {
   }
 
   Status interpolate(double t, VecRef y) const override {
-    if (!(t >= time() - step_ && t <= time()))
+    if (!(history_.size() > 1 && t >= history_.time(1) && t <= time()))
       return Status::fatal("interpolation outside the last step");
     history_.interpolate(t, y);
     return {};
@@ -155,7 +159,7 @@ class Rosenbrock final : public Integrator {
     if (!status.ok()) return status;
     system.b = -system.b - ros34pw2().gammas[i] * dt * drift;
     system.x = Vec::Zero(system.b.size());
-    const double tolerance = settings_.linear_tolerance_or(kLinearTolerance);
+    const double tolerance = linear_tolerance(settings_);
     if (i == 0) {
       solver_.solve(systems_, tolerance);
     } else {

@@ -7,8 +7,7 @@ namespace traceraft {
 
 // ROS34PW2 of Rang and Angermann ("New Rosenbrock W-methods of order 3 for partial differential
 // algebraic equations of index 1", BIT 45, 2005): four stages, stiffly accurate, L-stable, embedded
-// method of order 2, and of order 3 whatever matrix is used in place of the Jacobian, so that
-// inexact solves do not spoil it. For F(t, y, ẏ) = M ẏ − f(t, y) each stage solves
+// method of order 2. For F(t, y, ẏ) = M ẏ − f(t, y) each stage solves
 //   J(σ = 1/(γΔt)) u_i = −F(t_n + α_i Δt, y_n + Σ a_ij u_j, −Σ c_ij u_j / Δt) − γ_i Δt ∂F/∂t
 // with the exact tangent at the beginning of the step: no Newton iteration, one Jacobian per step.
 //

@@ -6,6 +6,7 @@
 #include "backends/suitesparse/blas.hpp"
 #include "backends/suitesparse/ordering.hpp"
 #include "kernel/core/binary.hpp"
+#include "kernel/core/parameters.hpp"
 #include "kernel/core/stopwatch.hpp"
 
 namespace traceraft {
@@ -75,7 +76,7 @@ class Lane {
     defect = b - defect;
     const double relative = scaled_norm(J, defect) / scaled_norm(J, b);
     if (b.isZero(0) || relative <= tolerance) return {};
-    return Status::retry(name_ + ": relative residual " + std::to_string(relative));
+    return Status::retry(name_ + ": relative residual " + format_number(relative));
   }
 
   std::string name_;

@@ -64,14 +64,8 @@ class Ida final : public Integrator {
     first_step_ = choose_first_step(y0, ydot0);
     create(t0, y0, ydot0);
     y_ = y0;
-    t_ = t0;
+    before_ = t_ = t0;
     guard_.start(y0);
-    if (option("calcic") == 0) return {};
-    if (IDACalcIC(memory_, IDA_YA_YDP_INIT, t0 + first_step_) != IDA_SUCCESS)
-      return Status::fatal("IDACalcIC: " + message_);
-    IDAGetConsistentIC(memory_, yy_.get(), yp_.get());
-    y_ = view(yy_.get());
-    guard_.start(y_);
     return {};
   }
 
@@ -83,6 +77,7 @@ class Ida final : public Integrator {
     const int flag = IDASolve(memory_, t_end_, &t, yy_.get(), yp_.get(), IDA_ONE_STEP);
     if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
     if (flag != IDA_SUCCESS && flag != IDA_TSTOP_RETURN) return failure(flag);
+    before_ = t_;
     t_ = t;
     y_ = view(yy_.get());
     guard_.accept();
@@ -90,7 +85,7 @@ class Ida final : public Integrator {
   }
 
   Status interpolate(double t, VecRef y) const override {
-    if (!(t >= t_ - step() && t <= t_)) return Status::fatal("interpolation outside the last step");
+    if (!(t >= before_ && t <= t_)) return Status::fatal("interpolation outside the last step");
     if (t == t_) {
       y = y_;
       return {};
@@ -130,7 +125,7 @@ class Ida final : public Integrator {
   LinearStatistics linear_statistics() const override { return solver_.linear_statistics(); }
 
   void save(std::ostream& out) const override {
-    for (const double value : {t_, t_end_, span_, first_step_, residual_seconds_})
+    for (const double value : {before_, t_, t_end_, span_, first_step_, residual_seconds_})
       write_binary(out, value);
     write_binary(out, residuals_);
     write_binary(out, y_);
@@ -140,7 +135,7 @@ class Ida final : public Integrator {
     solver_.save(out);
   }
   void load(std::istream& in) override {
-    for (double* value : {&t_, &t_end_, &span_, &first_step_, &residual_seconds_})
+    for (double* value : {&before_, &t_, &t_end_, &span_, &first_step_, &residual_seconds_})
       read_binary(in, *value);
     read_binary(in, residuals_);
     read_binary(in, y_, problem_.size());
@@ -320,11 +315,8 @@ class Ida final : public Integrator {
       int iteration = 0;
       SUNNonlinSolGetCurIter(self.newton_.get(), &iteration);
       const double tolerance = self.linear_tolerance();
-      if (iteration == 0) {
-        self.solver_.solve(self.systems_, tolerance);
-      } else {
-        self.solver_.solve_again(self.systems_, std::min(0.5, kLaterFactor * tolerance));
-      }
+      self.solver_.solve(self.systems_,
+                         iteration == 0 ? tolerance : std::min(0.5, kLaterFactor * tolerance));
       const Status& status = system.report.status;
       view(x) = system.x;
       return self.code(status, SUNLS_PACKAGE_FAIL_REC, SUNLS_PACKAGE_FAIL_UNREC);
@@ -364,7 +356,8 @@ class Ida final : public Integrator {
   LinearPtr linear_;
   NewtonPtr newton_;
   std::vector<NewtonSystem> systems_;
-  double t_ = 0, t_end_ = 0, span_ = 0, first_step_ = 0, unit_ = 1;
+  double before_ = 0, t_ = 0;  // ends of the last step
+  double t_end_ = 0, span_ = 0, first_step_ = 0, unit_ = 1;
   Vec y_;
   NewtonTest newton_test_;
   long residuals_ = 0;
@@ -384,11 +377,10 @@ std::vector<ParameterSpec> ida_parameters() {
   return {
       {"rtol", "", 0, 0, 0.5, "relative tolerance in L2 of the surface; 0: --tolerance"},
       {"atol", "", 0, 0, 1e3, "absolute tolerance of c; 0: 1e-10"},
-      {"maxord", "", 5, 1, 5, "maximum order of the BDF"},
+      {"maxord", "", 5, 1, 5, "maximum order of the BDF", true},
       {"initstep", "s", 0, 0, 1e300, "first step; 0: --initial-step"},
       {"maxstep", "s", 0, 0, 1e300, "largest step; 0: --max-step"},
-      {"suppressalg", "", 1, 0, 1, "1: algebraic variables are left out of the error test"},
-      {"calcic", "", 0, 0, 1, "1: IDACalcIC corrects the initial state before the first step"},
+      {"suppressalg", "", 1, 0, 1, "1: algebraic variables are left out of the error test", true},
       {"epslin", "", 0, 0, 0.5, "relative residual of Newton corrections; 0: --linear-tolerance"},
       {"nonlinconvcoef", "", 0.33, 1e-6, 1, "factor in the test of Newton's convergence"},
   };

@@ -29,7 +29,7 @@ N_Vector clone(N_Vector v) {
   N_Vector copy = N_VNewEmpty(v->sunctx);
   if (!copy) return nullptr;
   N_VCopyOps(v, copy);
-  auto* fresh = new (std::nothrow) Content{Vec(content(v).data.size()), content(v).norm};
+  auto* fresh = new (std::nothrow) Content{Vec::Zero(content(v).data.size()), content(v).norm};
   if (!fresh) {
     N_VFreeEmpty(copy);
     return nullptr;

@@ -15,6 +15,7 @@ struct ParameterSpec {
   double min;
   double max;  // closed range [min, max]
   std::string meaning;
+  bool integer = false;
 };
 
 // Values for a list of specs, in the order of the specs.

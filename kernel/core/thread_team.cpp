@@ -8,10 +8,19 @@ thread_local bool inside_task = false;
 }
 
 ThreadTeam::ThreadTeam(int size) {
-  for (int part = 1; part < size; ++part) workers_.emplace_back([this, part] { work(part); });
+  try {
+    for (int part = 1; part < size; ++part) workers_.emplace_back([this, part] { work(part); });
+  } catch (...) {
+    stop_all();
+    throw;
+  }
 }
 
 ThreadTeam::~ThreadTeam() {
+  stop_all();
+}
+
+void ThreadTeam::stop_all() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     stop_ = true;

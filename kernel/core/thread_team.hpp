@@ -39,6 +39,7 @@ class ThreadTeam {
 
  private:
   void work(int part);
+  void stop_all();
   void guarded(const std::function<void(int)>& task, int part) const noexcept;
 
   mutable std::mutex mutex_;

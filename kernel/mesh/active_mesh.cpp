@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/core/error.hpp"
 #include "kernel/mesh/cut_cells.hpp"
 
 namespace traceraft {
@@ -12,6 +13,12 @@ struct GlobalTet {
   std::array<std::int64_t, 4> vertex;
   int kuhn;
 };
+
+void require_outside(const LevelSet& surface, const CubeMesh& mesh) {
+  if (surface.value(mesh.position({0, 0, 0})) < 0)
+    throw InputError(
+        "the level set must be negative inside the surface and positive outside; change its sign");
+}
 
 std::vector<GlobalTet> find_cut_tets(const LevelSet& surface, const CubeMesh& mesh) {
   std::vector<GlobalTet> tets;
@@ -114,6 +121,7 @@ ActiveMesh build_active_mesh(const LevelSet& surface, std::int64_t cells) {
   ActiveMesh mesh;
   mesh.cube = {cells};
   const std::vector<GlobalTet> cut = find_cut_tets(surface, mesh.cube);
+  require_outside(surface, mesh.cube);
   mesh.node_id = collect_vertices(cut);
   mesh.owned_nodes = mesh.nodes();
   mesh.phi = nodal_level_set(surface, mesh.cube, mesh.node_id);

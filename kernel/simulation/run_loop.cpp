@@ -1,5 +1,7 @@
 #include "kernel/simulation/run_loop.hpp"
 
+#include <stdexcept>
+
 #include "kernel/core/binary.hpp"
 
 namespace traceraft {
@@ -48,7 +50,7 @@ RunResult continue_run(RunState& state, const Observer& observer, double t_end,
       Vec y(integrator.state().size());
       const double t = output_times[state.next_output];
       if (Status status = integrator.interpolate(t, y); !status.ok())
-        return {RunEnd::failed, status.why};
+        throw std::logic_error(integrator.name() + ": " + status.why);
       const Observables row = observer.measure(t, y);
       for (RunListener* listener : listeners) listener->on_output(row, y);
     }
