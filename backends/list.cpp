@@ -54,10 +54,11 @@ const NamedList<LinearSolverEntry>& linear_solvers() {
 
 const NamedList<IntegratorEntry>& integrators() {
   static const std::vector<IntegratorEntry> entries = {
-      {"euler", "stabilised Euler/BDF2 pair with Gomez-Hughes steps", make_euler},
-      {"ida", "SUNDIALS IDA: BDF of variable order, Newton with the exact Jacobian", make_ida,
+      {"euler", "stabilised Euler/BDF2 pair with Gomez-Hughes steps", 5e-3, make_euler},
+      {"ida", "SUNDIALS IDA: BDF of variable order, Newton with the exact Jacobian", 1e-3, make_ida,
        ida_parameters()},
-      {"rosenbrock", "ROS34PW2: linearly implicit, order 3, no Newton iteration", make_rosenbrock},
+      {"rosenbrock", "ROS34PW2: linearly implicit, order 3, no Newton iteration", 1e-3,
+       make_rosenbrock},
   };
   static const NamedList<IntegratorEntry> list("integrator", entries);
   return list;

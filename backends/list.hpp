@@ -22,6 +22,7 @@ struct LinearSolverEntry {
 struct IntegratorEntry {
   std::string name;
   std::string summary;
+  double tolerance;  // unless asked for otherwise
   std::function<IntegratorPtr(const DaeProblem&, const LinearSolverChoice&,
                               std::shared_ptr<const ThreadTeam>, const IntegratorSettings&)>
       make;

@@ -157,6 +157,14 @@ Checkpoint CheckpointStore::newest() const {
 
 namespace {
 
+Vec concentration_of(const Checkpoint& checkpoint, const std::filesystem::path& run_folder,
+                     int nodes) {
+  if (checkpoint.concentration.size() != static_cast<std::size_t>(nodes))
+    throw IoError(run_folder.string() + " has " + std::to_string(checkpoint.concentration.size()) +
+                  " nodes, this run has " + std::to_string(nodes));
+  return Eigen::Map<const Vec>(checkpoint.concentration.data(), nodes);
+}
+
 // The line of an option in a numerical identity.
 std::string line_of(const std::string& identity, const std::string& option) {
   const std::size_t begin = ("\n" + identity).find("\n" + option + " = ");
@@ -187,11 +195,11 @@ Vec final_concentration(const std::filesystem::path& run_folder, int nodes,
       throw InputError("restart: " + run_folder.string() + " has " + theirs + ", this run has " +
                        ours);
   }
-  if (checkpoint.concentration.size() != static_cast<std::size_t>(nodes))
-    throw InputError("restart: " + run_folder.string() + " has " +
-                     std::to_string(checkpoint.concentration.size()) + " nodes, this run has " +
-                     std::to_string(nodes) + "; surface and --cells must be the same");
-  return Eigen::Map<const Vec>(checkpoint.concentration.data(), nodes);
+  return concentration_of(checkpoint, run_folder, nodes);
+}
+
+Vec newest_concentration(const std::filesystem::path& run_folder, int nodes) {
+  return concentration_of(CheckpointStore(run_folder / "checkpoints").newest(), run_folder, nodes);
 }
 
 }  // namespace traceraft

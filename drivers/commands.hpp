@@ -25,6 +25,20 @@ struct ResumeRequest {
 };
 int resume_command(const ResumeRequest& request);
 
+struct CompareRequest {
+  GivenValues flags;
+  std::string config_file;
+  std::string out;                             // "" for the first free runs/compare-<case>-N
+  std::string references = "runs/references";  // where reference solutions are kept
+  // Comma-separated; "": what the comparison in `out` has, or defaults.
+  std::string integrators, linear_solvers, tolerances;
+  // 0 or, for the time limit, negative: likewise.
+  int repeat = 0;
+  double time_limit = -1, target_error = 0, reference_tolerance = 0;
+  bool quiet = false;
+};
+int compare_command(const CompareRequest& request);
+
 struct VerifyRequest {
   std::vector<std::string> studies;  // names, or "all"
   bool quick = false;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "backends/list.hpp"
 #include "drivers/cases.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
@@ -94,6 +95,13 @@ Configuration::Configuration(const GivenValues& file, const GivenValues& flags) 
     }
     set(spec, {text, "--" + spec.name});
   }
+  if (!given("tolerance"))
+    for (const IntegratorEntry& integrator : integrators())
+      if (integrator.name == text("integrator"))
+        values_["tolerance"].text = format_number(integrator.tolerance);
+  // A case's choice is for its own mesh.
+  if (!given("noise-cells") && integer("noise-cells") > integer("cells"))
+    values_["noise-cells"].text = text("cells");
 }
 
 void Configuration::set(const OptionSpec& spec, const GivenValue& value) {

@@ -15,6 +15,8 @@
 namespace traceraft {
 namespace {
 
+const std::vector<std::string> kCommands = {"run", "resume", "compare", "verify", "list"};
+
 // Adds every option that `wanted` accepts as a flag whose text goes to `values`.
 template <class Wanted>
 void add_options(CLI::App* command, GivenValues& values, const Wanted& wanted) {
@@ -80,6 +82,43 @@ int dispatch(int argc, char** argv) {
   resume_app->add_flag("--quiet", resume.quiet, "print nothing but errors");
   add_options(resume_app, resume.flags, [](const OptionSpec& spec) { return !spec.numerical; });
 
+  CompareRequest compare;
+  CLI::App* compare_app =
+      app.add_subcommand("compare", "compare integrators and linear solvers at equal error");
+  compare_app->allow_extras();
+  compare_app->add_option("--config", compare.config_file,
+                          "TOML file with the flags' names as keys");
+  compare_app->add_option("--out", compare.out,
+                          "folder, new or of a comparison to go on with or to extend; default: "
+                          "runs/compare-<case>-<number>");
+  compare_app->add_option("--references", compare.references, "where reference solutions are kept")
+      ->capture_default_str();
+  compare_app->add_option("--integrators", compare.integrators, "comma-separated; default: all");
+  compare_app->add_option("--linear-solvers", compare.linear_solvers,
+                          "comma-separated; default: block");
+  compare_app->add_option("--tolerances", compare.tolerances,
+                          "comma-separated; default: 1e-2,3e-3,1e-3");
+  compare_app
+      ->add_option("--repeat", compare.repeat, "runs of each combination, for its time; default: 3")
+      ->check(CLI::Range(1, 1000));
+  compare_app->add_option("--time-limit", compare.time_limit, "seconds per run; 0: none")
+      ->check(CLI::NonNegativeNumber);
+  compare_app
+      ->add_option("--target-error", compare.target_error,
+                   "error to recommend a method for; default: the smallest that all reach")
+      ->check(CLI::PositiveNumber);
+  compare_app
+      ->add_option("--reference-tolerance", compare.reference_tolerance,
+                   "default: a hundredth of the smallest tolerance")
+      ->check(CLI::Range(1e-12, 0.1));
+  compare_app->add_flag("--quiet", compare.quiet, "print nothing but errors");
+  add_options(compare_app, compare.flags, [](const OptionSpec& spec) {
+    return spec.group != "Output" && spec.name != "output-times";
+  });
+  compare_app->footer(
+      "Example: traceraft compare --case spinodal --integrators euler,ida --tolerances "
+      "1e-2,3e-3,1e-3");
+
   VerifyRequest verify;
   CLI::App* verify_app = app.add_subcommand("verify", "measure what the program claims");
   verify_app->allow_extras();
@@ -98,13 +137,13 @@ int dispatch(int argc, char** argv) {
     return app.exit(asked);  // --help, --version
   } catch (const CLI::RequiredError&) {
     if (app.get_subcommands().empty() && argc > 1)
-      throw InputError(
-          unknown_name_message("command", argv[1], {"run", "resume", "verify", "list"}));
-    throw InputError(app.get_subcommands().empty()
-                         ? "say what to do: run, resume, verify or list (see traceraft --help)"
-                         : "resume: needs the run folder, as in: traceraft resume runs/guv-2to1-1");
+      throw InputError(unknown_name_message("command", argv[1], kCommands));
+    throw InputError(
+        app.get_subcommands().empty()
+            ? "say what to do: run, resume, compare, verify or list (see traceraft --help)"
+            : "resume: needs the run folder, as in: traceraft resume runs/guv-2to1-1");
   } catch (const CLI::ExtrasError&) {
-    throw InputError(unknown_name_message("command", argv[1], {"run", "resume", "verify", "list"}));
+    throw InputError(unknown_name_message("command", argv[1], kCommands));
   } catch (const CLI::ParseError& error) {
     throw InputError(error.what());
   } catch (const std::logic_error&) {  // CLI11 on --no-fields=perhaps: std::stoll's exceptions
@@ -113,6 +152,7 @@ int dispatch(int argc, char** argv) {
   for (const CLI::App* command : app.get_subcommands()) refuse_unknown(*command);
   if (run_app->parsed()) return run_command(run);
   if (resume_app->parsed()) return resume_command(resume);
+  if (compare_app->parsed()) return compare_command(compare);
   if (verify_app->parsed()) {
     if (verify.studies.empty()) verify.studies = {"all"};
     return verify_command(verify);

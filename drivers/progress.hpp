@@ -1,7 +1,8 @@
-// How far a run has come: one line rewritten on a terminal, a plain line now and then elsewhere.
+// How far a run has come.
 #pragma once
 
 #include "drivers/run_setup.hpp"
+#include "drivers/status_line.hpp"
 #include "kernel/core/stopwatch.hpp"
 #include "kernel/simulation/run_loop.hpp"
 
@@ -9,21 +10,17 @@ namespace traceraft {
 
 class Progress final : public RunListener {
  public:
-  Progress(const RunSetup& run, bool quiet);
+  Progress(const RunSetup& run, bool quiet) : run_(run), line_(quiet) {}
   void on_step(const RunState& state) override;
-  void finish();  // ends the line
+  void finish() { line_.finish(); }
 
  private:
   double estimated_seconds_left(const RunState& state);
 
   const RunSetup& run_;
-  bool quiet_, terminal_;
-  Stopwatch watch_, since_line_;
-  bool printed_ = false;
+  StatusLine line_;
+  Stopwatch watch_;
   long first_step_ = -1;
 };
-
-// 3725 -> "1:02:05"
-std::string clock_text(double seconds);
 
 }  // namespace traceraft

@@ -120,8 +120,6 @@ InitialRequest initial_request(const Configuration& configuration, const CahnHil
   const long long cells = configuration.integer("cells");
   request.raft_fraction = configuration.number("raft-fraction");
   request.noise_cells = configuration.integer("noise-cells");
-  if (!configuration.given("noise-cells"))  // a case's choice is for its own mesh
-    request.noise_cells = std::min<std::int64_t>(request.noise_cells, cells);
   if (request.noise_cells > cells)
     throw InputError(configuration.where("noise-cells") + ": " +
                      std::to_string(request.noise_cells) + " is more than --cells " +

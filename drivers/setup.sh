@@ -3,7 +3,7 @@
 
 packages="g++ cmake ninja-build libeigen3-dev libsuitesparse-dev libmetis-dev libopenblas-dev
 libsundials-dev libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libmuparser-dev zlib1g-dev libpng-dev
-libgtest-dev"
+libgtest-dev gnuplot-nox"
 
 say() { printf '%s\n' "$*" >&2; }
 

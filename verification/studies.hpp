@@ -36,6 +36,8 @@ struct StudyEntry {
 
 StudyEntry mesh_convergence_study();
 StudyEntry time_order_study();
+StudyEntry integrator_agreement_study();
+StudyEntry solver_iterations_study();
 StudyEntry operation_cost_study();
 StudyEntry step_cost_study();
 

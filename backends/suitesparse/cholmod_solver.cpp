@@ -86,7 +86,9 @@ class CholmodSolver final : public SpdSolver {
     return {};
   }
 
-  void solve(ConstVec b, VecRef x, int lane) override { copy_.solve(b, x, work_[lane]); }
+  void solve(ConstVec b, VecRef x, const ThreadTeam& team, int lane) override {
+    copy_.solve(b, x, team, work_[lane]);
+  }
 
  private:
   Workspace workspace_;

@@ -102,34 +102,85 @@ void backward_dense(const Real* l, int columns, int rows, Real* x) {
 
 }  // namespace
 
-void SupernodalFactor::copy(const cholmod_factor& factor) {
+void SupernodalFactor::read_structure(const cholmod_factor& factor) {
   const int* super = static_cast<const int*>(factor.super);
   const int* row_begin = static_cast<const int*>(factor.pi);
   const int* value_begin = static_cast<const int*>(factor.px);
   const int* rows = static_cast<const int*>(factor.s);
-  const double* values = static_cast<const double*>(factor.x);
-  if (supernodes_.empty()) {
-    const int* order = static_cast<const int*>(factor.Perm);
-    permutation_.assign(order, order + factor.n);
-    rows_.assign(rows, rows + factor.ssize);
-    for (std::size_t s = 0; s < factor.nsuper; ++s)
-      supernodes_.push_back({super[s], super[s + 1] - super[s], row_begin[s + 1] - row_begin[s],
-                             static_cast<std::size_t>(row_begin[s]),
-                             static_cast<std::size_t>(value_begin[s])});
+  const int* order = static_cast<const int*>(factor.Perm);
+  permutation_.assign(order, order + factor.n);
+  rows_.assign(rows, rows + factor.ssize);
+  for (std::size_t s = 0; s < factor.nsuper; ++s) {
+    const int count = row_begin[s + 1] - row_begin[s];
+    supernodes_.push_back({super[s], super[s + 1] - super[s], count, count,
+                           static_cast<std::size_t>(row_begin[s]),
+                           static_cast<std::size_t>(value_begin[s])});
+    most_rows_ = std::max(most_rows_, count);
   }
+  find_branches();
+}
+
+// From the root downwards as long as a supernode has one child; the children of the first one with
+// more become the branches, in two groups of about equal length in memory. In postorder a subtree
+// is contiguous and ends with its root.
+void SupernodalFactor::find_branches() {
+  const int count = static_cast<int>(supernodes_.size());
+  std::vector<int> supernode_of(permutation_.size()), first(count);
+  std::vector<std::vector<int>> children(count + 1);  // the last: the roots
+  for (int s = 0; s < count; ++s)
+    for (int k = 0; k < supernodes_[s].columns; ++k)
+      supernode_of[supernodes_[s].first_column + k] = s;
+  for (int s = 0; s < count; ++s) {
+    const Supernode& node = supernodes_[s];
+    first[s] = children[s].empty() ? s : first[children[s].front()];
+    const bool root = node.rows == node.columns;
+    children[root ? count : supernode_of[rows_[node.row_begin + node.columns]]].push_back(s);
+  }
+  int top = count;
+  while (children[top].size() == 1) top = children[top].front();
+  const auto values_before = [&](int s) {
+    return s < count ? supernodes_[s].value_begin : values_.size();
+  };
+  const std::vector<int>& branches = children[top];
+  const int begin = branches.empty() ? 0 : first[branches.front()];
+  const int end = branches.empty() ? 0 : branches.back() + 1;
+  const std::size_t half = (values_before(begin) + values_before(end)) / 2;
+  int middle = end;
+  const auto distance = [&](int s) {
+    const std::size_t at = values_before(s);
+    return at > half ? at - half : half - at;
+  };
+  for (const int child : branches)
+    if (distance(child + 1) < distance(middle)) middle = child + 1;
+  branch_begin_[0] = begin;
+  branch_begin_[1] = middle;
+  branch_begin_[2] = end;
+  top_row_ = end < count ? supernodes_[end].first_column : static_cast<int>(permutation_.size());
+  for (Supernode& node : supernodes_) {
+    const int* row = rows_.data() + node.row_begin;
+    node.below_top = static_cast<int>(std::lower_bound(row, row + node.rows, top_row_) - row);
+  }
+}
+
+void SupernodalFactor::copy(const cholmod_factor& factor) {
+  const double* values = static_cast<const double*>(factor.x);
   values_.resize(factor.xsize);
   std::transform(values, values + factor.xsize, values_.begin(),
                  [](double value) { return static_cast<Real>(value); });
+  if (supernodes_.empty()) read_structure(factor);
 }
 
-void SupernodalFactor::forward(const Supernode& node, Real* x, Real* work) const {
+// above: where contributions to the rows of the top go, or x itself from there on.
+void SupernodalFactor::forward(const Supernode& node, Real* x, Real* above, Real* work) const {
   const int* row = rows_.data() + node.row_begin;
   Real* own = x + node.first_column;
   std::copy(own, own + node.columns, work);
   std::fill(work + node.columns, work + node.rows, Real{0});
   forward_dense(values_.data() + node.value_begin, node.columns, node.rows, work);
   std::copy(work, work + node.columns, own);
-  for (int i = node.columns; i < node.rows; ++i) x[row[i]] += work[i];
+  const int split = std::max(node.columns, node.below_top);
+  for (int i = node.columns; i < split; ++i) x[row[i]] += work[i];
+  for (int i = split; i < node.rows; ++i) above[row[i] - top_row_] += work[i];
 }
 
 void SupernodalFactor::backward(const Supernode& node, Real* x, Real* work) const {
@@ -141,16 +192,36 @@ void SupernodalFactor::backward(const Supernode& node, Real* x, Real* work) cons
   std::copy(work, work + node.columns, own);
 }
 
-void SupernodalFactor::solve(ConstVec b, VecRef x, Work& work) const {
-  const FlushSubnormals flush;
-  const std::size_t n = permutation_.size();
+void SupernodalFactor::solve(ConstVec b, VecRef x, const ThreadTeam& team, Work& work) const {
+  const std::size_t n = permutation_.size(), top = n - static_cast<std::size_t>(top_row_);
   work.x.resize(n);
-  work.gathered.resize(n);
-  for (std::size_t k = 0; k < n; ++k) work.x[k] = static_cast<Real>(b[permutation_[k]]);
-  for (const Supernode& node : supernodes_) forward(node, work.x.data(), work.gathered.data());
-  for (auto node = supernodes_.rbegin(); node != supernodes_.rend(); ++node)
-    backward(*node, work.x.data(), work.gathered.data());
-  for (std::size_t k = 0; k < n; ++k) x[permutation_[k]] = static_cast<double>(work.x[k]);
+  Real* solution = work.x.data();
+  const auto for_branches = [&](const auto& action) {
+    team.run([&](int part) {
+      const FlushSubnormals flush;
+      for (int branch = part; branch < 2; branch += team.size()) action(branch);
+    });
+  };
+  const FlushSubnormals flush;
+  for (std::size_t k = 0; k < n; ++k) solution[k] = static_cast<Real>(b[permutation_[k]]);
+  for_branches([&](int branch) {
+    work.dense[branch].resize(most_rows_);
+    work.above[branch].assign(top, Real{0});
+    for (int s = branch_begin_[branch]; s < branch_begin_[branch + 1]; ++s)
+      forward(supernodes_[s], solution, work.above[branch].data(), work.dense[branch].data());
+  });
+  for (std::size_t k = 0; k < top; ++k)
+    solution[top_row_ + k] += work.above[0][k] + work.above[1][k];
+  const int count = static_cast<int>(supernodes_.size());
+  for (int s = branch_begin_[2]; s < count; ++s)
+    forward(supernodes_[s], solution, solution + top_row_, work.dense[0].data());
+  for (int s = count - 1; s >= branch_begin_[2]; --s)
+    backward(supernodes_[s], solution, work.dense[0].data());
+  for_branches([&](int branch) {
+    for (int s = branch_begin_[branch + 1] - 1; s >= branch_begin_[branch]; --s)
+      backward(supernodes_[s], solution, work.dense[branch].data());
+  });
+  for (std::size_t k = 0; k < n; ++k) x[permutation_[k]] = static_cast<double>(solution[k]);
 }
 
 }  // namespace traceraft

@@ -28,7 +28,8 @@ class SpdSolver {
  public:
   virtual ~SpdSolver() = default;
   virtual Status factorise(const CsrMatrix& A) = 0;  // retry: not positive definite
-  virtual void solve(ConstVec b, VecRef x, int lane) = 0;
+  // With the threads of the team, if it is not inside a task of it already.
+  virtual void solve(ConstVec b, VecRef x, const ThreadTeam& team, int lane) = 0;
 };
 
 using KrylovFactory = std::function<std::unique_ptr<KrylovMethod>()>;

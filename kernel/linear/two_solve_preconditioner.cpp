@@ -58,10 +58,10 @@ void TwoSolvePreconditioner::apply(const BlockJacobian& J, ConstVec r, VecRef z,
   auto& [right, v] = work_[lane];
   v.resize(n);
   right = r.head(n) + p_ * r.tail(n);
-  first_->solve(right, v, lane);
+  first_->solve(right, v, team, lane);
   J.mm.multiply(v, right, team);
   right -= r.tail(n);
-  second_->solve(right, z.head(n), lane);
+  second_->solve(right, z.head(n), team, lane);
   z.tail(n) = v + q_ * z.head(n);
 }
 

@@ -61,13 +61,13 @@ Status CahnHilliard::residual(double t, ConstVec y, ConstVec ydot, VecRef r) con
 }
 
 void CahnHilliard::fill_curvature(ConstVec c, Tangent tangent, BlockJacobian& J) const {
-  if (tangent == Tangent::stabilised) {
-    J.curvature = model_.beta();
-    for (std::size_t k = 0; k < J.mc.values.size(); ++k)
-      J.mc.values[k] = -gradient_energy_.values[k] - J.curvature * J.mm.values[k];
-    return;
-  }
-  for (std::size_t k = 0; k < J.mc.values.size(); ++k) J.mc.values[k] = -gradient_energy_.values[k];
+  const double beta = tangent == Tangent::stabilised ? model_.beta() : 0;
+  space_->team->for_range(J.mc.values.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      J.mc.values[k] = -gradient_energy_.values[k] - beta * J.mm.values[k];
+  });
+  J.curvature = beta;
+  if (tangent == Tangent::stabilised) return;
   add_potential_tangent(*space_, model_.well, model_.rule, -1, c, J.mc);
   double convex = 0;
   for (int i = 0; i < block_size(); ++i)
@@ -107,9 +107,13 @@ Status CahnHilliard::jacobian(double t, ConstVec y, ConstVec, double shift, Tang
   J.shift = shift;
   J.tangent = tangent;
   J.stiffness = model_.epsilon * model_.epsilon;
-  J.mm.values = space.stabilised_mass.values;
-  for (std::size_t k = 0; k < J.cc.values.size(); ++k)
-    J.cc.values[k] = shift * space.stabilised_mass.values[k];
+  const std::size_t entries = J.cc.values.size();
+  space.team->for_range(entries, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      J.mm.values[k] = space.stabilised_mass.values[k];
+      J.cc.values[k] = shift * space.stabilised_mass.values[k];
+    }
+  });
 
   std::vector<double> integral;
   if (tangent == Tangent::exact) {
@@ -121,8 +125,10 @@ Status CahnHilliard::jacobian(double t, ConstVec y, ConstVec, double shift, Tang
   }
   assemble_mobility_stiffness(space, integral, J.cm);
   J.mobility = mean_mobility(J.cm);
-  for (std::size_t k = 0; k < J.cm.values.size(); ++k)
-    J.cm.values[k] += flux_stabilisation() * space.normal.values[k];
+  const double rho = flux_stabilisation();
+  space.team->for_range(entries, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) J.cm.values[k] += rho * space.normal.values[k];
+  });
 
   fill_curvature(c, tangent, J);
   if (tangent == Tangent::exact)

@@ -16,6 +16,8 @@ JacobianSolver::JacobianSolver(const DaeProblem& problem, const LinearSolverChoi
 
 template <class Action>
 void JacobianSolver::for_each_lane(std::size_t count, const Action& action) {
+  // One lane has the whole team for itself; several share it, each on its own thread.
+  if (count == 1) return action(0);
   team_->run([&](int part) {
     for (std::size_t lane = part; lane < count; lane += team_->size())
       action(static_cast<int>(lane));

@@ -72,7 +72,8 @@ TEST(DependencyRule, EveryBackendKnowsTheKernelAndItsOwnLibrary) {
       {"muparser", {"muParser.h"}},
       {"png", {"png.h"}},
       {"posix",
-       {"fcntl.h", "unistd.h", "sys/file.h", "sys/stat.h", "sys/ioctl.h", "sys/resource.h"}},
+       {"fcntl.h", "spawn.h", "unistd.h", "sys/file.h", "sys/stat.h", "sys/ioctl.h",
+        "sys/resource.h", "sys/wait.h"}},
       {"zlib", {"zlib.h"}}};
   for (const auto& entry : fs::directory_iterator(fs::path(TRACERAFT_ROOT) / "backends")) {
     if (!entry.is_directory()) continue;

@@ -43,7 +43,8 @@ TEST(Configuration, FlagsBeatTheFileWhichBeatsTheCaseWhichBeatsDefaults) {
   EXPECT_EQ(c.number("tolerance"), 1e-4);
   EXPECT_EQ(c.integer("cells"), 48);
   EXPECT_EQ(c.number("raft-fraction"), 0.5);
-  EXPECT_EQ(c.text("integrator"), "euler");
+  EXPECT_EQ(c.text("integrator"), "ida");
+  EXPECT_EQ(Configuration({}, flags({{"integrator", "euler"}})).number("tolerance"), 5e-3);
 }
 
 TEST(Configuration, ConvertsDefaultsUnderScaled) {
@@ -104,6 +105,12 @@ TEST(ConfigFile, TheResolvedConfigurationReadsBackAsTheSameRun) {
     EXPECT_EQ(numerical_identity(first), numerical_identity(second));
     EXPECT_EQ(config_text(first), config_text(second));
   }
+}
+
+TEST(ConfigFile, ACasesNoiseOnASmallerMeshReadsBack) {
+  const Configuration configuration({}, flags({{"case", "spinodal"}, {"cells", "24"}}));
+  EXPECT_EQ(configuration.integer("noise-cells"), 24);
+  EXPECT_NE(config_text(configuration).find("noise-cells = 24"), std::string::npos);
 }
 
 TEST(ConfigFile, SurvivesRandomDamage) {

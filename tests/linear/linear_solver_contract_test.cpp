@@ -175,7 +175,7 @@ class DenseSolver final : public SpdSolver {
     factor_.compute(dense);
     return factor_.info() == Eigen::Success ? Status{} : Status::retry("not positive definite");
   }
-  void solve(ConstVec b, VecRef x, int) override { x = factor_.solve(b); }
+  void solve(ConstVec b, VecRef x, const ThreadTeam&, int) override { x = factor_.solve(b); }
 
  private:
   Eigen::LLT<Eigen::MatrixXd> factor_;
@@ -214,16 +214,19 @@ TEST(Cholmod, SolvesToThePrecisionOfItsCopyOnEveryLane) {
   ASSERT_TRUE(reference.factorise(A).ok());
   const Vec b = random_vector(space->nodes(), 3);
   Vec expected(b.size()), first(b.size()), second(b.size());
-  reference.solve(b, expected, 0);
-  solver->solve(b, first, 0);
-  solver->solve(b, second, 1);
+  const ThreadTeam one(1), two(2), three(3);
+  reference.solve(b, expected, one, 0);
+  solver->solve(b, first, one, 0);
+  solver->solve(b, second, two, 1);
   EXPECT_LT((first - expected).norm(), 1e-5 * expected.norm());
+  EXPECT_EQ(first, second);
+  solver->solve(b, second, three, 0);
   EXPECT_EQ(first, second);
   CsrMatrix indefinite = A;
   for (const int k : space->pattern->diagonal) indefinite.values[k] *= -1;
   EXPECT_EQ(solver->factorise(indefinite).outcome, Outcome::retry);
   ASSERT_TRUE(solver->factorise(A).ok());
-  solver->solve(b, second, 1);
+  solver->solve(b, second, two, 1);
   EXPECT_EQ(first, second);
 }
 

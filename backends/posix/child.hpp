@@ -1,0 +1,30 @@
+// Other programs, run to their end.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace traceraft {
+
+struct ChildRequest {
+  std::vector<std::string> command;  // program (looked up in PATH) and arguments
+  std::filesystem::path log;         // gets what it prints, errors included
+  double time_limit = 0;             // seconds of wall time, then it is killed; 0: none
+  std::function<void()> tick;        // called several times a second meanwhile; may be empty
+};
+
+struct ChildResult {
+  int exit_code = 0;  // 128 + signal if a signal ended it, 127 if there is no such program
+  bool out_of_time = false;
+};
+
+// Runs a program and waits. If this process is asked to stop (process.hpp) the child is, too, and
+// its end is waited for. Throws IoError if no process can be started.
+ChildResult run_child(const ChildRequest& request);
+
+// This program's own path.
+std::filesystem::path own_program();
+
+}  // namespace traceraft

@@ -1,0 +1,25 @@
+// Self-contained pages: one HTML file that needs nothing else.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace traceraft {
+
+std::string html_text(const std::string& text);  // with &, < and > escaped
+
+class Page {
+ public:
+  explicit Page(std::string title) : title_(std::move(title)) {}
+  void heading(const std::string& text);
+  void paragraph(const std::string& text);
+  void figure(const std::string& svg, const std::string& caption);
+  // The first row is the heading. Cells that start with a digit or a sign are set as numbers.
+  void table(const std::vector<std::vector<std::string>>& rows);
+  std::string html() const;
+
+ private:
+  std::string title_, body_;
+};
+
+}  // namespace traceraft

@@ -1,0 +1,44 @@
+// The program as tests call it.
+#pragma once
+
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include "backends/posix/durable_file.hpp"
+
+namespace traceraft::testing {
+
+struct Outcome {
+  int code;
+  std::string output;  // stdout and stderr
+};
+
+inline Outcome shell(const std::string& command) {
+  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+  std::string output;
+  char buffer[4096];
+  while (const std::size_t count = fread(buffer, 1, sizeof buffer, pipe))
+    output.append(buffer, count);
+  const int status = pclose(pipe);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), output};
+}
+
+inline Outcome traceraft(const std::string& arguments) {
+  return shell(std::string(TRACERAFT_PROGRAM) + " " + arguments);
+}
+
+inline std::string content(const std::filesystem::path& path) {
+  return read_file(path, 1 << 28);
+}
+
+inline long lines_of(const std::filesystem::path& path) {
+  if (!std::filesystem::exists(path)) return 0;
+  const std::string text = content(path);
+  return std::count(text.begin(), text.end(), '\n');
+}
+
+}  // namespace traceraft::testing

@@ -1,0 +1,56 @@
+#include "verification/work_precision.hpp"
+
+#include <gtest/gtest.h>
+
+namespace traceraft {
+namespace {
+
+WorkPoint point(const char* integrator, double tolerance, double error, std::vector<double> wall) {
+  return {integrator, "block", tolerance, "", error, wall, wall, {}};
+}
+
+TEST(Spread, IsMedianAndEnds) {
+  const Spread odd = spread_of({3, 1, 2}), even = spread_of({4, 1, 2, 3});
+  EXPECT_EQ(odd.median, 2);
+  EXPECT_EQ(even.median, 2.5);
+  EXPECT_EQ(even.low, 1);
+  EXPECT_EQ(even.high, 4);
+}
+
+TEST(Recommendation, TakesTheCheapestAtTheErrorThatAllReach) {
+  const Recommendation advice =
+      recommend({point("euler", 1e-2, 1e-1, {1.0}), point("euler", 1e-3, 1e-2, {9.0, 10.0, 11.0}),
+                 point("ida", 1e-2, 5e-2, {0.5}), point("ida", 1e-3, 2e-3, {2.0, 2.1, 1.9}),
+                 point("ida", 1e-4, 1e-4, {4.0})},
+                0);
+  EXPECT_EQ(advice.target, 1e-2);
+  EXPECT_EQ(advice.cheapest, (std::vector<int>{3, 1}));
+  EXPECT_EQ(advice.sentence,
+            "For an error of 1.0e-02 at the end, use ida with block at tolerance 0.001: 2 s wall "
+            "time, 2 s CPU; the next, euler with block at tolerance 0.001, takes 5.0 times as "
+            "long.");
+}
+
+TEST(Recommendation, SaysWhenTheTimesCannotTell) {
+  const Recommendation advice = recommend(
+      {point("euler", 1e-3, 1e-3, {1.9, 2.2, 2.5}), point("ida", 1e-3, 1e-3, {1.8, 2.0, 2.1})}, 0);
+  EXPECT_NE(advice.sentence.find("as fast within the spread"), std::string::npos)
+      << advice.sentence;
+}
+
+TEST(Recommendation, NamesWhatMissedTheTargetAndSurvivesFailures) {
+  WorkPoint failed = point("rosenbrock", 1e-3, 0, {});
+  failed.failure = "no step size";
+  const std::vector<WorkPoint> points = {point("euler", 1e-2, 1e-1, {1.0}),
+                                         point("ida", 1e-2, 5e-3, {2.0}), failed};
+  const Recommendation strict = recommend(points, 1e-2);
+  EXPECT_EQ(strict.cheapest, (std::vector<int>{1}));
+  EXPECT_EQ(strict.missed, (std::vector<std::string>{"euler with block", "rosenbrock with block"}));
+  EXPECT_NE(strict.sentence.find("not reached by euler with block, rosenbrock with block"),
+            std::string::npos);
+  EXPECT_NE(recommend(points, 1e-9).sentence.find("No method reached"), std::string::npos);
+  EXPECT_EQ(recommend({failed}, 0).sentence, "No combination gave a result.");
+}
+
+}  // namespace
+}  // namespace traceraft
