@@ -167,8 +167,10 @@ void print_summary(const Configuration& configuration, const RunSetup& run, cons
   line("energy", energy_text(configuration, run, state));
   line("mass drift", text("%.1e relative", state.monitor.mass_drift()));
   line("c on the surface", text("%.3f to %.3f", row.c_min, row.c_max));
-  line("steps", text("%ld accepted (%ld with the first-order solution), %ld rejected, %ld failed",
-                     steps.steps, steps.first_order, steps.rejected, steps.failures));
+  const std::string first_order =
+      steps.first_order > 0 ? text(" (%ld with the first-order solution)", steps.first_order) : "";
+  line("steps", text("%ld accepted", steps.steps) + first_order +
+                    text(", %ld rejected, %ld failed", steps.rejected, steps.failures));
   if (steps.newton_iterations > 0)
     line("Newton iterations",
          text("%ld, order of the last step %d", steps.newton_iterations, steps.order));
