@@ -1,7 +1,5 @@
 #include "drivers/chart.hpp"
 
-#include <cmath>
-
 #include "backends/posix/child.hpp"
 #include "backends/posix/durable_file.hpp"
 #include "kernel/core/error.hpp"
@@ -39,11 +37,8 @@ std::string script(const Chart& chart, const std::string& svg) {
     for (const auto& [x, y] : series.points)
       text += format_number(x) + " " + format_number(y) + "\n";
     text += "END\n";
-    plots += (plots.empty() ? "" : ", ") + block + " with " +
-             (series.dashed ? "lines dt 2"
-              : series.line ? "linespoints pt 7 ps 0.7"
-                            : "points pt 7") +
-             " title " + quoted(series.name);
+    plots += (plots.empty() ? "" : ", ") + block + " with linespoints pt 7 ps 0.7 title " +
+             quoted(series.name);
   }
   return text + "plot " + plots + "\n";
 }

@@ -11,8 +11,6 @@ namespace traceraft {
 struct ChartSeries {
   std::string name;
   std::vector<std::pair<double, double>> points;
-  bool line = true;     // joined by a line, else marks only
-  bool dashed = false;  // for reference slopes and the like
 };
 
 struct Chart {

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "backends/list.hpp"
 #include "backends/posix/child.hpp"
@@ -14,6 +13,7 @@
 #include "drivers/comparison.hpp"
 #include "drivers/config_file.hpp"
 #include "drivers/exit_codes.hpp"
+#include "drivers/run_folder.hpp"
 #include "drivers/run_setup.hpp"
 #include "drivers/status_line.hpp"
 #include "kernel/core/error.hpp"
@@ -27,18 +27,11 @@ namespace fs = std::filesystem;
 constexpr double kReferenceFactor = 100;
 constexpr const char* kReferenceLinearTolerance = "1e-4";
 
+// Empty items do not count.
 std::vector<std::string> words(const std::string& text) {
-  std::vector<std::string> result;
-  std::string word;
-  for (const char ch : text + ",") {
-    if (ch != ',') {
-      word += ch;
-    } else {
-      if (!word.empty()) result.push_back(word);
-      word.clear();
-    }
-  }
-  return result;
+  std::vector<std::string> items = split_list(text);
+  items.erase(std::remove(items.begin(), items.end(), ""), items.end());
+  return items;
 }
 
 template <class List>
@@ -92,8 +85,7 @@ ComparePlan make_plan(const CompareRequest& request, const ComparisonFolder& fol
 Configuration make_configuration(const CompareRequest& request, const ComparisonFolder& folder) {
   const bool given = !request.flags.empty() || !request.config_file.empty();
   if (folder.started() && !given) return {read_config_file(folder.config()), {}};
-  const GivenValues file =
-      request.config_file.empty() ? GivenValues{} : read_config_file(request.config_file);
+  const GivenValues file = read_config_file(request.config_file);
   GivenValues flags = request.flags;
   for (const char* varied : {"integrator", "linear-solver", "tolerance"})
     if (flags.count(varied))
@@ -109,7 +101,7 @@ Configuration make_configuration(const CompareRequest& request, const Comparison
   return configuration;
 }
 
-// Runs `job` in a process of its own and says why it failed, "" if it did not. A stop is told by
+// Runs this program with the arguments and says why it failed, "" if it did not. A stop is told by
 // stop_requested().
 std::string carry_out(const std::vector<std::string>& arguments, const fs::path& log,
                       double time_limit, const std::function<void()>& tick) {
@@ -127,12 +119,6 @@ std::string carry_out(const std::vector<std::string>& arguments, const fs::path&
 struct Reference {
   GivenValues options;
   fs::path folder;
-
-  bool finished() const {
-    const fs::path summary = folder / "summary.json";
-    return fs::exists(summary) &&
-           nlohmann::json::parse(read_file(summary, 1 << 20)).value("end", "") == "finished";
-  }
 };
 
 // The same reference serves all comparisons of the same runs: its folder is named by its options.
@@ -204,7 +190,7 @@ bool work_off(const ComparePlan& plan, const ComparisonFolder& folder, const Ref
                     (left > 0 ? "  ~" + clock_text(left) + " left" : ""));
     };
   };
-  if (!reference.finished()) {
+  if (!run_finished(reference.folder)) {
     compute(reference, folder,
             tick_for("reference: ida at " + format_number(plan.reference_tolerance)));
     ++worked;
@@ -222,13 +208,6 @@ bool work_off(const ComparePlan& plan, const ComparisonFolder& folder, const Ref
   return !stop_requested();
 }
 
-std::string first_free_folder(const std::string& name) {
-  for (int number = 1;; ++number) {
-    const std::string candidate = "runs/compare-" + name + "-" + std::to_string(number);
-    if (!fs::exists(candidate)) return candidate;
-  }
-}
-
 }  // namespace
 
 int compare_command(const CompareRequest& request) {
@@ -236,7 +215,9 @@ int compare_command(const CompareRequest& request) {
   std::string out = request.out;
   if (out.empty()) {
     const auto chosen = request.flags.find("case");
-    out = first_free_folder(chosen == request.flags.end() ? "case" : chosen->second.text);
+    out = first_free_folder("compare-" + (chosen == request.flags.end()
+                                              ? run_option("case").default_text
+                                              : chosen->second.text));
   }
   const ComparisonFolder folder(out);
   const ComparePlan plan = make_plan(request, folder);

@@ -1,5 +1,6 @@
 #include "drivers/compare_report.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <map>
 
@@ -7,6 +8,7 @@
 #include "drivers/chart.hpp"
 #include "drivers/page.hpp"
 #include "kernel/core/parameters.hpp"
+#include "kernel/core/text.hpp"
 
 namespace traceraft {
 namespace {
@@ -18,12 +20,6 @@ constexpr const char* kHeading[] = {"integrator", "linear solver",    "tolerance
                                     "failed",     "residuals",        "Jacobians",  "set-ups",
                                     "linear its", "peak MB",          "mass drift", "energy rises"};
 
-std::string text(const char* format, double value) {
-  char buffer[64];
-  std::snprintf(buffer, sizeof buffer, format, value);
-  return buffer;
-}
-
 Row cells(const WorkPoint& p) {
   Row row = {p.integrator, p.linear_solver, format_number(p.tolerance)};
   if (!p.ok()) {
@@ -31,16 +27,16 @@ Row cells(const WorkPoint& p) {
     return row;
   }
   const Spread cpu = spread_of(p.cpu_s), wall = spread_of(p.wall_s);
-  row.push_back(text("%.2e", p.error));
-  row.push_back(text("%.2f", cpu.median));
-  row.push_back(text("%.2f", wall.median) + " (" + text("%.2f", wall.low) + " to " +
-                text("%.2f", wall.high) + ")");
+  row.push_back(formatted("%.2e", p.error));
+  row.push_back(formatted("%.2f", cpu.median));
+  row.push_back(formatted("%.2f", wall.median) + " (" + formatted("%.2f", wall.low) + " to " +
+                formatted("%.2f", wall.high) + ")");
   for (const char* count : {"steps", "rejected", "failures", "residuals", "jacobians",
                             "linear_setups", "linear_iterations"})
-    row.push_back(text("%.0f", p.counts.at(count)));
-  row.push_back(text("%.0f", p.counts.at("peak_memory_mb")));
-  row.push_back(text("%.0e", p.counts.at("mass_drift")));
-  row.push_back(text("%.0f", p.counts.at("energy_rises")));
+    row.push_back(formatted("%.0f", p.counts.at(count)));
+  row.push_back(formatted("%.0f", p.counts.at("peak_memory_mb")));
+  row.push_back(formatted("%.0e", p.counts.at("mass_drift")));
+  row.push_back(formatted("%.0f", p.counts.at("energy_rises")));
   return row;
 }
 
@@ -61,7 +57,7 @@ Chart work_precision(const std::vector<WorkPoint>& points, const char* clock,
   for (const WorkPoint& p : points) {
     if (!p.ok() || p.error <= 0) continue;
     const auto [entry, fresh] = index.emplace(p.method(), chart.series.size());
-    if (fresh) chart.series.push_back({p.method(), {}, true, false});
+    if (fresh) chart.series.push_back({p.method(), {}});
     chart.series[entry->second].points.emplace_back(spread_of(p.*times).median, p.error);
   }
   return chart;
@@ -73,13 +69,12 @@ std::string csv_text(const std::string& text) {
   return quoted + "\"";
 }
 
-}  // namespace
-
 std::string compare_csv(const std::vector<WorkPoint>& points) {
+  const auto with_result =
+      std::find_if(points.begin(), points.end(), [](const WorkPoint& p) { return p.ok(); });
   Row counts;
-  for (const WorkPoint& p : points)
-    for (const auto& [name, value] : p.counts)
-      if (counts.size() < p.counts.size()) counts.push_back(name);
+  if (with_result != points.end())
+    for (const auto& [name, value] : with_result->counts) counts.push_back(name);
   std::string csv =
       "integrator,linear_solver,tolerance,failure,error,repetitions,cpu_s,cpu_s_low,"
       "cpu_s_high,wall_s,wall_s_low,wall_s_high";
@@ -102,6 +97,8 @@ std::string compare_csv(const std::vector<WorkPoint>& points) {
   }
   return csv;
 }
+
+}  // namespace
 
 void print_points(const std::vector<WorkPoint>& points) {
   const std::vector<Row> rows = table(points);

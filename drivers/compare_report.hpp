@@ -8,7 +8,6 @@
 
 namespace traceraft {
 
-std::string compare_csv(const std::vector<WorkPoint>& points);
 void print_points(const std::vector<WorkPoint>& points);
 
 // Writes compare.csv and compare.html with its charts into the folder. `about` says what was

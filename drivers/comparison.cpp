@@ -35,6 +35,11 @@ double relative_error(const DaeProblem& problem, const Vec& c, ConstVec referenc
 
 }  // namespace
 
+bool run_finished(const std::filesystem::path& run_folder) {
+  const std::filesystem::path summary = run_folder / "summary.json";
+  return std::filesystem::exists(summary) && parsed(summary).value("end", "") == "finished";
+}
+
 std::string CompareJob::name() const {
   return integrator + "-" + linear_solver + "-" + format_number(tolerance) + "-" +
          std::to_string(repetition);

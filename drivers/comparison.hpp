@@ -20,6 +20,9 @@ struct ComparePlan {
   double target_error = 0;  // 0: the smallest that all methods reach
 };
 
+// Has a run reached its end in this folder? Throws IoError if its summary is damaged.
+bool run_finished(const std::filesystem::path& run_folder);
+
 // One combination of the plan, run once.
 struct CompareJob {
   std::string integrator, linear_solver;

@@ -85,6 +85,7 @@ std::string toml_value(const OptionSpec& spec, const Configuration& configuratio
 }  // namespace
 
 GivenValues read_config_file(const std::filesystem::path& path) {
+  if (path.empty()) return {};
   const std::string text = read_text(path);
   toml::table table;
   try {

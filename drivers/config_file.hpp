@@ -8,7 +8,8 @@
 
 namespace traceraft {
 
-// Throws InputError with file and line for anything that is no flat TOML table of known options.
+// An empty path: no file, no values. Throws InputError with file and line for anything that is no
+// flat TOML table of known options.
 GivenValues read_config_file(const std::filesystem::path& path);
 
 // All options with their resolved values, each with its meaning: reads back as the same run.

@@ -28,16 +28,6 @@ bool is_utf8(const std::string& text) {
   }
 }
 
-std::vector<std::string> split_list(const std::string& text) {
-  std::vector<std::string> items;
-  std::istringstream stream(text);
-  for (std::string item; std::getline(stream, item, ',');) {
-    const std::size_t begin = item.find_first_not_of(' '), end = item.find_last_not_of(' ');
-    items.push_back(begin == std::string::npos ? "" : item.substr(begin, end - begin + 1));
-  }
-  return items;
-}
-
 double checked_number(const OptionSpec& spec, const GivenValue& value, const std::string& text,
                       double unit) {
   const double number = parse_number(value.where, text);
@@ -58,6 +48,16 @@ const GivenValue* find_given(const GivenValues& file, const GivenValues& flags,
 }
 
 }  // namespace
+
+std::vector<std::string> split_list(const std::string& text) {
+  std::vector<std::string> items;
+  std::istringstream stream(text);
+  for (std::string item; std::getline(stream, item, ',');) {
+    const std::size_t begin = item.find_first_not_of(' '), end = item.find_last_not_of(' ');
+    items.push_back(begin == std::string::npos ? "" : item.substr(begin, end - begin + 1));
+  }
+  return items;
+}
 
 Configuration::Configuration(const GivenValues& file, const GivenValues& flags) {
   const auto user_value = [&](const char* name) {

@@ -18,6 +18,9 @@ struct GivenValue {
 };
 using GivenValues = std::map<std::string, GivenValue>;
 
+// The items between commas, without the blanks around them.
+std::vector<std::string> split_list(const std::string& text);
+
 class Configuration {
  public:
   // `file` and `flags` hold what the user gave. Every value is checked for kind and range; throws

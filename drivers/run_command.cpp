@@ -67,8 +67,7 @@ int carry_out(const Configuration& configuration, RunSetup& run, const RunFolder
 }  // namespace
 
 int run_command(const RunRequest& request) {
-  const GivenValues file =
-      request.config_file.empty() ? GivenValues{} : read_config_file(request.config_file);
+  const GivenValues file = read_config_file(request.config_file);
   const Configuration configuration(file, request.flags);
   RunSetup run = build_run(configuration, InitialState::build);
   if (!request.quiet) print_setup(configuration, run);

@@ -9,19 +9,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string first_free_folder(const std::string& name) {
-  for (int number = 1;; ++number) {
-    const std::string candidate = "runs/" + name + "-" + std::to_string(number);
-    if (!fs::exists(candidate)) return candidate;
-  }
-}
-
 void create_sub_folders(const RunFolder& folder) {
   fs::create_directories(folder.fields());
   fs::create_directories(folder.checkpoints());
 }
 
 }  // namespace
+
+std::string first_free_folder(const std::string& name) {
+  for (int number = 1;; ++number) {
+    const std::string candidate = "runs/" + name + "-" + std::to_string(number);
+    if (!fs::exists(candidate)) return candidate;
+  }
+}
 
 RunFolder create_run_folder(const std::string& out, const Configuration& configuration) {
   RunFolder folder;

@@ -21,6 +21,9 @@ struct RunFolder {
   std::filesystem::path table(const std::string& name) const { return path / name; }
 };
 
+// runs/<name>-<first free number>.
+std::string first_free_folder(const std::string& name);
+
 // A folder for a new run, locked, holding its resolved configuration. Files of others in it are
 // left alone. An empty `out` means runs/<case>-<first free number>. Throws InputError if it holds a
 // run already, LockedError if one is going on, IoError.

@@ -7,7 +7,7 @@
 #include "backends/suitesparse/blas.hpp"
 #include "drivers/progress.hpp"
 #include "drivers/version.hpp"
-#include "kernel/core/parameters.hpp"
+#include "kernel/core/text.hpp"
 
 namespace traceraft {
 namespace {
@@ -31,25 +31,18 @@ void line(const char* label, const std::string& value) {
   std::printf("  %-22s %s\n", label, value.c_str());
 }
 
-template <class... Values>
-std::string text(const char* format, Values... values) {
-  char buffer[256];
-  std::snprintf(buffer, sizeof buffer, format, values...);
-  return buffer;
-}
-
 // The energy, and what became of steps that gained some.
 std::string energy_text(const Configuration& configuration, const RunSetup& run,
                         const RunState& state) {
-  const std::string energy = text("%.6g", state.row.energy * run.units.area());
+  const std::string energy = formatted("%.6g", state.row.energy * run.units.area());
   if (!run.problem->dissipates_energy()) return energy + " (the model need not lose energy)";
   if (configuration.text("energy-guard") == "off") return energy;
   const long refused = run.integrator->statistics().energy_rises;
-  const std::string cut = refused > 0 ? text(", %ld steps cut because it grew", refused) : "";
+  const std::string cut = refused > 0 ? formatted(", %ld steps cut because it grew", refused) : "";
   if (state.monitor.energy_rises() == 0) return energy + ", falls in every step" + cut;
   return energy +
-         text(", GROWS in %ld steps, by at most %.0e of the initial energy;",
-              state.monitor.energy_rises(), state.monitor.largest_rise()) +
+         formatted(", GROWS in %ld steps, by at most %.0e of the initial energy;",
+                   state.monitor.energy_rises(), state.monitor.largest_rise()) +
          " a smaller --tolerance or --energy-guard reject prevents that";
 }
 
@@ -126,27 +119,29 @@ void print_setup(const Configuration& configuration, const RunSetup& run) {
   std::printf("traceraft %s\n", kVersion);
   line("case", configuration.text("case"));
   line("surface",
-       text("%s, R = %g um, area %.6g %s", configuration.text("surface").c_str(), units.radius_um,
-            run.space->area * units.area(), units.scaled ? "R^2" : "um^2"));
-  line("mesh", text("%lld cells per edge, %zu cut tetrahedra, %d nodes, %d unknowns",
-                    configuration.integer("cells"), run.space->elements.size(), run.space->nodes(),
-                    run.problem->size()));
+       formatted("%s, R = %g um, area %.6g %s", configuration.text("surface").c_str(),
+                 units.radius_um, run.space->area * units.area(), units.scaled ? "R^2" : "um^2"));
+  line("mesh", formatted("%lld cells per edge, %zu cut tetrahedra, %d nodes, %d unknowns",
+                         configuration.integer("cells"), run.space->elements.size(),
+                         run.space->nodes(), run.problem->size()));
   line("phase boundary",
-       text("epsilon = %g um = %g R, h/epsilon = %.2f, %.1f %% of its energy resolved",
-            epsilon * units.radius_um, epsilon, h / epsilon, 100 * run.perimeter.resolved));
-  line("mobility",
-       text("%s, D = %g cm^2/s", configuration.text("mobility").c_str(), units.diffusion_cm2_s));
-  line("units",
-       text("length R = %g um, time R^2/D = %g s; the run ends at %g s = %g R^2/D", units.radius_um,
-            units.seconds_per_unit(), run.t_end * units.seconds_per_unit(), run.t_end));
+       formatted("epsilon = %g um = %g R, h/epsilon = %.2f, %.1f %% of its energy resolved",
+                 epsilon * units.radius_um, epsilon, h / epsilon, 100 * run.perimeter.resolved));
+  line("mobility", formatted("%s, D = %g cm^2/s", configuration.text("mobility").c_str(),
+                             units.diffusion_cm2_s));
+  line("units", formatted("length R = %g um, time R^2/D = %g s; the run ends at %g s = %g R^2/D",
+                          units.radius_um, units.seconds_per_unit(),
+                          run.t_end * units.seconds_per_unit(), run.t_end));
   if (run.initial.size() > 0)
     line("initial state",
-         text("%s, mean concentration %.6f, seed %lld", configuration.text("initial").c_str(),
-              run.space->integral(run.initial) / run.space->area, configuration.integer("seed")));
+         formatted("%s, mean concentration %.6f, seed %lld", configuration.text("initial").c_str(),
+                   run.space->integral(run.initial) / run.space->area,
+                   configuration.integer("seed")));
   line("method",
-       text("%s with %s, tolerance %g, %d thread%s, %s", configuration.text("integrator").c_str(),
-            configuration.text("linear-solver").c_str(), configuration.number("tolerance"),
-            run.team->size(), run.team->size() == 1 ? "" : "s", blas_description().c_str()));
+       formatted("%s with %s, tolerance %g, %d thread%s, %s",
+                 configuration.text("integrator").c_str(),
+                 configuration.text("linear-solver").c_str(), configuration.number("tolerance"),
+                 run.team->size(), run.team->size() == 1 ? "" : "s", blas_description().c_str()));
 }
 
 void print_summary(const Configuration& configuration, const RunSetup& run, const RunState& state,
@@ -159,28 +154,31 @@ void print_summary(const Configuration& configuration, const RunSetup& run, cons
   std::printf("\n%s at t = %.6g%s\n", end_name(result.end), row.t * units.time(),
               units.scaled ? "" : " s");
   if (!result.why.empty()) line("why", result.why);
-  line("rafts", text("%d", row.rafts));
-  line("raft fraction", text("%.4f of the area, mean concentration %.6f", row.raft_fraction,
-                             row.mass / run.space->area));
-  line("perimeter", text("%.5g %s (level curve %.5g %s)", row.perimeter * units.length(), length,
-                         row.perimeter_level * units.length(), length));
+  line("rafts", formatted("%d", row.rafts));
+  line("raft fraction", formatted("%.4f of the area, mean concentration %.6f", row.raft_fraction,
+                                  row.mass / run.space->area));
+  line("perimeter", formatted("%.5g %s (level curve %.5g %s)", row.perimeter * units.length(),
+                              length, row.perimeter_level * units.length(), length));
   line("energy", energy_text(configuration, run, state));
-  line("mass drift", text("%.1e relative", state.monitor.mass_drift()));
-  line("c on the surface", text("%.3f to %.3f", row.c_min, row.c_max));
+  line("mass drift", formatted("%.1e relative", state.monitor.mass_drift()));
+  line("c on the surface", formatted("%.3f to %.3f", row.c_min, row.c_max));
   const std::string first_order =
-      steps.first_order > 0 ? text(" (%ld with the first-order solution)", steps.first_order) : "";
-  line("steps", text("%ld accepted", steps.steps) + first_order +
-                    text(", %ld rejected, %ld failed", steps.rejected, steps.failures));
+      steps.first_order > 0 ? formatted(" (%ld with the first-order solution)", steps.first_order)
+                            : "";
+  line("steps", formatted("%ld accepted", steps.steps) + first_order +
+                    formatted(", %ld rejected, %ld failed", steps.rejected, steps.failures));
   if (steps.newton_iterations > 0)
     line("Newton iterations",
-         text("%ld, order of the last step %d", steps.newton_iterations, steps.order));
-  line("linear solves",
-       text("%ld, %.1f iterations each, %ld set-ups, %ld renewed, %ld fallbacks", linear.solves,
-            static_cast<double>(linear.iterations) /
-                static_cast<double>(std::max(1L, linear.solves)),
-            linear.setups, steps.renewals, steps.fallbacks));
-  line("time", text("%s wall, %s CPU, peak memory %.0f MB", clock_text(cost.wall_seconds).c_str(),
-                    clock_text(cost.cpu_seconds).c_str(), peak_memory_mb()));
+         formatted("%ld, order of the last step %d", steps.newton_iterations, steps.order));
+  line(
+      "linear solves",
+      formatted(
+          "%ld, %.1f iterations each, %ld set-ups, %ld renewed, %ld fallbacks", linear.solves,
+          static_cast<double>(linear.iterations) / static_cast<double>(std::max(1L, linear.solves)),
+          linear.setups, steps.renewals, steps.fallbacks));
+  line("time",
+       formatted("%s wall, %s CPU, peak memory %.0f MB", clock_text(cost.wall_seconds).c_str(),
+                 clock_text(cost.cpu_seconds).c_str(), peak_memory_mb()));
   line("tables", folder.table("series.csv").string());
   if (std::filesystem::exists(folder.path / "view.png")) {
     line("open next",

@@ -1,18 +1,12 @@
 #include "verification/work_precision.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <limits>
+
+#include "kernel/core/text.hpp"
 
 namespace traceraft {
 namespace {
-
-template <class... Values>
-std::string text(const char* format, Values... values) {
-  char buffer[512];
-  std::snprintf(buffer, sizeof buffer, format, values...);
-  return buffer;
-}
 
 std::map<std::string, std::vector<int>> by_method(const std::vector<WorkPoint>& points) {
   std::map<std::string, std::vector<int>> methods;
@@ -35,27 +29,28 @@ double common_error(const std::vector<WorkPoint>& points) {
 }
 
 std::string describe(const WorkPoint& p) {
-  return text("%s at tolerance %g", p.method().c_str(), p.tolerance);
+  return formatted("%s at tolerance %g", p.method().c_str(), p.tolerance);
 }
 
 std::string sentence(const std::vector<WorkPoint>& points, const Recommendation& advice) {
   if (advice.cheapest.empty())
     return advice.target > 0
-               ? text("No method reached an error of %.1e: ask for tighter --tolerances.",
-                      advice.target)
+               ? formatted("No method reached an error of %.1e: ask for tighter --tolerances.",
+                           advice.target)
                : std::string("No combination gave a result.");
   const WorkPoint& best = points[advice.cheapest[0]];
   const Spread wall = spread_of(best.wall_s);
   std::string advised =
-      text("For an error of %.1e at the end, use %s: %.3g s wall time, %.3g s CPU", advice.target,
-           describe(best).c_str(), wall.median, spread_of(best.cpu_s).median);
+      formatted("For an error of %.1e at the end, use %s: %.3g s wall time, %.3g s CPU",
+                advice.target, describe(best).c_str(), wall.median, spread_of(best.cpu_s).median);
   if (advice.cheapest.size() > 1) {
     const WorkPoint& next = points[advice.cheapest[1]];
     const Spread other = spread_of(next.wall_s);
-    advised += other.low <= wall.high
-                   ? text("; %s is as fast within the spread of the times", describe(next).c_str())
-                   : text("; the next, %s, takes %.1f times as long", describe(next).c_str(),
-                          other.median / wall.median);
+    advised +=
+        other.low <= wall.high
+            ? formatted("; %s is as fast within the spread of the times", describe(next).c_str())
+            : formatted("; the next, %s, takes %.1f times as long", describe(next).c_str(),
+                        other.median / wall.median);
   }
   std::string missed;
   for (const std::string& name : advice.missed) missed += (missed.empty() ? "" : ", ") + name;

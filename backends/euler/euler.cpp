@@ -8,88 +8,39 @@
 
 #include "kernel/core/binary.hpp"
 #include "kernel/core/stopwatch.hpp"
-#include "kernel/time/energy_guard.hpp"
-#include "kernel/time/history.hpp"
-#include "kernel/time/jacobian_solver.hpp"
-#include "kernel/time/step_control.hpp"
+#include "kernel/time/controlled_integrator.hpp"
 
 namespace traceraft {
 namespace {
 
 constexpr double kLinearTolerance = 1e-4;
 
-class Euler final : public Integrator {
+class Euler final : public ControlledIntegrator {
  public:
   Euler(const DaeProblem& problem, const LinearSolverChoice& solvers,
         std::shared_ptr<const ThreadTeam> team, const IntegratorSettings& settings)
-      : problem_(problem),
-        settings_(settings),
-        guard_(problem, settings),
-        solver_(problem, solvers, 2, std::move(team)) {}
+      : ControlledIntegrator(problem, solvers, 2, std::move(team), settings, 2, 0.1) {}
 
   std::string name() const override { return "euler"; }
 
   Status start(double t0, ConstVec y0, ConstVec ydot0, double t_end) override {
-    history_.clear();
-    history_.add(t0, y0);
-    t_end_ = t_end;
     energy_ = problem_.energy(y0);
-    guard_.start(y0);
     rate_ = ydot0;
-    span_ = t_end - t0;
-    control_ = StepControl(settings_, span_, 2);
-    // A tenth of the tolerance is the whole change of the first step.
-    const double change = 0.1 * settings_.tolerance * problem_.norm(y0);
-    next_ = control_.bounded(first_step(settings_, span_, change, problem_.norm(rate_)));
-    return {};
+    return ControlledIntegrator::start(t0, y0, ydot0, t_end);
   }
 
-  Status advance() override {
-    return take_step(
-        control_, time(), t_end_, next_, statistics_,
-        [&](double dt, double& error) { return attempt(dt, error); },
-        [&](double dt, double t, double error) { accept(dt, t, error); });
-  }
-
-  Status interpolate(double t, VecRef y) const override {
-    if (!(history_.size() > 1 && t >= history_.time(1) && t <= time()))
-      return Status::fatal("interpolation outside the last step");
-    history_.interpolate(t, y);
-    return {};
-  }
-
-  double time() const override { return history_.time(0); }
-  double step() const override { return step_; }
-  double next_step() const override { return next_; }
-  const Vec& state() const override { return history_.state(0); }
   bool promises_energy_decay() const override {
     return problem_.dissipates_energy() && settings_.kept_solution != "second";
   }
 
-  IntegratorStatistics statistics() const override {
-    IntegratorStatistics result = solver_.added_to(statistics_);
-    result.energy_rises = guard_.refused();
-    return result;
-  }
-  LinearStatistics linear_statistics() const override { return solver_.linear_statistics(); }
-
   void save(std::ostream& out) const override {
-    for (const double value : {t_end_, span_, step_, next_}) write_binary(out, value);
-    history_.save(out);
+    ControlledIntegrator::save(out);
     write_binary(out, rate_);
-    write_binary(out, statistics_);
-    guard_.save(out);
-    solver_.save(out);
   }
   void load(std::istream& in) override {
-    for (double* value : {&t_end_, &span_, &step_, &next_}) read_binary(in, *value);
-    history_.load(in, problem_.size());
+    ControlledIntegrator::load(in);
     read_binary(in, rate_, problem_.size());
-    read_binary(in, statistics_);
     energy_ = problem_.energy(state());
-    control_ = StepControl(settings_, span_, 2);
-    guard_.load(in);
-    solver_.load(in);
   }
 
  private:
@@ -101,7 +52,7 @@ class Euler final : public Integrator {
       return settings_.kept_solution != "first";
     const double second_energy = problem_.energy(second_);
     const bool decays = second_energy <= energy_;
-    energy_ = decays ? second_energy : problem_.energy(first_);
+    next_energy_ = decays ? second_energy : problem_.energy(first_);
     return decays;
   }
 
@@ -129,7 +80,7 @@ class Euler final : public Integrator {
     return {};
   }
 
-  Status attempt(double dt, double& error) {
+  Status attempt(double dt, double& error) override {
     const double t = time() + dt, r = dt / step_;
     const Vec& y = state();
     systems_.clear();
@@ -154,38 +105,25 @@ class Euler final : public Integrator {
                 ? problem_.norm(second_ - first_) / problem_.norm(second_)
                 : 0.5 * problem_.norm(first_ - y - dt * rate_) / std::max(problem_.norm(y), 1e-300);
     if (first_ == second_ && started()) error = 0;  // c = 0 everywhere is 0/0
-    if (std::isnan(error)) return Status::retry("the error estimate is not a number");
-    return control_.accepts(error) ? choose_solution() : Status{};
+    return {};
   }
 
-  Status choose_solution() {
+  Vec result() override {
     kept_second_ = keeps_second();
-    return guard_.judge(kept_second_ ? second_ : first_);
+    return std::move(kept_second_ ? second_ : first_);
   }
 
-  void accept(double dt, double t, double error) {
-    guard_.accept();
+  void accepted() override {
+    energy_ = next_energy_;
     statistics_.first_order += !kept_second_;
     statistics_.order = kept_second_ && started() ? 2 : 1;
-    history_.add(t, kept_second_ ? second_ : first_);
-    step_ = dt;
-    next_ = control_.after_acceptance(dt, error);
-    ++statistics_.steps;
   }
 
-  const DaeProblem& problem_;
-  IntegratorSettings settings_;
-  StepControl control_;
-  IntegratorStatistics statistics_;
-  EnergyGuard guard_;
-  double energy_ = 0;  // of y_n, where it decides which solution is kept
-  double t_end_ = 0, span_ = 0, step_ = 0, next_ = 0;
-  History history_{3};  // interpolates to order 2
-  Vec rate_;            // ẏ at the start
-  JacobianSolver solver_;
-  std::vector<NewtonSystem> systems_;  // of an attempt: first and second order
-  Vec first_, second_;                 // and what they give,
-  bool kept_second_ = true;            // of which one goes on
+  double energy_ = 0, next_energy_ = 0;  // of y_n and y_{n+1}, where they decide which is kept
+  Vec rate_;                             // ẏ at the start
+  std::vector<NewtonSystem> systems_;    // of an attempt: first and second order
+  Vec first_, second_;                   // and what they give,
+  bool kept_second_ = true;              // of which one goes on
 };
 
 }  // namespace

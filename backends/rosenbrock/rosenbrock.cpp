@@ -6,12 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "kernel/core/binary.hpp"
 #include "kernel/core/stopwatch.hpp"
-#include "kernel/time/energy_guard.hpp"
-#include "kernel/time/history.hpp"
-#include "kernel/time/jacobian_solver.hpp"
-#include "kernel/time/step_control.hpp"
+#include "kernel/time/controlled_integrator.hpp"
 
 namespace traceraft {
 namespace {
@@ -61,73 +57,14 @@ const Tableau& ros34pw2() {
   return tableau;
 }
 
-class Rosenbrock final : public Integrator {
+class Rosenbrock final : public ControlledIntegrator {
  public:
   Rosenbrock(const DaeProblem& problem, const LinearSolverChoice& solvers,
              std::shared_ptr<const ThreadTeam> team, const IntegratorSettings& settings)
-      : problem_(problem),
-        settings_(settings),
-        guard_(problem, settings),
-        solver_(problem, solvers, 1, std::move(team)) {}
+      : ControlledIntegrator(problem, solvers, 1, std::move(team), settings, 3, 1) {}
 
   std::string name() const override { return "rosenbrock"; }
-
-  Status start(double t0, ConstVec y0, ConstVec ydot0, double t_end) override {
-    history_.clear();
-    history_.add(t0, y0);
-    guard_.start(y0);
-    t_end_ = t_end;
-    span_ = t_end - t0;
-    control_ = StepControl(settings_, span_, 3);
-    // The tolerance is about the change of the first step.
-    const double change = settings_.tolerance * problem_.norm(y0);
-    next_ = control_.bounded(first_step(settings_, span_, change, problem_.norm(ydot0)));
-    return {};
-  }
-
-  Status advance() override {
-    return take_step(
-        control_, time(), t_end_, next_, statistics_,
-        [&](double dt, double& error) { return attempt(dt, error); },
-        [&](double dt, double t, double error) { accept(dt, t, error); });
-  }
-
-  Status interpolate(double t, VecRef y) const override {
-    if (!(history_.size() > 1 && t >= history_.time(1) && t <= time()))
-      return Status::fatal("interpolation outside the last step");
-    history_.interpolate(t, y);
-    return {};
-  }
-
-  double time() const override { return history_.time(0); }
-  double step() const override { return step_; }
-  double next_step() const override { return next_; }
-  const Vec& state() const override { return history_.state(0); }
   bool promises_energy_decay() const override { return false; }
-
-  IntegratorStatistics statistics() const override {
-    IntegratorStatistics result = solver_.added_to(statistics_);
-    result.energy_rises = guard_.refused();
-    return result;
-  }
-  LinearStatistics linear_statistics() const override { return solver_.linear_statistics(); }
-
-  void save(std::ostream& out) const override {
-    for (const double value : {t_end_, span_, step_, next_}) write_binary(out, value);
-    history_.save(out);
-    write_binary(out, statistics_);
-    guard_.save(out);
-    solver_.save(out);
-  }
-  void load(std::istream& in) override {
-    for (double* value : {&t_end_, &span_, &step_, &next_}) read_binary(in, *value);
-    history_.load(in, problem_.size());
-    if (history_.size() == 0) throw IoError("checkpoint: it holds no state");
-    read_binary(in, statistics_);
-    control_ = StepControl(settings_, span_, 3);
-    guard_.load(in);
-    solver_.load(in);
-  }
 
  private:
   Status residual(double t, ConstVec y, ConstVec ydot, Vec& r) {
@@ -169,7 +106,7 @@ class Rosenbrock final : public Integrator {
     return system.report.status;
   }
 
-  Status attempt(double dt, double& error) {
+  Status attempt(double dt, double& error) override {
     NewtonSystem& system = systems_[0];
     system.t = time();
     system.shift = 1 / (ros34pw2().gamma * dt);
@@ -185,37 +122,22 @@ class Rosenbrock final : public Integrator {
     const Vec drift = (later - at_start) / delta;
     for (int i = 0; i < kStages; ++i)
       if (status = solve_stage(i, dt, at_start, drift); !status.ok()) return status;
-    proposal_ = state();
-    Vec defect = Vec::Zero(proposal_.size());
+    result_ = state();
+    Vec defect = Vec::Zero(result_.size());
     for (int i = 0; i < kStages; ++i) {
-      proposal_ += ros34pw2().weights[i] * stage_[i];
+      result_ += ros34pw2().weights[i] * stage_[i];
       defect += ros34pw2().error[i] * stage_[i];
     }
-    error = problem_.norm(defect) / std::max(problem_.norm(proposal_), 1e-300);
-    if (std::isnan(error)) return Status::retry("the error estimate is not a number");
-    return control_.accepts(error) ? guard_.judge(proposal_) : Status{};
+    error = problem_.norm(defect) / std::max(problem_.norm(result_), 1e-300);
+    return {};
   }
 
-  void accept(double dt, double t, double error) {
-    guard_.accept();
-    history_.add(t, proposal_);
-    step_ = dt;
-    next_ = control_.after_acceptance(dt, error);
-    ++statistics_.steps;
-    statistics_.order = 3;
-  }
+  Vec result() override { return std::move(result_); }
+  void accepted() override { statistics_.order = 3; }
 
-  const DaeProblem& problem_;
-  IntegratorSettings settings_;
-  StepControl control_;
-  IntegratorStatistics statistics_;
-  EnergyGuard guard_;
-  double t_end_ = 0, span_ = 0, step_ = 0, next_ = 0;
-  History history_{4};  // interpolates to order 3
-  JacobianSolver solver_;
   std::vector<NewtonSystem> systems_ = std::vector<NewtonSystem>(1);
   std::array<Vec, kStages> stage_;
-  Vec proposal_;
+  Vec result_;
 };
 
 }  // namespace

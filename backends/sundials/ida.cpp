@@ -244,6 +244,7 @@ class Ida final : public Integrator {
   // May the predictor with this total correction become the next state? If not, IDA retries with a
   // smaller step, as if Newton's method had failed.
   bool permits(N_Vector total) {
+    if (!guard_.active()) return true;
     const int refused = guarded(1, [&] {
       IDAComputeY(memory_, total, work_.get());
       return code(guard_.judge(view(work_.get())), 1, 1);

@@ -5,8 +5,8 @@
 
 namespace traceraft {
 
-// The corrections of one step are computed with the exact Jacobian at the predictor, up to the
-// tolerance of the linear solver. What the first one, of norm d, leaves is therefore about
+// Each correction is computed with the exact Jacobian of its iterate, up to the tolerance of the
+// linear solver. What the first one, of norm d, leaves is therefore about
 // (η + C d) d, and the norm of a second correction measures it. Because η and C change slowly from
 // step to step, one step in a few shows whether the others need a second correction at all.
 //

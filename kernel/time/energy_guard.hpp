@@ -18,6 +18,7 @@ class EnergyGuard {
   EnergyGuard(const DaeProblem& problem, const IntegratorSettings& settings)
       : problem_(problem), active_(settings.reject_energy_rises && problem.dissipates_energy()) {}
 
+  bool active() const { return active_; }
   void start(ConstVec y);
   // retry if the energy of y, the result of a step, is larger than that of the last accepted state.
   Status judge(ConstVec y);

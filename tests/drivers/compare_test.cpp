@@ -1,6 +1,5 @@
 // traceraft compare as a user meets it.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <csignal>
 
@@ -74,13 +73,7 @@ TEST_F(CompareTest, AFailingCombinationIsARowWithItsReason) {
 TEST_F(CompareTest, GoesOnAfterAnInterruption) {
   const std::string arguments = "compare " + out() + references() + runs +
                                 "--integrators ida,euler --tolerances 1e-2,1e-3,1e-4 --repeat 1";
-  const pid_t child = fork();
-  if (child == 0) {
-    const std::string command =
-        "exec " + std::string(TRACERAFT_PROGRAM) + " " + arguments + " --quiet";
-    execl("/bin/sh", "sh", "-c", command.c_str(), static_cast<char*>(nullptr));
-    _exit(127);
-  }
+  const pid_t child = testing::start_traceraft(arguments + " --quiet");
   const fs::path first = folder.path / "c/runs/ida-block-0.01-1.json";
   for (int i = 0; i < 6000 && !fs::exists(first); ++i) usleep(10000);
   ASSERT_TRUE(fs::exists(first));

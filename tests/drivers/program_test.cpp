@@ -33,14 +33,8 @@ class ProgramTest : public ::testing::Test {
 
   // Starts a run in the background; the caller ends it.
   pid_t start(const std::string& name, const std::string& more = "--threads 2") {
-    const pid_t child = fork();
-    if (child == 0) {
-      const std::string command = "exec " + std::string(TRACERAFT_PROGRAM) + " run " + quick +
-                                  more + " --checkpoint-interval 0 --quiet --out " + out(name);
-      execl("/bin/sh", "sh", "-c", command.c_str(), static_cast<char*>(nullptr));
-      _exit(127);
-    }
-    return child;
+    return testing::start_traceraft("run " + quick + more +
+                                    " --checkpoint-interval 0 --quiet --out " + out(name));
   }
   void wait_for_rows(const std::string& name, long rows) const {
     for (int i = 0; i < 6000 && lines_of(folder.path / name / "series.csv") < rows; ++i)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -29,6 +30,17 @@ inline Outcome shell(const std::string& command) {
 
 inline Outcome traceraft(const std::string& arguments) {
   return shell(std::string(TRACERAFT_PROGRAM) + " " + arguments);
+}
+
+// Starts the program in the background; the caller ends it.
+inline pid_t start_traceraft(const std::string& arguments) {
+  const pid_t child = fork();
+  if (child == 0) {
+    const std::string command = "exec " + std::string(TRACERAFT_PROGRAM) + " " + arguments;
+    execl("/bin/sh", "sh", "-c", command.c_str(), static_cast<char*>(nullptr));
+    _exit(127);
+  }
+  return child;
 }
 
 inline std::string content(const std::filesystem::path& path) {

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "backends/list.hpp"
+#include "tests/support/forwarding.hpp"
 #include "tests/support/spaces.hpp"
 
 namespace traceraft {
@@ -30,52 +31,32 @@ struct Fault {
   }
 };
 
-class FaultyProblem final : public DaeProblem {
+class FaultyProblem final : public testing::ForwardingProblem {
  public:
-  FaultyProblem(const DaeProblem& inner, Fault& fault) : inner_(inner), fault_(fault) {}
-  int block_size() const override { return inner_.block_size(); }
+  FaultyProblem(const DaeProblem& inner, Fault& fault) : ForwardingProblem(inner), fault_(fault) {}
   Status residual(double t, ConstVec y, ConstVec ydot, VecRef r) const override {
     if (fault_.strikes(Site::residual)) return Status::retry("injected failure");
-    const Status status = inner_.residual(t, y, ydot, r);
+    const Status status = ForwardingProblem::residual(t, y, ydot, r);
     if (fault_.strikes(Site::silent_residual)) r[r.size() / 3] = std::nan("");
     return status;
   }
   Status jacobian(double t, ConstVec y, ConstVec ydot, double shift, Tangent tangent,
                   BlockJacobian& J) const override {
     if (fault_.strikes(Site::jacobian)) return Status::retry("injected failure");
-    return inner_.jacobian(t, y, ydot, shift, tangent, J);
+    return ForwardingProblem::jacobian(t, y, ydot, shift, tangent, J);
   }
-  Status jacobian_product(double t, ConstVec y, ConstVec ydot, double shift, Tangent tangent,
-                          ConstVec v, VecRef product) const override {
-    return inner_.jacobian_product(t, y, ydot, shift, tangent, v, product);
-  }
-  BlockJacobian make_jacobian() const override { return inner_.make_jacobian(); }
-  Status consistent_initial_state(double t, VecRef y, VecRef ydot) const override {
-    return inner_.consistent_initial_state(t, y, ydot);
-  }
-  double norm(ConstVec y) const override { return inner_.norm(y); }
-  double field_norm(ConstVec half) const override { return inner_.field_norm(half); }
-  double mass(ConstVec y) const override { return inner_.mass(y); }
-  bool conserves_mass() const override { return inner_.conserves_mass(); }
-  double energy(ConstVec y) const override { return inner_.energy(y); }
-  bool dissipates_energy() const override { return inner_.dissipates_energy(); }
 
  private:
-  const DaeProblem& inner_;
   Fault& fault_;
 };
 
-class FaultySolver final : public LinearSolver {
+class FaultySolver final : public testing::ForwardingSolver {
  public:
-  FaultySolver(LinearSolverPtr inner, Fault& fault) : inner_(std::move(inner)), fault_(fault) {}
-  std::string name() const override { return "faulty"; }
-  bool shares_factors() const override { return inner_->shares_factors(); }
-  bool wants_setup(const BlockJacobian& J, int lane) const override {
-    return inner_->wants_setup(J, lane);
-  }
+  FaultySolver(LinearSolverPtr inner, Fault& fault)
+      : ForwardingSolver(std::move(inner)), fault_(fault) {}
   Status setup(const BlockJacobian& J, int lane) override {
     if (fault_.strikes(Site::setup)) return Status::retry("injected failure");
-    return inner_->setup(J, lane);
+    return ForwardingSolver::setup(J, lane);
   }
   SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance,
                     int lane) override {
@@ -83,17 +64,13 @@ class FaultySolver final : public LinearSolver {
       x.setConstant(1e68);  // as a failed solve may leave anything behind
       return {Status::retry("injected failure"), 3};
     }
-    const SolveReport report = inner_->solve(J, b, x, tolerance, lane);
+    const SolveReport report = ForwardingSolver::solve(J, b, x, tolerance, lane);
     // A solver that breaks its contract is caught as long as what it returns is no number.
     if (fault_.strikes(Site::silent_solve)) x[x.size() / 3] = std::nan("");
     return report;
   }
-  LinearStatistics statistics() const override { return inner_->statistics(); }
-  void save(std::ostream& out) const override { inner_->save(out); }
-  void load(std::istream& in) override { inner_->load(in); }
 
  private:
-  LinearSolverPtr inner_;
   Fault& fault_;
 };
 

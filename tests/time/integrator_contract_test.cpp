@@ -6,6 +6,7 @@
 
 #include "backends/list.hpp"
 #include "kernel/time/jacobian_solver.hpp"
+#include "tests/support/forwarding.hpp"
 #include "tests/support/spaces.hpp"
 #include "verification/manufactured.hpp"
 
@@ -17,23 +18,22 @@ using testing::make_space;
 using testing::noise_state;
 
 // A linear solver that fails on chosen calls.
-class Faulty final : public LinearSolver {
+class Faulty final : public testing::ForwardingSolver {
  public:
   struct Plan {
     std::function<bool(long)> setup_fails = [](long) { return false; };
     std::function<bool(long)> solve_fails = [](long) { return false; };
     bool lazy = false;  // never asks for a set-up by itself
   };
-  Faulty(LinearSolverPtr inner, Plan plan) : inner_(std::move(inner)), plan_(std::move(plan)) {}
+  Faulty(LinearSolverPtr inner, Plan plan)
+      : ForwardingSolver(std::move(inner)), plan_(std::move(plan)) {}
 
-  std::string name() const override { return "faulty"; }
-  bool shares_factors() const override { return inner_->shares_factors(); }
   Status setup(const BlockJacobian& J, int lane) override {
     if (plan_.setup_fails(setups_++)) return Status::retry("injected set-up failure");
-    return inner_->setup(J, lane);
+    return ForwardingSolver::setup(J, lane);
   }
   bool wants_setup(const BlockJacobian& J, int lane) const override {
-    return !plan_.lazy && inner_->wants_setup(J, lane);
+    return !plan_.lazy && ForwardingSolver::wants_setup(J, lane);
   }
   SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance,
                     int lane) override {
@@ -41,52 +41,28 @@ class Faulty final : public LinearSolver {
       x.setConstant(std::nan(""));  // as a failed solve may leave anything behind
       return {Status::retry("injected solve failure"), 3};
     }
-    return inner_->solve(J, b, x, tolerance, lane);
+    return ForwardingSolver::solve(J, b, x, tolerance, lane);
   }
-  LinearStatistics statistics() const override { return inner_->statistics(); }
-  void save(std::ostream& out) const override { inner_->save(out); }
-  void load(std::istream& in) override { inner_->load(in); }
 
  private:
-  LinearSolverPtr inner_;
   Plan plan_;
   long setups_ = 0, solves_ = 0;
 };
 
 // A problem whose residual is not a number from some evaluation on, or at all large steps.
-class Poisoned final : public DaeProblem {
+class Poisoned final : public testing::ForwardingProblem {
  public:
   Poisoned(const DaeProblem& inner, std::function<bool(double)> poisoned_at)
-      : inner_(inner), poisoned_at_(std::move(poisoned_at)) {}
-  int block_size() const override { return inner_.block_size(); }
+      : ForwardingProblem(inner), poisoned_at_(std::move(poisoned_at)) {}
   Status residual(double t, ConstVec y, ConstVec ydot, VecRef r) const override {
     if (poisoned_at_(t) && !silent) return Status::retry("injected failure");
-    const Status status = inner_.residual(t, y, ydot, r);
+    const Status status = ForwardingProblem::residual(t, y, ydot, r);
     if (poisoned_at_(t)) r[r.size() / 3] = std::nan("");
     return status;
   }
   bool silent = false;  // a NaN that the model does not notice
-  Status jacobian(double t, ConstVec y, ConstVec ydot, double shift, Tangent tangent,
-                  BlockJacobian& J) const override {
-    return inner_.jacobian(t, y, ydot, shift, tangent, J);
-  }
-  Status jacobian_product(double t, ConstVec y, ConstVec ydot, double shift, Tangent tangent,
-                          ConstVec v, VecRef product) const override {
-    return inner_.jacobian_product(t, y, ydot, shift, tangent, v, product);
-  }
-  BlockJacobian make_jacobian() const override { return inner_.make_jacobian(); }
-  Status consistent_initial_state(double t, VecRef y, VecRef ydot) const override {
-    return inner_.consistent_initial_state(t, y, ydot);
-  }
-  double norm(ConstVec y) const override { return inner_.norm(y); }
-  double field_norm(ConstVec half) const override { return inner_.field_norm(half); }
-  double mass(ConstVec y) const override { return inner_.mass(y); }
-  bool conserves_mass() const override { return inner_.conserves_mass(); }
-  double energy(ConstVec y) const override { return inner_.energy(y); }
-  bool dissipates_energy() const override { return inner_.dissipates_energy(); }
 
  private:
-  const DaeProblem& inner_;
   std::function<bool(double)> poisoned_at_;
 };
 

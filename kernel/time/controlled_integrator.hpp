@@ -1,0 +1,65 @@
+// What methods share whose steps are controlled by an estimate of the error: all but the step.
+#pragma once
+
+#include <memory>
+
+#include "kernel/time/energy_guard.hpp"
+#include "kernel/time/history.hpp"
+#include "kernel/time/integrator.hpp"
+#include "kernel/time/jacobian_solver.hpp"
+#include "kernel/time/step_control.hpp"
+
+namespace traceraft {
+
+// Derived classes attempt steps; this one sizes, repeats, judges and accepts them, keeps the states
+// for interpolation, and saves and loads.
+class ControlledIntegrator : public Integrator {
+ public:
+  Status start(double t0, ConstVec y0, ConstVec ydot0, double t_end) override;
+  Status advance() final;
+  Status interpolate(double t, VecRef y) const final;
+
+  double time() const final { return history_.time(0); }
+  double step() const final { return step_; }
+  double next_step() const final { return next_; }
+  const Vec& state() const final { return history_.state(0); }
+
+  IntegratorStatistics statistics() const final;
+  LinearStatistics linear_statistics() const final { return solver_.linear_statistics(); }
+  void save(std::ostream& out) const override;
+  void load(std::istream& in) override;
+
+ protected:
+  // The estimated error grows like Δt^power; steps are interpolated to that order. The first one
+  // changes the state by first_change · tolerance. The problem must outlive this object.
+  ControlledIntegrator(const DaeProblem& problem, const LinearSolverChoice& solvers, int lanes,
+                       std::shared_ptr<const ThreadTeam> team, const IntegratorSettings& settings,
+                       int power, double first_change);
+
+  // One step from state() with its relative error; nothing is changed for good.
+  virtual Status attempt(double dt, double& error) = 0;
+  // The result of the last attempt, called once if its error is accepted.
+  virtual Vec result() = 0;
+  // That result is the next state. Called before it is.
+  virtual void accepted() = 0;
+
+  const DaeProblem& problem_;
+  const IntegratorSettings settings_;
+  JacobianSolver solver_;
+  IntegratorStatistics statistics_;
+  History history_;
+  double step_ = 0;
+
+ private:
+  void make_control() { control_ = StepControl(settings_, span_, power_); }
+  Status judged_attempt(double dt, double& error);
+
+  int power_;
+  double first_change_;
+  StepControl control_;
+  EnergyGuard guard_;
+  Vec proposal_;
+  double t_end_ = 0, span_ = 0, next_ = 0;
+};
+
+}  // namespace traceraft

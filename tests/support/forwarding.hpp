@@ -1,0 +1,60 @@
+// A model and a linear solver that do what others do: to be derived from where a test interferes.
+#pragma once
+
+#include "kernel/linear/linear_solver.hpp"
+#include "kernel/problem/dae_problem.hpp"
+
+namespace traceraft::testing {
+
+class ForwardingProblem : public DaeProblem {
+ public:
+  explicit ForwardingProblem(const DaeProblem& inner) : inner_(inner) {}
+  int block_size() const override { return inner_.block_size(); }
+  Status residual(double t, ConstVec y, ConstVec ydot, VecRef r) const override {
+    return inner_.residual(t, y, ydot, r);
+  }
+  Status jacobian(double t, ConstVec y, ConstVec ydot, double shift, Tangent tangent,
+                  BlockJacobian& J) const override {
+    return inner_.jacobian(t, y, ydot, shift, tangent, J);
+  }
+  Status jacobian_product(double t, ConstVec y, ConstVec ydot, double shift, Tangent tangent,
+                          ConstVec v, VecRef product) const override {
+    return inner_.jacobian_product(t, y, ydot, shift, tangent, v, product);
+  }
+  BlockJacobian make_jacobian() const override { return inner_.make_jacobian(); }
+  Status consistent_initial_state(double t, VecRef y, VecRef ydot) const override {
+    return inner_.consistent_initial_state(t, y, ydot);
+  }
+  double norm(ConstVec y) const override { return inner_.norm(y); }
+  double field_norm(ConstVec half) const override { return inner_.field_norm(half); }
+  double mass(ConstVec y) const override { return inner_.mass(y); }
+  bool conserves_mass() const override { return inner_.conserves_mass(); }
+  double energy(ConstVec y) const override { return inner_.energy(y); }
+  bool dissipates_energy() const override { return inner_.dissipates_energy(); }
+
+ private:
+  const DaeProblem& inner_;
+};
+
+class ForwardingSolver : public LinearSolver {
+ public:
+  explicit ForwardingSolver(LinearSolverPtr inner) : inner_(std::move(inner)) {}
+  std::string name() const override { return "faulty"; }
+  bool shares_factors() const override { return inner_->shares_factors(); }
+  Status setup(const BlockJacobian& J, int lane) override { return inner_->setup(J, lane); }
+  bool wants_setup(const BlockJacobian& J, int lane) const override {
+    return inner_->wants_setup(J, lane);
+  }
+  SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance,
+                    int lane) override {
+    return inner_->solve(J, b, x, tolerance, lane);
+  }
+  LinearStatistics statistics() const override { return inner_->statistics(); }
+  void save(std::ostream& out) const override { inner_->save(out); }
+  void load(std::istream& in) override { inner_->load(in); }
+
+ private:
+  LinearSolverPtr inner_;
+};
+
+}  // namespace traceraft::testing
