@@ -69,7 +69,7 @@ std::string summary_json(const Configuration& configuration, const RunSetup& run
   json["nodes"] = run.space->nodes();
   json["unknowns"] = run.problem->size();
   json["cut_tetrahedra"] = run.space->elements.size();
-  json["euler_characteristic"] = run.space->surface.euler_characteristic();
+  json["euler_characteristic"] = run.space->totals.euler_characteristic;
   json["area"] = run.space->area * units.area();
   json["h"] = run.space->h() * units.length();
   json["t"] = row.t * units.time();

@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "kernel/core/binary.hpp"
 #include "kernel/core/stopwatch.hpp"
 #include "kernel/time/controlled_integrator.hpp"
 
@@ -33,11 +32,11 @@ class Euler final : public ControlledIntegrator {
     return problem_.dissipates_energy() && settings_.kept_solution != "second";
   }
 
-  void save(std::ostream& out) const override {
+  void save(CheckpointOut out) const override {
     ControlledIntegrator::save(out);
     write_binary(out, rate_);
   }
-  void load(std::istream& in) override {
+  void load(CheckpointIn in) override {
     ControlledIntegrator::load(in);
     read_binary(in, rate_, problem_.size());
     energy_ = problem_.energy(state());
@@ -101,10 +100,10 @@ class Euler final : public ControlledIntegrator {
     first_ = systems_[0].y + systems_[0].x;
     second_ = systems_.back().y + systems_.back().x;
     // At the start, half the difference to explicit Euler: the leading term of the local error.
-    error = started()
-                ? problem_.norm(second_ - first_) / problem_.norm(second_)
-                : 0.5 * problem_.norm(first_ - y - dt * rate_) / std::max(problem_.norm(y), 1e-300);
-    if (first_ == second_ && started()) error = 0;  // c = 0 everywhere is 0/0
+    const double difference =
+        started() ? problem_.norm(second_ - first_) : 0.5 * problem_.norm(first_ - y - dt * rate_);
+    const double size = problem_.norm(started() ? second_ : y);
+    error = difference == 0 ? 0 : difference / std::max(size, 1e-300);  // c = 0 everywhere is 0/0
     return {};
   }
 

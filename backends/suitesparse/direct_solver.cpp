@@ -5,7 +5,6 @@
 
 #include "backends/suitesparse/blas.hpp"
 #include "backends/suitesparse/ordering.hpp"
-#include "kernel/core/binary.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/stopwatch.hpp"
 
@@ -110,10 +109,10 @@ class DirectSolver final : public LinearSolver {
     for (const auto& lane : lanes_) total = total + lane->statistics;
     return total;
   }
-  void save(std::ostream& out) const override {
+  void save(CheckpointOut out) const override {
     for (const auto& lane : lanes_) write_binary(out, lane->statistics);
   }
-  void load(std::istream& in) override {
+  void load(CheckpointIn in) override {
     for (const auto& lane : lanes_) read_binary(in, lane->statistics);
   }
 

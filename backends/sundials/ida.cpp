@@ -12,7 +12,6 @@
 #include "backends/sundials/ida_memory.hpp"
 #include "backends/sundials/newton_test.hpp"
 #include "backends/sundials/state_vector.hpp"
-#include "kernel/core/binary.hpp"
 #include "kernel/core/stopwatch.hpp"
 #include "kernel/time/energy_guard.hpp"
 #include "kernel/time/jacobian_solver.hpp"
@@ -124,7 +123,7 @@ class Ida final : public Integrator {
   }
   LinearStatistics linear_statistics() const override { return solver_.linear_statistics(); }
 
-  void save(std::ostream& out) const override {
+  void save(CheckpointOut out) const override {
     for (const double value : {before_, t_, t_end_, span_, first_step_, residual_seconds_})
       write_binary(out, value);
     write_binary(out, residuals_);
@@ -134,7 +133,7 @@ class Ida final : public Integrator {
     guard_.save(out);
     solver_.save(out);
   }
-  void load(std::istream& in) override {
+  void load(CheckpointIn in) override {
     for (double* value : {&before_, &t_, &t_end_, &span_, &first_step_, &residual_seconds_})
       read_binary(in, *value);
     read_binary(in, residuals_);

@@ -4,7 +4,6 @@
 #include <sundials/sundials_config.h>
 
 #include "backends/sundials/state_vector.hpp"
-#include "kernel/core/binary.hpp"
 
 // Not part of IDA's public headers, but exported: what IDASolve calls before the first step.
 extern "C" int IDAInitialSetup(IDAMem memory);
@@ -35,7 +34,7 @@ int vectors(IDAMem m) {
 
 }  // namespace
 
-void save_ida_memory(void* memory, std::ostream& out) {
+void save_ida_memory(void* memory, CheckpointOut out) {
   auto* m = static_cast<IDAMem>(memory);
   write_binary(out, std::int64_t{sizeof(*m)});
   write_binary(out, std::int64_t{vectors(m)});
@@ -44,7 +43,7 @@ void save_ida_memory(void* memory, std::ostream& out) {
   write_binary(out, Vec(view(m->ida_ee)));
 }
 
-void load_ida_memory(void* memory, std::istream& in) {
+void load_ida_memory(void* memory, CheckpointIn in) {
   auto* m = static_cast<IDAMem>(memory);
   std::int64_t size = 0, count = 0;
   read_binary(in, size);

@@ -1,7 +1,7 @@
 // The state of a running IDA, for checkpoints that do not disturb the run.
 #pragma once
 
-#include <iosfwd>
+#include "kernel/core/checkpoint_stream.hpp"
 
 namespace traceraft {
 
@@ -11,10 +11,10 @@ namespace traceraft {
 // IDA's public interface can only start anew at order 1 with a small step, so that a checkpoint
 // would either bend the run that writes it or lose bitwise resumption. Its memory, whose layout is
 // part of the package (ida/ida_impl.h), holds all there is to save. See docs/decisions.
-void save_ida_memory(void* memory, std::ostream& out);
+void save_ida_memory(void* memory, CheckpointOut out);
 
 // Into a memory that IDAInit, the linear solver and all options have been applied to, and that has
 // not taken a step. Throws IoError if the data are not of this size and version.
-void load_ida_memory(void* memory, std::istream& in);
+void load_ida_memory(void* memory, CheckpointIn in);
 
 }  // namespace traceraft

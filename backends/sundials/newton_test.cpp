@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernel/core/binary.hpp"
-
 namespace traceraft {
 namespace {
 
@@ -36,11 +34,11 @@ NewtonTest::Verdict NewtonTest::judge(int iteration, double norm, double bound) 
   return rate / (1 - rate) * norm <= bound ? Verdict::converged : Verdict::go_on;
 }
 
-void NewtonTest::save(std::ostream& out) const {
+void NewtonTest::save(CheckpointOut out) const {
   write_binary(out, experience_);
 }
 
-void NewtonTest::load(std::istream& in) {
+void NewtonTest::load(CheckpointIn in) {
   read_binary(in, experience_);
 }
 

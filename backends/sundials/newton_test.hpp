@@ -1,7 +1,7 @@
 // When Newton's method has converged: after its first correction, if experience says so.
 #pragma once
 
-#include <iosfwd>
+#include "kernel/core/checkpoint_stream.hpp"
 
 namespace traceraft {
 
@@ -20,8 +20,8 @@ class NewtonTest {
   // After correction number `iteration` (from 0) of a step; the norm of what is left is to be
   // below `bound`.
   Verdict judge(int iteration, double norm, double bound);
-  void save(std::ostream& out) const;
-  void load(std::istream& in);
+  void save(CheckpointOut out) const;
+  void load(CheckpointIn in);
 
  private:
   bool trusted_for(double norm, double bound) const;

@@ -5,8 +5,9 @@
 
 namespace traceraft {
 
-PatternPtr build_pattern(const ActiveMesh& mesh) {
+PatternPtr build_pattern(const ActiveMesh& mesh, std::shared_ptr<const Communicator> ranks) {
   auto pattern = std::make_shared<SparsityPattern>();
+  pattern->halo = {mesh.owned_nodes, mesh.nodes(), mesh.halo, std::move(ranks)};
   const int rows = mesh.owned_nodes;
   struct Entry {
     int column, edge;
@@ -22,8 +23,9 @@ PatternPtr build_pattern(const ActiveMesh& mesh) {
   pattern->low_high.assign(mesh.edges.size(), -1);
   pattern->high_low.assign(mesh.edges.size(), -1);
   for (int i = 0; i < rows; ++i) {
-    std::sort(row[i].begin(), row[i].end(),
-              [](const Entry& a, const Entry& b) { return a.column < b.column; });
+    std::sort(row[i].begin(), row[i].end(), [&](const Entry& a, const Entry& b) {
+      return mesh.node_id[a.column] < mesh.node_id[b.column];
+    });
     for (const auto& [column, edge] : row[i]) {
       const int position = pattern->entries();
       if (edge < 0)

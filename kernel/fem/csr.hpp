@@ -1,10 +1,11 @@
 // Sparse matrices of the P1 space on one shared pattern: a row per owned node, a column per local
-// node, columns ascending.
+// node, the columns of a row ascending in their global id.
 #pragma once
 
 #include <memory>
 #include <vector>
 
+#include "kernel/core/halo.hpp"
 #include "kernel/core/thread_team.hpp"
 #include "kernel/core/types.hpp"
 #include "kernel/mesh/active_mesh.hpp"
@@ -13,11 +14,12 @@ namespace traceraft {
 
 struct SparsityPattern {
   std::vector<int> row_begin;      // rows + 1
-  std::vector<int> column;         // ascending within a row
+  std::vector<int> column;         // local nodes, in the order of their global ids within a row
   std::vector<int> diagonal;       // position of (i, i)
   std::vector<int> edge_of_entry;  // active edge behind an entry, −1 on the diagonal
   std::vector<int> low_high;       // per edge: position of (low, high)
   std::vector<int> high_low;       // per edge: position of (high, low)
+  Halo halo;                       // of the columns
 
   int rows() const { return static_cast<int>(row_begin.size()) - 1; }
   int entries() const { return static_cast<int>(column.size()); }
@@ -25,7 +27,7 @@ struct SparsityPattern {
 
 using PatternPtr = std::shared_ptr<const SparsityPattern>;
 
-PatternPtr build_pattern(const ActiveMesh& mesh);
+PatternPtr build_pattern(const ActiveMesh& mesh, std::shared_ptr<const Communicator> ranks);
 
 struct CsrMatrix {
   PatternPtr pattern;
@@ -33,7 +35,7 @@ struct CsrMatrix {
 
   explicit CsrMatrix(PatternPtr p) : pattern(std::move(p)), values(pattern->entries(), 0.0) {}
 
-  // y += factor · A x
+  // y += factor · A x; x has ghosts
   void multiply_add(double factor, ConstVec x, VecRef y, const ThreadTeam& team) const;
   // y = A x
   void multiply(ConstVec x, VecRef y, const ThreadTeam& team) const;

@@ -141,14 +141,17 @@ double potential_energy(const SurfaceSpace& space, const DoubleWell& well, Const
   constexpr std::size_t kChunk = 1024;
   const Vec point_value = trace(space, c);
   const std::vector<double>& area = space.surface.triangle_area;
+  const bool alone = space.communicator->size() == 1;
   std::vector<double> partial((area.size() + kChunk - 1) / kChunk, 0.0);
   space.team->for_range(partial.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t chunk = begin; chunk < end; ++chunk) {
       const std::size_t last = std::min((chunk + 1) * kChunk, area.size());
       for (std::size_t t = chunk * kChunk; t < last; ++t)
-        for_each_point(
-            area[t], corners_of(space, static_cast<int>(t), point_value),
-            [&](double value, const auto&, double w) { partial[chunk] += w * well.energy(value); });
+        if (alone || space.owns_triangle(t))
+          for_each_point(area[t], corners_of(space, static_cast<int>(t), point_value),
+                         [&](double value, const auto&, double w) {
+                           partial[chunk] += w * well.energy(value);
+                         });
     }
   });
   double total = 0;

@@ -24,7 +24,7 @@ void add_potential_tangent_product(const SurfaceSpace& space, const DoubleWell& 
                                    PotentialRule rule, double factor, ConstVec c, ConstVec v,
                                    VecRef r);
 
-// ∫_Γ f0(c_h) on this rank's rows, exact for the quartic.
+// ∫_Γ f0(c_h) over this rank's triangles, exact for the quartic.
 double potential_energy(const SurfaceSpace& space, const DoubleWell& well, ConstVec c);
 
 }  // namespace traceraft

@@ -5,18 +5,6 @@
 namespace traceraft {
 namespace {
 
-// Items are ascending in `low`: those with a low node in the rows.
-template <class Item>
-IndexRange owned(const std::vector<Item>& items, IndexRange rows) {
-  const auto from = [&](int node) {
-    return static_cast<int>(
-        std::lower_bound(items.begin(), items.end(), node,
-                         [](const Item& item, int low) { return item.low < low; }) -
-        items.begin());
-  };
-  return {from(rows.begin), from(rows.end)};
-}
-
 // From the first to the last item that touches.
 template <class Item, class Touches>
 IndexRange touching(const std::vector<Item>& items, const Touches& touches) {
@@ -33,12 +21,12 @@ std::vector<RowBlock> split_rows(const ActiveMesh& mesh, const CutSurface& surfa
   std::vector<RowBlock> blocks;
   for (int part = 0; part < parts; ++part) {
     RowBlock block;
-    const auto row = [&](int k) {
-      return static_cast<int>(std::int64_t{mesh.owned_nodes} * k / parts);
+    const auto share = [&](std::size_t count) {
+      const auto at = [&](int k) { return static_cast<int>(count * k / parts); };
+      return IndexRange{at(part), at(part + 1)};
     };
-    const IndexRange rows = block.rows = {row(part), row(part + 1)};
-    block.edges = owned(mesh.edges, rows);
-    block.points = owned(surface.points, rows);
+    const IndexRange rows = block.rows = share(mesh.owned_nodes);
+    const IndexRange points = block.points = share(surface.points.size());
     block.touching_elements = touching(elements, [&](const CutElement& element) {
       return std::any_of(element.node.begin(), element.node.end(),
                          [&](int node) { return rows.contains(node); });
@@ -46,13 +34,10 @@ std::vector<RowBlock> split_rows(const ActiveMesh& mesh, const CutSurface& surfa
     block.touching_points = touching(surface.points, [&](const CutPoint& point) {
       return rows.contains(point.low) || rows.contains(point.high);
     });
-    const auto triangle = [&](int element) {
-      return element < static_cast<int>(elements.size())
-                 ? elements[element].first_triangle
-                 : static_cast<int>(surface.triangles.size());
-    };
-    block.touching_triangles = {triangle(block.touching_elements.begin),
-                                triangle(block.touching_elements.end)};
+    block.touching_triangles = touching(surface.triangles, [&](const std::array<int, 3>& triangle) {
+      return std::any_of(triangle.begin(), triangle.end(),
+                         [&](int point) { return points.contains(point); });
+    });
     blocks.push_back(block);
   }
   return blocks;

@@ -17,10 +17,10 @@ struct IndexRange {
 // not; they overlap between neighbours.
 struct RowBlock {
   IndexRange rows;
-  IndexRange edges, points;       // those whose low node is one of the rows
   IndexRange touching_elements;   // elements and
-  IndexRange touching_triangles;  // triangles at the rows or at the points
   IndexRange touching_points;     // points on the edges of the rows
+  IndexRange points;              // an even share of them: they have no order of rows,
+  IndexRange touching_triangles;  // and triangles at these
 };
 
 std::vector<RowBlock> split_rows(const ActiveMesh& mesh, const CutSurface& surface,

@@ -1,14 +1,24 @@
 #include "kernel/fem/surface_space.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace traceraft {
 namespace {
 
-CutSurface checked_surface(const ActiveMesh& mesh) {
+CutSurface checked_surface(const ActiveMesh& mesh, const Communicator& ranks) {
   CutSurface surface = build_cut_surface(mesh);
-  require_resolution(mesh, surface);
+  require_resolution(mesh, surface, ranks);
   return surface;
+}
+
+SurfaceSpace::Totals totals_of(const ActiveMesh& mesh, const CutSurface& surface,
+                               const Communicator& ranks) {
+  const auto elements = std::count_if(mesh.tets.begin(), mesh.tets.end(),
+                                      [&](const ActiveTet& tet) { return mesh.owns(tet); });
+  return {std::llround(ranks.sum(mesh.owned_nodes)),
+          std::llround(ranks.sum(static_cast<double>(elements))),
+          euler_characteristic(mesh, surface, ranks)};
 }
 
 // From the entries off the diagonal, off_diagonal(element number) for the edges of an element.
@@ -103,36 +113,28 @@ void fill_zero_row_sum(const std::vector<double>& edge, const std::vector<RowBlo
 SurfaceSpace::SurfaceSpace(const LevelSet& level_set, std::int64_t cells,
                            std::shared_ptr<const ThreadTeam> team_,
                            std::shared_ptr<const Communicator> communicator_)
-    : mesh(build_active_mesh(level_set, cells)),
-      surface(checked_surface(mesh)),
+    : mesh(build_active_mesh(level_set, cells, *communicator_)),
+      surface(checked_surface(mesh, *communicator_)),
       elements(build_cut_elements(mesh, surface)),
       edge_couplings(build_edge_couplings(elements, mesh.edges.size())),
       team(std::move(team_)),
       communicator(std::move(communicator_)),
       blocks(split_rows(mesh, surface, elements, team->size())),
-      pattern(build_pattern(mesh)),
+      pattern(build_pattern(mesh, communicator)),
       mass(mass_matrix(*this)),
       stiffness(stiffness_matrix(*this)),
       normal(normal_matrix(*this)),
       stabilised_mass(combine(1.0, mass, h(), normal)),
-      node_area(Vec::Zero(nodes())) {
+      node_area(Vec::Zero(nodes())),
+      totals(totals_of(mesh, surface, *communicator)),
+      order({mesh.node_id.begin(), mesh.node_id.begin() + mesh.owned_nodes}, communicator) {
   mass.multiply(Vec::Ones(mesh.nodes()), node_area, *team);
   area = communicator->sum(node_area.sum());
 }
 
-Eigen::Ref<const Vec> SurfaceSpace::with_ghosts(ConstVec owned, Vec& buffer) const {
-  if (mesh.nodes() == mesh.owned_nodes) return owned;
-  buffer.resize(mesh.nodes());
-  buffer.head(mesh.owned_nodes) = owned;
-  communicator->update_ghosts(mesh.halo, buffer);
-  return buffer;
-}
-
-double SurfaceSpace::inner(ConstVec u, ConstVec v) const {
+double SurfaceSpace::bilinear(const CsrMatrix& A, ConstVec u, ConstVec v) const {
   Vec buffer;
-  Vec product(nodes());
-  mass.multiply(with_ghosts(v, buffer), product, *team);
-  return communicator->sum(dot(u, product));
+  return communicator->sum(A.quadratic(u, with_ghosts(v, buffer), *team));
 }
 
 Status SurfaceSpace::solve_spd(const CsrMatrix& A, ConstVec b, VecRef x, double tolerance) const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "kernel/core/communicator.hpp"
+#include "kernel/core/global_order.hpp"
 #include "kernel/core/status.hpp"
 #include "kernel/core/thread_team.hpp"
 #include "kernel/fem/csr.hpp"
@@ -38,14 +39,28 @@ class SurfaceSpace {
   Vec node_area;              // w_i = ∫_Γ φ_i, so ∫_Γ c_h = w·c
   double area;                // |Γ_h|
 
+  // Over all ranks.
+  struct Totals {
+    std::int64_t nodes, elements, euler_characteristic;
+  };
+  const Totals totals;
+  const GlobalOrder order;  // of the nodes
+
   double h() const { return mesh.cube.h(); }
-  int nodes() const { return mesh.owned_nodes; }
+  int nodes() const { return mesh.owned_nodes; }  // of this rank
+  // Does a triangle count on this rank?
+  bool owns_triangle(std::size_t t) const { return mesh.owns(mesh.tets[surface.triangle_tet[t]]); }
 
   // Local field (ghosts included) of an owned one; refers to `owned` where there are no ghosts.
-  Eigen::Ref<const Vec> with_ghosts(ConstVec owned, Vec& buffer) const;
+  Eigen::Ref<const Vec> with_ghosts(ConstVec owned, Vec& buffer) const {
+    return pattern->halo.with_ghosts(owned, buffer);
+  }
 
-  // ∫_Γ u v over all ranks, for owned nodal fields.
-  double inner(ConstVec u, ConstVec v) const;
+  // uᵀ A v over all ranks, for owned nodal fields.
+  double bilinear(const CsrMatrix& A, ConstVec u, ConstVec v) const;
+  double quadratic(const CsrMatrix& A, ConstVec u) const { return bilinear(A, u, u); }
+  // ∫_Γ u v over all ranks.
+  double inner(ConstVec u, ConstVec v) const { return bilinear(mass, u, v); }
   // ∫_Γ c over all ranks.
   double integral(ConstVec c) const { return communicator->sum(dot(node_area, c)); }
 

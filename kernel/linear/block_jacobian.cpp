@@ -5,8 +5,9 @@ namespace traceraft {
 void BlockJacobian::multiply(ConstVec x, VecRef y, const ThreadTeam& team) const {
   const SparsityPattern& p = *cc.pattern;
   const int n = p.rows();
-  const double* c = x.data();
-  const double* mu = x.data() + n;
+  Vec c_buffer, mu_buffer;
+  const auto c = p.halo.with_ghosts(x.head(n), c_buffer);
+  const auto mu = p.halo.with_ghosts(x.tail(n), mu_buffer);
   team.for_range(n, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       double first = 0, second = 0;

@@ -29,8 +29,9 @@ struct BlockJacobian {
   double curvature = 0;  // β, or the mean of max(f0'', 0) for the exact tangent
 
   int block_size() const { return cc.pattern->rows(); }
+  const Communicator& ranks() const { return *cc.pattern->halo.ranks; }
 
-  // y = J x
+  // y = J x; collective
   void multiply(ConstVec x, VecRef y, const ThreadTeam& team) const;
 };
 

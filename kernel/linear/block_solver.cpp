@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <vector>
 
-#include "kernel/core/binary.hpp"
 #include "kernel/core/stopwatch.hpp"
 #include "kernel/linear/two_solve_preconditioner.hpp"
 
@@ -78,7 +77,7 @@ class BlockSolver final : public LinearSolver {
     return total;
   }
 
-  void save(std::ostream& out) const override {
+  void save(CheckpointOut out) const override {
     write_binary(out, setups_);
     write_binary(out, setup_seconds_);
     for (const Lane& lane : lanes_) {
@@ -86,7 +85,7 @@ class BlockSolver final : public LinearSolver {
       write_binary(out, lane.statistics);
     }
   }
-  void load(std::istream& in) override {
+  void load(CheckpointIn in) override {
     read_binary(in, setups_);
     read_binary(in, setup_seconds_);
     for (Lane& lane : lanes_) {

@@ -17,23 +17,28 @@ LinearStatistics operator+(const LinearStatistics& a, const LinearStatistics& b)
 double scaled_norm(const BlockJacobian& J, ConstVec b) {
   const int n = J.block_size();
   const double scale = J.shift > 0 ? 1 / J.shift : 1.0;
-  return std::sqrt(scale * scale * dot(b.head(n), b.head(n)) + dot(b.tail(n), b.tail(n)));
+  return std::sqrt(
+      J.ranks().sum(scale * scale * dot(b.head(n), b.head(n)) + dot(b.tail(n), b.tail(n))));
 }
 
 void restore_mass(const BlockJacobian& J, ConstVec b, VecRef x) {
   const int n = J.block_size();
   const SparsityPattern& pattern = *J.cc.pattern;
-  double held = 0, weight = 0;
-  for (int i = 0; i < n; ++i)
+  Vec c_buffer, mu_buffer;
+  const auto c = pattern.halo.with_ghosts(x.head(n), c_buffer);
+  const auto mu = pattern.halo.with_ghosts(x.tail(n), mu_buffer);
+  double held = 0, weight = 0, wanted = 0;
+  for (int i = 0; i < n; ++i) {
     for (int k = pattern.row_begin[i]; k < pattern.row_begin[i + 1]; ++k) {
       const int j = pattern.column[k];
-      held += J.cc.values[k] * x[j] + J.cm.values[k] * x[n + j];
+      held += J.cc.values[k] * c[j] + J.cm.values[k] * mu[j];
       weight += J.cc.values[k];
     }
+    wanted += b[i];
+  }
+  weight = J.ranks().sum(weight);
   if (weight == 0) return;
-  double wanted = 0;
-  for (int i = 0; i < n; ++i) wanted += b[i];
-  x.head(n).array() += (wanted - held) / weight;
+  x.head(n).array() += (J.ranks().sum(wanted) - J.ranks().sum(held)) / weight;
 }
 
 }  // namespace traceraft

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <functional>
-#include <iosfwd>
 #include <memory>
 #include <string>
 
+#include "kernel/core/checkpoint_stream.hpp"
 #include "kernel/core/status.hpp"
 #include "kernel/core/types.hpp"
 #include "kernel/linear/block_jacobian.hpp"
@@ -49,8 +49,8 @@ class LinearSolver {
   virtual SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance,
                             int lane = 0) = 0;
   virtual LinearStatistics statistics() const = 0;
-  virtual void save(std::ostream& out) const = 0;
-  virtual void load(std::istream& in) = 0;
+  virtual void save(CheckpointOut out) const = 0;
+  virtual void load(CheckpointIn in) = 0;
 };
 
 using LinearSolverPtr = std::unique_ptr<LinearSolver>;

@@ -22,18 +22,23 @@ struct ActiveEdge {
   int low, high;  // nodes; low is the smaller lattice point
 };
 
-// Nodes and tetrahedra are in ascending global order, so sums over them do not depend on how the
-// mesh is distributed. Nodes [0, owned_nodes) belong to this rank, the rest are ghosts.
+// The part of one rank: every cut tetrahedron with a node that it owns, and so all that adds to the
+// rows of its nodes. Nodes [0, owned_nodes) are owned and ascend in their global id, the ghosts of
+// each neighbour follow. Tetrahedra and edges are in global order (by cell, by lower node), so sums
+// over those at a node do not depend on how the mesh is distributed.
 struct ActiveMesh {
   CubeMesh cube;
   std::vector<std::int64_t> node_id;  // global vertex id of each node
   std::vector<double> phi;            // level set at the nodes; never zero
   std::vector<ActiveTet> tets;
-  std::vector<ActiveEdge> edges;  // ascending in `low`
+  std::vector<ActiveEdge> edges;  // ascending in the id of `low`
   int owned_nodes = 0;
   HaloPlan halo;
 
   int nodes() const { return static_cast<int>(node_id.size()); }
+  bool owns(int node) const { return node < owned_nodes; }
+  // A tetrahedron counts where its lowest node does, on one rank only.
+  bool owns(const ActiveTet& tet) const { return owns(tet.node[0]); }
   Point position(int node) const {
     return cube.position(cube.vertex(node_id[static_cast<std::size_t>(node)]));
   }
@@ -43,7 +48,8 @@ struct ActiveMesh {
 // sign: Γ never passes exactly through a vertex, edge or face, no piece of it is counted twice, and
 // its area changes by some 1e-10 of itself (relative to the steepest part of φ).
 // Throws InputError (see find_cut_cells).
-ActiveMesh build_active_mesh(const LevelSet& surface, std::int64_t cells);
+ActiveMesh build_active_mesh(const LevelSet& surface, std::int64_t cells,
+                             const Communicator& ranks = kAlone);
 
 // Gradients of the barycentric coordinates of a Kuhn tetrahedron, times h: row i is h ∇λ_i.
 Eigen::Matrix<double, 4, 3> scaled_gradients(int kuhn);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 #include <unordered_set>
+#include <utility>
 
 #include "kernel/core/error.hpp"
 
@@ -89,14 +90,33 @@ int face_corner(std::size_t axis, int side, int which) {
 
 class Walk {
  public:
-  Walk(const LevelSet& surface, const CubeMesh& mesh) : surface_(surface), mesh_(mesh) {}
+  Walk(const LevelSet& surface, const CubeMesh& mesh, const Partition& partition, int rank)
+      : surface_(surface),
+        mesh_(mesh),
+        partition_(partition),
+        rank_(rank),
+        told_(static_cast<std::size_t>(partition.ranks())) {}
 
+  // Walks from a cell that every rank knows of.
   void from(const Lattice& seed) {
-    enqueue(seed);
+    partition_.for_each_owner(seed, [&](int owner) {
+      if (owner == rank_) step_on(seed);
+    });
     while (!front_.empty()) {
       const Lattice cell = front_.back();
       front_.pop_back();
       visit(cell);
+    }
+  }
+
+  // Walks on from where the walks of other ranks reached cells of this one, until all are done.
+  void join(const Communicator& ranks) {
+    while (ranks.any(std::any_of(told_.begin(), told_.end(),
+                                 [](const Told& told) { return !told.news.empty(); }))) {
+      Lists<std::int64_t> news;
+      for (Told& told : told_) news.push_back(std::exchange(told.news, {}));
+      for (const std::vector<std::int64_t>& cells : exchange_lists(ranks, news))
+        for (const std::int64_t id : cells) from(mesh_.cell(id));
     }
   }
 
@@ -107,8 +127,18 @@ class Walk {
   }
 
  private:
-  void enqueue(const Lattice& cell) {
+  void step_on(const Lattice& cell) {
     if (seen_.insert(mesh_.cell_id(cell)).second) front_.push_back(cell);
+  }
+
+  void enqueue(const Lattice& cell) {
+    partition_.for_each_owner(cell, [&](int owner) {
+      const std::int64_t id = mesh_.cell_id(cell);
+      if (owner == rank_)
+        step_on(cell);
+      else if (told_[owner].cells.insert(id).second)
+        told_[owner].news.push_back(id);
+    });
   }
 
   void visit(const Lattice& cell) {
@@ -130,20 +160,30 @@ class Walk {
       }
   }
 
+  struct Told {
+    std::unordered_set<std::int64_t> cells;  // that another rank knows of from this one,
+    std::vector<std::int64_t> news;          // or will
+  };
+
   const LevelSet& surface_;
   const CubeMesh& mesh_;
+  const Partition& partition_;
+  const int rank_;
   std::unordered_set<std::int64_t> seen_;
   std::vector<Lattice> front_;
+  std::vector<Told> told_;  // per rank
 };
 
 }  // namespace
 
-std::vector<std::int64_t> find_cut_cells(const LevelSet& surface, const CubeMesh& mesh) {
+std::vector<std::int64_t> find_cut_cells(const LevelSet& surface, const CubeMesh& mesh,
+                                         const Partition& partition, const Communicator& ranks) {
   const SeedLattice seeds(surface, mesh);
-  Walk walk(surface, mesh);
+  Walk walk(surface, mesh, partition, ranks.rank());
   seeds.for_each_seed([&](const Lattice& seed) { walk.from(seed); });
+  walk.join(ranks);
   std::vector<std::int64_t> cells = walk.cells();
-  if (cells.empty())
+  if (!ranks.any(!cells.empty()))
     throw InputError(
         "surface: the level set has one sign in the whole box [-5/3, 5/3]^3, so there is no "
         "surface inside it");

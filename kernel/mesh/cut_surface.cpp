@@ -1,5 +1,6 @@
 #include "kernel/mesh/cut_surface.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -79,12 +80,17 @@ CutSurface build_cut_surface(const ActiveMesh& mesh) {
   return surface;
 }
 
-int CutSurface::euler_characteristic() const {
+std::int64_t euler_characteristic(const ActiveMesh& mesh, const CutSurface& surface,
+                                  const Communicator& ranks) {
   // Γ_h is closed: every edge belongs to two triangles.
-  return static_cast<int>(points.size()) - static_cast<int>(triangles.size()) / 2;
+  double twice = 0;
+  for (const CutPoint& point : surface.points) twice += mesh.owns(point.low) ? 2 : 0;
+  for (const int tet : surface.triangle_tet) twice -= mesh.owns(mesh.tets[tet]) ? 1 : 0;
+  return std::llround(ranks.sum(twice) / 2);
 }
 
-Resolution surface_resolution(const ActiveMesh& mesh, const CutSurface& surface) {
+Resolution surface_resolution(const ActiveMesh& mesh, const CutSurface& surface,
+                              const Communicator& ranks) {
   std::vector<Point> turned(mesh.nodes(), Point::Zero());
   std::vector<double> total(mesh.nodes(), 0.0);
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
@@ -96,16 +102,21 @@ Resolution surface_resolution(const ActiveMesh& mesh, const CutSurface& surface)
       total[node] += area;
     }
   }
-  Resolution result{1.0, Point::Zero()};
-  for (int node = 0; node < mesh.nodes(); ++node) {
+  // Of this rank's nodes, as ghosts do not have all their tetrahedra here.
+  std::vector<double> worst = {1, 0, 0, 0};
+  for (int node = 0; node < mesh.owned_nodes; ++node) {
     const double ratio = turned[node].norm() / total[node];
-    if (ratio < result.worst) result = {ratio, mesh.position(node)};
+    const Point x = mesh.position(node);
+    if (ratio < worst[0]) worst = {ratio, x[0], x[1], x[2]};
   }
-  return result;
+  for (const std::vector<double>& other : gather_everywhere(ranks, worst))
+    worst = std::min(worst, other);
+  return {worst[0], Point(worst[1], worst[2], worst[3])};
 }
 
-void require_resolution(const ActiveMesh& mesh, const CutSurface& surface) {
-  const Resolution resolution = surface_resolution(mesh, surface);
+void require_resolution(const ActiveMesh& mesh, const CutSurface& surface,
+                        const Communicator& ranks) {
+  const Resolution resolution = surface_resolution(mesh, surface, ranks);
   if (resolution.worst >= kCoarsestResolution) return;
   std::ostringstream text;
   text.precision(3);

@@ -32,17 +32,18 @@ struct CutPoint {
 };
 
 struct CutSurface {
-  std::vector<CutPoint> points;               // ascending in `low`
+  std::vector<CutPoint> points;               // in the order of their edges
   std::vector<Point> position;                // of each point
   std::vector<std::array<int, 3>> triangles;  // counter-clockwise seen from outside
   std::vector<int> triangle_tet;              // ascending
   std::vector<double> triangle_area;
-
-  // Points − edges + triangles; 2 for each sphere, 0 for each torus.
-  int euler_characteristic() const;
 };
 
 CutSurface build_cut_surface(const ActiveMesh& mesh);
+
+// Points − edges + triangles of the whole surface; 2 for each sphere, 0 for each torus.
+std::int64_t euler_characteristic(const ActiveMesh& mesh, const CutSurface& surface,
+                                  const Communicator& ranks = kAlone);
 
 // How well the mesh follows the surface: the smallest, over all nodes, of |Σ A n| / Σ A with the
 // areas A and normals n around the node. 1 for a plane; below kCoarsestResolution the surface turns
@@ -52,9 +53,11 @@ struct Resolution {
   double worst;
   Point where;
 };
-Resolution surface_resolution(const ActiveMesh& mesh, const CutSurface& surface);
+Resolution surface_resolution(const ActiveMesh& mesh, const CutSurface& surface,
+                              const Communicator& ranks = kAlone);
 
 // Throws InputError naming the place and a number of cells to try if the mesh is too coarse.
-void require_resolution(const ActiveMesh& mesh, const CutSurface& surface);
+void require_resolution(const ActiveMesh& mesh, const CutSurface& surface,
+                        const Communicator& ranks = kAlone);
 
 }  // namespace traceraft

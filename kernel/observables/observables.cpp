@@ -22,7 +22,7 @@ Observables Observer::measure(double t, ConstVec y) const {
   const SurfaceSpace& space = problem_.space();
   const auto c = problem_.c_of(y);
   const RaftReport report = rafts(y);
-  const double gradient = problem_.model().epsilon * space.stiffness.quadratic(c, c, *space.team);
+  const double gradient = problem_.model().epsilon * space.quadratic(space.stiffness, c);
   Observables row;
   row.t = t;
   row.mass = problem_.mass(y);

@@ -35,15 +35,16 @@ double relaxed_interface_energy(const SurfaceSpace& sphere, const CahnHilliardMo
   const double beta = 0.6 * well.second(well.a);
   const CsrMatrix descent = combine(1, gradient_energy, beta, sphere.stabilised_mass);
   const auto measured = [&](const Vec& c) {
-    return epsilon * sphere.stiffness.quadratic(c, c, *sphere.team) / (2 * kPi);
+    return epsilon * sphere.quadratic(sphere.stiffness, c) / (2 * kPi);
   };
-  Vec c = half_and_half(sphere, well, epsilon, axis), step(sphere.nodes());
+  Vec c = half_and_half(sphere, well, epsilon, axis), step(sphere.nodes()), buffer;
   double energy = measured(c);
   for (int iteration = 0; iteration < 100; ++iteration) {
     Vec force = Vec::Zero(sphere.nodes());
-    add_potential(sphere, well, model.rule, 1, c, force);
-    gradient_energy.multiply_add(1, c, force, *sphere.team);
-    force -= force.sum() / sphere.area * sphere.node_area;
+    const auto local = sphere.with_ghosts(c, buffer);
+    add_potential(sphere, well, model.rule, 1, local, force);
+    gradient_energy.multiply_add(1, local, force, *sphere.team);
+    force -= sphere.communicator->sum(force.sum()) / sphere.area * sphere.node_area;
     if (Status status = sphere.solve_spd(descent, -force, step, 1e-2); !status.ok())
       return 0;  // no boundary to speak of
     c += step;

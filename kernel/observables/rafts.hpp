@@ -23,7 +23,7 @@ struct RaftReport {
 
 // c_h is linear on every triangle of Γ_h, so {c > level} is a convex piece of each: areas and
 // lengths are exact, and two triangles belong to one raft exactly if they share a vertex above the
-// level. Coordinates, areas and lengths in units of R.
+// level. Coordinates, areas and lengths in units of R. Collective; every rank has the whole report.
 class RaftFinder {
  public:
   explicit RaftFinder(std::shared_ptr<const SurfaceSpace> space);

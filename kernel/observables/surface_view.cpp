@@ -53,6 +53,18 @@ class View {
       }
   }
 
+  // What is in front on any of the ranks.
+  void combine(const Communicator& ranks) {
+    if (ranks.size() == 1) return;
+    const auto samples = static_cast<Eigen::Index>(depth_.size());
+    Vec nearest = Eigen::Map<const Vec>(depth_.data(), samples);
+    ranks.max(nearest);
+    for (std::size_t at = 0; at < depth_.size(); ++at)
+      if (depth_[at] < nearest[static_cast<Eigen::Index>(at)]) colour_[at] = {-1, -1, -1};
+    Eigen::Map<Vec> colours(colour_.data()->data(), 3 * samples);
+    ranks.max(colours);
+  }
+
   // Averages the samples of each pixel into `image`, starting at a column.
   void copy_to(Image& image, int first_column) const {
     const int pixels = size_ / kSamples;
@@ -99,6 +111,7 @@ Image draw_front_and_back(const SurfaceSpace& space, const Vec& values, double l
   const std::vector<Point>& position = surface.position;
   double farthest = 0;
   for (const Point& x : position) farthest = std::max(farthest, x.norm());
+  farthest = space.communicator->max(farthest);
   const Point towards_viewer(1, -0.8, 0.5);
   Image image{2 * size, size, std::vector<std::uint8_t>(6 * static_cast<std::size_t>(size) * size)};
   View front(size, 1.05 * farthest, towards_viewer), back(size, 1.05 * farthest, -towards_viewer);
@@ -107,6 +120,8 @@ Image draw_front_and_back(const SurfaceSpace& space, const Vec& values, double l
     for (View* view : {&front, &back})
       view->draw({position[a], position[b], position[c]}, {share(a), share(b), share(c)});
   }
+  front.combine(*space.communicator);
+  back.combine(*space.communicator);
   front.copy_to(image, 0);
   back.copy_to(image, size);
   return image;

@@ -14,7 +14,8 @@ struct Image {
 };
 
 // Parallel projection of the surface coloured by `values` (one per point of Γ_h), dark at `low` and
-// bright at `high`, on white. `size`: pixels per edge of each of the two squares.
+// bright at `high`, on white. `size`: pixels per edge of each of the two squares. Collective; every
+// rank gets the whole picture.
 Image draw_front_and_back(const SurfaceSpace& space, const Vec& values, double low, double high,
                           int size);
 

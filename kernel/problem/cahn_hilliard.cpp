@@ -56,7 +56,7 @@ Status CahnHilliard::residual(double t, ConstVec y, ConstVec ydot, VecRef r) con
 
   for (const EffectPtr& effect : model_.effects)
     effect->add_residual(space, t, c, mu, first, second);
-  if (!std::isfinite(dot(r, r))) return Status::retry("the residual is not finite");
+  if (!std::isfinite(ranks().sum(dot(r, r)))) return Status::retry("the residual is not finite");
   return {};
 }
 
@@ -72,7 +72,7 @@ void CahnHilliard::fill_curvature(ConstVec c, Tangent tangent, BlockJacobian& J)
   double convex = 0;
   for (int i = 0; i < block_size(); ++i)
     convex += space_->node_area[i] * std::max(0.0, model_.well.second(c[i]));
-  J.curvature = space_->communicator->sum(convex) / space_->area;
+  J.curvature = ranks().sum(convex) / space_->area;
 }
 
 double CahnHilliard::mean_mobility(const CsrMatrix& mobility_stiffness) const {
@@ -81,7 +81,7 @@ double CahnHilliard::mean_mobility(const CsrMatrix& mobility_stiffness) const {
     weighted += mobility_stiffness.values[k];
     unweighted += space_->stiffness.values[k];
   }
-  return space_->communicator->sum(weighted) / space_->communicator->sum(unweighted);
+  return ranks().sum(weighted) / ranks().sum(unweighted);
 }
 
 void CahnHilliard::add_mobility_derivative(ConstVec mu,
@@ -100,7 +100,7 @@ void CahnHilliard::add_mobility_derivative(ConstVec mu,
 Status CahnHilliard::jacobian(double t, ConstVec y, ConstVec, double shift, Tangent tangent,
                               BlockJacobian& J) const {
   const SurfaceSpace& space = *space_;
-  if (!std::isfinite(dot(y, y))) return Status::retry("the state is not finite");
+  if (!std::isfinite(ranks().sum(dot(y, y)))) return Status::retry("the state is not finite");
   Vec c_buffer, mu_buffer;
   const auto c = space.with_ghosts(c_of(y), c_buffer);
   const auto mu = space.with_ghosts(mu_of(y), mu_buffer);
@@ -194,18 +194,14 @@ double CahnHilliard::norm(ConstVec y) const {
 }
 
 double CahnHilliard::field_norm(ConstVec half) const {
-  Vec buffer;
-  const auto v = space_->with_ghosts(half, buffer);
-  return std::sqrt(std::max(
-      0.0, space_->communicator->sum(space_->stabilised_mass.quadratic(v, v, *space_->team))));
+  return std::sqrt(std::max(0.0, space_->quadratic(space_->stabilised_mass, half)));
 }
 
 double CahnHilliard::energy(ConstVec y) const {
   Vec buffer;
   const auto c = space_->with_ghosts(c_of(y), buffer);
-  const double local = potential_energy(*space_, model_.well, c) +
-                       0.5 * gradient_energy_.quadratic(c, c, *space_->team);
-  return space_->communicator->sum(local);
+  return ranks().sum(potential_energy(*space_, model_.well, c)) +
+         0.5 * space_->quadratic(gradient_energy_, c_of(y));
 }
 
 bool CahnHilliard::conserves_mass() const {

@@ -8,7 +8,8 @@
 namespace traceraft {
 
 // A semi-explicit DAE of index 1. y = (c, μ): the first half is differential, the second algebraic;
-// both hold this rank's owned entries.
+// both hold this rank's owned entries. Functions of the state are collective, and what they return
+// as a status or a number is the same on all ranks.
 //
 // What an implicit method needs is F and, for its Newton matrix, J = ∂F/∂y + σ ∂F/∂ẏ: with
 // ẏ ≈ σ y + (known), dF(t, y, ẏ(y))/dy = J. Every method brings its own shift σ (1/Δt for
@@ -52,6 +53,9 @@ class DaeProblem {
   // A functional that does not grow along solutions, and whether the model promises that.
   virtual double energy(ConstVec y) const = 0;
   virtual bool dissipates_energy() const = 0;
+
+  // Whom the state is shared with.
+  virtual const Communicator& ranks() const = 0;
 };
 
 }  // namespace traceraft

@@ -17,7 +17,7 @@ const NamedList<InitialEntry>& initial_fields() {
 }
 
 Vec project(const SurfaceSpace& space, ConstVec nodal) {
-  if (!std::isfinite(nodal.sum()))
+  if (!std::isfinite(space.communicator->sum(nodal.sum())))
     throw InputError("initial: the concentration is not finite everywhere near the surface");
   Vec load(space.nodes()), buffer, projected(space.nodes());
   space.mass.multiply(space.with_ghosts(nodal, buffer), load, *space.team);

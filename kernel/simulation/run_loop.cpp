@@ -2,18 +2,16 @@
 
 #include <stdexcept>
 
-#include "kernel/core/binary.hpp"
-
 namespace traceraft {
 
-void RunState::save(std::ostream& out) const {
+void RunState::save(CheckpointOut out) const {
   write_binary(out, monitor);
   write_binary(out, static_cast<std::uint64_t>(next_output));
   write_binary(out, row);
   integrator.save(out);
 }
 
-void RunState::load(std::istream& in) {
+void RunState::load(CheckpointIn in) {
   std::uint64_t next = 0;
   read_binary(in, monitor);
   read_binary(in, next);

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <functional>
-#include <iosfwd>
 #include <vector>
 
+#include "kernel/core/checkpoint_stream.hpp"
 #include "kernel/observables/observables.hpp"
 #include "kernel/simulation/run_monitor.hpp"
 #include "kernel/time/integrator.hpp"
@@ -18,8 +18,8 @@ struct RunState {
   std::size_t next_output = 0;  // first requested time not yet delivered
   Observables row;              // at the last accepted step
 
-  void save(std::ostream& out) const;
-  void load(std::istream& in);  // throws IoError
+  void save(CheckpointOut out) const;
+  void load(CheckpointIn in);  // throws IoError
 };
 
 // Listeners see the run and do not change it. They may throw (a full disk): the run ends there.

@@ -3,8 +3,6 @@
 #include <cmath>
 #include <utility>
 
-#include "kernel/core/binary.hpp"
-
 namespace traceraft {
 
 ControlledIntegrator::ControlledIntegrator(const DaeProblem& problem,
@@ -67,7 +65,7 @@ IntegratorStatistics ControlledIntegrator::statistics() const {
   return result;
 }
 
-void ControlledIntegrator::save(std::ostream& out) const {
+void ControlledIntegrator::save(CheckpointOut out) const {
   for (const double value : {t_end_, span_, step_, next_}) write_binary(out, value);
   history_.save(out);
   write_binary(out, statistics_);
@@ -75,7 +73,7 @@ void ControlledIntegrator::save(std::ostream& out) const {
   solver_.save(out);
 }
 
-void ControlledIntegrator::load(std::istream& in) {
+void ControlledIntegrator::load(CheckpointIn in) {
   for (double* value : {&t_end_, &span_, &step_, &next_}) read_binary(in, *value);
   history_.load(in, problem_.size());
   if (history_.size() == 0) throw IoError("checkpoint: it holds no state");

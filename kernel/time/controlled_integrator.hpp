@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "kernel/core/checkpoint_stream.hpp"
 #include "kernel/time/energy_guard.hpp"
 #include "kernel/time/history.hpp"
 #include "kernel/time/integrator.hpp"
@@ -26,8 +27,8 @@ class ControlledIntegrator : public Integrator {
 
   IntegratorStatistics statistics() const final;
   LinearStatistics linear_statistics() const final { return solver_.linear_statistics(); }
-  void save(std::ostream& out) const override;
-  void load(std::istream& in) override;
+  void save(CheckpointOut out) const override;
+  void load(CheckpointIn in) override;
 
  protected:
   // The estimated error grows like Δt^power; steps are interpolated to that order. The first one

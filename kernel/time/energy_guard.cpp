@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "kernel/core/binary.hpp"
-
 namespace traceraft {
 
 void EnergyGuard::start(ConstVec y) {
@@ -20,12 +18,12 @@ Status EnergyGuard::judge(ConstVec y) {
   return Status::retry("the energy grows");
 }
 
-void EnergyGuard::save(std::ostream& out) const {
+void EnergyGuard::save(CheckpointOut out) const {
   for (const double value : {scale_, energy_}) write_binary(out, value);
   write_binary(out, refused_);
 }
 
-void EnergyGuard::load(std::istream& in) {
+void EnergyGuard::load(CheckpointIn in) {
   for (double* value : {&scale_, &energy_}) read_binary(in, *value);
   read_binary(in, refused_);
 }

@@ -1,8 +1,7 @@
 // Refuses steps that gain energy where the model can only lose it.
 #pragma once
 
-#include <iosfwd>
-
+#include "kernel/core/checkpoint_stream.hpp"
 #include "kernel/problem/dae_problem.hpp"
 #include "kernel/time/integrator.hpp"
 
@@ -26,8 +25,8 @@ class EnergyGuard {
   void accept() { energy_ = candidate_; }
 
   long refused() const { return refused_; }
-  void save(std::ostream& out) const;
-  void load(std::istream& in);
+  void save(CheckpointOut out) const;
+  void load(CheckpointIn in);
 
  private:
   const DaeProblem& problem_;

@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "kernel/core/binary.hpp"
-
 namespace traceraft {
 
 void History::add(double t, Vec y) {
@@ -21,7 +19,7 @@ void History::interpolate(double t, VecRef y) const {
   }
 }
 
-void History::save(std::ostream& out) const {
+void History::save(CheckpointOut out) const {
   write_binary(out, static_cast<std::uint64_t>(entries_.size()));
   for (const Entry& entry : entries_) {
     write_binary(out, entry.t);
@@ -29,7 +27,7 @@ void History::save(std::ostream& out) const {
   }
 }
 
-void History::load(std::istream& in, Eigen::Index length) {
+void History::load(CheckpointIn in, Eigen::Index length) {
   std::uint64_t size = 0;
   read_binary(in, size);
   if (size > most_) throw IoError("checkpoint: it holds too many states");

@@ -3,8 +3,8 @@
 
 #include <cstddef>
 #include <deque>
-#include <iosfwd>
 
+#include "kernel/core/checkpoint_stream.hpp"
 #include "kernel/core/types.hpp"
 
 namespace traceraft {
@@ -25,8 +25,8 @@ class History {
   // the states share (the mass) is kept. Exactly a state at its time.
   void interpolate(double t, VecRef y) const;
 
-  void save(std::ostream& out) const;
-  void load(std::istream& in, Eigen::Index length);  // throws IoError
+  void save(CheckpointOut out) const;
+  void load(CheckpointIn in, Eigen::Index length);  // throws IoError
 
  private:
   struct Entry {

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <functional>
-#include <iosfwd>
 #include <map>
 #include <memory>
 #include <string>
 
+#include "kernel/core/checkpoint_stream.hpp"
 #include "kernel/linear/linear_solver.hpp"
 #include "kernel/problem/dae_problem.hpp"
 
@@ -67,8 +67,8 @@ class Integrator {
 
   virtual IntegratorStatistics statistics() const = 0;
   virtual LinearStatistics linear_statistics() const = 0;
-  virtual void save(std::ostream& out) const = 0;
-  virtual void load(std::istream& in) = 0;  // throws IoError if the data are not its own
+  virtual void save(CheckpointOut out) const = 0;
+  virtual void load(CheckpointIn in) = 0;  // throws IoError if the data are not its own
 };
 
 using IntegratorPtr = std::unique_ptr<Integrator>;

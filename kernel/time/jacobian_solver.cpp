@@ -1,6 +1,5 @@
 #include "kernel/time/jacobian_solver.hpp"
 
-#include "kernel/core/binary.hpp"
 #include "kernel/core/stopwatch.hpp"
 
 namespace traceraft {
@@ -47,7 +46,7 @@ Status JacobianSolver::renew(int lane) {
 void JacobianSolver::solve_with(LinearSolver& solver, NewtonSystem& system, double tolerance,
                                 int lane) {
   system.report = solver.solve(J_[lane], system.b, system.x, tolerance, lane);
-  if (system.report.status.ok() && !system.x.allFinite())
+  if (system.report.status.ok() && !problem_.ranks().all(system.x.allFinite()))
     system.report.status = Status::retry("the solution is not finite");
 }
 
@@ -125,7 +124,7 @@ IntegratorStatistics JacobianSolver::added_to(IntegratorStatistics statistics) c
   return statistics;
 }
 
-void JacobianSolver::save(std::ostream& out) const {
+void JacobianSolver::save(CheckpointOut out) const {
   write_binary(out, statistics_);
   write_binary(out, anchored_);
   if (anchored_) {
@@ -139,7 +138,7 @@ void JacobianSolver::save(std::ostream& out) const {
   if (fallback_) fallback_->save(out);
 }
 
-void JacobianSolver::load(std::istream& in) {
+void JacobianSolver::load(CheckpointIn in) {
   read_binary(in, statistics_);
   read_binary(in, anchored_);
   if (anchored_) {

@@ -1,9 +1,9 @@
 // Solves with Jacobians of a DAE and decides when to renew factors and when to fall back.
 #pragma once
 
-#include <iosfwd>
 #include <vector>
 
+#include "kernel/core/checkpoint_stream.hpp"
 #include "kernel/linear/linear_solver.hpp"
 #include "kernel/problem/dae_problem.hpp"
 #include "kernel/time/integrator.hpp"
@@ -47,8 +47,8 @@ class JacobianSolver {
   // An integrator's statistics with what happened here.
   IntegratorStatistics added_to(IntegratorStatistics statistics) const;
   const JacobianSolverStatistics& statistics() const { return statistics_; }
-  void save(std::ostream& out) const;
-  void load(std::istream& in);
+  void save(CheckpointOut out) const;
+  void load(CheckpointIn in);
 
  private:
   // The state at which a Jacobian was assembled.

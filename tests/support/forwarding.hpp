@@ -1,6 +1,7 @@
 // A model and a linear solver that do what others do: to be derived from where a test interferes.
 #pragma once
 
+#include "kernel/core/checkpoint_stream.hpp"
 #include "kernel/linear/linear_solver.hpp"
 #include "kernel/problem/dae_problem.hpp"
 
@@ -31,6 +32,7 @@ class ForwardingProblem : public DaeProblem {
   bool conserves_mass() const override { return inner_.conserves_mass(); }
   double energy(ConstVec y) const override { return inner_.energy(y); }
   bool dissipates_energy() const override { return inner_.dissipates_energy(); }
+  const Communicator& ranks() const override { return inner_.ranks(); }
 
  private:
   const DaeProblem& inner_;
@@ -50,8 +52,8 @@ class ForwardingSolver : public LinearSolver {
     return inner_->solve(J, b, x, tolerance, lane);
   }
   LinearStatistics statistics() const override { return inner_->statistics(); }
-  void save(std::ostream& out) const override { inner_->save(out); }
-  void load(std::istream& in) override { inner_->load(in); }
+  void save(CheckpointOut out) const override { inner_->save(out); }
+  void load(CheckpointIn in) override { inner_->load(in); }
 
  private:
   LinearSolverPtr inner_;
