@@ -12,7 +12,7 @@
 namespace traceraft {
 namespace {
 
-constexpr char kMagic[] = "traceraft checkpoint 1\n";  // the number is the version of the format
+constexpr char kMagic[] = "traceraft checkpoint 2\n";  // the number is the version of the format
 constexpr std::size_t kMagicSize = sizeof kMagic - 1;
 constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 36;
 constexpr std::size_t kKept = 2;
@@ -155,8 +155,6 @@ Checkpoint CheckpointStore::newest() const {
   return checkpoint;
 }
 
-namespace {
-
 Vec concentration_of(const Checkpoint& checkpoint, const std::filesystem::path& run_folder,
                      int nodes) {
   if (checkpoint.concentration.size() != static_cast<std::size_t>(nodes))
@@ -164,6 +162,8 @@ Vec concentration_of(const Checkpoint& checkpoint, const std::filesystem::path& 
                   " nodes, this run has " + std::to_string(nodes));
   return Eigen::Map<const Vec>(checkpoint.concentration.data(), nodes);
 }
+
+namespace {
 
 // The line of an option in a numerical identity.
 std::string line_of(const std::string& identity, const std::string& option) {
@@ -196,10 +196,6 @@ Vec final_concentration(const std::filesystem::path& run_folder, int nodes,
                        ours);
   }
   return concentration_of(checkpoint, run_folder, nodes);
-}
-
-Vec newest_concentration(const std::filesystem::path& run_folder, int nodes) {
-  return concentration_of(CheckpointStore(run_folder / "checkpoints").newest(), run_folder, nodes);
 }
 
 }  // namespace traceraft

@@ -253,8 +253,8 @@ class Ida final : public Integrator {
 
   // What IDA is told of a status. A listed code: 6.4 takes any other for success.
   int code(const Status& status, int retry, int fatal) {
-    if (status.ok()) return 0;
     why_ = status.why;
+    if (status.ok()) return 0;
     return status.outcome == Outcome::retry ? retry : fatal;
   }
 
@@ -333,8 +333,9 @@ class Ida final : public Integrator {
       case IDA_ERR_FAIL:
         return Status::fatal(
             "no step size: the error stays above the tolerance down to the smallest step");
-      case IDA_CONV_FAIL:
       case IDA_LSOLVE_FAIL:
+        return Status::fatal("the linear solver failed: " + reason);
+      case IDA_CONV_FAIL:
       case IDA_REP_RES_ERR:
       case IDA_FIRST_RES_FAIL:
         return Status::fatal(

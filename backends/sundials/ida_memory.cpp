@@ -49,7 +49,7 @@ void load_ida_memory(void* memory, CheckpointIn in) {
   read_binary(in, size);
   read_binary(in, count);
   if (size != std::int64_t{sizeof(*m)} || count != vectors(m))
-    throw IoError("checkpoint: it was written with another version or maximum order of IDA");
+    throw IoError("checkpoint: it was written with another version of IDA");
   if (IDAInitialSetup(m) != IDA_SUCCESS)
     throw IoError("checkpoint: IDA does not start with these options");
   m->ida_SetupDone = SUNTRUE;

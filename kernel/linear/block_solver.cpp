@@ -47,6 +47,7 @@ class BlockSolver final : public LinearSolver {
     Lane& lane = lanes_[lane_number];
     const ScopedTimer timer(lane.statistics.solve_seconds);
     ++lane.statistics.solves;
+    if (!ready_) return {Status::retry("there are no factors")};
     const int n = J.block_size();
     const double row_scale = J.shift > 0 ? 1 / J.shift : 1.0;
     const auto apply = [&](ConstVec in, VecRef out) {

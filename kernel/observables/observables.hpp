@@ -33,6 +33,7 @@ class Observer {
   RaftReport rafts(ConstVec y) const;
   double level() const;
   double mass_scale() const;  // |Γ| (b − a)
+  double energy_scale() const { return problem_.energy_scale(); }
 
  private:
   const CahnHilliard& problem_;

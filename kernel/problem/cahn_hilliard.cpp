@@ -209,6 +209,10 @@ bool CahnHilliard::conserves_mass() const {
                      [](const EffectPtr& effect) { return effect->conserves_mass(); });
 }
 
+double CahnHilliard::energy_scale() const {
+  return space_->area * model_.well.energy(0.5 * (model_.well.a + model_.well.b));
+}
+
 bool CahnHilliard::dissipates_energy() const {
   // With the nodal rule F2 is not the gradient of the energy.
   return model_.rule == PotentialRule::consistent &&

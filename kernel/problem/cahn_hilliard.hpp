@@ -52,6 +52,7 @@ class CahnHilliard final : public DaeProblem {
   bool conserves_mass() const override;
   double energy(ConstVec y) const override;
   bool dissipates_energy() const override;
+  double energy_scale() const override;  // of a surface halfway between the wells
   const Communicator& ranks() const override { return *space_->communicator; }
 
   const SurfaceSpace& space() const { return *space_; }

@@ -53,6 +53,8 @@ class DaeProblem {
   // A functional that does not grow along solutions, and whether the model promises that.
   virtual double energy(ConstVec y) const = 0;
   virtual bool dissipates_energy() const = 0;
+  // The size of its terms, which cancel near equilibrium: its roundoff is relative to that.
+  virtual double energy_scale() const = 0;
 
   // Whom the state is shared with.
   virtual const Communicator& ranks() const = 0;

@@ -24,7 +24,7 @@ void begin_run(RunState& state, const Observer& observer, const std::vector<doub
                const std::vector<RunListener*>& listeners) {
   const Integrator& integrator = state.integrator;
   state.row = observer.measure(integrator.time(), integrator.state());
-  state.monitor.start(state.row, observer.mass_scale());
+  state.monitor.start(state.row, observer.mass_scale(), observer.energy_scale());
   for (; state.next_output < output_times.size() &&
          output_times[state.next_output] <= integrator.time();
        ++state.next_output)

@@ -11,18 +11,21 @@ namespace traceraft {
 
 class RunMonitor {
  public:
-  // mass_scale: what a drift is relative to where the mass itself is nearly zero.
-  void start(const Observables& row, double mass_scale) {
+  // mass_scale: what a drift is relative to where the mass itself is nearly zero. energy_scale:
+  // DaeProblem's.
+  void start(const Observables& row, double mass_scale, double energy_scale) {
     initial_mass_ = row.mass;
     mass_scale_ = std::fabs(row.mass) > 1e-3 * mass_scale ? std::fabs(row.mass) : mass_scale;
     initial_energy_ = row.energy;
     energy_ = row.energy;
+    allowed_rise_ = EnergyGuard::allowed_rise(row.energy, energy_scale);
   }
   void accept(const Observables& row) {
     drift_ = std::max(drift_, std::fabs(relative_drift(row)));
-    const double rise = (row.energy - energy_) / std::fabs(initial_energy_);
-    if (rise > EnergyGuard::kRise) ++rises_;
-    largest_rise_ = std::max(largest_rise_, rise);
+    if (const double rise = row.energy - energy_; rise > allowed_rise_) {
+      ++rises_;
+      largest_rise_ = std::max(largest_rise_, rise / std::fabs(initial_energy_));
+    }
     energy_ = row.energy;
   }
 
@@ -35,7 +38,7 @@ class RunMonitor {
 
  private:
   double initial_mass_ = 0, mass_scale_ = 1, initial_energy_ = 1, energy_ = 0, drift_ = 0,
-         largest_rise_ = 0;
+         allowed_rise_ = 0, largest_rise_ = 0;
   long rises_ = 0;
 };
 

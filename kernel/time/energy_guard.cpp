@@ -7,24 +7,24 @@ namespace traceraft {
 void EnergyGuard::start(ConstVec y) {
   if (!active_) return;
   energy_ = candidate_ = problem_.energy(y);
-  scale_ = std::fabs(energy_);
+  allowed_ = allowed_rise(energy_, problem_.energy_scale());
 }
 
 Status EnergyGuard::judge(ConstVec y) {
   if (!active_) return {};
   candidate_ = problem_.energy(y);
-  if (candidate_ <= energy_ + kRise * scale_) return {};  // not if it is NaN
+  if (candidate_ <= energy_ + allowed_) return {};  // not if it is NaN
   ++refused_;
   return Status::retry("the energy grows");
 }
 
 void EnergyGuard::save(CheckpointOut out) const {
-  for (const double value : {scale_, energy_}) write_binary(out, value);
+  for (const double value : {allowed_, energy_}) write_binary(out, value);
   write_binary(out, refused_);
 }
 
 void EnergyGuard::load(CheckpointIn in) {
-  for (double* value : {&scale_, &energy_}) read_binary(in, *value);
+  for (double* value : {&allowed_, &energy_}) read_binary(in, *value);
   read_binary(in, refused_);
 }
 

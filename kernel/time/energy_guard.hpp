@@ -1,6 +1,8 @@
 // Refuses steps that gain energy where the model can only lose it.
 #pragma once
 
+#include <cmath>
+
 #include "kernel/core/checkpoint_stream.hpp"
 #include "kernel/problem/dae_problem.hpp"
 #include "kernel/time/integrator.hpp"
@@ -12,7 +14,10 @@ namespace traceraft {
 // ask for it.
 class EnergyGuard {
  public:
-  static constexpr double kRise = 1e-10;  // relative to the first energy: what counts as growth
+  // What does not count as growth: 1e-10 of the first energy, and roundoff.
+  static double allowed_rise(double first_energy, double energy_scale) {
+    return 1e-10 * std::fabs(first_energy) + 1e-13 * energy_scale;
+  }
 
   EnergyGuard(const DaeProblem& problem, const IntegratorSettings& settings)
       : problem_(problem), active_(settings.reject_energy_rises && problem.dissipates_energy()) {}
@@ -31,7 +36,7 @@ class EnergyGuard {
  private:
   const DaeProblem& problem_;
   bool active_;
-  double scale_ = 1, energy_ = 0, candidate_ = 0;
+  double allowed_ = 0, energy_ = 0, candidate_ = 0;
   long refused_ = 0;
 };
 

@@ -56,6 +56,7 @@ template <class Attempt, class Accept>
 Status take_step(const StepControl& control, double t, double t_end, double dt,
                  IntegratorStatistics& statistics, const Attempt& attempt, const Accept& accept) {
   if (!(t < t_end)) return Status::fatal("the end of the run has been reached");
+  bool smallest = false;  // has the smallest step been tried?
   while (true) {
     const bool last = t + dt >= t_end * (1 - 1e-14);
     if (last) dt = t_end - t;
@@ -68,16 +69,13 @@ Status take_step(const StepControl& control, double t, double t_end, double dt,
     }
     // NaN and failed solves end up here, too.
     ++(status.ok() ? statistics.rejected : statistics.failures);
-    const double smaller = status.ok() ? control.after_rejection(dt, error) : dt / 4;
-    if (dt > control.min_step() && smaller < control.min_step()) {
-      dt = control.min_step();
-      continue;
-    }
-    if (!(smaller >= control.min_step()))
+    if (smallest || !(dt > control.min_step()))
       return Status::fatal(
           "no step size: " + (status.ok() ? "the error stays above the tolerance" : status.why) +
           " down to the smallest step");
-    dt = smaller;
+    const double smaller = status.ok() ? control.after_rejection(dt, error) : dt / 4;
+    smallest = !(smaller >= control.min_step());
+    dt = smallest ? control.min_step() : smaller;
   }
 }
 

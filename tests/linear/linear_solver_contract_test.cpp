@@ -58,6 +58,14 @@ TEST_P(LinearSolverContract, SolvesOverManyStepSizesWithBothTangents) {
     }
 }
 
+TEST_P(LinearSolverContract, SolvesNothingWithoutFactors) {
+  assemble(50);
+  const Vec b = random_vector(problem.size(), 3);
+  Vec x = Vec::Zero(b.size());
+  EXPECT_TRUE(solver->wants_setup(J));
+  EXPECT_EQ(solver->solve(J, b, x, 1e-8).status.outcome, Outcome::retry);
+}
+
 TEST_P(LinearSolverContract, SaysSoWhenItCannotReachATolerance) {
   assemble(50);
   ASSERT_TRUE(solver->setup(J).ok());

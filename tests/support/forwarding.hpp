@@ -32,6 +32,7 @@ class ForwardingProblem : public DaeProblem {
   bool conserves_mass() const override { return inner_.conserves_mass(); }
   double energy(ConstVec y) const override { return inner_.energy(y); }
   bool dissipates_energy() const override { return inner_.dissipates_energy(); }
+  double energy_scale() const override { return inner_.energy_scale(); }
   const Communicator& ranks() const override { return inner_.ranks(); }
 
  private:

@@ -180,6 +180,32 @@ TEST_P(IntegratorContract, ContinuesBitwiseFromWhatItSaved) {
   }
 }
 
+TEST_P(IntegratorContract, TheEnergyGuardContinuesBitwise) {
+  const CahnHilliard model(space, make_model("degenerate", 0.1));
+  IntegratorSettings settings;
+  settings.reject_energy_rises = true;
+  settings.tolerance = 0.3;
+  const testing::StartState start = noise_state(model, 1, 0.4);
+  const IntegratorPtr whole = make(model, "block", settings);
+  ASSERT_TRUE(whole->start(0, start.y, start.ydot, 1000).ok());
+  std::vector<std::string> saved;
+  while (whole->time() < 1000) {
+    std::ostringstream out;
+    whole->save(out);
+    saved.push_back(out.str());
+    ASSERT_TRUE(whole->advance().ok());
+  }
+  ASSERT_GT(whole->statistics().energy_rises, 0);
+  for (std::size_t step = 0; step < saved.size(); step += 5) {
+    const IntegratorPtr resumed = make(model, "block", settings);
+    std::istringstream in(saved[step]);
+    resumed->load(in);
+    while (resumed->time() < 1000) ASSERT_TRUE(resumed->advance().ok());
+    EXPECT_EQ(resumed->state(), whole->state()) << "from step " << step;
+    EXPECT_EQ(resumed->statistics().energy_rises, whole->statistics().energy_rises);
+  }
+}
+
 TEST_P(IntegratorContract, RefusesDataThatAreNotItsOwn) {
   const IntegratorPtr integrator = started(problem, 3, choose_linear_solver("block", *space));
   ASSERT_TRUE(integrator->advance().ok());
@@ -270,6 +296,38 @@ TEST_P(IntegratorContract, ReportsAStepSizeThatCollapses) {
   EXPECT_EQ(integrator->statistics().steps, 0) << "a step above the tolerance was accepted";
 }
 
+TEST_P(IntegratorContract, SaysThatTheErrorIsWhyThereIsNoStepSize) {
+  // Nearly linear, so that Newton's method is not what fails.
+  const CahnHilliard gentle(space, make_model("constant", 0.2));
+  const int n = gentle.block_size();
+  Vec y = Vec::Zero(2 * n), ydot = y;
+  y.head(n) = Vec::Constant(n, 0.5) + 1e-3 * noise_state(problem).y.head(n);
+  ASSERT_TRUE(gentle.consistent_initial_state(0, y, ydot).ok());
+  IntegratorSettings settings;
+  settings.tolerance = 1e-7;
+  settings.linear_tolerance = 1e-8;
+  settings.initial_step = settings.min_step = 0.02;
+  const IntegratorPtr integrator = make(gentle, "direct", settings);
+  ASSERT_TRUE(integrator->start(0, y, ydot, 2).ok());
+  const Status status = run(*integrator, 2);
+  EXPECT_EQ(status.outcome, Outcome::fatal);
+  EXPECT_NE(status.why.find("the error stays above the tolerance"), std::string::npos)
+      << status.why;
+}
+
+// Near equilibrium energies are roundoff of terms that cancel.
+TEST_P(IntegratorContract, TheEnergyGuardDoesNotMistakeRoundoffForGrowth) {
+  IntegratorSettings settings;
+  settings.reject_energy_rises = true;
+  const IntegratorPtr integrator = make(problem, "block", settings);
+  Vec y = Vec::Ones(problem.size()), ydot = Vec::Zero(problem.size());
+  y.head(problem.block_size()) += 1e-9 * noise_state(problem).y.head(problem.block_size());
+  ASSERT_TRUE(problem.consistent_initial_state(0, y, ydot).ok());
+  ASSERT_TRUE(integrator->start(0, y, ydot, 10).ok());
+  const Status status = run(*integrator, 10);
+  EXPECT_TRUE(status.ok()) << status.why;
+}
+
 TEST_P(IntegratorContract, TighterTolerancesGiveSmallerErrors) {
   std::vector<Vec> states;
   for (const double tolerance : {1e-2, 1e-3, 1e-5}) {
@@ -317,6 +375,105 @@ TEST_P(IntegratorContract, RefusesStepsThatGainEnergyIfAskedTo) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, IntegratorContract, ::testing::ValuesIn(integrators().names()));
+
+TEST(Ida, RefusesTheMemoryOfAnotherVersion) {
+  const auto space = make_space(8);
+  const CahnHilliard problem(space, make_model());
+  const auto make = [&] {
+    return integrators().find("ida").make(problem, choose_linear_solver("direct", *space),
+                                          space->team, {});
+  };
+  const testing::StartState start = noise_state(problem);
+  const IntegratorPtr integrator = make();
+  ASSERT_TRUE(integrator->start(0, start.y, start.ydot, 1).ok());
+  ASSERT_TRUE(integrator->advance().ok());
+  std::ostringstream out;
+  integrator->save(out);
+  std::string data = out.str();
+  const std::size_t vector = sizeof(std::int64_t) + sizeof(double) * start.y.size();
+  data[6 * sizeof(double) + sizeof(long) + vector] ^= 8;  // the size of IDA's memory
+  std::istringstream in(data);
+  try {
+    make()->load(in);
+    FAIL();
+  } catch (const IoError& error) {
+    EXPECT_NE(std::string(error.what()).find("version"), std::string::npos) << error.what();
+  }
+}
+
+// The first correction of a step decides its accuracy; later ones are small and solved loosely, but
+// not at random.
+TEST(Ida, SolvesEveryCorrectionAsItPromises) {
+  class Watching final : public testing::ForwardingSolver {
+   public:
+    Watching(LinearSolverPtr inner, std::vector<double>& asked)
+        : ForwardingSolver(std::move(inner)), asked_(asked) {}
+    SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance,
+                      int lane) override {
+      asked_.push_back(tolerance);
+      return ForwardingSolver::solve(J, b, x, tolerance, lane);
+    }
+
+   private:
+    std::vector<double>& asked_;
+  };
+  const auto space = make_space(8);
+  const CahnHilliard problem(space, make_model());
+  std::vector<double> asked;
+  LinearSolverChoice choice = choose_linear_solver("block", *space);
+  const LinearSolverFactory inner = choice.primary;
+  choice.primary = [&](int lanes) { return std::make_unique<Watching>(inner(lanes), asked); };
+  const IntegratorPtr integrator = integrators().find("ida").make(problem, choice, space->team, {});
+  const testing::StartState start = noise_state(problem);
+  ASSERT_TRUE(integrator->start(0, start.y, start.ydot, 5).ok());
+  while (integrator->time() < 5) ASSERT_TRUE(integrator->advance().ok());
+  EXPECT_GT(std::count(asked.begin(), asked.end(), 1e-2), 0);
+  EXPECT_GT(std::count(asked.begin(), asked.end(), 1e-1), 0);
+  EXPECT_EQ(
+      std::count(asked.begin(), asked.end(), 1e-2) + std::count(asked.begin(), asked.end(), 1e-1),
+      static_cast<long>(asked.size()));
+}
+
+// Factors renewed for the second of two systems belong to that system's state, and a restart must
+// compute them there again.
+TEST(JacobianSolver, RemembersTheStateOfRenewedFactorsWhicheverLaneNeededThem) {
+  const auto space = make_space(10);
+  const CahnHilliard problem(space, make_model());
+  const testing::StartState start = noise_state(problem);
+  Faulty::Plan plan;
+  plan.lazy = true;
+  plan.solve_fails = [](long call) { return call == 3; };  // lane 1 in the second round
+  LinearSolverChoice choice = choose_linear_solver("block", *space);
+  choice.fallback = nullptr;
+  LinearSolverChoice faulty = choice;
+  faulty.primary = [&](int lanes) { return std::make_unique<Faulty>(choice.primary(lanes), plan); };
+  const auto systems = [&](double shift) {
+    std::vector<NewtonSystem> list(2);
+    for (std::size_t lane = 0; lane < 2; ++lane) {
+      list[lane].shift = shift * (lane == 0 ? 1 : 30);
+      list[lane].tangent = Tangent::stabilised;
+      list[lane].y = (lane == 0 ? 1 : 0.7) * start.y;
+      list[lane].ydot = Vec::Zero(problem.size());
+      list[lane].b = testing::random_vector(problem.size(), 5 + lane);
+      list[lane].x = Vec::Zero(problem.size());
+    }
+    return list;
+  };
+  JacobianSolver whole(problem, faulty, 2, space->team);
+  auto first = systems(1), second = systems(2), third = systems(3);
+  whole.solve(first, 1e-6);
+  whole.solve(second, 1e-6);
+  ASSERT_EQ(whole.statistics().renewals, 1);
+  std::stringstream saved;
+  whole.save(static_cast<std::ostream&>(saved));
+  plan.solve_fails = [](long) { return false; };
+  JacobianSolver resumed(problem, faulty, 2, space->team);
+  resumed.load(static_cast<std::istream&>(saved));
+  auto again = third;
+  whole.solve(third, 1e-6);
+  resumed.solve(again, 1e-6);
+  for (std::size_t lane = 0; lane < 2; ++lane) EXPECT_EQ(third[lane].x, again[lane].x) << lane;
+}
 
 TEST(Euler, NeverGainsEnergyWhereItPromisesSo) {
   const auto space = make_space(16);
