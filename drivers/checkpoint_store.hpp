@@ -52,9 +52,9 @@ class CheckpointStore {
 std::string encode(const Checkpoint& checkpoint);
 Checkpoint decode(const std::string& data);
 
-// c at the nodes in the newest checkpoint of a run. Throws IoError if there is none or it is on
-// another mesh.
-Vec newest_concentration(const std::filesystem::path& run_folder, int nodes);
+// c at the nodes. Throws IoError if the checkpoint, found in this run's folder, has another mesh.
+Vec concentration_of(const Checkpoint& checkpoint, const std::filesystem::path& run_folder,
+                     int nodes);
 
 // c at the nodes in the newest checkpoint of another run's folder. Throws InputError if there is
 // none or it is on another mesh: surface and cells are compared with the numerical identity of this

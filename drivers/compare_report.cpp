@@ -7,6 +7,7 @@
 #include "backends/posix/durable_file.hpp"
 #include "drivers/chart.hpp"
 #include "drivers/page.hpp"
+#include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
 
@@ -15,10 +16,10 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-constexpr const char* kHeading[] = {"integrator", "linear solver",    "tolerance",  "error",
-                                    "CPU s",      "wall s (from to)", "steps",      "rejected",
-                                    "failed",     "residuals",        "Jacobians",  "set-ups",
-                                    "linear its", "peak MB",          "mass drift", "energy rises"};
+constexpr const char* kHeading[] = {
+    "integrator", "linear solver", "tolerance", "error",      "CPU s",       "wall s (from to)",
+    "steps",      "rejected",      "failed",    "residuals",  "Jacobians",   "set-ups",
+    "linear its", "threads",       "peak MB",   "mass drift", "energy rises"};
 
 Row cells(const WorkPoint& p) {
   Row row = {p.integrator, p.linear_solver, format_number(p.tolerance)};
@@ -32,7 +33,7 @@ Row cells(const WorkPoint& p) {
   row.push_back(formatted("%.2f", wall.median) + " (" + formatted("%.2f", wall.low) + " to " +
                 formatted("%.2f", wall.high) + ")");
   for (const char* count : {"steps", "rejected", "failures", "residuals", "jacobians",
-                            "linear_setups", "linear_iterations"})
+                            "linear_setups", "linear_iterations", "threads"})
     row.push_back(formatted("%.0f", p.counts.at(count)));
   row.push_back(formatted("%.0f", p.counts.at("peak_memory_mb")));
   row.push_back(formatted("%.0e", p.counts.at("mass_drift")));
@@ -55,7 +56,7 @@ Chart work_precision(const std::vector<WorkPoint>& points, const char* clock,
   chart.log_x = chart.log_y = true;
   std::map<std::string, std::size_t> index;
   for (const WorkPoint& p : points) {
-    if (!p.ok() || p.error <= 0) continue;
+    if (!p.ok() || !(p.error > 0)) continue;  // no place on a logarithmic axis
     const auto [entry, fresh] = index.emplace(p.method(), chart.series.size());
     if (fresh) chart.series.push_back({p.method(), {}});
     chart.series[entry->second].points.emplace_back(spread_of(p.*times).median, p.error);
@@ -120,18 +121,21 @@ void write_report(const ComparisonFolder& folder, const std::vector<WorkPoint>& 
   Page page("Integrators and linear solvers compared");
   page.paragraph(advice.sentence);
   for (const std::string& line : about) page.paragraph(line);
-  bool drawn = true;
+  std::string missing;
   for (const auto& [name, clock, times] :
        {std::tuple("error-wall", "wall time", &WorkPoint::wall_s),
         std::tuple("error-cpu", "CPU time", &WorkPoint::cpu_s)}) {
     const Chart chart = work_precision(points, clock, times);
     if (chart.series.empty()) continue;
-    const std::string svg = draw_chart(chart, folder.path() / name);
-    drawn = drawn && !svg.empty();
-    if (!svg.empty()) page.figure(svg, "Each mark is one tolerance. Lower left is better.");
+    try {
+      const std::string svg = draw_chart(chart, folder.path() / name);
+      if (svg.empty()) missing = "gnuplot is not installed (Debian package gnuplot-nox)";
+      if (!svg.empty()) page.figure(svg, "Each mark is one tolerance. Lower left is better.");
+    } catch (const IoError& error) {  // the table is worth more than its picture
+      missing = error.what();
+    }
   }
-  if (!drawn)
-    page.paragraph("There are no charts: gnuplot is not installed (Debian package gnuplot-nox).");
+  if (!missing.empty()) page.paragraph("Charts are missing: " + missing + ".");
   page.heading("All runs");
   page.table(table(points));
   write_durably(folder.path() / "compare.html", page.html());

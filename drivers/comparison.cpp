@@ -1,6 +1,7 @@
 #include "drivers/comparison.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "backends/posix/durable_file.hpp"
@@ -16,11 +17,14 @@ constexpr std::uint64_t kMaxBytes = 1 << 24;
 constexpr const char* kCounts[] = {"steps",          "rejected",          "failures",
                                    "residuals",      "jacobians",         "newton_iterations",
                                    "linear_setups",  "linear_iterations", "fallbacks",
-                                   "peak_memory_mb", "mass_drift",        "energy_rises"};
+                                   "peak_memory_mb", "mass_drift",        "energy_rises",
+                                   "threads"};
 
-nlohmann::json parsed(const std::filesystem::path& path) {
+// Reads a file of JSON with `use`, whose complaints become those about the file.
+template <class Use>
+auto from_json(const std::filesystem::path& path, const Use& use) {
   try {
-    return nlohmann::json::parse(read_file(path, kMaxBytes));
+    return use(nlohmann::json::parse(read_file(path, kMaxBytes)));
   } catch (const nlohmann::json::exception& error) {
     throw IoError(path.string() + " is damaged: " + error.what());
   }
@@ -37,22 +41,20 @@ double relative_error(const DaeProblem& problem, const Vec& c, ConstVec referenc
 
 bool run_finished(const std::filesystem::path& run_folder) {
   const std::filesystem::path summary = run_folder / "summary.json";
-  return std::filesystem::exists(summary) && parsed(summary).value("end", "") == "finished";
+  return std::filesystem::exists(summary) && from_json(summary, [](const nlohmann::json& json) {
+           return json.at("end").get<std::string>() == "finished";
+         });
 }
 
-std::string CompareJob::name() const {
-  return integrator + "-" + linear_solver + "-" + format_number(tolerance) + "-" +
-         std::to_string(repetition);
-}
-
-std::vector<CompareJob> jobs_of(const ComparePlan& plan) {
-  std::vector<CompareJob> jobs;
-  for (int repetition = 1; repetition <= plan.repeat; ++repetition)
-    for (const std::string& integrator : plan.integrators)
-      for (const std::string& solver : plan.linear_solvers)
-        for (const double tolerance : plan.tolerances)
-          jobs.push_back({integrator, solver, tolerance, repetition});
-  return jobs;
+Vec concentration_at_end(const std::filesystem::path& run_folder, int nodes) {
+  const long steps = from_json(run_folder / "summary.json", [](const nlohmann::json& json) {
+    return json.at("steps").get<long>();
+  });
+  const Checkpoint last = CheckpointStore(run_folder / "checkpoints").newest();
+  if (last.step != steps)
+    throw IoError(run_folder.string() +
+                  " has lost its last checkpoint; delete that folder to repeat the run");
+  return concentration_of(last, run_folder, nodes);
 }
 
 void ComparisonFolder::save(const ComparePlan& plan) const {
@@ -62,19 +64,18 @@ void ComparisonFolder::save(const ComparePlan& plan) const {
                                        {"repeat", plan.repeat},
                                        {"reference_tolerance", plan.reference_tolerance},
                                        {"time_limit", plan.time_limit},
-                                       {"target_error", plan.target_error}};
+                                       {"target_error", plan.target_error},
+                                       {"initial_state", plan.initial_state}};
   write_durably(plan_file(), json.dump(2) + "\n");
 }
 
 ComparePlan ComparisonFolder::load() const {
-  try {
-    const nlohmann::json json = parsed(plan_file());
-    return {json.at("integrators"), json.at("linear_solvers"),      json.at("tolerances"),
-            json.at("repeat"),      json.at("reference_tolerance"), json.at("time_limit"),
-            json.at("target_error")};
-  } catch (const nlohmann::json::exception& error) {
-    throw IoError(plan_file().string() + " is damaged: " + error.what());
-  }
+  return from_json(plan_file(), [](const nlohmann::json& json) {
+    return ComparePlan{json.at("integrators"),         json.at("linear_solvers"),
+                       json.at("tolerances"),          json.at("repeat"),
+                       json.at("reference_tolerance"), json.at("time_limit"),
+                       json.at("target_error"),        json.at("initial_state")};
+  });
 }
 
 std::filesystem::path ComparisonFolder::run_of(const CompareJob& job) const {
@@ -87,17 +88,54 @@ std::filesystem::path ComparisonFolder::record_of(const CompareJob& job) const {
   return path_ / "runs" / (job.name() + ".json");
 }
 
-bool ComparisonFolder::done(const CompareJob& job) const {
-  if (std::filesystem::exists(record_of(job))) return true;
+void ComparisonFolder::record(const CompareJob& job, const Record& record) const {
+  write_durably(record_of(job), nlohmann::ordered_json{{"failure", record.failure},
+                                                       {"time_limit", record.time_limit}}
+                                        .dump() +
+                                    "\n");
+}
+
+std::optional<ComparisonFolder::Record> ComparisonFolder::recorded(const CompareJob& job) const {
+  if (!std::filesystem::exists(record_of(job))) return std::nullopt;
+  return from_json(record_of(job), [](const nlohmann::json& json) {
+    return Record{json.at("failure"), json.at("time_limit")};
+  });
+}
+
+bool ComparisonFolder::done(const CompareJob& job, const ComparePlan& plan) const {
+  const auto settled = [&](const Record& record) {
+    const bool may_take_longer =
+        record.time_limit > 0 && (plan.time_limit == 0 || plan.time_limit > record.time_limit);
+    return !record.failure.empty() && !may_take_longer;
+  };
+  if (const auto own = recorded(job)) return own->failure.empty() || settled(*own);
   // What failed is not repeated for its time.
   CompareJob first = job;
   first.repetition = 1;
-  return std::filesystem::exists(record_of(first)) &&
-         !parsed(record_of(first)).value("failure", "").empty();
+  const auto record = recorded(first);
+  return record && settled(*record);
 }
 
-void ComparisonFolder::record(const CompareJob& job, const std::string& failure) const {
-  write_durably(record_of(job), nlohmann::json{{"failure", failure}}.dump() + "\n");
+void ComparisonFolder::add(const CompareJob& job, const DaeProblem& problem, ConstVec reference,
+                           WorkPoint& point) const {
+  const auto record = recorded(job);
+  if (!record) return;
+  if (!record->failure.empty()) {
+    // A later repetition that was in bad luck takes nothing away from the others.
+    if (point.wall_s.empty()) point.failure = record->failure;
+    return;
+  }
+  from_json(run_of(job) / "summary.json", [&](const nlohmann::json& summary) {
+    point.cpu_s.push_back(summary.at("cpu_s"));
+    point.wall_s.push_back(summary.at("wall_s"));
+    if (point.wall_s.size() == 1)
+      for (const char* count : kCounts) point.counts[count] = summary.at(count);
+    return 0;
+  });
+  point.failure.clear();
+  if (point.wall_s.size() > 1) return;
+  point.error = relative_error(
+      problem, concentration_at_end(run_of(job), static_cast<int>(reference.size())), reference);
 }
 
 std::vector<WorkPoint> ComparisonFolder::points(const ComparePlan& plan, const DaeProblem& problem,
@@ -110,25 +148,15 @@ std::vector<WorkPoint> ComparisonFolder::points(const ComparePlan& plan, const D
     };
     auto point = std::find_if(points.begin(), points.end(), same);
     if (point == points.end()) {
-      points.push_back({job.integrator, job.linear_solver, job.tolerance, "", 0, {}, {}, {}});
+      points.push_back(
+          {job.integrator, job.linear_solver, job.tolerance, "not run yet", 0, {}, {}, {}});
       point = points.end() - 1;
     }
-    if (!std::filesystem::exists(record_of(job))) continue;
-    const std::string failure = parsed(record_of(job)).value("failure", "");
-    if (!failure.empty()) {
-      point->failure = failure;
-      continue;
-    }
-    const nlohmann::json summary = parsed(run_of(job) / "summary.json");
-    point->cpu_s.push_back(summary.at("cpu_s"));
-    point->wall_s.push_back(summary.at("wall_s"));
-    if (job.repetition > 1) continue;
-    for (const char* count : kCounts) point->counts[count] = summary.at(count);
-    const Vec c = newest_concentration(run_of(job), static_cast<int>(reference.size()));
-    point->error = relative_error(problem, c, reference);
+    add(job, problem, reference, *point);
   }
   for (WorkPoint& point : points)
-    if (point.ok() && point.wall_s.empty()) point.failure = "not run yet";
+    if (point.ok() && !std::isfinite(point.error))
+      point.failure = "its error is no number: the reference is zero";
   return points;
 }
 

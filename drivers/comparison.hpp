@@ -2,37 +2,21 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "drivers/configuration.hpp"
+#include "drivers/compare_plan.hpp"
 #include "kernel/problem/dae_problem.hpp"
 #include "verification/work_precision.hpp"
 
 namespace traceraft {
 
-struct ComparePlan {
-  std::vector<std::string> integrators, linear_solvers;
-  std::vector<double> tolerances;
-  int repeat = 3;
-  double reference_tolerance = 0;
-  double time_limit = 0;    // seconds per run; 0: none
-  double target_error = 0;  // 0: the smallest that all methods reach
-};
-
 // Has a run reached its end in this folder? Throws IoError if its summary is damaged.
 bool run_finished(const std::filesystem::path& run_folder);
 
-// One combination of the plan, run once.
-struct CompareJob {
-  std::string integrator, linear_solver;
-  double tolerance;
-  int repetition;  // from 1
-  std::string name() const;
-};
-
-// Repetition by repetition, so that a machine that changes its speed changes it for all.
-std::vector<CompareJob> jobs_of(const ComparePlan& plan);
+// c at the nodes at the end of a finished run. Throws IoError unless its last checkpoint is whole.
+Vec concentration_at_end(const std::filesystem::path& run_folder, int nodes);
 
 class ComparisonFolder {
  public:
@@ -46,9 +30,16 @@ class ComparisonFolder {
 
   std::filesystem::path run_of(const CompareJob& job) const;
   std::filesystem::path log_of(const CompareJob& job) const;
-  // Has the job been done, be it in vain?
-  bool done(const CompareJob& job) const;
-  void record(const CompareJob& job, const std::string& failure) const;
+
+  // What is known of a job: "" for a result, or why there is none and, if it was stopped for
+  // taking too long, after how many seconds.
+  struct Record {
+    std::string failure;
+    double time_limit = 0;
+  };
+  void record(const CompareJob& job, const Record& record) const;
+  // Is nothing left to do? What failed once is not repeated, unless it may take longer now.
+  bool done(const CompareJob& job, const ComparePlan& plan) const;
 
   // What the recorded jobs gave: a point per combination, in the order of the plan. Errors are
   // against the concentration of the reference.
@@ -58,6 +49,9 @@ class ComparisonFolder {
  private:
   std::filesystem::path plan_file() const { return path_ / "plan.json"; }
   std::filesystem::path record_of(const CompareJob& job) const;
+  std::optional<Record> recorded(const CompareJob& job) const;
+  void add(const CompareJob& job, const DaeProblem& problem, ConstVec reference,
+           WorkPoint& point) const;
 
   std::filesystem::path path_;
 };

@@ -23,6 +23,18 @@ std::string first_free_folder(const std::string& name) {
   }
 }
 
+void refuse_files_of_a_run(const fs::path& path) {
+  const RunFolder folder{path, nullptr};
+  for (const fs::path& ours :
+       {folder.config(), folder.summary(), folder.fields(), folder.checkpoints(),
+        folder.table("view.png"), folder.table("fields.pvd"), folder.table("series.csv"),
+        folder.table("observables.csv"), folder.table("rafts.csv")})
+    if (fs::exists(ours))
+      throw InputError("--out: " + path.string() + " already holds " + ours.filename().string() +
+                       "; go on with: traceraft resume " + path.string() +
+                       ", or choose another folder");
+}
+
 RunFolder create_run_folder(const std::string& out, const Configuration& configuration) {
   RunFolder folder;
   folder.path = out.empty() ? first_free_folder(configuration.text("case")) : out;
@@ -31,14 +43,7 @@ RunFolder create_run_folder(const std::string& out, const Configuration& configu
       throw InputError("--out: " + folder.path.string() + " is a file");
     fs::create_directories(folder.path);
     folder.lock = std::make_unique<FolderLock>(folder.path);
-    for (const fs::path& ours :
-         {folder.config(), folder.summary(), folder.fields(), folder.checkpoints(),
-          folder.table("view.png"), folder.table("fields.pvd"), folder.table("series.csv"),
-          folder.table("observables.csv"), folder.table("rafts.csv")})
-      if (fs::exists(ours))
-        throw InputError("--out: " + folder.path.string() + " already holds " +
-                         ours.filename().string() + "; go on with: traceraft resume " +
-                         folder.path.string() + ", or choose another folder");
+    refuse_files_of_a_run(folder.path);
     // First what makes it a run that can be resumed.
     write_durably(folder.config(), config_text(configuration));
     create_sub_folders(folder);

@@ -24,6 +24,9 @@ struct RunFolder {
 // runs/<name>-<first free number>.
 std::string first_free_folder(const std::string& name);
 
+// Throws InputError if a folder holds what a run writes.
+void refuse_files_of_a_run(const std::filesystem::path& path);
+
 // A folder for a new run, locked, holding its resolved configuration. Files of others in it are
 // left alone. An empty `out` means runs/<case>-<first free number>. Throws InputError if it holds a
 // run already, LockedError if one is going on, IoError.

@@ -1,7 +1,7 @@
 #include "backends/posix/child.hpp"
 
 #include <fcntl.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -18,23 +18,43 @@ namespace {
 
 constexpr useconds_t kPause = 50000;  // microseconds between looks
 
+// In the new process, with nothing but calls that are safe after a fork: becomes the program, or
+// reports why not.
+[[noreturn]] void become(char* const* arguments, const char* log, pid_t parent, int report) {
+  prctl(PR_SET_PDEATHSIG, kParentDied);
+  if (getppid() != parent) _exit(1);  // it died before that
+  const int input = open("/dev/null", O_RDONLY);
+  const int output = open(log, O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  if (input >= 0 && output >= 0 && dup2(input, STDIN_FILENO) >= 0 &&
+      dup2(output, STDOUT_FILENO) >= 0 && dup2(output, STDERR_FILENO) >= 0)
+    execvp(arguments[0], arguments);
+  const int error = errno;
+  const auto told = write(report, &error, sizeof error);
+  _exit(told == sizeof error ? 127 : 126);
+}
+
+// −1: there is no such program.
 pid_t spawn(const ChildRequest& request) {
   std::vector<char*> arguments;
   for (const std::string& word : request.command)
     arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, request.log.c_str(),
-                                   O_WRONLY | O_CREAT | O_TRUNC, 0644);
-  posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
-  pid_t child = -1;
-  const int error = posix_spawnp(&child, arguments[0], &files, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&files);
+  int report[2];
+  if (pipe2(report, O_CLOEXEC) != 0) throw IoError(std::string("pipe: ") + std::strerror(errno));
+  const pid_t parent = getpid(), child = fork();
+  if (child == 0) become(arguments.data(), request.log.c_str(), parent, report[1]);
+  const int fork_error = errno;
+  close(report[1]);
+  int error = 0;
+  if (child >= 0 && read(report[0], &error, sizeof error) == sizeof error)
+    waitpid(child, nullptr, 0);
+  close(report[0]);
+  if (child < 0) error = fork_error;
+  if (error == 0) return child;
+  if (error == ENOENT && !std::filesystem::exists(request.log)) error = EIO;  // the log, then
   if (error == ENOENT) return -1;
-  if (error != 0) throw IoError("cannot run " + request.command[0] + ": " + std::strerror(error));
-  return child;
+  throw IoError("cannot run " + request.command[0] + " with output to " + request.log.string() +
+                ": " + std::strerror(error));
 }
 
 }  // namespace
@@ -66,8 +86,8 @@ ChildResult run_child(const ChildRequest& request) {
   return result;
 }
 
-std::filesystem::path own_program() {
-  return std::filesystem::read_symlink("/proc/self/exe");
+std::string own_program() {
+  return "/proc/self/exe";
 }
 
 }  // namespace traceraft

@@ -21,10 +21,11 @@ struct ChildResult {
 };
 
 // Runs a program and waits. If this process is asked to stop (process.hpp) the child is, too, and
-// its end is waited for. Throws IoError if no process can be started.
+// its end is waited for; if this process dies, the child is asked to stop. Throws IoError if no
+// process can be started.
 ChildResult run_child(const ChildRequest& request);
 
-// This program's own path.
-std::filesystem::path own_program();
+// A path under which this very program can be run, even after its file has been replaced.
+std::string own_program();
 
 }  // namespace traceraft

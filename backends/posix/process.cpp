@@ -58,6 +58,8 @@ void catch_stop_signals() {
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  action.sa_handler = [](int) { stop_flag = 1; };
+  sigaction(kParentDied, &action, nullptr);
 }
 
 bool stop_requested() {

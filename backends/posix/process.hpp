@@ -1,6 +1,7 @@
 // What the system knows about this process.
 #pragma once
 
+#include <csignal>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,7 +14,11 @@ double peak_memory_mb();  // largest resident set so far
 bool stdout_is_terminal();
 int terminal_columns();  // 80 if unknown
 
-// From now on SIGINT and SIGTERM only set a flag; a second one ends the process at once.
+// What a child gets when the process that started it dies (child.hpp), perhaps several times.
+inline constexpr int kParentDied = SIGUSR1;
+
+// From now on SIGINT, SIGTERM and kParentDied only set a flag; a second SIGINT or SIGTERM ends the
+// process at once.
 void catch_stop_signals();
 bool stop_requested();
 // Writing beyond a file size limit becomes an error of the write instead of a signal.

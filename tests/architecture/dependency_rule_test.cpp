@@ -72,7 +72,7 @@ TEST(DependencyRule, EveryBackendKnowsTheKernelAndItsOwnLibrary) {
       {"muparser", {"muParser.h"}},
       {"png", {"png.h"}},
       {"posix",
-       {"fcntl.h", "spawn.h", "unistd.h", "sys/file.h", "sys/stat.h", "sys/ioctl.h",
+       {"fcntl.h", "spawn.h", "unistd.h", "sys/file.h", "sys/prctl.h", "sys/stat.h", "sys/ioctl.h",
         "sys/resource.h", "sys/wait.h"}},
       {"zlib", {"zlib.h"}}};
   for (const auto& entry : fs::directory_iterator(fs::path(TRACERAFT_ROOT) / "backends")) {

@@ -1,9 +1,15 @@
 // traceraft compare as a user meets it.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <csignal>
+#include <fstream>
+#include <nlohmann/json.hpp>
 
+#include "backends/posix/folder_lock.hpp"
+#include "drivers/checkpoint_store.hpp"
 #include "tests/support/program.hpp"
+#include "tests/support/spaces.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace traceraft {
@@ -30,6 +36,49 @@ class CompareTest : public ::testing::Test {
     for (std::string line; std::getline(text, line);) lines.push_back(line);
     return lines;
   }
+  // The cells of a row by the names in the heading.
+  std::map<std::string, std::string> row(std::size_t number) const {
+    const std::vector<std::string> names = cells(csv()[0]), values = cells(csv()[number]);
+    EXPECT_EQ(names.size(), values.size()) << csv()[number];
+    std::map<std::string, std::string> result;
+    for (std::size_t k = 0; k < std::min(names.size(), values.size()); ++k)
+      result[names[k]] = values[k];
+    return result;
+  }
+  double number(std::size_t row_number, const char* name) const {
+    return std::stod(row(row_number).at(name));
+  }
+  nlohmann::json summary(const std::string& job) const {
+    return nlohmann::json::parse(content(folder.path / "c/runs" / job / "summary.json"));
+  }
+  std::vector<fs::path> all_references() const {
+    std::vector<fs::path> found;
+    for (const auto& entry : fs::directory_iterator(folder.path / "references"))
+      found.push_back(entry.path());
+    return found;
+  }
+  static void damage_newest_checkpoint(const fs::path& run) {
+    fs::path newest;
+    for (const auto& entry : fs::directory_iterator(run / "checkpoints"))
+      newest = std::max(newest, entry.path());
+    std::fstream file(newest, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(200);
+    file.write("####", 4);
+  }
+
+ private:
+  static std::vector<std::string> cells(const std::string& line) {
+    std::vector<std::string> result(1);
+    bool quoted = false;
+    for (const char ch : line) {
+      if (ch == '"') quoted = !quoted;
+      if (ch == ',' && !quoted)
+        result.emplace_back();
+      else
+        result.back() += ch;
+    }
+    return result;
+  }
 };
 
 TEST_F(CompareTest, MeasuresRecommendsAndIsExtendedWithoutRepeatingItself) {
@@ -52,10 +101,153 @@ TEST_F(CompareTest, MeasuresRecommendsAndIsExtendedWithoutRepeatingItself) {
   const Outcome second =
       traceraft("compare " + out() + references() + "--integrators euler,ida,rosenbrock");
   ASSERT_EQ(second.code, 0) << second.output;
-  EXPECT_EQ(csv().size(), 7u);
+  ASSERT_EQ(csv().size(), 7u);
   EXPECT_EQ(csv()[4], ida);
   EXPECT_EQ(fs::last_write_time(done), run_time);
   EXPECT_EQ(fs::last_write_time(reference / "summary.json"), reference_time);
+}
+
+TEST_F(CompareTest, ErrorsTimesAndCountsAreThoseOfTheRuns) {
+  const Outcome outcome = traceraft("compare " + out() + references() + runs +
+                                    "--integrators ida,rosenbrock --tolerances 1e-2,1e-4 "
+                                    "--repeat 2 --target-error 3e-3");
+  ASSERT_EQ(outcome.code, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find("For an error of 3.0e-03"), std::string::npos) << outcome.output;
+  const auto space = testing::make_space(12);
+  const auto concentration = [&](const fs::path& run) {
+    return concentration_of(CheckpointStore(run / "checkpoints").newest(), run, space->nodes());
+  };
+  const Vec reference = concentration(all_references().at(0));
+  const std::vector<std::string> jobs = {"ida-block-0.01", "ida-block-1e-04",
+                                         "rosenbrock-block-0.01", "rosenbrock-block-1e-04"};
+  ASSERT_EQ(csv().size(), jobs.size() + 1);
+  for (std::size_t k = 0; k < jobs.size(); ++k) {
+    const Vec difference = concentration(folder.path / "c/runs" / (jobs[k] + "-1")) - reference;
+    const double error =
+        std::sqrt(space->inner(difference, difference) / space->inner(reference, reference));
+    EXPECT_NEAR(number(k + 1, "error") / error, 1, 1e-6) << jobs[k];
+    const nlohmann::json first = summary(jobs[k] + "-1"), second = summary(jobs[k] + "-2");
+    for (const char* count : {"steps", "residuals", "linear_iterations", "threads"})
+      EXPECT_EQ(number(k + 1, count), first.at(count).get<double>()) << count;
+    for (const std::string clock : {"cpu_s", "wall_s"}) {
+      const double a = first.at(clock), b = second.at(clock);
+      EXPECT_NEAR(number(k + 1, clock.c_str()), 0.5 * (a + b), 1e-9) << clock;
+      EXPECT_NEAR(number(k + 1, (clock + "_low").c_str()), std::min(a, b), 1e-9);
+      EXPECT_NEAR(number(k + 1, (clock + "_high").c_str()), std::max(a, b), 1e-9);
+    }
+    EXPECT_EQ(number(k + 1, "repetitions"), 2);
+  }
+  EXPECT_GT(number(1, "error"), 3 * number(2, "error")) << "the tolerance does not reach the runs";
+  EXPECT_GT(number(3, "error"), 3 * number(4, "error"));
+}
+
+TEST_F(CompareTest, ATighterToleranceBringsATighterReference) {
+  ASSERT_EQ(traceraft("compare --quiet " + out() + references() + runs +
+                      "--integrators ida --tolerances 1e-2 --repeat 1")
+                .code,
+            0);
+  const double alone = number(1, "error");
+  ASSERT_EQ(traceraft("compare --quiet " + out() + references() + "--tolerances 1e-4,0.01").code,
+            0);
+  ASSERT_EQ(csv().size(), 3u);
+  EXPECT_EQ(all_references().size(), 2u);
+  EXPECT_NEAR(number(1, "error") / alone, 1, 0.1);
+  EXPECT_LT(number(2, "error"), 0.1 * alone);
+  EXPECT_NE(content(folder.path / "c/compare.html").find("at tolerance 1e-06"), std::string::npos);
+}
+
+TEST_F(CompareTest, RunsThatTakeTooLongAreRowsUntilTheyMayTakeLonger) {
+  const Outcome impatient =
+      traceraft("compare " + out() + references() +
+                "--case spinodal --cells 16 --integrators euler --tolerances 1e-4 --repeat 2 "
+                "--reference-tolerance 1e-5 --time-limit 0.1");
+  EXPECT_EQ(impatient.code, 3) << impatient.output;
+  EXPECT_EQ(row(1).at("failure"), "\"stopped after 0.1 s\"");
+  EXPECT_FALSE(fs::exists(folder.path / "c/runs/euler-block-1e-04-2"));
+  const Outcome patient = traceraft("compare " + out() + references() + "--time-limit 60");
+  EXPECT_EQ(patient.code, 0) << patient.output;
+  EXPECT_EQ(row(1).at("failure"), "");
+  EXPECT_EQ(number(1, "repetitions"), 2);
+}
+
+TEST_F(CompareTest, BelievesNoDamagedResult) {
+  ASSERT_EQ(traceraft("compare --quiet " + out() + references() + runs +
+                      "--integrators ida --tolerances 1e-2 --repeat 1")
+                .code,
+            0);
+  const fs::path run = folder.path / "c/runs/ida-block-0.01-1";
+  for (const fs::path& broken : {run, all_references().at(0)}) {
+    const fs::path kept = folder.path / "kept";
+    fs::remove_all(kept);
+    fs::copy(broken, kept, fs::copy_options::recursive);
+    damage_newest_checkpoint(broken);
+    const Outcome outcome = traceraft("compare --quiet " + out() + references());
+    EXPECT_EQ(outcome.code, 4) << outcome.output;
+    EXPECT_NE(outcome.output.find("lost its last checkpoint"), std::string::npos) << outcome.output;
+    fs::remove_all(broken);
+    fs::copy(kept, broken, fs::copy_options::recursive);
+  }
+  for (const char* nonsense : {"[1]", "{\"failure\": null}", "{"}) {
+    std::ofstream(folder.path / "c/runs/ida-block-0.01-1.json") << nonsense;
+    const Outcome outcome = traceraft("compare --quiet " + out() + references());
+    EXPECT_EQ(outcome.code, 4) << outcome.output;
+    EXPECT_NE(outcome.output.find("is damaged"), std::string::npos) << outcome.output;
+  }
+}
+
+// A comparison that is killed takes its run with it, so that nothing works on its folder later.
+TEST_F(CompareTest, LeavesNoRunBehindWhenItIsKilled) {
+  const pid_t child = testing::start_traceraft(
+      "compare --quiet " + out() + references() +
+      "--case spinodal --cells 40 --integrators euler --tolerances 1e-4 --repeat 1 "
+      "--reference-tolerance 1e-5");
+  fs::path reference;
+  for (int i = 0; i < 3000 && reference.empty(); ++i, usleep(10000))
+    if (fs::exists(folder.path / "references") && !fs::is_empty(folder.path / "references"))
+      reference = all_references().at(0);
+  for (int i = 0; i < 3000 && testing::lines_of(reference / "series.csv") < 3; ++i) usleep(10000);
+  EXPECT_THROW(FolderLock{reference}, LockedError);
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  bool free = false;
+  for (int i = 0; i < 1000 && !free; ++i, usleep(10000)) try {
+      const FolderLock lock(reference);
+      free = true;
+    } catch (const LockedError&) {
+    }
+  EXPECT_TRUE(free);
+  EXPECT_EQ(nlohmann::json::parse(content(reference / "summary.json")).at("end"), "stopped");
+}
+
+TEST_F(CompareTest, OneAtATimeWorksOnAFolder) {
+  ASSERT_EQ(traceraft("compare --quiet " + out() + references() + runs +
+                      "--integrators ida --tolerances 1e-2 --repeat 1")
+                .code,
+            0);
+  const FolderLock lock(folder.path / "c");
+  EXPECT_EQ(traceraft("compare --quiet " + out() + references()).code, 6);
+}
+
+TEST_F(CompareTest, NoticesThatTheInitialStateHasChanged) {
+  const std::string source = (folder.path / "source").string();
+  const auto make_source = [&](const char* angle) {
+    fs::remove_all(source);
+    ASSERT_EQ(traceraft("run --quiet --no-fields --case two-rafts --cells 12 --epsilon 1 "
+                        "--t-end 0.01 --initial-caps \"0 0 1 " +
+                        std::string(angle) + "\" --out " + source)
+                  .code,
+              0);
+  };
+  make_source("60");
+  const Outcome first =
+      traceraft("compare " + out() + references() +
+                "--case spinodal --cells 12 --t-end 0.1 --initial restart:" + source +
+                " --integrators ida --tolerances 1e-2 --repeat 1");
+  ASSERT_EQ(first.code, 0) << first.output;
+  make_source("80");
+  const Outcome outcome = traceraft("compare " + out() + references());
+  EXPECT_EQ(outcome.code, 2) << outcome.output;
+  EXPECT_NE(outcome.output.find("another initial state"), std::string::npos);
 }
 
 TEST_F(CompareTest, AFailingCombinationIsARowWithItsReason) {
@@ -66,7 +258,8 @@ TEST_F(CompareTest, AFailingCombinationIsARowWithItsReason) {
       "--linear-solvers block,klu --tolerances 1e-2 --reference-tolerance 1e-3 --repeat 2");
   ASSERT_EQ(outcome.code, 0) << outcome.output;
   ASSERT_EQ(csv().size(), 3u);
-  EXPECT_NE(csv()[2].find("klu is for small systems"), std::string::npos) << csv()[2];
+  EXPECT_NE(row(2).at("failure").find("klu is for small systems"), std::string::npos);
+  EXPECT_EQ(row(2).at("error"), "");
   EXPECT_NE(outcome.output.find("not reached by ida with klu"), std::string::npos);
 }
 
@@ -84,7 +277,8 @@ TEST_F(CompareTest, GoesOnAfterAnInterruption) {
   EXPECT_FALSE(fs::exists(folder.path / "c/runs/euler-block-0.0001-1.json"));
   const Outcome resumed = traceraft("compare " + out() + references());
   ASSERT_EQ(resumed.code, 0) << resumed.output;
-  EXPECT_EQ(csv().size(), 7u);
+  ASSERT_EQ(csv().size(), 7u);
+  for (std::size_t k = 1; k < 7; ++k) EXPECT_EQ(row(k).at("failure"), "") << k;
 }
 
 TEST_F(CompareTest, RefusesWhatDoesNotFit) {
@@ -99,12 +293,29 @@ TEST_F(CompareTest, RefusesWhatDoesNotFit) {
   EXPECT_NE(complaint(out() + runs + "--tolerance 1e-3").find("--tolerances"), std::string::npos);
   EXPECT_NE(complaint(out() + runs + "--tolerances 7").find("out of range"), std::string::npos);
   EXPECT_NE(complaint(out() + runs + "--cels 7").find("did you mean '--cells'"), std::string::npos);
+  EXPECT_NE(complaint(out() + runs + "--ida-rtol 1e-3").find("--tolerances"), std::string::npos);
+  EXPECT_NE(complaint(out() + runs + "--target-error nan").find("finite"), std::string::npos);
+  EXPECT_NE(complaint(out() + runs + "--tolerances 1e-3 --reference-tolerance 1e-3")
+                .find("at most 1e-04"),
+            std::string::npos);
+  EXPECT_NE(complaint(out()).find("holds no comparison"), std::string::npos);
+  EXPECT_NE(complaint("").find("--case"), std::string::npos);
   EXPECT_FALSE(fs::exists(folder.path / "c"));
+  std::ofstream(folder.path / "file") << "text";
+  EXPECT_NE(complaint("--out " + (folder.path / "file").string() + " " + runs).find("is a file"),
+            std::string::npos);
+  const std::string run = (folder.path / "run").string();
+  ASSERT_EQ(traceraft("run --quiet --no-fields --out " + run + " " + runs).code, 0);
+  const std::string config = content(run + "/config.toml");
+  EXPECT_NE(complaint("--out " + run + " --case spinodal --cells 12").find("already holds"),
+            std::string::npos);
+  EXPECT_EQ(content(run + "/config.toml"), config);
   ASSERT_EQ(traceraft("compare --quiet " + out() + references() + runs +
                       "--integrators ida --tolerances 1e-2 --repeat 1")
                 .code,
             0);
   EXPECT_NE(complaint(out() + "--case two-rafts --cells 14").find("other runs"), std::string::npos);
+  EXPECT_NE(complaint(out() + "--threads 7").find("--threads"), std::string::npos);
 }
 
 }  // namespace

@@ -5,8 +5,11 @@
 namespace traceraft {
 namespace {
 
+// CPU times are half as long again as wall times.
 WorkPoint point(const char* integrator, double tolerance, double error, std::vector<double> wall) {
-  return {integrator, "block", tolerance, "", error, wall, wall, {}};
+  std::vector<double> cpu;
+  for (const double seconds : wall) cpu.push_back(1.5 * seconds);
+  return {integrator, "block", tolerance, "", error, cpu, wall, {}};
 }
 
 TEST(Spread, IsMedianAndEnds) {
@@ -27,7 +30,7 @@ TEST(Recommendation, TakesTheCheapestAtTheErrorThatAllReach) {
   EXPECT_EQ(advice.cheapest, (std::vector<int>{3, 1}));
   EXPECT_EQ(advice.sentence,
             "For an error of 1.0e-02 at the end, use ida with block at tolerance 0.001: 2 s wall "
-            "time, 2 s CPU; the next, euler with block at tolerance 0.001, takes 5.0 times as "
+            "time, 3 s CPU; the next, euler with block at tolerance 0.001, takes 5.0 times as "
             "long.");
 }
 
@@ -36,6 +39,16 @@ TEST(Recommendation, SaysWhenTheTimesCannotTell) {
       {point("euler", 1e-3, 1e-3, {1.9, 2.2, 2.5}), point("ida", 1e-3, 1e-3, {1.8, 2.0, 2.1})}, 0);
   EXPECT_NE(advice.sentence.find("as fast within the spread"), std::string::npos)
       << advice.sentence;
+}
+
+TEST(Recommendation, ComparesTheSpreadsNotTheMedians) {
+  // The slowest of the better runs took as long as the fastest of the other ones.
+  const Recommendation close = recommend(
+      {point("euler", 1e-3, 1e-3, {2.5, 3.0, 3.5}), point("ida", 1e-3, 1e-3, {1.8, 2.0, 2.6})}, 0);
+  EXPECT_NE(close.sentence.find("as fast within the spread"), std::string::npos) << close.sentence;
+  const Recommendation clear = recommend(
+      {point("euler", 1e-3, 1e-3, {2.7, 3.0, 3.5}), point("ida", 1e-3, 1e-3, {1.8, 2.0, 2.6})}, 0);
+  EXPECT_NE(clear.sentence.find("takes 1.5 times as long"), std::string::npos) << clear.sentence;
 }
 
 TEST(Recommendation, NamesWhatMissedTheTargetAndSurvivesFailures) {

@@ -1,0 +1,39 @@
+// What a comparison is to run, from what the user asks for and what its folder holds already.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "drivers/commands.hpp"
+
+namespace traceraft {
+
+struct ComparePlan {
+  std::vector<std::string> integrators, linear_solvers;
+  std::vector<double> tolerances;
+  int repeat = 3;
+  double reference_tolerance = 0;   // 0: a hundredth of the smallest tolerance
+  double time_limit = 0;            // seconds per run; 0: none
+  double target_error = 0;          // 0: the smallest that all methods reach
+  std::uint32_t initial_state = 0;  // its checksum: of runs that restart from others
+
+  double reference() const;  // the tolerance of the reference
+};
+
+// `before`, the plan of a comparison that goes on, or null, with what is asked for now: lists grow,
+// numbers are replaced. Throws InputError.
+ComparePlan extended_plan(const CompareRequest& request, const ComparePlan* before);
+
+// One combination of the plan, run once.
+struct CompareJob {
+  std::string integrator, linear_solver;
+  double tolerance;
+  int repetition;  // from 1
+  std::string name() const;
+};
+
+// Repetition by repetition, so that a machine that changes its speed changes it for all.
+std::vector<CompareJob> jobs_of(const ComparePlan& plan);
+
+}  // namespace traceraft
