@@ -12,7 +12,14 @@
 namespace traceraft {
 namespace {
 
+void require_one_rank(const char* name, const SurfaceSpace& space) {
+  if (space.communicator->size() > 1)
+    throw InputError(std::string(name) +
+                     " factorises on one rank only; on several choose --linear-solver teko");
+}
+
 LinearSolverFactory block(const SurfaceSpace& space) {
+  require_one_rank("block", space);
   return [spd = cholmod_factory(space.pattern), size = 2 * space.nodes(),
           team = space.team](int lanes) {
     return make_block_solver(
@@ -21,6 +28,7 @@ LinearSolverFactory block(const SurfaceSpace& space) {
 }
 
 LinearSolverFactory direct(const SurfaceSpace& space) {
+  require_one_rank("direct", space);
   return [pattern = space.pattern](int lanes) {
     return make_direct_solver("direct", make_umfpack_lu, pattern, lanes);
   };
@@ -29,6 +37,7 @@ LinearSolverFactory direct(const SurfaceSpace& space) {
 // KLU works on columns one by one, without dense blocks: on larger meshes it takes many times as
 // long as UMFPACK.
 LinearSolverFactory klu(const SurfaceSpace& space) {
+  require_one_rank("klu", space);
   constexpr int kMost = 25000;
   const int unknowns = 2 * space.nodes();
   if (unknowns > kMost)

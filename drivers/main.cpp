@@ -5,6 +5,7 @@
 
 #include "backends/posix/folder_lock.hpp"
 #include "backends/posix/process.hpp"
+#include "backends/ranks.hpp"
 #include "backends/suitesparse/blas.hpp"
 #include "drivers/commands.hpp"
 #include "drivers/exit_codes.hpp"
@@ -150,6 +151,8 @@ int dispatch(int argc, char** argv) {
     throw InputError("a flag takes no value but true or false");
   }
   for (const CLI::App* command : app.get_subcommands()) refuse_unknown(*command);
+  if (world()->size() > 1 && !run_app->parsed() && !resume_app->parsed())
+    throw InputError("only run and resume work on several ranks; start the others without mpirun");
   if (run_app->parsed()) return run_command(run);
   if (resume_app->parsed()) return resume_command(resume);
   if (compare_app->parsed()) return compare_command(compare);
@@ -160,12 +163,20 @@ int dispatch(int argc, char** argv) {
   return list_command();
 }
 
+// Says what is wrong; if all ranks fail, which is the rule for bad input, the first one says it.
+int complain(const std::string& what, int code) {
+  const bool alike = RankSession::all_fail();
+  const std::shared_ptr<const Communicator> ranks = world();
+  std::fflush(stdout);
+  if (ranks->root() || !alike) {
+    const std::string who = alike ? "" : "rank " + std::to_string(ranks->rank()) + ": ";
+    std::fprintf(stderr, "traceraft: %s%s\n", who.c_str(), what.c_str());
+  }
+  if (!alike) RankSession::abort(code);
+  return code;
+}
+
 int guarded(int argc, char** argv) {
-  const auto complain = [](const char* what, int code) {
-    std::fflush(stdout);
-    std::fprintf(stderr, "traceraft: %s\n", what);
-    return code;
-  };
   try {
     return dispatch(argc, argv);
   } catch (const InputError& error) {
@@ -179,7 +190,17 @@ int guarded(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return complain("out of memory; use fewer --cells", kInternalError);
   } catch (const std::exception& error) {
-    return complain((std::string("internal error: ") + error.what()).c_str(), kInternalError);
+    return complain(std::string("internal error: ") + error.what(), kInternalError);
+  }
+}
+
+int run_with_ranks(int argc, char** argv) {
+  try {
+    const RankSession session;
+    return guarded(argc, argv);
+  } catch (const InputError& error) {  // there are ranks, but no MPI
+    std::fprintf(stderr, "traceraft: %s\n", error.what());
+    return kBadInput;
   }
 }
 
@@ -189,5 +210,5 @@ int guarded(int argc, char** argv) {
 int main(int argc, char** argv) {
   // Read by OpenBLAS and by CHOLMOD's OpenMP when they are loaded, hence before anything else.
   traceraft::restart_with_environment(traceraft::preferred_environment(), argv);
-  return traceraft::guarded(argc, argv);
+  return traceraft::run_with_ranks(argc, argv);
 }

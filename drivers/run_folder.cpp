@@ -35,6 +35,19 @@ void refuse_files_of_a_run(const fs::path& path) {
                        ", or choose another folder");
 }
 
+RunFolder shared_folder(const Communicator& ranks, const std::function<RunFolder()>& open) {
+  RunFolder folder;
+  Lists<char> name;
+  if (ranks.root()) {
+    folder = open();
+    const std::string path = folder.path.string();
+    name.assign(static_cast<std::size_t>(ranks.size()), {path.begin(), path.end()});
+  }
+  const std::vector<char> path = scatter(ranks, name);
+  folder.path = std::string(path.begin(), path.end());
+  return folder;
+}
+
 RunFolder create_run_folder(const std::string& out, const Configuration& configuration) {
   RunFolder folder;
   folder.path = out.empty() ? first_free_folder(configuration.text("case")) : out;

@@ -2,17 +2,19 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 
 #include "backends/posix/folder_lock.hpp"
 #include "drivers/configuration.hpp"
+#include "kernel/core/communicator.hpp"
 
 namespace traceraft {
 
 struct RunFolder {
   std::filesystem::path path;
-  std::unique_ptr<FolderLock> lock;
+  std::unique_ptr<FolderLock> lock;  // of the first rank
 
   std::filesystem::path config() const { return path / "config.toml"; }
   std::filesystem::path summary() const { return path / "summary.json"; }
@@ -26,6 +28,9 @@ std::string first_free_folder(const std::string& name);
 
 // Throws InputError if a folder holds what a run writes.
 void refuse_files_of_a_run(const std::filesystem::path& path);
+
+// On every rank the folder that the first one has made or opened.
+RunFolder shared_folder(const Communicator& ranks, const std::function<RunFolder()>& open);
 
 // A folder for a new run, locked, holding its resolved configuration. Files of others in it are
 // left alone. An empty `out` means runs/<case>-<first free number>. Throws InputError if it holds a

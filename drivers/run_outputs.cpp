@@ -42,8 +42,14 @@ std::string numbered(const char* stem, std::size_t index, const char* extension)
   return name;
 }
 
-std::string field_name(std::size_t index) {
-  return numbered("field", index, "vtu");
+// What ParaView opens at an output time.
+std::string field_name(std::size_t index, const Communicator& ranks) {
+  return numbered("field", index, ranks.size() == 1 ? "vtu" : "pvtu");
+}
+std::string piece_name(std::size_t index, int rank) {
+  char name[40];
+  std::snprintf(name, sizeof name, "field-%04zu-%04d.vtu", index, rank);
+  return name;
 }
 
 }  // namespace
@@ -78,13 +84,13 @@ void TableWriter::on_step(const RunState& state) {
   series_.append(row_text(state.row, state.row.t * run_.units.time()));
 }
 
-void TableWriter::on_output(const Observables& row, ConstVec y) {
+void TableWriter::on_output(const Observables& row, const RaftReport& rafts, ConstVec) {
   const Units& units = run_.units;
   const double t = run_.output_labels[output_index(run_, row.t)];
   observables_.append(row_text(row, t));
   std::string text;
   int number = 0;
-  for (const Raft& raft : run_.observer->rafts(y).rafts) {
+  for (const Raft& raft : rafts.rafts) {
     const Point x = raft.centre * units.length();
     text += csv_row({t, static_cast<double>(++number), raft.area * units.area(),
                      raft.perimeter * units.length(), x[0], x[1], x[2]});
@@ -102,26 +108,47 @@ std::map<std::string, std::uint64_t> TableWriter::sizes() const {
           {"rafts.csv", rafts_.size()}};
 }
 
-void FieldWriter::on_output(const Observables& row, ConstVec y) {
+void FieldWriter::on_output(const Observables& row, const RaftReport&, ConstVec y) {
+  const Communicator& ranks = *run_.ranks;
+  const SurfaceSpace& space = *run_.space;
   const std::size_t index = output_index(run_, row.t);
-  const Vec c = trace(*run_.space, run_.problem->c_of(y));
-  write_durably(folder_.fields() / field_name(index),
-                vtu_text(*run_.space, run_.units.length(),
-                         {{"c", c}, {"mu", trace(*run_.space, run_.problem->mu_of(y))}}));
+  Vec buffer;
+  const Vec c = trace(space, space.with_ghosts(run_.problem->c_of(y), buffer));
+  const Vec mu = trace(space, space.with_ghosts(run_.problem->mu_of(y), buffer));
+  const bool alone = ranks.size() == 1;
+  write_durably(
+      folder_.fields() / (alone ? field_name(index, ranks) : piece_name(index, ranks.rank())),
+      vtu_text(space, run_.units.length(), {{"c", c}, {"mu", mu}}));
   const DoubleWell& well = run_.problem->model().well;
-  const std::string picture =
-      png_bytes(draw_front_and_back(*run_.space, c, well.a, well.b, kViewPixels));
+  const Image image = draw_front_and_back(space, c, well.a, well.b, kViewPixels);
+  // Nothing is named before all of it is there.
+  if (!ranks.all(true) || !ranks.root()) return;
+  if (!alone) {
+    std::vector<std::string> pieces;
+    for (int rank = 0; rank < ranks.size(); ++rank) pieces.push_back(piece_name(index, rank));
+    write_durably(folder_.fields() / field_name(index, ranks), pvtu_text(pieces, {"c", "mu"}));
+  }
+  // What this run wrote at that time before it went on with more or fewer ranks.
+  std::filesystem::remove(folder_.fields() / numbered("field", index, alone ? "pvtu" : "vtu"));
+  const std::string picture = png_bytes(image);
   write_durably(folder_.fields() / numbered("view", index, "png"), picture);
   write_durably(folder_.path / "view.png", picture);
+  collect(index);
+}
+
+// All output times up to the newest, on however many ranks they were written.
+void FieldWriter::collect(std::size_t newest) const {
   std::vector<std::pair<double, std::string>> files;
-  for (std::size_t i = 0; i <= index; ++i)
-    if (std::filesystem::exists(folder_.fields() / field_name(i)))  // not if fields were off
-      files.emplace_back(run_.output_labels[i], "fields/" + field_name(i));
+  for (std::size_t i = 0; i <= newest; ++i)
+    for (const char* extension : {"vtu", "pvtu"})
+      if (const std::string name = numbered("field", i, extension);
+          std::filesystem::exists(folder_.fields() / name))  // not if fields were off
+        files.emplace_back(run_.output_labels[i], "fields/" + name);
   write_durably(folder_.path / "fields.pvd", pvd_text(files));
 }
 
 CheckpointWriter::CheckpointWriter(const RunFolder& folder, const RunSetup& run,
-                                   TableWriter& tables, std::string configuration, double interval,
+                                   TableWriter* tables, std::string configuration, double interval,
                                    const RunCost& before)
     : store_(folder.checkpoints()),
       run_(run),
@@ -131,27 +158,32 @@ CheckpointWriter::CheckpointWriter(const RunFolder& folder, const RunSetup& run,
       before_(before) {}
 
 RunCost CheckpointWriter::cost() const {
-  return {before_.wall_seconds + wall_seconds(), before_.cpu_seconds + cpu_seconds()};
+  return {before_.wall_seconds + wall_seconds(),
+          before_.cpu_seconds + run_.ranks->sum(cpu_seconds())};
 }
 
 void CheckpointWriter::on_step(const RunState& state) {
-  if (!written_ || since_last_.seconds() >= interval_) write(state);
+  // One clock decides for all.
+  if (run_.ranks->any(run_.ranks->root() && (!written_ || since_last_.seconds() >= interval_)))
+    write(state);
 }
 
 void CheckpointWriter::write(const RunState& state) {
   // The rows that the checkpoint counts on are on the disk before it is.
-  tables_.sync();
+  if (tables_) tables_->sync();
   Checkpoint checkpoint;
   checkpoint.configuration = configuration_;
-  checkpoint.tables = tables_.sizes();
   std::ostringstream out;
-  state.save(out);
+  state.save(CheckpointOut(out, run_.space->order));
   checkpoint.state = out.str();
-  const auto c = run_.problem->c_of(state.integrator.state());
+  const Vec c = run_.space->order.gathered(run_.problem->c_of(state.integrator.state()));
   checkpoint.concentration.assign(c.data(), c.data() + c.size());
   checkpoint.step = state.integrator.statistics().steps;
   checkpoint.cost = cost();
-  store_.write(checkpoint);
+  if (tables_) {
+    checkpoint.tables = tables_->sizes();
+    store_.write(checkpoint);
+  }
   since_last_ = Stopwatch();
   written_ = true;
 }

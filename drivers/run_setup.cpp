@@ -7,6 +7,7 @@
 
 #include "backends/list.hpp"
 #include "backends/muparser/formula.hpp"
+#include "backends/ranks.hpp"
 #include "drivers/checkpoint_store.hpp"
 #include "drivers/config_file.hpp"
 #include "kernel/problem/initial_data.hpp"
@@ -33,8 +34,14 @@ std::string one_of(const Configuration& configuration, const char* option, const
   return word;
 }
 
-int thread_count(const Configuration& configuration) {
+int thread_count(const Configuration& configuration, const Communicator& ranks) {
   const int asked = static_cast<int>(configuration.integer("threads"));
+  if (ranks.size() > 1) {
+    if (asked > 1)
+      throw InputError(configuration.where("threads") +
+                       ": several ranks have one thread each; start more ranks instead");
+    return 1;
+  }
   if (asked > 0) return asked;
   return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 2);
 }
@@ -142,8 +149,12 @@ Vec initial_field(const Configuration& configuration, const CahnHilliardModel& m
   const InitialRequest request = initial_request(configuration, model);
   return said_of(configuration, "initial", [&] {
     const auto [name, folder] = split_named_arguments(kind);
-    if (name == "restart")
-      return final_concentration(folder, space.nodes(), numerical_identity(configuration));
+    if (name == "restart") {
+      const bool root = space.communicator->root();
+      const int nodes = static_cast<int>(space.totals.nodes);
+      return space.order.scattered(
+          root ? final_concentration(folder, nodes, numerical_identity(configuration)) : Vec());
+    }
     (void)initial_fields().find(name, {"restart:DIR"});
     return make_initial_field(kind, space, request);
   });
@@ -218,19 +229,22 @@ RunSetup build_run(const Configuration& configuration, InitialState initial) {
   said_of(configuration, "linear-solver",
           [&] { return linear_solvers().find(configuration.text("linear-solver")).name; });
 
-  run.team = std::make_shared<ThreadTeam>(thread_count(configuration));
+  run.ranks = world();
+  run.team = std::make_shared<ThreadTeam>(thread_count(configuration, *run.ranks));
   const LevelSetPtr surface = level_set(configuration);
   run.space = said_of(configuration, "surface", [&] {
     return std::make_shared<const SurfaceSpace>(*surface, configuration.integer("cells"), run.team,
-                                                std::make_shared<SerialCommunicator>());
+                                                run.ranks);
   });
   run.problem = std::make_unique<CahnHilliard>(run.space, physics);
   if (settings.reject_energy_rises && !run.problem->dissipates_energy())
     throw InputError(configuration.where("energy-guard") +
                      ": reject is for models that can only lose energy, and this one need not; "
                      "choose warn or off");
-  if (initial == InitialState::build)
+  if (initial == InitialState::build) {
     run.initial = initial_field(configuration, physics, *run.space);
+    run.initial_mean = run.space->integral(run.initial) / run.space->area;
+  }
   run.perimeter = perimeter_calibration(configuration, physics, run.space);
   run.observer =
       std::make_unique<Observer>(*run.problem, run.space, run.perimeter.interface_energy);

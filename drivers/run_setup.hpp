@@ -16,10 +16,12 @@ namespace traceraft {
 // Built in the order of the members; each is handed to the next by const reference.
 struct RunSetup {
   Units units;
+  std::shared_ptr<const Communicator> ranks;
   std::shared_ptr<const ThreadTeam> team;
   std::shared_ptr<const SurfaceSpace> space;
   std::unique_ptr<const CahnHilliard> problem;
-  Vec initial;  // projected c at the nodes
+  Vec initial;              // projected c at the nodes
+  double initial_mean = 0;  // and its mean
   PerimeterCalibration perimeter;
   std::unique_ptr<Observer> observer;
   IntegratorPtr integrator;           // not started
@@ -30,7 +32,8 @@ struct RunSetup {
 
 enum class InitialState { build, from_checkpoint /* leaves RunSetup::initial empty */ };
 
-// Throws InputError for anything a run could not start with; creates no files.
+// On all ranks of the program. Throws InputError for anything a run could not start with; creates
+// no files.
 RunSetup build_run(const Configuration& configuration, InitialState initial);
 
 // Computes the consistent state and hands it to the integrator.

@@ -49,7 +49,8 @@ std::string energy_text(const Configuration& configuration, const RunSetup& run,
 }  // namespace
 
 std::string summary_json(const Configuration& configuration, const RunSetup& run,
-                         const RunState& state, const RunResult& result, const RunCost& cost) {
+                         const RunState& state, const RunResult& result, const RunCost& cost,
+                         double memory_mb) {
   const Units& units = run.units;
   const Observables& row = state.row;
   const IntegratorStatistics steps = run.integrator->statistics();
@@ -66,9 +67,9 @@ std::string summary_json(const Configuration& configuration, const RunSetup& run
                    {"radius_um", units.radius_um},
                    {"diffusion_cm2_s", units.diffusion_cm2_s},
                    {"seconds_per_unit", units.seconds_per_unit()}};
-  json["nodes"] = run.space->nodes();
-  json["unknowns"] = run.problem->size();
-  json["cut_tetrahedra"] = run.space->elements.size();
+  json["nodes"] = run.space->totals.nodes;
+  json["unknowns"] = 2 * run.space->totals.nodes;
+  json["cut_tetrahedra"] = run.space->totals.elements;
   json["euler_characteristic"] = run.space->totals.euler_characteristic;
   json["area"] = run.space->area * units.area();
   json["h"] = run.space->h() * units.length();
@@ -107,7 +108,8 @@ std::string summary_json(const Configuration& configuration, const RunSetup& run
   json["linear_solve_s"] = linear.solve_seconds;
   json["wall_s"] = cost.wall_seconds;
   json["cpu_s"] = cost.cpu_seconds;
-  json["peak_memory_mb"] = peak_memory_mb();
+  json["peak_memory_mb"] = memory_mb;
+  json["ranks"] = run.ranks->size();
   json["threads"] = run.team->size();
   json["blas"] = blas_description();
   return json.dump(2) + "\n";
@@ -121,9 +123,11 @@ void print_setup(const Configuration& configuration, const RunSetup& run) {
   line("surface",
        formatted("%s, R = %g um, area %.6g %s", configuration.text("surface").c_str(),
                  units.radius_um, run.space->area * units.area(), units.scaled ? "R^2" : "um^2"));
-  line("mesh", formatted("%lld cells per edge, %zu cut tetrahedra, %d nodes, %d unknowns",
-                         configuration.integer("cells"), run.space->elements.size(),
-                         run.space->nodes(), run.problem->size()));
+  const SurfaceSpace::Totals& totals = run.space->totals;
+  line("mesh",
+       formatted("%lld cells per edge, %lld cut tetrahedra, %lld nodes, %lld unknowns",
+                 configuration.integer("cells"), static_cast<long long>(totals.elements),
+                 static_cast<long long>(totals.nodes), static_cast<long long>(2 * totals.nodes)));
   line("phase boundary",
        formatted("epsilon = %g um = %g R, h/epsilon = %.2f, %.1f %% of its energy resolved",
                  epsilon * units.radius_um, epsilon, h / epsilon, 100 * run.perimeter.resolved));
@@ -135,17 +139,18 @@ void print_setup(const Configuration& configuration, const RunSetup& run) {
   if (run.initial.size() > 0)
     line("initial state",
          formatted("%s, mean concentration %.6f, seed %lld", configuration.text("initial").c_str(),
-                   run.space->integral(run.initial) / run.space->area,
-                   configuration.integer("seed")));
+                   run.initial_mean, configuration.integer("seed")));
+  const int workers = run.ranks->size() > 1 ? run.ranks->size() : run.team->size();
   line("method",
-       formatted("%s with %s, tolerance %g, %d thread%s, %s",
-                 configuration.text("integrator").c_str(),
+       formatted("%s with %s, tolerance %g, %d %s%s, %s", configuration.text("integrator").c_str(),
                  configuration.text("linear-solver").c_str(), configuration.number("tolerance"),
-                 run.team->size(), run.team->size() == 1 ? "" : "s", blas_description().c_str()));
+                 workers, run.ranks->size() > 1 ? "rank" : "thread", workers == 1 ? "" : "s",
+                 blas_description().c_str()));
 }
 
 void print_summary(const Configuration& configuration, const RunSetup& run, const RunState& state,
-                   const RunResult& result, const RunCost& cost, const RunFolder& folder) {
+                   const RunResult& result, const RunCost& cost, double memory_mb,
+                   const RunFolder& folder) {
   const Units& units = run.units;
   const Observables& row = state.row;
   const IntegratorStatistics steps = run.integrator->statistics();
@@ -178,7 +183,7 @@ void print_summary(const Configuration& configuration, const RunSetup& run, cons
           linear.setups, steps.renewals, steps.fallbacks));
   line("time",
        formatted("%s wall, %s CPU, peak memory %.0f MB", clock_text(cost.wall_seconds).c_str(),
-                 clock_text(cost.cpu_seconds).c_str(), peak_memory_mb()));
+                 clock_text(cost.cpu_seconds).c_str(), memory_mb));
   line("tables", folder.table("series.csv").string());
   if (std::filesystem::exists(folder.path / "view.png")) {
     line("open next",

@@ -41,7 +41,7 @@ class Ida final : public Integrator {
         settings_(settings),
         guard_(problem, settings),
         solver_(problem, solvers, 1, std::move(team)),
-        norm_([this](ConstVec half) { return problem_.field_norm(half); }) {
+        space_{[this](ConstVec half) { return problem_.field_norm(half); }, problem.ranks()} {
     if (SUNContext_Create(nullptr, &context_) != 0)
       throw std::runtime_error("SUNDIALS: no context");
     systems_.resize(1);
@@ -173,7 +173,7 @@ class Ida final : public Integrator {
     release();
     const Eigen::Index size = problem_.size();
     for (VectorPtr* v : {&yy_, &yp_, &id_, &work_})
-      v->reset(new_state_vector(size, norm_, context_));
+      v->reset(new_state_vector(size, space_, context_));
     view(yy_.get()) = y0;
     view(yp_.get()) = ydot0;
     view(id_.get()).head(size / 2).setOnes();
@@ -350,7 +350,7 @@ class Ida final : public Integrator {
   IntegratorSettings settings_;
   EnergyGuard guard_;
   JacobianSolver solver_;
-  FieldNorm norm_;
+  StateSpace space_;
   SUNContext context_ = nullptr;
   void* memory_ = nullptr;
   VectorPtr yy_, yp_, id_, work_;

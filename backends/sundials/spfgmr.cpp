@@ -15,7 +15,7 @@ namespace {
 constexpr int kRestart = 50;
 
 // GMRES takes no weighted norms.
-const FieldNorm no_norm;
+const StateSpace plain{nullptr, kAlone};
 
 // The operators of one solve; an exception stops at the C boundary and is thrown again after it.
 struct Operators {
@@ -49,8 +49,8 @@ class Spfgmr final : public KrylovMethod {
   explicit Spfgmr(int size) {
     if (SUNContext_Create(nullptr, &context_) != 0)
       throw std::runtime_error("SUNDIALS: no context");
-    right_ = new_state_vector(size, no_norm, context_);
-    solution_ = new_state_vector(size, no_norm, context_);
+    right_ = new_state_vector(size, plain, context_);
+    solution_ = new_state_vector(size, plain, context_);
     solver_ = SUNLinSol_SPFGMR(solution_, SUN_PREC_RIGHT, kRestart, context_);
     if (!solver_) throw std::bad_alloc();
     SUNLinSol_SPFGMRSetGSType(solver_, SUN_CLASSICAL_GS);

@@ -11,11 +11,15 @@ namespace {
 
 struct Content {
   Vec data;
-  const FieldNorm* norm;
+  const StateSpace* space;
 };
 
 Content& content(N_Vector v) {
   return *static_cast<Content*>(v->content);
+}
+
+const Communicator& ranks_of(N_Vector v) {
+  return content(v).space->ranks;
 }
 
 void destroy(N_Vector v) {
@@ -29,7 +33,7 @@ N_Vector clone(N_Vector v) {
   N_Vector copy = N_VNewEmpty(v->sunctx);
   if (!copy) return nullptr;
   N_VCopyOps(v, copy);
-  auto* fresh = new (std::nothrow) Content{Vec::Zero(content(v).data.size()), content(v).norm};
+  auto* fresh = new (std::nothrow) Content{Vec::Zero(content(v).data.size()), content(v).space};
   if (!fresh) {
     N_VFreeEmpty(copy);
     return nullptr;
@@ -40,7 +44,7 @@ N_Vector clone(N_Vector v) {
 
 double weighted_norm(N_Vector x, double weight_c, double weight_mu) {
   const Vec& data = content(x).data;
-  const FieldNorm& norm = *content(x).norm;
+  const auto& norm = content(x).space->norm;
   const Eigen::Index n = data.size() / 2;
   const double c = weight_c != 0 ? weight_c * norm(data.head(n)) : 0;
   const double mu = weight_mu != 0 ? weight_mu * norm(data.tail(n)) : 0;
@@ -69,7 +73,9 @@ void set_operations(_generic_N_Vector_Ops& ops) {
     *integers = 1;
   };
   ops.nvgetarraypointer = [](N_Vector v) { return content(v).data.data(); };
-  ops.nvgetlength = [](N_Vector v) -> sunindextype { return content(v).data.size(); };
+  ops.nvgetlength = [](N_Vector v) -> sunindextype {
+    return std::llround(ranks_of(v).sum(static_cast<double>(content(v).data.size())));
+  };
   ops.nvlinearsum = [](double a, N_Vector x, double b, N_Vector y, N_Vector z) {
     content(z).data = a * content(x).data + b * content(y).data;
   };
@@ -86,17 +92,19 @@ void set_operations(_generic_N_Vector_Ops& ops) {
   ops.nvaddconst = [](N_Vector x, double b, N_Vector z) {
     content(z).data = content(x).data.array() + b;
   };
-  ops.nvdotprod = [](N_Vector x, N_Vector y) { return dot(content(x).data, content(y).data); };
-  ops.nvmaxnorm = [](N_Vector x) { return content(x).data.cwiseAbs().maxCoeff(); };
-  ops.nvmin = [](N_Vector x) { return content(x).data.minCoeff(); };
+  ops.nvdotprod = [](N_Vector x, N_Vector y) {
+    return ranks_of(x).sum(dot(content(x).data, content(y).data));
+  };
+  ops.nvmaxnorm = [](N_Vector x) { return ranks_of(x).max(content(x).data.cwiseAbs().maxCoeff()); };
+  ops.nvmin = [](N_Vector x) { return ranks_of(x).min(content(x).data.minCoeff()); };
   ops.nvwrmsnorm = norm_with_weights;
   ops.nvwrmsnormmask = norm_with_mask;
 }
 
 }  // namespace
 
-N_Vector new_state_vector(Eigen::Index size, const FieldNorm& norm, SUNContext context) {
-  auto data = std::make_unique<Content>(Content{Vec::Zero(size), &norm});
+N_Vector new_state_vector(Eigen::Index size, const StateSpace& space, SUNContext context) {
+  auto data = std::make_unique<Content>(Content{Vec::Zero(size), &space});
   N_Vector v = N_VNewEmpty(context);
   if (!v) throw std::bad_alloc();
   set_operations(*v->ops);
@@ -105,7 +113,8 @@ N_Vector new_state_vector(Eigen::Index size, const FieldNorm& norm, SUNContext c
 }
 
 Eigen::Map<Vec> view(N_Vector v) {
-  return {N_VGetArrayPointer(v), N_VGetLength(v)};
+  Vec& data = content(v).data;
+  return {data.data(), data.size()};
 }
 
 }  // namespace traceraft

@@ -69,30 +69,53 @@ std::string file_head(const char* type) {
 std::string vtu_text(const SurfaceSpace& space, double length,
                      const std::vector<PointField>& fields) {
   const CutSurface& surface = space.surface;
-  const std::size_t points = surface.points.size(), triangles = surface.triangles.size();
+  std::vector<char> needed(surface.points.size(), 0);
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    if (space.owns_triangle(t))
+      for (const int p : surface.triangles[t]) needed[p] = 1;
+  std::vector<int> used;  // points, and their numbers in the file
+  std::vector<std::int32_t> number(surface.points.size(), -1), connectivity, offsets;
   std::vector<float> coordinates;
-  for (std::size_t p = 0; p < points; ++p) {
+  for (std::size_t p = 0; p < needed.size(); ++p) {
+    if (!needed[p]) continue;
+    number[p] = static_cast<std::int32_t>(used.size());
+    used.push_back(static_cast<int>(p));
     const Point x = length * surface.position[p];
     for (int axis = 0; axis < 3; ++axis) coordinates.push_back(static_cast<float>(x[axis]));
   }
-  std::vector<std::int32_t> connectivity, offsets;
-  for (const auto& triangle : surface.triangles) {
-    connectivity.insert(connectivity.end(), triangle.begin(), triangle.end());
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    if (!space.owns_triangle(t)) continue;
+    for (const int p : surface.triangles[t]) connectivity.push_back(number[p]);
     offsets.push_back(static_cast<std::int32_t>(connectivity.size()));
   }
-  const std::vector<std::uint8_t> types(triangles, 5);  // VTK_TRIANGLE
+  const std::vector<std::uint8_t> types(offsets.size(), 5);  // VTK_TRIANGLE
 
   std::string text = file_head("UnstructuredGrid") +
-                     "<UnstructuredGrid>\n<Piece NumberOfPoints=\"" + std::to_string(points) +
-                     "\" NumberOfCells=\"" + std::to_string(triangles) + "\">\n<PointData>\n";
-  for (const PointField& field : fields)
-    text += array("Float32", field.name, 1,
-                  std::vector<float>(field.values.begin(), field.values.end()));
+                     "<UnstructuredGrid>\n<Piece NumberOfPoints=\"" + std::to_string(used.size()) +
+                     "\" NumberOfCells=\"" + std::to_string(offsets.size()) + "\">\n<PointData>\n";
+  for (const PointField& field : fields) {
+    std::vector<float> values;
+    for (const int p : used) values.push_back(static_cast<float>(field.values[p]));
+    text += array("Float32", field.name, 1, values);
+  }
   text += "</PointData>\n<Points>\n" + array("Float32", "Points", 3, coordinates) +
           "</Points>\n<Cells>\n" + array("Int32", "connectivity", 1, connectivity) +
           array("Int32", "offsets", 1, offsets) + array("UInt8", "types", 1, types) +
           "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
   return text;
+}
+
+std::string pvtu_text(const std::vector<std::string>& pieces,
+                      const std::vector<std::string>& fields) {
+  std::string text =
+      file_head("PUnstructuredGrid") + "<PUnstructuredGrid GhostLevel=\"0\">\n<PPointData>\n";
+  for (const std::string& field : fields)
+    text += "<PDataArray type=\"Float32\" Name=\"" + field + "\"/>\n";
+  text +=
+      "</PPointData>\n<PPoints>\n<PDataArray type=\"Float32\" Name=\"Points\" "
+      "NumberOfComponents=\"3\"/>\n</PPoints>\n";
+  for (const std::string& piece : pieces) text += "<Piece Source=\"" + piece + "\"/>\n";
+  return text + "</PUnstructuredGrid>\n</VTKFile>\n";
 }
 
 std::string pvd_text(const std::vector<std::pair<double, std::string>>& files) {

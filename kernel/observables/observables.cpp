@@ -18,10 +18,9 @@ RaftReport Observer::rafts(ConstVec y) const {
   return finder_.find(problem_.c_of(y), level());
 }
 
-Observables Observer::measure(double t, ConstVec y) const {
+Observables Observer::measure(double t, ConstVec y, const RaftReport& report) const {
   const SurfaceSpace& space = problem_.space();
   const auto c = problem_.c_of(y);
-  const RaftReport report = rafts(y);
   const double gradient = problem_.model().epsilon * space.quadratic(space.stiffness, c);
   Observables row;
   row.t = t;

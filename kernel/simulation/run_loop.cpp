@@ -23,12 +23,14 @@ void RunState::load(CheckpointIn in) {
 void begin_run(RunState& state, const Observer& observer, const std::vector<double>& output_times,
                const std::vector<RunListener*>& listeners) {
   const Integrator& integrator = state.integrator;
-  state.row = observer.measure(integrator.time(), integrator.state());
+  const RaftReport rafts = observer.rafts(integrator.state());
+  state.row = observer.measure(integrator.time(), integrator.state(), rafts);
   state.monitor.start(state.row, observer.mass_scale(), observer.energy_scale());
   for (; state.next_output < output_times.size() &&
          output_times[state.next_output] <= integrator.time();
        ++state.next_output)
-    for (RunListener* listener : listeners) listener->on_output(state.row, integrator.state());
+    for (RunListener* listener : listeners)
+      listener->on_output(state.row, rafts, integrator.state());
   for (RunListener* listener : listeners) listener->on_step(state);
 }
 
@@ -49,8 +51,9 @@ RunResult continue_run(RunState& state, const Observer& observer, double t_end,
       const double t = output_times[state.next_output];
       if (Status status = integrator.interpolate(t, y); !status.ok())
         throw std::logic_error(integrator.name() + ": " + status.why);
-      const Observables row = observer.measure(t, y);
-      for (RunListener* listener : listeners) listener->on_output(row, y);
+      const RaftReport rafts = observer.rafts(y);
+      const Observables row = observer.measure(t, y, rafts);
+      for (RunListener* listener : listeners) listener->on_output(row, rafts, y);
     }
     for (RunListener* listener : listeners) listener->on_step(state);
   }

@@ -23,13 +23,14 @@ struct RunState {
 };
 
 // Listeners see the run and do not change it. They may throw (a full disk): the run ends there.
+// Ranks may have different ones, as long as the collective ones are everywhere.
 class RunListener {
  public:
   virtual ~RunListener() = default;
   // After every accepted step, and once before the first one.
   virtual void on_step(const RunState&) {}
   // At a requested time, interpolated within the last step: results never bend the steps.
-  virtual void on_output(const Observables&, ConstVec /*y*/) {}
+  virtual void on_output(const Observables&, const RaftReport&, ConstVec /*y*/) {}
 };
 
 enum class RunEnd { finished, stopped, failed };
@@ -43,7 +44,8 @@ struct RunResult {
 void begin_run(RunState& state, const Observer& observer, const std::vector<double>& output_times,
                const std::vector<RunListener*>& listeners);
 
-// Advances to t_end. `stop` is asked after every step. `output_times` ascend.
+// Advances to t_end. `stop` is asked after every step and says the same on all ranks.
+// `output_times` ascend.
 RunResult continue_run(RunState& state, const Observer& observer, double t_end,
                        const std::vector<double>& output_times,
                        const std::vector<RunListener*>& listeners,

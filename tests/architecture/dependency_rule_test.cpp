@@ -67,6 +67,7 @@ TEST(DependencyRule, EveryBackendKnowsTheKernelAndItsOwnLibrary) {
   const std::map<std::string, std::vector<std::string>> own = {
       {"euler", {}},
       {"rosenbrock", {}},
+      {"mpi", {"mpi.h"}},
       {"suitesparse", {"suitesparse/"}},
       {"sundials", {"sundials/", "sunlinsol/", "sunnonlinsol/", "ida/"}},
       {"muparser", {"muParser.h"}},

@@ -9,6 +9,7 @@
 #include "backends/zlib/checksum.hpp"
 #include "kernel/fem/trace.hpp"
 #include "tests/support/spaces.hpp"
+#include "tests/support/thread_ranks.hpp"
 
 namespace traceraft {
 namespace {
@@ -73,6 +74,28 @@ TEST(VtuWriter, WritesTheSurfaceAndItsFields) {
   ASSERT_EQ(connectivity.size(), 3 * space->surface.triangles.size());
   EXPECT_EQ(connectivity[5], space->surface.triangles[1][2]);
   EXPECT_EQ(array_named<std::uint8_t>(file, "types").size(), space->surface.triangles.size());
+}
+
+TEST(VtuWriter, RanksWritePiecesOfTheWhole) {
+  const auto whole = testing::make_space(16);
+  std::size_t triangles = 0;
+  std::mutex mutex;
+  testing::run_on_ranks(3, [&](const auto& ranks) {
+    const SurfaceSpace part(*make_surface("sphere"), 16, std::make_shared<ThreadTeam>(1), ranks);
+    const Vec numbers = Vec::Constant(static_cast<Eigen::Index>(part.surface.points.size()), 7);
+    const std::string file = vtu_text(part, 1.0, {{"c", numbers}});
+    const auto points = array_named<float>(file, "Points");
+    const auto connectivity = array_named<std::int32_t>(file, "connectivity");
+    EXPECT_EQ(array_named<float>(file, "c").size(), points.size() / 3);
+    for (const std::int32_t p : connectivity) ASSERT_LT(p, static_cast<int>(points.size() / 3));
+    const std::lock_guard lock(mutex);
+    triangles += connectivity.size() / 3;
+  });
+  EXPECT_EQ(triangles, whole->surface.triangles.size());
+  const std::string joined = pvtu_text({"a.vtu", "b.vtu"}, {"c", "mu"});
+  for (const char* part :
+       {"PUnstructuredGrid", "Source=\"a.vtu\"", "Source=\"b.vtu\"", "Name=\"c\"", "Name=\"mu\""})
+    EXPECT_NE(joined.find(part), std::string::npos) << part;
 }
 
 TEST(Checksum, IsCrc32) {

@@ -41,9 +41,9 @@ class Accuracy : public ::testing::TestWithParam<std::string> {
   CahnHilliard problem;
 };
 
-// The error of each step alone stays near the tolerance, and comes near it: neither is the estimate
-// too rosy nor are steps wasted.
-TEST_P(Accuracy, TheToleranceIsTheErrorOfAStep) {
+// The error of each step alone stays below the tolerance, but not by much: the estimates are of the
+// lower order of a pair, and the steps aim below the tolerance. Measured: at most 0.1 to 0.2 of it.
+TEST_P(Accuracy, TheToleranceBoundsTheErrorOfAStep) {
   IntegratorSettings settings;
   settings.tolerance = 1e-3;
   settings.linear_tolerance = 1e-6;
@@ -60,10 +60,10 @@ TEST_P(Accuracy, TheToleranceIsTheErrorOfAStep) {
     const Vec exact = solution(t, before, integrator->time());
     const double error =
         problem.norm(integrator->state() - exact) / problem.norm(exact) / settings.tolerance;
-    EXPECT_LT(error, 3) << "step " << step;
+    EXPECT_LT(error, 0.6) << "step " << step;
     largest = std::max(largest, error);
   }
-  EXPECT_GT(largest, 0.02);
+  EXPECT_GT(largest, 0.05);
 }
 
 // Between the steps the solution is about as good as at their ends, which straight lines are not.

@@ -1,0 +1,75 @@
+#include "backends/ranks.hpp"
+
+#include <cstdlib>
+
+#include "kernel/core/error.hpp"
+#ifdef TRACERAFT_WITH_MPI
+#include "backends/mpi/mpi_communicator.hpp"
+#endif
+
+namespace traceraft {
+namespace {
+
+// mpirun of Open MPI, MPICH and Intel MPI, and srun say so in the environment.
+bool started_together() {
+  for (const char* variable : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK"})
+    if (std::getenv(variable)) return true;
+  return false;
+}
+
+}  // namespace
+
+#ifdef TRACERAFT_WITH_MPI
+
+namespace {
+// How long a rank that fails waits for the others to fail, too.
+constexpr double kPatience = 2;
+std::unique_ptr<MpiSession> session;
+}  // namespace
+
+RankSession::RankSession() {
+  if (started_together()) session = std::make_unique<MpiSession>();
+}
+RankSession::~RankSession() {
+  session.reset();
+}
+
+bool RankSession::all_fail() {
+  return !session || session->all_fail(kPatience);
+}
+void RankSession::abort(int exit_code) {
+  if (session) session->abort(exit_code);
+  std::exit(exit_code);
+}
+
+std::shared_ptr<const Communicator> world() {
+  if (session) return session->world();
+  return std::make_shared<SerialCommunicator>();
+}
+
+#else
+
+RankSession::RankSession() {
+  const char* size = std::getenv("OMPI_COMM_WORLD_SIZE");
+  if (!size) size = std::getenv("PMI_SIZE");
+  if (started_together() && !(size && std::atoi(size) == 1))
+    throw InputError(
+        "this program was built without MPI and runs as one process only; install the Debian "
+        "packages libopenmpi-dev and openmpi-bin, and build it again");
+}
+RankSession::~RankSession() = default;
+
+bool RankSession::all_fail() {
+  return true;
+}
+void RankSession::abort(int exit_code) {
+  std::exit(exit_code);
+}
+
+std::shared_ptr<const Communicator> world() {
+  return std::make_shared<SerialCommunicator>();
+}
+
+#endif
+
+}  // namespace traceraft
