@@ -6,6 +6,9 @@
 #include "backends/suitesparse/direct_solver.hpp"
 #include "backends/sundials/ida.hpp"
 #include "backends/sundials/spfgmr.hpp"
+#ifdef TRACERAFT_WITH_TRILINOS
+#include "backends/trilinos/teko_solver.hpp"
+#endif
 #include "kernel/core/error.hpp"
 #include "kernel/linear/block_solver.hpp"
 
@@ -18,7 +21,7 @@ void require_one_rank(const char* name, const SurfaceSpace& space) {
                      " factorises on one rank only; on several choose --linear-solver teko");
 }
 
-LinearSolverFactory block(const SurfaceSpace& space) {
+LinearSolverFactory block(const SurfaceSpace& space, const WordOptions&) {
   require_one_rank("block", space);
   return [spd = cholmod_factory(space.pattern), size = 2 * space.nodes(),
           team = space.team](int lanes) {
@@ -27,7 +30,7 @@ LinearSolverFactory block(const SurfaceSpace& space) {
   };
 }
 
-LinearSolverFactory direct(const SurfaceSpace& space) {
+LinearSolverFactory direct(const SurfaceSpace& space, const WordOptions&) {
   require_one_rank("direct", space);
   return [pattern = space.pattern](int lanes) {
     return make_direct_solver("direct", make_umfpack_lu, pattern, lanes);
@@ -36,7 +39,7 @@ LinearSolverFactory direct(const SurfaceSpace& space) {
 
 // KLU works on columns one by one, without dense blocks: on larger meshes it takes many times as
 // long as UMFPACK.
-LinearSolverFactory klu(const SurfaceSpace& space) {
+LinearSolverFactory klu(const SurfaceSpace& space, const WordOptions&) {
   require_one_rank("klu", space);
   constexpr int kMost = 25000;
   const int unknowns = 2 * space.nodes();
@@ -49,6 +52,20 @@ LinearSolverFactory klu(const SurfaceSpace& space) {
   };
 }
 
+#ifdef TRACERAFT_WITH_TRILINOS
+constexpr bool kWithTrilinos = true;
+LinearSolverFactory teko(const SurfaceSpace& space, const WordOptions& options) {
+  return make_teko_solver(space.pattern, options);
+}
+#else
+constexpr bool kWithTrilinos = false;
+LinearSolverFactory teko(const SurfaceSpace&, const WordOptions&) {
+  throw InputError(
+      "teko was not built in: it needs MPI and Trilinos; install the Debian packages "
+      "trilinos-all-dev, libopenmpi-dev and openmpi-bin, and build again");
+}
+#endif
+
 }  // namespace
 
 const NamedList<LinearSolverEntry>& linear_solvers() {
@@ -56,6 +73,16 @@ const NamedList<LinearSolverEntry>& linear_solvers() {
       {"block", "SUNDIALS GMRES, two-solve preconditioner with CHOLMOD factors", "direct", block},
       {"direct", "UMFPACK factors of the whole system at every solve", "", direct},
       {"klu", "KLU factors of the whole system at every solve, for small meshes", "", klu},
+      {"teko",
+       "Trilinos: Belos with block preconditioners of Teko, on any number of ranks",
+       "",
+       teko,
+       {{"preconditioner", "two-solve", "two-solve, gauss-seidel, block-lu, or of the file"},
+        {"inverse", "muelu", "muelu, ifpack2, direct (one rank), or of the file"},
+        {"method", "fgmres", "fgmres, gmres, gcrodr, bicgstab"},
+        {"renewal", "worn", "new preconditioner: worn (when iterations grow) or always"},
+        {"parameters", "", "Teuchos XML file with sublists Inverse Library and Belos"}},
+       kWithTrilinos},
   };
   static const NamedList<LinearSolverEntry> list("linear solver", entries);
   return list;
@@ -73,10 +100,19 @@ const NamedList<IntegratorEntry>& integrators() {
   return list;
 }
 
-LinearSolverChoice choose_linear_solver(const std::string& name, const SurfaceSpace& space) {
+std::vector<std::string> built_linear_solvers() {
+  std::vector<std::string> names;
+  for (const LinearSolverEntry& entry : linear_solvers())
+    if (entry.built) names.push_back(entry.name);
+  return names;
+}
+
+LinearSolverChoice choose_linear_solver(const std::string& name, const SurfaceSpace& space,
+                                        const WordOptions& options) {
   const LinearSolverEntry& entry = linear_solvers().find(name);
-  LinearSolverChoice choice{entry.make(space), nullptr};
-  if (!entry.fallback.empty()) choice.fallback = linear_solvers().find(entry.fallback).make(space);
+  LinearSolverChoice choice{entry.make(space, options), nullptr};
+  if (!entry.fallback.empty())
+    choice.fallback = linear_solvers().find(entry.fallback).make(space, {});
   return choice;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -12,11 +13,20 @@
 
 namespace traceraft {
 
+// An option of one linear solver: --<name>-<option>, a word.
+struct WordOption {
+  std::string name, default_word, meaning;
+};
+using WordOptions = std::map<std::string, std::string>;  // those that are given, by name
+
 struct LinearSolverEntry {
   std::string name;
   std::string summary;
   std::string fallback;  // name of the solver to fall back on, or ""
-  std::function<LinearSolverFactory(const SurfaceSpace&)> make;
+  // Throws InputError for a space or options that it cannot serve.
+  std::function<LinearSolverFactory(const SurfaceSpace&, const WordOptions&)> make;
+  std::vector<WordOption> options = {};
+  bool built = true;  // if not, `make` says how to get it
 };
 
 struct IntegratorEntry {
@@ -30,9 +40,11 @@ struct IntegratorEntry {
 };
 
 const NamedList<LinearSolverEntry>& linear_solvers();
+std::vector<std::string> built_linear_solvers();
 const NamedList<IntegratorEntry>& integrators();
 
 // The named solver together with its fallback. Throws InputError.
-LinearSolverChoice choose_linear_solver(const std::string& name, const SurfaceSpace& space);
+LinearSolverChoice choose_linear_solver(const std::string& name, const SurfaceSpace& space,
+                                        const WordOptions& options = {});
 
 }  // namespace traceraft

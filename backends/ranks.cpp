@@ -6,6 +6,9 @@
 #ifdef TRACERAFT_WITH_MPI
 #include "backends/mpi/mpi_communicator.hpp"
 #endif
+#ifdef TRACERAFT_WITH_TRILINOS
+#include "backends/trilinos/runtime.hpp"
+#endif
 
 namespace traceraft {
 namespace {
@@ -31,6 +34,9 @@ RankSession::RankSession() {
   if (started_together()) session = std::make_unique<MpiSession>();
 }
 RankSession::~RankSession() {
+#ifdef TRACERAFT_WITH_TRILINOS
+  finish_trilinos();
+#endif
   session.reset();
 }
 

@@ -8,8 +8,8 @@ namespace traceraft {
 
 namespace {
 
-// After the general options, those that only one integrator has.
-std::vector<OptionSpec> with_integrator_options(std::vector<OptionSpec> table) {
+// After the general options, those that only one integrator or linear solver has.
+std::vector<OptionSpec> with_own_options(std::vector<OptionSpec> table) {
   for (const IntegratorEntry& integrator : integrators())
     for (const ParameterSpec& p : integrator.parameters) {
       const bool time = p.unit == "s";
@@ -19,6 +19,10 @@ std::vector<OptionSpec> with_integrator_options(std::vector<OptionSpec> table) {
                        p.meaning + (time ? " (s)" : ""), p.min, p.max,
                        time ? Dimension::time : Dimension::none});
     }
+  for (const LinearSolverEntry& solver : linear_solvers())
+    for (const WordOption& o : solver.options)
+      table.push_back({linear_solver_option(solver, o), OptionKind::text, o.default_word,
+                       "Linear solver " + solver.name, o.meaning});
   return table;
 }
 
@@ -28,10 +32,14 @@ std::string integrator_option(const IntegratorEntry& integrator, const Parameter
   return integrator.name + "-" + parameter.name;
 }
 
+std::string linear_solver_option(const LinearSolverEntry& solver, const WordOption& option) {
+  return solver.name + "-" + option.name;
+}
+
 const std::vector<OptionSpec>& run_options() {
   using K = OptionKind;
   using D = Dimension;
-  static const std::vector<OptionSpec> table = with_integrator_options({
+  static const std::vector<OptionSpec> table = with_own_options({
       {"case", K::text, "guv-2to1", "Case", "named set of defaults (see: traceraft list)"},
       {"scaled", K::flag, "false", "Case",
        "all inputs and outputs in units of R and R^2/D instead of um and s"},

@@ -23,9 +23,13 @@ struct OptionSpec {
 };
 
 struct IntegratorEntry;
+struct LinearSolverEntry;
 struct ParameterSpec;
+struct WordOption;
 // "ida-maxord": the name of an option that one integrator has.
 std::string integrator_option(const IntegratorEntry& integrator, const ParameterSpec& parameter);
+// "teko-inverse": the name of an option that one linear solver has.
+std::string linear_solver_option(const LinearSolverEntry& solver, const WordOption& option);
 
 const std::vector<OptionSpec>& run_options();
 const OptionSpec& run_option(const std::string& name);  // throws InputError

@@ -249,7 +249,11 @@ RunSetup build_run(const Configuration& configuration, InitialState initial) {
   run.observer =
       std::make_unique<Observer>(*run.problem, run.space, run.perimeter.interface_energy);
   const LinearSolverChoice solvers = said_of(configuration, "linear-solver", [&] {
-    return choose_linear_solver(configuration.text("linear-solver"), *run.space);
+    const LinearSolverEntry& solver = linear_solvers().find(configuration.text("linear-solver"));
+    WordOptions options;
+    for (const WordOption& option : solver.options)
+      options[option.name] = configuration.text(linear_solver_option(solver, option));
+    return choose_linear_solver(solver.name, *run.space, options);
   });
   run.integrator = integrator.make(*run.problem, solvers, run.team, settings);
   return run;

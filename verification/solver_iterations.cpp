@@ -60,7 +60,7 @@ Vec right_side(const CahnHilliard& problem, const Vec& y) {
 
 int iterations(const CahnHilliard& problem, const Vec& y, const Vec& b, double shift,
                Tangent tangent) {
-  const LinearSolverPtr solver = linear_solvers().find("block").make(problem.space())(1);
+  const LinearSolverPtr solver = linear_solvers().find("block").make(problem.space(), {})(1);
   BlockJacobian J = problem.make_jacobian();
   require(problem.jacobian(0, y, Vec::Zero(y.size()), shift, tangent, J));
   require(solver->setup(J));

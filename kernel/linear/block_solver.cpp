@@ -4,14 +4,14 @@
 #include <vector>
 
 #include "kernel/core/stopwatch.hpp"
+#include "kernel/linear/setup_policy.hpp"
 #include "kernel/linear/two_solve_preconditioner.hpp"
 
 namespace traceraft {
 namespace {
 
 constexpr int kMaxIterations = 200;
-// Measured at n = 128: a set-up costs about as much as 12 iterations. Counts decide, not clocks, so
-// that runs repeat themselves.
+// Measured at n = 128: a set-up costs about as much as 12 iterations.
 constexpr long kSetupPrice = 12;
 
 class BlockSolver final : public LinearSolver {
@@ -36,10 +36,9 @@ class BlockSolver final : public LinearSolver {
   }
 
   bool wants_setup(const BlockJacobian& J, int) const override {
-    const double change = J.shift / setup_shift_;
     long extra = 0;
     for (const Lane& lane : lanes_) extra += lane.effort.extra;
-    return !ready_ || !(change < 4 && change > 0.25) || extra >= kSetupPrice;
+    return !ready_ || is_worn(setup_shift_, J.shift, extra, kSetupPrice);
   }
 
   SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance,
@@ -96,11 +95,6 @@ class BlockSolver final : public LinearSolver {
   }
 
  private:
-  // Iterations since the last set-up: the fewest a solve took, and those beyond that, summed.
-  struct Effort {
-    long fewest = -1;
-    long extra = 0;
-  };
   struct Lane {
     std::unique_ptr<KrylovMethod> krylov;
     Effort effort;
@@ -110,8 +104,7 @@ class BlockSolver final : public LinearSolver {
     void count(int iterations) {
       statistics.iterations += iterations;
       statistics.most_iterations = std::max(statistics.most_iterations, iterations);
-      if (effort.fewest < 0 || iterations < effort.fewest) effort.fewest = iterations;
-      effort.extra += iterations - effort.fewest;
+      effort.count(iterations);
     }
   };
 

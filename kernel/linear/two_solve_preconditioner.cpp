@@ -17,25 +17,20 @@ TwoSolveShifts two_solve_shifts(double sigma, double mobility, double stiffness,
   return {mobility * r1, curvature - stiffness * r2};
 }
 
-Status TwoSolvePreconditioner::setup(const BlockJacobian& J, const ThreadTeam& team) {
+TwoSolveShifts two_solve_shifts(const BlockJacobian& J, int attempt) {
   // The mean mobility of a nearly pure state tends to zero; its floor keeps the shifts finite.
   const double mobility = std::max(J.mobility, 1e-8);
-  if (J.tangent == Tangent::exact) return setup_exact(J, mobility, team);
-  const TwoSolveShifts shifts = two_solve_shifts(J.shift, mobility, J.stiffness, J.curvature);
-  p_ = shifts.p;
-  q_ = shifts.q;
-  return factorise(J, team);
+  if (J.tangent == Tangent::stabilised)
+    return two_solve_shifts(J.shift, mobility, J.stiffness, J.curvature);
+  const double s = std::ldexp(1.5 * std::sqrt(J.stiffness * J.shift / mobility), attempt);
+  return {2 * J.shift / (J.curvature + s), -s};
 }
 
-Status TwoSolvePreconditioner::setup_exact(const BlockJacobian& J, double mobility,
-                                           const ThreadTeam& team) {
-  // A state inside the spinodal has a very negative f0''; a shift above its size always suffices.
-  constexpr int kMostShifts = 12;
-  double s = 1.5 * std::sqrt(J.stiffness * J.shift / mobility);
+Status TwoSolvePreconditioner::setup(const BlockJacobian& J, const ThreadTeam& team) {
+  const int attempts = J.tangent == Tangent::exact ? kMostShifts : 1;
   Status status;
-  for (int attempt = 0; attempt < kMostShifts; ++attempt, s *= 2) {
-    p_ = 2 * J.shift / (J.curvature + s);
-    q_ = -s;
+  for (int attempt = 0; attempt < attempts; ++attempt) {
+    shifts_ = two_solve_shifts(J, attempt);
     status = factorise(J, team);
     if (status.ok()) break;
   }
@@ -46,8 +41,8 @@ Status TwoSolvePreconditioner::factorise(const BlockJacobian& J, const ThreadTea
   Status status[2];
   team.run([&](int part) {
     for (int which = part; which < 2; which += team.size())
-      status[which] = which == 0 ? first_->factorise(combine(1, J.cm, p_, J.mm))
-                                 : second_->factorise(combine(-1, J.mc, -q_, J.mm));
+      status[which] = which == 0 ? first_->factorise(combine(1, J.cm, shifts_.p, J.mm))
+                                 : second_->factorise(combine(-1, J.mc, -shifts_.q, J.mm));
   });
   return status[0].ok() ? status[1] : status[0];
 }
@@ -57,12 +52,12 @@ void TwoSolvePreconditioner::apply(const BlockJacobian& J, ConstVec r, VecRef z,
   const int n = J.block_size();
   auto& [right, v] = work_[lane];
   v.resize(n);
-  right = r.head(n) + p_ * r.tail(n);
+  right = r.head(n) + shifts_.p * r.tail(n);
   first_->solve(right, v, team, lane);
   J.mm.multiply(v, right, team);
   right -= r.tail(n);
   second_->solve(right, z.head(n), team, lane);
-  z.tail(n) = v + q_ * z.head(n);
+  z.tail(n) = v + shifts_.q * z.head(n);
 }
 
 }  // namespace traceraft

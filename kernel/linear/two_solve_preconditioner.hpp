@@ -22,6 +22,17 @@ namespace traceraft {
 // spectrum is then bounded on the boundaries, where A is large and S ≈ A M⁻¹ (B + σ M A⁻¹ M), as
 // well as in the phases, where it is small and S ≈ σ M. The factors 1.5 and 2 were measured, see
 // docs/decisions/0009-exact-tangent-preconditioner.md.
+struct TwoSolveShifts {
+  double p = 0, q = 0;
+};
+// From the roots, for the stabilised tangent.
+TwoSolveShifts two_solve_shifts(double sigma, double mobility, double stiffness, double curvature);
+// For a Jacobian. With the exact tangent every further attempt doubles s, as a state inside the
+// spinodal has a very negative f0''; after kMostShifts attempts the second matrix is surely
+// positive definite. With the stabilised one there is one attempt, 0.
+inline constexpr int kMostShifts = 12;
+TwoSolveShifts two_solve_shifts(const BlockJacobian& J, int attempt = 0);
+
 class TwoSolvePreconditioner {
  public:
   TwoSolvePreconditioner(const SpdSolverFactory& make_solver, int lanes)
@@ -35,20 +46,14 @@ class TwoSolvePreconditioner {
   void apply(const BlockJacobian& J, ConstVec r, VecRef z, const ThreadTeam& team, int lane);
 
  private:
-  Status setup_exact(const BlockJacobian& J, double mobility, const ThreadTeam& team);
   Status factorise(const BlockJacobian& J, const ThreadTeam& team);  // with p_ and q_
 
   SpdSolverPtr first_, second_;
-  double p_ = 0, q_ = 0;
+  TwoSolveShifts shifts_;
   struct Work {
     Vec right, v;
   };
   std::vector<Work> work_;  // per lane
 };
-
-struct TwoSolveShifts {
-  double p, q;
-};
-TwoSolveShifts two_solve_shifts(double sigma, double mobility, double stiffness, double curvature);
 
 }  // namespace traceraft

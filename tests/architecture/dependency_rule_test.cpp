@@ -68,6 +68,7 @@ TEST(DependencyRule, EveryBackendKnowsTheKernelAndItsOwnLibrary) {
       {"euler", {}},
       {"rosenbrock", {}},
       {"mpi", {"mpi.h"}},
+      {"trilinos", {"Belos", "MueLu", "Stratimikos", "Teko", "Teuchos", "Thyra", "Tpetra"}},
       {"suitesparse", {"suitesparse/"}},
       {"sundials", {"sundials/", "sunlinsol/", "sunnonlinsol/", "ida/"}},
       {"muparser", {"muParser.h"}},

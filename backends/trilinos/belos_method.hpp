@@ -1,0 +1,30 @@
+// Krylov methods of Belos on Thyra operators.
+#pragma once
+
+#include <Teuchos_ParameterList.hpp>
+#include <string>
+#include <vector>
+
+#include "backends/trilinos/tpetra_space.hpp"
+#include "kernel/linear/linear_solver.hpp"
+
+namespace traceraft {
+
+// fgmres: GMRES with a flexible right preconditioner; gcrodr keeps a part of its space from one
+// system to the next.
+inline const std::vector<std::string> kBelosMethods = {"fgmres", "gmres", "gcrodr", "bicgstab"};
+
+class BelosMethod {
+ public:
+  virtual ~BelosMethod() = default;
+  // A x = b from the guess in x, preconditioned from the right, until the residual has fallen to
+  // `tolerance` times that of x = 0. retry: it did not; the iterations count all the same.
+  virtual SolveReport solve(const ThyraOperator& A, const ThyraOperator& preconditioner,
+                            const ThyraVector& b, const ThyraVector& x, double tolerance) = 0;
+};
+
+// `own` changes parameters of the method, by Belos' names.
+std::unique_ptr<BelosMethod> make_belos_method(const std::string& name,
+                                               const Teuchos::ParameterList& own);
+
+}  // namespace traceraft

@@ -1,0 +1,23 @@
+// The inverses that Teko builds preconditioners from, by name.
+#pragma once
+
+#include <Teko_InverseLibrary.hpp>
+#include <Teuchos_ParameterList.hpp>
+#include <string>
+#include <vector>
+
+namespace traceraft {
+
+// Names of whole preconditioners: our own and Teko's for comparison.
+inline const std::vector<std::string> kTekoPreconditioners = {"two-solve", "gauss-seidel",
+                                                              "block-lu"};
+// Names of inverses of one matrix.
+inline const std::vector<std::string> kTekoInverses = {"muelu", "ifpack2", "direct"};
+
+// A library with all of these; the preconditioners use `inverse` for the matrices that are hard.
+// `own` is added to it, or changes what has the same name.
+// Compiled without optimisation, because registering MueLu takes long otherwise and runs once.
+Teuchos::RCP<Teko::InverseLibrary> make_inverse_library(const std::string& inverse,
+                                                        const Teuchos::ParameterList& own);
+
+}  // namespace traceraft

@@ -1,0 +1,262 @@
+#include "backends/trilinos/teko_solver.hpp"
+
+#include <Teko_PreconditionerInverseFactory.hpp>
+#include <Teko_RequestHandler.hpp>
+#include <Teuchos_XMLParameterListHelpers.hpp>
+#include <Thyra_DefaultProductVector.hpp>
+#include <Thyra_DefaultProductVectorSpace.hpp>
+#include <Thyra_VectorStdOps.hpp>
+#include <algorithm>
+#include <exception>
+#include <mutex>
+
+#include "backends/trilinos/belos_method.hpp"
+#include "backends/trilinos/inverse_library.hpp"
+#include "backends/trilinos/runtime.hpp"
+#include "backends/trilinos/two_solve_factory.hpp"
+#include "kernel/core/named_list.hpp"
+#include "kernel/core/stopwatch.hpp"
+#include "kernel/linear/setup_policy.hpp"
+#include "kernel/linear/two_solve_preconditioner.hpp"
+
+namespace traceraft {
+namespace {
+
+using Teuchos::ParameterList;
+using Teuchos::RCP;
+using Teuchos::rcp;
+
+// Measured: a new hierarchy costs about as much as 15 iterations.
+constexpr long kSetupPrice = 15;
+// A solution whose residual is larger than asked for by more than rounding is none.
+constexpr double kSlack = 1.01;
+
+// Everything that does not change from solver to solver.
+struct Setting {
+  PatternPtr pattern;
+  TpetraSpace space;
+  std::string preconditioner, method;
+  ParameterList belos;
+  RCP<Teko::InverseLibrary> library;
+  bool always_new = false;
+};
+
+// With the exact tangent B + sM must be positive definite, which no approximate inverse notices.
+// The constant function tells where f0'' is negative on the whole.
+TwoSolveShifts shifts_of(const BlockJacobian& J, double area) {
+  double sum = 0;
+  for (const double value : J.mc.values) sum -= value;
+  const double mean = J.ranks().sum(sum) / area;  // of f0''; the stiffness has no part in it
+  TwoSolveShifts shifts = two_solve_shifts(J);
+  for (int attempt = 1; attempt < kMostShifts && mean - shifts.q <= 0; ++attempt)
+    shifts = two_solve_shifts(J, attempt);
+  return shifts;
+}
+
+class TekoSolver final : public LinearSolver {
+ public:
+  TekoSolver(std::shared_ptr<const Setting> setting, int lanes)
+      : setting_(std::move(setting)), lanes_(lanes) {
+    const TpetraSpace& space = setting_->space;
+    for (RCP<TpetraMatrix>& block : blocks_) block = space.make_matrix();
+    A_ = Thyra::block2x2<double>(as_operator(blocks_[0]), as_operator(blocks_[1]),
+                                 as_operator(blocks_[2]), as_operator(blocks_[3]));
+    handler_ = rcp(new Teko::RequestHandler);
+    handler_->addRequestCallback(rcp(new TwoSolveCallback(request_)));
+    setting_->library->setRequestHandler(handler_);
+    factory_ = setting_->library->getInverseFactory(setting_->preconditioner);
+    for (Lane& lane : lanes_) {
+      lane.method = make_belos_method(setting_->method, setting_->belos);
+      lane.b = Thyra::createMember(A_->range());
+      lane.x = Thyra::createMember(A_->domain());
+    }
+  }
+
+  std::string name() const override { return "teko"; }
+  bool shares_factors() const override { return true; }
+
+  Status setup(const BlockJacobian& J, int) override {
+    const ScopedTimer timer(setup_seconds_);
+    ++setups_;
+    for (Lane& lane : lanes_) lane.effort = {};
+    setup_shift_ = J.shift;
+    ready_ = false;
+    fill(J);
+    double area = 0;
+    for (const double value : J.mm.values) area += value;
+    const TwoSolveShifts shifts = shifts_of(J, J.ranks().sum(area));
+    request_ = {shifts.p, shifts.q, row_scale_};
+    try {
+      // Teko turns what goes wrong into exceptions of many kinds.
+      if (inverse_.is_null())
+        inverse_ = Teko::buildInverse(*factory_, A_);
+      else
+        Teko::rebuildInverse(*factory_, A_, inverse_);
+    } catch (const std::exception& error) {
+      inverse_ = Teuchos::null;
+      return Status::retry(std::string("teko: ") + error.what());
+    }
+    ready_ = true;
+    return {};
+  }
+
+  bool wants_setup(const BlockJacobian& J, int) const override {
+    long extra = 0;
+    for (const Lane& lane : lanes_) extra += lane.effort.extra;
+    return !ready_ || setting_->always_new || is_worn(setup_shift_, J.shift, extra, kSetupPrice);
+  }
+
+  SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance,
+                    int lane_number) override {
+    // Trilinos keeps what it computes with in its objects.
+    const std::lock_guard lock(one_at_a_time_);
+    Lane& lane = lanes_[lane_number];
+    const ScopedTimer timer(lane.statistics.solve_seconds);
+    ++lane.statistics.solves;
+    if (!ready_) return {Status::retry("there is no preconditioner")};
+    fill(J);
+    const int n = J.block_size();
+    copy_halves(b, 1 / row_scale_, *lane.b);
+    copy_halves(x, 1, *lane.x);
+    SolveReport report = lane.method->solve(A_, inverse_, lane.b, lane.x, tolerance);
+    lane.statistics.iterations += report.iterations;
+    lane.statistics.most_iterations = std::max(lane.statistics.most_iterations, report.iterations);
+    lane.effort.count(report.iterations);
+    if (!report.status.ok()) return report;
+    copy_from(*block(*lane.x, 0), x.head(n));
+    copy_from(*block(*lane.x, 1), x.tail(n));
+    report.status = verified(J, b, x, tolerance);
+    if (report.status.ok()) restore_mass(J, b, x);
+    return report;
+  }
+
+  LinearStatistics statistics() const override {
+    LinearStatistics total;
+    for (const Lane& lane : lanes_) total = total + lane.statistics;
+    total.setups = setups_;
+    total.setup_seconds = setup_seconds_;
+    return total;
+  }
+
+  void save(CheckpointOut out) const override {
+    write_binary(out, setups_);
+    write_binary(out, setup_seconds_);
+    for (const Lane& lane : lanes_) {
+      write_binary(out, lane.effort);
+      write_binary(out, lane.statistics);
+    }
+  }
+  void load(CheckpointIn in) override {
+    read_binary(in, setups_);
+    read_binary(in, setup_seconds_);
+    for (Lane& lane : lanes_) {
+      read_binary(in, lane.effort);
+      read_binary(in, lane.statistics);
+    }
+  }
+
+ private:
+  struct Lane {
+    std::unique_ptr<BelosMethod> method;
+    ThyraVector b, x;
+    Effort effort;
+    LinearStatistics statistics;
+  };
+
+  static RCP<Thyra::VectorBase<double>> block(Thyra::VectorBase<double>& vector, int which) {
+    return dynamic_cast<Thyra::ProductVectorBase<double>&>(vector).getNonconstVectorBlock(which);
+  }
+  static void copy_halves(ConstVec field, double first_scale, Thyra::VectorBase<double>& vector) {
+    const Eigen::Index n = field.size() / 2;
+    copy_to(first_scale * field.head(n), *block(vector, 0));
+    copy_to(field.tail(n), *block(vector, 1));
+  }
+
+  // Belos judges by one norm: the first block row is divided by the shift.
+  void fill(const BlockJacobian& J) {
+    row_scale_ = J.shift > 0 ? J.shift : 1;
+    const TpetraSpace& space = setting_->space;
+    space.fill(1 / row_scale_, J.cc, *blocks_[0]);
+    space.fill(1 / row_scale_, J.cm, *blocks_[1]);
+    space.fill(1, J.mc, *blocks_[2]);
+    space.fill(1, J.mm, *blocks_[3]);
+  }
+
+  Status verified(const BlockJacobian& J, ConstVec b, ConstVec x, double tolerance) const {
+    Vec residual(b.size());
+    J.multiply(x, residual, team_);
+    residual = b - residual;
+    // NaN is refused, too.
+    if (scaled_norm(J, residual) <= kSlack * tolerance * scaled_norm(J, b)) return {};
+    return Status::retry("the residual is larger than Belos says");
+  }
+
+  std::shared_ptr<const Setting> setting_;
+  std::vector<Lane> lanes_;
+  std::array<RCP<TpetraMatrix>, 4> blocks_;
+  ThyraOperator A_;
+  TwoSolveRequest request_;
+  RCP<Teko::RequestHandler> handler_;
+  RCP<Teko::InverseFactory> factory_;
+  Teko::InverseLinearOp inverse_;
+  ThreadTeam team_{1};
+  std::mutex one_at_a_time_;
+  double row_scale_ = 1;
+  bool ready_ = false;
+  double setup_shift_ = 0;
+  long setups_ = 0;
+  double setup_seconds_ = 0;
+};
+
+std::string option(const TekoOptions& options, const char* name, const char* otherwise) {
+  const auto found = options.find(name);
+  return found == options.end() ? otherwise : found->second;
+}
+
+// A name of ours or of a sublist of the user's.
+std::string one_of(const char* what, const std::string& name, std::vector<std::string> names,
+                   const ParameterList& own) {
+  for (auto entry = own.begin(); entry != own.end(); ++entry) names.push_back(own.name(entry));
+  if (std::find(names.begin(), names.end(), name) == names.end())
+    throw InputError(unknown_name_message(what, name, names));
+  return name;
+}
+
+ParameterList read_parameters(const std::string& path) {
+  ParameterList list;
+  if (path.empty()) return list;
+  try {
+    Teuchos::updateParametersFromXmlFile(path, Teuchos::ptrFromRef(list));
+  } catch (const std::exception& error) {
+    const std::string why = error.what();
+    throw InputError(path + ": no Teuchos parameter list: " + why.substr(0, why.find('\n')));
+  }
+  for (auto entry = list.begin(); entry != list.end(); ++entry)
+    if (list.name(entry) != "Inverse Library" && list.name(entry) != "Belos")
+      throw InputError(
+          path + ": " +
+          unknown_name_message("sublist", list.name(entry), {"Inverse Library", "Belos"}));
+  return list;
+}
+
+}  // namespace
+
+LinearSolverFactory make_teko_solver(const PatternPtr& pattern, const TekoOptions& options) {
+  start_trilinos();
+  ParameterList file = read_parameters(option(options, "parameters", ""));
+  const ParameterList& own = file.sublist("Inverse Library");
+  const std::string inverse =
+      one_of("inverse", option(options, "inverse", "muelu"), kTekoInverses, own);
+  if (inverse == "direct" && pattern->halo.ranks->size() > 1)
+    throw InputError("inverse 'direct' works on one rank only; choose muelu or ifpack2");
+  const auto setting = std::make_shared<Setting>(
+      Setting{pattern, TpetraSpace(*pattern),
+              one_of("preconditioner", option(options, "preconditioner", "two-solve"),
+                     kTekoPreconditioners, own),
+              one_of("method", option(options, "method", "fgmres"), kBelosMethods, ParameterList()),
+              file.sublist("Belos"), make_inverse_library(inverse, own),
+              option(options, "renewal", "worn") == "always"});
+  return [setting](int lanes) { return std::make_unique<TekoSolver>(setting, lanes); };
+}
+
+}  // namespace traceraft
