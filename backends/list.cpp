@@ -78,7 +78,7 @@ const NamedList<LinearSolverEntry>& linear_solvers() {
        "",
        teko,
        {{"preconditioner", "two-solve", "two-solve, gauss-seidel, block-lu, or of the file"},
-        {"inverse", "muelu", "muelu, ifpack2, direct (one rank), or of the file"},
+        {"inverse", "muelu", "muelu, muelu-ilu (stronger, dearer), ifpack2, direct (one rank), or of the file"},
         {"method", "fgmres", "fgmres, gmres, gcrodr, bicgstab"},
         {"renewal", "worn", "new preconditioner: worn (when iterations grow) or always"},
         {"parameters", "", "Teuchos XML file with sublists Inverse Library and Belos"}},

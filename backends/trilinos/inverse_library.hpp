@@ -12,12 +12,16 @@ namespace traceraft {
 inline const std::vector<std::string> kTekoPreconditioners = {"two-solve", "gauss-seidel",
                                                               "block-lu"};
 // Names of inverses of one matrix.
-inline const std::vector<std::string> kTekoInverses = {"muelu", "ifpack2", "direct"};
+inline const std::vector<std::string> kTekoInverses = {"muelu", "muelu-ilu", "ifpack2", "direct"};
 
 // A library with all of these; the preconditioners use `inverse` for the matrices that are hard.
-// `own` is added to it, or changes what has the same name.
+// `own` is added to it, or replaces what has the same name.
+// What Teko prints goes to teko_complaints() instead.
 // Compiled without optimisation, because registering MueLu takes long otherwise and runs once.
 Teuchos::RCP<Teko::InverseLibrary> make_inverse_library(const std::string& inverse,
                                                         const Teuchos::ParameterList& own);
+
+// What Teko has said since the last call, which is where it tells what went wrong.
+std::string teko_complaints();
 
 }  // namespace traceraft

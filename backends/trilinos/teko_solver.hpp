@@ -11,7 +11,7 @@
 namespace traceraft {
 
 // preconditioner: two-solve, gauss-seidel, block-lu, or a name from the parameter file
-// inverse: muelu, ifpack2, direct (on one rank), or a name from the parameter file
+// inverse: muelu, muelu-ilu, ifpack2, direct (on one rank), or a name from the parameter file
 // method: fgmres, gmres, gcrodr, bicgstab
 // parameters: "" or a Teuchos XML file with the sublists "Inverse Library" and "Belos"
 using TekoOptions = std::map<std::string, std::string>;

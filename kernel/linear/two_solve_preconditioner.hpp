@@ -10,7 +10,7 @@ namespace traceraft {
 
 // The Schur complement of [σM A; −B M] is a polynomial in M⁻¹A and M⁻¹B. With A ≈ m K and
 // B ≈ ε² K + β M (m: mean mobility) it factorises: take r₁ ≤ r₂, the roots of
-//   m ε² r² − m β r + σ = 0        (if complex, both √(σ/(m ε²))),
+//   m ε² r² − m β r + σ = 0        (if complex, both √(σ/(m ε²)) with a smaller m, see the source),
 // p = m r₁ and q = β − ε² r₂. Then two solves with symmetric positive definite n×n matrices,
 //   (A + p M) v = R₁ + p R₂,   (B − q M) δc = M v − R₂,   δμ = v + q δc,
 // invert J exactly for constant mobility and real roots, and are close to it otherwise: 2–12

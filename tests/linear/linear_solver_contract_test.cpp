@@ -54,7 +54,8 @@ TEST_P(LinearSolverContract, SolvesOverManyStepSizesWithBothTangents) {
       const SolveReport report = solver->solve(J, b, x, 1e-8);
       ASSERT_TRUE(report.status.ok()) << report.status.why;
       EXPECT_LE(relative_residual(b, x), 1.01e-8) << "shift " << shift;
-      EXPECT_LE(report.iterations, 20) << "shift " << shift;
+      // A V-cycle stands for a factorisation with some loss.
+      EXPECT_LE(report.iterations, GetParam() == "teko" ? 30 : 20) << "shift " << shift;
     }
 }
 

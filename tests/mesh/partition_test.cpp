@@ -9,6 +9,7 @@
 #include <set>
 
 #include "kernel/mesh/active_mesh.hpp"
+#include "tests/support/rank_contract.hpp"
 #include "tests/support/thread_ranks.hpp"
 
 namespace traceraft {
@@ -36,6 +37,11 @@ double dumbbell(const Point& x) {
   const Point axis(x[0], x[1] - 0.026, x[2] - 0.026);  // between the points of the lattice
   const double tube = std::hypot(axis[1], axis[2]) - 0.02;
   return std::fabs(x[0]) < 0.9 ? std::min(balls, tube) : balls;
+}
+
+TEST(ThreadRanks, AreACommunicator) {
+  for (const int size : {1, 2, 3, 5})
+    run_on_ranks(size, [](const auto& ranks) { testing::check_communicator(*ranks); });
 }
 
 TEST(Partition, FollowsAHilbertCurve) {

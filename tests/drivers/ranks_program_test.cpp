@@ -1,0 +1,123 @@
+// The program under mpirun as a user meets it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <csignal>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace traceraft {
+namespace {
+
+using testing::content;
+using testing::Outcome;
+using testing::shell;
+using testing::TemporaryFolder;
+namespace fs = std::filesystem;
+
+// Ranks share two processors: they give way to each other while they wait.
+const std::string kEnvironment = "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 ";
+const std::string kMpirun =
+    TRACERAFT_MPIRUN " --quiet --oversubscribe --mca mpi_yield_when_idle 1 --timeout 200 ";
+
+class RanksTest : public ::testing::Test {
+ protected:
+  TemporaryFolder folder;
+  std::string at(const std::string& name) const { return (folder.path / name).string(); }
+  static Outcome on(int ranks, const std::string& arguments) {
+    return shell(kEnvironment + kMpirun + "-np " + std::to_string(ranks) +
+                 " " TRACERAFT_PROGRAM " " + arguments);
+  }
+  // Runs until there are some steps, and asks all ranks to stop, as mpirun passes on this signal.
+  void stop_early(int ranks, const std::string& arguments, const std::string& name) const {
+    const pid_t child = fork();
+    if (child == 0) {
+      const std::string command = kEnvironment + "exec " + kMpirun + "-np " +
+                                  std::to_string(ranks) + " " TRACERAFT_PROGRAM " " + arguments;
+      execl("/bin/sh", "sh", "-c", command.c_str(), static_cast<char*>(nullptr));
+      _exit(127);
+    }
+    for (int i = 0; i < 6000 && testing::lines_of(at(name) + "/series.csv") < 8; ++i) usleep(10000);
+    kill(child, SIGUSR1);
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_EQ(WEXITSTATUS(status), 5);
+  }
+  nlohmann::json summary(const std::string& name) const {
+    return nlohmann::json::parse(content(at(name) + "/summary.json"));
+  }
+  const std::string runs =
+      "--case two-rafts --cells 16 --epsilon 0.8 --t-end 1 --linear-solver teko ";
+};
+
+TEST_F(RanksTest, ARunOnRanksIsTheRunOfOne) {
+  ASSERT_EQ(testing::traceraft("run --quiet " + runs + "--out " + at("one")).code, 0);
+  const Outcome two = on(2, "run " + runs + "--out " + at("two"));
+  ASSERT_EQ(two.code, 0) << two.output;
+  EXPECT_NE(two.output.find("2 ranks"), std::string::npos) << two.output;
+  const std::size_t said = two.output.find("finished at t");
+  EXPECT_NE(said, std::string::npos);
+  EXPECT_EQ(two.output.rfind("finished at t"), said) << "said by more than one rank";
+  const auto one = summary("one"), many = summary("two");
+  for (const char* same : {"nodes", "unknowns", "cut_tetrahedra", "euler_characteristic", "rafts"})
+    EXPECT_EQ(one.at(same), many.at(same)) << same;
+  for (const char* close : {"energy", "perimeter", "mass", "raft_fraction", "c_max"})
+    EXPECT_NEAR(many.at(close).get<double>() / one.at(close).get<double>(), 1, 1e-3) << close;
+  EXPECT_EQ(many.at("ranks"), 2);
+  EXPECT_LE(many.at("mass_drift").get<double>(), 1e-12);
+  // Every rank has written its piece of the fields, and one file joins them.
+  EXPECT_TRUE(fs::exists(at("two") + "/fields/field-0000-0001.vtu"));
+  EXPECT_NE(content(at("two") + "/fields.pvd").find("field-0000.pvtu"), std::string::npos);
+  EXPECT_TRUE(fs::exists(at("two") + "/view.png"));
+}
+
+TEST_F(RanksTest, GoesOnWithMoreAndFewerRanks) {
+  const Outcome whole = on(2, "run --quiet " + runs + "--out " + at("whole"));
+  ASSERT_EQ(whole.code, 0) << whole.output;
+  for (const int ranks : {1, 3}) {
+    const std::string name = "part" + std::to_string(ranks);
+    stop_early(2, "run --quiet --checkpoint-interval 0 " + runs + "--out " + at(name), name);
+    EXPECT_EQ(summary(name).at("end"), "stopped");
+    const Outcome resumed = on(ranks, "resume --quiet " + at(name));
+    ASSERT_EQ(resumed.code, 0) << resumed.output;
+    EXPECT_EQ(summary(name).at("end"), "finished");
+    EXPECT_EQ(summary(name).at("ranks"), ranks);
+    for (const char* close : {"energy", "perimeter", "mass"})
+      EXPECT_NEAR(summary(name).at(close).get<double>() / summary("whole").at(close).get<double>(),
+                  1, 1e-3)
+          << close << " on " << ranks;
+  }
+}
+
+TEST_F(RanksTest, SaysWhatIsWrongOnce) {
+  const Outcome flag = on(3, "run --cels 7");
+  EXPECT_EQ(flag.code, 2);
+  EXPECT_EQ(flag.output, "traceraft: unknown flag '--cels'; did you mean '--cells'?\n");
+  const Outcome solver = on(2, "run --case two-rafts --cells 12 --linear-solver block");
+  EXPECT_EQ(solver.code, 2);
+  EXPECT_NE(solver.output.find("choose --linear-solver teko"), std::string::npos) << solver.output;
+  const Outcome threads = on(2, "run " + runs + "--threads 2");
+  EXPECT_EQ(threads.code, 2);
+  EXPECT_NE(threads.output.find("more ranks"), std::string::npos) << threads.output;
+  const Outcome many = on(3, "run --case two-rafts --cells 4 --linear-solver teko --epsilon 2");
+  EXPECT_EQ(many.code, 2) << many.output;
+  EXPECT_EQ(on(2, "verify order --quick").code, 2);
+}
+
+TEST_F(RanksTest, OneThatFailsEndsAll) {
+  stop_early(2, "run --quiet --checkpoint-interval 0 " + runs + "--out " + at("run"), "run");
+  // Where the second rank wants to write its piece of the last field there is a folder already.
+  fs::create_directories(at("run") + "/fields/field-0016-0001.vtu");
+  const Outcome outcome = on(2, "resume --quiet " + at("run"));
+  EXPECT_EQ(outcome.code, 4) << outcome.output;
+  EXPECT_NE(outcome.output.find("traceraft: rank 1: "), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.output.find("field-0016-0001.vtu"), std::string::npos) << outcome.output;
+  // What was there is still there.
+  fs::remove(at("run") + "/fields/field-0016-0001.vtu");
+  EXPECT_EQ(on(2, "resume --quiet " + at("run")).code, 0);
+}
+
+}  // namespace
+}  // namespace traceraft

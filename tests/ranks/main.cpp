@@ -1,0 +1,16 @@
+// Tests that run on all ranks of mpirun at the same time; one of them speaks, all of them can fail.
+#include <gtest/gtest.h>
+
+#include "backends/ranks.hpp"
+
+int main(int argc, char** argv) {
+  ::testing::InitGoogleTest(&argc, argv);
+  const traceraft::RankSession session;
+  const auto ranks = traceraft::world();
+  if (!ranks->root()) {
+    auto& listeners = ::testing::UnitTest::GetInstance()->listeners();
+    delete listeners.Release(listeners.default_result_printer());
+  }
+  const int failed = RUN_ALL_TESTS();
+  return ranks->any(failed != 0) ? 1 : 0;
+}
