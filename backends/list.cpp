@@ -2,6 +2,7 @@
 
 #include "backends/euler/euler.hpp"
 #include "backends/rosenbrock/rosenbrock.hpp"
+#include "backends/suitesparse/blas.hpp"
 #include "backends/suitesparse/cholmod_solver.hpp"
 #include "backends/suitesparse/direct_solver.hpp"
 #include "backends/sundials/ida.hpp"
@@ -55,6 +56,7 @@ LinearSolverFactory klu(const SurfaceSpace& space, const WordOptions&) {
 #ifdef TRACERAFT_WITH_TRILINOS
 constexpr bool kWithTrilinos = true;
 LinearSolverFactory teko(const SurfaceSpace& space, const WordOptions& options) {
+  use_one_blas_thread();  // Tpetra's sums and LAPACK go there, too
   return make_teko_solver(space.pattern, options);
 }
 #else
@@ -78,7 +80,8 @@ const NamedList<LinearSolverEntry>& linear_solvers() {
        "",
        teko,
        {{"preconditioner", "two-solve", "two-solve, gauss-seidel, block-lu, or of the file"},
-        {"inverse", "muelu", "muelu, muelu-ilu (stronger, dearer), ifpack2, direct (one rank), or of the file"},
+        {"inverse", "muelu",
+         "muelu, muelu-ilu (stronger, dearer), ifpack2, direct (one rank), or of the file"},
         {"method", "fgmres", "fgmres, gmres, gcrodr, bicgstab"},
         {"renewal", "worn", "new preconditioner: worn (when iterations grow) or always"},
         {"parameters", "", "Teuchos XML file with sublists Inverse Library and Belos"}},

@@ -42,6 +42,10 @@ int verify_command(const VerifyRequest& request) {
     std::printf("%s: %s\n\n", study.name.c_str(), study.summary.c_str());
     const Stopwatch watch;
     const StudyReport report = study.run({request.quick});
+    if (!report.skipped.empty()) {
+      std::printf("  not measured: %s\n\n", report.skipped.c_str());
+      continue;
+    }
     print_table(report);
     all = print_claims(report) && all;
     std::printf("\n  %.1f s\n\n", watch.seconds());

@@ -21,6 +21,7 @@ struct StudyReport {
   std::vector<std::string> columns;  // of the table behind the claims
   std::vector<std::vector<double>> rows;
   std::vector<Claim> claims;
+  std::string skipped = {};  // why this build cannot measure it
 };
 
 struct StudyRequest {
@@ -38,6 +39,7 @@ StudyEntry mesh_convergence_study();
 StudyEntry time_order_study();
 StudyEntry integrator_agreement_study();
 StudyEntry solver_iterations_study();
+StudyEntry teko_iterations_study();
 StudyEntry operation_cost_study();
 StudyEntry step_cost_study();
 
