@@ -85,7 +85,8 @@ const NamedList<LinearSolverEntry>& linear_solvers() {
         {"method", "fgmres", "fgmres, gmres, gcrodr, bicgstab"},
         {"renewal", "worn", "new preconditioner: worn (when iterations grow) or always"},
         {"parameters", "", "Teuchos XML file with sublists Inverse Library and Belos"}},
-       kWithTrilinos},
+       kWithTrilinos,
+       true},
   };
   static const NamedList<LinearSolverEntry> list("linear solver", entries);
   return list;

@@ -26,7 +26,8 @@ struct LinearSolverEntry {
   // Throws InputError for a space or options that it cannot serve.
   std::function<LinearSolverFactory(const SurfaceSpace&, const WordOptions&)> make;
   std::vector<WordOption> options = {};
-  bool built = true;  // if not, `make` says how to get it
+  bool built = true;         // if not, `make` says how to get it
+  bool distributed = false;  // does it work on several ranks?
 };
 
 struct IntegratorEntry {

@@ -31,7 +31,7 @@ struct CompareRequest {
   std::string out;                             // "" for the first free runs/compare-<case>-N
   std::string references = "runs/references";  // where reference solutions are kept
   // Comma-separated; "": what the comparison in `out` has, or defaults.
-  std::string integrators, linear_solvers, tolerances;
+  std::string integrators, linear_solvers, tolerances, ranks;
   // 0 or, for the time limit, negative: likewise.
   int repeat = 0;
   double time_limit = -1, target_error = 0, reference_tolerance = 0;

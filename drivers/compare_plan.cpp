@@ -51,6 +51,16 @@ void add_tolerances(const std::string& text, std::vector<double>& tolerances) {
   }
 }
 
+void add_ranks(const std::string& text, std::vector<int>& ranks) {
+  if (text.empty()) return;
+  for (const std::string& word : words("--ranks", text)) {
+    const double number = parse_number("--ranks", word);
+    if (!(number >= 1 && number <= 4096 && number == std::floor(number)))
+      throw InputError("--ranks: " + word + " is out of range (allowed: 1 to 4096, whole)");
+    add_new(ranks, static_cast<int>(number));
+  }
+}
+
 // The smallest of the values over a factor, as a person would write it.
 double fraction_of_smallest(const std::vector<double>& values, double factor) {
   return std::stod(formatted("%.3g", *std::min_element(values.begin(), values.end()) / factor));
@@ -74,9 +84,11 @@ ComparePlan extended_plan(const CompareRequest& request, const ComparePlan* befo
   add_names(integrators(), "--integrators", request.integrators, plan.integrators);
   add_names(linear_solvers(), "--linear-solvers", request.linear_solvers, plan.linear_solvers);
   add_tolerances(request.tolerances, plan.tolerances);
+  add_ranks(request.ranks, plan.ranks);
   if (plan.integrators.empty()) plan.integrators = integrators().names();
   if (plan.linear_solvers.empty()) plan.linear_solvers = {"block"};
   if (plan.tolerances.empty()) plan.tolerances = {1e-2, 3e-3, 1e-3};
+  if (plan.ranks.empty()) plan.ranks = {1};
   if (request.repeat > 0) plan.repeat = request.repeat;
   if (request.time_limit >= 0) plan.time_limit = request.time_limit;
   if (request.target_error > 0) plan.target_error = request.target_error;
@@ -91,8 +103,14 @@ ComparePlan extended_plan(const CompareRequest& request, const ComparePlan* befo
 }
 
 std::string CompareJob::name() const {
-  return integrator + "-" + linear_solver + "-" + format_number(tolerance) + "-" +
-         std::to_string(repetition);
+  return integrator + "-" + linear_solver +
+         (ranks > 1 ? "-" + std::to_string(ranks) + "ranks" : "") + "-" + format_number(tolerance) +
+         "-" + std::to_string(repetition);
+}
+
+// A solver of one rank runs on one, whatever is asked for others.
+static std::vector<int> ranks_for(const std::string& solver, const std::vector<int>& ranks) {
+  return linear_solvers().find(solver).distributed ? ranks : std::vector<int>{1};
 }
 
 std::vector<CompareJob> jobs_of(const ComparePlan& plan) {
@@ -100,8 +118,9 @@ std::vector<CompareJob> jobs_of(const ComparePlan& plan) {
   for (int repetition = 1; repetition <= plan.repeat; ++repetition)
     for (const std::string& integrator : plan.integrators)
       for (const std::string& solver : plan.linear_solvers)
-        for (const double tolerance : plan.tolerances)
-          jobs.push_back({integrator, solver, tolerance, repetition});
+        for (const int ranks : ranks_for(solver, plan.ranks))
+          for (const double tolerance : plan.tolerances)
+            jobs.push_back({integrator, solver, tolerance, ranks, repetition});
   return jobs;
 }
 

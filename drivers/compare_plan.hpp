@@ -12,6 +12,7 @@ namespace traceraft {
 struct ComparePlan {
   std::vector<std::string> integrators, linear_solvers;
   std::vector<double> tolerances;
+  std::vector<int> ranks;  // more than one for the solvers that can
   int repeat = 3;
   double reference_tolerance = 0;   // 0: a hundredth of the smallest tolerance
   double time_limit = 0;            // seconds per run; 0: none
@@ -29,6 +30,7 @@ ComparePlan extended_plan(const CompareRequest& request, const ComparePlan* befo
 struct CompareJob {
   std::string integrator, linear_solver;
   double tolerance;
+  int ranks;
   int repetition;  // from 1
   std::string name() const;
 };

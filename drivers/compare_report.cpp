@@ -17,9 +17,9 @@ namespace {
 using Row = std::vector<std::string>;
 
 constexpr const char* kHeading[] = {
-    "integrator", "linear solver", "tolerance", "error",      "CPU s",       "wall s (from to)",
-    "steps",      "rejected",      "failed",    "residuals",  "Jacobians",   "set-ups",
-    "linear its", "threads",       "peak MB",   "mass drift", "energy rises"};
+    "integrator", "linear solver", "tolerance", "error",     "CPU s",      "wall s (from to)",
+    "steps",      "rejected",      "failed",    "residuals", "Jacobians",  "set-ups",
+    "linear its", "ranks",         "threads",   "peak MB",   "mass drift", "energy rises"};
 
 Row cells(const WorkPoint& p) {
   Row row = {p.integrator, p.linear_solver, format_number(p.tolerance)};
@@ -33,7 +33,7 @@ Row cells(const WorkPoint& p) {
   row.push_back(formatted("%.2f", wall.median) + " (" + formatted("%.2f", wall.low) + " to " +
                 formatted("%.2f", wall.high) + ")");
   for (const char* count : {"steps", "rejected", "failures", "residuals", "jacobians",
-                            "linear_setups", "linear_iterations", "threads"})
+                            "linear_setups", "linear_iterations", "ranks", "threads"})
     row.push_back(formatted("%.0f", p.counts.at(count)));
   row.push_back(formatted("%.0f", p.counts.at("peak_memory_mb")));
   row.push_back(formatted("%.0e", p.counts.at("mass_drift")));

@@ -32,9 +32,20 @@ struct Attempt {
   std::string last_line;  // of what it printed
 };
 
+// mpirun of Open MPI; ranks give way to each other where there are more of them than processors.
+std::vector<std::string> program_on(int ranks) {
+  if (ranks == 1) return {own_program()};
+  std::vector<std::string> command = {
+      "mpirun", "--quiet", "--oversubscribe",    "--mca", "mpi_yield_when_idle",
+      "1",      "-np",     std::to_string(ranks)};
+  if (is_superuser()) command.push_back("--allow-run-as-root");
+  command.push_back(own_path());
+  return command;
+}
+
 Attempt attempt(const std::vector<std::string>& arguments, const fs::path& log, double time_limit,
-                const Tick& tick) {
-  std::vector<std::string> command = {own_program()};
+                const Tick& tick, int ranks = 1) {
+  std::vector<std::string> command = program_on(ranks);
   command.insert(command.end(), arguments.begin(), arguments.end());
   const ChildResult result = run_child({command, log, time_limit, tick});
   std::string text = read_file(log, 1 << 24);
@@ -114,11 +125,14 @@ WorkEnd compute(const CompareJob& job, const ComparisonFolder& folder, double ti
     std::optional<FolderLock> lock(run);
     fs::remove_all(run);
   }
-  const Attempt end =
-      attempt({"run", "--config", folder.config().string(), "--integrator", job.integrator,
-               "--linear-solver", job.linear_solver, "--tolerance", format_number(job.tolerance),
-               "--out", run.string(), "--no-fields", "--checkpoint-interval", "1e9", "--quiet"},
-              folder.log_of(job), time_limit, tick);
+  std::vector<std::string> arguments = {"run", "--config", folder.config().string()};
+  arguments.insert(arguments.end(),
+                   {"--integrator", job.integrator, "--linear-solver", job.linear_solver,
+                    "--tolerance", format_number(job.tolerance)});
+  arguments.insert(arguments.end(), {"--out", run.string(), "--no-fields", "--checkpoint-interval",
+                                     "1e9", "--quiet"});
+  if (job.ranks > 1) arguments.insert(arguments.end(), {"--threads", "1"});
+  const Attempt end = attempt(arguments, folder.log_of(job), time_limit, tick, job.ranks);
   if (end.out_of_time) {
     folder.record(job, {"stopped after " + format_number(time_limit) + " s", time_limit});
     return WorkEnd::done;

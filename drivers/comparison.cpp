@@ -14,11 +14,13 @@ namespace {
 
 constexpr std::uint64_t kMaxBytes = 1 << 24;
 // What the table takes from the summary of a run.
-constexpr const char* kCounts[] = {"steps",          "rejected",          "failures",
-                                   "residuals",      "jacobians",         "newton_iterations",
-                                   "linear_setups",  "linear_iterations", "fallbacks",
-                                   "peak_memory_mb", "mass_drift",        "energy_rises",
-                                   "threads"};
+constexpr const char* kCounts[] = {"steps",         "rejected",
+                                   "failures",      "residuals",
+                                   "jacobians",     "newton_iterations",
+                                   "linear_setups", "linear_iterations",
+                                   "fallbacks",     "peak_memory_mb",
+                                   "mass_drift",    "energy_rises",
+                                   "ranks",         "threads"};
 
 // Reads a file of JSON with `use`, whose complaints become those about the file.
 template <class Use>
@@ -61,6 +63,7 @@ void ComparisonFolder::save(const ComparePlan& plan) const {
   const nlohmann::ordered_json json = {{"integrators", plan.integrators},
                                        {"linear_solvers", plan.linear_solvers},
                                        {"tolerances", plan.tolerances},
+                                       {"ranks", plan.ranks},
                                        {"repeat", plan.repeat},
                                        {"reference_tolerance", plan.reference_tolerance},
                                        {"time_limit", plan.time_limit},
@@ -71,10 +74,10 @@ void ComparisonFolder::save(const ComparePlan& plan) const {
 
 ComparePlan ComparisonFolder::load() const {
   return from_json(plan_file(), [](const nlohmann::json& json) {
-    return ComparePlan{json.at("integrators"),         json.at("linear_solvers"),
-                       json.at("tolerances"),          json.at("repeat"),
-                       json.at("reference_tolerance"), json.at("time_limit"),
-                       json.at("target_error"),        json.at("initial_state")};
+    return ComparePlan{
+        json.at("integrators"), json.at("linear_solvers"), json.at("tolerances"),
+        json.at("ranks"),       json.at("repeat"),         json.at("reference_tolerance"),
+        json.at("time_limit"),  json.at("target_error"),   json.at("initial_state")};
   });
 }
 
@@ -144,12 +147,19 @@ std::vector<WorkPoint> ComparisonFolder::points(const ComparePlan& plan, const D
   for (const CompareJob& job : jobs_of(plan)) {
     const auto same = [&](const WorkPoint& p) {
       return p.integrator == job.integrator && p.linear_solver == job.linear_solver &&
-             p.tolerance == job.tolerance;
+             p.tolerance == job.tolerance && p.ranks == job.ranks;
     };
     auto point = std::find_if(points.begin(), points.end(), same);
     if (point == points.end()) {
-      points.push_back(
-          {job.integrator, job.linear_solver, job.tolerance, "not run yet", 0, {}, {}, {}});
+      points.push_back({job.integrator,
+                        job.linear_solver,
+                        job.tolerance,
+                        "not run yet",
+                        0,
+                        {},
+                        {},
+                        {},
+                        job.ranks});
       point = points.end() - 1;
     }
     add(job, problem, reference, *point);

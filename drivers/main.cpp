@@ -99,6 +99,9 @@ int dispatch(int argc, char** argv) {
                           "comma-separated; default: block");
   compare_app->add_option("--tolerances", compare.tolerances,
                           "comma-separated; default: 1e-2,3e-3,1e-3");
+  compare_app->add_option("--ranks", compare.ranks,
+                          "comma-separated numbers of ranks for the solvers that work on several; "
+                          "default: 1");
   compare_app
       ->add_option("--repeat", compare.repeat, "runs of each combination, for its time; default: 3")
       ->check(CLI::Range(1, 1000));

@@ -16,9 +16,13 @@ struct WorkPoint {
   std::vector<double> cpu_s, wall_s;  // of each repetition
   // From the summary of a run: steps, rejected, residuals, mass_drift, peak_memory_mb, …
   std::map<std::string, double> counts;
+  int ranks = 1;
 
   bool ok() const { return failure.empty(); }
-  std::string method() const { return integrator + " with " + linear_solver; }
+  std::string method() const {
+    return integrator + " with " + linear_solver +
+           (ranks > 1 ? " on " + std::to_string(ranks) + " ranks" : "");
+  }
 };
 
 struct Spread {

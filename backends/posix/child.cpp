@@ -86,6 +86,10 @@ ChildResult run_child(const ChildRequest& request) {
   return result;
 }
 
+std::string own_path() {
+  return std::filesystem::read_symlink("/proc/self/exe");
+}
+
 std::string own_program() {
   return "/proc/self/exe";
 }

@@ -27,5 +27,7 @@ ChildResult run_child(const ChildRequest& request);
 
 // A path under which this very program can be run, even after its file has been replaced.
 std::string own_program();
+// The path of its file, for others that run it.
+std::string own_path();
 
 }  // namespace traceraft

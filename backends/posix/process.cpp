@@ -42,6 +42,10 @@ double peak_memory_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
+bool is_superuser() {
+  return geteuid() == 0;
+}
+
 bool stdout_is_terminal() {
   return isatty(STDOUT_FILENO) == 1;
 }

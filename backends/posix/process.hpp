@@ -11,6 +11,7 @@ namespace traceraft {
 double wall_seconds();    // since this process started
 double cpu_seconds();     // user and system time of all threads
 double peak_memory_mb();  // largest resident set so far
+bool is_superuser();
 bool stdout_is_terminal();
 int terminal_columns();  // 80 if unknown
 

@@ -106,6 +106,20 @@ TEST_F(RanksTest, SaysWhatIsWrongOnce) {
   EXPECT_EQ(on(2, "verify order --quick").code, 2);
 }
 
+TEST_F(RanksTest, AreAnAxisOfComparisons) {
+  const Outcome outcome = shell(
+      kEnvironment + TRACERAFT_PROGRAM " compare --out " + at("c") + " --references " + at("r") +
+      " --case two-rafts --cells 12 --epsilon 1 --t-end 0.1 --integrators ida --tolerances 1e-2 "
+      "--linear-solvers block,teko --ranks 1,2 --repeat 1");
+  ASSERT_EQ(outcome.code, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find("ida with teko"), std::string::npos);
+  for (const auto& [job, ranks] :
+       {std::pair("ida-block-0.01-1", 1), std::pair("ida-teko-0.01-1", 1),
+        std::pair("ida-teko-2ranks-0.01-1", 2)})
+    EXPECT_EQ(summary(std::string("c/runs/") + job).at("ranks"), ranks) << job;
+  EXPECT_EQ(testing::lines_of(at("c") + "/compare.csv"), 4);  // block does not work on two
+}
+
 TEST_F(RanksTest, OneThatFailsEndsAll) {
   stop_early(2, "run --quiet --checkpoint-interval 0 " + runs + "--out " + at("run"), "run");
   // Where the second rank wants to write its piece of the last field there is a folder already.
