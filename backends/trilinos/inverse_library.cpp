@@ -35,6 +35,11 @@ ParameterList& add_muelu(ParameterList& library, const char* name) {
   return list;
 }
 
+// Without the addition to the diagonal the factorisation breaks down for the longest steps.
+void set_ilu(ParameterList& settings) {
+  settings.set("fact: iluk level-of-fill", 2).set("fact: relative threshold", 1.05);
+}
+
 // For the longest steps. Where the mobility vanishes the stabilisation acts like a fourth-order
 // operator, which point smoothers hardly damp: an incomplete factorisation does on the finest mesh.
 void add_muelu_ilu(ParameterList& library) {
@@ -42,18 +47,14 @@ void add_muelu_ilu(ParameterList& library) {
   list.set("multigrid algorithm", "sa");
   ParameterList& finest = list.sublist("level 0");
   finest.set("smoother: type", "RILUK");
-  finest.sublist("smoother: params")
-      .set("fact: iluk level-of-fill", 2)
-      .set("fact: relative threshold", 1.05);
+  set_ilu(finest.sublist("smoother: params"));
 }
 
 void add_ifpack2(ParameterList& library) {
   ParameterList& list = library.sublist("ifpack2");
   list.set("Type", "Ifpack2");
   list.set("Prec Type", "RILUK");
-  list.sublist("Ifpack2 Settings")
-      .set("fact: iluk level-of-fill", 2)
-      .set("fact: relative threshold", 1.05);
+  set_ilu(list.sublist("Ifpack2 Settings"));
 }
 
 void add_direct(ParameterList& library) {

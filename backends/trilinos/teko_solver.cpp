@@ -56,7 +56,7 @@ TwoSolveShifts shifts_of(const BlockJacobian& J, double area) {
 class TekoSolver final : public LinearSolver {
  public:
   TekoSolver(std::shared_ptr<const Setting> setting, int lanes)
-      : setting_(std::move(setting)), lanes_(lanes) {
+      : setting_(std::move(setting)), shared_(lanes, kSetupPrice), lanes_(lanes) {
     const TpetraSpace& space = setting_->space;
     for (RCP<TpetraMatrix>& block : blocks_) block = space.make_matrix();
     A_ = Thyra::block2x2<double>(as_operator(blocks_[0]), as_operator(blocks_[1]),
@@ -76,11 +76,8 @@ class TekoSolver final : public LinearSolver {
   bool shares_factors() const override { return true; }
 
   Status setup(const BlockJacobian& J, int) override {
-    const ScopedTimer timer(setup_seconds_);
-    ++setups_;
-    for (Lane& lane : lanes_) lane.effort = {};
-    setup_shift_ = J.shift;
-    ready_ = false;
+    const ScopedTimer timer(shared_.seconds());
+    shared_.begin(J.shift);
     fill(J);
     double area = 0;
     for (const double value : J.mm.values) area += value;
@@ -97,14 +94,12 @@ class TekoSolver final : public LinearSolver {
       const std::string reason = teko_complaints();
       return Status::retry("no preconditioner: " + (reason.empty() ? error.what() : reason));
     }
-    ready_ = true;
+    shared_.succeed();
     return {};
   }
 
   bool wants_setup(const BlockJacobian& J, int) const override {
-    long extra = 0;
-    for (const Lane& lane : lanes_) extra += lane.effort.extra;
-    return !ready_ || setting_->always_new || is_worn(setup_shift_, J.shift, extra, kSetupPrice);
+    return setting_->always_new || shared_.worn(J.shift);
   }
 
   SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance,
@@ -112,17 +107,16 @@ class TekoSolver final : public LinearSolver {
     // Trilinos keeps what it computes with in its objects.
     const std::lock_guard lock(one_at_a_time_);
     Lane& lane = lanes_[lane_number];
-    const ScopedTimer timer(lane.statistics.solve_seconds);
-    ++lane.statistics.solves;
-    if (!ready_) return {Status::retry("there is no preconditioner")};
+    LinearStatistics& statistics = shared_.of_lane(lane_number);
+    const ScopedTimer timer(statistics.solve_seconds);
+    ++statistics.solves;
+    if (!shared_.ready()) return {Status::retry("there is no preconditioner")};
     fill(J);
     const int n = J.block_size();
     copy_halves(b, 1 / row_scale_, *lane.b);
     copy_halves(x, 1, *lane.x);
     SolveReport report = lane.method->solve(A_, inverse_, lane.b, lane.x, tolerance);
-    lane.statistics.iterations += report.iterations;
-    lane.statistics.most_iterations = std::max(lane.statistics.most_iterations, report.iterations);
-    lane.effort.count(report.iterations);
+    shared_.count(lane_number, report.iterations);
     if (!report.status.ok()) return report;
     copy_from(*block(*lane.x, 0), x.head(n));
     copy_from(*block(*lane.x, 1), x.tail(n));
@@ -131,37 +125,14 @@ class TekoSolver final : public LinearSolver {
     return report;
   }
 
-  LinearStatistics statistics() const override {
-    LinearStatistics total;
-    for (const Lane& lane : lanes_) total = total + lane.statistics;
-    total.setups = setups_;
-    total.setup_seconds = setup_seconds_;
-    return total;
-  }
-
-  void save(CheckpointOut out) const override {
-    write_binary(out, setups_);
-    write_binary(out, setup_seconds_);
-    for (const Lane& lane : lanes_) {
-      write_binary(out, lane.effort);
-      write_binary(out, lane.statistics);
-    }
-  }
-  void load(CheckpointIn in) override {
-    read_binary(in, setups_);
-    read_binary(in, setup_seconds_);
-    for (Lane& lane : lanes_) {
-      read_binary(in, lane.effort);
-      read_binary(in, lane.statistics);
-    }
-  }
+  LinearStatistics statistics() const override { return shared_.statistics(); }
+  void save(CheckpointOut out) const override { shared_.save(out); }
+  void load(CheckpointIn in) override { shared_.load(in); }
 
  private:
   struct Lane {
     std::unique_ptr<BelosMethod> method;
     ThyraVector b, x;
-    Effort effort;
-    LinearStatistics statistics;
   };
 
   static RCP<Thyra::VectorBase<double>> block(Thyra::VectorBase<double>& vector, int which) {
@@ -193,6 +164,7 @@ class TekoSolver final : public LinearSolver {
   }
 
   std::shared_ptr<const Setting> setting_;
+  SharedSetup shared_;
   std::vector<Lane> lanes_;
   std::array<RCP<TpetraMatrix>, 4> blocks_;
   ThyraOperator A_;
@@ -203,10 +175,6 @@ class TekoSolver final : public LinearSolver {
   ThreadTeam team_{1};
   std::mutex one_at_a_time_;
   double row_scale_ = 1;
-  bool ready_ = false;
-  double setup_shift_ = 0;
-  long setups_ = 0;
-  double setup_seconds_ = 0;
 };
 
 std::string option(const TekoOptions& options, const char* name, const char* otherwise) {

@@ -46,16 +46,15 @@ TpetraSpace::TpetraSpace(const SparsityPattern& pattern) {
                            static_cast<std::size_t>(pattern.rows()), 0, comm));
   const RCP<const TpetraMap> columns = column_map(*map_, halo);
   // Tpetra wants the columns of a row ascending in their local numbers.
-  row_begin_.assign(pattern.row_begin.begin(), pattern.row_begin.end());
   position_.resize(pattern.column.size());
   std::iota(position_.begin(), position_.end(), 0);
   for (int i = 0; i < pattern.rows(); ++i)
     std::sort(position_.begin() + pattern.row_begin[i],
               position_.begin() + pattern.row_begin[i + 1],
               [&](int a, int b) { return pattern.column[a] < pattern.column[b]; });
-  Teuchos::ArrayRCP<std::size_t> begin(row_begin_.size());
+  Teuchos::ArrayRCP<std::size_t> begin(pattern.row_begin.size());
   Teuchos::ArrayRCP<LocalIndex> column(position_.size());
-  std::copy(row_begin_.begin(), row_begin_.end(), begin.begin());
+  std::copy(pattern.row_begin.begin(), pattern.row_begin.end(), begin.begin());
   for (std::size_t k = 0; k < position_.size(); ++k)
     column[static_cast<Teuchos::Ordinal>(k)] = pattern.column[position_[k]];
   const auto graph = rcp(new TpetraGraph(map_, columns, begin, column));

@@ -29,13 +29,10 @@ class TpetraSpace {
   Teuchos::RCP<TpetraMatrix> make_matrix() const;
   // matrix = scale · A
   void fill(double scale, const CsrMatrix& A, TpetraMatrix& matrix) const;
-  // The positions of the closest points of a surface, for near-null spaces: a column per number.
-  int rows() const { return static_cast<int>(row_begin_.size()) - 1; }
 
  private:
   Teuchos::RCP<const TpetraMap> map_;
   Teuchos::RCP<const TpetraGraph> graph_;
-  std::vector<std::size_t> row_begin_;
   std::vector<int> position_;  // in the kernel's pattern, of every entry of Tpetra's
 };
 
