@@ -8,6 +8,17 @@
 namespace traceraft {
 namespace {
 
+const char* style(Mark mark) {
+  switch (mark) {
+    case Mark::line:
+      return "lines";
+    case Mark::points:
+      return "points pt 7 ps 0.7";
+    default:
+      return "linespoints pt 7 ps 0.7";
+  }
+}
+
 // Told apart by people who see few colours, too (Okabe and Ito).
 constexpr const char* kColours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                     "#e69f00", "#56b4e9", "#000000", "#999999"};
@@ -37,7 +48,7 @@ std::string script(const Chart& chart, const std::string& svg) {
     for (const auto& [x, y] : series.points)
       text += format_number(x) + " " + format_number(y) + "\n";
     text += "END\n";
-    plots += (plots.empty() ? "" : ", ") + block + " with linespoints pt 7 ps 0.7 title " +
+    plots += (plots.empty() ? "" : ", ") + block + " with " + style(series.mark) + " title " +
              quoted(series.name);
   }
   return text + "plot " + plots + "\n";

@@ -40,8 +40,12 @@ struct CompareRequest {
 int compare_command(const CompareRequest& request);
 
 struct VerifyRequest {
-  std::vector<std::string> studies;  // names, or "all"
-  bool quick = false;
+  std::vector<std::string> studies;  // names, "all", or "list" alone
+  bool quick = false, quiet = false;
+  std::string integrator, linear_solver;  // "": each study's choice, or all where it compares
+  int threads = 0;                        // 0: one for each processor
+  std::string out;                        // "" for the first free runs/verify-N
+  std::string document;                   // Markdown file to write; "" for none
 };
 int verify_command(const VerifyRequest& request);
 

@@ -126,11 +126,23 @@ int dispatch(int argc, char** argv) {
   VerifyRequest verify;
   CLI::App* verify_app = app.add_subcommand("verify", "measure what the program claims");
   verify_app->allow_extras();
-  verify_app
-      ->add_option("studies", verify.studies,
-                   "studies (see: traceraft list), or all but the timed ones")
+  verify_app->add_option("studies", verify.studies, "studies (list shows them), or all")
       ->default_str("all");
-  verify_app->add_flag("--quick", verify.quick, "coarser meshes, minutes in total");
+  verify_app->add_flag("--quick", verify.quick, "coarser meshes: all studies within 3 minutes");
+  verify_app->add_option("--integrator", verify.integrator,
+                         "to measure with; default: ida, or all where a study compares");
+  verify_app->add_option("--linear-solver", verify.linear_solver,
+                         "to measure with; default: block, or all where a study compares");
+  verify_app->add_option("--threads", verify.threads, "default: one for each processor")
+      ->check(CLI::Range(1, 256));
+  verify_app->add_option("--out", verify.out,
+                         "folder for tables and page; default: runs/verify-<number>");
+  verify_app->add_option("--document", verify.document,
+                         "Markdown file for the results; its figures go beside it");
+  verify_app->add_flag("--quiet", verify.quiet, "print nothing but errors");
+  verify_app->footer(
+      "Exit codes: 0 every claim holds, 1 one fails, 2 bad input, 4 input/output.\n"
+      "Example: traceraft verify mass energy --quick");
 
   CLI::App* list_app = app.add_subcommand("list", "list cases, surfaces, laws and methods");
   list_app->allow_extras();

@@ -1,54 +1,108 @@
 #include <cstdio>
+#include <filesystem>
+#include <thread>
 
+#include "backends/posix/folder_lock.hpp"
 #include "drivers/commands.hpp"
 #include "drivers/exit_codes.hpp"
+#include "drivers/run_folder.hpp"
+#include "drivers/status_line.hpp"
+#include "drivers/verify_report.hpp"
+#include "drivers/version.hpp"
+#include "kernel/core/error.hpp"
 #include "kernel/core/stopwatch.hpp"
+#include "kernel/core/text.hpp"
+#include "verification/bench.hpp"
 #include "verification/studies.hpp"
 
 namespace traceraft {
 namespace {
 
-void print_table(const StudyReport& report) {
-  for (const std::string& column : report.columns) std::printf("  %12s", column.c_str());
-  std::printf("\n");
-  for (const auto& row : report.rows) {
-    for (const double value : row) std::printf("  %12.5g", value);
-    std::printf("\n");
+namespace fs = std::filesystem;
+
+std::vector<StudyEntry> chosen_studies(const VerifyRequest& request) {
+  std::vector<StudyEntry> chosen;
+  for (const std::string& name : request.studies) {
+    if (name != "all") chosen.push_back(studies().find(name, {"all", "list"}));
+    for (const StudyEntry& study : studies())
+      if (name == "all" && !study.by_name_only) chosen.push_back(study);
   }
+  return chosen;
 }
 
-bool print_claims(const StudyReport& report) {
-  bool all = true;
-  std::printf("\n  %-44s %10s   %-18s %s\n", "claim", "measured", "expected", "verdict");
-  for (const Claim& claim : report.claims) {
-    std::printf("  %-44s %10.4g   %g to %-10g %s\n", claim.what.c_str(), claim.measured, claim.low,
-                claim.high, claim.holds() ? "holds" : "FAILS");
-    all = all && claim.holds();
+// A failure is a result of the study; only what no study is to blame for goes further.
+StudyResult carry_out(const StudyEntry& study, const BenchRequest& request, StatusLine& line) {
+  StudyResult result{study, {}, "", 0};
+  const Stopwatch watch;
+  BenchRequest with_progress = request;
+  with_progress.progress = [&](double share) {
+    if (line.due()) line.show(share, study.name + "  " + clock_text(watch.seconds()) + " elapsed");
+  };
+  try {
+    result.report = study.run(Bench(with_progress));
+  } catch (const IoError&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    result.failure = error.what();
   }
-  return all;
+  result.seconds = watch.seconds();
+  line.finish();
+  return result;
+}
+
+VerificationContext context_of(const VerifyRequest& request, const BenchRequest& bench) {
+  std::string command = "traceraft verify";
+  for (const std::string& name : request.studies) command += " " + name;
+  if (request.quick) command += " --quick";
+  if (!request.integrator.empty()) command += " --integrator " + request.integrator;
+  if (!request.linear_solver.empty()) command += " --linear-solver " + request.linear_solver;
+  if (request.threads > 0) command += " --threads " + std::to_string(request.threads);
+  if (!request.document.empty()) command += " --document " + request.document;
+  return {command, "traceraft " + std::string(kVersion) + ", " + std::to_string(bench.threads) +
+                       " threads."};
+}
+
+int list_studies() {
+  for (const StudyEntry& study : studies())
+    std::printf("  %-14s %s%s\n", study.name.c_str(), study.summary.c_str(),
+                study.by_name_only ? " (not part of all)" : "");
+  return kSuccess;
 }
 
 }  // namespace
 
 int verify_command(const VerifyRequest& request) {
-  std::vector<StudyEntry> chosen;
-  for (const std::string& name : request.studies) {
-    if (name != "all") chosen.push_back(studies().find(name));
-    for (const StudyEntry& study : studies())
-      if (name == "all" && !study.timed) chosen.push_back(study);
-  }
+  if (request.studies == std::vector<std::string>{"list"}) return list_studies();
+  const std::vector<StudyEntry> chosen = chosen_studies(request);
+  BenchRequest bench{request.quick, request.integrator, request.linear_solver, request.threads};
+  if (bench.threads == 0)
+    bench.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  (void)Bench(bench);  // refuses unknown names before anything is written
+  const fs::path folder = request.out.empty() ? first_free_folder("verify") : request.out;
+  fs::create_directories(folder);
+  const FolderLock lock(folder);
+  const VerificationContext context = context_of(request, bench);
+
+  StatusLine line(request.quiet);
+  std::vector<StudyResult> results;
   bool all = true;
   for (const StudyEntry& study : chosen) {
-    std::printf("%s: %s\n\n", study.name.c_str(), study.summary.c_str());
-    const Stopwatch watch;
-    const StudyReport report = study.run({request.quick});
-    if (!report.skipped.empty()) {
-      std::printf("  not measured: %s\n\n", report.skipped.c_str());
-      continue;
-    }
-    print_table(report);
-    all = print_claims(report) && all;
-    std::printf("\n  %.1f s\n\n", watch.seconds());
+    if (!request.quiet) std::printf("%s: %s\n\n", study.name.c_str(), study.summary.c_str());
+    results.push_back(carry_out(study, bench, line));
+    if (!request.quiet) print_result(results.back());
+    all = all && results.back().verdict() != Verdict::fails;
+    write_study(folder, results.back());
+  }
+  const std::string missing = write_verification(folder, context, results);
+  if (!request.document.empty()) write_document(request.document, context, results);
+  if (!request.quiet) {
+    for (const StudyResult& result : results)
+      std::printf("  %-14s %s\n", result.study.name.c_str(),
+                  result.verdict() == Verdict::holds   ? "holds"
+                  : result.verdict() == Verdict::fails ? "FAILS"
+                                                       : "not measured");
+    if (!missing.empty()) std::printf("\ncharts are missing: %s\n", missing.c_str());
+    std::printf("\nopen next: %s\n", (folder / "verify.html").c_str());
   }
   return all ? kSuccess : kClaimFailed;
 }

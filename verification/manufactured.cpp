@@ -1,126 +1,167 @@
 #include "verification/manufactured.hpp"
 
-#include <Eigen/Sparse>
 #include <cmath>
 #include <stdexcept>
+
+#include "kernel/fem/density_load.hpp"
+#include "verification/sparse_view.hpp"
+#include "verification/surface_calculus.hpp"
 
 namespace traceraft {
 namespace {
 
 constexpr double kAmplitude = 0.25;
 
-double harmonic(const Point& x) {
-  const Point u = x.normalized();
-  return u[0] * u[1] * u[2];
+Point as_point(const Vector3<double>& v) {
+  return Point(v[0], v[1], v[2]);
 }
 
-// |∇_Γ Y|² on the unit sphere.
-double harmonic_slope_squared(const Point& x) {
-  const Point u = x.normalized();
-  const double a = u[1] * u[2], b = u[0] * u[2], c = u[0] * u[1];
-  return a * a + b * b + c * c - 9 * u[0] * u[0] * a * a;
+template <class Surface>
+SurfaceFunction on(const Surface& F) {
+  const auto u = [](const auto& x) { return x[0] * x[1] * x[2]; };
+  const auto laplacian = laplace_beltrami(F, u);
+  return [=](const Point& near) {
+    const Point at = point_on(F, near);
+    const auto x = with_derivatives(Vector3<double>{at[0], at[1], at[2]});
+    const LocalSurface<double> local(F(x));
+    const Jet<double> value = u(x), L = laplacian(x);
+    return SurfacePoint{value.value, L.value, local.laplace_beltrami(L),
+                        as_point(local.tangential_gradient(value)),
+                        as_point(local.tangential_gradient(L))};
+  };
 }
 
-Point harmonic_gradient(const Point& x) {
-  const double r = x.norm();
-  const Point u = x / r;
-  const Point cubic(u[1] * u[2], u[0] * u[2], u[0] * u[1]);
-  return (cubic - 3 * harmonic(x) * u) / r;
+// g with ∂c/∂t − ∇·(M(c) ∇μ) = g for c = ½ + a u.
+double source(const DoubleWell& well, double epsilon, double a, double rate,
+              const SurfacePoint& p) {
+  const double c = 0.5 + a * p.u, e2 = epsilon * epsilon;
+  const double M = c * (1 - c), dM = 1 - 2 * c;
+  const double f2 = well.second(c), f3 = 2 * well.rho * 6 * (2 * c - well.a - well.b);
+  const double slope_squared = a * a * p.gradient.squaredNorm();
+  const double laplacian_mu = f2 * a * p.laplacian + f3 * slope_squared - e2 * a * p.bilaplacian;
+  const double slope_product =
+      f2 * slope_squared - e2 * a * a * p.gradient.dot(p.laplacian_gradient);
+  return rate * p.u - M * laplacian_mu - dM * slope_product;
 }
 
-// Load vector ∫ f v of a function given near Γ.
-Vec load(const SurfaceSpace& space, const std::function<double(const Point&)>& f) {
-  Vec first = Vec::Zero(space.nodes()), second = Vec::Zero(space.nodes());
-  prescribed_density("load", Slot::source, [&](const Point& x, double) {
-    return f(x);
-  })->add_residual(space, 0, first, first, second, first);
-  return second;
-}
+class ManufacturedSource final : public Effect {
+ public:
+  // What does not change in time is computed once, at every point of the quadrature.
+  ManufacturedSource(const SurfaceSpace& space, const std::string& surface, DoubleWell well,
+                     double epsilon)
+      : well_(well), epsilon_(epsilon) {
+    const auto function = surface_function(surface);
+    points_.resize(space.surface.triangles.size() * kDegreeFourRule.size());
+    space.team->for_range(space.surface.triangles.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t triangle = begin; triangle < end; ++triangle)
+        for (std::size_t p = 0; p < kDegreeFourRule.size(); ++p) {
+          const QuadraturePoint at = quadrature_point(space.surface, triangle, p);
+          points_[at.number] = function(at.x);
+        }
+    });
+  }
+  std::string name() const override { return "manufactured source"; }
+  bool conserves_mass() const override { return false; }
+  bool dissipates_energy() const override { return false; }
+  void add_residual(const SurfaceSpace& space, double t, ConstVec, ConstVec, VecRef residual_c,
+                    VecRef) const override {
+    const double a = kAmplitude * std::cos(t), rate = -kAmplitude * std::sin(t);
+    add_density_load(
+        space, -1,
+        [&](const QuadraturePoint& at) {
+          return source(well_, epsilon_, a, rate, points_[at.number]);
+        },
+        residual_c);
+  }
+  void add_tangent(const SurfaceSpace&, double, ConstVec, ConstVec, BlockJacobian&) const override {
+  }
+  void add_tangent_product(const SurfaceSpace&, double, ConstVec, ConstVec, ConstVec, ConstVec,
+                           VecRef, VecRef) const override {}
+
+ private:
+  DoubleWell well_;
+  double epsilon_;
+  std::vector<SurfacePoint> points_;
+};
 
 }  // namespace
 
-ExactFunction harmonic_three() {
-  return {harmonic, harmonic_gradient};
+SurfaceFunction surface_function(const std::string& surface) {
+  if (surface == "sphere")
+    return on([](const auto& x) { return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] - 1.0; });
+  if (surface == "ellipsoid")
+    return on([](const auto& x) {
+      return (1 / 1.44) * x[0] * x[0] + x[1] * x[1] + (1 / 0.64) * x[2] * x[2] - 1.0;
+    });
+  if (surface == "torus")
+    return on([](const auto& x) {
+      using std::sqrt;
+      const auto tube = sqrt(x[0] * x[0] + x[1] * x[1]) - 1.0;
+      return tube * tube + x[2] * x[2] - 0.16;
+    });
+  throw std::logic_error("no manufactured solution on " + surface);
 }
 
-ErrorNorms stationary_error(const SurfaceSpace& space) {
+ErrorNorms stationary_error(const SurfaceSpace& space, const SurfaceFunction& function) {
   const CsrMatrix stiffness = combine(1, space.stiffness, space.h(), space.normal);
   const CsrMatrix A = combine(1, stiffness, 1, space.mass);
-  const Vec b = load(space, [](const Point& x) { return (kHarmonicEigenvalue + 1) * harmonic(x); });
+  Vec b = Vec::Zero(space.nodes());
+  add_density_load(
+      space, 1,
+      [&](const QuadraturePoint& at) {
+        const SurfacePoint p = function(at.x);
+        return p.u - p.laplacian;
+      },
+      b);
   // Conjugate gradients with Eigen, independent of the program's own solvers.
-  const Eigen::SparseMatrix<double> matrix =
-      Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>>(
-          space.nodes(), space.nodes(), space.pattern->entries(), space.pattern->row_begin.data(),
-          space.pattern->column.data(), A.values.data());
-  Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower | Eigen::Upper> solver;
+  const EigenMatrix matrix = as_eigen(space, A);
+  Eigen::ConjugateGradient<EigenMatrix, Eigen::Lower | Eigen::Upper> solver;
   solver.setTolerance(1e-12);
   solver.compute(matrix);
-  const Vec u = solver.solve(b);
+  const Vec solution = solver.solve(b);
   if (solver.info() != Eigen::Success) throw std::runtime_error("conjugate gradients failed");
-  return error_norms(space, u, harmonic_three());
+  return error_norms(space, solution,
+                     {[&](const Point& x) { return function(x).u; },
+                      [&](const Point& x) { return function(x).gradient; }});
 }
 
-ManufacturedCahnHilliard::ManufacturedCahnHilliard(std::shared_ptr<const SurfaceSpace> space_,
-                                                   double epsilon)
-    : space(std::move(space_)) {
-  CahnHilliardModel model;
-  model.mobility = make_mobility("degenerate");
-  model.epsilon = epsilon;
-  const DoubleWell well = model.well;
-  // ∂c/∂t − ∇·(M(c) ∇μ) with μ = G(c): ∇·(M G' ∇c) = M G' Δc + (M G')' |∇c|².
-  const double gradient_term = epsilon * epsilon * kHarmonicEigenvalue;
+ManufacturedCahnHilliard::ManufacturedCahnHilliard(const Bench& bench, SpacePtr space,
+                                                   std::string surface_, double epsilon)
+    : surface(std::move(surface_)) {
+  CahnHilliardModel model = bench_model("degenerate", epsilon);
   model.effects.push_back(
-      prescribed_density("manufactured source", Slot::source, [=](const Point& x, double t) {
-        const double a = kAmplitude * std::cos(t), y = harmonic(x), c = 0.5 + a * y;
-        const double M = c * (1 - c), dM = 1 - 2 * c;
-        const double dG = well.second(c) + gradient_term;
-        const double ddG = 2 * well.rho * 6 * (2 * c - well.a - well.b);
-        const double divergence = -M * dG * kHarmonicEigenvalue * a * y +
-                                  (dM * dG + M * ddG) * a * a * harmonic_slope_squared(x);
-        const double rate = -kAmplitude * std::sin(t) * y;
-        return -(rate - divergence);
-      }));
-  problem = std::make_unique<CahnHilliard>(space, model);
+      std::make_shared<ManufacturedSource>(*space, surface, model.well, epsilon));
+  problem = bench.problem(std::move(space), model);
 }
 
 ExactFunction ManufacturedCahnHilliard::c(double t) const {
   const double a = kAmplitude * std::cos(t);
-  return {[a](const Point& x) { return 0.5 + a * harmonic(x); },
-          [a](const Point& x) { return Point(a * harmonic_gradient(x)); }};
+  const auto function = surface_function(surface);
+  return {[=](const Point& x) { return 0.5 + a * function(x).u; },
+          [=](const Point& x) { return Point(a * function(x).gradient); }};
 }
 
 ExactFunction ManufacturedCahnHilliard::mu(double t) const {
-  const double a = kAmplitude * std::cos(t);
-  const double epsilon = problem->model().epsilon;
-  const double gradient_term = epsilon * epsilon * kHarmonicEigenvalue;
+  const double a = kAmplitude * std::cos(t), epsilon = problem->model().epsilon;
+  const double e2 = epsilon * epsilon;
   const DoubleWell well = problem->model().well;
-  return {[=](const Point& x) {
-            return well.derivative(0.5 + a * harmonic(x)) + gradient_term * a * harmonic(x);
-          },
-          [=](const Point& x) {
-            const double slope = well.second(0.5 + a * harmonic(x)) + gradient_term;
-            return Point(slope * a * harmonic_gradient(x));
-          }};
+  const auto function = surface_function(surface);
+  return {
+      [=](const Point& x) {
+        const SurfacePoint p = function(x);
+        return well.derivative(0.5 + a * p.u) - e2 * a * p.laplacian;
+      },
+      [=](const Point& x) {
+        const SurfacePoint p = function(x);
+        return Point(well.second(0.5 + a * p.u) * a * p.gradient - e2 * a * p.laplacian_gradient);
+      }};
 }
 
-Vec ManufacturedCahnHilliard::initial_state(Vec& ydot) const {
-  Vec y = Vec::Zero(problem->size());
-  ydot = Vec::Zero(problem->size());
+StartState ManufacturedCahnHilliard::initial_state() const {
   const ExactFunction exact = c(0);
-  for (int i = 0; i < space->nodes(); ++i) y[i] = exact.value(space->mesh.position(i));
-  const Status status = problem->consistent_initial_state(0, y, ydot);
-  if (!status.ok()) throw std::runtime_error(status.why);
-  return y;
-}
-
-Vec run_with_equal_steps(const ManufacturedCahnHilliard& problem, Integrator& integrator,
-                         double t_end) {
-  Vec ydot;
-  const Vec y = problem.initial_state(ydot);
-  Status status = integrator.start(0, y, ydot, t_end);
-  while (status.ok() && integrator.time() < t_end) status = integrator.advance();
-  if (!status.ok()) throw std::runtime_error(status.why);
-  return integrator.state();
+  Vec nodal(space().nodes());
+  for (int i = 0; i < space().nodes(); ++i) nodal[i] = exact.value(space().mesh.position(i));
+  return consistent_state(*problem, nodal);
 }
 
 }  // namespace traceraft

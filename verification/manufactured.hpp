@@ -1,36 +1,41 @@
-// Manufactured solutions on the unit sphere and the errors they show.
+// Manufactured solutions on curved surfaces, and the errors they show.
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
-#include "kernel/problem/cahn_hilliard.hpp"
-#include "kernel/time/integrator.hpp"
+#include "verification/bench.hpp"
 #include "verification/error_norms.hpp"
 
 namespace traceraft {
 
-// Y = xyz/|x|³, a spherical harmonic of degree 3: −Δ_Γ Y = 12 Y.
-ExactFunction harmonic_three();
-inline constexpr double kHarmonicEigenvalue = 12;
-
-// −Δ_Γ u + u = 13 Y with the matrices M, K and S of the program: u = Y.
-ErrorNorms stationary_error(const SurfaceSpace& space);
-
-// The full system with c = ½ + ¼ cos(t) Y and μ = f0'(c) + 12 ε² (c − ½), driven by the source that
-// makes them a solution.
-struct ManufacturedCahnHilliard {
-  std::shared_ptr<const SurfaceSpace> space;
-  std::unique_ptr<CahnHilliard> problem;
-
-  ManufacturedCahnHilliard(std::shared_ptr<const SurfaceSpace> space, double epsilon);
-  ExactFunction c(double t) const;
-  ExactFunction mu(double t) const;
-  Vec initial_state(Vec& ydot) const;  // nodal values of c(0), consistent μ
+// What manufactured problems need of u = xyz at a point of the surface. On the unit sphere u is a
+// spherical harmonic of degree 3: Δ_Γ u = −12 u.
+struct SurfacePoint {
+  double u, laplacian, bilaplacian;    // u, L = Δ_Γ u, Δ_Γ L
+  Point gradient, laplacian_gradient;  // ∇_Γ u, ∇_Γ L
 };
 
-// Runs with equal steps from 0 to t_end; returns y(t_end).
-Vec run_with_equal_steps(const ManufacturedCahnHilliard& problem, Integrator& integrator,
-                         double t_end);
+// The surfaces for which derivatives are known: "sphere", "ellipsoid", "torus" with their default
+// parameters. Takes points near the surface to it. Throws std::logic_error for another.
+using SurfaceFunction = std::function<SurfacePoint(const Point&)>;
+SurfaceFunction surface_function(const std::string& surface);
+
+// −Δ_Γ u + u = f with the matrices M, K and S of the program.
+ErrorNorms stationary_error(const SurfaceSpace& space, const SurfaceFunction& u);
+
+// The full system with c = ½ + ¼ cos(t) u and μ = f0'(c) − ε² Δ_Γ c, driven by the source that
+// makes them a solution. `surface` is that of the space.
+struct ManufacturedCahnHilliard {
+  std::string surface;
+  ProblemPtr problem;
+
+  ManufacturedCahnHilliard(const Bench& bench, SpacePtr space, std::string surface, double epsilon);
+  const SurfaceSpace& space() const { return problem->space(); }
+  ExactFunction c(double t) const;
+  ExactFunction mu(double t) const;
+  StartState initial_state() const;  // nodal values of c(0), consistent μ
+};
 
 }  // namespace traceraft

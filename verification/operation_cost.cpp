@@ -1,12 +1,10 @@
 // What the pieces cost, and how that grows with the mesh.
 #include <algorithm>
-#include <memory>
 
 #include "backends/posix/process.hpp"
 #include "kernel/core/stopwatch.hpp"
 #include "kernel/fem/mobility_stiffness.hpp"
-#include "kernel/problem/cahn_hilliard.hpp"
-#include "kernel/problem/initial_data.hpp"
+#include "verification/bench.hpp"
 #include "verification/studies.hpp"
 
 namespace traceraft {
@@ -25,43 +23,41 @@ double median_seconds(int repetitions, const Action& action) {
   return times[repetitions / 2];
 }
 
-StudyReport run(const StudyRequest& request) {
-  StudyReport report;
-  report.columns = {"cells",      "tets",        "nodes",    "setup_ms",   "peak_MB",
-                    "product_ms", "assemble_ms", "products", "residual_ms"};
-  const auto team = std::make_shared<ThreadTeam>(1);
-  const auto communicator = std::make_shared<SerialCommunicator>();
-  for (int cells = 64; cells <= (request.quick ? 128 : 512); cells *= 2) {
+StudyReport run(const Bench& bench) {
+  Table table{"cost",
+              {"cells", "tets", "nodes", "setup_ms", "peak_MB", "product_ms", "assemble_ms",
+               "products", "residual_ms"},
+              {}};
+  std::vector<std::array<double, 3>> levels;  // nodes, set-up, assembly in products
+  for (int cells = 64; cells <= (bench.quick() ? 128 : 512); cells *= 2) {
     const Stopwatch watch;
-    const auto space =
-        std::make_shared<SurfaceSpace>(*make_surface("sphere"), cells, team, communicator);
-    const double setup = watch.seconds();
-    const double peak = peak_memory_mb();
-    CahnHilliardModel model;
-    model.mobility = make_mobility("degenerate");
-    model.epsilon = 2 * space->h();
-    const CahnHilliard problem(space, model);
-    Vec y = Vec::Zero(problem.size()), ydot = Vec::Zero(problem.size()), r(problem.size());
-    const int n = problem.block_size();
+    const SpacePtr space = bench.space(*make_surface("sphere"), cells, 1);
+    const double setup = watch.seconds(), peak = peak_memory_mb();
+    const ProblemPtr problem = bench.problem(space, bench_model("degenerate", 2 * space->h()));
+    const int n = problem->block_size();
+    Vec y = Vec::Zero(problem->size()), ydot = y, r(problem->size()), product(n);
     y.head(n) = make_initial_field("noise", *space, {});
-    Vec product(n);
     CsrMatrix matrix(space->pattern);
     const double one_product =
-        median_seconds(21, [&] { space->mass.multiply(y.head(n), product, *team); });
+        median_seconds(21, [&] { space->mass.multiply(y.head(n), product, *space->team); });
     const double assembly = median_seconds(21, [&] {
-      assemble_mobility_stiffness(*space, mobility_integrals(*space, *model.mobility, y.head(n)),
-                                  matrix);
+      const Mobility& mobility = *problem->model().mobility;
+      assemble_mobility_stiffness(*space, mobility_integrals(*space, mobility, y.head(n)), matrix);
     });
-    const double residual = median_seconds(11, [&] { (void)problem.residual(0, y, ydot, r); });
-    report.rows.push_back({static_cast<double>(cells), static_cast<double>(space->elements.size()),
-                           static_cast<double>(n), 1e3 * setup, peak, 1e3 * one_product,
-                           1e3 * assembly, assembly / one_product, 1e3 * residual});
+    const double residual = median_seconds(11, [&] { (void)problem->residual(0, y, ydot, r); });
+    table.rows.push_back({static_cast<double>(cells), static_cast<double>(space->elements.size()),
+                          static_cast<double>(n), 1e3 * setup, peak, 1e3 * one_product,
+                          1e3 * assembly, assembly / one_product, 1e3 * residual});
+    levels.push_back({static_cast<double>(n), setup, assembly / one_product});
   }
-  const auto& fine = report.rows.back();
-  const auto& coarse = report.rows[report.rows.size() - 2];
-  report.claims = {{"nodes, 2n to n (4: grows like the surface)", fine[2] / coarse[2], 3.9, 4.1},
-                   {"set-up time, 2n to n (4: like the surface)", fine[3] / coarse[3], 0, 6},
-                   {"assembly of K_M in products (at most 3 x 3)", fine[7], 0, 9}};
+  const auto& fine = levels.back();
+  const auto& coarse = levels[levels.size() - 2];
+  StudyReport report;
+  report.tables = {table};
+  report.claims = {
+      claim_near("nodes, 2n to n: grow like the surface", fine[0] / coarse[0], 4, 0.1),
+      claim_between("set-up time, 2n to n (4: like the surface)", fine[1] / coarse[1], 0, 6),
+      claim_between("assembly of K_M in products (at most 3 x 3)", fine[2], 0, 9)};
   return report;
 }
 

@@ -1,64 +1,52 @@
 // What a step of the euler integrator costs on one core and on two.
 #include <algorithm>
-#include <memory>
-#include <stdexcept>
+#include <numeric>
 
-#include "backends/list.hpp"
 #include "kernel/core/stopwatch.hpp"
-#include "kernel/problem/cahn_hilliard.hpp"
-#include "kernel/problem/initial_data.hpp"
+#include "verification/bench.hpp"
 #include "verification/studies.hpp"
 
 namespace traceraft {
 namespace {
 
-void require(const Status& status) {
-  if (!status.ok()) throw std::runtime_error("step-cost: " + status.why);
-}
-
 // One run that is advanced step by step, beside others.
 struct TimedRun {
-  std::shared_ptr<const ThreadTeam> team;
-  std::shared_ptr<const SurfaceSpace> space;
-  std::unique_ptr<CahnHilliard> problem;
+  std::string solver;
+  SpacePtr space;
+  ProblemPtr problem;
   IntegratorPtr integrator;
   std::vector<double> steps;
 
-  TimedRun(int cells, int threads, const std::string& solver)
-      : team(std::make_shared<ThreadTeam>(threads)),
-        space(std::make_shared<SurfaceSpace>(*make_surface("sphere"), cells, team,
-                                             std::make_shared<SerialCommunicator>())) {
-    CahnHilliardModel model;
-    model.mobility = make_mobility("degenerate");
-    model.epsilon = 1.28 / cells;  // 0.01 at n = 128
-    problem = std::make_unique<CahnHilliard>(space, model);
-    Vec y = Vec::Zero(problem->size()), ydot = Vec::Zero(problem->size());
+  TimedRun(const Bench& bench, int cells, int threads, std::string solver_)
+      : solver(std::move(solver_)),
+        space(bench.space(*make_surface("sphere"), cells, threads)),
+        problem(bench.problem(space, bench_model("degenerate", 1.28 / cells))),  // 0.01 at n = 128
+        integrator(bench.make_integrator(*problem, *space, "euler", solver, {})) {
     InitialRequest request;
     request.raft_fraction = 0.16;
     request.noise_cells = cells / 4;
-    y.head(problem->block_size()) = make_initial_field("noise", *space, request);
-    require(problem->consistent_initial_state(0, y, ydot));
-    integrator =
-        integrators().find("euler").make(*problem, choose_linear_solver(solver, *space), team, {});
-    require(integrator->start(0, y, ydot, 1e6));
+    const StartState start = initial_state(*problem, "noise", request);
+    require(integrator->start(0, start.y, start.ydot, 1e6));
   }
   void advance() {
     const Stopwatch watch;
     require(integrator->advance());
     steps.push_back(watch.seconds());
   }
-  std::vector<double> row(double solver) {
+  double mean() const {
+    return std::accumulate(steps.begin(), steps.end(), 0.0) / static_cast<double>(steps.size());
+  }
+  // Milliseconds per step.
+  std::vector<Cell> row() {
     std::nth_element(steps.begin(), steps.begin() + steps.size() / 2, steps.end());
     const double count = static_cast<double>(steps.size());
-    double total = 0;
-    for (const double step : steps) total += step;
     const LinearStatistics linear = integrator->linear_statistics();
     const double assembly = integrator->statistics().assembly_seconds;
     return {solver,
-            static_cast<double>(team->size()),
+            static_cast<double>(space->team->size()),
             count,
             1e3 * steps[steps.size() / 2],
-            1e3 * total / count,
+            1e3 * mean(),
             1e3 * assembly / count,
             1e3 * linear.setup_seconds / count,
             1e3 * linear.solve_seconds / count,
@@ -66,15 +54,11 @@ struct TimedRun {
   }
 };
 
-StudyReport run(const StudyRequest& request) {
-  const int cells = request.quick ? 48 : 128, steps = request.quick ? 20 : 120;
-  StudyReport report;
-  // solver 0: block, 1: direct. Parts are summed over threads.
-  report.columns = {"solver",      "threads",  "steps",    "median_ms", "mean_ms",
-                    "assembly_ms", "setup_ms", "solve_ms", "iterations"};
+StudyReport run(const Bench& bench) {
+  const int cells = bench.quick() ? 48 : 128, steps = bench.quick() ? 20 : 120;
   // Taken in turn, so that all see the same machine.
-  TimedRun one(cells, 1, "block"), two(cells, 2, "block");
-  TimedRun direct_one(cells, 1, "direct"), direct_two(cells, 2, "direct");
+  TimedRun one(bench, cells, 1, "block"), two(bench, cells, 2, "block");
+  TimedRun direct_one(bench, cells, 1, "direct"), direct_two(bench, cells, 2, "direct");
   for (int step = 0; step < steps; ++step) {
     one.advance();
     two.advance();
@@ -82,14 +66,20 @@ StudyReport run(const StudyRequest& request) {
       direct_one.advance();
       direct_two.advance();
     }
+    bench.progress(static_cast<double>(step + 1) / steps);
   }
-  report.rows = {one.row(0), two.row(0), direct_one.row(1), direct_two.row(1)};
+  StudyReport report;
+  report.notes = {"Parts of a step are summed over threads."};
+  report.tables = {{"steps",
+                    {"solver", "threads", "steps", "median_ms", "mean_ms", "assembly_ms",
+                     "setup_ms", "solve_ms", "iterations"},
+                    {one.row(), two.row(), direct_one.row(), direct_two.row()}}};
   report.claims = {
-      {"block: time on one core over time on two", report.rows[0][4] / report.rows[1][4], 1.2, 2.2},
-      {"direct: time on one core over time on two", report.rows[2][4] / report.rows[3][4], 1.2,
-       2.2},
-      {"one core: time of direct over time of block", report.rows[2][4] / report.rows[0][4], 2,
-       1e3}};
+      claim_between("block: time on one core over time on two", one.mean() / two.mean(), 1.2, 2.2),
+      claim_between("direct: time on one core over time on two",
+                    direct_one.mean() / direct_two.mean(), 1.2, 2.2),
+      claim_between("one core: time of direct over time of block", direct_one.mean() / one.mean(),
+                    2, 1e3)};
   return report;
 }
 

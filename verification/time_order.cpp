@@ -1,10 +1,8 @@
-// Orders of convergence in the step size, on one mesh against a run with far smaller steps.
+// Orders of convergence in the step size, and errors against the tolerance, on one mesh against a
+// run with far smaller steps.
 #include <cmath>
-#include <memory>
-#include <string>
-#include <vector>
 
-#include "backends/list.hpp"
+#include "verification/fit.hpp"
 #include "verification/manufactured.hpp"
 #include "verification/studies.hpp"
 
@@ -14,68 +12,119 @@ namespace {
 constexpr double kEnd = 1.0;
 
 struct Method {
-  const char* column;
-  const char* claim;
+  const char* name;
   const char* integrator;
   const char* kept;  // euler only
   double order, margin;
 };
+constexpr Method kMethods[] = {{"stabilised Euler", "euler", "first", 1, 0.15},
+                               {"stabilised BDF2", "euler", "second", 2, 0.25},
+                               {"ida at maximum order 2", "ida", "", 2, 0.25},
+                               {"rosenbrock", "rosenbrock", "", 3, 0.25}};
 
-const std::vector<Method>& methods() {
-  static const std::vector<Method> list = {
-      {"first_order", "stabilised Euler: order in the step", "euler", "first", 1, 0.15},
-      {"second_order", "stabilised BDF2: order in the step", "euler", "second", 2, 0.25},
-      {"ida_2", "ida at maximum order 2: order in the step", "ida", "", 2, 0.25},
-      {"rosenbrock", "rosenbrock: order in the step", "rosenbrock", "", 3, 0.25}};
-  return list;
-}
+class Runs {
+ public:
+  explicit Runs(const Bench& bench)
+      : bench_(bench), manufactured_(bench, bench.space("sphere", 16), "sphere", 0.3) {}
 
-Vec solve(const ManufacturedCahnHilliard& manufactured, const Method& method, int steps) {
-  IntegratorSettings settings;
-  settings.tolerance = 0.5;  // all steps of the size asked for
-  settings.initial_step = settings.max_step = kEnd / steps;
-  settings.linear_tolerance = 1e-12;
-  settings.kept_solution = method.kept;
-  if (method.integrator == std::string("ida")) settings.own["maxord"] = method.order;
-  const SurfaceSpace& space = *manufactured.space;
-  const IntegratorPtr integrator =
-      integrators()
-          .find(method.integrator)
-          .make(*manufactured.problem, choose_linear_solver("block", space), space.team, settings);
-  return run_with_equal_steps(manufactured, *integrator, kEnd);
-}
-
-StudyReport run(const StudyRequest& request) {
-  const auto space =
-      std::make_shared<SurfaceSpace>(*make_surface("sphere"), 16, std::make_shared<ThreadTeam>(2),
-                                     std::make_shared<SerialCommunicator>());
-  const ManufacturedCahnHilliard manufactured(space, 0.3);
-  const int finest = request.quick ? 160 : 320;
-  StudyReport report;
-  report.columns = {"steps"};
-  for (const Method& method : methods()) report.columns.push_back(method.column);
-  const Vec reference = solve(manufactured, methods().back(), 4 * finest);
-  for (int steps = finest / 8; steps <= finest; steps *= 2) {
-    std::vector<double> row = {static_cast<double>(steps)};
-    for (const Method& method : methods())
-      row.push_back(manufactured.problem->norm(solve(manufactured, method, steps) - reference));
-    report.rows.push_back(row);
+  Vec with_steps(const Method& method, int steps) const {
+    IntegratorSettings settings;
+    settings.tolerance = 0.5;  // all steps of the size asked for
+    settings.initial_step = settings.max_step = kEnd / steps;
+    settings.linear_tolerance = 1e-12;
+    settings.kept_solution = method.kept;
+    if (method.integrator == std::string("ida")) settings.own["maxord"] = method.order;
+    return solve(method.integrator, settings);
   }
-  for (std::size_t k = 0; k < methods().size(); ++k) {
-    const double order = methods()[k].order;
+  Vec with_tolerance(const std::string& integrator, double tolerance) const {
+    IntegratorSettings settings;
+    settings.tolerance = tolerance;
+    return solve(integrator, settings);
+  }
+  double error(const Vec& y, const Vec& reference) const {
+    return manufactured_.problem->norm(y - reference);
+  }
+
+ private:
+  Vec solve(const std::string& name, const IntegratorSettings& settings) const {
+    const IntegratorPtr integrator = bench_.make_integrator(
+        *manufactured_.problem, manufactured_.space(), name, bench_.linear_solver(), settings);
+    advance_to(*integrator, manufactured_.initial_state(), kEnd);
+    return integrator->state();
+  }
+
+  const Bench& bench_;
+  ManufacturedCahnHilliard manufactured_;
+};
+
+bool chosen(const Bench& bench, const Method& method) {
+  return bench.request.integrator.empty() || bench.request.integrator == method.integrator;
+}
+
+void measure_orders(const Bench& bench, const Runs& runs, const Vec& reference,
+                    StudyReport& report) {
+  const int finest = bench.quick() ? 160 : 320;
+  Table table{"steps", {"method", "steps", "error"}, {}};
+  Chart chart{"Error against the size of the step", "step", "error of c in L2", true, true, {}};
+  for (const Method& method : kMethods) {
+    if (!chosen(bench, method)) continue;
+    Points levels;
     // The smallest errors of order 3, below 1e-10, are at the accuracy of the solves.
-    const std::size_t fine = report.rows.size() - (order < 3 ? 1 : 2);
-    report.claims.push_back({methods()[k].claim,
-                             std::log2(report.rows[fine - 1][k + 1] / report.rows[fine][k + 1]),
-                             order - methods()[k].margin, order + methods()[k].margin});
+    for (int steps = finest / 8; steps <= (method.order < 3 ? finest : finest / 2); steps *= 2) {
+      levels.emplace_back(kEnd / steps, runs.error(runs.with_steps(method, steps), reference));
+      table.rows.push_back({method.name, static_cast<double>(steps), levels.back().second});
+    }
+    const ObservedOrder found = observed_order(levels);
+    Claim claim = claim_near(std::string(method.name) + ": order in the step", found.order,
+                             method.order, method.margin);
+    claim.uncertainty = found.change;
+    report.claims.push_back(claim);
+    chart.series.push_back({method.name, levels});
   }
+  report.tables.push_back(table);
+  report.charts.push_back(chart);
+}
+
+void measure_tolerances(const Bench& bench, const Runs& runs, const Vec& reference,
+                        StudyReport& report) {
+  Table table{"tolerances", {"integrator", "tolerance", "error"}, {}};
+  Chart chart{"Error against the tolerance", "tolerance", "error of c in L2", true, true, {}};
+  for (const std::string& integrator : bench.integrators()) {
+    Points levels;
+    double largest_ratio = 0;
+    for (double tolerance = 1e-2; tolerance > 0.9e-5; tolerance /= 10) {
+      const double error = runs.error(runs.with_tolerance(integrator, tolerance), reference);
+      levels.emplace_back(tolerance, error);
+      largest_ratio = std::max(largest_ratio, error / tolerance);
+      table.rows.push_back({integrator, tolerance, error});
+    }
+    report.claims.push_back(
+        claim_at_most(integrator + ": largest error over its tolerance", largest_ratio, 10));
+    chart.series.push_back({integrator, levels});
+  }
+  report.tables.push_back(table);
+  report.charts.push_back(chart);
+}
+
+StudyReport run(const Bench& bench) {
+  const Runs runs(bench);
+  StudyReport report;
+  report.notes = {
+      "Manufactured solution on the sphere, 16 cells, c = 1/2 + cos(t) xyz/4 to t = 1; "
+      "the reference is rosenbrock with far smaller steps on the same mesh."};
+  const Vec reference = runs.with_steps(kMethods[3], bench.quick() ? 640 : 1280);
+  bench.progress(0.3);
+  measure_orders(bench, runs, reference, report);
+  bench.progress(0.7);
+  measure_tolerances(bench, runs, reference, report);
   return report;
 }
 
 }  // namespace
 
 StudyEntry time_order_study() {
-  return {"time-order", "orders of the integrators in the step size", run};
+  return {"time-order", "orders of the integrators in the step size, errors against tolerances",
+          run};
 }
 
 }  // namespace traceraft

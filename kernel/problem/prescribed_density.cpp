@@ -1,7 +1,6 @@
 #include <stdexcept>
 
-#include "kernel/fem/trace.hpp"
-#include "kernel/fem/triangle_rule.hpp"
+#include "kernel/fem/density_load.hpp"
 #include "kernel/problem/effect.hpp"
 
 namespace traceraft {
@@ -21,19 +20,8 @@ class PrescribedDensity final : public Effect {
                     VecRef residual_mu) const override {
     VecRef target = slot_ == Slot::source ? residual_c : residual_mu;
     const double sign = slot_ == Slot::source ? 1 : -1;
-    const CutSurface& surface = space.surface;
-    const Vec load = point_loads(space, [&](int triangle) {
-      const auto& [i, j, k] = surface.triangles[triangle];
-      const Point corner[3] = {surface.position[i], surface.position[j], surface.position[k]};
-      std::array<double, 3> corner_load{};
-      for (const auto& [at, weight] : kDegreeFourRule) {
-        const Point x = at[0] * corner[0] + at[1] * corner[1] + at[2] * corner[2];
-        const double value = weight * surface.triangle_area[triangle] * density_(x, t);
-        for (int a = 0; a < 3; ++a) corner_load[a] += value * at[a];
-      }
-      return corner_load;
-    });
-    add_trace_transpose(space, sign, load, target);
+    add_density_load(
+        space, sign, [&](const QuadraturePoint& at) { return density_(at.x, t); }, target);
   }
   void add_tangent(const SurfaceSpace&, double, ConstVec, ConstVec, BlockJacobian&) const override {
   }

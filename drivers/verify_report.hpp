@@ -1,0 +1,44 @@
+// What a verification leaves behind: text for the terminal, CSV, JSON, a page, and a document.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "verification/study.hpp"
+
+namespace traceraft {
+
+enum class Verdict { holds, fails, not_measured };
+
+struct StudyResult {
+  StudyEntry study;
+  StudyReport report;
+  std::string failure;  // why it could not be carried out; "" if it was
+  double seconds = 0;
+
+  Verdict verdict() const;
+};
+
+// claim · measured · expected · tolerance · verdict, for people. The first row is the heading.
+std::vector<std::vector<std::string>> claim_rows(const std::vector<Claim>& claims);
+
+void print_result(const StudyResult& result);
+
+// What the numbers were measured with.
+struct VerificationContext {
+  std::string command;     // that repeats it
+  std::string conditions;  // threads, integrator, solver, version
+};
+
+// NAME.json and NAME-TABLE.csv of one study, as soon as it is done. Throws IoError.
+void write_study(const std::filesystem::path& folder, const StudyResult& result);
+// verify.json and verify.html of all. "" or why charts are missing.
+std::string write_verification(const std::filesystem::path& folder,
+                               const VerificationContext& context,
+                               const std::vector<StudyResult>& results);
+// A Markdown document with its charts as SVG files in a folder of the document's name beside it.
+void write_document(const std::filesystem::path& path, const VerificationContext& context,
+                    const std::vector<StudyResult>& results);
+
+}  // namespace traceraft

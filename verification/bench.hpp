@@ -1,0 +1,76 @@
+// The bench that studies measure on: it makes spaces, models and integrators as a run does.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "kernel/problem/cahn_hilliard.hpp"
+#include "kernel/problem/initial_data.hpp"
+#include "kernel/time/integrator.hpp"
+
+namespace traceraft {
+
+using SpacePtr = std::shared_ptr<const SurfaceSpace>;
+using ProblemPtr = std::unique_ptr<const CahnHilliard>;
+
+struct BenchRequest {
+  bool quick = false;         // coarser and shorter, for every day
+  std::string integrator;     // "": a study's choice, or all of them where it compares
+  std::string linear_solver;  // likewise
+  int threads = 2;
+  // Called now and then with the share of a study that is done, 0 to 1. May be empty.
+  std::function<void(double)> progress = {};
+};
+
+// Tests derive from it, break one part on purpose and see a study fail.
+class Bench {
+ public:
+  explicit Bench(BenchRequest request);
+  virtual ~Bench() = default;
+
+  const BenchRequest request;
+  bool quick() const { return request.quick; }
+  void progress(double share) const;
+
+  // Those that a comparing study compares.
+  std::vector<std::string> integrators() const;
+  std::vector<std::string> linear_solvers() const;
+  // That of a study which needs one.
+  std::string integrator() const;
+  std::string linear_solver() const;
+
+  virtual SpacePtr space(const LevelSet& surface, int cells, int threads) const;
+  SpacePtr space(const std::string& surface, int cells) const;
+  virtual ProblemPtr problem(SpacePtr space, CahnHilliardModel model) const;
+  virtual IntegratorPtr make_integrator(const DaeProblem& problem, const SurfaceSpace& space,
+                                        const std::string& name, const std::string& linear_solver,
+                                        const IntegratorSettings& settings) const;
+  // The bench's integrator and solver; tolerance 0: the integrator's own.
+  IntegratorPtr default_integrator(const CahnHilliard& problem, double tolerance = 0) const;
+
+  // job(0) … job(count − 1), as many at a time as there are threads: each has to work on spaces of
+  // one thread.
+  void in_parallel(int count, const std::function<void(int)>& job) const;
+};
+
+CahnHilliardModel bench_model(const std::string& mobility, double epsilon);
+
+// Throws std::runtime_error, as the functions below do where a computation fails.
+void require(const Status& status);
+
+// A consistent state with these nodal values of c.
+struct StartState {
+  Vec y, ydot;
+};
+StartState consistent_state(const CahnHilliard& problem, ConstVec c);
+// `initial` as in --initial; ε and the well are the problem's.
+StartState initial_state(const CahnHilliard& problem, const std::string& initial,
+                         InitialRequest request);
+
+// Steps to t_end; on_step, which may be empty, sees every accepted one.
+void advance_to(Integrator& integrator, const StartState& start, double t_end,
+                const std::function<void()>& on_step = {});
+
+}  // namespace traceraft

@@ -1,0 +1,50 @@
+// Lines through measured points, and how far to trust them.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace traceraft {
+
+using Points = std::vector<std::pair<double, double>>;
+
+struct Line {
+  double slope, intercept;
+};
+// Least squares. At least two different x.
+Line fit_line(const Points& points);
+// ln y = slope · ln x + intercept. x, y > 0.
+Line fit_power_law(const Points& points);
+
+// y = C (t + offset)^b by least squares of ln y, the offset among 0 and 240 values between a
+// thousandth and ten times the first t: what laws like L³ = L₀³ + K t ask for.
+struct ShiftedPowerLaw {
+  double exponent, offset;
+};
+ShiftedPowerLaw fit_shifted_power_law(const Points& points);
+
+// The order p of errors e ~ h^p: between the two finest levels, and how much that differs from the
+// order between the two before them (0 if there are no three).
+struct ObservedOrder {
+  double order, change;
+};
+ObservedOrder observed_order(const Points& size_and_error);
+
+// Percentile bootstrap: the interval that holds the share `confidence` of statistic(sample) over
+// samples of 0 … count − 1 drawn with replacement.
+struct Interval {
+  double low, high;
+  bool contains(double value) const { return value >= low && value <= high; }
+};
+Interval bootstrap(int count, int replicates, double confidence, std::uint64_t seed,
+                   const std::function<double(const std::vector<int>&)>& statistic);
+
+struct Moments {
+  double mean, deviation;  // of the sample, with n − 1
+  double low, high;
+};
+Moments moments(const std::vector<double>& values);
+
+}  // namespace traceraft

@@ -1,0 +1,18 @@
+// A matrix of the program as Eigen sees it: for solvers that are independent of the program's own.
+#pragma once
+
+#include <Eigen/Sparse>
+
+#include "kernel/fem/surface_space.hpp"
+
+namespace traceraft {
+
+using EigenMatrix = Eigen::SparseMatrix<double>;
+
+inline EigenMatrix as_eigen(const SurfaceSpace& space, const CsrMatrix& A) {
+  return Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>>(
+      space.nodes(), space.nodes(), space.pattern->entries(), space.pattern->row_begin.data(),
+      space.pattern->column.data(), A.values.data());
+}
+
+}  // namespace traceraft

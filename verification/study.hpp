@@ -1,0 +1,76 @@
+// A verification study: something is measured and held against what is claimed of it.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace traceraft {
+
+class Bench;
+
+// One measured claim: `measured` must lie in [low, high].
+struct Claim {
+  std::string what;
+  double measured;
+  std::optional<double> expected;  // the value of theory, where there is one
+  double low, high;
+  double uncertainty = 0;  // of `measured`: half a 95 % interval; 0: not estimated
+
+  bool holds() const { return measured >= low && measured <= high; }  // false for NaN
+};
+
+Claim claim_near(std::string what, double measured, double expected, double tolerance);
+Claim claim_at_most(std::string what, double measured, double bound);
+Claim claim_between(std::string what, double measured, double low, double high);
+
+// The measurements behind the claims.
+struct Cell {
+  bool is_number;
+  double number = 0;
+  std::string text = {};
+
+  Cell(double value) : is_number(true), number(value) {}                 // NOLINT: cells of
+  Cell(std::string value) : is_number(false), text(std::move(value)) {}  // NOLINT: a table
+  Cell(const char* value) : Cell(std::string(value)) {}                  // NOLINT: mix both
+};
+struct Table {
+  std::string name;  // unique within its study; part of a file name
+  std::vector<std::string> columns;
+  std::vector<std::vector<Cell>> rows;
+};
+
+enum class Mark { line, points, both };
+struct ChartSeries {
+  std::string name;
+  std::vector<std::pair<double, double>> points;
+  Mark mark = Mark::both;
+};
+struct Chart {
+  std::string title, x_label, y_label;
+  bool log_x = false, log_y = false;
+  std::vector<ChartSeries> series;
+};
+
+struct StudyReport {
+  std::vector<Table> tables;
+  std::vector<Claim> claims;
+  std::vector<Chart> charts;
+  std::vector<std::string> notes;  // what a reader has to know, a sentence each
+  std::string skipped = {};        // why this build cannot measure it
+};
+
+// Contract: `run` measures on the bench it is given and on nothing else. It throws InputError if
+// the bench's integrator or solver cannot serve it and std::runtime_error if a computation fails,
+// which is a claim that does not hold.
+struct StudyEntry {
+  std::string name;
+  std::string summary;
+  std::function<StudyReport(const Bench&)> run;
+  // Not part of "all", nor of the tests: takes very long, or makes claims about speed.
+  bool by_name_only = false;
+};
+
+}  // namespace traceraft
