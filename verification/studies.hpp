@@ -1,45 +1,25 @@
-// The list of verification studies, each a claim that is measured.
+// The one list of verification studies. Adding one is one file and one line in studies.cpp.
 #pragma once
 
-#include <functional>
-#include <string>
-#include <vector>
-
 #include "kernel/core/named_list.hpp"
+#include "verification/study.hpp"
 
 namespace traceraft {
 
-// One measured claim: `measured` must lie in [low, high].
-struct Claim {
-  std::string what;
-  double measured;
-  double low, high;
-  bool holds() const { return measured >= low && measured <= high; }  // false for NaN
-};
-
-struct StudyReport {
-  std::vector<std::string> columns;  // of the table behind the claims
-  std::vector<std::vector<double>> rows;
-  std::vector<Claim> claims;
-  std::string skipped = {};  // why this build cannot measure it
-};
-
-struct StudyRequest {
-  bool quick = false;  // coarser and shorter, for every day
-};
-
-struct StudyEntry {
-  std::string name;
-  std::string summary;
-  std::function<StudyReport(const StudyRequest&)> run;
-  bool timed = false;  // claims about speed: for people to run, never part of the tests
-};
-
+StudyEntry mass_balance_study();
+StudyEntry energy_decay_study();
 StudyEntry mesh_convergence_study();
+StudyEntry surface_geometry_study();
 StudyEntry time_order_study();
+StudyEntry linear_theory_study();
+StudyEntry equilibria_study();
 StudyEntry integrator_agreement_study();
+StudyEntry coarsening_study();
+StudyEntry pfhub_study();
 StudyEntry solver_iterations_study();
+StudyEntry large_solver_iterations_study();
 StudyEntry teko_iterations_study();
+StudyEntry large_teko_iterations_study();
 StudyEntry operation_cost_study();
 StudyEntry step_cost_study();
 
