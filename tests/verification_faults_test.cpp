@@ -1,0 +1,196 @@
+// Every verification study can fail: one part of the program is broken on purpose, and it sees
+// that.
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "tests/support/forwarding.hpp"
+#include "verification/bench.hpp"
+#include "verification/studies.hpp"
+
+namespace traceraft {
+namespace {
+
+using testing::ForwardingProblem;
+
+// What an integrator is given in place of the model.
+class BrokenProblem : public ForwardingProblem {
+ public:
+  using ForwardingProblem::ForwardingProblem;
+  double clock = 1;     // factor of ẏ: time runs slower
+  double leak = 0;      // source of mass, per area
+  double shift = 1;     // factor of the shift in the Jacobian
+  bool uphill = false;  // the flux has the wrong sign
+
+  Status residual(double t, ConstVec y, ConstVec ydot, VecRef r) const override {
+    const Status status = ForwardingProblem::residual(t, y, clock * ydot, r);
+    r.head(block_size()).array() -= leak;
+    if (uphill) {
+      Vec flux(r.size());  // at ẏ = 0 nothing else is left in the first half
+      if (!ForwardingProblem::residual(t, y, Vec::Zero(r.size()), flux).ok()) return status;
+      r.head(block_size()) -= 2 * flux.head(block_size());
+    }
+    return status;
+  }
+  Status jacobian(double t, ConstVec y, ConstVec ydot, double sigma, Tangent tangent,
+                  BlockJacobian& J) const override {
+    return ForwardingProblem::jacobian(t, y, clock * ydot, clock * shift * sigma, tangent, J);
+  }
+  Status jacobian_product(double t, ConstVec y, ConstVec ydot, double sigma, Tangent tangent,
+                          ConstVec v, VecRef product) const override {
+    return ForwardingProblem::jacobian_product(t, y, clock * ydot, clock * shift * sigma, tangent,
+                                               v, product);
+  }
+};
+
+// An integrator that owns its model.
+class IntegratorOfBroken final : public Integrator {
+ public:
+  IntegratorOfBroken(std::unique_ptr<BrokenProblem> problem, IntegratorPtr inner)
+      : problem_(std::move(problem)), inner_(std::move(inner)) {}
+  std::string name() const override { return inner_->name(); }
+  Status start(double t0, ConstVec y0, ConstVec ydot0, double t_end) override {
+    return inner_->start(t0, y0, ydot0, t_end);
+  }
+  Status advance() override { return inner_->advance(); }
+  Status interpolate(double t, VecRef y) const override { return inner_->interpolate(t, y); }
+  double time() const override { return inner_->time(); }
+  double step() const override { return inner_->step(); }
+  double next_step() const override { return inner_->next_step(); }
+  const Vec& state() const override { return inner_->state(); }
+  bool promises_energy_decay() const override { return inner_->promises_energy_decay(); }
+  IntegratorStatistics statistics() const override { return inner_->statistics(); }
+  LinearStatistics linear_statistics() const override { return inner_->linear_statistics(); }
+  void save(CheckpointOut out) const override { inner_->save(out); }
+  void load(CheckpointIn in) override { inner_->load(in); }
+
+ private:
+  std::unique_ptr<BrokenProblem> problem_;
+  IntegratorPtr inner_;
+};
+
+// A law that is off by a factor.
+class ScaledMobility final : public Mobility {
+ public:
+  ScaledMobility(MobilityPtr inner, double factor) : inner_(std::move(inner)), factor_(factor) {}
+  void evaluate(const double* c, int count, double* value, double* derivative) const override {
+    inner_->evaluate(c, count, value, derivative);
+    for (int i = 0; i < count; ++i) {
+      value[i] *= factor_;
+      if (derivative) derivative[i] *= factor_;
+    }
+  }
+  double scale() const override { return factor_ * inner_->scale(); }
+  bool constant() const override { return inner_->constant(); }
+
+ private:
+  MobilityPtr inner_;
+  double factor_;
+};
+
+struct Fault {
+  const char* study;
+  const char* what;
+  std::function<void(CahnHilliardModel&)> model = {};
+  std::function<void(BrokenProblem&)> problem = {};
+  const char* integrator = "";  // that gets the broken problem; "" for all
+  double inflation = 0;         // of the surface
+  bool no_stabilisation = false;
+};
+
+std::ostream& operator<<(std::ostream& out, const Fault& fault) {
+  return out << fault.study << ": " << fault.what;
+}
+
+class BrokenBench final : public Bench {
+ public:
+  explicit BrokenBench(const Fault& fault) : Bench({true, "", "", 2}), fault_(fault) {}
+
+  using Bench::space;
+  SpacePtr space(const LevelSet& surface, int cells, int threads) const override {
+    const auto result = std::make_shared<SurfaceSpace>(
+        FunctionLevelSet([&](const Point& x) { return surface.value(x) - fault_.inflation; }),
+        cells, std::make_shared<ThreadTeam>(threads), std::make_shared<SerialCommunicator>());
+    if (fault_.no_stabilisation) {
+      std::fill(result->normal.values.begin(), result->normal.values.end(), 0.0);
+      result->stabilised_mass = result->mass;
+    }
+    return result;
+  }
+  ProblemPtr problem(SpacePtr space, CahnHilliardModel model) const override {
+    if (fault_.model) fault_.model(model);
+    return Bench::problem(std::move(space), std::move(model));
+  }
+  IntegratorPtr make_integrator(const DaeProblem& problem, const SurfaceSpace& space,
+                                const std::string& name, const std::string& linear_solver,
+                                const IntegratorSettings& settings) const override {
+    auto broken = std::make_unique<BrokenProblem>(problem);
+    if (fault_.problem && (*fault_.integrator == 0 || fault_.integrator == name))
+      fault_.problem(*broken);
+    IntegratorPtr inner = Bench::make_integrator(*broken, space, name, linear_solver, settings);
+    return std::make_unique<IntegratorOfBroken>(std::move(broken), std::move(inner));
+  }
+
+ private:
+  const Fault& fault_;
+};
+
+bool all_hold(const StudyReport& report) {
+  for (const Claim& claim : report.claims)
+    if (!claim.holds()) return false;
+  return true;
+}
+
+class FaultTest : public ::testing::TestWithParam<Fault> {};
+
+TEST_P(FaultTest, IsSeen) {
+  const Fault& fault = GetParam();
+  try {
+    const StudyReport report = studies().find(fault.study).run(BrokenBench(fault));
+    if (!report.skipped.empty()) GTEST_SKIP() << report.skipped;
+    EXPECT_FALSE(all_hold(report)) << fault.study << " does not see: " << fault.what;
+  } catch (const std::runtime_error&) {  // a computation that fails is seen, too
+  }
+}
+
+const Fault kFaults[] = {
+    {"mass", "a leak of 1e-9 per area", {}, [](BrokenProblem& p) { p.leak = 1e-9; }},
+    {"energy", "time that runs 2 % slow", {}, [](BrokenProblem& p) { p.clock = 1.02; }},
+    {"energy", "a flux uphill", {}, [](BrokenProblem& p) { p.uphill = true; }},
+    {"convergence", "a boundary 2 % too wide", [](CahnHilliardModel& m) { m.epsilon *= 1.02; }},
+    {"geometry", "a surface 1e-3 too large", {}, {}, "", 1e-3},
+    {"geometry", "no stabilisation", {}, {}, "", 0, true},
+    {"time-order", "a wrong shift", {}, [](BrokenProblem& p) { p.shift = 1.1; }, "euler"},
+    {"linear", "a mobility 5 % too small",
+     [](CahnHilliardModel& m) { m.mobility = std::make_shared<ScaledMobility>(m.mobility, 0.95); }},
+    {"equilibria", "a well 2 % too deep", [](CahnHilliardModel& m) { m.well.rho *= 1.02; }},
+    {"coarsening", "a mobility that vanishes in the phases",
+     [](CahnHilliardModel& m) { m.mobility = make_mobility("degenerate"); }},
+    {"pfhub", "a well 5 % too deep", [](CahnHilliardModel& m) { m.well.rho *= 1.05; }},
+    {"agreement",
+     "an integrator 0.1 % slow",
+     {},
+     [](BrokenProblem& p) { p.clock = 1.001; },
+     "euler"},
+    {"iterations", "no stabilisation", {}, {}, "", 0, true},
+    {"teko", "no stabilisation", {}, {}, "", 0, true},
+};
+
+INSTANTIATE_TEST_SUITE_P(Broken, FaultTest, ::testing::ValuesIn(kFaults), [](const auto& info) {
+  std::string name = std::string(info.param.study) + "_" + info.param.what;
+  for (char& ch : name)
+    if (!std::isalnum(static_cast<unsigned char>(ch))) ch = '_';
+  return name;
+});
+
+TEST(Faults, EveryStudyOfAllHasOne) {
+  for (const StudyEntry& study : studies()) {
+    if (study.by_name_only) continue;
+    bool found = false;
+    for (const Fault& fault : kFaults) found = found || study.name == fault.study;
+    EXPECT_TRUE(found) << study.name;
+  }
+}
+
+}  // namespace
+}  // namespace traceraft
