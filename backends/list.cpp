@@ -84,7 +84,7 @@ const NamedList<LinearSolverEntry>& linear_solvers() {
          "muelu, muelu-ilu (stronger, dearer), ifpack2, direct (one rank), or of the file"},
         {"method", "fgmres", "fgmres, gmres, gcrodr, bicgstab"},
         {"renewal", "worn", "new preconditioner: worn (when iterations grow) or always"},
-        {"parameters", "", "Teuchos XML file with sublists Inverse Library and Belos"}},
+        {"parameters", "", "Teuchos XML file with sublists Inverse Library and Belos", true}},
        kWithTrilinos,
        true},
   };

@@ -13,9 +13,10 @@
 
 namespace traceraft {
 
-// An option of one linear solver: --<name>-<option>, a word.
+// An option of one linear solver: --<name>-<option>, a word or the path of a file.
 struct WordOption {
   std::string name, default_word, meaning;
+  bool file = false;
 };
 using WordOptions = std::map<std::string, std::string>;  // those that are given, by name
 
@@ -23,7 +24,7 @@ struct LinearSolverEntry {
   std::string name;
   std::string summary;
   std::string fallback;  // name of the solver to fall back on, or ""
-  // Throws InputError for a space or options that it cannot serve.
+  // Throws InputError for a space that it cannot serve and OptionError for options.
   std::function<LinearSolverFactory(const SurfaceSpace&, const WordOptions&)> make;
   std::vector<WordOption> options = {};
   bool built = true;         // if not, `make` says how to get it
@@ -44,7 +45,7 @@ const NamedList<LinearSolverEntry>& linear_solvers();
 std::vector<std::string> built_linear_solvers();
 const NamedList<IntegratorEntry>& integrators();
 
-// The named solver together with its fallback. Throws InputError.
+// The named solver together with its fallback. Throws InputError, OptionError.
 LinearSolverChoice choose_linear_solver(const std::string& name, const SurfaceSpace& space,
                                         const WordOptions& options = {});
 

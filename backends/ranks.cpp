@@ -20,6 +20,13 @@ bool started_together() {
   return false;
 }
 
+// How many were started; 0 if nobody says so.
+int started_ranks() {
+  for (const char* variable : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"})
+    if (const char* size = std::getenv(variable)) return std::atoi(size);
+  return 0;
+}
+
 }  // namespace
 
 #ifdef TRACERAFT_WITH_MPI
@@ -31,7 +38,15 @@ std::unique_ptr<MpiSession> session;
 }  // namespace
 
 RankSession::RankSession() {
-  if (started_together()) session = std::make_unique<MpiSession>();
+  if (!started_together()) return;
+  session = std::make_unique<MpiSession>();
+  if (const int started = started_ranks(); started > 1 && session->world()->size() == 1) {
+    session.reset();
+    throw InputError(
+        "several processes were started that do not find each other: use the mpirun of the MPI "
+        "that "
+        "this program was built with");
+  }
 }
 RankSession::~RankSession() {
 #ifdef TRACERAFT_WITH_TRILINOS
@@ -40,6 +55,9 @@ RankSession::~RankSession() {
   session.reset();
 }
 
+bool RankSession::there_is() {
+  return session != nullptr;
+}
 bool RankSession::all_fail() {
   return !session || session->all_fail(kPatience);
 }
@@ -56,15 +74,16 @@ std::shared_ptr<const Communicator> world() {
 #else
 
 RankSession::RankSession() {
-  const char* size = std::getenv("OMPI_COMM_WORLD_SIZE");
-  if (!size) size = std::getenv("PMI_SIZE");
-  if (started_together() && !(size && std::atoi(size) == 1))
+  if (started_together() && started_ranks() != 1)
     throw InputError(
         "this program was built without MPI and runs as one process only; install the Debian "
         "packages libopenmpi-dev and openmpi-bin, and build it again");
 }
 RankSession::~RankSession() = default;
 
+bool RankSession::there_is() {
+  return started_together();
+}
 bool RankSession::all_fail() {
   return true;
 }

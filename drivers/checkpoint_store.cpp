@@ -12,7 +12,7 @@
 namespace traceraft {
 namespace {
 
-constexpr char kMagic[] = "traceraft checkpoint 2\n";  // the number is the version of the format
+constexpr char kMagic[] = "traceraft checkpoint 3\n";  // the number is the version of the format
 constexpr std::size_t kMagicSize = sizeof kMagic - 1;
 constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 36;
 constexpr std::size_t kKept = 2;

@@ -17,12 +17,13 @@ namespace {
 using Row = std::vector<std::string>;
 
 constexpr const char* kHeading[] = {
-    "integrator", "linear solver", "tolerance", "error",     "CPU s",      "wall s (from to)",
-    "steps",      "rejected",      "failed",    "residuals", "Jacobians",  "set-ups",
-    "linear its", "ranks",         "threads",   "peak MB",   "mass drift", "energy rises"};
+    "integrator",       "linear solver", "ranks",    "tolerance", "error",      "CPU s",
+    "wall s (from to)", "steps",         "rejected", "failed",    "residuals",  "Jacobians",
+    "set-ups",          "linear its",    "threads",  "peak MB",   "mass drift", "energy rises"};
+constexpr std::size_t kNames = 4;  // columns that a failure has, too
 
 Row cells(const WorkPoint& p) {
-  Row row = {p.integrator, p.linear_solver, format_number(p.tolerance)};
+  Row row = {p.integrator, p.linear_solver, std::to_string(p.ranks), format_number(p.tolerance)};
   if (!p.ok()) {
     row.push_back(p.failure);
     return row;
@@ -33,7 +34,7 @@ Row cells(const WorkPoint& p) {
   row.push_back(formatted("%.2f", wall.median) + " (" + formatted("%.2f", wall.low) + " to " +
                 formatted("%.2f", wall.high) + ")");
   for (const char* count : {"steps", "rejected", "failures", "residuals", "jacobians",
-                            "linear_setups", "linear_iterations", "ranks", "threads"})
+                            "linear_setups", "linear_iterations", "threads"})
     row.push_back(formatted("%.0f", p.counts.at(count)));
   row.push_back(formatted("%.0f", p.counts.at("peak_memory_mb")));
   row.push_back(formatted("%.0e", p.counts.at("mass_drift")));
@@ -75,14 +76,16 @@ std::string compare_csv(const std::vector<WorkPoint>& points) {
       std::find_if(points.begin(), points.end(), [](const WorkPoint& p) { return p.ok(); });
   Row counts;
   if (with_result != points.end())
-    for (const auto& [name, value] : with_result->counts) counts.push_back(name);
+    for (const auto& [name, value] : with_result->counts)
+      if (name != "ranks") counts.push_back(name);
   std::string csv =
-      "integrator,linear_solver,tolerance,failure,error,repetitions,cpu_s,cpu_s_low,"
+      "integrator,linear_solver,ranks,tolerance,failure,error,repetitions,cpu_s,cpu_s_low,"
       "cpu_s_high,wall_s,wall_s_low,wall_s_high";
   for (const std::string& name : counts) csv += "," + name;
   csv += "\n";
   for (const WorkPoint& p : points) {
-    csv += p.integrator + "," + p.linear_solver + "," + format_number(p.tolerance) + ",";
+    csv += p.integrator + "," + p.linear_solver + "," + std::to_string(p.ranks) + "," +
+           format_number(p.tolerance) + ",";
     if (!p.ok()) {
       csv += csv_text(p.failure) + std::string(8 + counts.size(), ',') + "\n";
       continue;
@@ -109,7 +112,8 @@ void print_points(const std::vector<WorkPoint>& points) {
       if (row.size() == width.size()) width[k] = std::max(width[k], row[k].size());
   for (const Row& row : rows) {
     for (std::size_t k = 0; k < row.size(); ++k)
-      std::printf("  %*s", static_cast<int>(row.size() == width.size() || k < 3 ? width[k] : 0),
+      std::printf("  %*s",
+                  static_cast<int>(row.size() == width.size() || k < kNames ? width[k] : 0),
                   row[k].c_str());
     std::printf("\n");
   }

@@ -54,6 +54,7 @@ Attempt attempt(const std::vector<std::string>& arguments, const fs::path& log, 
 }
 
 std::string reason(const Attempt& end) {
+  if (end.exit_code == 127) return "mpirun is not there; install the Debian package openmpi-bin";
   return end.last_line.empty() ? "exit code " + std::to_string(end.exit_code) : end.last_line;
 }
 

@@ -39,6 +39,7 @@ std::string number_text(const toml::node& node, const std::string& where) {
 std::string value_text(const OptionSpec& spec, const toml::node& node, const std::string& where) {
   switch (spec.kind) {
     case OptionKind::text:
+    case OptionKind::path:
       if (const auto text = node.value_exact<std::string>()) return *text;
       throw InputError(where + ": a text in quotes is needed here");
     case OptionKind::flag:
@@ -72,6 +73,7 @@ std::string number_list(const std::vector<double>& numbers) {
 std::string toml_value(const OptionSpec& spec, const Configuration& configuration) {
   switch (spec.kind) {
     case OptionKind::text:
+    case OptionKind::path:
       return nlohmann::json(configuration.text(spec.name)).dump();  // JSON strings are TOML strings
     case OptionKind::flag:
       return configuration.text(spec.name);

@@ -113,6 +113,7 @@ void Configuration::set(const OptionSpec& spec, const GivenValue& value) {
   }
   switch (spec.kind) {
     case OptionKind::text:
+    case OptionKind::path:
       for (const char ch : value.text)
         if (static_cast<unsigned char>(ch) < 32)
           throw InputError(value.where + ": the text contains a control character");
@@ -132,6 +133,8 @@ void Configuration::set(const OptionSpec& spec, const GivenValue& value) {
   }
   values_[spec.name] = value;
   // A run folder stays resumable from everywhere.
+  if (spec.kind == OptionKind::path && !value.text.empty())
+    values_[spec.name].text = std::filesystem::absolute(value.text).string();
   if (const NamedArguments parts = split_named_arguments(value.text);
       spec.name == "initial" && parts.name == "restart") {
     if (parts.arguments.empty())

@@ -168,6 +168,8 @@ int dispatch(int argc, char** argv) {
   for (const CLI::App* command : app.get_subcommands()) refuse_unknown(*command);
   if (world()->size() > 1 && !run_app->parsed() && !resume_app->parsed())
     throw InputError("only run and resume work on several ranks; start the others without mpirun");
+  if (compare_app->parsed() && RankSession::there_is())
+    throw InputError("compare starts ranks itself (--ranks); start it without mpirun");
   if (run_app->parsed()) return run_command(run);
   if (resume_app->parsed()) return resume_command(resume);
   if (compare_app->parsed()) return compare_command(compare);

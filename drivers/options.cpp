@@ -21,7 +21,8 @@ std::vector<OptionSpec> with_own_options(std::vector<OptionSpec> table) {
     }
   for (const LinearSolverEntry& solver : linear_solvers())
     for (const WordOption& o : solver.options)
-      table.push_back({linear_solver_option(solver, o), OptionKind::text, o.default_word,
+      table.push_back({linear_solver_option(solver, o),
+                       o.file ? OptionKind::path : OptionKind::text, o.default_word,
                        "Linear solver " + solver.name, o.meaning});
   return table;
 }

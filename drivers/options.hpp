@@ -6,7 +6,7 @@
 
 namespace traceraft {
 
-enum class OptionKind { text, number, integer, flag, numbers /* comma-separated */ };
+enum class OptionKind { text, path, number, integer, flag, numbers /* comma-separated */ };
 
 // What an option measures: under --scaled, lengths are in R and times in R²/D.
 enum class Dimension { none, length, time };

@@ -36,15 +36,29 @@ void refuse_files_of_a_run(const fs::path& path) {
 }
 
 RunFolder shared_folder(const Communicator& ranks, const std::function<RunFolder()>& open) {
+  // What comes of it on the first rank, a path or what is wrong, after a letter for its kind.
   RunFolder folder;
-  Lists<char> name;
+  Lists<char> message;
   if (ranks.root()) {
-    folder = open();
-    const std::string path = folder.path.string();
-    name.assign(static_cast<std::size_t>(ranks.size()), {path.begin(), path.end()});
+    std::string text;
+    try {
+      folder = open();
+      text = "p" + folder.path.string();
+    } catch (const InputError& error) {
+      text = std::string("i") + error.what();
+    } catch (const LockedError& error) {
+      text = std::string("l") + error.what();
+    } catch (const IoError& error) {
+      text = std::string("o") + error.what();
+    }
+    message.assign(static_cast<std::size_t>(ranks.size()), {text.begin(), text.end()});
   }
-  const std::vector<char> path = scatter(ranks, name);
-  folder.path = std::string(path.begin(), path.end());
+  const std::vector<char> received = scatter(ranks, message);
+  const std::string text(received.begin() + 1, received.end());
+  if (received[0] == 'i') throw InputError(text);
+  if (received[0] == 'l') throw LockedError(text);
+  if (received[0] == 'o') throw IoError(text);
+  folder.path = text;
   return folder;
 }
 

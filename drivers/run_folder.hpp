@@ -29,7 +29,7 @@ std::string first_free_folder(const std::string& name);
 // Throws InputError if a folder holds what a run writes.
 void refuse_files_of_a_run(const std::filesystem::path& path);
 
-// On every rank the folder that the first one has made or opened.
+// On every rank the folder that the first one has made or opened, or what it has thrown.
 RunFolder shared_folder(const Communicator& ranks, const std::function<RunFolder()>& open);
 
 // A folder for a new run, locked, holding its resolved configuration. Files of others in it are

@@ -130,6 +130,8 @@ void FieldWriter::on_output(const Observables& row, const RaftReport&, ConstVec 
   }
   // What this run wrote at that time before it went on with more or fewer ranks.
   std::filesystem::remove(folder_.fields() / numbered("field", index, alone ? "pvtu" : "vtu"));
+  for (int rank = alone ? 0 : ranks.size();; ++rank)
+    if (!std::filesystem::remove(folder_.fields() / piece_name(index, rank))) break;
   const std::string picture = png_bytes(image);
   write_durably(folder_.fields() / numbered("view", index, "png"), picture);
   write_durably(folder_.path / "view.png", picture);

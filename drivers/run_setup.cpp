@@ -34,10 +34,16 @@ std::string one_of(const Configuration& configuration, const char* option, const
   return word;
 }
 
+// Given on the command line? A configuration file holds every option.
+bool from_flag(const Configuration& configuration, const std::string& option) {
+  return configuration.given(option) && configuration.where(option).compare(0, 2, "--") == 0;
+}
+
 int thread_count(const Configuration& configuration, const Communicator& ranks) {
   const int asked = static_cast<int>(configuration.integer("threads"));
   if (ranks.size() > 1) {
-    if (asked > 1)
+    // A run of one rank may have had two, and goes on with more ranks.
+    if (asked > 1 && from_flag(configuration, "threads"))
       throw InputError(configuration.where("threads") +
                        ": several ranks have one thread each; start more ranks instead");
     return 1;
@@ -115,9 +121,8 @@ std::vector<CapRaft> parse_caps(const Configuration& configuration) {
 
 // Data for another kind of initial state than the case's are a mistake, not something to ignore.
 void require_kind(const Configuration& configuration, const char* option, const char* kind) {
-  // A configuration file holds every option.
-  const bool flag = configuration.where(option).compare(0, 2, "--") == 0;
-  if (configuration.given(option) && (flag || !configuration.given("initial")) &&
+  if (configuration.given(option) &&
+      (from_flag(configuration, option) || !configuration.given("initial")) &&
       split_named_arguments(configuration.text("initial")).name != kind)
     throw InputError(configuration.where(option) + ": it needs --initial " + kind);
 }
@@ -212,6 +217,26 @@ IntegratorSettings integrator_settings(const Configuration& configuration,
   return settings;
 }
 
+LinearSolverChoice linear_solver(const Configuration& configuration, const SurfaceSpace& space) {
+  const LinearSolverEntry& solver = linear_solvers().find(configuration.text("linear-solver"));
+  WordOptions options;
+  for (const LinearSolverEntry& other : linear_solvers())
+    for (const WordOption& option : other.options) {
+      const std::string name = linear_solver_option(other, option);
+      if (other.name == solver.name)
+        options[option.name] = configuration.text(name);
+      else if (from_flag(configuration, name))
+        throw InputError(configuration.where(name) + ": it needs --linear-solver " + other.name);
+    }
+  try {
+    return choose_linear_solver(solver.name, space, options);
+  } catch (const OptionError& error) {
+    throw InputError(configuration.where(solver.name + "-" + error.option) + ": " + error.what());
+  } catch (const InputError& error) {
+    throw InputError(configuration.where("linear-solver") + ": " + error.what());
+  }
+}
+
 }  // namespace
 
 RunSetup build_run(const Configuration& configuration, InitialState initial) {
@@ -248,13 +273,7 @@ RunSetup build_run(const Configuration& configuration, InitialState initial) {
   run.perimeter = perimeter_calibration(configuration, physics, run.space);
   run.observer =
       std::make_unique<Observer>(*run.problem, run.space, run.perimeter.interface_energy);
-  const LinearSolverChoice solvers = said_of(configuration, "linear-solver", [&] {
-    const LinearSolverEntry& solver = linear_solvers().find(configuration.text("linear-solver"));
-    WordOptions options;
-    for (const WordOption& option : solver.options)
-      options[option.name] = configuration.text(linear_solver_option(solver, option));
-    return choose_linear_solver(solver.name, *run.space, options);
-  });
+  const LinearSolverChoice solvers = linear_solver(configuration, *run.space);
   run.integrator = integrator.make(*run.problem, solvers, run.team, settings);
   return run;
 }

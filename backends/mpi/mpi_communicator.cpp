@@ -99,9 +99,9 @@ class MpiCommunicator final : public Communicator {
 }  // namespace
 
 MpiSession::MpiSession() {
-  // Libraries that start threads of their own do not call MPI from them.
+  // The two solves of a step may run on two threads, and take turns at the library that calls MPI.
   int provided = 0;
-  if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided) != MPI_SUCCESS)
+  if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)
     throw std::runtime_error("MPI does not start");
   MPI_Comm_dup(MPI_COMM_WORLD, &farewell);
 }

@@ -9,6 +9,9 @@
 #include <cmath>
 #include <memory>
 
+#include "kernel/core/error.hpp"
+#include "kernel/core/named_list.hpp"
+
 namespace traceraft {
 namespace {
 
@@ -21,11 +24,42 @@ using Problem = Belos::LinearProblem<double, MultiVector, Operator>;
 using Manager = Belos::SolverManager<double, MultiVector, Operator>;
 
 constexpr int kMaxIterations = 200;
+constexpr char kTolerance[] = "Convergence Tolerance";
+
+// MueLu works on one vector, or on as many as the last time; gcrodr brings ten at first.
+class ColumnByColumn final : public Thyra::LinearOpBase<double> {
+ public:
+  explicit ColumnByColumn(ThyraOperator inner) : inner_(std::move(inner)) {}
+  RCP<const Thyra::VectorSpaceBase<double>> range() const override { return inner_->range(); }
+  RCP<const Thyra::VectorSpaceBase<double>> domain() const override { return inner_->domain(); }
+
+ protected:
+  bool opSupportedImpl(Thyra::EOpTransp transpose) const override {
+    return inner_->opSupported(transpose);
+  }
+  void applyImpl(Thyra::EOpTransp transpose, const MultiVector& x,
+                 const Teuchos::Ptr<MultiVector>& y, double alpha, double beta) const override {
+    for (Thyra::Ordinal j = 0; j < x.domain()->dim(); ++j) {
+      const Teuchos::Range1D column(j, j);
+      Thyra::apply(*inner_, transpose, *x.subView(column), y->subView(column).ptr(), alpha, beta);
+    }
+  }
+
+ private:
+  ThyraOperator inner_;
+};
+
+RCP<Manager> make_manager(const std::string& name) {
+  if (name == "fgmres") return rcp(new Belos::BlockGmresSolMgr<double, MultiVector, Operator>);
+  if (name == "gmres") return rcp(new Belos::PseudoBlockGmresSolMgr<double, MultiVector, Operator>);
+  if (name == "gcrodr") return rcp(new Belos::GCRODRSolMgr<double, MultiVector, Operator>);
+  return rcp(new Belos::BiCGStabSolMgr<double, MultiVector, Operator>);
+}
 
 class Method final : public BelosMethod {
  public:
-  Method(RCP<Manager> manager, RCP<ParameterList> parameters)
-      : manager_(std::move(manager)), parameters_(std::move(parameters)) {}
+  Method(std::string name, RCP<ParameterList> parameters)
+      : name_(std::move(name)), manager_(make_manager(name_)), parameters_(std::move(parameters)) {}
 
   SolveReport solve(const ThyraOperator& A, const ThyraOperator& preconditioner,
                     const ThyraVector& b, const ThyraVector& x, double tolerance) override {
@@ -40,9 +74,9 @@ class Method final : public BelosMethod {
     Thyra::apply(*A, Thyra::NOTRANS, *x, residual.ptr(), -1.0, 1.0);
     const double start = Thyra::norm_2(*residual);
     if (start <= tolerance * norm) return {};
-    parameters_->set("Convergence Tolerance", std::min(0.9, tolerance * norm / start));
+    parameters_->set(kTolerance, std::min(0.9, tolerance * norm / start));
     const auto problem = rcp(new Problem(A, x, b));
-    problem->setRightPrec(preconditioner);
+    problem->setRightPrec(rcp(new ColumnByColumn(preconditioner)));
     problem->setProblem();
     manager_->setProblem(problem);
     manager_->setParameters(parameters_);
@@ -55,10 +89,30 @@ class Method final : public BelosMethod {
     return {{}, iterations};
   }
 
+  void forget() override { manager_ = make_manager(name_); }
+
  private:
+  std::string name_;
   RCP<Manager> manager_;
   RCP<ParameterList> parameters_;
 };
+
+// Belos takes its list as it is and complains at the first solve.
+void check_names(const std::string& method, const ParameterList& own) {
+  const RCP<const ParameterList> known = make_manager(method)->getValidParameters();
+  std::vector<std::string> names;
+  for (auto entry = known->begin(); entry != known->end(); ++entry)
+    names.push_back(known->name(entry));
+  for (auto entry = own.begin(); entry != own.end(); ++entry) {
+    const std::string& name = own.name(entry);
+    if (name == kTolerance)
+      throw InputError("Belos: \"" + name +
+                       "\" is what the integrator asks for; choose "
+                       "--linear-tolerance");
+    if (!known->isParameter(name))
+      throw InputError("Belos: " + unknown_name_message("parameter", name, names));
+  }
+}
 
 }  // namespace
 
@@ -66,26 +120,13 @@ std::unique_ptr<BelosMethod> make_belos_method(const std::string& name, const Pa
   const auto parameters = rcp(new ParameterList);
   parameters->set("Maximum Iterations", kMaxIterations);
   parameters->set("Verbosity", 0);
-  RCP<Manager> manager;
-  if (name == "fgmres") {
-    parameters->set("Flexible Gmres", true);
-    parameters->set("Num Blocks", 50);
-    parameters->set("Maximum Restarts", 20);
-    manager = rcp(new Belos::BlockGmresSolMgr<double, MultiVector, Operator>);
-  } else if (name == "gmres") {
-    parameters->set("Num Blocks", 50);
-    parameters->set("Maximum Restarts", 20);
-    manager = rcp(new Belos::PseudoBlockGmresSolMgr<double, MultiVector, Operator>);
-  } else if (name == "gcrodr") {
-    parameters->set("Num Blocks", 40);
-    parameters->set("Num Recycled Blocks", 10);
-    parameters->set("Maximum Restarts", 20);
-    manager = rcp(new Belos::GCRODRSolMgr<double, MultiVector, Operator>);
-  } else {
-    manager = rcp(new Belos::BiCGStabSolMgr<double, MultiVector, Operator>);
-  }
+  if (name == "fgmres") parameters->set("Flexible Gmres", true);
+  if (name == "fgmres" || name == "gmres") parameters->set("Num Blocks", 50);
+  if (name == "gcrodr") parameters->set("Num Blocks", 40).set("Num Recycled Blocks", 10);
+  if (name != "bicgstab") parameters->set("Maximum Restarts", 20);
+  check_names(name, own);
   parameters->setParameters(own);
-  return std::make_unique<Method>(manager, parameters);
+  return std::make_unique<Method>(name, parameters);
 }
 
 }  // namespace traceraft

@@ -11,7 +11,7 @@
 namespace traceraft {
 
 // fgmres: GMRES with a flexible right preconditioner; gcrodr keeps a part of its space from one
-// system to the next.
+// system to the next, until forget().
 inline const std::vector<std::string> kBelosMethods = {"fgmres", "gmres", "gcrodr", "bicgstab"};
 
 class BelosMethod {
@@ -21,9 +21,12 @@ class BelosMethod {
   // `tolerance` times that of x = 0. retry: it did not; the iterations count all the same.
   virtual SolveReport solve(const ThyraOperator& A, const ThyraOperator& preconditioner,
                             const ThyraVector& b, const ThyraVector& x, double tolerance) = 0;
+  // From here on as if nothing had been solved before.
+  virtual void forget() = 0;
 };
 
-// `own` changes parameters of the method, by Belos' names.
+// `own` changes parameters of the method, by Belos' names. Throws InputError for a name or a type
+// that the method does not know.
 std::unique_ptr<BelosMethod> make_belos_method(const std::string& name,
                                                const Teuchos::ParameterList& own);
 

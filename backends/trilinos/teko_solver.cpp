@@ -7,13 +7,20 @@
 #include <Thyra_DefaultProductVectorSpace.hpp>
 #include <Thyra_VectorStdOps.hpp>
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <exception>
+#include <fstream>
+#include <functional>
 #include <mutex>
+#include <sstream>
+#include <stdexcept>
 
 #include "backends/trilinos/belos_method.hpp"
 #include "backends/trilinos/inverse_library.hpp"
 #include "backends/trilinos/runtime.hpp"
 #include "backends/trilinos/two_solve_factory.hpp"
+#include "kernel/core/error.hpp"
 #include "kernel/core/named_list.hpp"
 #include "kernel/core/stopwatch.hpp"
 #include "kernel/linear/setup_policy.hpp"
@@ -39,6 +46,7 @@ struct Setting {
   ParameterList belos;
   RCP<Teko::InverseLibrary> library;
   bool always_new = false;
+  std::size_t file_checksum = 0;  // of the parameter file
 };
 
 // With the exact tangent B + sM must be positive definite, which no approximate inverse notices.
@@ -83,19 +91,18 @@ class TekoSolver final : public LinearSolver {
     for (const double value : J.mm.values) area += value;
     const TwoSolveShifts shifts = shifts_of(J, J.ranks().sum(area));
     request_ = {shifts.p, shifts.q, row_scale_};
-    try {
-      // Teko turns what goes wrong into exceptions of many kinds.
+    const Status status = guarded("no preconditioner", [&]() -> Status {
       if (inverse_.is_null())
         inverse_ = Teko::buildInverse(*factory_, A_);
       else
         Teko::rebuildInverse(*factory_, A_, inverse_);
-    } catch (const std::exception& error) {
+      return {};
+    });
+    if (status.ok())
+      shared_.succeed();
+    else
       inverse_ = Teuchos::null;
-      const std::string reason = teko_complaints();
-      return Status::retry("no preconditioner: " + (reason.empty() ? error.what() : reason));
-    }
-    shared_.succeed();
-    return {};
+    return status;
   }
 
   bool wants_setup(const BlockJacobian& J, int) const override {
@@ -115,9 +122,16 @@ class TekoSolver final : public LinearSolver {
     const int n = J.block_size();
     copy_halves(b, 1 / row_scale_, *lane.b);
     copy_halves(x, 1, *lane.x);
-    SolveReport report = lane.method->solve(A_, inverse_, lane.b, lane.x, tolerance);
+    SolveReport report;
+    report.status = guarded("Belos", [&] {
+      report = lane.method->solve(A_, inverse_, lane.b, lane.x, tolerance);
+      return report.status;
+    });
     shared_.count(lane_number, report.iterations);
-    if (!report.status.ok()) return report;
+    if (!report.status.ok()) {
+      lane.method->forget();
+      return report;
+    }
     copy_from(*block(*lane.x, 0), x.head(n));
     copy_from(*block(*lane.x, 1), x.tail(n));
     report.status = verified(J, b, x, tolerance);
@@ -126,10 +140,36 @@ class TekoSolver final : public LinearSolver {
   }
 
   LinearStatistics statistics() const override { return shared_.statistics(); }
-  void save(CheckpointOut out) const override { shared_.save(out); }
-  void load(CheckpointIn in) override { shared_.load(in); }
+  void save(CheckpointOut out) const override {
+    write_binary(out, setting_->file_checksum);
+    shared_.save(out);
+    // What a method has recycled is not saved: the run goes on like one that is resumed here.
+    for (const Lane& lane : lanes_) lane.method->forget();
+  }
+  void load(CheckpointIn in) override {
+    std::size_t checksum = 0;
+    read_binary(in, checksum);
+    if (checksum != setting_->file_checksum)
+      throw IoError("the file of --teko-parameters is not the one that the run was started with");
+    shared_.load(in);
+  }
 
  private:
+  // Trilinos turns what goes wrong into exceptions of many kinds. With several ranks the others may
+  // wait for this one within a library: only the end of all of them is safe.
+  template <class Action>
+  Status guarded(const char* what, const Action& action) const {
+    try {
+      return action();
+    } catch (const std::exception& error) {
+      const std::string complaint = teko_complaints(), reason = error.what();
+      const std::string why = std::string(what) + ": " +
+                              (complaint.empty() ? reason.substr(0, reason.find('\n')) : complaint);
+      if (setting_->pattern->halo.ranks->size() > 1) throw std::runtime_error("teko: " + why);
+      return Status::retry(why);
+    }
+  }
+
   struct Lane {
     std::unique_ptr<BelosMethod> method;
     ThyraVector b, x;
@@ -182,49 +222,88 @@ std::string option(const TekoOptions& options, const char* name, const char* oth
   return found == options.end() ? otherwise : found->second;
 }
 
-// A name of ours or of a sublist of the user's.
-std::string one_of(const char* what, const std::string& name, std::vector<std::string> names,
-                   const ParameterList& own) {
-  for (auto entry = own.begin(); entry != own.end(); ++entry) names.push_back(own.name(entry));
-  if (std::find(names.begin(), names.end(), name) == names.end())
-    throw InputError(unknown_name_message(what, name, names));
-  return name;
+// What is wrong with one of the options.
+[[noreturn]] void refuse(const char* option, const std::string& why) {
+  throw OptionError(option, why);
 }
 
-ParameterList read_parameters(const std::string& path) {
-  ParameterList list;
-  if (path.empty()) return list;
+// A name of ours or of a sublist of the user's.
+std::string one_of(const TekoOptions& options, const char* name, const char* otherwise,
+                   std::vector<std::string> names, const ParameterList& own = ParameterList()) {
+  const std::string word = option(options, name, otherwise);
+  for (auto entry = own.begin(); entry != own.end(); ++entry) names.push_back(own.name(entry));
+  if (std::find(names.begin(), names.end(), word) == names.end())
+    refuse(name, unknown_name_message(name, word, names));
+  return word;
+}
+
+// The lists of a parameter file, and a checksum of it.
+struct ParameterFile {
+  ParameterList lists;
+  std::size_t checksum = 0;
+};
+
+ParameterFile read_parameters(const std::string& path) {
+  ParameterFile file;
+  if (path.empty()) return file;
+  std::ifstream stream(path);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (!stream || text.str().empty())
+    refuse("parameters", path + ": cannot be read: " + std::strerror(errno ? errno : ENODATA));
+  file.checksum = std::hash<std::string>()(text.str());
   try {
-    Teuchos::updateParametersFromXmlFile(path, Teuchos::ptrFromRef(list));
+    Teuchos::updateParametersFromXmlString(text.str(), Teuchos::ptrFromRef(file.lists));
   } catch (const std::exception& error) {
     const std::string why = error.what();
-    throw InputError(path + ": no Teuchos parameter list: " + why.substr(0, why.find('\n')));
+    refuse("parameters", path + ": no Teuchos parameter list: " + why.substr(0, why.find('\n')));
   }
-  for (auto entry = list.begin(); entry != list.end(); ++entry)
-    if (list.name(entry) != "Inverse Library" && list.name(entry) != "Belos")
-      throw InputError(
-          path + ": " +
-          unknown_name_message("sublist", list.name(entry), {"Inverse Library", "Belos"}));
-  return list;
+  for (auto entry = file.lists.begin(); entry != file.lists.end(); ++entry) {
+    const std::string& name = file.lists.name(entry);
+    if (name != "Inverse Library" && name != "Belos")
+      refuse("parameters",
+             path + ": " + unknown_name_message("sublist", name, {"Inverse Library", "Belos"}));
+    if (!file.lists.isSublist(name)) refuse("parameters", path + ": " + name + " is no sublist");
+  }
+  const ParameterList& inverses = file.lists.sublist("Inverse Library");
+  for (auto entry = inverses.begin(); entry != inverses.end(); ++entry)
+    if (!inverses.isSublist(inverses.name(entry)) ||
+        !inverses.sublist(inverses.name(entry)).isParameter("Type"))
+      refuse("parameters", path + ": the inverse " + inverses.name(entry) +
+                               " needs a sublist with the parameter Type");
+  return file;
+}
+
+// What Trilinos does not know of a user's lists is the file's fault.
+template <class Make>
+auto said_of_file(const std::string& path, const Make& make) {
+  try {
+    return make();
+  } catch (const std::exception& error) {
+    if (path.empty()) throw;
+    const std::string complaint = teko_complaints(), why = error.what();
+    refuse("parameters", path + ": " + (complaint.empty() ? why : complaint));
+  }
 }
 
 }  // namespace
 
 LinearSolverFactory make_teko_solver(const PatternPtr& pattern, const TekoOptions& options) {
   start_trilinos();
-  ParameterList file = read_parameters(option(options, "parameters", ""));
-  const ParameterList& own = file.sublist("Inverse Library");
-  const std::string inverse =
-      one_of("inverse", option(options, "inverse", "muelu"), kTekoInverses, own);
+  const std::string path = option(options, "parameters", "");
+  ParameterFile file = read_parameters(path);
+  const ParameterList& own = file.lists.sublist("Inverse Library");
+  const ParameterList belos = file.lists.sublist("Belos");
+  const std::string inverse = one_of(options, "inverse", "muelu", kTekoInverses, own);
   if (inverse == "direct" && pattern->halo.ranks->size() > 1)
-    throw InputError("inverse 'direct' works on one rank only; choose muelu or ifpack2");
+    refuse("inverse", "direct works on one rank only; choose muelu or ifpack2");
+  const std::string method = one_of(options, "method", "fgmres", kBelosMethods);
+  (void)said_of_file(path, [&] { return make_belos_method(method, belos); });
   const auto setting = std::make_shared<Setting>(
       Setting{pattern, TpetraSpace(*pattern),
-              one_of("preconditioner", option(options, "preconditioner", "two-solve"),
-                     kTekoPreconditioners, own),
-              one_of("method", option(options, "method", "fgmres"), kBelosMethods, ParameterList()),
-              file.sublist("Belos"), make_inverse_library(inverse, own),
-              option(options, "renewal", "worn") == "always"});
+              one_of(options, "preconditioner", "two-solve", kTekoPreconditioners, own), method,
+              belos, said_of_file(path, [&] { return make_inverse_library(inverse, own); }),
+              one_of(options, "renewal", "worn", {"worn", "always"}) == "always", file.checksum});
   return [setting](int lanes) { return std::make_unique<TekoSolver>(setting, lanes); };
 }
 

@@ -22,7 +22,8 @@ struct HaloPlan {
   std::vector<Neighbour> neighbours;  // ascending in rank
 };
 
-// Every function is collective: all ranks call the same ones in the same order. Results of
+// Every function is collective: all ranks call the same ones in the same order; only update_ghosts
+// concerns a rank and its neighbours alone, and a rank without any may leave it out. Results of
 // reductions are bitwise the same on all ranks, so that ranks decide alike.
 class Communicator {
  public:

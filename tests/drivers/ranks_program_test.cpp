@@ -91,6 +91,38 @@ TEST_F(RanksTest, GoesOnWithMoreAndFewerRanks) {
   }
 }
 
+// What a run wrote after its last checkpoint is written again, by as many ranks as there are then;
+// a run that had two threads goes on with ranks.
+TEST_F(RanksTest, FieldsAreThoseOfTheLastWriter) {
+  const pid_t child = testing::start_traceraft(
+      "run --quiet --threads 2 --output-times 0,0.001,1 --checkpoint-interval 1000 " + runs +
+      "--out " + at("run"));
+  const std::string fields = at("run") + "/fields/";
+  for (int i = 0; i < 6000 && !fs::exists(fields + "field-0001.vtu"); ++i) usleep(10000);
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  ASSERT_TRUE(fs::exists(fields + "field-0001.vtu"));
+  ASSERT_FALSE(fs::exists(at("run") + "/summary.json"));
+  const Outcome resumed = on(2, "resume --quiet " + at("run"));
+  ASSERT_EQ(resumed.code, 0) << resumed.output;
+  EXPECT_FALSE(fs::exists(fields + "field-0001.vtu"));
+  for (const char* name : {"field-0001.pvtu", "field-0001-0000.vtu", "field-0001-0001.vtu"})
+    EXPECT_TRUE(fs::exists(fields + name)) << name;
+}
+
+TEST_F(RanksTest, TheFirstRankSpeaksForAll) {
+  fs::create_directories(at("taken") + "/fields");
+  const Outcome taken = on(2, "run " + runs + "--out " + at("taken"));
+  EXPECT_EQ(taken.code, 2);
+  EXPECT_NE(taken.output.find("\ntraceraft: --out: "), std::string::npos) << taken.output;
+  const Outcome missing = on(2, "resume " + at("nothing"));
+  EXPECT_EQ(missing.code, 2);
+  EXPECT_EQ(missing.output, "traceraft: " + at("nothing") + " is no folder\n");
+  const Outcome compare = on(1, "compare --case two-rafts --ranks 1,2");
+  EXPECT_EQ(compare.code, 2);
+  EXPECT_NE(compare.output.find("start it without mpirun"), std::string::npos) << compare.output;
+}
+
 TEST_F(RanksTest, SaysWhatIsWrongOnce) {
   const Outcome flag = on(3, "run --cels 7");
   EXPECT_EQ(flag.code, 2);

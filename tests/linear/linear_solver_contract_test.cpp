@@ -6,6 +6,7 @@
 
 #include "backends/list.hpp"
 #include "backends/suitesparse/cholmod_solver.hpp"
+#include "kernel/linear/setup_policy.hpp"
 #include "kernel/linear/two_solve_preconditioner.hpp"
 #include "tests/support/spaces.hpp"
 
@@ -159,6 +160,40 @@ TEST_P(LinearSolverContract, CountsWhatItDoes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, LinearSolverContract, ::testing::ValuesIn(built_linear_solvers()));
+
+TEST(SharedSetup, IsWornByIterationsAndByChanges) {
+  SharedSetup setup(2, 5);
+  EXPECT_TRUE(setup.worn(1));  // there is none yet
+  setup.begin(1);
+  EXPECT_TRUE(setup.worn(1));  // it has not succeeded
+  setup.succeed();
+  for (const double shift : {0.3, 1.0, 3.9}) EXPECT_FALSE(setup.worn(shift)) << shift;
+  for (const double shift : {0.25, 4.0, std::nan("")}) EXPECT_TRUE(setup.worn(shift)) << shift;
+  setup.count(0, 10);  // the fewest of the lane
+  setup.count(0, 12);
+  setup.count(1, 20);
+  setup.count(1, 22);
+  EXPECT_FALSE(setup.worn(1));  // 4 extra
+  setup.count(1, 21);
+  EXPECT_TRUE(setup.worn(1));  // 5, the price of a new one
+  setup.begin(1);
+  setup.succeed();
+  EXPECT_FALSE(setup.worn(1));
+}
+
+// Where the roots are complex both shifts stand for √(σ/(m ε²)) with a mobility below the mean, by
+// at most a factor of four, and by none at the critical σ and far above it.
+TEST(TwoSolve, ComplexRootsUseASmallerMobility) {
+  const double mean = 0.2, e2 = 0.01, beta = 1, critical = mean * beta * beta / (4 * e2);
+  for (const auto& [above, share] :
+       {std::pair(1.0001, 1.0), std::pair(2.0, 0.5), std::pair(10.0, 0.25), std::pair(100.0, 0.25),
+        std::pair(200.0, 0.5), std::pair(1e4, 1.0)}) {
+    const double sigma = above * critical, m = share * mean;
+    const TwoSolveShifts shifts = two_solve_shifts(sigma, mean, e2, beta);
+    EXPECT_NEAR(shifts.p / std::sqrt(sigma * m / e2), 1, 1e-3) << above;
+    EXPECT_NEAR((beta - shifts.q) / std::sqrt(sigma * e2 / m), 1, 1e-3) << above;
+  }
+}
 
 TEST(TwoSolve, ShiftsAreTheRootsTheyStandFor) {
   for (double sigma = 1e-6; sigma < 1e6; sigma *= 7) {
