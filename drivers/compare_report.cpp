@@ -6,6 +6,7 @@
 
 #include "backends/posix/durable_file.hpp"
 #include "drivers/chart.hpp"
+#include "drivers/csv.hpp"
 #include "drivers/page.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
@@ -65,12 +66,6 @@ Chart work_precision(const std::vector<WorkPoint>& points, const char* clock,
   return chart;
 }
 
-std::string csv_text(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char ch : text) quoted += ch == '"' ? "\"\"" : std::string(1, ch);
-  return quoted + "\"";
-}
-
 std::string compare_csv(const std::vector<WorkPoint>& points) {
   const auto with_result =
       std::find_if(points.begin(), points.end(), [](const WorkPoint& p) { return p.ok(); });
@@ -87,7 +82,7 @@ std::string compare_csv(const std::vector<WorkPoint>& points) {
     csv += p.integrator + "," + p.linear_solver + "," + std::to_string(p.ranks) + "," +
            format_number(p.tolerance) + ",";
     if (!p.ok()) {
-      csv += csv_text(p.failure) + std::string(8 + counts.size(), ',') + "\n";
+      csv += csv_quoted(p.failure) + std::string(8 + counts.size(), ',') + "\n";
       continue;
     }
     csv += "," + format_number(p.error) + "," + std::to_string(p.wall_s.size());

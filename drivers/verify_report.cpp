@@ -6,6 +6,7 @@
 
 #include "backends/posix/durable_file.hpp"
 #include "drivers/chart.hpp"
+#include "drivers/csv.hpp"
 #include "drivers/page.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
@@ -81,13 +82,10 @@ std::string csv_text(const Table& table) {
     for (std::size_t k = 0; k < cells.size(); ++k) csv += (k == 0 ? "" : ",") + text(cells[k]);
     csv += "\n";
   };
-  const auto quoted = [](const std::string& text) {
-    return text.find_first_of(",\"") == std::string::npos ? text : Json(text).dump();
-  };
-  line(table.columns, quoted);
+  line(table.columns, csv_cell);
   for (const auto& row : table.rows)
     line(row, [&](const Cell& cell) {
-      return cell.is_number ? format_number(cell.number) : quoted(cell.text);
+      return cell.is_number ? format_number(cell.number) : csv_cell(cell.text);
     });
   return csv;
 }

@@ -33,7 +33,7 @@ Line fit_power_law(const Points& points) {
 ShiftedPowerLaw fit_shifted_power_law(const Points& points) {
   ShiftedPowerLaw best{0, 0};
   double least = std::numeric_limits<double>::infinity();
-  constexpr int kOffsets = 240;
+  constexpr int kOffsets = 1000;
   for (int k = 0; k <= kOffsets; ++k) {
     const double offset =
         k == 0 ? 0 : points.front().first * std::pow(10.0, 4.0 * k / kOffsets - 3);

@@ -18,7 +18,7 @@ Line fit_line(const Points& points);
 // ln y = slope · ln x + intercept. x, y > 0.
 Line fit_power_law(const Points& points);
 
-// y = C (t + offset)^b by least squares of ln y, the offset among 0 and 240 values between a
+// y = C (t + offset)^b by least squares of ln y, the offset among 0 and 1000 values between a
 // thousandth and ten times the first t: what laws like L³ = L₀³ + K t ask for.
 struct ShiftedPowerLaw {
   double exponent, offset;

@@ -1,0 +1,96 @@
+// What a verification leaves behind, and when it fails.
+#include "drivers/verify_report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "backends/posix/durable_file.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+
+StudyResult result_with(std::vector<Claim> claims) {
+  StudyResult result;
+  result.study = {"example", "an example", {}};
+  result.report.claims = std::move(claims);
+  result.report.tables = {
+      {"numbers", {"name", "value"}, {{"a, \"quoted\" one", 0.1}, {"nothing", std::nan("")}}}};
+  result.report.charts = {{"A chart", "x", "y", true, true, {{"points", {{1, 2}, {3, 4}}}}}};
+  result.report.notes = {"A note with <angles>."};
+  return result;
+}
+
+TEST(Claims, HoldWithinTheirInterval) {
+  EXPECT_TRUE(claim_near("x", 2.1, 2, 0.15).holds());
+  EXPECT_FALSE(claim_near("x", 2.2, 2, 0.15).holds());
+  EXPECT_TRUE(claim_at_most("x", -5, 1).holds());
+  EXPECT_FALSE(claim_at_most("x", 1.1, 1).holds());
+  EXPECT_FALSE(claim_at_most("x", std::nan(""), 1).holds());
+  EXPECT_FALSE(claim_between("x", 0.9, 1, 2).holds());
+}
+
+TEST(Verdicts, AreThoseOfTheWorstClaim) {
+  const Claim good = claim_at_most("good", 0, 1), bad = claim_at_most("bad", 2, 1);
+  EXPECT_EQ(result_with({good}).verdict(), Verdict::holds);
+  EXPECT_EQ(result_with({good, bad, good}).verdict(), Verdict::fails);
+  EXPECT_EQ(result_with({}).verdict(), Verdict::fails) << "a study without claims shows nothing";
+  StudyResult failed = result_with({good});
+  failed.failure = "it broke";
+  EXPECT_EQ(failed.verdict(), Verdict::fails);
+  StudyResult skipped;
+  skipped.report.skipped = "not built in";
+  EXPECT_EQ(skipped.verdict(), Verdict::not_measured);
+}
+
+TEST(VerifyReport, ClaimsAreRowsForPeople) {
+  Claim near = claim_near("order", 1.98, 2, 0.25);
+  near.uncertainty = 0.03;
+  const auto rows = claim_rows({near, claim_at_most("drift", 2e-12, 1e-12)});
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0],
+            (std::vector<std::string>{"claim", "measured", "expected", "tolerance", "verdict"}));
+  EXPECT_EQ(rows[1], (std::vector<std::string>{"order", "1.98 +- 0.03", "2", "+- 0.25", "holds"}));
+  EXPECT_EQ(rows[2], (std::vector<std::string>{"drift", "2e-12", "at most 1e-12", "", "FAILS"}));
+}
+
+TEST(VerifyReport, FilesHoldAllOfIt) {
+  const testing::TemporaryFolder folder;
+  const std::vector<StudyResult> results = {result_with({claim_near("x", 1, 1, 0.1)}),
+                                            result_with({claim_at_most("y", INFINITY, 1)})};
+  write_study(folder.path, results[0]);
+  EXPECT_EQ(read_file(folder.path / "example-numbers.csv", 1 << 20),
+            "name,value\n\"a, \"\"quoted\"\" one\",0.1\nnothing,nan\n");
+  (void)write_verification(folder.path, {"traceraft verify example", "2 threads."}, results);
+  const auto json = nlohmann::json::parse(read_file(folder.path / "verify.json", 1 << 20));
+  EXPECT_EQ(json["command"], "traceraft verify example");
+  EXPECT_EQ(json["studies"][0]["verdict"], "holds");
+  EXPECT_EQ(json["studies"][0]["claims"][0]["expected"], 1.0);
+  EXPECT_EQ(json["studies"][0]["tables"]["numbers"]["rows"][0][1], 0.1);
+  EXPECT_EQ(json["studies"][1]["verdict"], "FAILS");
+  EXPECT_TRUE(json["studies"][1]["claims"][0]["measured"].is_null());
+  const std::string page = read_file(folder.path / "verify.html", 1 << 24);
+  for (const char* part : {"A note with &lt;angles&gt;.", "traceraft verify example", "FAILS"})
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+}
+
+TEST(VerifyReport, ADocumentHasItsFiguresBesideIt) {
+  const testing::TemporaryFolder folder;
+  write_document(folder.path / "report.md", {"traceraft verify example", "2 threads."},
+                 {result_with({claim_near("x", 1, 1, 0.1)})});
+  const std::string text = read_file(folder.path / "report.md", 1 << 20);
+  for (const char* part : {"# Verification", "    traceraft verify example\n", "| x | 1 | 1 |",
+                           "| a, \"quoted\" one | 0.1 |"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << text;
+  if (text.find("![A chart](report/example-1.svg)") != std::string::npos) {
+    EXPECT_TRUE(fs::exists(folder.path / "report/example-1.svg"));
+    EXPECT_FALSE(fs::exists(folder.path / "report/example-1.gp"));
+  }
+}
+
+}  // namespace
+}  // namespace traceraft

@@ -1,0 +1,74 @@
+#include "verification/fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "kernel/core/random.hpp"
+
+namespace traceraft {
+namespace {
+
+TEST(Fit, LinesAndPowerLawsAreExact) {
+  const Line line = fit_line({{1, 5}, {2, 7}, {4, 11}});
+  EXPECT_NEAR(line.slope, 2, 1e-14);
+  EXPECT_NEAR(line.intercept, 3, 1e-14);
+  // Least squares, not the ends: by hand for (0,0), (1,1), (2,0).
+  EXPECT_NEAR(fit_line({{0, 0}, {1, 1}, {2, 0}}).intercept, 1.0 / 3, 1e-14);
+  Points points;
+  for (const double t : {0.5, 1.0, 3.0, 20.0}) points.emplace_back(t, 4 * std::pow(t, -1.0 / 3));
+  EXPECT_NEAR(fit_power_law(points).slope, -1.0 / 3, 1e-14);
+  EXPECT_THROW(fit_line({{1, 1}, {1, 2}}), std::runtime_error);
+}
+
+TEST(Fit, AShiftedPowerLawFindsItsOrigin) {
+  for (const double offset : {0.0, 0.7, 3.0}) {
+    Points points;
+    for (double t = 1; t < 60; t *= 1.1) points.emplace_back(t, 4 * std::pow(t + offset, -1.0 / 3));
+    const ShiftedPowerLaw found = fit_shifted_power_law(points);
+    EXPECT_NEAR(found.exponent, -1.0 / 3, 1e-3) << offset;
+    EXPECT_NEAR(found.offset, offset, 0.03 * offset) << offset;
+  }
+}
+
+TEST(Fit, OrdersAreBetweenTheFinestLevels) {
+  const ObservedOrder found = observed_order({{1, 8}, {0.5, 4}, {0.25, 1}});
+  EXPECT_NEAR(found.order, 2, 1e-14);
+  EXPECT_NEAR(found.change, 1, 1e-14);
+  EXPECT_EQ(observed_order({{1, 8}, {0.5, 4}}).change, 0);
+}
+
+// The interval for a mean has the width of theory, and misses it about as often as it may.
+TEST(Fit, TheBootstrapKnowsHowFarAMeanIsOff) {
+  constexpr int kCount = 40, kTrials = 200;
+  int missed = 0;
+  double width = 0;
+  for (std::uint64_t trial = 0; trial < kTrials; ++trial) {
+    std::vector<double> values(kCount);
+    for (int k = 0; k < kCount; ++k)
+      values[k] = uniform_random(5, trial, static_cast<std::uint64_t>(k));
+    const Interval interval =
+        bootstrap(kCount, 400, 0.95, trial, [&](const std::vector<int>& sample) {
+          double sum = 0;
+          for (const int k : sample) sum += values[k];
+          return sum / kCount;
+        });
+    missed += interval.contains(0.5) ? 0 : 1;
+    width += (interval.high - interval.low) / kTrials;
+  }
+  EXPECT_NEAR(width, 2 * 1.96 * std::sqrt(1.0 / 12 / kCount), 0.01);
+  EXPECT_LT(missed, 0.12 * kTrials);
+  EXPECT_GT(missed, 0.01 * kTrials);
+}
+
+TEST(Fit, Moments) {
+  const Moments m = moments({1, 2, 6});
+  EXPECT_NEAR(m.mean, 3, 1e-14);
+  EXPECT_NEAR(m.deviation, std::sqrt(7.0), 1e-14);
+  EXPECT_EQ(m.low, 1);
+  EXPECT_EQ(m.high, 6);
+}
+
+}  // namespace
+}  // namespace traceraft

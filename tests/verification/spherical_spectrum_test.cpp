@@ -1,0 +1,50 @@
+#include "verification/spherical_spectrum.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/spaces.hpp"
+
+namespace traceraft {
+namespace {
+
+// xyz is a harmonic of degree 3, z² − 1/3 one of degree 2, with ∫ (xyz)² = 4π/105 and
+// ∫ (z² − 1/3)² = 16π/45.
+TEST(SphericalSpectrum, SeparatesTheDegrees) {
+  const auto space = testing::make_space(64);
+  Vec c(space->nodes());
+  for (int i = 0; i < space->nodes(); ++i) {
+    const Point x = space->mesh.position(i).normalized();
+    c[i] = 0.7 + 10 * x[0] * x[1] * x[2] + 2 * (x[2] * x[2] - 1.0 / 3);
+  }
+  const double pi = std::acos(-1.0);
+  const std::vector<double> spectrum = spherical_spectrum(*space, c, 8);
+  ASSERT_EQ(spectrum.size(), 9u);
+  const std::vector<double> expected = {
+      0.49 * 4 * pi, 0, 4 * 16 * pi / 45, 100 * 4 * pi / 105, 0, 0, 0, 0, 0};
+  double total = 0;
+  for (int l = 0; l <= 8; ++l) {
+    EXPECT_NEAR(spectrum[l], expected[l], 0.01 * expected[0]) << l;
+    total += spectrum[l];
+  }
+  EXPECT_NEAR(total, space->inner(c, c), 0.01 * total);
+  EXPECT_NEAR(mean_degree(spectrum),
+              (2 * expected[2] + 3 * expected[3]) / (expected[2] + expected[3]), 0.02);
+}
+
+// A zonal harmonic of high degree around a tilted axis: all orders m take part.
+TEST(SphericalSpectrum, DoesNotDependOnTheAxis) {
+  const auto space = testing::make_space(96);
+  const Point axis = Point(1, 2, -2) / 3;
+  Vec c(space->nodes());
+  for (int i = 0; i < space->nodes(); ++i)
+    c[i] = std::legendre(12u, axis.dot(space->mesh.position(i).normalized()));
+  const std::vector<double> spectrum = spherical_spectrum(*space, c, 16);
+  const double pi = std::acos(-1.0);
+  EXPECT_NEAR(spectrum[12], 4 * pi / 25, 0.02 * 4 * pi / 25);
+  EXPECT_NEAR(mean_degree(spectrum), 12, 0.05);
+}
+
+}  // namespace
+}  // namespace traceraft
