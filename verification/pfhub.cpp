@@ -12,6 +12,7 @@
 #include "kernel/fem/density_load.hpp"
 #include "verification/bench.hpp"
 #include "verification/fit.hpp"
+#include "verification/recovered_energy.hpp"
 #include "verification/studies.hpp"
 
 namespace traceraft {
@@ -49,7 +50,7 @@ Vec projected(const SurfaceSpace& space) {
 }
 
 struct Sample {
-  double t, energy;
+  double t, discrete, energy;  // energy of c_h, and the recovered one
 };
 
 // Energies at the times of the reference, up to t_end.
@@ -70,7 +71,9 @@ std::vector<Sample> simulate(const Bench& bench, int cells, double t_end, double
       const double t = kSpectral[samples.size()].t;
       if (t > t_end || t / kTimeUnit > integrator->time()) break;
       require(integrator->interpolate(t / kTimeUnit, y));
-      samples.push_back({t, problem->energy(y) * kRadius * kRadius});
+      const double unit = kRadius * kRadius;
+      samples.push_back(
+          {t, problem->energy(y) * unit, recovered_energy(*problem, problem->c_of(y)) * unit});
     }
     bench.progress(std::log10(1 + integrator->time() * kTimeUnit) / std::log10(1 + t_end));
   });
@@ -87,12 +90,12 @@ StudyReport run(const Bench& bench) {
   const int cells = bench.quick() ? 128 : 256;
   const double t_end = bench.quick() ? 100 : 1e6;
   const std::vector<Sample> samples = simulate(bench, cells, t_end, 1e-3, report);
-  Table table{"energy", {"t", "energy", "spectral", "difference in %"}, {}};
+  Table table{"energy", {"t", "energy of c_h", "recovered", "spectral", "difference in %"}, {}};
   Points measured, spectral;
   double early = 0, between = 0, end = 0;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const double difference = std::fabs(samples[k].energy / kSpectral[k].energy - 1);
-    table.rows.push_back({samples[k].t, samples[k].energy, kSpectral[k].energy,
+    table.rows.push_back({samples[k].t, samples[k].discrete, samples[k].energy, kSpectral[k].energy,
                           100 * (samples[k].energy / kSpectral[k].energy - 1)});
     measured.emplace_back(samples[k].t, samples[k].energy);
     spectral.emplace_back(kSpectral[k].t, kSpectral[k].energy);
@@ -108,7 +111,10 @@ StudyReport run(const Bench& bench) {
                     {{"traceraft, " + std::to_string(cells) + " cells", measured},
                      {"spherical harmonics", spectral, Mark::line}}}};
   report.notes = {
-      "Energy of c on a sphere of radius 100 from the benchmark's initial state, atan2 branch. "
+      "The recovered energy is that of c_h without what a gradient recovery finds the mesh to add; "
+      "the "
+      "difference is its own. Sphere of radius 100 from the benchmark's initial state, atan2 "
+      "branch. "
       "Published uploads need 5,190 core-seconds (MOOSE, 1 core, 0.6 GB, another amplitude) to "
       "3,131,200 (MOOSE, 40 cores, 100 GB).",
       "Which rafts survive late is decided by small differences early: the path between t = 1e3 "
