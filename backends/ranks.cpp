@@ -44,8 +44,7 @@ RankSession::RankSession() {
     session.reset();
     throw InputError(
         "several processes were started that do not find each other: use the mpirun of the MPI "
-        "that "
-        "this program was built with");
+        "that this program was built with");
   }
 }
 RankSession::~RankSession() {

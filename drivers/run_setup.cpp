@@ -114,7 +114,7 @@ std::vector<CapRaft> parse_caps(const Configuration& configuration) {
     if (direction.norm() == 0) throw InputError(where + ": a direction is zero in '" + item + "'");
     if (!(numbers[3] > 0 && numbers[3] < 180))
       throw InputError(where + ": an angle must lie between 0 and 180 degrees in '" + item + "'");
-    caps.push_back({direction, numbers[3] * std::acos(-1.0) / 180});
+    caps.push_back({direction, numbers[3] * kPi / 180});
   }
   return caps;
 }

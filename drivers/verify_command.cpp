@@ -94,13 +94,10 @@ int verify_command(const VerifyRequest& request) {
     write_study(folder, results.back());
   }
   const std::string missing = write_verification(folder, context, results);
-  if (!request.document.empty()) write_document(request.document, context, results);
+  if (!request.document.empty()) write_document(request.document, folder, context, results);
   if (!request.quiet) {
     for (const StudyResult& result : results)
-      std::printf("  %-14s %s\n", result.study.name.c_str(),
-                  result.verdict() == Verdict::holds   ? "holds"
-                  : result.verdict() == Verdict::fails ? "FAILS"
-                                                       : "not measured");
+      std::printf("  %-14s %s\n", result.study.name.c_str(), verdict_text(result.verdict()));
     if (!missing.empty()) std::printf("\ncharts are missing: %s\n", missing.c_str());
     std::printf("\nopen next: %s\n", (folder / "verify.html").c_str());
   }

@@ -19,11 +19,7 @@ namespace fs = std::filesystem;
 using Row = std::vector<std::string>;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kVerdicts[] = {"holds", "FAILS", "not measured"};
-
-const char* verdict_text(const Claim& claim) {
-  return kVerdicts[claim.holds() ? 0 : 1];
-}
+constexpr std::size_t kLargestChart = 1 << 24;  // bytes
 
 std::string short_number(double value) {
   return formatted("%.5g", value);
@@ -46,7 +42,7 @@ Row claim_row(const Claim& claim) {
     row.push_back(short_number(claim.low) + " to " + short_number(claim.high));
     row.push_back("");
   }
-  row.push_back(verdict_text(claim));
+  row.push_back(verdict_text(claim.holds() ? Verdict::holds : Verdict::fails));
   return row;
 }
 
@@ -111,7 +107,7 @@ Json result_json(const StudyResult& result) {
   Json json;
   json["study"] = result.study.name;
   json["summary"] = result.study.summary;
-  json["verdict"] = kVerdicts[static_cast<int>(result.verdict())];
+  json["verdict"] = verdict_text(result.verdict());
   if (!result.failure.empty()) json["why"] = result.failure;
   if (!result.report.skipped.empty()) json["why"] = result.report.skipped;
   json["seconds"] = result.seconds;
@@ -137,21 +133,28 @@ std::string outcome_sentence(const StudyResult& result) {
   return "";
 }
 
+std::vector<Row> overview_rows(const std::vector<StudyResult>& results) {
+  std::vector<Row> rows = {{"study", "what", "claims", "verdict", "seconds"}};
+  for (const StudyResult& result : results)
+    rows.push_back({result.study.name, result.study.summary,
+                    std::to_string(result.report.claims.size()), verdict_text(result.verdict()),
+                    formatted("%.1f", result.seconds)});
+  return rows;
+}
+
 std::string chart_name(const StudyResult& result, std::size_t number) {
   return result.study.name + "-" + std::to_string(number + 1);
 }
 
-// Calls with_svg(svg, chart) for every chart that gnuplot draws; why others are missing.
-template <class WithSvg>
-std::string draw_charts(const fs::path& folder, const StudyResult& result,
-                        const WithSvg& with_svg) {
+// Draws charts into the folder and the page. "" or why some are missing.
+std::string draw_charts(const fs::path& folder, const StudyResult& result, Page& page) {
   std::string missing;
   for (std::size_t k = 0; k < result.report.charts.size(); ++k) {
     const Chart& chart = result.report.charts[k];
     try {
       const std::string svg = draw_chart(chart, folder / chart_name(result, k));
       if (svg.empty()) return "gnuplot is not installed (Debian package gnuplot-nox)";
-      with_svg(svg, k);
+      page.figure(svg, chart.title);
     } catch (const IoError& error) {  // the tables are worth more than their pictures
       missing = error.what();
     }
@@ -181,6 +184,11 @@ Verdict StudyResult::verdict() const {
   for (const Claim& claim : report.claims)
     if (!claim.holds()) return Verdict::fails;
   return report.claims.empty() ? Verdict::fails : Verdict::holds;
+}
+
+const char* verdict_text(Verdict verdict) {
+  if (verdict == Verdict::not_measured) return "not measured";
+  return verdict == Verdict::holds ? "holds" : "FAILS";
 }
 
 std::vector<Row> claim_rows(const std::vector<Claim>& claims) {
@@ -214,20 +222,14 @@ std::string write_verification(const fs::path& folder, const VerificationContext
   Json all;
   all["command"] = context.command;
   all["conditions"] = context.conditions;
-  std::vector<Row> overview = {{"study", "what", "claims", "verdict", "seconds"}};
   Json studies = Json::array();
-  for (const StudyResult& result : results) {
-    studies.push_back(result_json(result));
-    overview.push_back(
-        {result.study.name, result.study.summary, std::to_string(result.report.claims.size()),
-         kVerdicts[static_cast<int>(result.verdict())], formatted("%.1f", result.seconds)});
-  }
+  for (const StudyResult& result : results) studies.push_back(result_json(result));
   all["studies"] = studies;
   write_durably(folder / "verify.json", all.dump(2) + "\n");
 
   Page page("Verification");
   page.paragraph(context.conditions + " Repeat it with: " + context.command);
-  page.table(overview);
+  page.table(overview_rows(results));
   std::string missing;
   for (const StudyResult& result : results) {
     page.heading(result.study.name + ": " + result.study.summary);
@@ -235,10 +237,7 @@ std::string write_verification(const fs::path& folder, const VerificationContext
       page.paragraph(outcome);
     for (const std::string& note : result.report.notes) page.paragraph(note);
     if (!result.report.claims.empty()) page.table(claim_rows(result.report.claims));
-    const std::string why = draw_charts(folder, result, [&](const std::string& svg, std::size_t k) {
-      page.figure(svg, result.report.charts[k].title);
-    });
-    if (!why.empty()) missing = why;
+    if (const std::string why = draw_charts(folder, result, page); !why.empty()) missing = why;
     for (const Table& table : result.report.tables) page.table(table_rows(table));
   }
   if (!missing.empty()) page.paragraph("Charts are missing: " + missing + ".");
@@ -246,20 +245,17 @@ std::string write_verification(const fs::path& folder, const VerificationContext
   return missing;
 }
 
-void write_document(const fs::path& path, const VerificationContext& context,
-                    const std::vector<StudyResult>& results) {
+void write_document(const fs::path& path, const fs::path& folder,
+                    const VerificationContext& context, const std::vector<StudyResult>& results) {
   fs::path figures = path;
   figures.replace_extension();
   fs::create_directories(figures);
   std::string text = "# Verification\n\n" + context.conditions +
                      "\nThis document and its figures are written by\n\n    " + context.command +
                      "\n\n";
-  std::vector<Row> overview = {{"study", "what", "claims", "verdict", "seconds"}};
-  for (const StudyResult& result : results)
-    overview.push_back({"[" + result.study.name + "](#" + result.study.name + ")",
-                        result.study.summary, std::to_string(result.report.claims.size()),
-                        kVerdicts[static_cast<int>(result.verdict())],
-                        formatted("%.0f", result.seconds)});
+  std::vector<Row> overview = overview_rows(results);
+  for (std::size_t k = 1; k < overview.size(); ++k)
+    overview[k][0] = "[" + overview[k][0] + "](#" + overview[k][0] + ")";
   text += markdown_table(overview);
   for (const StudyResult& result : results) {
     text += "## " + result.study.name + "\n\n`traceraft verify " + result.study.name +
@@ -269,12 +265,13 @@ void write_document(const fs::path& path, const VerificationContext& context,
     if (const std::string outcome = outcome_sentence(result); !outcome.empty())
       text += outcome + "\n\n";
     if (!result.report.claims.empty()) text += markdown_table(claim_rows(result.report.claims));
-    (void)draw_charts(figures, result, [&](const std::string&, std::size_t k) {
-      const std::string name = chart_name(result, k);
+    for (std::size_t k = 0; k < result.report.charts.size(); ++k) {
+      const std::string name = chart_name(result, k) + ".svg";
+      if (!fs::exists(folder / name)) continue;
+      write_durably(figures / name, read_file(folder / name, kLargestChart));
       text += "![" + result.report.charts[k].title + "](" + figures.filename().string() + "/" +
-              name + ".svg)\n\n";
-      for (const char* helper : {".gp", ".log"}) fs::remove(figures / (name + helper));
-    });
+              name + ")\n\n";
+    }
     for (const Table& table : result.report.tables)
       if (table.rows.size() <= 40) text += markdown_table(table_rows(table));
   }

@@ -20,6 +20,8 @@ struct StudyResult {
   Verdict verdict() const;
 };
 
+const char* verdict_text(Verdict verdict);
+
 // claim · measured · expected · tolerance · verdict, for people. The first row is the heading.
 std::vector<std::vector<std::string>> claim_rows(const std::vector<Claim>& claims);
 
@@ -33,12 +35,13 @@ struct VerificationContext {
 
 // NAME.json and NAME-TABLE.csv of one study, as soon as it is done. Throws IoError.
 void write_study(const std::filesystem::path& folder, const StudyResult& result);
-// verify.json and verify.html of all. "" or why charts are missing.
+// verify.json, verify.html and the charts of all. "" or why charts are missing.
 std::string write_verification(const std::filesystem::path& folder,
                                const VerificationContext& context,
                                const std::vector<StudyResult>& results);
-// A Markdown document with its charts as SVG files in a folder of the document's name beside it.
-void write_document(const std::filesystem::path& path, const VerificationContext& context,
-                    const std::vector<StudyResult>& results);
+// A Markdown document. The charts that write_verification left in `folder` are copied into a folder
+// of the document's name beside it.
+void write_document(const std::filesystem::path& path, const std::filesystem::path& folder,
+                    const VerificationContext& context, const std::vector<StudyResult>& results);
 
 }  // namespace traceraft

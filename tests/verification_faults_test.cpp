@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <mutex>
 
 #include "tests/support/forwarding.hpp"
 #include "verification/bench.hpp"
@@ -41,32 +42,6 @@ class BrokenProblem : public ForwardingProblem {
     return ForwardingProblem::jacobian_product(t, y, clock * ydot, clock * shift * sigma, tangent,
                                                v, product);
   }
-};
-
-// An integrator that owns its model.
-class IntegratorOfBroken final : public Integrator {
- public:
-  IntegratorOfBroken(std::unique_ptr<BrokenProblem> problem, IntegratorPtr inner)
-      : problem_(std::move(problem)), inner_(std::move(inner)) {}
-  std::string name() const override { return inner_->name(); }
-  Status start(double t0, ConstVec y0, ConstVec ydot0, double t_end) override {
-    return inner_->start(t0, y0, ydot0, t_end);
-  }
-  Status advance() override { return inner_->advance(); }
-  Status interpolate(double t, VecRef y) const override { return inner_->interpolate(t, y); }
-  double time() const override { return inner_->time(); }
-  double step() const override { return inner_->step(); }
-  double next_step() const override { return inner_->next_step(); }
-  const Vec& state() const override { return inner_->state(); }
-  bool promises_energy_decay() const override { return inner_->promises_energy_decay(); }
-  IntegratorStatistics statistics() const override { return inner_->statistics(); }
-  LinearStatistics linear_statistics() const override { return inner_->linear_statistics(); }
-  void save(CheckpointOut out) const override { inner_->save(out); }
-  void load(CheckpointIn in) override { inner_->load(in); }
-
- private:
-  std::unique_ptr<BrokenProblem> problem_;
-  IntegratorPtr inner_;
 };
 
 // A law that is off by a factor.
@@ -127,12 +102,19 @@ class BrokenBench final : public Bench {
     auto broken = std::make_unique<BrokenProblem>(problem);
     if (fault_.problem && (*fault_.integrator == 0 || fault_.integrator == name))
       fault_.problem(*broken);
-    IntegratorPtr inner = Bench::make_integrator(*broken, space, name, linear_solver, settings);
-    return std::make_unique<IntegratorOfBroken>(std::move(broken), std::move(inner));
+    const BrokenProblem& problem_of_integrator = *broken;
+    {
+      const std::lock_guard lock(mutex_);
+      broken_.push_back(std::move(broken));
+    }
+    return Bench::make_integrator(problem_of_integrator, space, name, linear_solver, settings);
   }
 
  private:
   const Fault& fault_;
+  // Integrators refer to their problem; members of an ensemble are made at the same time.
+  mutable std::mutex mutex_;
+  mutable std::vector<std::unique_ptr<BrokenProblem>> broken_;
 };
 
 bool all_hold(const StudyReport& report) {

@@ -15,8 +15,6 @@
 namespace traceraft {
 namespace {
 
-const double kPi = std::acos(-1.0);
-
 // Where the law is looked for. L³ = L₀³ + K t is a power law of t only once t is long against
 // L₀³/K, so there are two windows: a late one, where domains are 25 widths of a boundary wide, for
 // a plain power law; and one from where the background is absorbed (10 widths) for a power law
@@ -99,10 +97,8 @@ Exponent fit(const std::vector<Member>& members, const EnsembleRequest& request,
 }
 
 Claim exponent_claim(const Law& law, const char* of, const Exponent& found, double margin) {
-  Claim claim = claim_near(law.ensemble + ": exponent of the " + law.quantity + " in " + of,
-                           found.b, law.theory, margin);
-  claim.uncertainty = 0.5 * (found.interval.high - found.interval.low);
-  return claim;
+  return claim_near(law.ensemble + ": exponent of the " + law.quantity + " in " + of, found.b,
+                    law.theory, margin, 0.5 * (found.interval.high - found.interval.low));
 }
 
 // The spectra of all members at each snapshot, over the mean degree: one curve if they scale.
@@ -138,6 +134,20 @@ EnsembleRequest ensemble(const std::string& mobility, double fraction, const Siz
   return request;
 }
 
+// Where domains are `widths` of a boundary wide and do not yet feel the size of the sphere.
+Window window_of_lengths(const EnsembleRequest& request, const std::vector<double>& perimeter,
+                         double widths) {
+  return window_where(request.times, [&](std::size_t i) {
+    return 4 * kPi / perimeter[i] >= widths * request.epsilon &&
+           perimeter[i] >= kGreatCirclesAtEnd * 2 * kPi;
+  });
+}
+
+Chart coarsening_chart(const std::string& title, const std::string& y_label,
+                       std::vector<ChartSeries> series) {
+  return {title, "t (R^2/D)", y_label, true, true, std::move(series)};
+}
+
 void measure_equal(const Bench& bench, const Sizes& sizes, double margin, Table& table,
                    StudyReport& report) {
   EnsembleRequest request = ensemble("constant:value=0.25", 0.5, sizes);
@@ -146,13 +156,9 @@ void measure_equal(const Bench& bench, const Sizes& sizes, double margin, Table&
     request.snapshot_times.push_back(share * request.t_end);
   const std::vector<Member> members = run_ensemble(bench, request);
   const std::vector<double> mean = geometric_mean(members, &Member::perimeter, everyone(members));
-  const auto window_from = [&](double widths) {
-    return window_where(request.times, [&](std::size_t i) {
-      return 4 * kPi / mean[i] >= widths * sizes.epsilon && mean[i] >= kGreatCirclesAtEnd * 2 * kPi;
-    });
-  };
   const Law perimeter{"50:50, constant mobility", "perimeter", &Member::perimeter, -1.0 / 3};
-  const Window absorbed = window_from(kWidthsAbsorbed), late = window_from(kWidthsLate);
+  const Window absorbed = window_of_lengths(request, mean, kWidthsAbsorbed);
+  const Window late = window_of_lengths(request, mean, kWidthsLate);
   const Exponent shifted = fit(members, request, perimeter, absorbed, Origin::fitted, table);
   if (bench.quick()) {
     // Boundaries that are wide against the sphere make it smaller; a mobility that vanishes in the
@@ -170,13 +176,9 @@ void measure_equal(const Bench& bench, const Sizes& sizes, double margin, Table&
                                           plain.interval.contains(-1.0 / 3), 1, 1));
   }
   const Points points = as_points(request.times, mean);
-  report.charts.push_back(
-      {"Length of all phase boundaries, 50:50, constant mobility",
-       "t (R^2/D)",
-       "length (R)",
-       true,
-       true,
-       {{"mean of the runs", points, Mark::line}, law("t^(-1/3)", points, absorbed, -1.0 / 3)}});
+  report.charts.push_back(coarsening_chart(
+      "Length of all phase boundaries, 50:50, constant mobility", "length (R)",
+      {{"mean of the runs", points, Mark::line}, law("t^(-1/3)", points, absorbed, -1.0 / 3)}));
   Points degrees;
   report.charts.push_back(scaling_chart(members, request, degrees));
   table.rows.push_back({perimeter.ensemble, "mean degree of the spectrum", "t",
@@ -189,22 +191,16 @@ void measure_degenerate(const Bench& bench, const Sizes& sizes, Table& table, St
   const EnsembleRequest request = ensemble("degenerate", 0.5, sizes);
   const std::vector<Member> members = run_ensemble(bench, request);
   const std::vector<double> mean = geometric_mean(members, &Member::perimeter, everyone(members));
-  const Window window = window_where(request.times, [&](std::size_t i) {
-    return 4 * kPi / mean[i] >= kWidthsAbsorbed * sizes.epsilon &&
-           mean[i] >= kGreatCirclesAtEnd * 2 * kPi;
-  });
+  const Window window = window_of_lengths(request, mean, kWidthsAbsorbed);
   const Law perimeter{"50:50, degenerate mobility", "perimeter", &Member::perimeter, -0.25};
   for (const Origin origin : {Origin::zero, Origin::fitted})
     (void)fit(members, request, perimeter, window, origin, table);
   const Points points = as_points(request.times, mean);
-  report.charts.push_back({"Length of all phase boundaries, 50:50, degenerate mobility",
-                           "t (R^2/D)",
-                           "length (R)",
-                           true,
-                           true,
-                           {{"mean of the runs", points, Mark::line},
-                            law("t^(-1/4)", points, window, -0.25),
-                            law("t^(-1/3)", points, window, -1.0 / 3)}});
+  report.charts.push_back(
+      coarsening_chart("Length of all phase boundaries, 50:50, degenerate mobility", "length (R)",
+                       {{"mean of the runs", points, Mark::line},
+                        law("t^(-1/4)", points, window, -0.25),
+                        law("t^(-1/3)", points, window, -1.0 / 3)}));
 }
 
 void measure_rafts(const Bench& bench, const Sizes& sizes, double margin, Table& table,
@@ -221,15 +217,12 @@ void measure_rafts(const Bench& bench, const Sizes& sizes, double margin, Table&
   Points radius =
       as_points(request.times, geometric_mean(members, &Member::raft_radius, everyone(members)));
   for (auto& [t, value] : radius) value *= 100;
-  report.charts.push_back({"Number and radius of rafts, 30 %, constant mobility",
-                           "t (R^2/D)",
-                           "number, 100 radius/R",
-                           true,
-                           true,
-                           {{"number", points, Mark::line},
-                            law("t^(-2/3)", points, window, -2.0 / 3),
-                            {"100 radius", radius, Mark::line},
-                            law("t^(1/3)", radius, window, 1.0 / 3)}});
+  report.charts.push_back(coarsening_chart("Number and radius of rafts, 30 %, constant mobility",
+                                           "number, 100 radius/R",
+                                           {{"number", points, Mark::line},
+                                            law("t^(-2/3)", points, window, -2.0 / 3),
+                                            {"100 radius", radius, Mark::line},
+                                            law("t^(1/3)", radius, window, 1.0 / 3)}));
   for (const Law& law :
        {Law{"30 %, constant mobility", "number of rafts", &Member::rafts, -2.0 / 3},
         Law{"30 %, constant mobility", "mean raft radius", &Member::raft_radius, 1.0 / 3}}) {

@@ -34,7 +34,7 @@ Member run_member(const Bench& bench, const EnsembleRequest& request, std::uint6
       const double count = static_cast<double>(rafts.rafts.size());
       member.perimeter.push_back(rafts.perimeter);
       member.rafts.push_back(count);
-      member.raft_radius.push_back(std::sqrt(rafts.area / count / std::acos(-1.0)));
+      member.raft_radius.push_back(std::sqrt(rafts.area / count / kPi));
     }
     for (; next_snapshot < request.snapshot_times.size() &&
            request.snapshot_times[next_snapshot] <= integrator->time();

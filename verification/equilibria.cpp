@@ -13,7 +13,6 @@
 namespace traceraft {
 namespace {
 
-const double kPi = std::acos(-1.0);
 constexpr const char* kMobility = "constant:value=0.25";
 
 struct Equilibrium {
@@ -92,11 +91,8 @@ void measure_boundary(const Bench& bench, StudyReport& report) {
       claim_near("width of a boundary over sqrt(2) epsilon", last_width, 1, 0.005));
   report.claims.push_back(
       claim_near("two equal halves: level curve over 2 pi", level_curve, 1, 0.001));
-  const ObservedOrder order = observed_order(profile);
-  Claim claim =
-      claim_near("largest distance of c from the tanh profile: order in h", order.order, 2, 0.4);
-  claim.uncertainty = order.change;
-  report.claims.push_back(claim);
+  report.claims.push_back(
+      claim_order("largest distance of c from the tanh profile: order in h", profile, 2, 0.4));
 }
 
 // Gibbs–Thomson on the sphere, to first order in ε: μ = σ κ_g with σ = ε/(6√2) and the geodesic
@@ -235,8 +231,7 @@ StudyReport run(const Bench& bench) {
   StudyReport report;
   report.notes = {
       "Caps relaxed with constant mobility to t = 30 (caps) and 100; theory is the limit of a "
-      "sharp "
-      "boundary with its first correction in epsilon."};
+      "sharp boundary with its first correction in epsilon."};
   measure_boundary(bench, report);
   bench.progress(0.3);
   measure_caps(bench, report);

@@ -145,10 +145,8 @@ void measure_rates(const Bench& bench, StudyReport& report) {
     bench.progress(0.9 * cells * cells / (finest * finest));
   }
   for (const Background& at : backgrounds) {
-    const ObservedOrder order = observed_order(at.errors);
-    Claim claim = claim_near(at.label() + ": order of the rates in h", order.order, 2, 0.3);
-    claim.uncertainty = order.change;
-    report.claims.push_back(claim);
+    report.claims.push_back(
+        claim_order(at.label() + ": order of the rates in h", at.errors, 2, 0.3));
     report.claims.push_back(claim_at_most(at.label() + ": RMS error of l = 1 to 12, relative",
                                           at.errors.back().second, bench.quick() ? 0.02 : 0.005));
     errors.series.push_back({at.label(), at.errors});

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "kernel/fem/density_load.hpp"
+#include "kernel/problem/prescribed_density.hpp"
 #include "verification/sparse_view.hpp"
 #include "verification/surface_calculus.hpp"
 
@@ -44,45 +44,25 @@ double source(const DoubleWell& well, double epsilon, double a, double rate,
   return rate * p.u - M * laplacian_mu - dM * slope_product;
 }
 
-class ManufacturedSource final : public Effect {
- public:
+EffectPtr manufactured_source(const SurfaceSpace& space, const std::string& surface,
+                              const DoubleWell& well, double epsilon) {
+  const auto function = surface_function(surface);
   // What does not change in time is computed once, at every point of the quadrature.
-  ManufacturedSource(const SurfaceSpace& space, const std::string& surface, DoubleWell well,
-                     double epsilon)
-      : well_(well), epsilon_(epsilon) {
-    const auto function = surface_function(surface);
-    points_.resize(space.surface.triangles.size() * kDegreeFourRule.size());
-    space.team->for_range(space.surface.triangles.size(), [&](std::size_t begin, std::size_t end) {
-      for (std::size_t triangle = begin; triangle < end; ++triangle)
-        for (std::size_t p = 0; p < kDegreeFourRule.size(); ++p) {
-          const QuadraturePoint at = quadrature_point(space.surface, triangle, p);
-          points_[at.number] = function(at.x);
-        }
-    });
-  }
-  std::string name() const override { return "manufactured source"; }
-  bool conserves_mass() const override { return false; }
-  bool dissipates_energy() const override { return false; }
-  void add_residual(const SurfaceSpace& space, double t, ConstVec, ConstVec, VecRef residual_c,
-                    VecRef) const override {
-    const double a = kAmplitude * std::cos(t), rate = -kAmplitude * std::sin(t);
-    add_density_load(
-        space, -1,
-        [&](const QuadraturePoint& at) {
-          return source(well_, epsilon_, a, rate, points_[at.number]);
-        },
-        residual_c);
-  }
-  void add_tangent(const SurfaceSpace&, double, ConstVec, ConstVec, BlockJacobian&) const override {
-  }
-  void add_tangent_product(const SurfaceSpace&, double, ConstVec, ConstVec, ConstVec, ConstVec,
-                           VecRef, VecRef) const override {}
-
- private:
-  DoubleWell well_;
-  double epsilon_;
-  std::vector<SurfacePoint> points_;
-};
+  const auto points = std::make_shared<std::vector<SurfacePoint>>(space.surface.triangles.size() *
+                                                                  kDegreeFourRule.size());
+  space.team->for_range(space.surface.triangles.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t triangle = begin; triangle < end; ++triangle)
+      for (std::size_t p = 0; p < kDegreeFourRule.size(); ++p) {
+        const QuadraturePoint at = quadrature_point(space.surface, triangle, p);
+        (*points)[at.number] = function(at.x);
+      }
+  });
+  return prescribed_density("manufactured source", Slot::source,
+                            [=](const QuadraturePoint& at, double t) {
+                              return -source(well, epsilon, kAmplitude * std::cos(t),
+                                             -kAmplitude * std::sin(t), (*points)[at.number]);
+                            });
+}
 
 }  // namespace
 
@@ -129,8 +109,7 @@ ManufacturedCahnHilliard::ManufacturedCahnHilliard(const Bench& bench, SpacePtr 
                                                    std::string surface_, double epsilon)
     : surface(std::move(surface_)) {
   CahnHilliardModel model = bench_model("degenerate", epsilon);
-  model.effects.push_back(
-      std::make_shared<ManufacturedSource>(*space, surface, model.well, epsilon));
+  model.effects.push_back(manufactured_source(*space, surface, model.well, epsilon));
   problem = bench.problem(std::move(space), model);
 }
 

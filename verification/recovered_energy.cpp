@@ -3,26 +3,9 @@
 #include <stdexcept>
 
 #include "kernel/fem/trace.hpp"
+#include "verification/surface_gradients.hpp"
 
 namespace traceraft {
-namespace {
-
-// ∇_Γ c_h, constant on every triangle.
-std::vector<Point> surface_gradients(const SurfaceSpace& space, ConstVec c) {
-  std::vector<Point> gradients;
-  for (const int tet_number : space.surface.triangle_tet) {
-    const ActiveTet& tet = space.mesh.tets[tet_number];
-    const auto basis = scaled_gradients(tet.kuhn);
-    Point gradient = Point::Zero();
-    for (int i = 0; i < 4; ++i) gradient += c[tet.node[i]] / space.h() * basis.row(i).transpose();
-    const Point normal = cut_normal(space.mesh, tet);
-    gradients.push_back(gradient - gradient.dot(normal) * normal);
-  }
-  return gradients;
-}
-
-}  // namespace
-
 double gradient_error_squared(const SurfaceSpace& space, ConstVec c) {
   const std::vector<Point> gradients = surface_gradients(space, c);
   double error = 0;

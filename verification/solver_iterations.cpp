@@ -1,9 +1,9 @@
 // GMRES iterations of the block solver with fresh factors, over meshes, step sizes and widths.
 #include <algorithm>
-#include <cmath>
 
 #include "backends/list.hpp"
 #include "verification/bench.hpp"
+#include "verification/shift_range.hpp"
 #include "verification/studies.hpp"
 
 namespace traceraft {
@@ -11,8 +11,6 @@ namespace {
 
 // What integrators ask for: euler, with the stabilised tangent, and ida, with the exact one.
 constexpr double kTolerance[2] = {1e-4, 1e-2};
-// The shift of the fastest and of the slowest step, in units of D/R²: eight decades.
-constexpr double kLargestShift = 1e5, kSmallestShift = 1e-3;
 // The exact Jacobian of a step far longer than the state allows is indefinite. What is claimed of
 // it is for steps up to twice the one that ida takes there, as it at most doubles a step.
 constexpr double kLongestStep = 2;
@@ -71,7 +69,7 @@ void measure(const Bench& bench, const CahnHilliard& problem, State state, int c
     std::vector<Cell> row = {state == State::late ? "late" : "coarsening",
                              exact ? "exact" : "stabilised", static_cast<double>(cells),
                              problem.model().epsilon, sample.step};
-    for (double shift = kLargestShift; shift > 0.9 * kSmallestShift; shift /= 10) {
+    for (const double shift : shift_range()) {
       const double count = iterations(problem, sample.y, b, shift, tangent);
       row.push_back(count);
       if (exact && 1 / shift > kLongestStep * sample.step) continue;
@@ -84,8 +82,7 @@ void measure(const Bench& bench, const CahnHilliard& problem, State state, int c
 
 StudyReport measure_meshes(const Bench& bench, int coarsest, int finest) {
   Table table{"iterations", {"state", "tangent", "cells", "epsilon", "ida_step"}, {}};
-  for (double shift = kLargestShift; shift > 0.9 * kSmallestShift; shift /= 10)
-    table.columns.push_back("s=1e" + std::to_string(std::lround(std::log10(shift))));
+  for (const double shift : shift_range()) table.columns.push_back(shift_label(shift));
   Most most;
   for (int cells = coarsest; cells <= finest; cells *= 2) {
     const SpacePtr space = bench.space("sphere", cells);

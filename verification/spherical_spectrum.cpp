@@ -7,8 +7,6 @@
 namespace traceraft {
 namespace {
 
-const double kPi = std::acos(-1.0);
-
 // P̄_l^m(cos θ) for l = m … highest, normalised so that ∫ (P̄_l^m)² dΩ = 1 with the factor 1 for m =
 // 0 and √2 cos(mφ), √2 sin(mφ) else. Stable forward recursion in l (Numerical Recipes,
 // section 6.7).

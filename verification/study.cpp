@@ -4,8 +4,16 @@
 
 namespace traceraft {
 
-Claim claim_near(std::string what, double measured, double expected, double tolerance) {
-  return {std::move(what), measured, expected, expected - tolerance, expected + tolerance};
+Claim claim_near(std::string what, double measured, double expected, double tolerance,
+                 double uncertainty) {
+  return {std::move(what),      measured,   expected, expected - tolerance,
+          expected + tolerance, uncertainty};
+}
+
+Claim claim_order(std::string what, const Points& size_and_error, double expected,
+                  double tolerance) {
+  const ObservedOrder found = observed_order(size_and_error);
+  return claim_near(std::move(what), found.order, expected, tolerance, found.change);
 }
 
 Claim claim_at_most(std::string what, double measured, double bound) {

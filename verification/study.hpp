@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "verification/fit.hpp"
+
 namespace traceraft {
 
 class Bench;
@@ -22,7 +24,11 @@ struct Claim {
   bool holds() const { return measured >= low && measured <= high; }  // false for NaN
 };
 
-Claim claim_near(std::string what, double measured, double expected, double tolerance);
+Claim claim_near(std::string what, double measured, double expected, double tolerance,
+                 double uncertainty = 0);
+// The observed order (fit.hpp) of errors e ~ h^p, its uncertainty the change from coarser levels.
+Claim claim_order(std::string what, const Points& size_and_error, double expected,
+                  double tolerance);
 Claim claim_at_most(std::string what, double measured, double bound);
 Claim claim_between(std::string what, double measured, double low, double high);
 
@@ -45,7 +51,7 @@ struct Table {
 enum class Mark { line, points, both };
 struct ChartSeries {
   std::string name;
-  std::vector<std::pair<double, double>> points;
+  Points points;
   Mark mark = Mark::both;
 };
 struct Chart {

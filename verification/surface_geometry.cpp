@@ -14,8 +14,6 @@
 namespace traceraft {
 namespace {
 
-const double kPi = std::acos(-1.0);
-
 struct Body {
   const char* surface;
   double area;       // of the default parameters
@@ -65,11 +63,8 @@ void measure_bodies(const Bench& bench, StudyReport& report) {
       table.rows.push_back(
           {body.surface, static_cast<double>(cells), space->area, error, curvature});
     }
-    const ObservedOrder found = observed_order(levels);
-    Claim claim =
-        claim_near(std::string(body.surface) + ": order of the area", found.order, 2, 0.2);
-    claim.uncertainty = found.change;
-    report.claims.push_back(claim);
+    report.claims.push_back(
+        claim_order(std::string(body.surface) + ": order of the area", levels, 2, 0.2));
     report.claims.push_back(claim_at_most(
         std::string(body.surface) + ": total curvature against 2 pi chi", worst, 1e-6));
     chart.series.push_back({body.surface, levels});

@@ -6,13 +6,13 @@
 #include "backends/list.hpp"
 #include "kernel/core/random.hpp"
 #include "verification/bench.hpp"
+#include "verification/shift_range.hpp"
 #include "verification/studies.hpp"
 
 namespace traceraft {
 namespace {
 
 constexpr double kTolerance = 1e-8;
-constexpr double kLargestShift = 1e5, kSmallestShift = 1e-3;  // D/R²: eight decades
 constexpr double kGoal = 30;
 
 struct Variant {
@@ -30,7 +30,7 @@ std::vector<CapRaft> rafts(int state) {
   std::vector<CapRaft> caps;
   for (std::uint64_t k = 0; k < 30; ++k) {
     const auto draw = [&](std::uint64_t which) { return uniform_random(1, 50 + which, k); };
-    const double z = 2 * draw(0) - 1, around = 2 * std::acos(-1.0) * draw(1);
+    const double z = 2 * draw(0) - 1, around = 2 * kPi * draw(1);
     const double r = std::sqrt(1 - z * z);
     caps.push_back({Point(r * std::cos(around), r * std::sin(around), z), 0.1 + 0.15 * draw(2)});
   }
@@ -70,7 +70,7 @@ void measure(const Bench& bench, const SpacePtr& space, const Variant& variant, 
       std::vector<Cell> row = {std::string(variant.preconditioner) + ", " + variant.inverse,
                                static_cast<double>(space->mesh.cube.cells), epsilon,
                                state == 1 ? "two rafts" : "thirty rafts"};
-      for (double shift = kLargestShift; shift > 0.9 * kSmallestShift; shift /= 10) {
+      for (const double shift : shift_range()) {
         const double count = iterations(*problem, y, shift, variant);
         row.push_back(count);
         if (count < 0) ++most.failures;
@@ -87,8 +87,7 @@ StudyReport measure_meshes(const Bench& bench, int coarsest, int finest) {
     return report;
   }
   Table table{"iterations", {"preconditioner, inverse", "cells", "epsilon", "state"}, {}};
-  for (double shift = kLargestShift; shift > 0.9 * kSmallestShift; shift /= 10)
-    table.columns.push_back("s=1e" + std::to_string(std::lround(std::log10(shift))));
+  for (const double shift : shift_range()) table.columns.push_back(shift_label(shift));
   Most most[std::size(kVariants)];
   for (int cells = coarsest; cells <= finest; cells *= 2) {
     const SpacePtr space = bench.space(*make_surface("sphere"), cells, 1);
@@ -103,8 +102,7 @@ StudyReport measure_meshes(const Bench& bench, int coarsest, int finest) {
   }
   report.notes = {
       "Belos to 1e-8, fresh preconditioner, stabilised tangent, degenerate mobility; s is the "
-      "shift "
-      "in D/R^2; -1: more than 200."};
+      "shift in D/R^2; -1: more than 200."};
   report.tables = {table};
   report.claims = {
       claim_between("two-solve, muelu-ilu: most to 1e-8", most[0].iterations, 1, kGoal),

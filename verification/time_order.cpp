@@ -74,11 +74,8 @@ void measure_orders(const Bench& bench, const Runs& runs, const Vec& reference,
       levels.emplace_back(kEnd / steps, runs.error(runs.with_steps(method, steps), reference));
       table.rows.push_back({method.name, static_cast<double>(steps), levels.back().second});
     }
-    const ObservedOrder found = observed_order(levels);
-    Claim claim = claim_near(std::string(method.name) + ": order in the step", found.order,
-                             method.order, method.margin);
-    claim.uncertainty = found.change;
-    report.claims.push_back(claim);
+    report.claims.push_back(claim_order(std::string(method.name) + ": order in the step", levels,
+                                        method.order, method.margin));
     chart.series.push_back({method.name, levels});
   }
   report.tables.push_back(table);

@@ -107,8 +107,7 @@ void check_names(const std::string& method, const ParameterList& own) {
     const std::string& name = own.name(entry);
     if (name == kTolerance)
       throw InputError("Belos: \"" + name +
-                       "\" is what the integrator asks for; choose "
-                       "--linear-tolerance");
+                       "\" is what the integrator asks for; choose --linear-tolerance");
     if (!known->isParameter(name))
       throw InputError("Belos: " + unknown_name_message("parameter", name, names));
   }

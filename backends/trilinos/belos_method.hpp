@@ -25,8 +25,8 @@ class BelosMethod {
   virtual void forget() = 0;
 };
 
-// `own` changes parameters of the method, by Belos' names. Throws InputError for a name or a type
-// that the method does not know.
+// `own` changes parameters of the method, by Belos' names. Throws InputError for a name that the
+// method does not know.
 std::unique_ptr<BelosMethod> make_belos_method(const std::string& name,
                                                const Teuchos::ParameterList& own);
 

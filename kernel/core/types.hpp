@@ -1,4 +1,4 @@
-// The vector types every interface uses.
+// The vector types every interface uses, and π.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,5 +10,7 @@ using Point = Eigen::Vector3d;                  // coordinates in units of the s
 using Vec = Eigen::VectorXd;                    // owned, contiguous
 using VecRef = Eigen::Ref<Eigen::VectorXd>;     // written in place
 using ConstVec = const Eigen::Ref<const Vec>&;  // read only, no copy of contiguous data
+
+constexpr double kPi = 3.14159265358979323846;
 
 }  // namespace traceraft

@@ -9,8 +9,6 @@
 namespace traceraft {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 Vec half_and_half(const SurfaceSpace& sphere, const DoubleWell& well, double epsilon,
                   const Point& axis) {
   Vec c(sphere.nodes());

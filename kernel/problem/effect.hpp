@@ -1,7 +1,6 @@
 // A term added to the base model.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 
@@ -33,10 +32,5 @@ class Effect {
 };
 
 using EffectPtr = std::shared_ptr<const Effect>;
-
-// A prescribed density g(x, t) on Γ_h: a source ∫ g v in F1 or a potential ∫ g v in F2.
-// Manufactured solutions are driven by these.
-EffectPtr prescribed_density(std::string name, Slot slot,
-                             std::function<double(const Point&, double)> density);
 
 }  // namespace traceraft

@@ -112,7 +112,6 @@ Vec bernoulli(const SurfaceSpace& space, const InitialRequest& request) {
 Vec band_limited(const SurfaceSpace& space, const InitialRequest& request,
                  const Parameters& parameters) {
   constexpr int kWaves = 64;
-  constexpr double kPi = 3.14159265358979323846;
   struct Wave {
     Point k;
     double phase;

@@ -1,15 +1,13 @@
-#include <stdexcept>
+#include "kernel/problem/prescribed_density.hpp"
 
-#include "kernel/fem/density_load.hpp"
-#include "kernel/problem/effect.hpp"
+#include <stdexcept>
 
 namespace traceraft {
 namespace {
 
 class PrescribedDensity final : public Effect {
  public:
-  PrescribedDensity(std::string name, Slot slot,
-                    std::function<double(const Point&, double)> density)
+  PrescribedDensity(std::string name, Slot slot, Density density)
       : name_(std::move(name)), slot_(slot), density_(std::move(density)) {}
 
   std::string name() const override { return name_; }
@@ -21,7 +19,7 @@ class PrescribedDensity final : public Effect {
     VecRef target = slot_ == Slot::source ? residual_c : residual_mu;
     const double sign = slot_ == Slot::source ? 1 : -1;
     add_density_load(
-        space, sign, [&](const QuadraturePoint& at) { return density_(at.x, t); }, target);
+        space, sign, [&](const QuadraturePoint& at) { return density_(at, t); }, target);
   }
   void add_tangent(const SurfaceSpace&, double, ConstVec, ConstVec, BlockJacobian&) const override {
   }
@@ -31,13 +29,12 @@ class PrescribedDensity final : public Effect {
  private:
   std::string name_;
   Slot slot_;
-  std::function<double(const Point&, double)> density_;
+  Density density_;
 };
 
 }  // namespace
 
-EffectPtr prescribed_density(std::string name, Slot slot,
-                             std::function<double(const Point&, double)> density) {
+EffectPtr prescribed_density(std::string name, Slot slot, Density density) {
   if (slot == Slot::flux) throw std::invalid_argument("a prescribed density is no flux");
   return std::make_shared<PrescribedDensity>(std::move(name), slot, std::move(density));
 }

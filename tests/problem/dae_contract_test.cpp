@@ -5,6 +5,7 @@
 #include <limits>
 #include <ostream>
 
+#include "kernel/problem/prescribed_density.hpp"
 #include "tests/support/spaces.hpp"
 
 namespace traceraft {
@@ -33,8 +34,8 @@ class DaeContract : public ::testing::TestWithParam<DaeCase> {
     model.well = {0.3, -0.1, 1.2};
     if (GetParam().with_source)
       for (const Slot slot : {Slot::source, Slot::potential})
-        model.effects.push_back(
-            prescribed_density("g", slot, [](const Point& x, double t) { return x[0] + t; }));
+        model.effects.push_back(prescribed_density(
+            "g", slot, [](const QuadraturePoint& at, double t) { return at.x[0] + t; }));
     problem = std::make_unique<CahnHilliard>(make_space(12), model);
   }
   std::unique_ptr<CahnHilliard> problem;

@@ -11,6 +11,7 @@
 #include "kernel/observables/observables.hpp"
 #include "kernel/observables/perimeter_calibration.hpp"
 #include "kernel/observables/surface_view.hpp"
+#include "kernel/problem/prescribed_density.hpp"
 #include "tests/support/spaces.hpp"
 #include "tests/support/thread_ranks.hpp"
 
@@ -89,8 +90,9 @@ TEST_P(Distribution, ResidualAndJacobianAreBitwiseThoseOfOneRank) {
   for (const PotentialRule rule : {PotentialRule::consistent, PotentialRule::nodal}) {
     CahnHilliardModel model = make_model();
     model.rule = rule;
-    model.effects = {prescribed_density(
-        "g", Slot::source, [](const Point& x, double t) { return x[0] * x[1] + t * x[2]; })};
+    model.effects = {prescribed_density("g", Slot::source, [](const QuadraturePoint& at, double t) {
+      return at.x[0] * at.x[1] + t * at.x[2];
+    })};
     const auto whole = make_space(kCells);
     const CahnHilliard problem(whole, model);
     struct Parts {

@@ -23,7 +23,7 @@ TEST(RecoveredEnergy, EstimatesTheErrorOfAnInterpolant) {
     constexpr int kSteps = 20000;
     for (int k = 0; k < kSteps; ++k) {
       const double z = -1 + (k + 0.5) * 2 / kSteps;
-      exact += 2 * std::acos(-1.0) * 36 * std::pow(std::sin(6 * z), 2) * (1 - z * z) * 2 / kSteps;
+      exact += 2 * kPi * 36 * std::pow(std::sin(6 * z), 2) * (1 - z * z) * 2 / kSteps;
     }
     const double found = space->quadratic(space->stiffness, c);
     const double corrected = found + gradient_error_squared(*space, c);
@@ -40,7 +40,7 @@ TEST(RecoveredEnergy, DoesNotDependOnTheDirection) {
   for (const Point& axis : {Point(0, 0, 1), Point(1, 2, 3)}) {
     InitialRequest request;
     request.epsilon = problem.model().epsilon;
-    request.caps = {{axis, std::acos(-1.0) / 2}};
+    request.caps = {{axis, kPi / 2}};
     const Vec c = make_initial_field("caps", *space, request);
     Vec y = Vec::Zero(problem.size());
     y.head(problem.block_size()) = c;

@@ -18,11 +18,10 @@ TEST(SphericalSpectrum, SeparatesTheDegrees) {
     const Point x = space->mesh.position(i).normalized();
     c[i] = 0.7 + 10 * x[0] * x[1] * x[2] + 2 * (x[2] * x[2] - 1.0 / 3);
   }
-  const double pi = std::acos(-1.0);
   const std::vector<double> spectrum = spherical_spectrum(*space, c, 8);
   ASSERT_EQ(spectrum.size(), 9u);
   const std::vector<double> expected = {
-      0.49 * 4 * pi, 0, 4 * 16 * pi / 45, 100 * 4 * pi / 105, 0, 0, 0, 0, 0};
+      0.49 * 4 * kPi, 0, 4 * 16 * kPi / 45, 100 * 4 * kPi / 105, 0, 0, 0, 0, 0};
   double total = 0;
   for (int l = 0; l <= 8; ++l) {
     EXPECT_NEAR(spectrum[l], expected[l], 0.01 * expected[0]) << l;
@@ -41,8 +40,7 @@ TEST(SphericalSpectrum, DoesNotDependOnTheAxis) {
   for (int i = 0; i < space->nodes(); ++i)
     c[i] = std::legendre(12u, axis.dot(space->mesh.position(i).normalized()));
   const std::vector<double> spectrum = spherical_spectrum(*space, c, 16);
-  const double pi = std::acos(-1.0);
-  EXPECT_NEAR(spectrum[12], 4 * pi / 25, 0.02 * 4 * pi / 25);
+  EXPECT_NEAR(spectrum[12], 4 * kPi / 25, 0.02 * 4 * kPi / 25);
   EXPECT_NEAR(mean_degree(spectrum), 12, 0.05);
 }
 

@@ -1,0 +1,11 @@
+// The gradient of trace finite element functions along Γ_h.
+#pragma once
+
+#include "kernel/fem/surface_space.hpp"
+
+namespace traceraft {
+
+// ∇_Γ u_h, which is constant on every triangle.
+std::vector<Point> surface_gradients(const SurfaceSpace& space, ConstVec nodal);
+
+}  // namespace traceraft
