@@ -40,7 +40,7 @@ std::unique_ptr<MpiSession> session;
 RankSession::RankSession() {
   if (!started_together()) return;
   session = std::make_unique<MpiSession>();
-  if (const int started = started_ranks(); started > 1 && session->world()->size() == 1) {
+  if (const int started = started_ranks(); started > 1 && mpi_world()->size() == 1) {
     session.reset();
     throw InputError(
         "several processes were started that do not find each other: use the mpirun of the MPI "
@@ -66,7 +66,7 @@ void RankSession::abort(int exit_code) {
 }
 
 std::shared_ptr<const Communicator> world() {
-  if (session) return session->world();
+  if (session) return mpi_world();
   return std::make_shared<SerialCommunicator>();
 }
 

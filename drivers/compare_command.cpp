@@ -11,6 +11,7 @@
 #include "drivers/compare_runs.hpp"
 #include "drivers/config_file.hpp"
 #include "drivers/exit_codes.hpp"
+#include "drivers/finished_run.hpp"
 #include "drivers/run_folder.hpp"
 #include "drivers/run_setup.hpp"
 #include "kernel/core/error.hpp"

@@ -8,13 +8,14 @@
 #include <optional>
 
 #include "backends/list.hpp"
-#include "backends/posix/child.hpp"
 #include "backends/posix/durable_file.hpp"
 #include "backends/posix/folder_lock.hpp"
 #include "backends/posix/process.hpp"
 #include "backends/zlib/checksum.hpp"
 #include "drivers/config_file.hpp"
 #include "drivers/exit_codes.hpp"
+#include "drivers/finished_run.hpp"
+#include "drivers/program_run.hpp"
 #include "drivers/status_line.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
@@ -25,43 +26,10 @@ namespace {
 namespace fs = std::filesystem;
 using Tick = std::function<void()>;
 
-// How one run ended.
-struct Attempt {
-  int exit_code = kSuccess;
-  bool out_of_time = false;
-  std::string last_line;  // of what it printed
-};
-
-// mpirun of Open MPI; ranks give way to each other where there are more of them than processors.
-std::vector<std::string> program_on(int ranks) {
-  if (ranks == 1) return {own_program()};
-  std::vector<std::string> command = {
-      "mpirun", "--quiet", "--oversubscribe",    "--mca", "mpi_yield_when_idle",
-      "1",      "-np",     std::to_string(ranks)};
-  if (is_superuser()) command.push_back("--allow-run-as-root");
-  command.push_back(own_path());
-  return command;
-}
-
-Attempt attempt(const std::vector<std::string>& arguments, const fs::path& log, double time_limit,
-                const Tick& tick, int ranks = 1) {
-  std::vector<std::string> command = program_on(ranks);
-  command.insert(command.end(), arguments.begin(), arguments.end());
-  const ChildResult result = run_child({command, log, time_limit, tick});
-  std::string text = read_file(log, 1 << 24);
-  while (!text.empty() && text.back() == '\n') text.pop_back();
-  return {result.exit_code, result.out_of_time, text.substr(text.rfind('\n') + 1)};
-}
-
-std::string reason(const Attempt& end) {
-  if (end.exit_code == 127) return "mpirun is not there; install the Debian package openmpi-bin";
-  return end.last_line.empty() ? "exit code " + std::to_string(end.exit_code) : end.last_line;
-}
-
 // Does the end of a run say something of its method? Bad input (a solver that refuses the mesh),
 // numerical failure, too little memory and crashes do; a full disk, a folder in use or somebody who
 // stopped it do not.
-bool telling(const Attempt& end) {
+bool telling(const ProgramEnd& end) {
   switch (end.exit_code) {
     case kSuccess:
     case kBadInput:
@@ -76,7 +44,7 @@ bool telling(const Attempt& end) {
   }
 }
 
-bool was_stopped(const Attempt& end) {
+bool was_stopped(const ProgramEnd& end) {
   return stop_requested() || end.exit_code == kInterrupted || end.exit_code == 128 + SIGTERM ||
          end.exit_code == 128 + SIGINT;
 }
@@ -100,8 +68,8 @@ WorkEnd compute(const Reference& reference, const ComparisonFolder& folder, cons
                 std::string& why) {
   fs::create_directories(reference.folder.parent_path());
   while (!run_finished(reference.folder)) {
-    const Attempt end =
-        attempt(reference_arguments(reference, folder), folder.path() / "reference.log", 0, tick);
+    const ProgramEnd end = run_program(reference_arguments(reference, folder),
+                                       folder.path() / "reference.log", 1, 0, tick);
     if (was_stopped(end)) return WorkEnd::stopped;
     if (end.exit_code == kLocked) {
       tick();
@@ -109,10 +77,10 @@ WorkEnd compute(const Reference& reference, const ComparisonFolder& folder, cons
       continue;
     }
     if (end.exit_code == kNumericalFailure) {
-      why = reason(end);
+      why = end.reason();
       return WorkEnd::reference_failed;
     }
-    if (end.exit_code != kSuccess) throw IoError("the reference failed: " + reason(end));
+    if (end.exit_code != kSuccess) throw IoError("the reference failed: " + end.reason());
   }
   return WorkEnd::done;
 }
@@ -133,14 +101,14 @@ WorkEnd compute(const CompareJob& job, const ComparisonFolder& folder, double ti
   arguments.insert(arguments.end(), {"--out", run.string(), "--no-fields", "--checkpoint-interval",
                                      "1e9", "--quiet"});
   if (job.ranks > 1) arguments.insert(arguments.end(), {"--threads", "1"});
-  const Attempt end = attempt(arguments, folder.log_of(job), time_limit, tick, job.ranks);
+  const ProgramEnd end = run_program(arguments, folder.log_of(job), job.ranks, time_limit, tick);
   if (end.out_of_time) {
     folder.record(job, {"stopped after " + format_number(time_limit) + " s", time_limit});
     return WorkEnd::done;
   }
   if (was_stopped(end)) return WorkEnd::stopped;
-  if (!telling(end)) throw IoError(job.name() + " could not run: " + reason(end));
-  folder.record(job, {end.exit_code == kSuccess ? "" : reason(end), 0});
+  if (!telling(end)) throw IoError(job.name() + " could not run: " + end.reason());
+  folder.record(job, {end.exit_code == kSuccess ? "" : end.reason(), 0});
   return WorkEnd::done;
 }
 

@@ -2,17 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
-#include "backends/posix/durable_file.hpp"
-#include "drivers/checkpoint_store.hpp"
-#include "kernel/core/error.hpp"
+#include "drivers/finished_run.hpp"
+#include "drivers/json_file.hpp"
 #include "kernel/core/parameters.hpp"
 
 namespace traceraft {
 namespace {
 
-constexpr std::uint64_t kMaxBytes = 1 << 24;
 // What the table takes from the summary of a run.
 constexpr const char* kCounts[] = {"steps",         "rejected",
                                    "failures",      "residuals",
@@ -22,16 +19,6 @@ constexpr const char* kCounts[] = {"steps",         "rejected",
                                    "mass_drift",    "energy_rises",
                                    "ranks",         "threads"};
 
-// Reads a file of JSON with `use`, whose complaints become those about the file.
-template <class Use>
-auto from_json(const std::filesystem::path& path, const Use& use) {
-  try {
-    return use(nlohmann::json::parse(read_file(path, kMaxBytes)));
-  } catch (const nlohmann::json::exception& error) {
-    throw IoError(path.string() + " is damaged: " + error.what());
-  }
-}
-
 double relative_error(const DaeProblem& problem, const Vec& c, ConstVec reference) {
   Vec difference = Vec::Zero(problem.size()), exact = difference;
   difference.head(c.size()) = c - reference;
@@ -40,24 +27,6 @@ double relative_error(const DaeProblem& problem, const Vec& c, ConstVec referenc
 }
 
 }  // namespace
-
-bool run_finished(const std::filesystem::path& run_folder) {
-  const std::filesystem::path summary = run_folder / "summary.json";
-  return std::filesystem::exists(summary) && from_json(summary, [](const nlohmann::json& json) {
-           return json.at("end").get<std::string>() == "finished";
-         });
-}
-
-Vec concentration_at_end(const std::filesystem::path& run_folder, int nodes) {
-  const long steps = from_json(run_folder / "summary.json", [](const nlohmann::json& json) {
-    return json.at("steps").get<long>();
-  });
-  const Checkpoint last = CheckpointStore(run_folder / "checkpoints").newest();
-  if (last.step != steps)
-    throw IoError(run_folder.string() +
-                  " has lost its last checkpoint; delete that folder to repeat the run");
-  return concentration_of(last, run_folder, nodes);
-}
 
 void ComparisonFolder::save(const ComparePlan& plan) const {
   const nlohmann::ordered_json json = {{"integrators", plan.integrators},
@@ -73,7 +42,7 @@ void ComparisonFolder::save(const ComparePlan& plan) const {
 }
 
 ComparePlan ComparisonFolder::load() const {
-  return from_json(plan_file(), [](const nlohmann::json& json) {
+  return from_json(plan_file(), [](const Json& json) {
     return ComparePlan{
         json.at("integrators"), json.at("linear_solvers"), json.at("tolerances"),
         json.at("ranks"),       json.at("repeat"),         json.at("reference_tolerance"),
@@ -100,7 +69,7 @@ void ComparisonFolder::record(const CompareJob& job, const Record& record) const
 
 std::optional<ComparisonFolder::Record> ComparisonFolder::recorded(const CompareJob& job) const {
   if (!std::filesystem::exists(record_of(job))) return std::nullopt;
-  return from_json(record_of(job), [](const nlohmann::json& json) {
+  return from_json(record_of(job), [](const Json& json) {
     return Record{json.at("failure"), json.at("time_limit")};
   });
 }
@@ -128,7 +97,7 @@ void ComparisonFolder::add(const CompareJob& job, const DaeProblem& problem, Con
     if (point.wall_s.empty()) point.failure = record->failure;
     return;
   }
-  from_json(run_of(job) / "summary.json", [&](const nlohmann::json& summary) {
+  from_json(run_of(job) / "summary.json", [&](const Json& summary) {
     point.cpu_s.push_back(summary.at("cpu_s"));
     point.wall_s.push_back(summary.at("wall_s"));
     if (point.wall_s.size() == 1)

@@ -12,12 +12,6 @@
 
 namespace traceraft {
 
-// Has a run reached its end in this folder? Throws IoError if its summary is damaged.
-bool run_finished(const std::filesystem::path& run_folder);
-
-// c at the nodes at the end of a finished run. Throws IoError unless its last checkpoint is whole.
-Vec concentration_at_end(const std::filesystem::path& run_folder, int nodes);
-
 class ComparisonFolder {
  public:
   explicit ComparisonFolder(std::filesystem::path path) : path_(std::move(path)) {}

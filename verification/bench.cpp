@@ -26,6 +26,14 @@ std::vector<std::string> Bench::linear_solvers() const {
   return built_linear_solvers();
 }
 
+std::vector<std::string> Bench::linear_solvers_on_ranks() const {
+  std::vector<std::string> names;
+  if (!request.run_program) return names;
+  for (const std::string& name : linear_solvers())
+    if (traceraft::linear_solvers().find(name).distributed) names.push_back(name);
+  return names;
+}
+
 std::string Bench::integrator() const {
   return request.integrator.empty() ? "ida" : request.integrator;
 }

@@ -15,6 +15,16 @@ namespace traceraft {
 using SpacePtr = std::shared_ptr<const SurfaceSpace>;
 using ProblemPtr = std::unique_ptr<const CahnHilliard>;
 
+// A run of the whole program, as its user would start it.
+struct ProgramRun {
+  double steps, mass_drift;
+  Vec c;  // at the nodes, at the end
+};
+// `options` are those of `traceraft run`, in units of R and R²/D. Throws std::runtime_error if the
+// run fails.
+using RunProgram =
+    std::function<ProgramRun(const std::vector<std::string>& options, int ranks, int nodes)>;
+
 struct BenchRequest {
   bool quick = false;         // coarser and shorter, for every day
   std::string integrator;     // "": a study's choice, or all of them where it compares
@@ -22,6 +32,8 @@ struct BenchRequest {
   int threads = 2;
   // Called now and then with the share of a study that is done, 0 to 1. May be empty.
   std::function<void(double)> progress = {};
+  // Empty: studies do without runs on ranks.
+  RunProgram run_program = {};
 };
 
 // Tests derive from it, break one part on purpose and see a study fail.
@@ -37,6 +49,8 @@ class Bench {
   // Those that a comparing study compares.
   std::vector<std::string> integrators() const;
   std::vector<std::string> linear_solvers() const;
+  // Those that work on ranks; none if the program cannot be run on them.
+  std::vector<std::string> linear_solvers_on_ranks() const;
   // That of a study which needs one.
   std::string integrator() const;
   std::string linear_solver() const;

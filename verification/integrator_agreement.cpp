@@ -1,7 +1,9 @@
-// All integrators and linear solvers approach the same solution of one seeded run.
+// All integrators and linear solvers, on one and on two ranks, approach the same solution of one
+// seeded run.
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/core/parameters.hpp"
 #include "verification/bench.hpp"
 #include "verification/fit.hpp"
 #include "verification/studies.hpp"
@@ -9,6 +11,8 @@
 namespace traceraft {
 namespace {
 
+constexpr int kCells = 16;
+constexpr double kEpsilon = 0.2, kFraction = 0.4;
 constexpr double kEnd = 1;          // rafts have formed and begun to coarsen
 constexpr double kTightest = 1e-6;  // of the tolerances
 constexpr double kSolverTolerance = 1e-4;
@@ -17,10 +21,10 @@ class Agreement {
  public:
   explicit Agreement(const Bench& bench)
       : bench_(bench),
-        space_(bench.space("sphere", 16)),
-        problem_(bench.problem(space_, bench_model("degenerate", 0.2))) {
+        space_(bench.space("sphere", kCells)),
+        problem_(bench.problem(space_, bench_model("degenerate", kEpsilon))) {
     InitialRequest request;
-    request.raft_fraction = 0.4;
+    request.raft_fraction = kFraction;
     start_ = initial_state(*problem_, "noise", request);
   }
   Vec solve(const std::string& integrator, const std::string& solver, double tolerance) const {
@@ -31,6 +35,18 @@ class Agreement {
         bench_.make_integrator(*problem_, *space_, integrator, solver, settings);
     advance_to(*method, start_, kEnd);
     return method->state();
+  }
+  // The whole program, on ranks.
+  Vec solve_on(int ranks, const std::string& integrator, const std::string& solver) const {
+    const ProgramRun run = bench_.request.run_program(
+        {"--integrator", integrator, "--linear-solver", solver, "--cells", std::to_string(kCells),
+         "--epsilon", format_number(kEpsilon), "--raft-fraction", format_number(kFraction),
+         "--tolerance", format_number(kSolverTolerance), "--linear-tolerance",
+         format_number(kSolverTolerance), "--t-end", format_number(kEnd)},
+        ranks, space_->nodes());
+    Vec y = Vec::Zero(problem_->size());
+    y.head(run.c.size()) = run.c;
+    return y;
   }
   // ‖c_a − c_b‖/‖c(0)‖ in L²(Γ).
   double distance(const Vec& a, const Vec& b) const {
@@ -85,6 +101,25 @@ void compare_solvers(const Bench& bench, const Agreement& runs, StudyReport& rep
   report.tables.push_back(table);
 }
 
+void compare_ranks(const Bench& bench, const Agreement& runs, StudyReport& report) {
+  Table table{"ranks", {"integrator", "solver", "distance of 2 ranks from 1"}, {}};
+  double apart = 0;
+  for (const std::string& solver : bench.linear_solvers_on_ranks())
+    for (const std::string& name : bench.integrators()) {
+      const double distance =
+          runs.distance(runs.solve_on(2, name, solver), runs.solve_on(1, name, solver));
+      table.rows.push_back({name, solver, distance});
+      apart = std::max(apart, distance);
+    }
+  if (table.rows.empty()) {
+    report.notes.push_back("This build has no solver that works on ranks.");
+    return;
+  }
+  report.claims.push_back(claim_at_most("largest distance of 2 ranks from 1 at tolerance 1e-4",
+                                        apart, 2 * kSolverTolerance));
+  report.tables.push_back(table);
+}
+
 StudyReport run(const Bench& bench) {
   const Agreement runs(bench);
   StudyReport report;
@@ -94,13 +129,15 @@ StudyReport run(const Bench& bench) {
   compare_integrators(bench, runs, report);
   bench.progress(0.6);
   compare_solvers(bench, runs, report);
+  bench.progress(0.8);
+  compare_ranks(bench, runs, report);
   return report;
 }
 
 }  // namespace
 
 StudyEntry integrator_agreement_study() {
-  return {"agreement", "integrators and linear solvers approach one solution", run};
+  return {"agreement", "integrators, linear solvers and ranks approach one solution", run};
 }
 
 }  // namespace traceraft

@@ -1,7 +1,9 @@
-// The mass ∫c does not drift: over seeds, surfaces, mobilities, integrators and linear solvers.
+// The mass ∫c does not drift: over seeds, surfaces, mobilities, integrators, linear solvers and
+// ranks.
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/core/parameters.hpp"
 #include "verification/bench.hpp"
 #include "verification/studies.hpp"
 
@@ -10,10 +12,16 @@ namespace {
 
 constexpr double kBound = 1e-12;  // relative
 constexpr int kCells = 24;
+constexpr double kEpsilon = 0.2, kFraction = 0.3, kTolerance = 1e-2;
+
+double end_of_run(const Bench& bench) {
+  return bench.quick() ? 2 : 20;
+}
 
 struct Combination {
   std::string surface = "sphere", mobility = "degenerate", integrator, solver;
   std::uint64_t seed = 1;
+  int ranks = 1;
 };
 
 // Of every factor all levels, the other factors at their first one; without --quick the full
@@ -34,6 +42,9 @@ std::vector<Combination> combinations(const Bench& bench) {
         }
   for (std::uint64_t seed = 2; seed <= (bench.quick() ? 3 : 10); ++seed)
     list.push_back({on.front(), laws.front(), bench.integrator(), bench.linear_solver(), seed});
+  for (const std::string& integrator : bench.integrators())
+    for (const std::string& solver : bench.linear_solvers_on_ranks())
+      list.push_back({on.front(), laws.front(), integrator, solver, 1, 2});
   return list;
 }
 
@@ -42,20 +53,37 @@ struct Drift {
   double steps = 0;
 };
 
+Drift drift_on_ranks(const Bench& bench, const Combination& what) {
+  const ProgramRun run =
+      bench.request.run_program({"--surface",       what.surface,
+                                 "--mobility",      what.mobility,
+                                 "--integrator",    what.integrator,
+                                 "--linear-solver", what.solver,
+                                 "--seed",          std::to_string(what.seed),
+                                 "--cells",         std::to_string(kCells),
+                                 "--epsilon",       format_number(kEpsilon),
+                                 "--raft-fraction", format_number(kFraction),
+                                 "--tolerance",     format_number(kTolerance),
+                                 "--t-end",         format_number(end_of_run(bench))},
+                                what.ranks, bench.space(what.surface, kCells)->nodes());
+  return {run.mass_drift, run.steps};
+}
+
 Drift drift_of(const Bench& bench, const Combination& what) {
+  if (what.ranks > 1) return drift_on_ranks(bench, what);
   const SpacePtr space = bench.space(*make_surface(what.surface), kCells, 1);
-  const ProblemPtr problem = bench.problem(space, bench_model(what.mobility, 0.2));
+  const ProblemPtr problem = bench.problem(space, bench_model(what.mobility, kEpsilon));
   InitialRequest request;
-  request.raft_fraction = 0.3;
+  request.raft_fraction = kFraction;
   request.seed = what.seed;
   const StartState start = initial_state(*problem, "noise", request);
   IntegratorSettings settings;
-  settings.tolerance = 1e-2;
+  settings.tolerance = kTolerance;
   const IntegratorPtr integrator =
       bench.make_integrator(*problem, *space, what.integrator, what.solver, settings);
   const double mass = problem->mass(start.y);
   Drift drift;
-  advance_to(*integrator, start, bench.quick() ? 2 : 20, [&] {
+  advance_to(*integrator, start, end_of_run(bench), [&] {
     drift.largest =
         std::max(drift.largest, std::fabs(problem->mass(integrator->state()) / mass - 1));
     ++drift.steps;
@@ -65,14 +93,16 @@ Drift drift_of(const Bench& bench, const Combination& what) {
 
 StudyReport run(const Bench& bench) {
   const std::vector<Combination> list = combinations(bench);
-  Table table{
-      "drift", {"surface", "mobility", "integrator", "solver", "seed", "steps", "drift"}, {}};
+  Table table{"drift",
+              {"surface", "mobility", "integrator", "solver", "ranks", "seed", "steps", "drift"},
+              {}};
   double largest = 0, steps = 0;
   for (std::size_t k = 0; k < list.size(); ++k) {
     const Combination& what = list[k];
     const Drift drift = drift_of(bench, what);
     table.rows.push_back({what.surface, what.mobility, what.integrator, what.solver,
-                          static_cast<double>(what.seed), drift.steps, drift.largest});
+                          static_cast<double>(what.ranks), static_cast<double>(what.seed),
+                          drift.steps, drift.largest});
     // NaN is the largest of all.
     if (!(drift.largest <= largest)) largest = drift.largest;
     steps += drift.steps;
@@ -92,8 +122,8 @@ StudyReport run(const Bench& bench) {
 }  // namespace
 
 StudyEntry mass_balance_study() {
-  return {"mass", "the mass does not drift: surfaces, mobilities, integrators, solvers, seeds",
-          run};
+  return {"mass",
+          "the mass does not drift: surfaces, mobilities, integrators, solvers, ranks, seeds", run};
 }
 
 }  // namespace traceraft

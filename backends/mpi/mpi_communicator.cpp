@@ -15,8 +15,6 @@ namespace {
 
 // Messages of one exchange do not mix with ghosts.
 enum Tag { kGhosts = 1, kExchange = 2 };
-// MPI counts bytes with int.
-constexpr std::size_t kLongestMessage = std::size_t{1} << 30;
 
 MPI_Comm farewell = MPI_COMM_NULL;  // apart from all other messages
 
@@ -28,14 +26,14 @@ double reduced(double local, MPI_Op operation) {
 
 // One request per piece of a long message.
 template <class Start>
-void for_each_piece(std::size_t bytes, const Start& start) {
-  for (std::size_t at = 0; at < bytes; at += kLongestMessage)
-    start(at, static_cast<int>(std::min(kLongestMessage, bytes - at)));
+void for_each_piece(std::size_t bytes, std::size_t longest, const Start& start) {
+  for (std::size_t at = 0; at < bytes; at += longest)
+    start(at, static_cast<int>(std::min(longest, bytes - at)));
 }
 
 class MpiCommunicator final : public Communicator {
  public:
-  MpiCommunicator() {
+  explicit MpiCommunicator(std::size_t longest_message) : longest_message_(longest_message) {
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &size_);
   }
@@ -78,11 +76,11 @@ class MpiCommunicator final : public Communicator {
     std::vector<MPI_Request> requests;
     for (int rank = 0; rank < size_; ++rank) {
       if (rank == rank_) continue;
-      for_each_piece(from[rank].size(), [&](std::size_t at, int count) {
+      for_each_piece(from[rank].size(), longest_message_, [&](std::size_t at, int count) {
         MPI_Irecv(from[rank].data() + at, count, MPI_BYTE, rank, kExchange, MPI_COMM_WORLD,
                   &requests.emplace_back());
       });
-      for_each_piece(to[rank].size(), [&](std::size_t at, int count) {
+      for_each_piece(to[rank].size(), longest_message_, [&](std::size_t at, int count) {
         MPI_Isend(to[rank].data() + at, count, MPI_BYTE, rank, kExchange, MPI_COMM_WORLD,
                   &requests.emplace_back());
       });
@@ -93,10 +91,15 @@ class MpiCommunicator final : public Communicator {
   }
 
  private:
+  std::size_t longest_message_;
   int rank_ = 0, size_ = 1;
 };
 
 }  // namespace
+
+std::shared_ptr<const Communicator> mpi_world(std::size_t longest_message) {
+  return std::make_shared<MpiCommunicator>(longest_message);
+}
 
 MpiSession::MpiSession() {
   // The two solves of a step may run on two threads, and take turns at the library that calls MPI.
@@ -109,10 +112,6 @@ MpiSession::MpiSession() {
 MpiSession::~MpiSession() {
   MPI_Comm_free(&farewell);
   MPI_Finalize();
-}
-
-std::shared_ptr<const Communicator> MpiSession::world() const {
-  return std::make_shared<MpiCommunicator>();
 }
 
 bool MpiSession::all_fail(double seconds) const {

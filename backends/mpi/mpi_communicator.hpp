@@ -7,6 +7,12 @@
 
 namespace traceraft {
 
+// MPI counts bytes with int.
+inline constexpr std::size_t kLongestMessage = std::size_t{1} << 30;
+
+// All processes that were started together; a session must exist. Longer messages go in pieces.
+std::shared_ptr<const Communicator> mpi_world(std::size_t longest_message = kLongestMessage);
+
 // MPI from its start to its end. One object per process, made before and destroyed after all that
 // uses MPI.
 class MpiSession {
@@ -15,9 +21,6 @@ class MpiSession {
   ~MpiSession();
   MpiSession(const MpiSession&) = delete;
   MpiSession& operator=(const MpiSession&) = delete;
-
-  // All processes that were started together.
-  std::shared_ptr<const Communicator> world() const;
 
   // For a process that fails: true if all others come here, too, within the seconds given, so that
   // every process can end in good order.

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <fstream>
 
 #include "backends/posix/process.hpp"
 #include "kernel/core/error.hpp"
@@ -20,29 +21,46 @@ constexpr useconds_t kPause = 50000;  // microseconds between looks
 
 // In the new process, with nothing but calls that are safe after a fork: becomes the program, or
 // reports why not.
-[[noreturn]] void become(char* const* arguments, const char* log, pid_t parent, int report) {
+[[noreturn]] void become(char* const* arguments, char* const* environment, const char* log,
+                         pid_t parent, int report) {
   prctl(PR_SET_PDEATHSIG, kParentDied);
   if (getppid() != parent) _exit(1);  // it died before that
   const int input = open("/dev/null", O_RDONLY);
   const int output = open(log, O_WRONLY | O_CREAT | O_TRUNC, 0644);
   if (input >= 0 && output >= 0 && dup2(input, STDIN_FILENO) >= 0 &&
       dup2(output, STDOUT_FILENO) >= 0 && dup2(output, STDERR_FILENO) >= 0)
-    execvp(arguments[0], arguments);
+    execvpe(arguments[0], arguments, environment);
   const int error = errno;
   const auto told = write(report, &error, sizeof error);
   _exit(told == sizeof error ? 127 : 126);
 }
 
+// What this process was started with, "name=value" each. MPI, once initialised, has set variables
+// that make an mpirun among the children fail.
+std::vector<std::string> first_environment() {
+  std::ifstream file("/proc/self/environ");
+  std::vector<std::string> variables;
+  for (std::string variable; std::getline(file, variable, '\0');) variables.push_back(variable);
+  if (variables.empty()) throw IoError("cannot read /proc/self/environ");
+  return variables;
+}
+
+std::vector<char*> for_exec(const std::vector<std::string>& words) {
+  std::vector<char*> pointers;
+  for (const std::string& word : words) pointers.push_back(const_cast<char*>(word.c_str()));
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
 // −1: there is no such program.
 pid_t spawn(const ChildRequest& request) {
-  std::vector<char*> arguments;
-  for (const std::string& word : request.command)
-    arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
+  const std::vector<std::string> variables = first_environment();
+  const std::vector<char*> arguments = for_exec(request.command), environment = for_exec(variables);
   int report[2];
   if (pipe2(report, O_CLOEXEC) != 0) throw IoError(std::string("pipe: ") + std::strerror(errno));
   const pid_t parent = getpid(), child = fork();
-  if (child == 0) become(arguments.data(), request.log.c_str(), parent, report[1]);
+  if (child == 0)
+    become(arguments.data(), environment.data(), request.log.c_str(), parent, report[1]);
   const int fork_error = errno;
   close(report[1]);
   int error = 0;

@@ -20,9 +20,9 @@ struct ChildResult {
   bool out_of_time = false;
 };
 
-// Runs a program and waits. If this process is asked to stop (process.hpp) the child is, too, and
-// its end is waited for; if this process dies, the child is asked to stop. Throws IoError if no
-// process can be started.
+// Runs a program in the environment that this process was started with, and waits. If this process
+// is asked to stop (process.hpp) the child is, too, and its end is waited for; if this process
+// dies, the child is asked to stop. Throws IoError if no process can be started.
 ChildResult run_child(const ChildRequest& request);
 
 // A path under which this very program can be run, even after its file has been replaced.

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <csignal>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/program.hpp"
@@ -30,8 +31,8 @@ class RanksTest : public ::testing::Test {
     return shell(kEnvironment + kMpirun + "-np " + std::to_string(ranks) +
                  " " TRACERAFT_PROGRAM " " + arguments);
   }
-  // Runs until there are some steps, and asks all ranks to stop, as mpirun passes on this signal.
-  void stop_early(int ranks, const std::string& arguments, const std::string& name) const {
+  // mpirun, in the background.
+  static pid_t start(int ranks, const std::string& arguments) {
     const pid_t child = fork();
     if (child == 0) {
       const std::string command = kEnvironment + "exec " + kMpirun + "-np " +
@@ -39,7 +40,28 @@ class RanksTest : public ::testing::Test {
       execl("/bin/sh", "sh", "-c", command.c_str(), static_cast<char*>(nullptr));
       _exit(127);
     }
-    for (int i = 0; i < 6000 && testing::lines_of(at(name) + "/series.csv") < 8; ++i) usleep(10000);
+    return child;
+  }
+  void while_short_of(long lines, const std::string& name) const {
+    for (int i = 0; i < 6000 && testing::lines_of(at(name) + "/series.csv") < lines; ++i)
+      usleep(10000);
+  }
+  // The process that this mpirun has started as a rank; 0 if there is none.
+  static pid_t rank_below(pid_t mpirun, int rank) {
+    const std::string variable = "OMPI_COMM_WORLD_RANK=" + std::to_string(rank);
+    std::ifstream children("/proc/" + std::to_string(mpirun) + "/task/" + std::to_string(mpirun) +
+                           "/children");
+    for (pid_t child = 0; children >> child;) {
+      std::ifstream environment("/proc/" + std::to_string(child) + "/environ");
+      for (std::string entry; std::getline(environment, entry, '\0');)
+        if (entry == variable) return child;
+    }
+    return 0;
+  }
+  // Runs until there are some steps, and asks all ranks to stop, as mpirun passes on this signal.
+  void stop_early(int ranks, const std::string& arguments, const std::string& name) const {
+    const pid_t child = start(ranks, arguments);
+    while_short_of(8, name);
     kill(child, SIGUSR1);
     int status = 0;
     waitpid(child, &status, 0);
@@ -67,6 +89,8 @@ TEST_F(RanksTest, ARunOnRanksIsTheRunOfOne) {
     EXPECT_NEAR(many.at(close).get<double>() / one.at(close).get<double>(), 1, 1e-3) << close;
   EXPECT_EQ(many.at("ranks"), 2);
   EXPECT_LE(many.at("mass_drift").get<double>(), 1e-12);
+  // Memory is that of all ranks: most of it is the program, which every one of them has.
+  EXPECT_GT(many.at("peak_memory_mb").get<double>(), 1.5 * one.at("peak_memory_mb").get<double>());
   // Every rank has written its piece of the fields, and one file joins them.
   EXPECT_TRUE(fs::exists(at("two") + "/fields/field-0000-0001.vtu"));
   EXPECT_NE(content(at("two") + "/fields.pvd").find("field-0000.pvtu"), std::string::npos);
@@ -89,6 +113,20 @@ TEST_F(RanksTest, GoesOnWithMoreAndFewerRanks) {
                   1, 1e-3)
           << close << " on " << ranks;
   }
+}
+
+// A batch system may reach one of the processes only.
+TEST_F(RanksTest, StopWhereOneOfThemIsAskedTo) {
+  const pid_t mpirun = start(2, "run --quiet " + runs + "--out " + at("run"));
+  while_short_of(8, "run");
+  const pid_t second = rank_below(mpirun, 1);
+  ASSERT_GT(second, 0);
+  kill(second, SIGTERM);
+  int status = 0;
+  waitpid(mpirun, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 5);
+  EXPECT_EQ(summary("run").at("end"), "stopped");
+  EXPECT_EQ(on(2, "resume --quiet " + at("run")).code, 0);
 }
 
 // What a run wrote after its last checkpoint is written again, by as many ranks as there are then;
@@ -142,6 +180,7 @@ TEST_F(RanksTest, AreAnAxisOfComparisons) {
   const Outcome outcome = shell(
       kEnvironment + TRACERAFT_PROGRAM " compare --out " + at("c") + " --references " + at("r") +
       " --case two-rafts --cells 12 --epsilon 1 --t-end 0.1 --integrators ida --tolerances 1e-2 "
+      "--threads 2 "  // ranks have one each
       "--linear-solvers block,teko --ranks 1,2 --repeat 1");
   ASSERT_EQ(outcome.code, 0) << outcome.output;
   EXPECT_NE(outcome.output.find("ida with teko"), std::string::npos);
@@ -150,6 +189,18 @@ TEST_F(RanksTest, AreAnAxisOfComparisons) {
         std::pair("ida-teko-2ranks-0.01-1", 2)})
     EXPECT_EQ(summary(std::string("c/runs/") + job).at("ranks"), ranks) << job;
   EXPECT_EQ(testing::lines_of(at("c") + "/compare.csv"), 4);  // block does not work on two
+}
+
+// The solver of MPI has worked in the very process that starts the ranks.
+TEST_F(RanksTest, AreMeasuredByVerifications) {
+  const Outcome outcome = shell(kEnvironment +
+                                TRACERAFT_PROGRAM
+                                " verify agreement --quick --linear-solver teko --integrator ida "
+                                "--out " +
+                                at("v"));
+  ASSERT_EQ(outcome.code, 0) << outcome.output;
+  EXPECT_EQ(testing::lines_of(at("v") + "/agreement-ranks.csv"), 2);
+  EXPECT_FALSE(fs::exists(at("v") + "/ranks"));
 }
 
 TEST_F(RanksTest, OneThatFailsEndsAll) {

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "backends/list.hpp"
+#include "backends/mpi/mpi_communicator.hpp"
 #include "backends/ranks.hpp"
 #include "tests/support/rank_contract.hpp"
 #include "tests/support/spaces.hpp"
@@ -38,14 +39,26 @@ TEST(Mpi, IsACommunicator) {
   testing::check_communicator(*world());
 }
 
-TEST(Mpi, CarriesLongMessages) {
-  const auto ranks = world();
+// No two pieces of it are the same.
+std::string message(int from, int to) {
+  std::string text;
+  for (int k = 0; text.size() < 3000000; ++k)
+    text += std::to_string(from) + " to " + std::to_string(to) + ": " + std::to_string(k) + ". ";
+  return text;
+}
+
+// In one piece, and in pieces.
+class MpiMessages : public ::testing::TestWithParam<std::size_t> {};
+
+INSTANTIATE_TEST_SUITE_P(Lengths, MpiMessages, ::testing::Values(std::size_t{1} << 30, 1000000));
+
+TEST_P(MpiMessages, Arrive) {
+  const auto ranks = mpi_world(GetParam());
   std::vector<std::string> to;
-  for (int rank = 0; rank < ranks->size(); ++rank)
-    to.emplace_back(5000000 + rank, static_cast<char>('a' + ranks->rank()));
+  for (int rank = 0; rank < ranks->size(); ++rank) to.push_back(message(ranks->rank(), rank));
   const auto from = ranks->exchange(to);
   for (int rank = 0; rank < ranks->size(); ++rank)
-    EXPECT_EQ(from[rank], std::string(5000000 + ranks->rank(), static_cast<char>('a' + rank)));
+    EXPECT_EQ(from[rank], message(rank, ranks->rank()));
 }
 
 class OnRanks : public ::testing::Test {

@@ -1,0 +1,19 @@
+// What a run folder says of a run that has reached its end.
+#pragma once
+
+#include <filesystem>
+
+#include "kernel/core/types.hpp"
+
+namespace traceraft {
+
+// Has a run reached its end in this folder? Throws IoError if its summary is damaged.
+bool run_finished(const std::filesystem::path& run_folder);
+
+// A number of its summary. Throws IoError if it is not there.
+double summary_number(const std::filesystem::path& run_folder, const char* name);
+
+// c at the nodes at the end of a finished run. Throws IoError unless its last checkpoint is whole.
+Vec concentration_at_end(const std::filesystem::path& run_folder, int nodes);
+
+}  // namespace traceraft

@@ -1,0 +1,25 @@
+// Files of JSON that this program has written.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "backends/posix/durable_file.hpp"
+#include "kernel/core/error.hpp"
+
+namespace traceraft {
+
+using Json = nlohmann::ordered_json;
+
+// use(content). Throws IoError if the file is not there, is no JSON, or lacks what is looked for.
+template <class Use>
+auto from_json(const std::filesystem::path& path, const Use& use) {
+  constexpr std::uint64_t kMaxBytes = 1 << 24;
+  try {
+    return use(Json::parse(read_file(path, kMaxBytes)));
+  } catch (const nlohmann::json::exception& error) {
+    throw IoError(path.string() + " is damaged: " + error.what());
+  }
+}
+
+}  // namespace traceraft

@@ -1,0 +1,30 @@
+// Runs of this program as processes of their own.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "verification/bench.hpp"
+
+namespace traceraft {
+
+struct ProgramEnd {
+  int exit_code = 0;
+  bool out_of_time = false;
+  std::string last_line;  // of what it printed
+
+  std::string reason() const;  // of a failure, in a line
+};
+
+// Runs this program to its end, under mpirun if on more than one rank. What it prints goes to
+// `log`. `time_limit` and `tick` as of ChildRequest. Throws IoError if no process can be started.
+ProgramEnd run_program(const std::vector<std::string>& arguments, const std::filesystem::path& log,
+                       int ranks = 1, double time_limit = 0,
+                       const std::function<void()>& tick = {});
+
+// Studies' runs of the program. Each works in the folder `scratch` and removes it at its end.
+RunProgram program_runner(std::filesystem::path scratch);
+
+}  // namespace traceraft
