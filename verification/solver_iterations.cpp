@@ -1,8 +1,11 @@
-// GMRES iterations of the block solver with fresh factors, over meshes, step sizes and widths.
+// GMRES iterations of the block solver with fresh factors, over meshes, cuts, step sizes, widths
+// and mobilities.
 #include <algorithm>
 
 #include "backends/list.hpp"
 #include "verification/bench.hpp"
+#include "verification/fit.hpp"
+#include "verification/motion.hpp"
 #include "verification/shift_range.hpp"
 #include "verification/studies.hpp"
 
@@ -60,15 +63,18 @@ struct Most {
 };
 
 // A row for each tangent at one state.
-void measure(const Bench& bench, const CahnHilliard& problem, State state, int cells, Table& table,
-             Most& most) {
+void measure(const Bench& bench, const CahnHilliard& problem, const std::string& mobility,
+             State state, Table& table, Most& most) {
   const Sample sample = state_at(bench, problem, state, 5);
   const Vec b = right_side(problem, sample.y);
   for (const Tangent tangent : {Tangent::stabilised, Tangent::exact}) {
     const bool exact = tangent == Tangent::exact;
     std::vector<Cell> row = {state == State::late ? "late" : "coarsening",
-                             exact ? "exact" : "stabilised", static_cast<double>(cells),
-                             problem.model().epsilon, sample.step};
+                             exact ? "exact" : "stabilised",
+                             mobility,
+                             static_cast<double>(problem.space().mesh.cube.cells),
+                             problem.model().epsilon,
+                             sample.step};
     for (const double shift : shift_range()) {
       const double count = iterations(problem, sample.y, b, shift, tangent);
       row.push_back(count);
@@ -80,16 +86,55 @@ void measure(const Bench& bench, const CahnHilliard& problem, State state, int c
   }
 }
 
+// The sphere turned and shifted against the mesh, while rafts coarsen there.
+void measure_cuts(const Bench& bench, StudyReport& report) {
+  constexpr int kCells = 32;
+  const int count = bench.quick() ? 10 : 50;
+  const std::vector<double> shifts = shift_range();
+  std::vector<std::vector<double>> of_cut(static_cast<std::size_t>(count));
+  bench.in_parallel(count, [&](int k) {
+    const Motion motion(static_cast<std::uint64_t>(k) + 1, 0.5 * 10 / 3 / kCells);
+    const ProblemPtr problem =
+        bench.problem(bench.space(moved(make_surface("sphere"), motion), kCells, 1),
+                      bench_model("degenerate", 0.05));
+    const Vec y = state_at(bench, *problem, State::coarsening, 5).y, b = right_side(*problem, y);
+    for (const double shift : shifts)
+      of_cut[k].push_back(iterations(*problem, y, b, shift, Tangent::stabilised));
+  });
+  Table table{"cuts", {std::to_string(count) + " cuts"}, {{"fewest"}, {"mean"}, {"most"}}};
+  double most = 0, fewest = 1e9;
+  for (std::size_t s = 0; s < shifts.size(); ++s) {
+    std::vector<double> values;
+    for (const auto& cut : of_cut) values.push_back(cut[s]);
+    const Moments m = moments(values);
+    table.columns.push_back(shift_label(shifts[s]));
+    table.rows[0].push_back(m.low);
+    table.rows[1].push_back(m.mean);
+    table.rows[2].push_back(m.high);
+    most = std::max(most, m.high);
+    fewest = std::min(fewest, m.low);
+  }
+  report.tables.push_back(table);
+  report.claims.push_back(
+      claim_between("surfaces that lie anyhow in the mesh: most iterations to 1e-4", most, 1, 25));
+  report.claims.push_back(
+      claim_between("surfaces that lie anyhow in the mesh: fewest (-1: none)", fewest, 0, most));
+}
+
 StudyReport measure_meshes(const Bench& bench, int coarsest, int finest) {
-  Table table{"iterations", {"state", "tangent", "cells", "epsilon", "ida_step"}, {}};
+  Table table{"iterations", {"state", "tangent", "mobility", "cells", "epsilon", "ida_step"}, {}};
   for (const double shift : shift_range()) table.columns.push_back(shift_label(shift));
   Most most;
   for (int cells = coarsest; cells <= finest; cells *= 2) {
     const SpacePtr space = bench.space("sphere", cells);
     for (const double epsilon : {0.01, 0.02, 0.05}) {
-      const ProblemPtr problem = bench.problem(space, bench_model("degenerate", epsilon));
-      for (const State state : {State::coarsening, State::late})
-        measure(bench, *problem, state, cells, table, most);
+      for (const char* mobility : {"degenerate", "constant:value=0.25"}) {
+        // The degenerate law is the harder one.
+        if (cells > coarsest && mobility != std::string("degenerate")) continue;
+        const ProblemPtr problem = bench.problem(space, bench_model(mobility, epsilon));
+        for (const State state : {State::coarsening, State::late})
+          measure(bench, *problem, mobility, state, table, most);
+      }
     }
     bench.progress(static_cast<double>(cells * cells) / (finest * finest));
   }
@@ -102,13 +147,14 @@ StudyReport measure_meshes(const Bench& bench, int coarsest, int finest) {
       claim_between("stabilised tangent: most iterations to 1e-4", most.iterations[0], 1, 25),
       claim_between("exact, to 2 x ida's step: most to 1e-2", most.iterations[1], 1, 25),
       claim_at_most("solves that need the fallback", most.failures, 0)};
+  if (finest <= 128) measure_cuts(bench, report);
   return report;
 }
 
 }  // namespace
 
 StudyEntry solver_iterations_study() {
-  return {"iterations", "GMRES iterations over meshes, shifts and widths of the boundary",
+  return {"iterations", "GMRES iterations over meshes, cuts, shifts, widths and mobilities",
           [](const Bench& bench) { return measure_meshes(bench, 32, bench.quick() ? 64 : 128); }};
 }
 

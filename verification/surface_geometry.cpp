@@ -1,13 +1,12 @@
 // Γ_h itself: area, closedness and total curvature; and that nothing depends on how the mesh cuts
 // the surface.
 #include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
 #include <cmath>
 
-#include "kernel/core/random.hpp"
 #include "verification/bench.hpp"
 #include "verification/fit.hpp"
 #include "verification/manufactured.hpp"
+#include "verification/motion.hpp"
 #include "verification/sparse_view.hpp"
 #include "verification/studies.hpp"
 
@@ -71,27 +70,6 @@ void measure_bodies(const Bench& bench, StudyReport& report) {
   }
   report.tables.push_back(table);
   report.charts.push_back(chart);
-}
-
-// A surface turned and shifted against the mesh.
-struct Motion {
-  Eigen::Matrix3d turn;
-  Point shift;
-
-  Motion(std::uint64_t number, double largest_shift) {
-    const auto draw = [&](std::uint64_t k) { return uniform_random(number, 71, k); };
-    // Uniform on the rotations (Shoemake 1992).
-    const double u = draw(0), v = 2 * kPi * draw(1), w = 2 * kPi * draw(2);
-    turn = Eigen::Quaterniond(std::sqrt(1 - u) * std::sin(v), std::sqrt(1 - u) * std::cos(v),
-                              std::sqrt(u) * std::sin(w), std::sqrt(u) * std::cos(w))
-               .toRotationMatrix();
-    for (int i = 0; i < 3; ++i) shift[i] = largest_shift * (2 * draw(3 + i) - 1);
-  }
-  Point home(const Point& x) const { return turn * (x - shift); }
-};
-
-FunctionLevelSet moved(const LevelSetPtr& base, const Motion& motion) {
-  return FunctionLevelSet([=](const Point& x) { return base->value(motion.home(x)); });
 }
 
 SurfaceFunction moved(const SurfaceFunction& base, const Motion& motion) {
