@@ -3,12 +3,13 @@
 // like t^(-2/3). With the degenerate mobility diffusion along boundaries competes, which has
 // t^(1/4); for this smooth quartic both enter at the same order (Lee, Münch, Süli, SIAM J. Appl.
 // Math. 76 (2016)).
-#include <algorithm>
 #include <cmath>
-#include <stdexcept>
+#include <cstdint>
 
+#include "kernel/core/stopwatch.hpp"
 #include "kernel/core/text.hpp"
-#include "verification/ensemble.hpp"
+#include "verification/coarsening_laws.hpp"
+#include "verification/dynamic_scaling.hpp"
 #include "verification/spherical_spectrum.hpp"
 #include "verification/studies.hpp"
 
@@ -23,234 +24,221 @@ constexpr double kWidthsLate = 25, kWidthsAbsorbed = 10;  // |Γ|/perimeter over
 constexpr double kGreatCirclesAtEnd = 3;                  // perimeter over 2π
 constexpr double kRaftsAtEnd = 12;                        // for laws of rafts
 
+constexpr const char* kConstant = "constant:value=0.25";
+
 struct Sizes {
   int cells;
   double epsilon;
   int members;
 };
 
-std::vector<double> logarithmic(double begin, double end, int per_decade) {
-  std::vector<double> times;
-  const int count = static_cast<int>(std::floor(std::log10(end / begin) * per_decade));
-  for (int i = 0; i <= count; ++i)
-    times.push_back(begin * std::pow(10.0, static_cast<double>(i) / per_decade));
-  return times;
-}
-
-struct Window {
-  double begin, end;
-};
-
-// From the first time at which `holds` to the last at which it does.
-template <class Holds>
-Window window_where(const std::vector<double>& times, const Holds& holds) {
-  Window window{times.back(), times.back()};
-  bool found = false;
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    if (!holds(i)) continue;
-    if (!found) window.begin = times[i];
-    window.end = times[i];
-    found = true;
-  }
-  return window;
-}
-
-// Long enough to fit a law in.
-bool usable(const Window& window) {
-  return window.end >= 3 * window.begin;
-}
-
-Points as_points(const std::vector<double>& times, const std::vector<double>& values) {
-  Points points;
-  for (std::size_t i = 0; i < times.size(); ++i) points.emplace_back(times[i], values[i]);
-  return points;
-}
-
-// A straight line of the given exponent through the middle of the window.
-ChartSeries law(const std::string& name, const Points& points, const Window& window, double b) {
-  const double middle = std::sqrt(window.begin * window.end);
-  const auto near =
-      std::min_element(points.begin(), points.end(), [&](const auto& p, const auto& q) {
-        return std::fabs(std::log(p.first / middle)) < std::fabs(std::log(q.first / middle));
-      });
-  const auto at = [&](double t) { return near->second * std::pow(t / near->first, b); };
-  return {name, {{window.begin, at(window.begin)}, {window.end, at(window.end)}}, Mark::line};
-}
-
-struct Law {
-  std::string ensemble, quantity;
-  std::vector<double> Member::*values;
-  double theory;
-};
-
-Exponent fit(const std::vector<Member>& members, const EnsembleRequest& request, const Law& law,
-             const Window& window, Origin origin, Table& table) {
-  if (!usable(window))
-    throw std::runtime_error("the window of the " + law.quantity + " is too short to fit a law");
-  const Exponent found =
-      fit_exponent(members, law.values, request.times, window.begin, window.end, origin);
-  table.rows.push_back({law.ensemble, law.quantity,
-                        origin == Origin::zero ? "t" : formatted("t + %.3g", found.offset),
-                        window.begin, window.end, found.b, found.interval.low, found.interval.high,
-                        law.theory});
-  return found;
-}
-
-Claim exponent_claim(const Law& law, const char* of, const Exponent& found, double margin) {
-  return claim_near(law.ensemble + ": exponent of the " + law.quantity + " in " + of, found.b,
-                    law.theory, margin, 0.5 * (found.interval.high - found.interval.low));
-}
-
-// The spectra of all members at each snapshot, over the mean degree: one curve if they scale.
-Chart scaling_chart(const std::vector<Member>& members, const EnsembleRequest& request,
-                    Points& mean_degrees) {
-  Chart chart{"Spectrum over the mean degree", "l / <l>", "<l> S_l / sum S", true, true, {}};
-  for (std::size_t k = 0; k < request.snapshot_times.size(); ++k) {
-    std::vector<double> sum(members.front().spectra[k].size(), 0);
-    for (const Member& member : members)
-      for (std::size_t l = 0; l < sum.size(); ++l) sum[l] += member.spectra[k][l];
-    const double mean = mean_degree(sum);
-    mean_degrees.emplace_back(request.snapshot_times[k], mean);
-    double total = 0;
-    for (std::size_t l = 1; l < sum.size(); ++l) total += sum[l];
-    Points curve;
-    for (std::size_t l = 1; l < sum.size(); ++l)
-      curve.emplace_back(static_cast<double>(l) / mean, mean * sum[l] / total);
-    chart.series.push_back({formatted("t = %.3g", request.snapshot_times[k]), curve, Mark::line});
-  }
-  return chart;
-}
-
-EnsembleRequest ensemble(const std::string& mobility, double fraction, const Sizes& sizes) {
+EnsembleRequest ensemble_request(const std::string& mobility, double fraction, const Sizes& sizes,
+                                 double t_end) {
   EnsembleRequest request;
   request.mobility = mobility;
   request.raft_fraction = fraction;
   request.cells = sizes.cells;
   request.epsilon = sizes.epsilon;
   request.members = sizes.members;
-  // The perimeter reaches three great circles near 0.8/ε, later with the degenerate mobility.
-  request.t_end = (mobility == "degenerate" ? 4 : 1) / sizes.epsilon;
-  request.times = logarithmic(0.1, request.t_end, 24);
+  request.tolerance = 1e-2;  // 1e-3 gives the same rafts, later than this by less than 1 % of t
+  request.t_end = t_end;
+  constexpr int kPerDecade = 24;
+  for (double t = 0.1; t <= t_end; t *= std::pow(10.0, 1.0 / kPerDecade))
+    request.times.push_back(t);
   return request;
 }
 
 // Where domains are `widths` of a boundary wide and do not yet feel the size of the sphere.
-Window window_of_lengths(const EnsembleRequest& request, const std::vector<double>& perimeter,
+bool in_range(const Ensemble& ensemble, double perimeter, double widths) {
+  return 4 * kPi / perimeter >= widths * ensemble.request.epsilon &&
+         perimeter >= kGreatCirclesAtEnd * 2 * kPi;
+}
+
+Window window_of_lengths(const Ensemble& ensemble, const std::vector<double>& perimeter,
                          double widths) {
-  return window_where(request.times, [&](std::size_t i) {
-    return 4 * kPi / perimeter[i] >= widths * request.epsilon &&
-           perimeter[i] >= kGreatCirclesAtEnd * 2 * kPi;
-  });
+  return window_where(ensemble.request.times,
+                      [&](std::size_t i) { return in_range(ensemble, perimeter[i], widths); });
 }
 
-Chart coarsening_chart(const std::string& title, const std::string& y_label,
-                       std::vector<ChartSeries> series) {
-  return {title, "t (R^2/D)", y_label, true, true, std::move(series)};
+std::string at_time(double t) {
+  return formatted("t = %.3g", t);
 }
 
-void measure_equal(const Bench& bench, const Sizes& sizes, double margin, Table& table,
-                   StudyReport& report) {
-  EnsembleRequest request = ensemble("constant:value=0.25", 0.5, sizes);
+// One row for each size of ensemble: what the laws cost.
+void add_cost(const Ensemble& ensemble, const std::string& name, double seconds, Table& cost) {
+  double steps = 0;
+  for (const Member& member : ensemble.members)
+    steps += member.steps / static_cast<double>(ensemble.members.size());
+  const EnsembleRequest& request = ensemble.request;
+  cost.rows.push_back({name, static_cast<double>(request.cells), request.epsilon,
+                       10.0 / 3 / request.cells / request.epsilon,
+                       static_cast<double>(request.members), request.t_end, steps, seconds});
+}
+
+struct Findings {
+  StudyReport report;
+  Table exponents = exponents_table();
+  Table cost{
+      "cost",
+      {"ensemble", "cells", "epsilon", "h/epsilon", "members", "t_end", "steps each", "wall_s"},
+      {}};
+};
+
+Ensemble measured_ensemble(const Bench& bench, const std::string& name,
+                           const EnsembleRequest& request, Findings& findings) {
+  const Stopwatch watch;
+  Ensemble ensemble(bench, request);
+  add_cost(ensemble, name, watch.seconds(), findings.cost);
+  return ensemble;
+}
+
+// The spectra of all members at each snapshot in one, over the mean degree.
+void measure_spectra(const Ensemble& ensemble, const std::string& name, Findings& findings) {
+  Chart chart = {"Spectrum below a degree, " + name, "l / <l>", "share", false, false, {}};
+  Points mean_degrees;
+  std::vector<Cumulative> curves;
+  for (std::size_t k = 0; k < ensemble.request.snapshot_times.size(); ++k) {
+    std::vector<double> sum(ensemble.members.front().spectra[k].size(), 0);
+    for (const Member& member : ensemble.members)
+      for (std::size_t l = 0; l < sum.size(); ++l) sum[l] += member.spectra[k][l];
+    const double t = ensemble.request.snapshot_times[k];
+    mean_degrees.emplace_back(t, mean_degree(sum));
+    curves.push_back(cumulative_spectrum(sum));
+    chart.series.push_back({at_time(t), curves.back(), Mark::line});
+  }
+  findings.report.charts.push_back(chart);
+  findings.exponents.rows.push_back({name, "mean degree of the spectrum", "t",
+                                     mean_degrees.front().first, mean_degrees.back().first,
+                                     fit_power_law(mean_degrees).slope, "", "", -1.0 / 3});
+  findings.report.claims.push_back(
+      claim_at_most(name + ": scaled spectra, largest difference of first and last",
+                    largest_difference(curves.front(), curves.back()), 0.1));
+}
+
+void measure_equal(const Bench& bench, const Sizes& sizes, double margin, Findings& findings) {
+  const Law perimeter{"50:50, constant mobility", "perimeter", &Member::perimeter, -1.0 / 3};
+  // The perimeter reaches three great circles near 0.8/ε.
+  EnsembleRequest request = ensemble_request(kConstant, 0.5, sizes, 1 / sizes.epsilon);
   request.highest_degree = 60;
   for (const double share : {0.1, 0.3, 0.8})
     request.snapshot_times.push_back(share * request.t_end);
-  const std::vector<Member> members = run_ensemble(bench, request);
-  const std::vector<double> mean = geometric_mean(members, &Member::perimeter, everyone(members));
-  const Law perimeter{"50:50, constant mobility", "perimeter", &Member::perimeter, -1.0 / 3};
-  const Window absorbed = window_of_lengths(request, mean, kWidthsAbsorbed);
-  const Window late = window_of_lengths(request, mean, kWidthsLate);
-  const Exponent shifted = fit(members, request, perimeter, absorbed, Origin::fitted, table);
+  const Ensemble runs = measured_ensemble(bench, perimeter.ensemble, request, findings);
+  const std::vector<double> mean = runs.mean(&Member::perimeter);
+  const Window absorbed = window_of_lengths(runs, mean, kWidthsAbsorbed);
+  const Exponent shifted =
+      measure_law(runs, perimeter, absorbed, Origin::fitted, findings.exponents);
+  std::vector<Claim>& claims = findings.report.claims;
   if (bench.quick()) {
     // Boundaries that are wide against the sphere make it smaller; a mobility that vanishes in the
     // phases smaller still.
-    report.claims.push_back(
-        claim_between("50:50, constant mobility, wide boundaries: exponent in t + offset",
+    claims.push_back(
+        claim_between("50:50, constant mobility, wide boundaries: exponent in "
+                      "t + offset",
                       shifted.b, -0.4, -0.24));
   } else {
-    report.claims.push_back(exponent_claim(perimeter, "t + offset", shifted, margin));
-    report.claims.push_back(claim_between("-1/3 lies in its 95 % interval (1: yes)",
-                                          shifted.interval.contains(-1.0 / 3), 1, 1));
-    const Exponent plain = fit(members, request, perimeter, late, Origin::zero, table);
-    report.claims.push_back(exponent_claim(perimeter, "t", plain, margin));
-    report.claims.push_back(claim_between("-1/3 lies in its 95 % interval (1: yes)",
-                                          plain.interval.contains(-1.0 / 3), 1, 1));
+    const Window late = window_of_lengths(runs, mean, kWidthsLate);
+    const Exponent plain = measure_law(runs, perimeter, late, Origin::zero, findings.exponents);
+    claims.push_back(exponent_claim(perimeter, "t + offset", shifted, margin));
+    claims.push_back(interval_claim(perimeter, "t + offset", shifted));
+    claims.push_back(exponent_claim(perimeter, "t", plain, margin));
+    claims.push_back(interval_claim(perimeter, "t", plain));
   }
   const Points points = as_points(request.times, mean);
-  report.charts.push_back(coarsening_chart(
-      "Length of all phase boundaries, 50:50, constant mobility", "length (R)",
-      {{"mean of the runs", points, Mark::line}, law("t^(-1/3)", points, absorbed, -1.0 / 3)}));
-  Points degrees;
-  report.charts.push_back(scaling_chart(members, request, degrees));
-  table.rows.push_back({perimeter.ensemble, "mean degree of the spectrum", "t",
-                        degrees.front().first, degrees.back().first, fit_power_law(degrees).slope,
-                        "", "", -1.0 / 3});
+  findings.report.charts.push_back(
+      coarsening_chart("Length of all phase boundaries, " + perimeter.ensemble, "length (R)",
+                       {{"mean of the runs", points, Mark::line},
+                        law_line("t^(-1/3)", points, absorbed, -1.0 / 3)}));
+  measure_spectra(runs, perimeter.ensemble, findings);
 }
 
 // Reported beside the theory, between −1/4 and −1/3, and not claimed.
-void measure_degenerate(const Bench& bench, const Sizes& sizes, Table& table, StudyReport& report) {
-  const EnsembleRequest request = ensemble("degenerate", 0.5, sizes);
-  const std::vector<Member> members = run_ensemble(bench, request);
-  const std::vector<double> mean = geometric_mean(members, &Member::perimeter, everyone(members));
-  const Window window = window_of_lengths(request, mean, kWidthsAbsorbed);
+void measure_degenerate(const Bench& bench, const Sizes& sizes, Findings& findings) {
   const Law perimeter{"50:50, degenerate mobility", "perimeter", &Member::perimeter, -0.25};
+  const EnsembleRequest request = ensemble_request("degenerate", 0.5, sizes, 4 / sizes.epsilon);
+  const Ensemble runs = measured_ensemble(bench, perimeter.ensemble, request, findings);
+  const std::vector<double> mean = runs.mean(&Member::perimeter);
+  const Window window = window_of_lengths(runs, mean, kWidthsAbsorbed);
   for (const Origin origin : {Origin::zero, Origin::fitted})
-    (void)fit(members, request, perimeter, window, origin, table);
+    (void)measure_law(runs, perimeter, window, origin, findings.exponents);
   const Points points = as_points(request.times, mean);
-  report.charts.push_back(
-      coarsening_chart("Length of all phase boundaries, 50:50, degenerate mobility", "length (R)",
+  findings.report.charts.push_back(
+      coarsening_chart("Length of all phase boundaries, " + perimeter.ensemble, "length (R)",
                        {{"mean of the runs", points, Mark::line},
-                        law("t^(-1/4)", points, window, -0.25),
-                        law("t^(-1/3)", points, window, -1.0 / 3)}));
+                        law_line("t^(-1/4)", points, window, -0.25),
+                        law_line("t^(-1/3)", points, window, -1.0 / 3)}));
 }
 
-void measure_rafts(const Bench& bench, const Sizes& sizes, double margin, Table& table,
-                   StudyReport& report) {
-  EnsembleRequest request = ensemble("constant:value=0.25", 0.3, sizes);
-  const std::vector<Member> members = run_ensemble(bench, request);
-  const std::vector<double> count = geometric_mean(members, &Member::rafts, everyone(members));
-  const std::size_t most =
-      static_cast<std::size_t>(std::max_element(count.begin(), count.end()) - count.begin());
+// Radii over their mean, of the rafts of all members together, at the snapshots.
+void measure_sizes(const Ensemble& runs, const std::string& name, Findings& findings) {
+  Chart chart = {
+      "Rafts smaller than a radius, " + name, "radius / mean", "share", false, false, {}};
+  std::vector<Cumulative> curves;
+  for (std::size_t k = 0; k < runs.request.snapshot_times.size(); ++k) {
+    std::vector<double> areas;
+    for (const Member& member : runs.members)
+      areas.insert(areas.end(), member.areas[k].begin(), member.areas[k].end());
+    curves.push_back(cumulative_radii(areas));
+    chart.series.push_back({at_time(runs.request.snapshot_times[k]), curves.back(), Mark::line});
+  }
+  findings.report.charts.push_back(chart);
+  findings.report.claims.push_back(
+      claim_at_most(name + ": scaled radii, difference of first and last over that of chance (5 %)",
+                    largest_difference(curves.front(), curves.back()) /
+                        critical_difference(curves.front().size() - 1, curves.back().size() - 1),
+                    1));
+}
+
+// Rafts are counted from where domains are wide, as the plain law of lengths is; early ones are of
+// one size and wait for each other.
+void measure_rafts(const Bench& bench, const Sizes& sizes, double margin, Findings& findings) {
+  const std::string name = "30 %, constant mobility";
+  EnsembleRequest request = ensemble_request(kConstant, 0.3, sizes, 0.6 / sizes.epsilon);
+  for (const double share : {0.05, 0.2, 0.6})
+    request.snapshot_times.push_back(share * request.t_end);
+  const Ensemble runs = measured_ensemble(bench, name, request, findings);
+  const std::vector<double> perimeter = runs.mean(&Member::perimeter);
+  const std::vector<double> count = runs.mean(&Member::rafts);
   const Window window = window_where(request.times, [&](std::size_t i) {
-    return request.times[i] >= 4 * request.times[most] && count[i] >= kRaftsAtEnd;
+    return 4 * kPi / perimeter[i] >= kWidthsLate * sizes.epsilon && count[i] >= kRaftsAtEnd;
   });
   const Points points = as_points(request.times, count);
-  Points radius =
-      as_points(request.times, geometric_mean(members, &Member::raft_radius, everyone(members)));
+  Points radius = as_points(request.times, runs.mean(&Member::raft_radius));
   for (auto& [t, value] : radius) value *= 100;
-  report.charts.push_back(coarsening_chart("Number and radius of rafts, 30 %, constant mobility",
-                                           "number, 100 radius/R",
-                                           {{"number", points, Mark::line},
-                                            law("t^(-2/3)", points, window, -2.0 / 3),
-                                            {"100 radius", radius, Mark::line},
-                                            law("t^(1/3)", radius, window, 1.0 / 3)}));
-  for (const Law& law :
-       {Law{"30 %, constant mobility", "number of rafts", &Member::rafts, -2.0 / 3},
-        Law{"30 %, constant mobility", "mean raft radius", &Member::raft_radius, 1.0 / 3}}) {
-    const Exponent found = fit(members, request, law, window, Origin::fitted, table);
-    report.claims.push_back(
+  findings.report.charts.push_back(
+      coarsening_chart("Number and radius of rafts, " + name, "number, 100 radius/R",
+                       {{"number", points, Mark::line},
+                        law_line("t^(-2/3)", points, window, -2.0 / 3),
+                        {"100 radius", radius, Mark::line},
+                        law_line("t^(1/3)", radius, window, 1.0 / 3)}));
+  for (const Law& law : {Law{name, "number of rafts", &Member::rafts, -2.0 / 3},
+                         Law{name, "mean raft radius", &Member::raft_radius, 1.0 / 3}}) {
+    const Exponent found = measure_law(runs, law, window, Origin::fitted, findings.exponents);
+    findings.report.claims.push_back(
         exponent_claim(law, "t + offset", found, 3 * margin * std::fabs(law.theory)));
-    (void)fit(members, request, law, window, Origin::zero, table);
+    findings.report.claims.push_back(interval_claim(law, "t + offset", found));
+    (void)measure_law(runs, law, window, Origin::zero, findings.exponents);
   }
+  measure_sizes(runs, name, findings);
 }
 
 StudyReport run(const Bench& bench) {
-  const Sizes sizes = bench.quick() ? Sizes{64, 0.04, 8} : Sizes{192, 0.0133, 6};
+  Findings findings;
   const double margin = bench.quick() ? 0.06 : 0.03;
-  StudyReport report;
-  report.notes = {formatted(
-      "%d cells, width %.4g (h/width %.2f), %d seeds each, intervals by the bootstrap over "
-      "runs. Windows end at a length of three great circles, or 12 rafts.",
-      sizes.cells, sizes.epsilon, 10.0 / 3 / sizes.cells / sizes.epsilon, sizes.members)};
-  Table table{"exponents",
-              {"ensemble", "quantity", "law of", "from", "to", "exponent", "low", "high", "theory"},
-              {}};
-  measure_equal(bench, sizes, margin, table, report);
-  if (!bench.quick()) {
-    measure_degenerate(bench, sizes, table, report);
-    measure_rafts(bench, sizes, margin, table, report);
+  if (bench.quick()) {
+    measure_equal(bench, {64, 0.04, 8}, margin, findings);
+  } else {
+    measure_equal(bench, {192, 0.0133, 6}, margin, findings);
+    measure_degenerate(bench, {128, 0.02, 4}, findings);
+    measure_rafts(bench, {256, 0.01, 6}, margin, findings);
   }
-  report.tables.push_back(table);
-  return report;
+  findings.report.notes = {formatted(
+      "Seeded runs, intervals by the bootstrap over runs. A length is |Gamma|/perimeter: windows "
+      "of "
+      "t + offset begin where it is %.0f widths, those of t and of rafts at %.0f; they end at a "
+      "perimeter of %.0f great circles, or %.0f rafts.",
+      kWidthsAbsorbed, kWidthsLate, kGreatCirclesAtEnd, kRaftsAtEnd)};
+  findings.report.tables = {findings.exponents, findings.cost};
+  return findings.report;
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ Member run_member(const Bench& bench, const EnsembleRequest& request, std::uint6
   InitialRequest initial;
   initial.raft_fraction = request.raft_fraction;
   initial.seed = seed;
-  const IntegratorPtr integrator = bench.default_integrator(*problem);
+  const IntegratorPtr integrator = bench.default_integrator(*problem, request.tolerance);
   const RaftFinder finder(space);
   Member member;
   std::size_t next_snapshot = 0;

@@ -15,6 +15,7 @@ struct EnsembleRequest {
   double raft_fraction;
   int cells;
   double epsilon, t_end;
+  double tolerance;
   int members;
   std::vector<double> times;           // common to all, ascending, within (0, t_end]
   std::vector<double> snapshot_times;  // of spectra and raft areas
