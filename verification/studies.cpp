@@ -13,6 +13,7 @@ const NamedList<StudyEntry>& studies() {
       equilibria_study(),
       coarsening_study(),
       pfhub_study(),
+      fine_pfhub_study(),
       integrator_agreement_study(),
       solver_iterations_study(),
       teko_iterations_study(),

@@ -16,6 +16,7 @@ StudyEntry equilibria_study();
 StudyEntry integrator_agreement_study();
 StudyEntry coarsening_study();
 StudyEntry pfhub_study();
+StudyEntry fine_pfhub_study();
 StudyEntry solver_iterations_study();
 StudyEntry large_solver_iterations_study();
 StudyEntry teko_iterations_study();
