@@ -2,9 +2,13 @@
 #include <filesystem>
 #include <thread>
 
+#include "backends/posix/child.hpp"
+#include "backends/posix/durable_file.hpp"
 #include "backends/posix/folder_lock.hpp"
+#include "backends/zlib/checksum.hpp"
 #include "drivers/commands.hpp"
 #include "drivers/exit_codes.hpp"
+#include "drivers/program_run.hpp"
 #include "drivers/run_folder.hpp"
 #include "drivers/status_line.hpp"
 #include "drivers/verify_report.hpp"
@@ -19,6 +23,8 @@ namespace traceraft {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::uint64_t kLargestProgram = std::uint64_t{1} << 32;
 
 std::vector<StudyEntry> chosen_studies(const VerifyRequest& request) {
   std::vector<StudyEntry> chosen;
@@ -50,6 +56,10 @@ StudyResult carry_out(const StudyEntry& study, const BenchRequest& request, Stat
   return result;
 }
 
+std::string or_default(const std::string& name) {
+  return name.empty() ? "of the study" : name;
+}
+
 VerificationContext context_of(const VerifyRequest& request, const BenchRequest& bench) {
   std::string command = "traceraft verify";
   for (const std::string& name : request.studies) command += " " + name;
@@ -58,8 +68,13 @@ VerificationContext context_of(const VerifyRequest& request, const BenchRequest&
   if (!request.linear_solver.empty()) command += " --linear-solver " + request.linear_solver;
   if (request.threads > 0) command += " --threads " + std::to_string(request.threads);
   if (!request.document.empty()) command += " --document " + request.document;
-  return {command, "traceraft " + std::string(kVersion) + ", " + std::to_string(bench.threads) +
-                       " threads."};
+  // The program itself decides the numbers, and what was asked of it.
+  const std::string program = formatted("%08x", crc32_of(read_file(own_path(), kLargestProgram)));
+  const std::string threads = std::to_string(bench.threads) + " threads";
+  return {command, "traceraft " + std::string(kVersion) + ", " + threads + ".",
+          "program " + program + (request.quick ? ", quick" : "") + ", integrator " +
+              or_default(request.integrator) + ", linear solver " +
+              or_default(request.linear_solver) + ", " + threads};
 }
 
 int list_studies() {
@@ -81,6 +96,7 @@ int verify_command(const VerifyRequest& request) {
   const fs::path folder = request.out.empty() ? first_free_folder("verify") : request.out;
   fs::create_directories(folder);
   const FolderLock lock(folder);
+  bench.run_program = program_runner(folder / "ranks");
   const VerificationContext context = context_of(request, bench);
 
   StatusLine line(request.quiet);
@@ -88,10 +104,12 @@ int verify_command(const VerifyRequest& request) {
   bool all = true;
   for (const StudyEntry& study : chosen) {
     if (!request.quiet) std::printf("%s: %s\n\n", study.name.c_str(), study.summary.c_str());
-    results.push_back(carry_out(study, bench, line));
+    auto before = measured_before(folder, study, context.measured_with);
+    if (before && !request.quiet) std::printf("  (measured before, in %s)\n\n", folder.c_str());
+    results.push_back(before ? std::move(*before) : carry_out(study, bench, line));
     if (!request.quiet) print_result(results.back());
     all = all && results.back().verdict() != Verdict::fails;
-    write_study(folder, results.back());
+    if (!before) write_study(folder, results.back(), context.measured_with);
   }
   const std::string missing = write_verification(folder, context, results);
   if (!request.document.empty()) write_document(request.document, folder, context, results);

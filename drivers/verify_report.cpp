@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "backends/posix/durable_file.hpp"
 #include "drivers/chart.hpp"
@@ -17,7 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Row = std::vector<std::string>;
-using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kLargestChart = 1 << 24;  // bytes
 
@@ -86,47 +84,6 @@ std::string csv_text(const Table& table) {
   return csv;
 }
 
-Json number_or_null(double value) {
-  return std::isfinite(value) ? Json(value) : Json();
-}
-
-Json claims_json(const std::vector<Claim>& claims) {
-  Json list = Json::array();
-  for (const Claim& claim : claims)
-    list.push_back({{"claim", claim.what},
-                    {"measured", number_or_null(claim.measured)},
-                    {"uncertainty", claim.uncertainty > 0 ? Json(claim.uncertainty) : Json()},
-                    {"expected", claim.expected ? Json(*claim.expected) : Json()},
-                    {"low", number_or_null(claim.low)},
-                    {"high", number_or_null(claim.high)},
-                    {"holds", claim.holds()}});
-  return list;
-}
-
-Json result_json(const StudyResult& result) {
-  Json json;
-  json["study"] = result.study.name;
-  json["summary"] = result.study.summary;
-  json["verdict"] = verdict_text(result.verdict());
-  if (!result.failure.empty()) json["why"] = result.failure;
-  if (!result.report.skipped.empty()) json["why"] = result.report.skipped;
-  json["seconds"] = result.seconds;
-  json["claims"] = claims_json(result.report.claims);
-  Json tables = Json::object();
-  for (const Table& table : result.report.tables) {
-    Json rows = Json::array();
-    for (const auto& cells : table.rows) {
-      Json row = Json::array();
-      for (const Cell& cell : cells)
-        row.push_back(cell.is_number ? number_or_null(cell.number) : Json(cell.text));
-      rows.push_back(row);
-    }
-    tables[table.name] = {{"columns", table.columns}, {"rows", rows}};
-  }
-  json["tables"] = tables;
-  return json;
-}
-
 std::string outcome_sentence(const StudyResult& result) {
   if (!result.failure.empty()) return "FAILS: " + result.failure + ".";
   if (!result.report.skipped.empty()) return "Not measured: " + result.report.skipped + ".";
@@ -178,19 +135,6 @@ std::string markdown_table(const std::vector<Row>& rows) {
 
 }  // namespace
 
-Verdict StudyResult::verdict() const {
-  if (!failure.empty()) return Verdict::fails;
-  if (!report.skipped.empty()) return Verdict::not_measured;
-  for (const Claim& claim : report.claims)
-    if (!claim.holds()) return Verdict::fails;
-  return report.claims.empty() ? Verdict::fails : Verdict::holds;
-}
-
-const char* verdict_text(Verdict verdict) {
-  if (verdict == Verdict::not_measured) return "not measured";
-  return verdict == Verdict::holds ? "holds" : "FAILS";
-}
-
 std::vector<Row> claim_rows(const std::vector<Claim>& claims) {
   std::vector<Row> rows = {{"claim", "measured", "expected", "tolerance", "verdict"}};
   for (const Claim& claim : claims) rows.push_back(claim_row(claim));
@@ -211,10 +155,10 @@ void print_result(const StudyResult& result) {
   std::fflush(stdout);
 }
 
-void write_study(const fs::path& folder, const StudyResult& result) {
+void write_study(const fs::path& folder, const StudyResult& result, const std::string& with) {
   for (const Table& table : result.report.tables)
     write_durably(folder / (result.study.name + "-" + table.name + ".csv"), csv_text(table));
-  write_durably(folder / (result.study.name + ".json"), result_json(result).dump(2) + "\n");
+  write_durably(folder / (result.study.name + ".json"), to_json(result, with).dump(2) + "\n");
 }
 
 std::string write_verification(const fs::path& folder, const VerificationContext& context,
@@ -223,7 +167,8 @@ std::string write_verification(const fs::path& folder, const VerificationContext
   all["command"] = context.command;
   all["conditions"] = context.conditions;
   Json studies = Json::array();
-  for (const StudyResult& result : results) studies.push_back(result_json(result));
+  for (const StudyResult& result : results)
+    studies.push_back(to_json(result, context.measured_with));
   all["studies"] = studies;
   write_durably(folder / "verify.json", all.dump(2) + "\n");
 

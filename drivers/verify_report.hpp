@@ -5,22 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "verification/study.hpp"
+#include "drivers/verify_result.hpp"
 
 namespace traceraft {
-
-enum class Verdict { holds, fails, not_measured };
-
-struct StudyResult {
-  StudyEntry study;
-  StudyReport report;
-  std::string failure;  // why it could not be carried out; "" if it was
-  double seconds = 0;
-
-  Verdict verdict() const;
-};
-
-const char* verdict_text(Verdict verdict);
 
 // claim · measured · expected · tolerance · verdict, for people. The first row is the heading.
 std::vector<std::vector<std::string>> claim_rows(const std::vector<Claim>& claims);
@@ -31,10 +18,12 @@ void print_result(const StudyResult& result);
 struct VerificationContext {
   std::string command;     // that repeats it
   std::string conditions;  // threads, integrator, solver, version
+  std::string measured_with;
 };
 
-// NAME.json and NAME-TABLE.csv of one study, as soon as it is done. Throws IoError.
-void write_study(const std::filesystem::path& folder, const StudyResult& result);
+// NAME-TABLE.csv and last NAME.json of one study, as soon as it is done. Throws IoError.
+void write_study(const std::filesystem::path& folder, const StudyResult& result,
+                 const std::string& measured_with);
 // verify.json, verify.html and the charts of all. "" or why charts are missing.
 std::string write_verification(const std::filesystem::path& folder,
                                const VerificationContext& context,

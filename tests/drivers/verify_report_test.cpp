@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "backends/posix/durable_file.hpp"
+#include "kernel/core/error.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace traceraft {
@@ -62,10 +63,11 @@ TEST(VerifyReport, FilesHoldAllOfIt) {
   const testing::TemporaryFolder folder;
   const std::vector<StudyResult> results = {result_with({claim_near("x", 1, 1, 0.1)}),
                                             result_with({claim_at_most("y", INFINITY, 1)})};
-  write_study(folder.path, results[0]);
+  write_study(folder.path, results[0], "this program");
   EXPECT_EQ(read_file(folder.path / "example-numbers.csv", 1 << 20),
             "name,value\n\"a, \"\"quoted\"\" one\",0.1\nnothing,nan\n");
-  (void)write_verification(folder.path, {"traceraft verify example", "2 threads."}, results);
+  (void)write_verification(folder.path, {"traceraft verify example", "2 threads.", "this program"},
+                           results);
   const auto json = nlohmann::json::parse(read_file(folder.path / "verify.json", 1 << 20));
   EXPECT_EQ(json["command"], "traceraft verify example");
   EXPECT_EQ(json["studies"][0]["verdict"], "holds");
@@ -78,9 +80,32 @@ TEST(VerifyReport, FilesHoldAllOfIt) {
     EXPECT_NE(page.find(part), std::string::npos) << part;
 }
 
+TEST(VerifyResult, IsReadBackWhole) {
+  const testing::TemporaryFolder folder;
+  const StudyResult written =
+      result_with({claim_near("x", 1, 1, 0.1, 0.02), claim_at_most("y", INFINITY, 1),
+                   claim_between("z", 0.1 + 0.2, -1, 2)});
+  write_study(folder.path, written, "this program");
+  EXPECT_FALSE(measured_before(folder.path, written.study, "another program"));
+  const auto read = measured_before(folder.path, written.study, "this program");
+  ASSERT_TRUE(read);
+  EXPECT_EQ(to_json(*read, "this program"), to_json(written, "this program"));
+  EXPECT_FALSE(read->report.claims[1].holds());
+  EXPECT_EQ(read->report.claims[2].measured, 0.1 + 0.2);
+  EXPECT_TRUE(std::isnan(read->report.tables[0].rows[1][1].number));
+
+  StudyResult failed = written;
+  failed.failure = "it broke";
+  write_study(folder.path, failed, "this program");
+  EXPECT_FALSE(measured_before(folder.path, written.study, "this program"))
+      << "what failed is tried again";
+  write_durably(folder.path / "example.json", "{\"study\": 1}");
+  EXPECT_THROW(measured_before(folder.path, written.study, "this program"), IoError);
+}
+
 TEST(VerifyReport, ADocumentHasItsFiguresBesideIt) {
   const testing::TemporaryFolder folder;
-  const VerificationContext context{"traceraft verify example", "2 threads."};
+  const VerificationContext context{"traceraft verify example", "2 threads.", "this program"};
   const std::vector<StudyResult> results = {result_with({claim_near("x", 1, 1, 0.1)})};
   const bool drawn = write_verification(folder.path, context, results).empty();
   write_document(folder.path / "report.md", folder.path, context, results);
