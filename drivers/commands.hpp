@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/configuration.hpp"
+#include "drivers/config/configuration.hpp"
 
 namespace traceraft {
 

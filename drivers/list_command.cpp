@@ -1,8 +1,8 @@
 #include <cstdio>
 
 #include "backends/list.hpp"
-#include "drivers/cases.hpp"
 #include "drivers/commands.hpp"
+#include "drivers/config/cases.hpp"
 #include "drivers/exit_codes.hpp"
 #include "kernel/physics/mobility.hpp"
 #include "kernel/problem/initial_data.hpp"

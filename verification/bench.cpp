@@ -69,7 +69,7 @@ IntegratorPtr Bench::default_integrator(const CahnHilliard& problem, double tole
   return make_integrator(problem, problem.space(), integrator(), linear_solver(), settings);
 }
 
-void Bench::in_parallel(int count, const std::function<void(int)>& job) const {
+void Bench::in_parallel(int count, const std::function<void(int)>& job, Part of) const {
   // What works on ranks keeps the state of its library for the whole process.
   const bool alone = traceraft::linear_solvers().find(linear_solver()).distributed;
   const ThreadTeam team(alone ? 1 : request.threads);
@@ -78,7 +78,7 @@ void Bench::in_parallel(int count, const std::function<void(int)>& job) const {
     for (int k = next++; k < count; k = next++) {
       job(k);
       ++done;
-      if (part == 0) progress(static_cast<double>(done) / count);
+      if (part == 0) progress(of.from + (of.to - of.from) * static_cast<double>(done) / count);
     }
   });
 }

@@ -25,6 +25,11 @@ struct ProgramRun {
 using RunProgram =
     std::function<ProgramRun(const std::vector<std::string>& options, int ranks, int nodes)>;
 
+// What a part of a study takes of the whole, for the display of progress.
+struct Part {
+  double from = 0, to = 1;
+};
+
 struct BenchRequest {
   bool quick = false;         // coarser and shorter, for every day
   std::string integrator;     // "": a study's choice, or all of them where it compares
@@ -66,7 +71,7 @@ class Bench {
 
   // job(0) … job(count − 1), as many at a time as there are threads: each has to work on spaces of
   // one thread.
-  void in_parallel(int count, const std::function<void(int)>& job) const;
+  void in_parallel(int count, const std::function<void(int)>& job, Part part = {}) const;
 };
 
 CahnHilliardModel bench_model(const std::string& mobility, double epsilon);

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "verification/bench.hpp"
-#include "verification/fit.hpp"
+#include "verification/measure/fit.hpp"
 #include "verification/studies.hpp"
 
 namespace traceraft {

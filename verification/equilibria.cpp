@@ -7,7 +7,7 @@
 #include "kernel/core/text.hpp"
 #include "kernel/observables/rafts.hpp"
 #include "verification/bench.hpp"
-#include "verification/fit.hpp"
+#include "verification/measure/fit.hpp"
 #include "verification/studies.hpp"
 
 namespace traceraft {

@@ -5,7 +5,7 @@
 
 #include "kernel/core/parameters.hpp"
 #include "verification/bench.hpp"
-#include "verification/fit.hpp"
+#include "verification/measure/fit.hpp"
 #include "verification/studies.hpp"
 
 namespace traceraft {

@@ -7,8 +7,8 @@
 
 #include "kernel/core/text.hpp"
 #include "verification/bench.hpp"
-#include "verification/fit.hpp"
-#include "verification/sparse_view.hpp"
+#include "verification/measure/fit.hpp"
+#include "verification/measure/sparse_view.hpp"
 #include "verification/studies.hpp"
 
 namespace traceraft {

@@ -12,8 +12,8 @@
 #include "kernel/core/text.hpp"
 #include "kernel/fem/density_load.hpp"
 #include "verification/bench.hpp"
-#include "verification/fit.hpp"
-#include "verification/recovered_energy.hpp"
+#include "verification/measure/fit.hpp"
+#include "verification/measure/recovered_energy.hpp"
 #include "verification/studies.hpp"
 
 namespace traceraft {

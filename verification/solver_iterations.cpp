@@ -4,9 +4,9 @@
 
 #include "backends/list.hpp"
 #include "verification/bench.hpp"
-#include "verification/fit.hpp"
-#include "verification/motion.hpp"
-#include "verification/shift_range.hpp"
+#include "verification/measure/fit.hpp"
+#include "verification/measure/motion.hpp"
+#include "verification/measure/shift_range.hpp"
 #include "verification/studies.hpp"
 
 namespace traceraft {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "verification/fit.hpp"
+#include "verification/measure/fit.hpp"
 
 namespace traceraft {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "verification/bench.hpp"
-#include "verification/fit.hpp"
-#include "verification/manufactured.hpp"
-#include "verification/motion.hpp"
-#include "verification/sparse_view.hpp"
+#include "verification/measure/fit.hpp"
+#include "verification/measure/manufactured.hpp"
+#include "verification/measure/motion.hpp"
+#include "verification/measure/sparse_view.hpp"
 #include "verification/studies.hpp"
 
 namespace traceraft {

@@ -2,8 +2,8 @@
 // run with far smaller steps.
 #include <cmath>
 
-#include "verification/fit.hpp"
-#include "verification/manufactured.hpp"
+#include "verification/measure/fit.hpp"
+#include "verification/measure/manufactured.hpp"
 #include "verification/studies.hpp"
 
 namespace traceraft {

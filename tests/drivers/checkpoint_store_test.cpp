@@ -1,4 +1,4 @@
-#include "drivers/checkpoint_store.hpp"
+#include "drivers/run/checkpoint_store.hpp"
 
 #include <gtest/gtest.h>
 

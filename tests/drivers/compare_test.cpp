@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "backends/posix/folder_lock.hpp"
-#include "drivers/checkpoint_store.hpp"
+#include "drivers/run/checkpoint_store.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/spaces.hpp"
 #include "tests/support/temporary_folder.hpp"

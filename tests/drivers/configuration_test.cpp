@@ -1,11 +1,11 @@
-#include "drivers/configuration.hpp"
+#include "drivers/config/configuration.hpp"
 
 #include <gtest/gtest.h>
 
 #include "backends/posix/durable_file.hpp"
-#include "drivers/cases.hpp"
-#include "drivers/config_file.hpp"
-#include "drivers/run_setup.hpp"
+#include "drivers/config/cases.hpp"
+#include "drivers/config/config_file.hpp"
+#include "drivers/run/run_setup.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/random.hpp"
 #include "tests/support/temporary_folder.hpp"

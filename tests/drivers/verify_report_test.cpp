@@ -1,5 +1,5 @@
 // What a verification leaves behind, and when it fails.
-#include "drivers/verify_report.hpp"
+#include "drivers/verify/verify_report.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "verification/fit.hpp"
+#include "verification/measure/fit.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "verification/recovered_energy.hpp"
+#include "verification/measure/recovered_energy.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "verification/surface_calculus.hpp"
+#include "verification/measure/surface_calculus.hpp"
 
 #include <gtest/gtest.h>
 
-#include "verification/manufactured.hpp"
+#include "verification/measure/manufactured.hpp"
 
 namespace traceraft {
 namespace {

@@ -1,4 +1,4 @@
-#include "verification/work_precision.hpp"
+#include "verification/measure/work_precision.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,158 @@
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+
+#include "backends/posix/durable_file.hpp"
+#include "backends/posix/folder_lock.hpp"
+#include "backends/posix/process.hpp"
+#include "backends/zlib/checksum.hpp"
+#include "drivers/commands.hpp"
+#include "drivers/compare/compare_report.hpp"
+#include "drivers/compare/compare_runs.hpp"
+#include "drivers/config/config_file.hpp"
+#include "drivers/exit_codes.hpp"
+#include "drivers/run/finished_run.hpp"
+#include "drivers/run/run_folder.hpp"
+#include "drivers/run/run_setup.hpp"
+#include "kernel/core/error.hpp"
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What the comparison itself decides for its runs.
+void refuse_varied(const GivenValues& values) {
+  for (const auto& [name, flags] :
+       {std::pair("integrator", "--integrators"), std::pair("linear-solver", "--linear-solvers"),
+        std::pair("tolerance", "--tolerances"), std::pair("ida-rtol", "--tolerances")})
+    if (const auto given = values.find(name); given != values.end())
+      throw InputError(given->second.where + ": a comparison takes " + flags);
+}
+
+bool decides_numbers(const GivenValues& values) {
+  return std::any_of(values.begin(), values.end(),
+                     [](const auto& value) { return run_option(value.first).numerical; });
+}
+
+// All options of the runs but integrator, linear solver and tolerance.
+Configuration new_configuration(const GivenValues& file, GivenValues flags,
+                                const std::string& out) {
+  if (!decides_numbers(file) && !decides_numbers(flags))
+    throw InputError((out.empty() ? "compare: " : "--out: " + out + " holds no comparison; ") +
+                     std::string("say which runs to compare, as in --case spinodal"));
+  flags["output-times"] = {Configuration(file, flags).text("t-end"), "--t-end"};
+  return {file, flags};
+}
+
+// Of a comparison that goes on: nothing that would make its runs incomparable may change.
+Configuration known_configuration(const ComparisonFolder& folder, const GivenValues& file,
+                                  const GivenValues& flags) {
+  Configuration known(read_config_file(folder.config()), {});
+  const auto refuse = [&](const std::string& what) {
+    throw InputError("--out: " + folder.path().string() + " holds a comparison of " + what +
+                     "; choose another folder, or give only --out to go on with it");
+  };
+  if (decides_numbers(file) || decides_numbers(flags))
+    if (numerical_identity(new_configuration(file, flags, "")) != numerical_identity(known))
+      refuse("other runs");
+  for (const GivenValues* given : {&file, &flags})
+    if (const auto threads = given->find("threads"); threads != given->end())
+      if (Configuration({}, *given).integer("threads") != known.integer("threads"))
+        refuse("runs with --threads " + known.text("threads"));
+  return known;
+}
+
+// The checksum of a state, bit by bit.
+std::uint32_t checksum(const Vec& state) {
+  return crc32_of({reinterpret_cast<const char*>(state.data()),
+                   static_cast<std::size_t>(state.size()) * sizeof(double)});
+}
+
+std::string folder_name(const CompareRequest& request, const Configuration& configuration) {
+  return request.out.empty() ? first_free_folder("compare-" + configuration.text("case"))
+                             : request.out;
+}
+
+std::vector<std::string> explanations(const Configuration& configuration, const RunSetup& run,
+                                      const ComparePlan& plan) {
+  return {"Errors are those of c at t = " + configuration.text("t-end") +
+              (run.units.scaled ? "" : " s") +
+              ", relative in L2 of the surface, against ida with block at tolerance " +
+              format_number(plan.reference()) + " and linear tolerance " +
+              kReferenceLinearTolerance + " on the same mesh: of the time integration alone.",
+          "Every run is a process of its own; times are medians of " + std::to_string(plan.repeat) +
+              ", set-up included."};
+}
+
+// Everything after the folder is ours.
+int carry_out(const CompareRequest& request, const ComparisonFolder& folder,
+              const ComparePlan& plan, const Configuration& configuration, const RunSetup& run) {
+  const Reference reference = reference_of(plan, folder, request.references);
+  if (!request.quiet)
+    std::printf(
+        "comparing %zu integrators, %zu linear solvers and %zu tolerances, %d times, on %d "
+        "unknowns\nfolder %s\n",
+        plan.integrators.size(), plan.linear_solvers.size(), plan.tolerances.size(), plan.repeat,
+        run.problem->size(), folder.path().c_str());
+  std::string why;
+  switch (work_off(plan, folder, reference, request.quiet, why)) {
+    case WorkEnd::stopped:
+      if (!request.quiet)
+        std::printf("go on with: traceraft compare --out %s\n", folder.path().c_str());
+      return kInterrupted;
+    case WorkEnd::reference_failed:
+      std::fprintf(stderr, "traceraft: the reference failed: %s\n", why.c_str());
+      return kNumericalFailure;
+    case WorkEnd::done:
+      break;
+  }
+  const std::vector<WorkPoint> points =
+      folder.points(plan, *run.problem, concentration_at_end(reference.folder, run.space->nodes()));
+  const Recommendation advice = recommend(points, plan.target_error);
+  write_report(folder, points, advice, explanations(configuration, run, plan));
+  if (!request.quiet) {
+    print_points(points);
+    std::printf("\n%s\n\nopen next: %s\n", advice.sentence.c_str(),
+                (folder.path() / "compare.html").c_str());
+  }
+  return advice.cheapest.empty() ? kNumericalFailure : kSuccess;
+}
+
+}  // namespace
+
+int compare_command(const CompareRequest& request) {
+  catch_stop_signals();
+  const GivenValues file = read_config_file(request.config_file);
+  refuse_varied(file);
+  refuse_varied(request.flags);
+  if (!request.out.empty() && fs::exists(request.out) && !fs::is_directory(request.out))
+    throw InputError("--out: " + request.out + " is a file");
+
+  // A folder that exists is locked before anything in it is believed.
+  std::optional<FolderLock> lock;
+  if (!request.out.empty() && fs::exists(request.out)) lock.emplace(request.out);
+  const bool goes_on = !request.out.empty() && ComparisonFolder(request.out).started();
+  if (!goes_on && !request.out.empty()) refuse_files_of_a_run(request.out);
+  const Configuration configuration =
+      goes_on ? known_configuration(ComparisonFolder(request.out), file, request.flags)
+              : new_configuration(file, request.flags, request.out);
+  const ComparisonFolder folder(folder_name(request, configuration));
+  std::optional<ComparePlan> before;
+  if (goes_on) before = folder.load();
+  ComparePlan plan = extended_plan(request, before ? &*before : nullptr);
+  const RunSetup run = build_run(configuration, InitialState::build);
+  plan.initial_state = checksum(run.initial);
+  if (before && before->initial_state != plan.initial_state)
+    throw InputError("--out: " + folder.path().string() +
+                     " holds a comparison of runs from another initial state; choose another "
+                     "folder");
+
+  fs::create_directories(folder.path() / "runs");
+  if (!lock) lock.emplace(folder.path());
+  if (!goes_on) write_durably(folder.config(), config_text(configuration));
+  folder.save(plan);
+  return carry_out(request, folder, plan, configuration, run);
+}
+
+}  // namespace traceraft

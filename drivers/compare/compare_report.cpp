@@ -1,0 +1,143 @@
+#include "drivers/compare/compare_report.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+
+#include "backends/posix/durable_file.hpp"
+#include "drivers/output/chart.hpp"
+#include "drivers/output/csv.hpp"
+#include "drivers/output/page.hpp"
+#include "kernel/core/error.hpp"
+#include "kernel/core/parameters.hpp"
+#include "kernel/core/text.hpp"
+
+namespace traceraft {
+namespace {
+
+using Row = std::vector<std::string>;
+
+constexpr const char* kHeading[] = {
+    "integrator",       "linear solver", "ranks",    "tolerance", "error",      "CPU s",
+    "wall s (from to)", "steps",         "rejected", "failed",    "residuals",  "Jacobians",
+    "set-ups",          "linear its",    "threads",  "peak MB",   "mass drift", "energy rises"};
+constexpr std::size_t kNames = 4;  // columns that a failure has, too
+
+Row cells(const WorkPoint& p) {
+  Row row = {p.integrator, p.linear_solver, std::to_string(p.ranks), format_number(p.tolerance)};
+  if (!p.ok()) {
+    row.push_back(p.failure);
+    return row;
+  }
+  const Spread cpu = spread_of(p.cpu_s), wall = spread_of(p.wall_s);
+  row.push_back(formatted("%.2e", p.error));
+  row.push_back(formatted("%.2f", cpu.median));
+  row.push_back(formatted("%.2f", wall.median) + " (" + formatted("%.2f", wall.low) + " to " +
+                formatted("%.2f", wall.high) + ")");
+  for (const char* count : {"steps", "rejected", "failures", "residuals", "jacobians",
+                            "linear_setups", "linear_iterations", "threads"})
+    row.push_back(formatted("%.0f", p.counts.at(count)));
+  row.push_back(formatted("%.0f", p.counts.at("peak_memory_mb")));
+  row.push_back(formatted("%.0e", p.counts.at("mass_drift")));
+  row.push_back(formatted("%.0f", p.counts.at("energy_rises")));
+  return row;
+}
+
+std::vector<Row> table(const std::vector<WorkPoint>& points) {
+  std::vector<Row> rows = {Row(std::begin(kHeading), std::end(kHeading))};
+  for (const WorkPoint& p : points) rows.push_back(cells(p));
+  return rows;
+}
+
+Chart work_precision(const std::vector<WorkPoint>& points, const char* clock,
+                     std::vector<double> WorkPoint::*times) {
+  Chart chart;
+  chart.title = std::string("Error against ") + clock;
+  chart.x_label = std::string(clock) + " (s, median)";
+  chart.y_label = "relative error of c at the end";
+  chart.log_x = chart.log_y = true;
+  std::map<std::string, std::size_t> index;
+  for (const WorkPoint& p : points) {
+    if (!p.ok() || !(p.error > 0)) continue;  // no place on a logarithmic axis
+    const auto [entry, fresh] = index.emplace(p.method(), chart.series.size());
+    if (fresh) chart.series.push_back({p.method(), {}});
+    chart.series[entry->second].points.emplace_back(spread_of(p.*times).median, p.error);
+  }
+  return chart;
+}
+
+std::string compare_csv(const std::vector<WorkPoint>& points) {
+  const auto with_result =
+      std::find_if(points.begin(), points.end(), [](const WorkPoint& p) { return p.ok(); });
+  Row counts;
+  if (with_result != points.end())
+    for (const auto& [name, value] : with_result->counts)
+      if (name != "ranks") counts.push_back(name);
+  std::string csv =
+      "integrator,linear_solver,ranks,tolerance,failure,error,repetitions,cpu_s,cpu_s_low,"
+      "cpu_s_high,wall_s,wall_s_low,wall_s_high";
+  for (const std::string& name : counts) csv += "," + name;
+  csv += "\n";
+  for (const WorkPoint& p : points) {
+    csv += p.integrator + "," + p.linear_solver + "," + std::to_string(p.ranks) + "," +
+           format_number(p.tolerance) + ",";
+    if (!p.ok()) {
+      csv += csv_quoted(p.failure) + std::string(8 + counts.size(), ',') + "\n";
+      continue;
+    }
+    csv += "," + format_number(p.error) + "," + std::to_string(p.wall_s.size());
+    for (const auto& times : {p.cpu_s, p.wall_s}) {
+      const Spread spread = spread_of(times);
+      for (const double value : {spread.median, spread.low, spread.high})
+        csv += "," + format_number(value);
+    }
+    for (const std::string& name : counts) csv += "," + format_number(p.counts.at(name));
+    csv += "\n";
+  }
+  return csv;
+}
+
+}  // namespace
+
+void print_points(const std::vector<WorkPoint>& points) {
+  const std::vector<Row> rows = table(points);
+  std::vector<std::size_t> width(std::size(kHeading), 0);
+  for (const Row& row : rows)
+    for (std::size_t k = 0; k < row.size(); ++k)
+      if (row.size() == width.size()) width[k] = std::max(width[k], row[k].size());
+  for (const Row& row : rows) {
+    for (std::size_t k = 0; k < row.size(); ++k)
+      std::printf("  %*s",
+                  static_cast<int>(row.size() == width.size() || k < kNames ? width[k] : 0),
+                  row[k].c_str());
+    std::printf("\n");
+  }
+}
+
+void write_report(const ComparisonFolder& folder, const std::vector<WorkPoint>& points,
+                  const Recommendation& advice, const std::vector<std::string>& about) {
+  write_durably(folder.path() / "compare.csv", compare_csv(points));
+  Page page("Integrators and linear solvers compared");
+  page.paragraph(advice.sentence);
+  for (const std::string& line : about) page.paragraph(line);
+  std::string missing;
+  for (const auto& [name, clock, times] :
+       {std::tuple("error-wall", "wall time", &WorkPoint::wall_s),
+        std::tuple("error-cpu", "CPU time", &WorkPoint::cpu_s)}) {
+    const Chart chart = work_precision(points, clock, times);
+    if (chart.series.empty()) continue;
+    try {
+      const std::string svg = draw_chart(chart, folder.path() / name);
+      if (svg.empty()) missing = "gnuplot is not installed (Debian package gnuplot-nox)";
+      if (!svg.empty()) page.figure(svg, "Each mark is one tolerance. Lower left is better.");
+    } catch (const IoError& error) {  // the table is worth more than its picture
+      missing = error.what();
+    }
+  }
+  if (!missing.empty()) page.paragraph("Charts are missing: " + missing + ".");
+  page.heading("All runs");
+  page.table(table(points));
+  write_durably(folder.path() / "compare.html", page.html());
+}
+
+}  // namespace traceraft

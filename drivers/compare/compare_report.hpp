@@ -1,0 +1,18 @@
+// What a comparison shows: a table, compare.csv and compare.html.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "drivers/compare/comparison.hpp"
+
+namespace traceraft {
+
+void print_points(const std::vector<WorkPoint>& points);
+
+// Writes compare.csv and compare.html with its charts into the folder. `about` says what was
+// compared with what.
+void write_report(const ComparisonFolder& folder, const std::vector<WorkPoint>& points,
+                  const Recommendation& advice, const std::vector<std::string>& about);
+
+}  // namespace traceraft

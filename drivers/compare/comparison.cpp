@@ -1,0 +1,142 @@
+#include "drivers/compare/comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "drivers/output/json_file.hpp"
+#include "drivers/run/finished_run.hpp"
+#include "kernel/core/parameters.hpp"
+
+namespace traceraft {
+namespace {
+
+// What the table takes from the summary of a run.
+constexpr const char* kCounts[] = {"steps",         "rejected",
+                                   "failures",      "residuals",
+                                   "jacobians",     "newton_iterations",
+                                   "linear_setups", "linear_iterations",
+                                   "fallbacks",     "peak_memory_mb",
+                                   "mass_drift",    "energy_rises",
+                                   "ranks",         "threads"};
+
+double relative_error(const DaeProblem& problem, const Vec& c, ConstVec reference) {
+  Vec difference = Vec::Zero(problem.size()), exact = difference;
+  difference.head(c.size()) = c - reference;
+  exact.head(c.size()) = reference;
+  return problem.norm(difference) / problem.norm(exact);
+}
+
+}  // namespace
+
+void ComparisonFolder::save(const ComparePlan& plan) const {
+  const nlohmann::ordered_json json = {{"integrators", plan.integrators},
+                                       {"linear_solvers", plan.linear_solvers},
+                                       {"tolerances", plan.tolerances},
+                                       {"ranks", plan.ranks},
+                                       {"repeat", plan.repeat},
+                                       {"reference_tolerance", plan.reference_tolerance},
+                                       {"time_limit", plan.time_limit},
+                                       {"target_error", plan.target_error},
+                                       {"initial_state", plan.initial_state}};
+  write_durably(plan_file(), json.dump(2) + "\n");
+}
+
+ComparePlan ComparisonFolder::load() const {
+  return from_json(plan_file(), [](const Json& json) {
+    return ComparePlan{
+        json.at("integrators"), json.at("linear_solvers"), json.at("tolerances"),
+        json.at("ranks"),       json.at("repeat"),         json.at("reference_tolerance"),
+        json.at("time_limit"),  json.at("target_error"),   json.at("initial_state")};
+  });
+}
+
+std::filesystem::path ComparisonFolder::run_of(const CompareJob& job) const {
+  return path_ / "runs" / job.name();
+}
+std::filesystem::path ComparisonFolder::log_of(const CompareJob& job) const {
+  return path_ / "runs" / (job.name() + ".log");
+}
+std::filesystem::path ComparisonFolder::record_of(const CompareJob& job) const {
+  return path_ / "runs" / (job.name() + ".json");
+}
+
+void ComparisonFolder::record(const CompareJob& job, const Record& record) const {
+  write_durably(record_of(job), nlohmann::ordered_json{{"failure", record.failure},
+                                                       {"time_limit", record.time_limit}}
+                                        .dump() +
+                                    "\n");
+}
+
+std::optional<ComparisonFolder::Record> ComparisonFolder::recorded(const CompareJob& job) const {
+  if (!std::filesystem::exists(record_of(job))) return std::nullopt;
+  return from_json(record_of(job), [](const Json& json) {
+    return Record{json.at("failure"), json.at("time_limit")};
+  });
+}
+
+bool ComparisonFolder::done(const CompareJob& job, const ComparePlan& plan) const {
+  const auto settled = [&](const Record& record) {
+    const bool may_take_longer =
+        record.time_limit > 0 && (plan.time_limit == 0 || plan.time_limit > record.time_limit);
+    return !record.failure.empty() && !may_take_longer;
+  };
+  if (const auto own = recorded(job)) return own->failure.empty() || settled(*own);
+  // What failed is not repeated for its time.
+  CompareJob first = job;
+  first.repetition = 1;
+  const auto record = recorded(first);
+  return record && settled(*record);
+}
+
+void ComparisonFolder::add(const CompareJob& job, const DaeProblem& problem, ConstVec reference,
+                           WorkPoint& point) const {
+  const auto record = recorded(job);
+  if (!record) return;
+  if (!record->failure.empty()) {
+    // A later repetition that was in bad luck takes nothing away from the others.
+    if (point.wall_s.empty()) point.failure = record->failure;
+    return;
+  }
+  from_json(run_of(job) / "summary.json", [&](const Json& summary) {
+    point.cpu_s.push_back(summary.at("cpu_s"));
+    point.wall_s.push_back(summary.at("wall_s"));
+    if (point.wall_s.size() == 1)
+      for (const char* count : kCounts) point.counts[count] = summary.at(count);
+    return 0;
+  });
+  point.failure.clear();
+  if (point.wall_s.size() > 1) return;
+  point.error = relative_error(
+      problem, concentration_at_end(run_of(job), static_cast<int>(reference.size())), reference);
+}
+
+std::vector<WorkPoint> ComparisonFolder::points(const ComparePlan& plan, const DaeProblem& problem,
+                                                ConstVec reference) const {
+  std::vector<WorkPoint> points;
+  for (const CompareJob& job : jobs_of(plan)) {
+    const auto same = [&](const WorkPoint& p) {
+      return p.integrator == job.integrator && p.linear_solver == job.linear_solver &&
+             p.tolerance == job.tolerance && p.ranks == job.ranks;
+    };
+    auto point = std::find_if(points.begin(), points.end(), same);
+    if (point == points.end()) {
+      points.push_back({job.integrator,
+                        job.linear_solver,
+                        job.tolerance,
+                        "not run yet",
+                        0,
+                        {},
+                        {},
+                        {},
+                        job.ranks});
+      point = points.end() - 1;
+    }
+    add(job, problem, reference, *point);
+  }
+  for (WorkPoint& point : points)
+    if (point.ok() && !std::isfinite(point.error))
+      point.failure = "its error is no number: the reference is zero";
+  return points;
+}
+
+}  // namespace traceraft

@@ -1,0 +1,53 @@
+// The folder of a comparison: its plan, the runs behind it and what they gave.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/compare/compare_plan.hpp"
+#include "kernel/problem/dae_problem.hpp"
+#include "verification/measure/work_precision.hpp"
+
+namespace traceraft {
+
+class ComparisonFolder {
+ public:
+  explicit ComparisonFolder(std::filesystem::path path) : path_(std::move(path)) {}
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path config() const { return path_ / "config.toml"; }
+  bool started() const { return std::filesystem::exists(plan_file()); }
+
+  void save(const ComparePlan& plan) const;
+  ComparePlan load() const;  // throws IoError if it is damaged
+
+  std::filesystem::path run_of(const CompareJob& job) const;
+  std::filesystem::path log_of(const CompareJob& job) const;
+
+  // What is known of a job: "" for a result, or why there is none and, if it was stopped for
+  // taking too long, after how many seconds.
+  struct Record {
+    std::string failure;
+    double time_limit = 0;
+  };
+  void record(const CompareJob& job, const Record& record) const;
+  // Is nothing left to do? What failed once is not repeated, unless it may take longer now.
+  bool done(const CompareJob& job, const ComparePlan& plan) const;
+
+  // What the recorded jobs gave: a point per combination, in the order of the plan. Errors are
+  // against the concentration of the reference.
+  std::vector<WorkPoint> points(const ComparePlan& plan, const DaeProblem& problem,
+                                ConstVec reference) const;
+
+ private:
+  std::filesystem::path plan_file() const { return path_ / "plan.json"; }
+  std::filesystem::path record_of(const CompareJob& job) const;
+  std::optional<Record> recorded(const CompareJob& job) const;
+  void add(const CompareJob& job, const DaeProblem& problem, ConstVec reference,
+           WorkPoint& point) const;
+
+  std::filesystem::path path_;
+};
+
+}  // namespace traceraft

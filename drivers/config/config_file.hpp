@@ -1,0 +1,21 @@
+// Configuration files: TOML with the names of the flags as keys.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "drivers/config/configuration.hpp"
+
+namespace traceraft {
+
+// An empty path: no file, no values. Throws InputError with file and line for anything that is no
+// flat TOML table of known options.
+GivenValues read_config_file(const std::filesystem::path& path);
+
+// All options with their resolved values, each with its meaning: reads back as the same run.
+std::string config_text(const Configuration& configuration);
+
+// The options that decide the numbers of a run, in a normal form: equal text, equal run.
+std::string numerical_identity(const Configuration& configuration);
+
+}  // namespace traceraft

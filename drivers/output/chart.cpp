@@ -1,0 +1,74 @@
+#include "drivers/output/chart.hpp"
+
+#include "backends/posix/child.hpp"
+#include "backends/posix/durable_file.hpp"
+#include "kernel/core/error.hpp"
+#include "kernel/core/parameters.hpp"
+
+namespace traceraft {
+namespace {
+
+const char* style(Mark mark) {
+  switch (mark) {
+    case Mark::line:
+      return "lines";
+    case Mark::points:
+      return "points pt 7 ps 0.7";
+    default:
+      return "linespoints pt 7 ps 0.7";
+  }
+}
+
+// Told apart by people who see few colours, too (Okabe and Ito).
+constexpr const char* kColours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                    "#e69f00", "#56b4e9", "#000000", "#999999"};
+
+// Within gnuplot's single quotes nothing is special but the quote.
+std::string quoted(const std::string& text) {
+  std::string result = "'";
+  for (const char ch : text) result += ch == '\'' ? "''" : std::string(1, ch);
+  return result + "'";
+}
+
+std::string script(const Chart& chart, const std::string& svg) {
+  std::string text = "set terminal svg noenhanced size 720,520 dynamic font 'sans-serif,13'\n";
+  text += "set output " + quoted(svg) + "\n";
+  text += "set title " + quoted(chart.title) + "\n";
+  text += "set xlabel " + quoted(chart.x_label) + "\nset ylabel " + quoted(chart.y_label) + "\n";
+  for (const auto& [axis, log] : {std::pair("x", chart.log_x), std::pair("y", chart.log_y)})
+    if (log) text += std::string("set logscale ") + axis + "\nset format " + axis + " '%.0e'\n";
+  text += "set key outside below\nset grid lc rgb '#dddddd'\n";
+  for (std::size_t i = 0; i < std::size(kColours); ++i)
+    text += "set linetype " + std::to_string(i + 1) + " lw 2 lc rgb '" + kColours[i] + "'\n";
+  std::string plots;
+  for (std::size_t i = 0; i < chart.series.size(); ++i) {
+    const ChartSeries& series = chart.series[i];
+    const std::string block = "$s" + std::to_string(i);
+    text += block + " << END\n";
+    for (const auto& [x, y] : series.points)
+      text += format_number(x) + " " + format_number(y) + "\n";
+    text += "END\n";
+    plots += (plots.empty() ? "" : ", ") + block + " with " + style(series.mark) + " title " +
+             quoted(series.name);
+  }
+  return text + "plot " + plots + "\n";
+}
+
+}  // namespace
+
+std::string draw_chart(const Chart& chart, const std::filesystem::path& stem) {
+  const auto with = [&](const char* extension) {
+    std::filesystem::path path = stem;
+    return path += extension;
+  };
+  write_durably(with(".gp"), script(chart, with(".svg").string()));
+  const ChildResult result =
+      run_child({{"gnuplot", with(".gp").string()}, with(".log"), 60, nullptr});
+  if (result.exit_code == 127) return "";
+  if (result.exit_code != 0)
+    throw IoError("gnuplot failed on " + with(".gp").string() + "; see " + with(".log").string());
+  std::string svg = read_file(with(".svg"), 1 << 24);
+  return svg.substr(svg.find("<svg"));  // without the XML header: goes into pages
+}
+
+}  // namespace traceraft

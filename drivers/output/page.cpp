@@ -1,0 +1,61 @@
+#include "drivers/output/page.hpp"
+
+namespace traceraft {
+
+std::string html_text(const std::string& text) {
+  std::string result;
+  for (const char ch : text) {
+    if (ch == '&')
+      result += "&amp;";
+    else if (ch == '<')
+      result += "&lt;";
+    else if (ch == '>')
+      result += "&gt;";
+    else
+      result += ch;
+  }
+  return result;
+}
+
+void Page::heading(const std::string& text) {
+  body_ += "<h2>" + html_text(text) + "</h2>\n";
+}
+
+void Page::paragraph(const std::string& text) {
+  body_ += "<p>" + html_text(text) + "</p>\n";
+}
+
+void Page::figure(const std::string& svg, const std::string& caption) {
+  body_ += "<figure>" + svg + "<figcaption>" + html_text(caption) + "</figcaption></figure>\n";
+}
+
+void Page::table(const std::vector<std::vector<std::string>>& rows) {
+  body_ += "<div class=\"wide\"><table>\n";
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const std::string tag = r == 0 ? "th" : "td";
+    body_ += "<tr>";
+    for (const std::string& cell : rows[r]) {
+      const bool number =
+          !cell.empty() && std::string("0123456789+-.").find(cell[0]) != std::string::npos;
+      body_ += "<" + tag + (number ? " class=\"n\">" : ">") + html_text(cell) + "</" + tag + ">";
+    }
+    body_ += "</tr>\n";
+  }
+  body_ += "</table></div>\n";
+}
+
+std::string Page::html() const {
+  return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+         "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
+         html_text(title_) +
+         "</title>\n<style>\n"
+         "body{font:16px/1.5 sans-serif;max-width:60em;margin:2em auto;padding:0 1em;color:#222}\n"
+         "table{border-collapse:collapse;font-size:14px}\n"
+         "th,td{padding:.25em .7em;border-bottom:1px solid #ddd;text-align:left}\n"
+         "td.n{text-align:right;font-variant-numeric:tabular-nums}\n"
+         ".wide{overflow-x:auto}\nfigure{margin:1em 0}\nfigcaption{color:#555;font-size:14px}\n"
+         "</style></head><body>\n<h1>" +
+         html_text(title_) + "</h1>\n" + body_ + "</body></html>\n";
+}
+
+}  // namespace traceraft

@@ -1,0 +1,55 @@
+#include "drivers/output/status_line.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "backends/posix/process.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr double kTerminalPause = 0.2;  // seconds between updates
+constexpr double kPlainPause = 15;
+constexpr int kBar = 24;  // columns
+
+}  // namespace
+
+std::string clock_text(double seconds) {
+  char text[40];
+  const long total = std::isfinite(seconds) ? static_cast<long>(std::min(seconds, 1e9)) : 0;
+  if (total >= 3600)
+    std::snprintf(text, sizeof text, "%ld:%02ld:%02ld", total / 3600, total / 60 % 60, total % 60);
+  else
+    std::snprintf(text, sizeof text, "%ld:%02ld", total / 60, total % 60);
+  return text;
+}
+
+StatusLine::StatusLine(bool quiet) : quiet_(quiet), terminal_(stdout_is_terminal()) {}
+
+bool StatusLine::due() const {
+  return !quiet_ && (!shown_ || since_.seconds() >= (terminal_ ? kTerminalPause : kPlainPause));
+}
+
+void StatusLine::show(double share, const std::string& text) {
+  if (quiet_) return;
+  shown_ = true;
+  since_ = Stopwatch();
+  if (!terminal_) {
+    std::printf("%3.0f %%  %s\n", 100 * share, text.c_str());
+  } else {
+    const int columns = terminal_columns() - 1;
+    const int width = std::clamp(columns - static_cast<int>(text.size()) - 3, 0, kBar);
+    std::string bar(static_cast<std::size_t>(width), '.');
+    std::fill_n(bar.begin(), static_cast<std::size_t>(share * width), '#');
+    std::printf("\r\033[K%.*s", columns, ((width ? "[" + bar + "] " : "") + text).c_str());
+  }
+  std::fflush(stdout);
+}
+
+void StatusLine::finish() {
+  if (!quiet_ && terminal_ && shown_) std::printf("\n");
+  std::fflush(stdout);
+}
+
+}  // namespace traceraft

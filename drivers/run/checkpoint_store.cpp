@@ -1,0 +1,201 @@
+#include "drivers/run/checkpoint_store.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <sstream>
+
+#include "backends/posix/durable_file.hpp"
+#include "backends/zlib/checksum.hpp"
+#include "kernel/core/binary.hpp"
+#include "kernel/core/error.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr char kMagic[] = "traceraft checkpoint 3\n";  // the number is the version of the format
+constexpr std::size_t kMagicSize = sizeof kMagic - 1;
+constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 36;
+constexpr std::size_t kKept = 2;
+
+void write_text(std::ostream& out, const std::string& text) {
+  write_binary(out, static_cast<std::uint64_t>(text.size()));
+  out.write(text.data(), static_cast<std::streamsize>(text.size()));
+}
+
+// Sizes are compared with what is left, so that damaged data cannot ask for memory.
+class Reader {
+ public:
+  explicit Reader(const std::string& data) : in_(data), left_(data.size()) {}
+
+  template <class T>
+  T number() {
+    T value;
+    take(sizeof value);
+    read_binary(in_, value);
+    return value;
+  }
+  std::string text() {
+    std::string result(count(1), '\0');
+    in_.read(result.data(), static_cast<std::streamsize>(result.size()));
+    return result;
+  }
+  std::vector<double> numbers() {
+    std::vector<double> result(count(sizeof(double)));
+    in_.read(reinterpret_cast<char*>(result.data()),
+             static_cast<std::streamsize>(sizeof(double) * result.size()));
+    return result;
+  }
+
+ private:
+  void take(std::uint64_t bytes) {
+    if (bytes > left_) throw IoError("it ends too early");
+    left_ -= bytes;
+  }
+  std::size_t count(std::uint64_t size) {
+    const auto items = number<std::uint64_t>();
+    if (items > left_ / size) throw IoError("it ends too early");
+    take(items * size);
+    return static_cast<std::size_t>(items);
+  }
+
+  std::istringstream in_;
+  std::uint64_t left_;
+};
+
+}  // namespace
+
+std::string encode(const Checkpoint& checkpoint) {
+  std::ostringstream out;
+  write_text(out, checkpoint.configuration);
+  write_binary(out, static_cast<std::uint64_t>(checkpoint.tables.size()));
+  for (const auto& [name, size] : checkpoint.tables) {
+    write_text(out, name);
+    write_binary(out, size);
+  }
+  write_text(out, checkpoint.state);
+  write_binary(out, static_cast<std::uint64_t>(checkpoint.concentration.size()));
+  out.write(reinterpret_cast<const char*>(checkpoint.concentration.data()),
+            static_cast<std::streamsize>(sizeof(double) * checkpoint.concentration.size()));
+  write_binary(out, static_cast<std::int64_t>(checkpoint.step));
+  write_binary(out, checkpoint.cost.wall_seconds);
+  write_binary(out, checkpoint.cost.cpu_seconds);
+  const std::string body = out.str();
+  std::ostringstream head;
+  head << kMagic;
+  write_binary(head, static_cast<std::uint64_t>(body.size()));
+  write_binary(head, crc32_of(body));
+  return head.str() + body;
+}
+
+Checkpoint decode(const std::string& data) {
+  if (data.compare(0, kMagicSize, kMagic) != 0)
+    throw IoError("it is no checkpoint of this version");
+  Reader head(data.substr(kMagicSize, sizeof(std::uint64_t) + sizeof(std::uint32_t)));
+  const auto size = head.number<std::uint64_t>();
+  const auto checksum = head.number<std::uint32_t>();
+  const std::string body = data.substr(kMagicSize + sizeof size + sizeof checksum);
+  if (body.size() != size) throw IoError("it is torn");
+  if (crc32_of(body) != checksum) throw IoError("it is damaged");
+  Reader in(body);
+  Checkpoint checkpoint;
+  checkpoint.configuration = in.text();
+  for (auto tables = in.number<std::uint64_t>(); tables > 0; --tables) {
+    const std::string name = in.text();
+    checkpoint.tables[name] = in.number<std::uint64_t>();
+  }
+  checkpoint.state = in.text();
+  checkpoint.concentration = in.numbers();
+  checkpoint.step = static_cast<long>(in.number<std::int64_t>());
+  checkpoint.cost.wall_seconds = in.number<double>();
+  checkpoint.cost.cpu_seconds = in.number<double>();
+  return checkpoint;
+}
+
+void CheckpointStore::write(const Checkpoint& checkpoint) {
+  char name[40];
+  std::snprintf(name, sizeof name, "step-%010ld.ckpt", checkpoint.step);
+  write_durably(folder_ / name, encode(checkpoint));
+  std::vector<std::filesystem::path> all = files();
+  for (; all.size() > kKept; all.erase(all.begin())) std::filesystem::remove(all.front());
+}
+
+std::vector<std::filesystem::path> CheckpointStore::files() const {
+  std::vector<std::filesystem::path> result;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+    const std::string name = entry.path().filename();
+    const bool ours = name.size() == 20 && name.compare(0, 5, "step-") == 0 &&
+                      entry.path().extension() == ".ckpt" &&
+                      std::all_of(name.begin() + 5, name.begin() + 15,
+                                  [](char ch) { return ch >= '0' && ch <= '9'; });
+    if (ours) result.push_back(entry.path());
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+Checkpoint CheckpointStore::newest(std::vector<std::string>& refused) const {
+  std::vector<std::filesystem::path> all = files();
+  for (; !all.empty(); all.pop_back()) {
+    try {
+      return decode(read_file(all.back(), kMaxBytes));
+    } catch (const IoError& error) {
+      refused.push_back(all.back().string() + ": " + error.what());
+    }
+  }
+  std::string message = "no usable checkpoint in " + folder_.string();
+  for (const std::string& why : refused) message += "; " + why;
+  throw IoError(message);
+}
+
+Checkpoint CheckpointStore::newest() const {
+  std::vector<std::string> refused;
+  Checkpoint checkpoint = newest(refused);
+  for (const std::string& why : refused)
+    std::fprintf(stderr, "traceraft: refused %s; using the checkpoint before it\n", why.c_str());
+  return checkpoint;
+}
+
+Vec concentration_of(const Checkpoint& checkpoint, const std::filesystem::path& run_folder,
+                     int nodes) {
+  if (checkpoint.concentration.size() != static_cast<std::size_t>(nodes))
+    throw IoError(run_folder.string() + " has " + std::to_string(checkpoint.concentration.size()) +
+                  " nodes, this run has " + std::to_string(nodes));
+  return Eigen::Map<const Vec>(checkpoint.concentration.data(), nodes);
+}
+
+namespace {
+
+// The line of an option in a numerical identity.
+std::string line_of(const std::string& identity, const std::string& option) {
+  const std::size_t begin = ("\n" + identity).find("\n" + option + " = ");
+  return begin == std::string::npos ? ""
+                                    : identity.substr(begin, identity.find('\n', begin) - begin);
+}
+
+}  // namespace
+
+Vec final_concentration(const std::filesystem::path& run_folder, int nodes,
+                        const std::string& identity) {
+  std::error_code unreadable;
+  if (!std::filesystem::is_directory(run_folder / "checkpoints", unreadable))
+    throw InputError("restart: " + run_folder.string() +
+                     " is not the folder of a run: it has no checkpoints");
+  Checkpoint checkpoint;
+  try {
+    checkpoint = CheckpointStore(run_folder / "checkpoints").newest();
+  } catch (const IoError& error) {
+    throw InputError(std::string("restart: ") + error.what());
+  } catch (const std::filesystem::filesystem_error& error) {
+    throw InputError(std::string("restart: ") + error.what());
+  }
+  for (const char* option : {"surface", "surface-formula", "cells"}) {
+    const std::string theirs = line_of(checkpoint.configuration, option);
+    const std::string ours = line_of(identity, option);
+    if (theirs != ours)
+      throw InputError("restart: " + run_folder.string() + " has " + theirs + ", this run has " +
+                       ours);
+  }
+  return concentration_of(checkpoint, run_folder, nodes);
+}
+
+}  // namespace traceraft

@@ -1,0 +1,63 @@
+#include "drivers/run/program_run.hpp"
+
+#include <stdexcept>
+
+#include "backends/posix/child.hpp"
+#include "backends/posix/durable_file.hpp"
+#include "backends/posix/process.hpp"
+#include "drivers/exit_codes.hpp"
+#include "drivers/run/finished_run.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr std::uint64_t kLargestLog = 1 << 24;
+
+// mpirun of Open MPI; ranks give way to each other where there are more of them than processors.
+std::vector<std::string> program_on(int ranks) {
+  if (ranks == 1) return {own_program()};
+  std::vector<std::string> command = {
+      "mpirun", "--quiet", "--oversubscribe",    "--mca", "mpi_yield_when_idle",
+      "1",      "-np",     std::to_string(ranks)};
+  if (is_superuser()) command.push_back("--allow-run-as-root");
+  command.push_back(own_path());
+  return command;
+}
+
+}  // namespace
+
+std::string ProgramEnd::reason() const {
+  if (exit_code == 127) return "mpirun is not there; install the Debian package openmpi-bin";
+  return last_line.empty() ? "exit code " + std::to_string(exit_code) : last_line;
+}
+
+ProgramEnd run_program(const std::vector<std::string>& arguments, const std::filesystem::path& log,
+                       int ranks, double time_limit, const std::function<void()>& tick) {
+  std::vector<std::string> command = program_on(ranks);
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  const ChildResult result = run_child({command, log, time_limit, tick});
+  std::string text = read_file(log, kLargestLog);
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  return {result.exit_code, result.out_of_time, text.substr(text.rfind('\n') + 1)};
+}
+
+RunProgram program_runner(std::filesystem::path scratch) {
+  return [scratch = std::move(scratch)](const std::vector<std::string>& options, int ranks,
+                                        int nodes) {
+    std::filesystem::remove_all(scratch);  // what a run that failed has left
+    std::filesystem::create_directories(scratch);
+    const std::filesystem::path folder = scratch / "run";
+    std::vector<std::string> arguments = {"run",         "--scaled", "--out",     folder.string(),
+                                          "--no-fields", "--quiet",  "--threads", "1"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const ProgramEnd end = run_program(arguments, scratch / "log", ranks);
+    if (end.exit_code != kSuccess)
+      throw std::runtime_error("a run on " + std::to_string(ranks) + " ranks: " + end.reason());
+    const ProgramRun run{summary_number(folder, "steps"), summary_number(folder, "mass_drift"),
+                         concentration_at_end(folder, nodes)};
+    std::filesystem::remove_all(scratch);
+    return run;
+  };
+}
+
+}  // namespace traceraft

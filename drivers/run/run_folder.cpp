@@ -1,0 +1,94 @@
+#include "drivers/run/run_folder.hpp"
+
+#include "backends/posix/durable_file.hpp"
+#include "drivers/config/config_file.hpp"
+#include "kernel/core/error.hpp"
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+
+void create_sub_folders(const RunFolder& folder) {
+  fs::create_directories(folder.fields());
+  fs::create_directories(folder.checkpoints());
+}
+
+}  // namespace
+
+std::string first_free_folder(const std::string& name) {
+  for (int number = 1;; ++number) {
+    const std::string candidate = "runs/" + name + "-" + std::to_string(number);
+    if (!fs::exists(candidate)) return candidate;
+  }
+}
+
+void refuse_files_of_a_run(const fs::path& path) {
+  const RunFolder folder{path, nullptr};
+  for (const fs::path& ours :
+       {folder.config(), folder.summary(), folder.fields(), folder.checkpoints(),
+        folder.table("view.png"), folder.table("fields.pvd"), folder.table("series.csv"),
+        folder.table("observables.csv"), folder.table("rafts.csv")})
+    if (fs::exists(ours))
+      throw InputError("--out: " + path.string() + " already holds " + ours.filename().string() +
+                       "; go on with: traceraft resume " + path.string() +
+                       ", or choose another folder");
+}
+
+RunFolder shared_folder(const Communicator& ranks, const std::function<RunFolder()>& open) {
+  // What comes of it on the first rank, a path or what is wrong, after a letter for its kind.
+  RunFolder folder;
+  Lists<char> message;
+  if (ranks.root()) {
+    std::string text;
+    try {
+      folder = open();
+      text = "p" + folder.path.string();
+    } catch (const InputError& error) {
+      text = std::string("i") + error.what();
+    } catch (const LockedError& error) {
+      text = std::string("l") + error.what();
+    } catch (const IoError& error) {
+      text = std::string("o") + error.what();
+    }
+    message.assign(static_cast<std::size_t>(ranks.size()), {text.begin(), text.end()});
+  }
+  const std::vector<char> received = scatter(ranks, message);
+  const std::string text(received.begin() + 1, received.end());
+  if (received[0] == 'i') throw InputError(text);
+  if (received[0] == 'l') throw LockedError(text);
+  if (received[0] == 'o') throw IoError(text);
+  folder.path = text;
+  return folder;
+}
+
+RunFolder create_run_folder(const std::string& out, const Configuration& configuration) {
+  RunFolder folder;
+  folder.path = out.empty() ? first_free_folder(configuration.text("case")) : out;
+  try {
+    if (fs::exists(folder.path) && !fs::is_directory(folder.path))
+      throw InputError("--out: " + folder.path.string() + " is a file");
+    fs::create_directories(folder.path);
+    folder.lock = std::make_unique<FolderLock>(folder.path);
+    refuse_files_of_a_run(folder.path);
+    // First what makes it a run that can be resumed.
+    write_durably(folder.config(), config_text(configuration));
+    create_sub_folders(folder);
+  } catch (const fs::filesystem_error& error) {
+    throw IoError(std::string("--out: ") + error.what());
+  }
+  return folder;
+}
+
+RunFolder open_run_folder(const fs::path& path) {
+  RunFolder folder;
+  folder.path = path;
+  if (!fs::is_directory(path)) throw InputError(path.string() + " is no folder");
+  if (!fs::exists(folder.config()))
+    throw InputError(path.string() + " holds no run: there is no config.toml");
+  folder.lock = std::make_unique<FolderLock>(path);
+  create_sub_folders(folder);
+  return folder;
+}
+
+}  // namespace traceraft

@@ -1,0 +1,43 @@
+// The folder of one run: who may write to it and what is where.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "backends/posix/folder_lock.hpp"
+#include "drivers/config/configuration.hpp"
+#include "kernel/core/communicator.hpp"
+
+namespace traceraft {
+
+struct RunFolder {
+  std::filesystem::path path;
+  std::unique_ptr<FolderLock> lock;  // of the first rank
+
+  std::filesystem::path config() const { return path / "config.toml"; }
+  std::filesystem::path summary() const { return path / "summary.json"; }
+  std::filesystem::path fields() const { return path / "fields"; }
+  std::filesystem::path checkpoints() const { return path / "checkpoints"; }
+  std::filesystem::path table(const std::string& name) const { return path / name; }
+};
+
+// runs/<name>-<first free number>.
+std::string first_free_folder(const std::string& name);
+
+// Throws InputError if a folder holds what a run writes.
+void refuse_files_of_a_run(const std::filesystem::path& path);
+
+// On every rank the folder that the first one has made or opened, or what it has thrown.
+RunFolder shared_folder(const Communicator& ranks, const std::function<RunFolder()>& open);
+
+// A folder for a new run, locked, holding its resolved configuration. Files of others in it are
+// left alone. An empty `out` means runs/<case>-<first free number>. Throws InputError if it holds a
+// run already, LockedError if one is going on, IoError.
+RunFolder create_run_folder(const std::string& out, const Configuration& configuration);
+
+// The folder of an earlier run, locked. Throws InputError if there is none, LockedError, IoError.
+RunFolder open_run_folder(const std::filesystem::path& path);
+
+}  // namespace traceraft

@@ -1,0 +1,193 @@
+#include "drivers/run/run_outputs.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <sstream>
+
+#include "backends/png/png_writer.hpp"
+#include "backends/posix/process.hpp"
+#include "backends/zlib/vtu_writer.hpp"
+#include "kernel/core/parameters.hpp"
+#include "kernel/fem/trace.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr char kColumns[] =
+    "step,t,dt,mass,energy,perimeter,perimeter_level,rafts,raft_fraction,c_min,c_max,rejected,"
+    "failures,newton_iterations,linear_iterations,linear_setups,order\n";
+constexpr char kRaftColumns[] = "t,raft,area,perimeter,x,y,z\n";
+
+std::uint64_t size_of(const std::map<std::string, std::uint64_t>& sizes, const std::string& name) {
+  const auto found = sizes.find(name);
+  return found == sizes.end() ? 0 : found->second;
+}
+
+std::string csv_row(std::initializer_list<double> values) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "" : ",") + format_number(value);
+  return text + "\n";
+}
+
+std::size_t output_index(const RunSetup& run, double t) {
+  const auto& times = run.output_times;
+  return static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), t) - times.begin());
+}
+
+constexpr int kViewPixels = 480;
+
+std::string numbered(const char* stem, std::size_t index, const char* extension) {
+  char name[40];
+  std::snprintf(name, sizeof name, "%s-%04zu.%s", stem, index, extension);
+  return name;
+}
+
+// What ParaView opens at an output time.
+std::string field_name(std::size_t index, const Communicator& ranks) {
+  return numbered("field", index, ranks.size() == 1 ? "vtu" : "pvtu");
+}
+std::string piece_name(std::size_t index, int rank) {
+  char name[40];
+  std::snprintf(name, sizeof name, "field-%04zu-%04d.vtu", index, rank);
+  return name;
+}
+
+}  // namespace
+
+TableWriter::TableWriter(const RunFolder& folder, const RunSetup& run,
+                         const std::map<std::string, std::uint64_t>& sizes)
+    : run_(run),
+      series_(folder.table("series.csv"), size_of(sizes, "series.csv")),
+      observables_(folder.table("observables.csv"), size_of(sizes, "observables.csv")),
+      rafts_(folder.table("rafts.csv"), size_of(sizes, "rafts.csv")) {
+  if (series_.size() == 0) series_.append(kColumns);
+  if (observables_.size() == 0) observables_.append(kColumns);
+  if (rafts_.size() == 0) rafts_.append(kRaftColumns);
+}
+
+std::string TableWriter::row_text(const Observables& row, double t) const {
+  const Units& units = run_.units;
+  const Integrator& integrator = *run_.integrator;
+  const IntegratorStatistics statistics = integrator.statistics();
+  const LinearStatistics linear = integrator.linear_statistics();
+  return csv_row(
+      {static_cast<double>(statistics.steps), t, integrator.step() * units.time(),
+       row.mass * units.area(), row.energy * units.area(), row.perimeter * units.length(),
+       row.perimeter_level * units.length(), static_cast<double>(row.rafts), row.raft_fraction,
+       row.c_min, row.c_max, static_cast<double>(statistics.rejected),
+       static_cast<double>(statistics.failures), static_cast<double>(statistics.newton_iterations),
+       static_cast<double>(linear.iterations), static_cast<double>(linear.setups),
+       static_cast<double>(statistics.order)});
+}
+
+void TableWriter::on_step(const RunState& state) {
+  series_.append(row_text(state.row, state.row.t * run_.units.time()));
+}
+
+void TableWriter::on_output(const Observables& row, const RaftReport& rafts, ConstVec) {
+  const Units& units = run_.units;
+  const double t = run_.output_labels[output_index(run_, row.t)];
+  observables_.append(row_text(row, t));
+  std::string text;
+  int number = 0;
+  for (const Raft& raft : rafts.rafts) {
+    const Point x = raft.centre * units.length();
+    text += csv_row({t, static_cast<double>(++number), raft.area * units.area(),
+                     raft.perimeter * units.length(), x[0], x[1], x[2]});
+  }
+  rafts_.append(text);
+}
+
+void TableWriter::sync() {
+  for (AppendFile* table : {&series_, &observables_, &rafts_}) table->sync();
+}
+
+std::map<std::string, std::uint64_t> TableWriter::sizes() const {
+  return {{"series.csv", series_.size()},
+          {"observables.csv", observables_.size()},
+          {"rafts.csv", rafts_.size()}};
+}
+
+void FieldWriter::on_output(const Observables& row, const RaftReport&, ConstVec y) {
+  const Communicator& ranks = *run_.ranks;
+  const SurfaceSpace& space = *run_.space;
+  const std::size_t index = output_index(run_, row.t);
+  Vec buffer;
+  const Vec c = trace(space, space.with_ghosts(run_.problem->c_of(y), buffer));
+  const Vec mu = trace(space, space.with_ghosts(run_.problem->mu_of(y), buffer));
+  const bool alone = ranks.size() == 1;
+  write_durably(
+      folder_.fields() / (alone ? field_name(index, ranks) : piece_name(index, ranks.rank())),
+      vtu_text(space, run_.units.length(), {{"c", c}, {"mu", mu}}));
+  const DoubleWell& well = run_.problem->model().well;
+  const Image image = draw_front_and_back(space, c, well.a, well.b, kViewPixels);
+  // Nothing is named before all of it is there.
+  if (!ranks.all(true) || !ranks.root()) return;
+  if (!alone) {
+    std::vector<std::string> pieces;
+    for (int rank = 0; rank < ranks.size(); ++rank) pieces.push_back(piece_name(index, rank));
+    write_durably(folder_.fields() / field_name(index, ranks), pvtu_text(pieces, {"c", "mu"}));
+  }
+  // What this run wrote at that time before it went on with more or fewer ranks.
+  std::filesystem::remove(folder_.fields() / numbered("field", index, alone ? "pvtu" : "vtu"));
+  for (int rank = alone ? 0 : ranks.size();; ++rank)
+    if (!std::filesystem::remove(folder_.fields() / piece_name(index, rank))) break;
+  const std::string picture = png_bytes(image);
+  write_durably(folder_.fields() / numbered("view", index, "png"), picture);
+  write_durably(folder_.path / "view.png", picture);
+  collect(index);
+}
+
+// All output times up to the newest, on however many ranks they were written.
+void FieldWriter::collect(std::size_t newest) const {
+  std::vector<std::pair<double, std::string>> files;
+  for (std::size_t i = 0; i <= newest; ++i)
+    for (const char* extension : {"vtu", "pvtu"})
+      if (const std::string name = numbered("field", i, extension);
+          std::filesystem::exists(folder_.fields() / name))  // not if fields were off
+        files.emplace_back(run_.output_labels[i], "fields/" + name);
+  write_durably(folder_.path / "fields.pvd", pvd_text(files));
+}
+
+CheckpointWriter::CheckpointWriter(const RunFolder& folder, const RunSetup& run,
+                                   TableWriter* tables, std::string configuration, double interval,
+                                   const RunCost& before)
+    : store_(folder.checkpoints()),
+      run_(run),
+      tables_(tables),
+      configuration_(std::move(configuration)),
+      interval_(interval),
+      before_(before) {}
+
+RunCost CheckpointWriter::cost() const {
+  return {before_.wall_seconds + wall_seconds(),
+          before_.cpu_seconds + run_.ranks->sum(cpu_seconds())};
+}
+
+void CheckpointWriter::on_step(const RunState& state) {
+  // One clock decides for all.
+  if (run_.ranks->any(run_.ranks->root() && (!written_ || since_last_.seconds() >= interval_)))
+    write(state);
+}
+
+void CheckpointWriter::write(const RunState& state) {
+  // The rows that the checkpoint counts on are on the disk before it is.
+  if (tables_) tables_->sync();
+  Checkpoint checkpoint;
+  checkpoint.configuration = configuration_;
+  std::ostringstream out;
+  state.save(CheckpointOut(out, run_.space->order));
+  checkpoint.state = out.str();
+  const Vec c = run_.space->order.gathered(run_.problem->c_of(state.integrator.state()));
+  checkpoint.concentration.assign(c.data(), c.data() + c.size());
+  checkpoint.step = state.integrator.statistics().steps;
+  checkpoint.cost = cost();
+  if (tables_) {
+    checkpoint.tables = tables_->sizes();
+    store_.write(checkpoint);
+  }
+  since_last_ = Stopwatch();
+  written_ = true;
+}
+
+}  // namespace traceraft

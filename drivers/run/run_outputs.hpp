@@ -1,0 +1,73 @@
+// What a run writes: tables, fields and checkpoints, each a listener of the run loop.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "backends/posix/durable_file.hpp"
+#include "drivers/run/checkpoint_store.hpp"
+#include "drivers/run/run_folder.hpp"
+#include "drivers/run/run_setup.hpp"
+#include "kernel/core/stopwatch.hpp"
+#include "kernel/simulation/run_loop.hpp"
+
+namespace traceraft {
+
+// Of the first rank. series.csv: a row per accepted step. observables.csv: the same columns at the
+// output times. rafts.csv: every raft at the output times.
+class TableWriter final : public RunListener {
+ public:
+  // Sizes as a checkpoint recorded them; empty for a new run.
+  TableWriter(const RunFolder& folder, const RunSetup& run,
+              const std::map<std::string, std::uint64_t>& sizes);
+  void on_step(const RunState& state) override;
+  void on_output(const Observables& row, const RaftReport& rafts, ConstVec y) override;
+  void sync();
+  std::map<std::string, std::uint64_t> sizes() const;
+
+ private:
+  std::string row_text(const Observables& row, double t) const;
+
+  const RunSetup& run_;
+  AppendFile series_, observables_, rafts_;
+};
+
+// fields/field-NNNN.vtu with c and mu on Γ_h, collected in fields.pvd, and a picture of front and
+// back as fields/view-NNNN.png; view.png is the newest. Several ranks write a piece each,
+// field-NNNN-RRRR.vtu, joined by field-NNNN.pvtu.
+class FieldWriter final : public RunListener {
+ public:
+  FieldWriter(const RunFolder& folder, const RunSetup& run) : folder_(folder), run_(run) {}
+  void on_output(const Observables& row, const RaftReport& rafts, ConstVec y) override;
+
+ private:
+  void collect(std::size_t newest) const;
+
+  const RunFolder& folder_;
+  const RunSetup& run_;
+};
+
+// Writes a checkpoint every `interval` seconds; writing does not change the run. On every rank; the
+// first one, which has the tables, writes.
+class CheckpointWriter final : public RunListener {
+ public:
+  CheckpointWriter(const RunFolder& folder, const RunSetup& run, TableWriter* tables,
+                   std::string configuration, double interval, const RunCost& before);
+  void on_step(const RunState& state) override;
+  void write(const RunState& state);
+  RunCost cost() const;  // of the whole run: earlier processes and these
+
+ private:
+  CheckpointStore store_;
+  const RunSetup& run_;
+  TableWriter* tables_;
+  std::string configuration_;
+  double interval_;
+  RunCost before_;
+  Stopwatch since_last_;
+  bool written_ = false;
+};
+
+}  // namespace traceraft

@@ -1,0 +1,42 @@
+// From a configuration to everything a run needs: the one place where the chain is put together.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "drivers/config/configuration.hpp"
+#include "kernel/observables/observables.hpp"
+#include "kernel/observables/perimeter_calibration.hpp"
+#include "kernel/problem/cahn_hilliard.hpp"
+#include "kernel/time/integrator.hpp"
+
+namespace traceraft {
+
+// Built in the order of the members; each is handed to the next by const reference.
+struct RunSetup {
+  Units units;
+  std::shared_ptr<const Communicator> ranks;
+  std::shared_ptr<const ThreadTeam> team;
+  std::shared_ptr<const SurfaceSpace> space;
+  std::unique_ptr<const CahnHilliard> problem;
+  Vec initial;              // projected c at the nodes
+  double initial_mean = 0;  // and its mean
+  PerimeterCalibration perimeter;
+  std::unique_ptr<Observer> observer;
+  IntegratorPtr integrator;           // not started
+  double t_end;                       // units of R²/D, as below
+  std::vector<double> output_times;   // ascending, within [0, t_end]
+  std::vector<double> output_labels;  // the same as the user wrote them, in the user's units
+};
+
+enum class InitialState { build, from_checkpoint /* leaves RunSetup::initial empty */ };
+
+// On all ranks of the program. Throws InputError for anything a run could not start with; creates
+// no files.
+RunSetup build_run(const Configuration& configuration, InitialState initial);
+
+// Computes the consistent state and hands it to the integrator.
+Status start_run(RunSetup& setup);
+
+}  // namespace traceraft

@@ -1,0 +1,195 @@
+#include "drivers/run/summary.hpp"
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "backends/posix/process.hpp"
+#include "backends/suitesparse/blas.hpp"
+#include "drivers/run/progress.hpp"
+#include "drivers/version.hpp"
+#include "kernel/core/text.hpp"
+
+namespace traceraft {
+namespace {
+
+const char* end_name(RunEnd end) {
+  switch (end) {
+    case RunEnd::finished:
+      return "finished";
+    case RunEnd::stopped:
+      return "stopped";
+    default:
+      return "failed";
+  }
+}
+
+bool decay_promised(const RunSetup& run) {
+  return run.integrator->promises_energy_decay();
+}
+
+void line(const char* label, const std::string& value) {
+  std::printf("  %-22s %s\n", label, value.c_str());
+}
+
+// The energy, and what became of steps that gained some.
+std::string energy_text(const Configuration& configuration, const RunSetup& run,
+                        const RunState& state) {
+  const std::string energy = formatted("%.6g", state.row.energy * run.units.area());
+  if (!run.problem->dissipates_energy()) return energy + " (the model need not lose energy)";
+  if (configuration.text("energy-guard") == "off") return energy;
+  const long refused = run.integrator->statistics().energy_rises;
+  const std::string cut = refused > 0 ? formatted(", %ld steps cut because it grew", refused) : "";
+  if (state.monitor.energy_rises() == 0) return energy + ", falls in every step" + cut;
+  return energy +
+         formatted(", GROWS in %ld steps, by at most %.0e of the initial energy;",
+                   state.monitor.energy_rises(), state.monitor.largest_rise()) +
+         " a smaller --tolerance or --energy-guard reject prevents that";
+}
+
+}  // namespace
+
+std::string summary_json(const Configuration& configuration, const RunSetup& run,
+                         const RunState& state, const RunResult& result, const RunCost& cost,
+                         double memory_mb) {
+  const Units& units = run.units;
+  const Observables& row = state.row;
+  const IntegratorStatistics steps = run.integrator->statistics();
+  const LinearStatistics linear = run.integrator->linear_statistics();
+  nlohmann::ordered_json json;
+  json["end"] = end_name(result.end);
+  if (!result.why.empty()) json["why"] = result.why;
+  json["version"] = kVersion;
+  json["case"] = configuration.text("case");
+  json["seed"] = configuration.integer("seed");
+  json["integrator"] = configuration.text("integrator");
+  json["linear_solver"] = configuration.text("linear-solver");
+  json["units"] = {{"scaled", units.scaled},
+                   {"radius_um", units.radius_um},
+                   {"diffusion_cm2_s", units.diffusion_cm2_s},
+                   {"seconds_per_unit", units.seconds_per_unit()}};
+  json["nodes"] = run.space->totals.nodes;
+  json["unknowns"] = 2 * run.space->totals.nodes;
+  json["cut_tetrahedra"] = run.space->totals.elements;
+  json["euler_characteristic"] = run.space->totals.euler_characteristic;
+  json["area"] = run.space->area * units.area();
+  json["h"] = run.space->h() * units.length();
+  json["t"] = row.t * units.time();
+  json["mass"] = row.mass * units.area();
+  json["mean_concentration"] = row.mass / run.space->area;
+  json["mass_drift"] = state.monitor.mass_drift();
+  json["energy"] = row.energy * units.area();
+  json["energy_rises"] = state.monitor.energy_rises();
+  json["largest_energy_rise"] = state.monitor.largest_rise();
+  json["energy_guard"] = configuration.text("energy-guard");
+  json["energy_rises_refused"] = steps.energy_rises;
+  json["energy_decay_promised"] = decay_promised(run);
+  json["perimeter"] = row.perimeter * units.length();
+  json["perimeter_level"] = row.perimeter_level * units.length();
+  json["rafts"] = row.rafts;
+  json["raft_fraction"] = row.raft_fraction;
+  json["c_min"] = row.c_min;
+  json["c_max"] = row.c_max;
+  json["steps"] = steps.steps;
+  json["rejected"] = steps.rejected;
+  json["first_order_steps"] = steps.first_order;
+  json["failures"] = steps.failures;
+  json["renewals"] = steps.renewals;
+  json["fallbacks"] = steps.fallbacks;
+  json["residuals"] = steps.residuals;
+  json["jacobians"] = steps.jacobians;
+  json["newton_iterations"] = steps.newton_iterations;
+  json["order"] = steps.order;
+  json["linear_setups"] = linear.setups;
+  json["linear_solves"] = linear.solves;
+  json["linear_iterations"] = linear.iterations;
+  json["most_linear_iterations"] = linear.most_iterations;
+  json["assembly_s"] = steps.assembly_seconds;
+  json["linear_setup_s"] = linear.setup_seconds;
+  json["linear_solve_s"] = linear.solve_seconds;
+  json["wall_s"] = cost.wall_seconds;
+  json["cpu_s"] = cost.cpu_seconds;
+  json["peak_memory_mb"] = memory_mb;
+  json["ranks"] = run.ranks->size();
+  json["threads"] = run.team->size();
+  json["blas"] = blas_description();
+  return json.dump(2) + "\n";
+}
+
+void print_setup(const Configuration& configuration, const RunSetup& run) {
+  const Units& units = run.units;
+  const double h = run.space->h(), epsilon = run.problem->model().epsilon;
+  std::printf("traceraft %s\n", kVersion);
+  line("case", configuration.text("case"));
+  line("surface",
+       formatted("%s, R = %g um, area %.6g %s", configuration.text("surface").c_str(),
+                 units.radius_um, run.space->area * units.area(), units.scaled ? "R^2" : "um^2"));
+  const SurfaceSpace::Totals& totals = run.space->totals;
+  line("mesh",
+       formatted("%lld cells per edge, %lld cut tetrahedra, %lld nodes, %lld unknowns",
+                 configuration.integer("cells"), static_cast<long long>(totals.elements),
+                 static_cast<long long>(totals.nodes), static_cast<long long>(2 * totals.nodes)));
+  line("phase boundary",
+       formatted("epsilon = %g um = %g R, h/epsilon = %.2f, %.1f %% of its energy resolved",
+                 epsilon * units.radius_um, epsilon, h / epsilon, 100 * run.perimeter.resolved));
+  line("mobility", formatted("%s, D = %g cm^2/s", configuration.text("mobility").c_str(),
+                             units.diffusion_cm2_s));
+  line("units", formatted("length R = %g um, time R^2/D = %g s; the run ends at %g s = %g R^2/D",
+                          units.radius_um, units.seconds_per_unit(),
+                          run.t_end * units.seconds_per_unit(), run.t_end));
+  if (run.initial.size() > 0)
+    line("initial state",
+         formatted("%s, mean concentration %.6f, seed %lld", configuration.text("initial").c_str(),
+                   run.initial_mean, configuration.integer("seed")));
+  const int workers = run.ranks->size() > 1 ? run.ranks->size() : run.team->size();
+  line("method",
+       formatted("%s with %s, tolerance %g, %d %s%s, %s", configuration.text("integrator").c_str(),
+                 configuration.text("linear-solver").c_str(), configuration.number("tolerance"),
+                 workers, run.ranks->size() > 1 ? "rank" : "thread", workers == 1 ? "" : "s",
+                 blas_description().c_str()));
+}
+
+void print_summary(const Configuration& configuration, const RunSetup& run, const RunState& state,
+                   const RunResult& result, const RunCost& cost, double memory_mb,
+                   const RunFolder& folder) {
+  const Units& units = run.units;
+  const Observables& row = state.row;
+  const IntegratorStatistics steps = run.integrator->statistics();
+  const LinearStatistics linear = run.integrator->linear_statistics();
+  const char* length = units.scaled ? "R" : "um";
+  std::printf("\n%s at t = %.6g%s\n", end_name(result.end), row.t * units.time(),
+              units.scaled ? "" : " s");
+  if (!result.why.empty()) line("why", result.why);
+  line("rafts", formatted("%d", row.rafts));
+  line("raft fraction", formatted("%.4f of the area, mean concentration %.6f", row.raft_fraction,
+                                  row.mass / run.space->area));
+  line("perimeter", formatted("%.5g %s (level curve %.5g %s)", row.perimeter * units.length(),
+                              length, row.perimeter_level * units.length(), length));
+  line("energy", energy_text(configuration, run, state));
+  line("mass drift", formatted("%.1e relative", state.monitor.mass_drift()));
+  line("c on the surface", formatted("%.3f to %.3f", row.c_min, row.c_max));
+  const std::string first_order =
+      steps.first_order > 0 ? formatted(" (%ld with the first-order solution)", steps.first_order)
+                            : "";
+  line("steps", formatted("%ld accepted", steps.steps) + first_order +
+                    formatted(", %ld rejected, %ld failed", steps.rejected, steps.failures));
+  if (steps.newton_iterations > 0)
+    line("Newton iterations",
+         formatted("%ld, order of the last step %d", steps.newton_iterations, steps.order));
+  line(
+      "linear solves",
+      formatted(
+          "%ld, %.1f iterations each, %ld set-ups, %ld renewed, %ld fallbacks", linear.solves,
+          static_cast<double>(linear.iterations) / static_cast<double>(std::max(1L, linear.solves)),
+          linear.setups, steps.renewals, steps.fallbacks));
+  line("time",
+       formatted("%s wall, %s CPU, peak memory %.0f MB", clock_text(cost.wall_seconds).c_str(),
+                 clock_text(cost.cpu_seconds).c_str(), memory_mb));
+  line("tables", folder.table("series.csv").string());
+  if (std::filesystem::exists(folder.path / "view.png")) {
+    line("open next",
+         (folder.path / "view.png").string() + " (front and back at the latest output time)");
+    line("or", "paraview " + (folder.path / "fields.pvd").string());
+  }
+}
+
+}  // namespace traceraft

@@ -1,0 +1,23 @@
+// What a run ends with: summary.json for programs, a table for people. For the first rank: nothing
+// here is collective. Cost and memory are those of all ranks.
+#pragma once
+
+#include <string>
+
+#include "drivers/run/checkpoint_store.hpp"
+#include "drivers/run/run_folder.hpp"
+#include "drivers/run/run_setup.hpp"
+#include "kernel/simulation/run_loop.hpp"
+
+namespace traceraft {
+
+std::string summary_json(const Configuration& configuration, const RunSetup& run,
+                         const RunState& state, const RunResult& result, const RunCost& cost,
+                         double memory_mb);
+
+void print_setup(const Configuration& configuration, const RunSetup& run);
+void print_summary(const Configuration& configuration, const RunSetup& run, const RunState& state,
+                   const RunResult& result, const RunCost& cost, double memory_mb,
+                   const RunFolder& folder);
+
+}  // namespace traceraft

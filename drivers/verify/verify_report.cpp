@@ -1,0 +1,226 @@
+#include "drivers/verify/verify_report.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "backends/posix/durable_file.hpp"
+#include "drivers/output/chart.hpp"
+#include "drivers/output/csv.hpp"
+#include "drivers/output/page.hpp"
+#include "kernel/core/error.hpp"
+#include "kernel/core/parameters.hpp"
+#include "kernel/core/text.hpp"
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+using Row = std::vector<std::string>;
+
+constexpr std::size_t kLargestChart = 1 << 24;  // bytes
+
+std::string short_number(double value) {
+  return formatted("%.5g", value);
+}
+
+std::string measured_text(const Claim& claim) {
+  const std::string value = formatted("%.4g", claim.measured);
+  return claim.uncertainty > 0 ? value + formatted(" +- %.1g", claim.uncertainty) : value;
+}
+
+Row claim_row(const Claim& claim) {
+  Row row = {claim.what, measured_text(claim)};
+  if (claim.expected) {
+    row.push_back(short_number(*claim.expected));
+    row.push_back("+- " + formatted("%.3g", 0.5 * (claim.high - claim.low)));
+  } else if (std::isinf(claim.low)) {
+    row.push_back("at most " + short_number(claim.high));
+    row.push_back("");
+  } else {
+    row.push_back(short_number(claim.low) + " to " + short_number(claim.high));
+    row.push_back("");
+  }
+  row.push_back(verdict_text(claim.holds() ? Verdict::holds : Verdict::fails));
+  return row;
+}
+
+std::vector<Row> table_rows(const Table& table) {
+  std::vector<Row> rows = {table.columns};
+  for (const auto& cells : table.rows) {
+    Row row;
+    for (const Cell& cell : cells)
+      row.push_back(cell.is_number ? short_number(cell.number) : cell.text);
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+void print_rows(const std::vector<Row>& rows) {
+  std::vector<std::size_t> width(rows.front().size(), 0);
+  for (const Row& row : rows)
+    for (std::size_t k = 0; k < row.size(); ++k) width[k] = std::max(width[k], row[k].size());
+  for (const Row& row : rows) {
+    std::string line;
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      const std::string gap(width[k] - row[k].size(), ' ');
+      // The first column is a name as a rule.
+      line += "  " + (k == 0 ? row[k] + gap : gap + row[k]);
+    }
+    std::printf("%s\n", line.c_str());
+  }
+}
+
+std::string csv_text(const Table& table) {
+  std::string csv;
+  const auto line = [&csv](const auto& cells, const auto& text) {
+    for (std::size_t k = 0; k < cells.size(); ++k) csv += (k == 0 ? "" : ",") + text(cells[k]);
+    csv += "\n";
+  };
+  line(table.columns, csv_cell);
+  for (const auto& row : table.rows)
+    line(row, [&](const Cell& cell) {
+      return cell.is_number ? format_number(cell.number) : csv_cell(cell.text);
+    });
+  return csv;
+}
+
+std::string outcome_sentence(const StudyResult& result) {
+  if (!result.failure.empty()) return "FAILS: " + result.failure + ".";
+  if (!result.report.skipped.empty()) return "Not measured: " + result.report.skipped + ".";
+  return "";
+}
+
+std::vector<Row> overview_rows(const std::vector<StudyResult>& results) {
+  std::vector<Row> rows = {{"study", "what", "claims", "verdict", "seconds"}};
+  for (const StudyResult& result : results)
+    rows.push_back({result.study.name, result.study.summary,
+                    std::to_string(result.report.claims.size()), verdict_text(result.verdict()),
+                    formatted("%.1f", result.seconds)});
+  return rows;
+}
+
+std::string chart_name(const StudyResult& result, std::size_t number) {
+  return result.study.name + "-" + std::to_string(number + 1);
+}
+
+// Draws charts into the folder and the page. "" or why some are missing.
+std::string draw_charts(const fs::path& folder, const StudyResult& result, Page& page) {
+  std::string missing;
+  for (std::size_t k = 0; k < result.report.charts.size(); ++k) {
+    const Chart& chart = result.report.charts[k];
+    try {
+      const std::string svg = draw_chart(chart, folder / chart_name(result, k));
+      if (svg.empty()) return "gnuplot is not installed (Debian package gnuplot-nox)";
+      page.figure(svg, chart.title);
+    } catch (const IoError& error) {  // the tables are worth more than their pictures
+      missing = error.what();
+    }
+  }
+  return missing;
+}
+
+std::string markdown_table(const std::vector<Row>& rows) {
+  std::string text;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    text += "|";
+    for (const std::string& cell : rows[r]) text += " " + cell + " |";
+    text += "\n";
+    if (r > 0) continue;
+    text += "|";
+    for (std::size_t k = 0; k < rows[r].size(); ++k) text += "---|";
+    text += "\n";
+  }
+  return text + "\n";
+}
+
+}  // namespace
+
+std::vector<Row> claim_rows(const std::vector<Claim>& claims) {
+  std::vector<Row> rows = {{"claim", "measured", "expected", "tolerance", "verdict"}};
+  for (const Claim& claim : claims) rows.push_back(claim_row(claim));
+  return rows;
+}
+
+void print_result(const StudyResult& result) {
+  for (const Table& table : result.report.tables) {
+    print_rows(table_rows(table));
+    std::printf("\n");
+  }
+  for (const std::string& note : result.report.notes) std::printf("  %s\n", note.c_str());
+  if (!result.report.notes.empty()) std::printf("\n");
+  if (!result.report.claims.empty()) print_rows(claim_rows(result.report.claims));
+  if (const std::string outcome = outcome_sentence(result); !outcome.empty())
+    std::printf("  %s\n", outcome.c_str());
+  std::printf("\n  %.1f s\n\n", result.seconds);
+  std::fflush(stdout);
+}
+
+void write_study(const fs::path& folder, const StudyResult& result, const std::string& with) {
+  for (const Table& table : result.report.tables)
+    write_durably(folder / (result.study.name + "-" + table.name + ".csv"), csv_text(table));
+  write_durably(folder / (result.study.name + ".json"), to_json(result, with).dump(2) + "\n");
+}
+
+std::string write_verification(const fs::path& folder, const VerificationContext& context,
+                               const std::vector<StudyResult>& results) {
+  Json all;
+  all["command"] = context.command;
+  all["conditions"] = context.conditions;
+  Json studies = Json::array();
+  for (const StudyResult& result : results)
+    studies.push_back(to_json(result, context.measured_with));
+  all["studies"] = studies;
+  write_durably(folder / "verify.json", all.dump(2) + "\n");
+
+  Page page("Verification");
+  page.paragraph(context.conditions + " Repeat it with: " + context.command);
+  page.table(overview_rows(results));
+  std::string missing;
+  for (const StudyResult& result : results) {
+    page.heading(result.study.name + ": " + result.study.summary);
+    if (const std::string outcome = outcome_sentence(result); !outcome.empty())
+      page.paragraph(outcome);
+    for (const std::string& note : result.report.notes) page.paragraph(note);
+    if (!result.report.claims.empty()) page.table(claim_rows(result.report.claims));
+    if (const std::string why = draw_charts(folder, result, page); !why.empty()) missing = why;
+    for (const Table& table : result.report.tables) page.table(table_rows(table));
+  }
+  if (!missing.empty()) page.paragraph("Charts are missing: " + missing + ".");
+  write_durably(folder / "verify.html", page.html());
+  return missing;
+}
+
+void write_document(const fs::path& path, const fs::path& folder,
+                    const VerificationContext& context, const std::vector<StudyResult>& results) {
+  fs::path figures = path;
+  figures.replace_extension();
+  fs::create_directories(figures);
+  std::string text = "# Verification\n\n" + context.conditions +
+                     "\nThis document and its figures are written by\n\n    " + context.command +
+                     "\n\n";
+  std::vector<Row> overview = overview_rows(results);
+  for (std::size_t k = 1; k < overview.size(); ++k)
+    overview[k][0] = "[" + overview[k][0] + "](#" + overview[k][0] + ")";
+  text += markdown_table(overview);
+  for (const StudyResult& result : results) {
+    text += "## " + result.study.name + "\n\n`traceraft verify " + result.study.name +
+            "`: " + result.study.summary + ".\n";
+    for (const std::string& note : result.report.notes) text += note + "\n";
+    text += "\n";
+    if (const std::string outcome = outcome_sentence(result); !outcome.empty())
+      text += outcome + "\n\n";
+    if (!result.report.claims.empty()) text += markdown_table(claim_rows(result.report.claims));
+    for (std::size_t k = 0; k < result.report.charts.size(); ++k) {
+      const std::string name = chart_name(result, k) + ".svg";
+      if (!fs::exists(folder / name)) continue;
+      write_durably(figures / name, read_file(folder / name, kLargestChart));
+      text += "![" + result.report.charts[k].title + "](" + figures.filename().string() + "/" +
+              name + ")\n\n";
+    }
+    for (const Table& table : result.report.tables)
+      if (table.rows.size() <= 40) text += markdown_table(table_rows(table));
+  }
+  write_durably(path, text);
+}
+
+}  // namespace traceraft

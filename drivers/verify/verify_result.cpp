@@ -1,0 +1,154 @@
+#include "drivers/verify/verify_result.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace traceraft {
+namespace {
+
+constexpr const char* kMarks[] = {"line", "points", "both"};
+
+Json number_or_null(double value) {
+  return std::isfinite(value) ? Json(value) : Json();
+}
+
+double number_or(const Json& json, double otherwise) {
+  return json.is_null() ? otherwise : json.get<double>();
+}
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Json to_json(const Claim& claim) {
+  return {{"claim", claim.what},
+          {"measured", number_or_null(claim.measured)},
+          {"uncertainty", claim.uncertainty > 0 ? Json(claim.uncertainty) : Json()},
+          {"expected", claim.expected ? Json(*claim.expected) : Json()},
+          {"low", number_or_null(claim.low)},
+          {"high", number_or_null(claim.high)},
+          {"holds", claim.holds()}};
+}
+
+Claim claim_of(const Json& json) {
+  Claim claim{json.at("claim"),
+              number_or(json.at("measured"), kNaN),
+              {},
+              number_or(json.at("low"), -kInfinity),
+              number_or(json.at("high"), kInfinity),
+              number_or(json.at("uncertainty"), 0)};
+  if (!json.at("expected").is_null()) claim.expected = json.at("expected").get<double>();
+  return claim;
+}
+
+Json to_json(const Table& table) {
+  Json rows = Json::array();
+  for (const auto& cells : table.rows) {
+    Json row = Json::array();
+    for (const Cell& cell : cells)
+      row.push_back(cell.is_number ? number_or_null(cell.number) : Json(cell.text));
+    rows.push_back(row);
+  }
+  return {{"columns", table.columns}, {"rows", rows}};
+}
+
+Table table_of(const std::string& name, const Json& json) {
+  Table table{name, json.at("columns"), {}};
+  for (const Json& cells : json.at("rows")) {
+    std::vector<Cell>& row = table.rows.emplace_back();
+    for (const Json& cell : cells) {
+      if (cell.is_string())
+        row.emplace_back(cell.get<std::string>());
+      else
+        row.emplace_back(number_or(cell, kNaN));
+    }
+  }
+  return table;
+}
+
+Json to_json(const Chart& chart) {
+  Json list = Json::array();
+  for (const ChartSeries& series : chart.series) {
+    Json points = Json::array();
+    for (const auto& [x, y] : series.points)
+      points.push_back({number_or_null(x), number_or_null(y)});
+    list.push_back({{"name", series.name},
+                    {"mark", kMarks[static_cast<int>(series.mark)]},
+                    {"points", points}});
+  }
+  return {{"title", chart.title}, {"x_label", chart.x_label}, {"y_label", chart.y_label},
+          {"log_x", chart.log_x}, {"log_y", chart.log_y},     {"series", list}};
+}
+
+Chart chart_of(const Json& json) {
+  Chart chart{json.at("title"), json.at("x_label"), json.at("y_label"),
+              json.at("log_x"), json.at("log_y"),   {}};
+  for (const Json& item : json.at("series")) {
+    ChartSeries series{item.at("name"), {}};
+    for (const Mark mark : {Mark::line, Mark::points, Mark::both})
+      if (item.at("mark") == kMarks[static_cast<int>(mark)]) series.mark = mark;
+    for (const Json& point : item.at("points"))
+      series.points.emplace_back(number_or(point.at(0), kNaN), number_or(point.at(1), kNaN));
+    chart.series.push_back(series);
+  }
+  return chart;
+}
+
+StudyResult result_of(const StudyEntry& study, const Json& json) {
+  StudyResult result{study, {}, json.at("failure"), json.at("seconds")};
+  StudyReport& report = result.report;
+  report.skipped = json.at("skipped");
+  report.notes = json.at("notes").get<std::vector<std::string>>();
+  for (const Json& claim : json.at("claims")) report.claims.push_back(claim_of(claim));
+  for (const auto& [name, table] : json.at("tables").items())
+    report.tables.push_back(table_of(name, table));
+  for (const Json& chart : json.at("charts")) report.charts.push_back(chart_of(chart));
+  return result;
+}
+
+}  // namespace
+
+const char* verdict_text(Verdict verdict) {
+  if (verdict == Verdict::not_measured) return "not measured";
+  return verdict == Verdict::holds ? "holds" : "FAILS";
+}
+
+Verdict StudyResult::verdict() const {
+  if (!failure.empty()) return Verdict::fails;
+  if (!report.skipped.empty()) return Verdict::not_measured;
+  for (const Claim& claim : report.claims)
+    if (!claim.holds()) return Verdict::fails;
+  return report.claims.empty() ? Verdict::fails : Verdict::holds;
+}
+
+Json to_json(const StudyResult& result, const std::string& measured_with) {
+  Json json;
+  json["study"] = result.study.name;
+  json["summary"] = result.study.summary;
+  json["measured_with"] = measured_with;
+  json["verdict"] = verdict_text(result.verdict());
+  json["failure"] = result.failure;
+  json["skipped"] = result.report.skipped;
+  json["seconds"] = result.seconds;
+  json["notes"] = result.report.notes;
+  json["claims"] = Json::array();
+  for (const Claim& claim : result.report.claims) json["claims"].push_back(to_json(claim));
+  json["tables"] = Json::object();
+  for (const Table& table : result.report.tables) json["tables"][table.name] = to_json(table);
+  json["charts"] = Json::array();
+  for (const Chart& chart : result.report.charts) json["charts"].push_back(to_json(chart));
+  return json;
+}
+
+std::optional<StudyResult> measured_before(const std::filesystem::path& folder,
+                                           const StudyEntry& study,
+                                           const std::string& measured_with) {
+  const std::filesystem::path file = folder / (study.name + ".json");
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  return from_json(file, [&](const Json& json) -> std::optional<StudyResult> {
+    // What could not be carried out is tried again.
+    if (json.at("measured_with") != measured_with || json.at("failure") != "") return std::nullopt;
+    return result_of(study, json);
+  });
+}
+
+}  // namespace traceraft

@@ -1,0 +1,35 @@
+// What one study of a verification came to, and how a file keeps it.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "drivers/output/json_file.hpp"
+#include "verification/study.hpp"
+
+namespace traceraft {
+
+enum class Verdict { holds, fails, not_measured };
+
+const char* verdict_text(Verdict verdict);
+
+struct StudyResult {
+  StudyEntry study;
+  StudyReport report;
+  std::string failure;  // why it could not be carried out; "" if it was
+  double seconds = 0;
+
+  Verdict verdict() const;
+};
+
+// `measured_with`: whatever decides the numbers, in any words.
+Json to_json(const StudyResult& result, const std::string& measured_with);
+
+// What `folder` has of this study, if it was carried out there with the same. Throws IoError for a
+// file that is damaged.
+std::optional<StudyResult> measured_before(const std::filesystem::path& folder,
+                                           const StudyEntry& study,
+                                           const std::string& measured_with);
+
+}  // namespace traceraft

@@ -1,0 +1,83 @@
+#include "verification/measure/coarsening_laws.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "kernel/core/text.hpp"
+
+namespace traceraft {
+
+Window window_where(const std::vector<double>& times,
+                    const std::function<bool(std::size_t)>& holds) {
+  Window window{times.back(), times.back()};
+  bool found = false;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (!holds(i)) continue;
+    if (!found) window.begin = times[i];
+    window.end = times[i];
+    found = true;
+  }
+  return window;
+}
+
+Ensemble::Ensemble(const Bench& bench, EnsembleRequest request_)
+    : request(std::move(request_)), members(run_ensemble(bench, request)) {}
+
+std::vector<double> Ensemble::mean(std::vector<double> Member::*values) const {
+  return geometric_mean(members, values, everyone(members));
+}
+
+Table exponents_table() {
+  return {"exponents",
+          {"ensemble", "quantity", "law of", "from", "to", "exponent", "low", "high", "theory"},
+          {}};
+}
+
+Exponent measure_law(const Ensemble& ensemble, const Law& law, const Window& window, Origin origin,
+                     Table& exponents) {
+  if (!(window.end >= 3 * window.begin))
+    throw std::runtime_error("the window of the " + law.quantity + " is too short to fit a law");
+  const Exponent found = fit_exponent(ensemble.members, law.values, ensemble.request.times,
+                                      window.begin, window.end, origin);
+  exponents.rows.push_back({law.ensemble, law.quantity,
+                            origin == Origin::zero ? "t" : formatted("t + %.3g", found.offset),
+                            window.begin, window.end, found.b, found.interval.low,
+                            found.interval.high, law.theory});
+  return found;
+}
+
+Claim exponent_claim(const Law& law, const std::string& of, const Exponent& found, double margin) {
+  return claim_near(law.ensemble + ": exponent of the " + law.quantity + " in " + of, found.b,
+                    law.theory, margin, 0.5 * (found.interval.high - found.interval.low));
+}
+
+Claim interval_claim(const Law& law, const std::string& of, const Exponent& found) {
+  return claim_between(formatted("%.3g", law.theory) + " lies in the 95 % interval of the " +
+                           law.quantity + " in " + of + " (1: yes)",
+                       found.interval.contains(law.theory), 1, 1);
+}
+
+Points as_points(const std::vector<double>& times, const std::vector<double>& values) {
+  Points points;
+  for (std::size_t i = 0; i < times.size(); ++i) points.emplace_back(times[i], values[i]);
+  return points;
+}
+
+ChartSeries law_line(const std::string& name, const Points& points, const Window& window,
+                     double b) {
+  const double middle = std::sqrt(window.begin * window.end);
+  const auto near =
+      std::min_element(points.begin(), points.end(), [&](const auto& p, const auto& q) {
+        return std::fabs(std::log(p.first / middle)) < std::fabs(std::log(q.first / middle));
+      });
+  const auto at = [&](double t) { return near->second * std::pow(t / near->first, b); };
+  return {name, {{window.begin, at(window.begin)}, {window.end, at(window.end)}}, Mark::line};
+}
+
+Chart coarsening_chart(const std::string& title, const std::string& y_label,
+                       std::vector<ChartSeries> series) {
+  return {title, "t (R^2/D)", y_label, true, true, std::move(series)};
+}
+
+}  // namespace traceraft

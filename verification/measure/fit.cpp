@@ -1,0 +1,93 @@
+#include "verification/measure/fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "kernel/core/random.hpp"
+
+namespace traceraft {
+
+Line fit_line(const Points& points) {
+  const double count = static_cast<double>(points.size());
+  double x_mean = 0, y_mean = 0, xx = 0, xy = 0;
+  for (const auto& [x, y] : points) {
+    x_mean += x / count;
+    y_mean += y / count;
+  }
+  for (const auto& [x, y] : points) {
+    xx += (x - x_mean) * (x - x_mean);
+    xy += (x - x_mean) * (y - y_mean);
+  }
+  if (!(xx > 0)) throw std::runtime_error("a line needs two different points");
+  return {xy / xx, y_mean - xy / xx * x_mean};
+}
+
+Line fit_power_law(const Points& points) {
+  Points logarithms;
+  for (const auto& [x, y] : points) logarithms.emplace_back(std::log(x), std::log(y));
+  return fit_line(logarithms);
+}
+
+ShiftedPowerLaw fit_shifted_power_law(const Points& points) {
+  ShiftedPowerLaw best{0, 0};
+  double least = std::numeric_limits<double>::infinity();
+  constexpr int kOffsets = 1000;
+  for (int k = 0; k <= kOffsets; ++k) {
+    const double offset =
+        k == 0 ? 0 : points.front().first * std::pow(10.0, 4.0 * k / kOffsets - 3);
+    Points logarithms;
+    for (const auto& [t, y] : points) logarithms.emplace_back(std::log(t + offset), std::log(y));
+    const Line line = fit_line(logarithms);
+    double squares = 0;
+    for (const auto& [x, y] : logarithms)
+      squares += std::pow(y - line.intercept - line.slope * x, 2);
+    if (squares < least) {
+      least = squares;
+      best = {line.slope, offset};
+    }
+  }
+  return best;
+}
+
+ObservedOrder observed_order(const Points& levels) {
+  const auto between = [&](std::size_t fine) {
+    const auto& [coarse_size, coarse_error] = levels[fine - 1];
+    return std::log(coarse_error / levels[fine].second) /
+           std::log(coarse_size / levels[fine].first);
+  };
+  const std::size_t last = levels.size() - 1;
+  const double order = between(last);
+  return {order, levels.size() > 2 ? std::fabs(order - between(last - 1)) : 0};
+}
+
+Interval bootstrap(int count, int replicates, double confidence, std::uint64_t seed,
+                   const std::function<double(const std::vector<int>&)>& statistic) {
+  std::vector<double> values(static_cast<std::size_t>(replicates));
+  std::vector<int> sample(static_cast<std::size_t>(count));
+  std::uint64_t draw = 0;
+  for (double& value : values) {
+    for (int& member : sample) {
+      const double u = uniform_random(seed, 91, draw++);
+      member = std::min(count - 1, static_cast<int>(u * count));
+    }
+    value = statistic(sample);
+  }
+  std::sort(values.begin(), values.end());
+  const auto quantile = [&](double share) {
+    return values[static_cast<std::size_t>(share * static_cast<double>(replicates - 1) + 0.5)];
+  };
+  return {quantile(0.5 * (1 - confidence)), quantile(0.5 * (1 + confidence))};
+}
+
+Moments moments(const std::vector<double>& values) {
+  const double count = static_cast<double>(values.size());
+  double mean = 0, squares = 0;
+  for (const double value : values) mean += value / count;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  return {mean, std::sqrt(squares / std::max(1.0, count - 1)), *low, *high};
+}
+
+}  // namespace traceraft
