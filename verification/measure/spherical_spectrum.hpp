@@ -8,8 +8,8 @@
 namespace traceraft {
 
 // S_l = Σ_m |∫ c Y_lm|² for l = 0 … highest, with real orthonormal harmonics on the unit sphere:
-// the sum over l is ∫ c². The integral is the sum over the points of Γ_h, each with a third of the
-// area around it: c at one rank, and l well below 1/h.
+// the sum over l is ∫ c². c at one rank; `highest` not far above 1/h, where the quadrature of
+// triangles gives out and noise begins to add up.
 std::vector<double> spherical_spectrum(const SurfaceSpace& space, ConstVec c, int highest);
 
 // Σ l S_l / Σ S_l over l > 0: 2π over it is a length.
