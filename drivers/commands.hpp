@@ -49,6 +49,13 @@ struct VerifyRequest {
 };
 int verify_command(const VerifyRequest& request);
 
+struct FractionRequest {
+  std::string composition;  // DOPC : DPPC : mol % of cholesterol
+  double celsius = 20;
+  std::string ordered, disordered;  // mol % of the two phases; "": from what is published
+};
+int fraction_command(const FractionRequest& request);
+
 int list_command();
 
 }  // namespace traceraft

@@ -16,7 +16,8 @@
 namespace traceraft {
 namespace {
 
-const std::vector<std::string> kCommands = {"run", "resume", "compare", "verify", "list"};
+const std::vector<std::string> kCommands = {"run",    "resume",   "compare",
+                                            "verify", "fraction", "list"};
 
 // Adds every option that `wanted` accepts as a flag whose text goes to `values`.
 template <class Wanted>
@@ -144,6 +145,20 @@ int dispatch(int argc, char** argv) {
       "Exit codes: 0 every claim holds, 1 one fails, 2 bad input, 4 input/output.\n"
       "Example: traceraft verify mass energy --quick");
 
+  FractionRequest fraction;
+  CLI::App* fraction_app =
+      app.add_subcommand("fraction", "estimate the raft fraction of a lipid composition");
+  fraction_app->allow_extras();
+  fraction_app->add_option("--composition", fraction.composition,
+                           "parts of DOPC : DPPC : mol % of cholesterol, such as 3:1:20");
+  fraction_app->add_option("--temperature", fraction.celsius, "in degrees Celsius")
+      ->check(CLI::Range(-10.0, 60.0))
+      ->capture_default_str();
+  fraction_app->add_option("--ordered", fraction.ordered,
+                           "mol % of DOPC:DPPC:cholesterol in rafts, such as 22:43:35");
+  fraction_app->add_option("--disordered", fraction.disordered, "the same around them");
+  fraction_app->footer("Example: traceraft fraction --composition 2:1:20 --temperature 19.2");
+
   CLI::App* list_app = app.add_subcommand("list", "list cases, surfaces, laws and methods");
   list_app->allow_extras();
 
@@ -154,10 +169,10 @@ int dispatch(int argc, char** argv) {
   } catch (const CLI::RequiredError&) {
     if (app.get_subcommands().empty() && argc > 1)
       throw InputError(unknown_name_message("command", argv[1], kCommands));
-    throw InputError(
-        app.get_subcommands().empty()
-            ? "say what to do: run, resume, compare, verify or list (see traceraft --help)"
-            : "resume: needs the run folder, as in: traceraft resume runs/guv-2to1-1");
+    throw InputError(app.get_subcommands().empty()
+                         ? "say what to do: run, resume, compare, verify, fraction or list (see "
+                           "traceraft --help)"
+                         : "resume: needs the run folder, as in: traceraft resume runs/guv-2to1-1");
   } catch (const CLI::ExtrasError&) {
     throw InputError(unknown_name_message("command", argv[1], kCommands));
   } catch (const CLI::ParseError& error) {
@@ -177,6 +192,7 @@ int dispatch(int argc, char** argv) {
     if (verify.studies.empty()) verify.studies = {"all"};
     return verify_command(verify);
   }
+  if (fraction_app->parsed()) return fraction_command(fraction);
   return list_command();
 }
 
