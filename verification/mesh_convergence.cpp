@@ -36,8 +36,7 @@ StudyReport run(const Bench& bench) {
   report.notes = {
       "-Laplace(u) + u = f with u = xyz, and the full system with c = 1/2 + cos(t) xyz/4 to "
       "t = 0.5, degenerate mobility; the order is that between the two finest meshes, its "
-      "uncertainty the "
-      "change from the pair before."};
+      "uncertainty the change from the pair before."};
   Table table{"errors", {"surface", "cells", "h"}, {}};
   for (const char* column : {"L2", "H1", "c_L2", "c_H1", "mu_L2", "mu_H1"})
     table.columns.push_back(column);

@@ -140,10 +140,8 @@ void add_energies(const Simulation& run, StudyReport& report) {
                 run.tolerance, run.steps));
   report.notes.push_back(
       "P1 functions have too much energy; recovered is what a gradient recovery leaves of it. "
-      "While "
-      "rafts coarsen, that excess drives them faster, which hides two thirds of it in the energy "
-      "of "
-      "c_h; at rest nothing hides it.");
+      "While rafts coarsen, that excess drives them faster, which hides a third of it in the "
+      "energy of c_h; at rest nothing hides it.");
 }
 
 void add_cost(const Simulation& run, StudyReport& report) {
