@@ -33,9 +33,7 @@ void print_list_with_parameters(const char* title, const NamedList<Entry>& list)
   std::printf("\n");
 }
 
-}  // namespace
-
-int list_command() {
+int print_lists() {
   print_list("Cases (--case)", cases());
   print_list_with_parameters("Surfaces (--surface)", surfaces());
   std::printf("  %-14s %s\n\n", "formula", "any level set, from --surface-formula");
@@ -47,6 +45,13 @@ int list_command() {
   print_list("Linear solvers (--linear-solver)", linear_solvers());
   print_list("Studies (verify)", studies());
   return kSuccess;
+}
+
+}  // namespace
+
+Command list_command() {
+  return {"list", "list cases, surfaces, laws and methods", Ranks::one,
+          [](CLI::App&) { return print_lists; }};
 }
 
 }  // namespace traceraft

@@ -10,6 +10,7 @@
 #include "drivers/compare/compare_report.hpp"
 #include "drivers/compare/compare_runs.hpp"
 #include "drivers/config/config_file.hpp"
+#include "drivers/config/option_flags.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/run/finished_run.hpp"
 #include "drivers/run/run_folder.hpp"
@@ -119,9 +120,7 @@ int carry_out(const CompareRequest& request, const ComparisonFolder& folder,
   return advice.cheapest.empty() ? kNumericalFailure : kSuccess;
 }
 
-}  // namespace
-
-int compare_command(const CompareRequest& request) {
+int compare(const CompareRequest& request) {
   catch_stop_signals();
   const GivenValues file = read_config_file(request.config_file);
   refuse_varied(file);
@@ -153,6 +152,47 @@ int compare_command(const CompareRequest& request) {
   if (!goes_on) write_durably(folder.config(), config_text(configuration));
   folder.save(plan);
   return carry_out(request, folder, plan, configuration, run);
+}
+
+Action define(CLI::App& app) {
+  const auto request = std::make_shared<CompareRequest>();
+  app.add_option("--config", request->config_file, "TOML file with the flags' names as keys");
+  app.add_option("--out", request->out,
+                 "folder, new or of a comparison to go on with or to extend; default: "
+                 "runs/compare-<case>-<number>");
+  app.add_option("--references", request->references, "where reference solutions are kept")
+      ->capture_default_str();
+  app.add_option("--integrators", request->integrators, "comma-separated; default: all");
+  app.add_option("--linear-solvers", request->linear_solvers, "comma-separated; default: block");
+  app.add_option("--tolerances", request->tolerances, "comma-separated; default: 1e-2,3e-3,1e-3");
+  app.add_option("--ranks", request->ranks,
+                 "comma-separated numbers of ranks for the solvers that work on several; "
+                 "default: 1");
+  app.add_option("--repeat", request->repeat, "runs of each combination, for its time; default: 3")
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--time-limit", request->time_limit, "seconds per run; 0: none")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--target-error", request->target_error,
+                 "error to recommend a method for; default: the smallest that all reach")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--reference-tolerance", request->reference_tolerance,
+                 "default: a hundredth of the smallest tolerance")
+      ->check(CLI::Range(1e-12, 0.1));
+  app.add_flag("--quiet", request->quiet, "print nothing but errors");
+  add_options(app, request->flags, [](const OptionSpec& spec) {
+    return spec.group != "Output" && spec.name != "output-times";
+  });
+  app.footer(
+      "Example: traceraft compare --case spinodal --integrators euler,ida --tolerances "
+      "1e-2,3e-3,1e-3");
+  return [request] { return compare(*request); };
+}
+
+}  // namespace
+
+Command compare_command() {
+  return {"compare", "compare integrators and linear solvers at equal error", Ranks::starts_them,
+          define};
 }
 
 }  // namespace traceraft

@@ -5,9 +5,23 @@
 #include <string>
 #include <vector>
 
-#include "drivers/commands.hpp"
+#include "drivers/config/configuration.hpp"
 
 namespace traceraft {
+
+// What the command line says.
+struct CompareRequest {
+  GivenValues flags;
+  std::string config_file;
+  std::string out;                             // "" for the first free runs/compare-<case>-N
+  std::string references = "runs/references";  // where reference solutions are kept
+  // Comma-separated; "": what the comparison in `out` has, or defaults.
+  std::string integrators, linear_solvers, tolerances, ranks;
+  // 0 or, for the time limit, negative: likewise.
+  int repeat = 0;
+  double time_limit = -1, target_error = 0, reference_tolerance = 0;
+  bool quiet = false;
+};
 
 struct ComparePlan {
   std::vector<std::string> integrators, linear_solvers;

@@ -6,6 +6,7 @@
 #include "backends/ranks.hpp"
 #include "drivers/commands.hpp"
 #include "drivers/config/config_file.hpp"
+#include "drivers/config/option_flags.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/run/progress.hpp"
 #include "drivers/run/run_outputs.hpp"
@@ -14,6 +15,18 @@
 namespace traceraft {
 namespace {
 
+struct RunRequest {
+  GivenValues flags;
+  std::string config_file;  // "" for none
+  std::string out;          // "" for the first free runs/<case>-N
+  bool validate = false;    // stop after checking everything
+  bool quiet = false;
+};
+struct ResumeRequest {
+  std::string folder;
+  GivenValues flags;  // options that do not change the numbers
+  bool quiet = false;
+};
 int exit_code(const RunResult& result) {
   switch (result.end) {
     case RunEnd::finished:
@@ -87,9 +100,7 @@ std::optional<Checkpoint> last_checkpoint(const RunFolder& folder,
   return checkpoint;
 }
 
-}  // namespace
-
-int run_command(const RunRequest& request) {
+int run(const RunRequest& request) {
   const GivenValues file = read_config_file(request.config_file);
   const Configuration configuration(file, request.flags);
   RunSetup run = build_run(configuration, InitialState::build);
@@ -105,7 +116,7 @@ int run_command(const RunRequest& request) {
   return carry_out(configuration, run, folder, std::nullopt, quiet);
 }
 
-int resume_command(const ResumeRequest& request) {
+int resume(const ResumeRequest& request) {
   const std::shared_ptr<const Communicator> ranks = world();
   const RunFolder folder = shared_folder(*ranks, [&] { return open_run_folder(request.folder); });
   const Configuration configuration(read_config_file(folder.config()), request.flags);
@@ -121,6 +132,40 @@ int resume_command(const ResumeRequest& request) {
                 checkpoint ? checkpoint->step : 0L);
   }
   return carry_out(configuration, run, folder, checkpoint, quiet);
+}
+
+Action define_run(CLI::App& app) {
+  const auto request = std::make_shared<RunRequest>();
+  app.add_option("--config", request->config_file, "TOML file with the flags' names as keys");
+  app.add_option("--out", request->out, "run folder; default: runs/<case>-<number>");
+  app.add_flag("--validate", request->validate, "check everything, then stop");
+  app.add_flag("--quiet", request->quiet, "print nothing but errors");
+  add_options(app, request->flags, [](const OptionSpec&) { return true; });
+  app.footer(
+      "Values come from defaults, then the case, then --config, then flags. Exit codes: 0 "
+      "success,\n"
+      "2 bad input, 3 numerical failure, 4 input/output, 5 interrupted (checkpoint written),\n"
+      "6 folder in use.\n"
+      "Example: traceraft run --case guv-2to1 --cells 64 --epsilon 0.1 --t-end 100");
+  return [request] { return run(*request); };
+}
+
+Action define_resume(CLI::App& app) {
+  const auto request = std::make_shared<ResumeRequest>();
+  app.add_option("folder", request->folder, "run folder")->required();
+  app.add_flag("--quiet", request->quiet, "print nothing but errors");
+  add_options(app, request->flags, [](const OptionSpec& spec) { return !spec.numerical; });
+  return [request] { return resume(*request); };
+}
+
+}  // namespace
+
+Command run_command() {
+  return {"run", "run a simulation", Ranks::several, define_run};
+}
+
+Command resume_command() {
+  return {"resume", "go on with an interrupted run", Ranks::several, define_resume};
 }
 
 }  // namespace traceraft

@@ -1,3 +1,4 @@
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <thread>
@@ -23,6 +24,15 @@ namespace traceraft {
 namespace {
 
 namespace fs = std::filesystem;
+
+struct VerifyRequest {
+  std::vector<std::string> studies;  // names, "all", or "list" alone
+  bool quick = false, quiet = false;
+  std::string integrator, linear_solver;  // "": each study's choice, or all where it compares
+  int threads = 0;                        // 0: one for each processor
+  std::string out;                        // "" for the first free runs/verify-N
+  std::string document;                   // Markdown file to write; "" for none
+};
 
 constexpr std::uint64_t kLargestProgram = std::uint64_t{1} << 32;
 
@@ -84,9 +94,7 @@ int list_studies() {
   return kSuccess;
 }
 
-}  // namespace
-
-int verify_command(const VerifyRequest& request) {
+int verify(const VerifyRequest& request) {
   if (request.studies == std::vector<std::string>{"list"}) return list_studies();
   const std::vector<StudyEntry> chosen = chosen_studies(request);
   BenchRequest bench{request.quick, request.integrator, request.linear_solver, request.threads};
@@ -120,6 +128,37 @@ int verify_command(const VerifyRequest& request) {
     std::printf("\nopen next: %s\n", (folder / "verify.html").c_str());
   }
   return all ? kSuccess : kClaimFailed;
+}
+
+Action define(CLI::App& app) {
+  const auto request = std::make_shared<VerifyRequest>();
+  app.add_option("studies", request->studies, "studies (list shows them), or all")
+      ->default_str("all");
+  app.add_flag("--quick", request->quick, "coarser meshes: all studies within 3 minutes");
+  app.add_option("--integrator", request->integrator,
+                 "to measure with; default: ida, or all where a study compares");
+  app.add_option("--linear-solver", request->linear_solver,
+                 "to measure with; default: block, or all where a study compares");
+  app.add_option("--threads", request->threads, "default: one for each processor")
+      ->check(CLI::Range(1, 256));
+  app.add_option("--out", request->out,
+                 "folder for tables and page; default: runs/verify-<number>");
+  app.add_option("--document", request->document,
+                 "Markdown file for the results; its figures go beside it");
+  app.add_flag("--quiet", request->quiet, "print nothing but errors");
+  app.footer(
+      "Exit codes: 0 every claim holds, 1 one fails, 2 bad input, 4 input/output.\n"
+      "Example: traceraft verify mass energy --quick");
+  return [request] {
+    if (request->studies.empty()) request->studies = {"all"};
+    return verify(*request);
+  };
+}
+
+}  // namespace
+
+Command verify_command() {
+  return {"verify", "measure what the program claims", Ranks::one, define};
 }
 
 }  // namespace traceraft

@@ -1,3 +1,4 @@
+#include <CLI/CLI.hpp>
 #include <cstdio>
 
 #include "drivers/commands.hpp"
@@ -8,14 +9,17 @@
 namespace traceraft {
 namespace {
 
+struct FractionRequest {
+  std::string composition;  // DOPC : DPPC : mol % of cholesterol
+  double celsius = 20;
+  std::string ordered, disordered;  // mol % of the two phases; "": from what is published
+};
 void print_mixture(const char* what, const LipidMixture& mixture) {
   std::printf("  %-22s DOPC %.3f, DPPC %.3f, cholesterol %.3f\n", what, mixture.dopc, mixture.dppc,
               mixture.cholesterol);
 }
 
-}  // namespace
-
-int fraction_command(const FractionRequest& request) {
+int estimate_fraction(const FractionRequest& request) {
   if (request.composition.empty())
     throw InputError("--composition: say what the membrane is made of, such as 3:1:20");
   const LipidMixture membrane = membrane_mixture("--composition", request.composition);
@@ -41,6 +45,26 @@ int fraction_command(const FractionRequest& request) {
               estimate.how.c_str());
   std::printf("\nto simulate it: traceraft run --raft-fraction %.3f\n", estimate.area);
   return kSuccess;
+}
+
+Action define(CLI::App& app) {
+  const auto request = std::make_shared<FractionRequest>();
+  app.add_option("--composition", request->composition,
+                 "parts of DOPC : DPPC : mol % of cholesterol, such as 3:1:20");
+  app.add_option("--temperature", request->celsius, "in degrees Celsius")
+      ->check(CLI::Range(-10.0, 60.0))
+      ->capture_default_str();
+  app.add_option("--ordered", request->ordered,
+                 "mol % of DOPC:DPPC:cholesterol in rafts, such as 22:43:35");
+  app.add_option("--disordered", request->disordered, "the same around them");
+  app.footer("Example: traceraft fraction --composition 2:1:20 --temperature 19.2");
+  return [request] { return estimate_fraction(*request); };
+}
+
+}  // namespace
+
+Command fraction_command() {
+  return {"fraction", "estimate the raft fraction of a lipid composition", Ranks::one, define};
 }
 
 }  // namespace traceraft
