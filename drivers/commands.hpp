@@ -31,6 +31,7 @@ Command run_command();
 Command resume_command();
 Command compare_command();
 Command verify_command();
+Command ensemble_command();
 Command fraction_command();
 Command list_command();
 

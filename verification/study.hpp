@@ -48,11 +48,14 @@ struct Table {
   std::vector<std::vector<Cell>> rows;
 };
 
-enum class Mark { line, points, both };
+// band: between the points and `other`, as many values of y; bars: `other` is the half length of
+// error bars.
+enum class Mark { line, points, both, band, bars };
 struct ChartSeries {
   std::string name;
   Points points;
   Mark mark = Mark::both;
+  std::vector<double> other = {};
 };
 struct Chart {
   std::string title, x_label, y_label;

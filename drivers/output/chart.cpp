@@ -14,6 +14,10 @@ const char* style(Mark mark) {
       return "lines";
     case Mark::points:
       return "points pt 7 ps 0.7";
+    case Mark::band:
+      return "filledcurves fillstyle transparent solid 0.25 noborder";
+    case Mark::bars:
+      return "yerrorbars pt 7 ps 0.7 lw 1";
     default:
       return "linespoints pt 7 ps 0.7";
   }
@@ -45,8 +49,11 @@ std::string script(const Chart& chart, const std::string& svg) {
     const ChartSeries& series = chart.series[i];
     const std::string block = "$s" + std::to_string(i);
     text += block + " << END\n";
-    for (const auto& [x, y] : series.points)
-      text += format_number(x) + " " + format_number(y) + "\n";
+    for (std::size_t k = 0; k < series.points.size(); ++k) {
+      text += format_number(series.points[k].first) + " " + format_number(series.points[k].second);
+      if (!series.other.empty()) text += " " + format_number(series.other[k]);
+      text += "\n";
+    }
     text += "END\n";
     plots += (plots.empty() ? "" : ", ") + block + " with " + style(series.mark) + " title " +
              quoted(series.name);

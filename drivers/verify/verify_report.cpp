@@ -5,8 +5,8 @@
 
 #include "backends/posix/durable_file.hpp"
 #include "drivers/output/chart.hpp"
-#include "drivers/output/csv.hpp"
 #include "drivers/output/page.hpp"
+#include "drivers/output/text_table.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
@@ -15,13 +15,8 @@ namespace traceraft {
 namespace {
 
 namespace fs = std::filesystem;
-using Row = std::vector<std::string>;
 
 constexpr std::size_t kLargestChart = 1 << 24;  // bytes
-
-std::string short_number(double value) {
-  return formatted("%.5g", value);
-}
 
 std::string measured_text(const Claim& claim) {
   const std::string value = formatted("%.4g", claim.measured);
@@ -42,46 +37,6 @@ Row claim_row(const Claim& claim) {
   }
   row.push_back(verdict_text(claim.holds() ? Verdict::holds : Verdict::fails));
   return row;
-}
-
-std::vector<Row> table_rows(const Table& table) {
-  std::vector<Row> rows = {table.columns};
-  for (const auto& cells : table.rows) {
-    Row row;
-    for (const Cell& cell : cells)
-      row.push_back(cell.is_number ? short_number(cell.number) : cell.text);
-    rows.push_back(row);
-  }
-  return rows;
-}
-
-void print_rows(const std::vector<Row>& rows) {
-  std::vector<std::size_t> width(rows.front().size(), 0);
-  for (const Row& row : rows)
-    for (std::size_t k = 0; k < row.size(); ++k) width[k] = std::max(width[k], row[k].size());
-  for (const Row& row : rows) {
-    std::string line;
-    for (std::size_t k = 0; k < row.size(); ++k) {
-      const std::string gap(width[k] - row[k].size(), ' ');
-      // The first column is a name as a rule.
-      line += "  " + (k == 0 ? row[k] + gap : gap + row[k]);
-    }
-    std::printf("%s\n", line.c_str());
-  }
-}
-
-std::string csv_text(const Table& table) {
-  std::string csv;
-  const auto line = [&csv](const auto& cells, const auto& text) {
-    for (std::size_t k = 0; k < cells.size(); ++k) csv += (k == 0 ? "" : ",") + text(cells[k]);
-    csv += "\n";
-  };
-  line(table.columns, csv_cell);
-  for (const auto& row : table.rows)
-    line(row, [&](const Cell& cell) {
-      return cell.is_number ? format_number(cell.number) : csv_cell(cell.text);
-    });
-  return csv;
 }
 
 std::string outcome_sentence(const StudyResult& result) {
@@ -117,20 +72,6 @@ std::string draw_charts(const fs::path& folder, const StudyResult& result, Page&
     }
   }
   return missing;
-}
-
-std::string markdown_table(const std::vector<Row>& rows) {
-  std::string text;
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    text += "|";
-    for (const std::string& cell : rows[r]) text += " " + cell + " |";
-    text += "\n";
-    if (r > 0) continue;
-    text += "|";
-    for (std::size_t k = 0; k < rows[r].size(); ++k) text += "---|";
-    text += "\n";
-  }
-  return text + "\n";
 }
 
 }  // namespace

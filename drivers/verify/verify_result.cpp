@@ -6,7 +6,7 @@
 namespace traceraft {
 namespace {
 
-constexpr const char* kMarks[] = {"line", "points", "both"};
+constexpr const char* kMarks[] = {"line", "points", "both", "band", "bars"};
 
 Json number_or_null(double value) {
   return std::isfinite(value) ? Json(value) : Json();
@@ -73,7 +73,8 @@ Json to_json(const Chart& chart) {
       points.push_back({number_or_null(x), number_or_null(y)});
     list.push_back({{"name", series.name},
                     {"mark", kMarks[static_cast<int>(series.mark)]},
-                    {"points", points}});
+                    {"points", points},
+                    {"other", series.other}});
   }
   return {{"title", chart.title}, {"x_label", chart.x_label}, {"y_label", chart.y_label},
           {"log_x", chart.log_x}, {"log_y", chart.log_y},     {"series", list}};
@@ -84,10 +85,11 @@ Chart chart_of(const Json& json) {
               json.at("log_x"), json.at("log_y"),   {}};
   for (const Json& item : json.at("series")) {
     ChartSeries series{item.at("name"), {}};
-    for (const Mark mark : {Mark::line, Mark::points, Mark::both})
+    for (const Mark mark : {Mark::line, Mark::points, Mark::both, Mark::band, Mark::bars})
       if (item.at("mark") == kMarks[static_cast<int>(mark)]) series.mark = mark;
     for (const Json& point : item.at("points"))
       series.points.emplace_back(number_or(point.at(0), kNaN), number_or(point.at(1), kNaN));
+    series.other = item.at("other").get<std::vector<double>>();
     chart.series.push_back(series);
   }
   return chart;

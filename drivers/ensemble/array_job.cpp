@@ -1,0 +1,38 @@
+#include "drivers/ensemble/array_job.hpp"
+
+#include "backends/posix/child.hpp"
+
+namespace traceraft {
+namespace {
+
+// One word for the shell, whatever is in it.
+std::string shell_word(const std::string& text) {
+  std::string word = "'";
+  for (const char ch : text) word += ch == '\'' ? "'\\''" : std::string(1, ch);
+  return word + "'";
+}
+
+}  // namespace
+
+std::string array_job_script(const EnsembleFolder& folder, const EnsemblePlan& plan) {
+  const std::string path = std::filesystem::absolute(folder.path()).lexically_normal().string();
+  const std::uint64_t last = plan.first_seed + static_cast<std::uint64_t>(plan.runs) - 1;
+  const std::string program = shell_word(own_path()) + " ensemble --out " + shell_word(path);
+  return "#!/bin/sh\n"
+         "#SBATCH --job-name=traceraft\n"
+         "#SBATCH --array=" +
+         std::to_string(plan.first_seed) + "-" + std::to_string(last) +
+         "\n"
+         "#SBATCH --cpus-per-task=2\n"
+         "#SBATCH --mem=4G\n"
+         "#SBATCH --time=04:00:00\n"
+         "#SBATCH --signal=TERM@60\n"
+         "# A task that is stopped or killed goes on where it was when it is submitted again.\n"
+         "# When all are done: " +
+         program +
+         "\n"
+         "exec " +
+         program + " --member \"$SLURM_ARRAY_TASK_ID\" --threads \"${SLURM_CPUS_PER_TASK:-1}\"\n";
+}
+
+}  // namespace traceraft

@@ -1,0 +1,15 @@
+// An ensemble on a cluster: an array job of SLURM, a task per run.
+#pragma once
+
+#include <string>
+
+#include "drivers/ensemble/ensemble_folder.hpp"
+
+namespace traceraft {
+
+// The text of a script for sbatch. Each task carries out, or goes on with, the run of its seed with
+// as many threads as it is given processors; afterwards the ensemble is gathered by the command
+// that a comment in the script names.
+std::string array_job_script(const EnsembleFolder& folder, const EnsemblePlan& plan);
+
+}  // namespace traceraft

@@ -1,0 +1,190 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <optional>
+#include <thread>
+
+#include "backends/posix/durable_file.hpp"
+#include "backends/posix/folder_lock.hpp"
+#include "backends/posix/process.hpp"
+#include "drivers/commands.hpp"
+#include "drivers/config/config_file.hpp"
+#include "drivers/config/option_flags.hpp"
+#include "drivers/ensemble/array_job.hpp"
+#include "drivers/ensemble/ensemble_report.hpp"
+#include "drivers/exit_codes.hpp"
+#include "drivers/run/run_folder.hpp"
+#include "drivers/run/run_setup.hpp"
+#include "kernel/core/error.hpp"
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct EnsembleRequest {
+  GivenValues flags;
+  std::string config_file, out;
+  int runs = 0, jobs = 0;        // 0: 10, or as many as there are; as many as processors
+  std::int64_t first_seed = -1;  // −1: 1, or as it is
+  std::int64_t member = -1;      // −1: all
+  int threads = 0;               // of each run; 0: what the jobs leave
+  bool array_job = false, quiet = false;
+};
+
+Configuration new_configuration(const EnsembleRequest& request, const GivenValues& file) {
+  for (const GivenValues* given : {&file, &request.flags})
+    if (const auto seed = given->find("seed"); seed != given->end())
+      throw InputError(seed->second.where + ": an ensemble takes --first-seed and --runs");
+  const Configuration configuration(file, request.flags);
+  if (configuration.text("initial") == "noise") return configuration;
+  if (configuration.text("initial").compare(0, 12, "band-limited") == 0) return configuration;
+  throw InputError(
+      configuration.where("initial") +
+      ": runs differ in the noise they start from; it has to be noise or band-limited");
+}
+
+// Of an ensemble that goes on: its runs have to stay comparable.
+Configuration known_configuration(const EnsembleFolder& folder, const EnsembleRequest& request,
+                                  const GivenValues& file) {
+  const Configuration known(read_config_file(folder.config()), {});
+  if (file.empty() && request.flags.empty()) return known;
+  if (numerical_identity(new_configuration(request, file)) != numerical_identity(known))
+    throw InputError("--out: " + folder.path().string() +
+                     " holds an ensemble of other runs; choose another folder, or give only --out "
+                     "to go on with it");
+  return known;
+}
+
+EnsemblePlan plan_of(const EnsembleRequest& request, const EnsembleFolder& folder) {
+  EnsemblePlan plan;
+  if (folder.started()) plan = folder.load();
+  if (request.runs > 0 && request.runs < plan.runs && folder.started())
+    throw InputError("--runs: " + folder.path().string() + " holds " + std::to_string(plan.runs) +
+                     " runs already; an ensemble can only grow");
+  if (request.runs > 0) plan.runs = request.runs;
+  if (request.first_seed >= 0) {
+    const auto first = static_cast<std::uint64_t>(request.first_seed);
+    if (folder.started() && first != plan.first_seed)
+      throw InputError("--first-seed: " + folder.path().string() + " begins with seed " +
+                       std::to_string(plan.first_seed));
+    plan.first_seed = first;
+  }
+  return plan;
+}
+
+int one_member(const EnsembleRequest& request, const EnsembleFolder& folder,
+               const EnsemblePlan& plan) {
+  const auto seed = static_cast<std::uint64_t>(request.member);
+  if (seed < plan.first_seed || seed >= plan.first_seed + static_cast<std::uint64_t>(plan.runs))
+    throw InputError(
+        "--member: " + std::to_string(seed) +
+        " is not in this ensemble (allowed: " + std::to_string(plan.first_seed) + " to " +
+        std::to_string(plan.first_seed + static_cast<std::uint64_t>(plan.runs) - 1) + ")");
+  return run_member(folder, seed, std::max(1, request.threads));
+}
+
+std::string sentence(const Configuration& configuration, const EnsembleSummary& summary,
+                     const EnsemblePlan& plan) {
+  return std::to_string(summary.seeds.size()) + " of " + std::to_string(plan.runs) +
+         " runs of the case " + configuration.text("case") + ", seeds " +
+         std::to_string(plan.first_seed) + " to " +
+         std::to_string(plan.first_seed + static_cast<std::uint64_t>(plan.runs) - 1) +
+         ": raft fraction " + configuration.text("raft-fraction") + ", epsilon " +
+         configuration.text("epsilon") + ", " + configuration.text("cells") +
+         " cells. Perimeters are diffuse ones, divided by the radius.";
+}
+
+int carry_out(const EnsembleRequest& request, const EnsembleFolder& folder,
+              const EnsemblePlan& plan, const Configuration& configuration) {
+  const int processors = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const int jobs = request.jobs > 0 ? request.jobs : processors;
+  const int threads = request.threads > 0 ? request.threads : std::max(1, processors / jobs);
+  const Units units = configuration.units();
+  if (!request.quiet)
+    std::printf("%d runs, %d at a time with %d thread%s each\nfolder %s\n\n", plan.runs, jobs,
+                threads, threads == 1 ? "" : "s", folder.path().c_str());
+  const EnsembleEnd end =
+      work_off(plan, folder, jobs, threads, configuration.number("t-end"), request.quiet);
+  for (const MemberFailure& failure : end.failures)
+    std::fprintf(stderr, "traceraft: the run of seed %llu failed: %s\n",
+                 static_cast<unsigned long long>(failure.seed), failure.why.c_str());
+  if (end.stopped) {
+    if (!request.quiet)
+      std::printf("go on with: traceraft ensemble --out %s\n", folder.path().c_str());
+    return kInterrupted;
+  }
+  const EnsembleSummary summary = summarise(folder, plan, units.length());
+  if (summary.seeds.empty()) return kNumericalFailure;
+  const std::string missing = write_ensemble(
+      folder, summary, end, sentence(configuration, summary, plan), !units.scaled, request.quiet);
+  if (!request.quiet) {
+    if (!missing.empty()) std::printf("\ncharts are missing: %s\n", missing.c_str());
+    std::printf("\nopen next: %s\n", (folder.path() / "ensemble.html").c_str());
+  }
+  return end.failures.empty() ? kSuccess : kNumericalFailure;
+}
+
+int run_ensemble(const EnsembleRequest& request) {
+  catch_stop_signals();
+  const GivenValues file = read_config_file(request.config_file);
+  const bool goes_on = !request.out.empty() && EnsembleFolder(request.out).started();
+  if (request.member >= 0) {
+    if (!goes_on) throw InputError("--member: --out has to name an ensemble that has begun");
+    return one_member(request, EnsembleFolder(request.out), EnsembleFolder(request.out).load());
+  }
+  if (!goes_on && !request.out.empty()) refuse_files_of_a_run(request.out);
+  const Configuration configuration =
+      goes_on ? known_configuration(EnsembleFolder(request.out), request, file)
+              : new_configuration(request, file);
+  const EnsembleFolder folder(request.out.empty()
+                                  ? first_free_folder("ensemble-" + configuration.text("case"))
+                                  : request.out);
+  const EnsemblePlan plan = plan_of(request, folder);
+  if (!goes_on) (void)build_run(configuration, InitialState::build);  // refuses what cannot be run
+
+  fs::create_directories(folder.path() / "runs");
+  const FolderLock lock(folder.path());
+  if (!goes_on) write_durably(folder.config(), config_text(configuration));
+  folder.save(plan);
+  if (!request.array_job) return carry_out(request, folder, plan, configuration);
+  const fs::path script = folder.path() / "array-job.sh";
+  write_durably(script, array_job_script(folder, plan));
+  std::printf("submit it with: sbatch %s\n", script.c_str());
+  return kSuccess;
+}
+
+Action define(CLI::App& app) {
+  const auto request = std::make_shared<EnsembleRequest>();
+  app.add_option("--config", request->config_file, "TOML file with the flags' names as keys");
+  app.add_option("--out", request->out,
+                 "folder, new or of an ensemble to go on with or to extend; default: "
+                 "runs/ensemble-<case>-<number>");
+  app.add_option("--runs", request->runs, "how many; default: 10")->check(CLI::Range(1, 100000));
+  app.add_option("--first-seed", request->first_seed, "seed of the first run; default: 1")
+      ->check(CLI::Range(0.0, 9007199254740992.0));
+  app.add_option("--jobs", request->jobs, "runs at a time; default: one for each processor")
+      ->check(CLI::Range(1, 1024));
+  app.add_option("--threads", request->threads, "of each run; default: what the jobs leave")
+      ->check(CLI::Range(1, 64));
+  app.add_flag("--array-job", request->array_job,
+               "run nothing, write a script for SLURM's sbatch with a task per run");
+  app.add_option("--member", request->member, "carry out the run of this seed alone (array jobs)")
+      ->check(CLI::NonNegativeNumber);
+  app.add_flag("--quiet", request->quiet, "print nothing but errors");
+  add_options(app, request->flags,
+              [](const OptionSpec& spec) { return spec.name != "seed" && spec.name != "threads"; });
+  app.footer(
+      "Runs that have been interrupted go on with --out alone. Exit codes: 0 all runs are done,\n"
+      "3 some failed (the others are gathered), 5 interrupted.\n"
+      "Example: traceraft ensemble --case guv-3to1 --runs 10 --jobs 2");
+  return [request] { return run_ensemble(*request); };
+}
+
+}  // namespace
+
+Command ensemble_command() {
+  return {"ensemble", "run one case from many seeds, and gather what is common to them", Ranks::one,
+          define};
+}
+
+}  // namespace traceraft

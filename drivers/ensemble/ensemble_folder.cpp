@@ -1,0 +1,65 @@
+#include "drivers/ensemble/ensemble_folder.hpp"
+
+#include "drivers/input/csv_table.hpp"
+#include "drivers/output/json_file.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr std::uint64_t kLargestSeries = std::uint64_t{1} << 30;
+
+}  // namespace
+
+void EnsembleFolder::save(const EnsemblePlan& plan) const {
+  write_durably(plan_file(),
+                Json{{"runs", plan.runs}, {"first_seed", plan.first_seed}}.dump(2) + "\n");
+}
+
+EnsemblePlan EnsembleFolder::load() const {
+  return from_json(plan_file(), [](const Json& json) {
+    return EnsemblePlan{json.at("runs"), json.at("first_seed")};
+  });
+}
+
+std::filesystem::path EnsembleFolder::run_of(std::uint64_t seed) const {
+  return path_ / "runs" / ("seed-" + std::to_string(seed));
+}
+
+std::filesystem::path EnsembleFolder::log_of(std::uint64_t seed) const {
+  return path_ / "runs" / ("seed-" + std::to_string(seed) + ".log");
+}
+
+EnsembleFolder::Member EnsembleFolder::member(std::uint64_t seed) const {
+  const std::filesystem::path run = run_of(seed), summary = run / "summary.json";
+  if (!std::filesystem::exists(run / "config.toml")) return {MemberEnd::missing, ""};
+  if (!std::filesystem::exists(summary)) return {MemberEnd::begun, ""};
+  return from_json(summary, [](const Json& json) -> Member {
+    const std::string end = json.at("end");
+    if (end == "failed") return {MemberEnd::failed, json.value("why", std::string())};
+    return {end == "finished" ? MemberEnd::finished : MemberEnd::begun, ""};
+  });
+}
+
+double EnsembleFolder::reached(std::uint64_t seed) const {
+  const std::filesystem::path series = run_of(seed) / "series.csv";
+  if (!std::filesystem::exists(series)) return 0;
+  std::string text = read_file(series, kLargestSeries);
+  text.erase(text.rfind('\n') + 1);  // a row that is being written
+  if (text.empty()) return 0;
+  const std::size_t row = text.rfind('\n', text.size() - 2) + 1;
+  const std::size_t comma = text.find(',', row);
+  return row == 0 ? 0 : std::strtod(text.c_str() + comma + 1, nullptr);
+}
+
+History EnsembleFolder::history(std::uint64_t seed, double radius) const {
+  const CsvTable series = CsvTable::read(run_of(seed) / "series.csv");
+  History history;
+  history.time = series.numbers("t");
+  history.of(Quantity::perimeter) = series.numbers("perimeter");
+  for (double& perimeter : history.of(Quantity::perimeter)) perimeter /= radius;
+  history.of(Quantity::rafts) = series.numbers("rafts");
+  history.of(Quantity::fraction) = series.numbers("raft_fraction");
+  return history;
+}
+
+}  // namespace traceraft

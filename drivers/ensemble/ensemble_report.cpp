@@ -1,0 +1,123 @@
+#include "drivers/ensemble/ensemble_report.hpp"
+
+#include "backends/posix/durable_file.hpp"
+#include "drivers/output/chart.hpp"
+#include "drivers/output/page.hpp"
+#include "drivers/output/text_table.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr int kPerDecade = 24;
+
+struct Statistic {
+  const char* name;
+  double Distribution::*value;
+};
+constexpr Statistic kStatistics[] = {
+    {"mean", &Distribution::mean}, {"sd", &Distribution::deviation},
+    {"min", &Distribution::min},   {"q10", &Distribution::q10},
+    {"q25", &Distribution::q25},   {"median", &Distribution::median},
+    {"q75", &Distribution::q75},   {"q90", &Distribution::q90},
+    {"max", &Distribution::max}};
+
+std::size_t index_of(Quantity quantity) {
+  return static_cast<std::size_t>(quantity);
+}
+
+ChartSeries band(const EnsembleSummary& summary, Quantity quantity, const char* name,
+                 double Distribution::*low, double Distribution::*high) {
+  ChartSeries series{name, {}, Mark::band};
+  const auto& at = summary.at[index_of(quantity)];
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    series.points.emplace_back(summary.times[i], at[i].*low);
+    series.other.push_back(at[i].*high);
+  }
+  return series;
+}
+
+// A few times, for people.
+std::vector<Row> overview(const EnsembleSummary& summary, bool seconds) {
+  std::vector<Row> rows = {{seconds ? "time (s)" : "time"}};
+  for (const Quantity quantity : kQuantities)
+    rows.front().push_back(std::string(name_of(quantity).label) + ", median (range)");
+  for (std::size_t i = 0; i < summary.times.size(); ++i) {
+    if (i % kPerDecade != 0 && i + 1 != summary.times.size()) continue;
+    Row row = {short_number(summary.times[i])};
+    for (const auto& at : summary.at)
+      row.push_back(short_number(at[i].median) + " (" + short_number(at[i].min) + " to " +
+                    short_number(at[i].max) + ")");
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+}  // namespace
+
+EnsembleSummary summarise(const EnsembleFolder& folder, const EnsemblePlan& plan, double radius) {
+  EnsembleSummary summary;
+  std::vector<History> histories;
+  for (int i = 0; i < plan.runs; ++i) {
+    const std::uint64_t seed = plan.first_seed + static_cast<std::uint64_t>(i);
+    if (folder.member(seed).end != MemberEnd::finished) continue;
+    summary.seeds.push_back(seed);
+    histories.push_back(folder.history(seed, radius));
+  }
+  summary.times = common_times(histories, kPerDecade);
+  for (const Quantity quantity : kQuantities)
+    summary.at[index_of(quantity)] = distributions(histories, quantity, summary.times);
+  return summary;
+}
+
+Table ensemble_table(const EnsembleSummary& summary) {
+  Table table{"ensemble", {"t"}, {}};
+  for (const Quantity quantity : kQuantities)
+    for (const Statistic& statistic : kStatistics)
+      table.columns.push_back(std::string(name_of(quantity).id) + "_" + statistic.name);
+  for (std::size_t i = 0; i < summary.times.size(); ++i) {
+    std::vector<Cell> row = {summary.times[i]};
+    for (const auto& at : summary.at)
+      for (const Statistic& statistic : kStatistics) row.emplace_back(at[i].*statistic.value);
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+Chart ensemble_chart(const EnsembleSummary& summary, Quantity quantity, bool seconds) {
+  const char* label = name_of(quantity).label;
+  Chart chart{label, seconds ? "time (s)" : "time (R^2/D)", label,
+              true,  quantity != Quantity::fraction,        {}};
+  chart.series = {band(summary, quantity, "all runs", &Distribution::min, &Distribution::max),
+                  band(summary, quantity, "middle half", &Distribution::q25, &Distribution::q75),
+                  {"median", {}, Mark::line}};
+  const auto& at = summary.at[index_of(quantity)];
+  for (std::size_t i = 0; i < at.size(); ++i)
+    chart.series.back().points.emplace_back(summary.times[i], at[i].median);
+  return chart;
+}
+
+std::string write_ensemble(const EnsembleFolder& folder, const EnsembleSummary& summary,
+                           const EnsembleEnd& end, const std::string& about, bool seconds,
+                           bool quiet) {
+  write_durably(folder.path() / "ensemble.csv", csv_text(ensemble_table(summary)));
+  Page page("An ensemble of vesicles");
+  page.paragraph(about);
+  for (const MemberFailure& failure : end.failures)
+    page.paragraph("The run of seed " + std::to_string(failure.seed) + " failed: " + failure.why);
+  const std::vector<Row> rows = overview(summary, seconds);
+  if (!quiet) print_rows(rows);
+  page.table(rows);
+  std::string missing;
+  for (const Quantity quantity : kQuantities) {
+    const Chart chart = ensemble_chart(summary, quantity, seconds);
+    const std::string svg = draw_chart(chart, folder.path() / name_of(quantity).id);
+    if (svg.empty())
+      missing = "gnuplot is not installed (Debian package gnuplot-nox)";
+    else
+      page.figure(svg, chart.title);
+  }
+  write_durably(folder.path() / "ensemble.html", page.html());
+  return missing;
+}
+
+}  // namespace traceraft

@@ -1,0 +1,32 @@
+// What an ensemble shows: ensemble.csv and ensemble.html.
+#pragma once
+
+#include <vector>
+
+#include "drivers/ensemble/ensemble_folder.hpp"
+#include "drivers/ensemble/ensemble_runs.hpp"
+#include "verification/study.hpp"
+#include "verification/vesicles/history.hpp"
+
+namespace traceraft {
+
+// Per quantity its distribution over the runs, at common times.
+struct EnsembleSummary {
+  std::vector<std::uint64_t> seeds;  // of the members that have finished
+  std::vector<double> times;
+  std::array<std::vector<Distribution>, 3> at;  // in the order of kQuantities
+};
+EnsembleSummary summarise(const EnsembleFolder& folder, const EnsemblePlan& plan, double radius);
+
+// A row per time: t, and for every quantity its mean, deviation, extrema and quantiles.
+Table ensemble_table(const EnsembleSummary& summary);
+// Range, quartiles and median of a quantity over time. `seconds`: are times in seconds?
+Chart ensemble_chart(const EnsembleSummary& summary, Quantity quantity, bool seconds);
+
+// Writes both files into the folder and prints a table unless `quiet`. Returns what is missing of
+// the charts, "" if nothing.
+std::string write_ensemble(const EnsembleFolder& folder, const EnsembleSummary& summary,
+                           const EnsembleEnd& end, const std::string& about, bool seconds,
+                           bool quiet);
+
+}  // namespace traceraft

@@ -1,0 +1,133 @@
+#include "drivers/input/csv_table.hpp"
+
+#include <csv.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "backends/posix/durable_file.hpp"
+#include "kernel/core/error.hpp"
+#include "kernel/core/named_list.hpp"
+#include "kernel/core/parameters.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 30;
+
+struct Rows {
+  std::vector<std::string> row;
+  std::vector<std::vector<std::string>> rows;
+  std::vector<long> lines;
+  long line = 0;  // that is being read
+};
+
+void take_cell(void* cell, std::size_t size, void* target) {
+  static_cast<Rows*>(target)->row.emplace_back(static_cast<const char*>(cell), size);
+}
+
+void take_row(int, void* target) {
+  Rows& rows = *static_cast<Rows*>(target);
+  rows.rows.push_back(std::move(rows.row));
+  rows.lines.push_back(rows.line);
+  rows.row.clear();
+}
+
+class Parser {
+ public:
+  Parser() {
+    if (csv_init(&parser_, CSV_STRICT | CSV_STRICT_FINI) != 0) throw std::bad_alloc();
+  }
+  ~Parser() { csv_free(&parser_); }
+  Parser(const Parser&) = delete;
+  Parser& operator=(const Parser&) = delete;
+
+  bool feed(const std::string& text, Rows& rows) {
+    return csv_parse(&parser_, text.data(), text.size(), take_cell, take_row, &rows) == text.size();
+  }
+  bool finish(Rows& rows) { return csv_fini(&parser_, take_cell, take_row, &rows) == 0; }
+
+ private:
+  csv_parser parser_;
+};
+
+// Line by line, so that every row knows where it stands.
+Rows parse(const std::filesystem::path& path, std::string text) {
+  if (text.compare(0, 3, "\xEF\xBB\xBF") == 0) text.erase(0, 3);  // as spreadsheets begin
+  Rows rows;
+  Parser parser;
+  const auto refuse = [&] {
+    throw InputError(path.string() + ":" + std::to_string(rows.line) +
+                     ": this is no CSV (a quote within a cell, or one that does not end)");
+  };
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
+    ++rows.line;
+    if (text[begin] != '#' && !parser.feed(text.substr(begin, end - begin), rows)) refuse();
+    begin = end;
+  }
+  if (!parser.finish(rows)) refuse();
+  return rows;
+}
+
+}  // namespace
+
+CsvTable CsvTable::read(const std::filesystem::path& path) {
+  Rows rows = parse(path, read_file(path, kMaxBytes));
+  CsvTable table;
+  table.path_ = path;
+  if (rows.rows.empty()) throw InputError(path.string() + ": the file is empty");
+  table.columns_ = std::move(rows.rows.front());
+  for (std::size_t i = 0; i < table.columns_.size(); ++i)
+    if (table.index(table.columns_[i]) != i)
+      throw InputError(path.string() + ":" + std::to_string(rows.lines.front()) +
+                       ": two columns are called '" + table.columns_[i] + "'");
+  table.cells_.assign(std::make_move_iterator(rows.rows.begin() + 1),
+                      std::make_move_iterator(rows.rows.end()));
+  table.lines_.assign(rows.lines.begin() + 1, rows.lines.end());
+  for (std::size_t i = 0; i < table.rows(); ++i)
+    if (table.cells_[i].size() != table.columns_.size())
+      throw InputError(table.where(i) + ": " + std::to_string(table.cells_[i].size()) +
+                       " cells, but there are " + std::to_string(table.columns_.size()) +
+                       " columns");
+  return table;
+}
+
+std::optional<std::size_t> CsvTable::index(const std::string& column) const {
+  const auto found = std::find(columns_.begin(), columns_.end(), column);
+  if (found == columns_.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - columns_.begin());
+}
+
+void CsvTable::require(const std::string& column) const {
+  if (!has(column))
+    throw InputError(path_.string() + ": there is no column '" + column + "' (there are: " + [&] {
+      std::string names;
+      for (const std::string& name : columns_) names += (names.empty() ? "" : ", ") + name;
+      return names;
+    }() + ")");
+}
+
+const std::string& CsvTable::text(std::size_t row, const std::string& column) const {
+  return cells_[row][index(column).value()];
+}
+
+double CsvTable::number(std::size_t row, const std::string& column) const {
+  return parse_number(where(row, column), text(row, column));
+}
+
+std::vector<double> CsvTable::numbers(const std::string& column) const {
+  std::vector<double> values;
+  for (std::size_t row = 0; row < rows(); ++row) values.push_back(number(row, column));
+  return values;
+}
+
+std::string CsvTable::where(std::size_t row) const {
+  return path_.string() + ":" + std::to_string(lines_[row]);
+}
+
+std::string CsvTable::where(std::size_t row, const std::string& column) const {
+  return where(row) + ": column '" + column + "'";
+}
+
+}  // namespace traceraft

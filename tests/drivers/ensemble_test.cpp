@@ -1,0 +1,127 @@
+// Ensembles as a user meets them: side by side, interrupted, failing, on a cluster.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::content;
+using testing::lines_of;
+using testing::Outcome;
+using testing::shell;
+using testing::TemporaryFolder;
+using testing::traceraft;
+
+class EnsembleTest : public ::testing::Test {
+ protected:
+  TemporaryFolder folder;
+  const std::string runs =
+      "--case guv-2to1 --cells 20 --epsilon 0.5 --t-end 100 --no-fields --checkpoint-interval 0 ";
+  std::string out(const std::string& name) const { return (folder.path / name).string(); }
+  fs::path csv(const std::string& name) const { return folder.path / name / "ensemble.csv"; }
+};
+
+TEST_F(EnsembleTest, GathersRunsThatDifferInTheirSeed) {
+  const Outcome made = traceraft("ensemble " + runs + "--runs 3 --out " + out("a"));
+  ASSERT_EQ(made.code, 0) << made.output;
+  EXPECT_NE(made.output.find("open next"), std::string::npos);
+  EXPECT_TRUE(fs::exists(folder.path / "a/ensemble.html"));
+  const std::string first = content(folder.path / "a/runs/seed-1/series.csv");
+  EXPECT_NE(first, content(folder.path / "a/runs/seed-2/series.csv"));
+  // A member is the run that its configuration describes.
+  ASSERT_EQ(
+      traceraft("run --quiet --config " + out("a/config.toml") + " --seed 1 --out " + out("alone"))
+          .code,
+      0);
+  EXPECT_EQ(first, content(folder.path / "alone/series.csv"));
+  // It can grow, and what it has is not run again.
+  const auto before = fs::last_write_time(folder.path / "a/runs/seed-3/series.csv");
+  ASSERT_EQ(traceraft("ensemble --quiet --runs 4 --out " + out("a")).code, 0);
+  EXPECT_EQ(fs::last_write_time(folder.path / "a/runs/seed-3/series.csv"), before);
+  EXPECT_TRUE(fs::exists(folder.path / "a/runs/seed-4/summary.json"));
+}
+
+TEST_F(EnsembleTest, GoesOnAfterItWasKilled) {
+  ASSERT_EQ(traceraft("ensemble --quiet " + runs + "--runs 3 --out " + out("whole")).code, 0);
+  const pid_t child = testing::start_traceraft("ensemble --quiet " + runs +
+                                               "--runs 3 --jobs 2 --out " + out("cut"));
+  for (int i = 0; i < 6000 && lines_of(folder.path / "cut/runs/seed-1/series.csv") < 20; ++i)
+    usleep(10000);
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  ASSERT_FALSE(fs::exists(csv("cut")));
+  // Its runs end by themselves when it has died; until then they hold their folders.
+  Outcome again{6, ""};
+  for (int i = 0; i < 100 && again.code != 0; ++i) {
+    usleep(100000);
+    again = traceraft("ensemble --quiet --out " + out("cut"));
+  }
+  ASSERT_EQ(again.code, 0) << again.output;
+  EXPECT_EQ(content(csv("cut")), content(csv("whole")));
+}
+
+TEST_F(EnsembleTest, StopsWhenItIsAskedTo) {
+  const pid_t child =
+      testing::start_traceraft("ensemble --quiet " + runs + "--runs 4 --jobs 1 --out " + out("a"));
+  for (int i = 0; i < 6000 && lines_of(folder.path / "a/runs/seed-1/series.csv") < 20; ++i)
+    usleep(10000);
+  kill(child, SIGTERM);
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 5);
+  EXPECT_FALSE(fs::exists(folder.path / "a/runs/seed-2"));
+}
+
+TEST_F(EnsembleTest, IsolatesARunThatFails) {
+  fs::create_directories(folder.path / "a/runs");
+  std::ofstream(folder.path / "a/runs/seed-2") << "in the way";
+  const Outcome made = traceraft("ensemble " + runs + "--runs 3 --out " + out("a"));
+  EXPECT_EQ(made.code, 3) << made.output;
+  EXPECT_NE(made.output.find("seed 2 failed"), std::string::npos) << made.output;
+  EXPECT_NE(content(folder.path / "a/ensemble.html").find("2 of 3 runs"), std::string::npos);
+  fs::remove(folder.path / "a/runs/seed-2");
+  EXPECT_EQ(traceraft("ensemble --quiet --out " + out("a")).code, 0);
+}
+
+TEST_F(EnsembleTest, IsAnArrayJobToo) {
+  ASSERT_EQ(
+      traceraft("ensemble --quiet " + runs + "--runs 2 --first-seed 7 --out " + out("here")).code,
+      0);
+  const Outcome script =
+      traceraft("ensemble " + runs + "--runs 2 --first-seed 7 --array-job --out '" +
+                out("there it is") + "'");
+  ASSERT_EQ(script.code, 0) << script.output;
+  const fs::path job = folder.path / "there it is/array-job.sh";
+  EXPECT_NE(content(job).find("#SBATCH --array=7-8\n"), std::string::npos);
+  for (const char* task : {"7", "8"})
+    ASSERT_EQ(shell("SLURM_ARRAY_TASK_ID=" + std::string(task) + " sh '" + job.string() + "'").code,
+              0);
+  ASSERT_EQ(traceraft("ensemble --quiet --out '" + out("there it is") + "'").code, 0);
+  EXPECT_EQ(content(csv("there it is")), content(csv("here")));
+}
+
+TEST_F(EnsembleTest, RefusesWhatMakesNoEnsemble) {
+  ASSERT_EQ(traceraft("ensemble --quiet " + runs + "--runs 1 --out " + out("a")).code, 0);
+  for (const auto& [flags, complaint] :
+       {std::pair("--case two-rafts --out " + out("b"), "it has to be noise"),
+        std::pair("--case guv-3to1 --out " + out("a"), "holds an ensemble of other runs"),
+        std::pair("--first-seed 3 --out " + out("a"), "begins with seed 1"),
+        std::pair("--member 9 --out " + out("a"), "allowed: 1 to 1"),
+        std::pair("--member 1 --out " + out("c"), "has to name an ensemble"),
+        std::pair(runs + "--seed 3 --out " + out("d"), "unknown flag '--seed'")}) {
+    const Outcome refused = traceraft("ensemble " + flags);
+    EXPECT_EQ(refused.code, 2) << flags;
+    EXPECT_NE(refused.output.find(complaint), std::string::npos) << refused.output;
+  }
+}
+
+}  // namespace
+}  // namespace traceraft

@@ -1,0 +1,51 @@
+// What microscopes and simulations both tell of a vesicle, as functions of time.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace traceraft {
+
+// The three quantities of Zhiliakov et al. (BBA Biomembranes 1863 (2021) 183446): total length of
+// the raft boundaries over the radius, number of rafts, and their share of the area.
+enum class Quantity { perimeter, rafts, fraction };
+inline constexpr std::array<Quantity, 3> kQuantities = {Quantity::perimeter, Quantity::rafts,
+                                                        Quantity::fraction};
+struct QuantityName {
+  const char* id;     // in files
+  const char* label;  // for people
+};
+QuantityName name_of(Quantity quantity);
+
+// One vesicle: values at ascending times (s).
+struct History {
+  std::vector<double> time;
+  std::array<std::vector<double>, 3> values;  // in the order of kQuantities
+
+  std::vector<double>& of(Quantity quantity) { return values[static_cast<std::size_t>(quantity)]; }
+  const std::vector<double>& of(Quantity quantity) const {
+    return values[static_cast<std::size_t>(quantity)];
+  }
+  // Linear between the times; the number of rafts is that of the time before. The first or the last
+  // value beyond the ends. At least one time.
+  double at(Quantity quantity, double t) const;
+};
+
+// Evenly spaced in ln t, `per_decade` of them, within what all histories cover (their first
+// positive times, their last ones). Empty if that is nothing.
+std::vector<double> common_times(const std::vector<History>& histories, int per_decade);
+
+// Of several numbers. Quantiles are linear between order statistics.
+struct Distribution {
+  double mean, deviation;  // deviation with n − 1; 0 of a single number
+  double min, q10, q25, median, q75, q90, max;
+};
+double quantile(std::vector<double> values, double share);
+Distribution distribution(const std::vector<double>& values);
+
+// A quantity of several histories at each of the times.
+std::vector<Distribution> distributions(const std::vector<History>& histories, Quantity quantity,
+                                        const std::vector<double>& times);
+
+}  // namespace traceraft
