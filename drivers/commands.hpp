@@ -32,6 +32,7 @@ Command resume_command();
 Command compare_command();
 Command verify_command();
 Command ensemble_command();
+Command data_command();
 Command fraction_command();
 Command list_command();
 

@@ -83,11 +83,10 @@ int one_member(const EnsembleRequest& request, const EnsembleFolder& folder,
   return run_member(folder, seed, std::max(1, request.threads));
 }
 
-std::string sentence(const Configuration& configuration, const EnsembleSummary& summary,
+std::string sentence(const Configuration& configuration, std::size_t finished,
                      const EnsemblePlan& plan) {
-  return std::to_string(summary.seeds.size()) + " of " + std::to_string(plan.runs) +
-         " runs of the case " + configuration.text("case") + ", seeds " +
-         std::to_string(plan.first_seed) + " to " +
+  return std::to_string(finished) + " of " + std::to_string(plan.runs) + " runs of the case " +
+         configuration.text("case") + ", seeds " + std::to_string(plan.first_seed) + " to " +
          std::to_string(plan.first_seed + static_cast<std::uint64_t>(plan.runs) - 1) +
          ": raft fraction " + configuration.text("raft-fraction") + ", epsilon " +
          configuration.text("epsilon") + ", " + configuration.text("cells") +
@@ -113,10 +112,11 @@ int carry_out(const EnsembleRequest& request, const EnsembleFolder& folder,
       std::printf("go on with: traceraft ensemble --out %s\n", folder.path().c_str());
     return kInterrupted;
   }
-  const EnsembleSummary summary = summarise(folder, plan, units.length());
-  if (summary.seeds.empty()) return kNumericalFailure;
-  const std::string missing = write_ensemble(
-      folder, summary, end, sentence(configuration, summary, plan), !units.scaled, request.quiet);
+  const std::vector<History> runs = finished_histories(folder, plan, units.length());
+  if (runs.empty()) return kNumericalFailure;
+  const std::string missing =
+      write_ensemble(folder, summarise(runs), end, sentence(configuration, runs.size(), plan),
+                     !units.scaled, request.quiet);
   if (!request.quiet) {
     if (!missing.empty()) std::printf("\ncharts are missing: %s\n", missing.c_str());
     std::printf("\nopen next: %s\n", (folder.path() / "ensemble.html").c_str());

@@ -62,4 +62,15 @@ History EnsembleFolder::history(std::uint64_t seed, double radius) const {
   return history;
 }
 
+std::vector<History> finished_histories(const EnsembleFolder& folder, const EnsemblePlan& plan,
+                                        double radius) {
+  std::vector<History> histories;
+  for (int i = 0; i < plan.runs; ++i) {
+    const std::uint64_t seed = plan.first_seed + static_cast<std::uint64_t>(i);
+    if (folder.member(seed).end == MemberEnd::finished)
+      histories.push_back(folder.history(seed, radius));
+  }
+  return histories;
+}
+
 }  // namespace traceraft

@@ -49,4 +49,8 @@ class EnsembleFolder {
   std::filesystem::path path_;
 };
 
+// Of all members that have finished, in the order of their seeds.
+std::vector<History> finished_histories(const EnsembleFolder& folder, const EnsemblePlan& plan,
+                                        double radius);
+
 }  // namespace traceraft

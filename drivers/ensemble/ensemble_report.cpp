@@ -54,18 +54,11 @@ std::vector<Row> overview(const EnsembleSummary& summary, bool seconds) {
 
 }  // namespace
 
-EnsembleSummary summarise(const EnsembleFolder& folder, const EnsemblePlan& plan, double radius) {
+EnsembleSummary summarise(const std::vector<History>& runs) {
   EnsembleSummary summary;
-  std::vector<History> histories;
-  for (int i = 0; i < plan.runs; ++i) {
-    const std::uint64_t seed = plan.first_seed + static_cast<std::uint64_t>(i);
-    if (folder.member(seed).end != MemberEnd::finished) continue;
-    summary.seeds.push_back(seed);
-    histories.push_back(folder.history(seed, radius));
-  }
-  summary.times = common_times(histories, kPerDecade);
+  summary.times = common_times(runs, kPerDecade);
   for (const Quantity quantity : kQuantities)
-    summary.at[index_of(quantity)] = distributions(histories, quantity, summary.times);
+    summary.at[index_of(quantity)] = distributions(runs, quantity, summary.times);
   return summary;
 }
 

@@ -12,11 +12,10 @@ namespace traceraft {
 
 // Per quantity its distribution over the runs, at common times.
 struct EnsembleSummary {
-  std::vector<std::uint64_t> seeds;  // of the members that have finished
   std::vector<double> times;
   std::array<std::vector<Distribution>, 3> at;  // in the order of kQuantities
 };
-EnsembleSummary summarise(const EnsembleFolder& folder, const EnsemblePlan& plan, double radius);
+EnsembleSummary summarise(const std::vector<History>& runs);
 
 // A row per time: t, and for every quantity its mean, deviation, extrema and quantiles.
 Table ensemble_table(const EnsembleSummary& summary);

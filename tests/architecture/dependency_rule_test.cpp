@@ -72,6 +72,7 @@ TEST(DependencyRule, EveryBackendKnowsTheKernelAndItsOwnLibrary) {
       {"suitesparse", {"suitesparse/"}},
       {"sundials", {"sundials/", "sunlinsol/", "sunnonlinsol/", "ida/"}},
       {"muparser", {"muParser.h"}},
+      {"nlopt", {"nlopt.h"}},
       {"png", {"png.h"}},
       {"posix",
        {"fcntl.h", "spawn.h", "unistd.h", "sys/file.h", "sys/prctl.h", "sys/stat.h", "sys/ioctl.h",

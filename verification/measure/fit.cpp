@@ -64,21 +64,36 @@ ObservedOrder observed_order(const Points& levels) {
 
 Interval bootstrap(int count, int replicates, double confidence, std::uint64_t seed,
                    const std::function<double(const std::vector<int>&)>& statistic) {
-  std::vector<double> values(static_cast<std::size_t>(replicates));
+  return bootstrap_all(
+             count, replicates, confidence, seed,
+             [&](const std::vector<int>& sample) { return std::vector<double>{statistic(sample)}; })
+      .front();
+}
+
+std::vector<Interval> bootstrap_all(
+    int count, int replicates, double confidence, std::uint64_t seed,
+    const std::function<std::vector<double>(const std::vector<int>&)>& statistics) {
+  std::vector<std::vector<double>> values;  // of each statistic
   std::vector<int> sample(static_cast<std::size_t>(count));
   std::uint64_t draw = 0;
-  for (double& value : values) {
+  for (int k = 0; k < replicates; ++k) {
     for (int& member : sample) {
       const double u = uniform_random(seed, 91, draw++);
       member = std::min(count - 1, static_cast<int>(u * count));
     }
-    value = statistic(sample);
+    const std::vector<double> drawn = statistics(sample);
+    values.resize(drawn.size());
+    for (std::size_t i = 0; i < drawn.size(); ++i) values[i].push_back(drawn[i]);
   }
-  std::sort(values.begin(), values.end());
-  const auto quantile = [&](double share) {
-    return values[static_cast<std::size_t>(share * static_cast<double>(replicates - 1) + 0.5)];
-  };
-  return {quantile(0.5 * (1 - confidence)), quantile(0.5 * (1 + confidence))};
+  std::vector<Interval> intervals;
+  for (std::vector<double>& one : values) {
+    std::sort(one.begin(), one.end());
+    const auto quantile = [&](double share) {
+      return one[static_cast<std::size_t>(share * static_cast<double>(replicates - 1) + 0.5)];
+    };
+    intervals.push_back({quantile(0.5 * (1 - confidence)), quantile(0.5 * (1 + confidence))});
+  }
+  return intervals;
 }
 
 Moments moments(const std::vector<double>& values) {

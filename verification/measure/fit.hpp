@@ -40,6 +40,10 @@ struct Interval {
 };
 Interval bootstrap(int count, int replicates, double confidence, std::uint64_t seed,
                    const std::function<double(const std::vector<int>&)>& statistic);
+// The same of several statistics at once.
+std::vector<Interval> bootstrap_all(
+    int count, int replicates, double confidence, std::uint64_t seed,
+    const std::function<std::vector<double>(const std::vector<int>&)>& statistics);
 
 struct Moments {
   double mean, deviation;  // of the sample, with n − 1

@@ -1,0 +1,98 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "drivers/commands.hpp"
+#include "drivers/config/configuration.hpp"
+#include "drivers/exit_codes.hpp"
+#include "drivers/vesicles/dataset.hpp"
+#include "drivers/vesicles/facts_file.hpp"
+#include "drivers/vesicles/measured_report.hpp"
+#include "kernel/core/error.hpp"
+#include "kernel/core/parameters.hpp"
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct DataRequest {
+  std::string action, folder, ensemble, facts, window = "100,1000";
+  std::int64_t seed = 1;
+  bool quiet = false;
+};
+
+Window window_of(const std::string& text) {
+  const std::vector<std::string> ends = split_list(text);
+  if (ends.size() != 2) throw InputError("--window: two times are needed, as in 100,1000");
+  const Window window{parse_number("--window", ends[0]), parse_number("--window", ends[1])};
+  if (!(window.begin >= 0 && window.end > window.begin))
+    throw InputError("--window: the second time has to be the later one");
+  return window;
+}
+
+int check(const DataRequest& request) {
+  const MeasuredVesicles data = read_dataset(request.folder);
+  if (!request.quiet) print_dataset(data, fit_measurements(data, window_of(request.window)));
+  return kSuccess;
+}
+
+int compare(const DataRequest& request) {
+  if (request.ensemble.empty())
+    throw InputError("--ensemble: say which simulations to compare with (traceraft ensemble)");
+  return compare_with_ensemble(read_dataset(request.folder), request.ensemble,
+                               window_of(request.window), request.quiet);
+}
+
+// Refuses to write over data.
+int draw(const DataRequest& request) {
+  if (request.facts.empty()) throw InputError("--facts: say from which published facts to draw");
+  if (fs::exists(fs::path(request.folder) / "dataset.toml"))
+    throw InputError(request.folder + " holds data already; choose another folder");
+  const PublishedFacts facts = read_facts(request.facts);
+  const MeasuredVesicles data = draw_measurements(facts, static_cast<std::uint64_t>(request.seed));
+  write_dataset(request.folder, data,
+                "SYNTHETIC: drawn from published facts, not measured (seed " +
+                    std::to_string(request.seed) + ")");
+  if (!request.quiet)
+    std::printf("%zu synthetic measurements in %s\n", data.measurements.size(),
+                request.folder.c_str());
+  return kSuccess;
+}
+
+struct DataAction {
+  std::string name;
+  int (*run)(const DataRequest&);
+};
+const NamedList<DataAction>& actions() {
+  static const NamedList<DataAction> list("action",
+                                          {{"check", check}, {"compare", compare}, {"draw", draw}});
+  return list;
+}
+
+Action define(CLI::App& app) {
+  const auto request = std::make_shared<DataRequest>();
+  app.add_option("action", request->action,
+                 "check: read a folder of measurements and say what is in it; compare: hold an "
+                 "ensemble against it; draw: make a synthetic one from published facts")
+      ->required();
+  app.add_option("folder", request->folder, "of the measurements (dataset.toml)")->required();
+  app.add_option("--ensemble", request->ensemble, "folder of the simulations to compare with");
+  app.add_option("--window", request->window, "from which time to which a power law is fitted (s)")
+      ->capture_default_str();
+  app.add_option("--facts", request->facts, "TOML file to draw from");
+  app.add_option("--seed", request->seed, "of what is drawn")
+      ->check(CLI::Range(0.0, 9007199254740992.0))
+      ->capture_default_str();
+  app.add_flag("--quiet", request->quiet, "print nothing but errors");
+  app.footer("Example: traceraft data compare my-vesicles --ensemble runs/ensemble-guv-3to1-1");
+  return [request] { return actions().find(request->action).run(*request); };
+}
+
+}  // namespace
+
+Command data_command() {
+  return {"data", "check measurements of vesicles, and hold simulations against them", Ranks::one,
+          define};
+}
+
+}  // namespace traceraft

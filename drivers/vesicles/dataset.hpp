@@ -1,0 +1,18 @@
+// Measured vesicles from files: dataset.toml and a table (docs/formats.md).
+#pragma once
+
+#include <filesystem>
+
+#include "verification/vesicles/measurements.hpp"
+
+namespace traceraft {
+
+// Checks everything and converts units. Throws InputError with file, line and column for what is
+// missing, unknown or impossible.
+MeasuredVesicles read_dataset(const std::filesystem::path& folder);
+
+// Writes measurements as such a folder. Throws IoError.
+void write_dataset(const std::filesystem::path& folder, const MeasuredVesicles& data,
+                   const std::string& remark);
+
+}  // namespace traceraft

@@ -1,0 +1,13 @@
+// Published facts of measurements, from a TOML file (docs/formats.md).
+#pragma once
+
+#include <filesystem>
+
+#include "verification/vesicles/published.hpp"
+
+namespace traceraft {
+
+// Throws InputError with file, line and key for what is missing, unknown or out of range.
+PublishedFacts read_facts(const std::filesystem::path& path);
+
+}  // namespace traceraft

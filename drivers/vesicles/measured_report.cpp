@@ -1,0 +1,184 @@
+#include "drivers/vesicles/measured_report.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "backends/posix/durable_file.hpp"
+#include "drivers/config/config_file.hpp"
+#include "drivers/ensemble/ensemble_report.hpp"
+#include "drivers/exit_codes.hpp"
+#include "drivers/output/chart.hpp"
+#include "drivers/output/page.hpp"
+#include "drivers/output/text_table.hpp"
+#include "kernel/core/error.hpp"
+#include "kernel/core/text.hpp"
+#include "verification/vesicles/comparison.hpp"
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string spread(const std::vector<double>& values) {
+  if (values.empty()) return "not measured";
+  const Distribution d = distribution(values);
+  return formatted("%.4g +- %.2g, from %.4g to %.4g (%zu measurements)", d.mean, d.deviation, d.min,
+                   d.max, values.size());
+}
+
+std::vector<double> values_of(const MeasuredVesicles& data, Quantity quantity) {
+  std::vector<double> values;
+  for (const Measurement& m : data.measurements)
+    if (m.of(quantity)) values.push_back(*m.of(quantity));
+  return values;
+}
+
+std::string about(const MeasuredVesicles& data) {
+  return data.name + (data.synthetic ? " (SYNTHETIC, not measured)" : "") + ": " +
+         std::to_string(data.vesicles().size()) + " vesicles, " +
+         std::to_string(data.measurements.size()) + " measurements" +
+         (data.origin.empty() ? "" : "; " + data.origin);
+}
+
+Row law_row(const std::string& of, const std::optional<FittedLaw>& law) {
+  if (!law) return {of, "too few points", "", "", "", ""};
+  const auto with = [](double value, const Interval& interval) {
+    return formatted("%.3g (%.3g to %.3g)", value, interval.low, interval.high);
+  };
+  return {of,
+          with(law->law.b, law->b),
+          with(law->law.t0, law->t0),
+          with(law->law.c, law->c),
+          formatted("%.2f", law->law.scatter),
+          std::to_string(law->points)};
+}
+
+const Row kLawHeading = {
+    "perimeter / radius = c (t - t0)^b", "b (95 %)", "t0 (s)", "c", "scatter of ln", "points"};
+
+std::vector<Row> agreement_rows(const std::vector<Agreement>& agreements) {
+  std::vector<Row> rows = {{"quantity", "compared", "outside the runs' time", "within their range",
+                            "mean deviation", "misfit"}};
+  for (const Agreement& a : agreements)
+    rows.push_back({name_of(a.quantity).label, std::to_string(a.measurements),
+                    std::to_string(a.beyond),
+                    a.measurements == 0
+                        ? ""
+                        : formatted("%d (%.0f %%)", a.within, 100.0 * a.within / a.measurements),
+                    formatted("%+.2f", a.bias), formatted("%.2f", a.misfit)});
+  return rows;
+}
+
+Table agreement_table(const std::vector<Agreement>& agreements) {
+  Table table{"comparison",
+              {"quantity", "compared", "beyond", "within_range", "mean_deviation", "misfit"},
+              {}};
+  for (const Agreement& a : agreements)
+    table.rows.push_back({name_of(a.quantity).id, static_cast<double>(a.measurements),
+                          static_cast<double>(a.beyond), static_cast<double>(a.within), a.bias,
+                          a.misfit});
+  return table;
+}
+
+ChartSeries law_curve(const std::string& name, const PowerLaw& law, const Window& window) {
+  ChartSeries series{name, {}, Mark::line};
+  constexpr int kPoints = 40;
+  for (int i = 0; i <= kPoints; ++i) {
+    const double t = std::max(window.begin, 1e-3) *
+                     std::pow(window.end / std::max(window.begin, 1e-3), i * 1.0 / kPoints);
+    if (t > law.t0) series.points.emplace_back(t, law.at(t));
+  }
+  return series;
+}
+
+// From where there is something to compare: a tenth of the first measured time.
+Chart comparison_chart(const MeasuredVesicles& data, const EnsembleSummary& summary,
+                       Quantity quantity) {
+  Chart chart = ensemble_chart(summary, quantity, true);
+  double first = HUGE_VAL;
+  for (const Measurement& m : data.measurements) first = std::min(first, m.time);
+  for (ChartSeries& series : chart.series) {
+    std::size_t early = 0;
+    while (early < series.points.size() && series.points[early].first < 0.1 * first) ++early;
+    series.points.erase(series.points.begin(), series.points.begin() + early);
+    if (!series.other.empty())
+      series.other.erase(series.other.begin(), series.other.begin() + early);
+  }
+  ChartSeries measured{data.synthetic ? "synthetic measurements" : "measured", {}, Mark::bars};
+  for (const Measurement& m : data.measurements) {
+    if (!m.of(quantity)) continue;
+    measured.points.emplace_back(m.time, *m.of(quantity));
+    measured.other.push_back(m.sigma_of(quantity));
+  }
+  chart.series.push_back(measured);
+  return chart;
+}
+
+}  // namespace
+
+void print_dataset(const MeasuredVesicles& data, const std::optional<FittedLaw>& law) {
+  std::printf("%s\n", about(data).c_str());
+  double first = HUGE_VAL, last = 0;
+  std::vector<double> radii;
+  for (const Measurement& m : data.measurements) {
+    first = std::min(first, m.time);
+    last = std::max(last, m.time);
+    radii.push_back(m.radius);
+  }
+  std::printf("  %-22s %.4g to %.4g s after time zero (%s)\n", "time", first, last,
+              data.time_zero.c_str());
+  std::printf("  %-22s %s\n", "radius (um)", spread(radii).c_str());
+  for (const Quantity quantity : kQuantities)
+    std::printf("  %-22s %s\n", name_of(quantity).label, spread(values_of(data, quantity)).c_str());
+  std::printf("\n");
+  print_rows({kLawHeading, law_row("measured", law)});
+}
+
+int compare_with_ensemble(const MeasuredVesicles& data, const fs::path& path, const Window& window,
+                          bool quiet) {
+  const EnsembleFolder folder(path);
+  if (!folder.started())
+    throw InputError("--ensemble: " + path.string() + " holds no ensemble (traceraft ensemble)");
+  const Configuration configuration(read_config_file(folder.config()), {});
+  const Units units = configuration.units();
+  if (units.scaled)
+    throw InputError("--ensemble: " + path.string() +
+                     " was run with --scaled; its times cannot be compared with seconds");
+  const EnsemblePlan plan = folder.load();
+  const std::vector<History> runs = finished_histories(folder, plan, units.length());
+  const std::vector<Agreement> agreements = compare_with_runs(data, runs);
+  const EnsembleSummary summary = summarise(runs);
+  const auto measured = fit_measurements(data, window),
+             simulated = fit_runs(runs, summary.times, window);
+  const std::vector<Row> rows = agreement_rows(agreements);
+  const std::vector<Row> laws = {kLawHeading, law_row("measured", measured),
+                                 law_row("simulated", simulated)};
+  Page page("Measured and simulated vesicles");
+  page.paragraph(about(data) + ".");
+  page.paragraph(std::to_string(runs.size()) + " runs in " + path.string() +
+                 ". Deviations are those from the mean of the runs, over the scatter between runs "
+                 "and the uncertainty of the measurement; of logarithms for perimeters and counts. "
+                 "A misfit of 1 is what vesicles of the same kind would have.");
+  page.table(rows);
+  page.paragraph(formatted("Power laws fitted from %g to %g s.", window.begin, window.end));
+  page.table(laws);
+  for (const Quantity quantity : kQuantities) {
+    Chart chart = comparison_chart(data, summary, quantity);
+    if (quantity == Quantity::perimeter && measured)
+      chart.series.push_back(law_curve("law of the measurements", measured->law, window));
+    const std::string svg =
+        draw_chart(chart, path / (std::string("comparison-") + name_of(quantity).id));
+    if (!svg.empty()) page.figure(svg, chart.title);
+  }
+  write_durably(path / "comparison.csv", csv_text(agreement_table(agreements)));
+  write_durably(path / "comparison.html", page.html());
+  if (!quiet) {
+    print_rows(rows);
+    std::printf("\npower laws from %g to %g s\n", window.begin, window.end);
+    print_rows(laws);
+    std::printf("\nopen next: %s\n", (path / "comparison.html").c_str());
+  }
+  return kSuccess;
+}
+
+}  // namespace traceraft

@@ -1,0 +1,137 @@
+// Measured data from files: units, caps, and one line for everything that is wrong.
+#include "drivers/vesicles/dataset.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "drivers/vesicles/facts_file.hpp"
+#include "kernel/core/error.hpp"
+#include "kernel/core/types.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr char kDescription[] =
+    "name = \"mine\"\nkind = \"measured\"\ntime_zero = \"cooled\"\nlength_unit = \"nm\"\n"
+    "time_unit = \"min\"\n";
+
+class DatasetTest : public ::testing::Test {
+ protected:
+  testing::TemporaryFolder folder;
+  MeasuredVesicles read(const std::string& csv, const std::string& more = "") const {
+    std::ofstream(folder.path / "dataset.toml") << kDescription << more;
+    std::ofstream(folder.path / "measurements.csv") << csv;
+    return read_dataset(folder.path);
+  }
+  void expect_complaint(const std::string& csv, const std::string& words,
+                        const std::string& more = "") const {
+    try {
+      (void)read(csv, more);
+      ADD_FAILURE() << "accepted: " << csv << more;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  }
+};
+
+TEST_F(DatasetTest, ConvertsUnits) {
+  const MeasuredVesicles data = read(
+      "vesicle,time,radius,perimeter,perimeter_sigma,rafts,fraction\n"
+      "a,1,5000,20000,1000,3,0.1\na,2,5000,,,2,\nb,1,4000,8000,,,\n");
+  ASSERT_EQ(data.measurements.size(), 3u);
+  const Measurement& m = data.measurements[0];
+  EXPECT_DOUBLE_EQ(m.time, 60);
+  EXPECT_DOUBLE_EQ(m.radius, 5);
+  EXPECT_DOUBLE_EQ(*m.of(Quantity::perimeter), 4);
+  EXPECT_DOUBLE_EQ(m.sigma_of(Quantity::perimeter), 0.2);
+  EXPECT_DOUBLE_EQ(*m.of(Quantity::rafts), 3);
+  EXPECT_FALSE(data.measurements[1].of(Quantity::perimeter));
+  EXPECT_EQ(data.vesicles().size(), 2u);
+  const MeasuredVesicles later =
+      read("vesicle,time,rafts\na,1,2\n", "radius = 5000\ntime_offset = 0.5\n");
+  EXPECT_DOUBLE_EQ(later.measurements[0].time, 90);
+  EXPECT_DOUBLE_EQ(later.measurements[0].radius, 5);
+}
+
+TEST_F(DatasetTest, ComputesRaftsFromCaps) {
+  const MeasuredVesicles data =
+      read("vesicle,time,radius,cap_radius\na,1,5000,3000\na,1,5000,4000\na,2,5000,5000\n");
+  ASSERT_EQ(data.measurements.size(), 2u);
+  const Measurement& two = data.measurements[0];
+  EXPECT_DOUBLE_EQ(*two.of(Quantity::rafts), 2);
+  EXPECT_NEAR(*two.of(Quantity::perimeter), 2 * kPi * 1.4, 1e-12);
+  // 1 − cos θ is 1/5 and 2/5 for sin θ of 3/5 and 4/5.
+  EXPECT_NEAR(*two.of(Quantity::fraction), 0.3, 1e-12);
+  EXPECT_NEAR(*data.measurements[1].of(Quantity::fraction), 0.5, 1e-12);
+}
+
+TEST_F(DatasetTest, NamesFileLineAndColumn) {
+  const std::string heading = "vesicle,time,radius,perimeter,rafts,fraction\n";
+  expect_complaint(heading + "a,2,5000,1,1,0.1\na,1,5000,1,1,0.1\n",
+                   "measurements.csv:3: column 'time': times of a vesicle have to ascend");
+  expect_complaint(heading + "a,1,5000,1,1,1.2\n", "column 'fraction': 1.2 is impossible");
+  expect_complaint(heading + "a,1,5000,1,1.5,0.2\n", "column 'rafts': a whole number");
+  expect_complaint(heading + "a,1,5,1,1,0.2\n", "is length_unit right?");
+  expect_complaint(heading + "a,1,5000,,,\n", ":2: nothing was measured");
+  expect_complaint(heading + "a,-1,5000,1,1,0.2\n", "before time zero");
+  expect_complaint(heading + "a,x,5000,1,1,0.2\n", ":2: column 'time': 'x' is not a finite number");
+  expect_complaint(heading + "a,1,5000,1,1,0.1\nb,1,5000,1,1,0.1\na,2,5000,1,1,0.1\n",
+                   ":4: column 'vesicle': vesicle 'a' is there twice");
+  expect_complaint(heading, "nothing was measured");
+  expect_complaint("vesicle,radius,rafts\na,5000,1\n", "no column 'time'");
+  expect_complaint("vesicle,time,rafts\na,1,1\n", "no column 'radius'");
+  expect_complaint("vesicle,time,raft\na,1,1\n", "did you mean 'rafts'");
+  expect_complaint("vesicle,time,radius,cap_radius\na,1,5000,5001\n",
+                   "column 'cap_radius': 5001 is impossible");
+  expect_complaint("vesicle,time,radius,cap_radius\na,1,5000,5000\na,1,5000,5000\na,1,5000,1\n",
+                   "more than the whole vesicle");
+  expect_complaint("vesicle,time,rafts\na,1,1\n", "unknown key 'radiu'", "radiu = 3\n");
+  expect_complaint("vesicle,time,rafts\na,1,1\n", "dataset.toml:6: sigma", "sigma = \"?\"\n");
+}
+
+TEST_F(DatasetTest, SaysWhatADescriptionLacks) {
+  std::ofstream(folder.path / "dataset.toml") << "name = \"mine\"\n";
+  EXPECT_THROW(
+      try { (void)read_dataset(folder.path); } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("kind is missing"), std::string::npos);
+        throw;
+      },
+      InputError);
+  EXPECT_THROW((void)read_dataset(folder.path / "nowhere"), InputError);
+}
+
+TEST_F(DatasetTest, WhatIsDrawnFromFactsReadsBack) {
+  const PublishedFacts facts =
+      read_facts(std::string(TRACERAFT_ROOT) + "/verification/data/published/guv-3to1.toml");
+  EXPECT_EQ(facts.vesicles, 17);
+  EXPECT_EQ(facts.measurements, 62);
+  const MeasuredVesicles drawn = draw_measurements(facts, 5);
+  write_dataset(folder.path / "drawn", drawn, "a test");
+  const MeasuredVesicles back = read_dataset(folder.path / "drawn");
+  EXPECT_TRUE(back.synthetic);
+  ASSERT_EQ(back.measurements.size(), drawn.measurements.size());
+  for (std::size_t i = 0; i < drawn.measurements.size(); ++i) {
+    EXPECT_DOUBLE_EQ(back.measurements[i].time, drawn.measurements[i].time);
+    for (const Quantity quantity : kQuantities)
+      EXPECT_NEAR(*back.measurements[i].of(quantity), *drawn.measurements[i].of(quantity), 1e-12);
+  }
+}
+
+// The sets that are kept are those that the program draws, and say what they are.
+TEST_F(DatasetTest, KeptSyntheticSetsAreMarked) {
+  for (const std::string name : {"guv-3to1", "guv-2to1"}) {
+    const std::string data = std::string(TRACERAFT_ROOT) + "/verification/data/";
+    const MeasuredVesicles kept = read_dataset(data + "synthetic/" + name);
+    EXPECT_TRUE(kept.synthetic);
+    const MeasuredVesicles drawn =
+        draw_measurements(read_facts(data + "published/" + name + ".toml"), 1);
+    ASSERT_EQ(kept.measurements.size(), drawn.measurements.size());
+    EXPECT_NEAR(kept.measurements.back().time, drawn.measurements.back().time, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace traceraft

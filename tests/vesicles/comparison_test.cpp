@@ -1,0 +1,144 @@
+#include "verification/vesicles/comparison.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "kernel/core/error.hpp"
+#include "kernel/core/random.hpp"
+#include "kernel/core/types.hpp"
+#include "verification/vesicles/power_law.hpp"
+#include "verification/vesicles/published.hpp"
+
+namespace traceraft {
+namespace {
+
+TEST(PowerLaw, IsFoundWithItsOriginOfTime) {
+  for (const double t0 : {-30.0, 0.0, 21.1, 80.0}) {
+    Points points;
+    for (double t = 100; t <= 1000; t *= 1.2) points.emplace_back(t, 53 * std::pow(t - t0, -0.37));
+    const PowerLaw law = fit_power_law_from(points);
+    EXPECT_NEAR(law.t0, t0, 0.01) << t0;
+    EXPECT_NEAR(law.b, -0.37, 1e-4);
+    EXPECT_NEAR(law.c, 53, 0.05);
+    EXPECT_LT(law.scatter, 1e-5);
+  }
+}
+
+PublishedFacts facts() {
+  PublishedFacts facts;
+  facts.vesicles = 17;
+  facts.measurements = 62;
+  facts.fraction = 0.09;
+  facts.fraction_sd = 0.011;
+  facts.radius_min = 4;
+  facts.radius_max = 8;
+  facts.perimeter = {53, 21.1, -0.37, 0.15};
+  facts.window = {100, 1000};
+  return facts;
+}
+
+TEST(Published, DrawsWhatWasPublished) {
+  PublishedFacts many = facts();
+  many.vesicles = 2000;
+  many.measurements = 8000;
+  const MeasuredVesicles data = draw_measurements(many, 3);
+  EXPECT_TRUE(data.synthetic);
+  ASSERT_EQ(data.measurements.size(), 8000u);
+  EXPECT_EQ(data.vesicles().size(), 2000u);
+  std::vector<double> fractions, residuals;
+  for (const Measurement& m : data.measurements) {
+    fractions.push_back(*m.of(Quantity::fraction));
+    residuals.push_back(std::log(*m.of(Quantity::perimeter) / many.perimeter.at(m.time)));
+    EXPECT_TRUE(many.window.contains(m.time));
+  }
+  const Distribution fraction = distribution(fractions), residual = distribution(residuals);
+  EXPECT_NEAR(fraction.mean, 0.09, 0.001);
+  EXPECT_NEAR(fraction.deviation, 0.011, 0.0005);
+  EXPECT_NEAR(residual.mean, 0, 0.01);
+  EXPECT_NEAR(residual.deviation, 0.15, 0.005);
+}
+
+// The 95 % interval of the exponent holds the truth about as often as it says.
+TEST(Published, IntervalsHoldTheTruth) {
+  int held = 0;
+  constexpr int kSets = 40;
+  for (int seed = 1; seed <= kSets; ++seed) {
+    const auto law = fit_measurements(draw_measurements(facts(), seed), {0, 1e9});
+    ASSERT_TRUE(law);
+    EXPECT_EQ(law->points, 62);
+    held += law->b.contains(-0.37);
+  }
+  EXPECT_GE(held, kSets * 85 / 100);
+}
+
+TEST(Published, EqualCapsHaveThatPerimeterAndArea) {
+  for (const double n : {1.0, 4.0, 9.0}) {
+    const double fraction = 0.1, cosine = 1 - 2 * fraction / n;
+    EXPECT_NEAR(equal_caps(2 * kPi * n * std::sqrt(1 - cosine * cosine), fraction), n, 1e-9);
+  }
+}
+
+// Runs that are power laws times a constant of their own.
+std::vector<History> runs(int count, double scale) {
+  std::vector<History> all;
+  for (int k = 0; k < count; ++k) {
+    History run;
+    const double own = scale * std::exp(0.2 * std::cos(2.4 * k));
+    for (double t = 50; t <= 2000; t *= 1.1) {
+      run.time.push_back(t);
+      run.of(Quantity::perimeter).push_back(own * 40 * std::pow(t, -1 / 3.0));
+      run.of(Quantity::rafts).push_back(std::round(1 + own * 500 / t));
+      run.of(Quantity::fraction).push_back(0.1 + 0.01 * own);
+    }
+    all.push_back(run);
+  }
+  return all;
+}
+
+// A run of the same kind as data, looked at three times.
+MeasuredVesicles looked_at(const std::vector<History>& vesicles) {
+  MeasuredVesicles data;
+  for (std::size_t k = 0; k < vesicles.size(); ++k)
+    for (const double t : {100.0, 300.0, 900.0, 1e5}) {
+      Measurement m{"v" + std::to_string(k), t, 5, {}, {}};
+      for (const Quantity quantity : kQuantities)
+        m.values[static_cast<std::size_t>(quantity)] = vesicles[k].at(quantity, t);
+      data.measurements.push_back(m);
+    }
+  return data;
+}
+
+TEST(Comparison, AgreesWithItsOwnKind) {
+  const std::vector<History> simulated = runs(20, 1);
+  for (const Agreement& a : compare_with_runs(looked_at(simulated), simulated)) {
+    EXPECT_EQ(a.measurements, 60);
+    EXPECT_EQ(a.beyond, 20);
+    EXPECT_EQ(a.within, 60);
+    // Rounding to whole rafts weighs small counts less.
+    EXPECT_NEAR(a.bias, 0, a.quantity == Quantity::rafts ? 0.1 : 0.01);
+    EXPECT_LT(a.misfit, 1.01);
+    EXPECT_GT(a.misfit, a.quantity == Quantity::rafts ? 0.1 : 0.95);
+  }
+}
+
+TEST(Comparison, SeesVesiclesOfAnotherKind) {
+  const auto agreements = compare_with_runs(looked_at(runs(20, 2)), runs(20, 1));
+  EXPECT_EQ(agreements[0].within, 0);
+  EXPECT_GT(agreements[0].bias, 3);
+  EXPECT_GT(agreements[0].misfit, 3);
+  EXPECT_THROW((void)compare_with_runs(looked_at(runs(2, 1)), runs(1, 1)), InputError);
+}
+
+TEST(PowerLaw, OfRunsHasAnInterval) {
+  const std::vector<History> simulated = runs(12, 1);
+  const auto law = fit_runs(simulated, common_times(simulated, 24), {100, 1000});
+  ASSERT_TRUE(law);
+  EXPECT_NEAR(law->law.b, -1 / 3.0, 0.01);
+  EXPECT_TRUE(law->c.contains(law->law.c));
+  EXPECT_FALSE(fit_runs(runs(2, 1), {100, 200, 300, 400}, {100, 1000}));
+  EXPECT_FALSE(fit_runs(simulated, {100, 200, 300}, {100, 1000}));
+}
+
+}  // namespace
+}  // namespace traceraft

@@ -1,0 +1,71 @@
+#include "verification/vesicles/comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/core/error.hpp"
+#include "verification/measure/fit.hpp"
+
+namespace traceraft {
+namespace {
+
+bool relative(Quantity quantity) {
+  return quantity != Quantity::fraction;
+}
+
+// Rounding to whole rafts alone has this deviation.
+const double kRoundingDeviation = 1 / std::sqrt(12.0);
+
+Agreement agreement(const MeasuredVesicles& data, const std::vector<History>& runs,
+                    Quantity quantity) {
+  Agreement result{quantity};
+  double first = 0, last = HUGE_VAL;
+  for (const History& run : runs) {
+    first = std::max(first, run.time.front());
+    last = std::min(last, run.time.back());
+  }
+  for (const Measurement& m : data.measurements) {
+    if (!m.of(quantity)) continue;
+    if (m.time < first || m.time > last) {
+      ++result.beyond;
+      continue;
+    }
+    const double y = *m.of(quantity);
+    std::vector<double> values;
+    for (const History& run : runs) values.push_back(run.at(quantity, m.time));
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    result.within += y >= *low && y <= *high;
+    ++result.measurements;
+    double sigma =
+        std::max(m.sigma_of(quantity), quantity == Quantity::rafts ? kRoundingDeviation : 0.0);
+    double measured = y;
+    if (relative(quantity)) {
+      if (!(y > 0)) continue;
+      sigma /= y;
+      measured = std::log(y);
+      for (double& value : values) value = std::log(std::max(value, 1e-3));
+    }
+    const Moments runs_here = moments(values);
+    const double deviation = std::hypot(runs_here.deviation, sigma);
+    const double z = (measured - runs_here.mean) / std::max(deviation, 1e-6);
+    result.bias += z;
+    result.misfit += z * z;
+  }
+  const double count = std::max(1, result.measurements);
+  result.bias /= count;
+  result.misfit = std::sqrt(result.misfit / count);
+  return result;
+}
+
+}  // namespace
+
+std::vector<Agreement> compare_with_runs(const MeasuredVesicles& data,
+                                         const std::vector<History>& runs) {
+  if (runs.size() < 2)
+    throw InputError("a comparison with measurements needs two finished runs at least");
+  std::vector<Agreement> all;
+  for (const Quantity quantity : kQuantities) all.push_back(agreement(data, runs, quantity));
+  return all;
+}
+
+}  // namespace traceraft

@@ -1,0 +1,26 @@
+// Simulated vesicles held against measured ones.
+#pragma once
+
+#include <vector>
+
+#include "verification/vesicles/history.hpp"
+#include "verification/vesicles/measurements.hpp"
+
+namespace traceraft {
+
+// How well the runs of an ensemble foretell one quantity.
+struct Agreement {
+  Quantity quantity;
+  int measurements = 0;  // within the time that the runs cover
+  int beyond = 0;        // outside that time: not compared
+  int within = 0;        // between the smallest and the largest of the runs
+  double bias = 0;       // mean of (measured − mean of the runs) / deviation
+  double misfit = 0;     // root of the mean square of the same; about 1 if both are of one kind
+};
+
+// deviation²: the variance between runs and sigma² of the measurement; logarithms of perimeters and
+// counts, whose scatter is relative. Throws InputError if there are fewer than two runs.
+std::vector<Agreement> compare_with_runs(const MeasuredVesicles& data,
+                                         const std::vector<History>& runs);
+
+}  // namespace traceraft

@@ -1,0 +1,33 @@
+#include "verification/vesicles/measurements.hpp"
+
+#include <cmath>
+
+#include "kernel/core/types.hpp"
+
+namespace traceraft {
+
+std::vector<std::pair<std::size_t, std::size_t>> MeasuredVesicles::vesicles() const {
+  std::vector<std::pair<std::size_t, std::size_t>> ranges;
+  for (std::size_t i = 0; i < measurements.size(); ++i) {
+    if (i == 0 || measurements[i].vesicle != measurements[i - 1].vesicle) ranges.emplace_back(i, i);
+    ranges.back().second = i + 1;
+  }
+  return ranges;
+}
+
+void set_caps(Measurement& measurement, const std::vector<double>& base_radii) {
+  const double r = measurement.radius;
+  double perimeter = 0, area = 0;
+  for (const double a : base_radii) {
+    perimeter += 2 * kPi * a;
+    area += 2 * kPi * r * r * (1 - std::cos(std::asin(a / r)));
+  }
+  measurement.values = {perimeter / r, static_cast<double>(base_radii.size()),
+                        area / (4 * kPi * r * r)};
+}
+
+double equal_caps(double perimeter, double fraction) {
+  return fraction + perimeter * perimeter / (16 * kPi * kPi * fraction);
+}
+
+}  // namespace traceraft

@@ -1,0 +1,51 @@
+// What was measured of vesicles, in the units of the comparison: s, and lengths over the radius.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "verification/vesicles/history.hpp"
+
+namespace traceraft {
+
+// One look at one vesicle.
+struct Measurement {
+  std::string vesicle;
+  double time;    // s since the time zero of the data
+  double radius;  // µm
+  // In the order of kQuantities; nothing where it was not measured. sigma: one standard deviation.
+  std::array<std::optional<double>, 3> values, sigma;
+
+  const std::optional<double>& of(Quantity quantity) const {
+    return values[static_cast<std::size_t>(quantity)];
+  }
+  double sigma_of(Quantity quantity) const {
+    return sigma[static_cast<std::size_t>(quantity)].value_or(0);
+  }
+};
+
+struct MeasuredVesicles {
+  std::string name;
+  bool synthetic = false;  // drawn from a model, not measured
+  std::string origin;      // where it comes from, for people
+  std::string composition, time_zero;
+  std::optional<double> celsius;
+  // Those of one vesicle together, at ascending times.
+  std::vector<Measurement> measurements;
+
+  // First and last index + 1 of each vesicle's measurements.
+  std::vector<std::pair<std::size_t, std::size_t>> vesicles() const;
+};
+
+// Rafts as spherical caps on a sphere of radius r with base radii a ≤ r (Zhiliakov et al.): each
+// has the perimeter 2π a, the half angle θ = arcsin(a/r) and the area 2π r² (1 − cos θ). Sets all
+// three quantities.
+void set_caps(Measurement& measurement, const std::vector<double>& base_radii);
+
+// The number of equal caps that have this perimeter over radius together and cover this share of
+// the area: P = 2π N sin θ with cos θ = 1 − 2f/N gives N = f + P²/(16 π² f).
+double equal_caps(double perimeter, double fraction);
+
+}  // namespace traceraft

@@ -1,0 +1,116 @@
+#include "verification/vesicles/power_law.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "backends/nlopt/minimise.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr int kReplicates = 400;
+constexpr double kConfidence = 0.95;
+constexpr std::size_t kLeastPoints = 4;
+constexpr int kLeastVesicles = 3;
+
+// For a given t0 the rest is a line through logarithms.
+PowerLaw law_from(const Points& points, double t0) {
+  Points shifted;
+  for (const auto& [t, y] : points) shifted.emplace_back(t - t0, y);
+  const Line line = fit_power_law(shifted);
+  double squares = 0;
+  for (const auto& [t, y] : shifted)
+    squares += std::pow(std::log(y) - line.intercept - line.slope * std::log(t), 2);
+  return {std::exp(line.intercept), t0, line.slope,
+          std::sqrt(squares / static_cast<double>(points.size() - 3))};
+}
+
+// The intervals of all three parameters from the same samples.
+template <class Sample>
+FittedLaw with_intervals(const Sample& points_of, int count) {
+  std::vector<int> all;
+  for (int i = 0; i < count; ++i) all.push_back(i);
+  const Points points = points_of(all);
+  FittedLaw fitted{fit_power_law_from(points), {}, {}, {}, static_cast<int>(points.size()), count};
+  const std::vector<Interval> intervals =
+      bootstrap_all(count, kReplicates, kConfidence, 1, [&](const std::vector<int>& sample) {
+        const Points drawn = points_of(sample);
+        const PowerLaw law = drawn.size() < kLeastPoints ? fitted.law : fit_power_law_from(drawn);
+        return std::vector<double>{law.c, law.t0, law.b};
+      });
+  fitted.c = intervals[0];
+  fitted.t0 = intervals[1];
+  fitted.b = intervals[2];
+  return fitted;
+}
+
+}  // namespace
+
+double PowerLaw::at(double t) const {
+  return c * std::pow(t - t0, b);
+}
+
+PowerLaw fit_power_law_from(const Points& points) {
+  double first = HUGE_VAL;
+  for (const auto& point : points) first = std::min(first, point.first);
+  const double lower = -10 * first, upper = first * (1 - 1e-3);
+  // Two valleys are possible: one where t0 explains the first points alone.
+  PowerLaw best = law_from(points, 0);
+  for (const double start : {-first, 0.0, 0.5 * first}) {
+    const Minimum found =
+        minimise({[&](const std::vector<double>& x) { return law_from(points, x[0]).scatter; },
+                  {start},
+                  {lower},
+                  {upper},
+                  {0.2 * first}});
+    if (found.value < best.scatter) best = law_from(points, found.x[0]);
+  }
+  return best;
+}
+
+std::optional<FittedLaw> fit_measurements(const MeasuredVesicles& data, const Window& window) {
+  std::vector<Points> vesicles;
+  std::size_t count = 0;
+  for (const auto& [begin, end] : data.vesicles()) {
+    Points points;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Measurement& m = data.measurements[i];
+      const auto& y = m.of(Quantity::perimeter);
+      if (window.contains(m.time) && y && *y > 0) points.emplace_back(m.time, *y);
+    }
+    count += points.size();
+    if (!points.empty()) vesicles.push_back(points);
+  }
+  if (count < kLeastPoints || static_cast<int>(vesicles.size()) < kLeastVesicles)
+    return std::nullopt;
+  return with_intervals(
+      [&](const std::vector<int>& sample) {
+        Points points;
+        for (const int k : sample)
+          points.insert(points.end(), vesicles[k].begin(), vesicles[k].end());
+        return points;
+      },
+      static_cast<int>(vesicles.size()));
+}
+
+std::optional<FittedLaw> fit_runs(const std::vector<History>& runs,
+                                  const std::vector<double>& times, const Window& window) {
+  std::vector<double> within;
+  for (const double t : times)
+    if (window.contains(t)) within.push_back(t);
+  if (within.size() < kLeastPoints || static_cast<int>(runs.size()) < kLeastVesicles)
+    return std::nullopt;
+  return with_intervals(
+      [&](const std::vector<int>& sample) {
+        Points points;
+        for (const double t : within) {
+          double sum = 0;
+          for (const int k : sample) sum += std::log(runs[k].at(Quantity::perimeter, t));
+          points.emplace_back(t, std::exp(sum / static_cast<double>(sample.size())));
+        }
+        return points;
+      },
+      static_cast<int>(runs.size()));
+}
+
+}  // namespace traceraft

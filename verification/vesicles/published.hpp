@@ -1,0 +1,29 @@
+// What a paper prints of its measurements, where the measurements themselves are not public.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "verification/vesicles/measurements.hpp"
+#include "verification/vesicles/power_law.hpp"
+
+namespace traceraft {
+
+struct PublishedFacts {
+  std::string name, origin, composition;
+  double celsius;
+  int vesicles, measurements;
+  double fraction, fraction_sd;   // raft area fraction, mean and standard deviation
+  double radius_min, radius_max;  // µm
+  PowerLaw perimeter;             // over radius; the scatter is an assumption
+  Window window;                  // s, of the law
+  int outliers;                   // measurements outside the range of the published simulations
+};
+
+// Vesicles that could have been measured: as many as published, radii evenly spread, times evenly
+// spread in ln t over the window, perimeters and fractions with the given mean and scatter, half of
+// its variance common to all looks at one vesicle; the number of rafts is that of equal caps,
+// rounded, at least 1. Marked as synthetic.
+MeasuredVesicles draw_measurements(const PublishedFacts& facts, std::uint64_t seed);
+
+}  // namespace traceraft
