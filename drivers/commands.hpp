@@ -33,6 +33,7 @@ Command compare_command();
 Command verify_command();
 Command ensemble_command();
 Command data_command();
+Command report_command();
 Command fraction_command();
 Command list_command();
 

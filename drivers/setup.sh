@@ -2,10 +2,12 @@
 # Usage: prepare PRESET YES        (YES=1: install without asking)
 
 packages="g++ cmake ninja-build libeigen3-dev libsuitesparse-dev libmetis-dev libopenblas-dev
-libsundials-dev libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libmuparser-dev zlib1g-dev libpng-dev libcsv-dev libnlopt-dev
-libgtest-dev gnuplot-nox"
+libsundials-dev libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libmuparser-dev zlib1g-dev libpng-dev libgif-dev libcsv-dev libnlopt-dev
+libgtest-dev gnuplot-nox libjs-three"
 # For runs on several ranks: the program is complete without them. ./check needs them for its tests.
 rank_packages="libopenmpi-dev openmpi-bin trilinos-all-dev"
+# To see pages as readers do: ./check alone needs them.
+browser_packages="chromium chromium-driver curl"
 
 say() { printf '%s\n' "$*" >&2; }
 

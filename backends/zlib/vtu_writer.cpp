@@ -1,61 +1,19 @@
 #include "backends/zlib/vtu_writer.hpp"
 
-#include <zlib.h>
-
 #include <cstdint>
-#include <cstring>
-#include <stdexcept>
 
+#include "backends/zlib/vtk_array.hpp"
 #include "kernel/core/parameters.hpp"
 
 namespace traceraft {
 namespace {
-
-constexpr std::size_t kBlock = 1 << 16;  // bytes compressed at a time
-
-std::string base64(const std::string& data) {
-  static constexpr char digits[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((data.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < data.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, data.size() - i);
-    std::uint32_t bits = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      bits = bits << 8 | (k < count ? static_cast<unsigned char>(data[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k)
-      text += k <= count ? digits[bits >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
-
-// VTK's compressed array: a header with block counts and sizes, then the blocks, each in base64.
-template <class T>
-std::string encoded(const std::vector<T>& values) {
-  const auto* data = reinterpret_cast<const Bytef*>(values.data());
-  const std::size_t bytes = values.size() * sizeof(T);
-  std::string blocks;
-  std::vector<std::uint64_t> header = {(bytes + kBlock - 1) / kBlock, kBlock, bytes % kBlock};
-  for (std::size_t begin = 0; begin < bytes; begin += kBlock) {
-    const std::size_t size = std::min(kBlock, bytes - begin);
-    uLongf length = compressBound(size);
-    std::string block(length, '\0');
-    if (compress2(reinterpret_cast<Bytef*>(block.data()), &length, data + begin, size, 6) != Z_OK)
-      throw std::runtime_error("zlib could not compress a field");
-    blocks.append(block, 0, length);
-    header.push_back(length);
-  }
-  std::string head(reinterpret_cast<const char*>(header.data()),
-                   header.size() * sizeof(std::uint64_t));
-  return base64(head) + base64(blocks);
-}
 
 template <class T>
 std::string array(const char* type, const std::string& name, int components,
                   const std::vector<T>& values) {
   return "<DataArray type=\"" + std::string(type) + "\" Name=\"" + name +
          "\" NumberOfComponents=\"" + std::to_string(components) + "\" format=\"binary\">\n" +
-         encoded(values) + "\n</DataArray>\n";
+         encoded_array(values.data(), values.size() * sizeof(T)) + "\n</DataArray>\n";
 }
 
 std::string file_head(const char* type) {

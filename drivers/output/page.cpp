@@ -44,6 +44,10 @@ void Page::table(const std::vector<std::vector<std::string>>& rows) {
   body_ += "</table></div>\n";
 }
 
+void Page::raw(const std::string& html) {
+  body_ += html + "\n";
+}
+
 std::string Page::html() const {
   return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +

@@ -16,6 +16,7 @@ class Page {
   void figure(const std::string& svg, const std::string& caption);
   // The first row is the heading. Cells that start with a digit or a sign are set as numbers.
   void table(const std::vector<std::vector<std::string>>& rows);
+  void raw(const std::string& html);  // as it is
   std::string html() const;
 
  private:

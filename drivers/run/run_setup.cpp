@@ -71,17 +71,6 @@ LevelSetPtr level_set(const Configuration& configuration) {
   });
 }
 
-DoubleWell double_well(const Configuration& configuration) {
-  return said_of(configuration, "well", [&] {
-    const Parameters p = parse_parameters("double well", configuration.text("well"),
-                                          {{"rho", "", 0.25, 1e-12, 1e12, "height"},
-                                           {"a", "", 0, -1e6, 1e6, "first minimum"},
-                                           {"b", "", 1, -1e6, 1e6, "second minimum"}});
-    if (!(p["a"] < p["b"])) throw InputError("double well: a must be smaller than b");
-    return DoubleWell{p["rho"], p["a"], p["b"]};
-  });
-}
-
 CahnHilliardModel model(const Configuration& configuration, const Units& units) {
   CahnHilliardModel result;
   result.mobility = said_of(configuration, "mobility",
@@ -238,6 +227,17 @@ LinearSolverChoice linear_solver(const Configuration& configuration, const Surfa
 }
 
 }  // namespace
+
+DoubleWell double_well(const Configuration& configuration) {
+  return said_of(configuration, "well", [&] {
+    const Parameters p = parse_parameters("double well", configuration.text("well"),
+                                          {{"rho", "", 0.25, 1e-12, 1e12, "height"},
+                                           {"a", "", 0, -1e6, 1e6, "first minimum"},
+                                           {"b", "", 1, -1e6, 1e6, "second minimum"}});
+    if (!(p["a"] < p["b"])) throw InputError("double well: a must be smaller than b");
+    return DoubleWell{p["rho"], p["a"], p["b"]};
+  });
+}
 
 RunSetup build_run(const Configuration& configuration, InitialState initial) {
   RunSetup run;

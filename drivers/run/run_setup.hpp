@@ -30,6 +30,9 @@ struct RunSetup {
   std::vector<double> output_labels;  // the same as the user wrote them, in the user's units
 };
 
+// The free energy that --well describes. Throws InputError.
+DoubleWell double_well(const Configuration& configuration);
+
 enum class InitialState { build, from_checkpoint /* leaves RunSetup::initial empty */ };
 
 // On all ranks of the program. Throws InputError for anything a run could not start with; creates

@@ -103,28 +103,37 @@ class View {
   std::vector<Colour> colour_;
 };
 
+Image draw(const std::vector<Point>& position, const std::vector<std::array<int, 3>>& triangles,
+           const Vec& values, double low, double high, int size, const Communicator& ranks) {
+  double farthest = 0;
+  for (const Point& x : position) farthest = std::max(farthest, x.norm());
+  farthest = ranks.max(farthest);
+  const Point towards_viewer(1, -0.8, 0.5);
+  Image image{2 * size, size, std::vector<std::uint8_t>(6 * static_cast<std::size_t>(size) * size)};
+  View front(size, 1.05 * farthest, towards_viewer), back(size, 1.05 * farthest, -towards_viewer);
+  for (const auto& [a, b, c] : triangles) {
+    const auto share = [&](int p) { return (values[p] - low) / (high - low); };
+    for (View* view : {&front, &back})
+      view->draw({position[a], position[b], position[c]}, {share(a), share(b), share(c)});
+  }
+  front.combine(ranks);
+  back.combine(ranks);
+  front.copy_to(image, 0);
+  back.copy_to(image, size);
+  return image;
+}
+
 }  // namespace
 
 Image draw_front_and_back(const SurfaceSpace& space, const Vec& values, double low, double high,
                           int size) {
   const CutSurface& surface = space.surface;
-  const std::vector<Point>& position = surface.position;
-  double farthest = 0;
-  for (const Point& x : position) farthest = std::max(farthest, x.norm());
-  farthest = space.communicator->max(farthest);
-  const Point towards_viewer(1, -0.8, 0.5);
-  Image image{2 * size, size, std::vector<std::uint8_t>(6 * static_cast<std::size_t>(size) * size)};
-  View front(size, 1.05 * farthest, towards_viewer), back(size, 1.05 * farthest, -towards_viewer);
-  for (const auto& [a, b, c] : surface.triangles) {
-    const auto share = [&](int p) { return (values[p] - low) / (high - low); };
-    for (View* view : {&front, &back})
-      view->draw({position[a], position[b], position[c]}, {share(a), share(b), share(c)});
-  }
-  front.combine(*space.communicator);
-  back.combine(*space.communicator);
-  front.copy_to(image, 0);
-  back.copy_to(image, size);
-  return image;
+  return draw(surface.position, surface.triangles, values, low, high, size, *space.communicator);
+}
+
+Image draw_front_and_back(const SurfaceMesh& mesh, const Vec& values, double low, double high,
+                          int size) {
+  return draw(mesh.position, mesh.triangles, values, low, high, size, kAlone);
 }
 
 }  // namespace traceraft

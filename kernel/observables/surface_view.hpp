@@ -1,6 +1,7 @@
 // A picture of a field on Γ_h: front and back of the surface side by side.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -13,10 +14,19 @@ struct Image {
   std::vector<std::uint8_t> rgb;  // rows from the top, three bytes a pixel
 };
 
+// Triangles, counter-clockwise seen from outside, and their corners.
+struct SurfaceMesh {
+  std::vector<Point> position;
+  std::vector<std::array<int, 3>> triangles;
+};
+
 // Parallel projection of the surface coloured by `values` (one per point of Γ_h), dark at `low` and
 // bright at `high`, on white. `size`: pixels per edge of each of the two squares. Collective; every
 // rank gets the whole picture.
 Image draw_front_and_back(const SurfaceSpace& space, const Vec& values, double low, double high,
+                          int size);
+
+Image draw_front_and_back(const SurfaceMesh& mesh, const Vec& values, double low, double high,
                           int size);
 
 }  // namespace traceraft

@@ -73,6 +73,7 @@ TEST(DependencyRule, EveryBackendKnowsTheKernelAndItsOwnLibrary) {
       {"sundials", {"sundials/", "sunlinsol/", "sunnonlinsol/", "ida/"}},
       {"muparser", {"muParser.h"}},
       {"nlopt", {"nlopt.h"}},
+      {"gif", {"gif_lib.h"}},
       {"png", {"png.h"}},
       {"posix",
        {"fcntl.h", "spawn.h", "unistd.h", "sys/file.h", "sys/prctl.h", "sys/stat.h", "sys/ioctl.h",

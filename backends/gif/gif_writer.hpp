@@ -1,0 +1,15 @@
+// Animations as GIF files (giflib).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kernel/observables/surface_view.hpp"
+
+namespace traceraft {
+
+// The bytes of a GIF file that shows the images one after the other, each for `centiseconds`, again
+// and again. All of one size. Throws std::runtime_error if giflib refuses.
+std::string gif_bytes(const std::vector<Image>& images, int centiseconds);
+
+}  // namespace traceraft

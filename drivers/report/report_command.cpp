@@ -1,0 +1,92 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "backends/gif/gif_writer.hpp"
+#include "backends/png/png_writer.hpp"
+#include "backends/posix/durable_file.hpp"
+#include "drivers/commands.hpp"
+#include "drivers/exit_codes.hpp"
+#include "drivers/report/report_page.hpp"
+#include "kernel/core/error.hpp"
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ReportRequest {
+  std::string folder, out, snapshots, animation;
+  int frames = 60, pixels = 480;
+  double detail = 0.015;
+  int pause = 20;
+  bool quiet = false;
+};
+
+void write_pictures(const ReportRequest& request) {
+  if (request.snapshots.empty() && request.animation.empty()) return;
+  const fs::path run = run_to_show(request.folder);
+  const auto [low, high] = phases_of(run);
+  const SurfaceFrames frames = read_frames(run, request.detail, request.frames);
+  std::vector<Image> images;
+  for (const Vec& values : frames.values)
+    images.push_back(draw_front_and_back(frames.mesh, values, low, high, request.pixels));
+  if (!request.animation.empty()) {
+    write_durably(request.animation, gif_bytes(images, request.pause));
+    if (!request.quiet) std::printf("%s\n", request.animation.c_str());
+  }
+  if (request.snapshots.empty()) return;
+  fs::create_directories(request.snapshots);
+  for (std::size_t k = 0; k < images.size(); ++k) {
+    char name[32];
+    std::snprintf(name, sizeof name, "frame-%04zu.png", k);
+    write_durably(fs::path(request.snapshots) / name, png_bytes(images[k]));
+  }
+  if (!request.quiet) std::printf("%zu pictures in %s\n", images.size(), request.snapshots.c_str());
+}
+
+int report(const ReportRequest& request) {
+  const fs::path out =
+      request.out.empty() ? fs::path(request.folder) / "report.html" : fs::path(request.out);
+  const std::string missing =
+      write_report_page(request.folder, out, {request.frames, request.detail});
+  write_pictures(request);
+  if (!request.quiet) {
+    if (!missing.empty()) std::printf("missing in the page: %s\n", missing.c_str());
+    std::printf("open next: %s\n", out.c_str());
+  }
+  return kSuccess;
+}
+
+Action define(CLI::App& app) {
+  const auto request = std::make_shared<ReportRequest>();
+  app.add_option("folder", request->folder, "of a run, ensemble, comparison or verification")
+      ->required();
+  app.add_option("--out", request->out, "page to write; default: report.html in the folder");
+  app.add_option("--frames", request->frames, "at most so many times of the fields")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  app.add_option("--detail", request->detail,
+                 "smallest detail of the surface shown, in units of its size")
+      ->check(CLI::Range(1e-4, 0.2))
+      ->capture_default_str();
+  app.add_option("--snapshots", request->snapshots, "folder for pictures (PNG) of all frames");
+  app.add_option("--animation", request->animation, "animation (GIF) of all frames");
+  app.add_option("--pixels", request->pixels, "height of pictures and animation")
+      ->check(CLI::Range(16, 4096))
+      ->capture_default_str();
+  app.add_option("--pause", request->pause, "of the animation between frames, in 1/100 s")
+      ->check(CLI::Range(2, 1000))
+      ->capture_default_str();
+  app.add_flag("--quiet", request->quiet, "print nothing but errors");
+  app.footer("Example: traceraft report runs/guv-2to1-1 --animation rafts.gif");
+  return [request] { return report(*request); };
+}
+
+}  // namespace
+
+Command report_command() {
+  return {"report", "make a page, pictures and animations of what a folder holds", Ranks::one,
+          define};
+}
+
+}  // namespace traceraft

@@ -1,0 +1,29 @@
+// One self-contained page of what a folder holds.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+
+#include "drivers/report/surface_frames.hpp"
+
+namespace traceraft {
+
+// The run whose surface is shown: the folder itself, or the first finished one of an ensemble.
+// Throws InputError if there is none.
+std::filesystem::path run_to_show(const std::filesystem::path& folder);
+
+// The concentrations of the two phases of a run.
+std::pair<double, double> phases_of(const std::filesystem::path& run_folder);
+
+struct PageRequest {
+  int frames;
+  double detail;
+};
+// Writes the page of a run or an ensemble: surface, charts, numbers, settings; those of a
+// comparison and a verification have been written by their commands and are copied. Returns what is
+// missing, "" if nothing. Throws InputError if the folder is none of these.
+std::string write_report_page(const std::filesystem::path& folder, const std::filesystem::path& out,
+                              const PageRequest& request);
+
+}  // namespace traceraft

@@ -1,0 +1,129 @@
+#include "drivers/report/surface_frames.hpp"
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "backends/posix/durable_file.hpp"
+#include "backends/zlib/vtu_reader.hpp"
+#include "kernel/core/error.hpp"
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 33;
+
+// All pieces of one time.
+SurfaceField read_field(const fs::path& path) {
+  try {
+    if (path.extension() != ".pvtu") return read_vtu(read_file(path, kLargestFile), "c");
+    SurfaceField whole;
+    for (const std::string& name : pieces_of_pvtu(read_file(path, kLargestFile))) {
+      const SurfaceField piece = read_vtu(read_file(path.parent_path() / name, kLargestFile), "c");
+      const int first = static_cast<int>(whole.mesh.position.size());
+      whole.mesh.position.insert(whole.mesh.position.end(), piece.mesh.position.begin(),
+                                 piece.mesh.position.end());
+      for (const auto& [a, b, c] : piece.mesh.triangles)
+        whole.mesh.triangles.push_back({a + first, b + first, c + first});
+      Vec joined(whole.values.size() + piece.values.size());
+      joined << whole.values, piece.values;
+      whole.values = joined;
+    }
+    return whole;
+  } catch (const IoError& error) {
+    throw IoError(path.string() + ": " + error.what());
+  }
+}
+
+// Points that share a cell of a grid become their mean. Pieces of several ranks, and fields that
+// were written on other numbers of ranks, have the same points in other orders.
+class Grid {
+ public:
+  Grid(const SurfaceField& field, double detail) : width_(detail * size_of(field.mesh)) {
+    for (const Point& x : field.mesh.position)
+      cells_.emplace(cell_of(x), static_cast<int>(cells_.size()));
+  }
+
+  SurfaceMesh mesh(const SurfaceField& field) const {
+    const std::vector<int> clusters = clusters_of(field);
+    SurfaceMesh coarse;
+    coarse.position.assign(cells_.size(), Point::Zero());
+    std::vector<double> count(cells_.size(), 0);
+    for (std::size_t p = 0; p < clusters.size(); ++p) {
+      coarse.position[clusters[p]] += field.mesh.position[p];
+      ++count[clusters[p]];
+    }
+    for (std::size_t k = 0; k < count.size(); ++k) coarse.position[k] /= count[k];
+    for (const auto& [a, b, c] : field.mesh.triangles) {
+      const std::array<int, 3> corners = {clusters[a], clusters[b], clusters[c]};
+      if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0])
+        coarse.triangles.push_back(corners);
+    }
+    return coarse;
+  }
+
+  // Throws IoError if the field is on another mesh.
+  Vec values(const SurfaceField& field) const {
+    const std::vector<int> clusters = clusters_of(field);
+    const auto cells = static_cast<Eigen::Index>(cells_.size());
+    Vec sum = Vec::Zero(cells), count = Vec::Zero(cells);
+    for (std::size_t p = 0; p < clusters.size(); ++p) {
+      sum[clusters[p]] += field.values[static_cast<Eigen::Index>(p)];
+      ++count[clusters[p]];
+    }
+    if (count.size() > 0 && count.minCoeff() == 0) throw IoError("a field is on another mesh");
+    return sum.cwiseQuotient(count);
+  }
+
+ private:
+  using Cell = std::array<long, 3>;
+  static double size_of(const SurfaceMesh& mesh) {
+    double size = 0;
+    for (const Point& x : mesh.position) size = std::max(size, x.norm());
+    return size;
+  }
+  Cell cell_of(const Point& x) const {
+    return {std::lround(x[0] / width_), std::lround(x[1] / width_), std::lround(x[2] / width_)};
+  }
+  std::vector<int> clusters_of(const SurfaceField& field) const {
+    std::vector<int> clusters;
+    for (const Point& x : field.mesh.position) {
+      const auto cell = cells_.find(cell_of(x));
+      if (cell == cells_.end()) throw IoError("a field is on another mesh");
+      clusters.push_back(cell->second);
+    }
+    return clusters;
+  }
+
+  double width_;
+  std::map<Cell, int> cells_;
+};
+
+}  // namespace
+
+SurfaceFrames read_frames(const fs::path& run_folder, double detail, int most) {
+  const fs::path collection = run_folder / "fields.pvd";
+  if (!fs::exists(collection))
+    throw InputError(run_folder.string() + " has no fields (it ran with --no-fields)");
+  const auto files = files_of_pvd(read_file(collection, kLargestFile));
+  if (files.empty()) throw InputError(collection.string() + " names no fields");
+  const auto count = static_cast<int>(files.size()), shown = std::min(count, std::max(most, 1));
+  SurfaceFrames frames;
+  std::optional<Grid> grid;
+  for (int k = 0; k < shown; ++k) {
+    const auto& [time, name] = files[shown == 1 ? count - 1 : (count - 1) * k / (shown - 1)];
+    const SurfaceField field = read_field(run_folder / name);
+    if (!grid) {
+      grid.emplace(field, detail);
+      frames.mesh = grid->mesh(field);
+    }
+    frames.times.push_back(time);
+    frames.values.push_back(grid->values(field));
+  }
+  return frames;
+}
+
+}  // namespace traceraft

@@ -1,0 +1,24 @@
+// The fields that a run has written, as frames on one mesh for pictures.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "kernel/observables/surface_view.hpp"
+
+namespace traceraft {
+
+struct SurfaceFrames {
+  SurfaceMesh mesh;
+  std::vector<double> times;  // in the units of the run's files
+  std::vector<Vec> values;    // of each time, a concentration per point
+};
+
+// Corners of Γ_h nearer to each other than `detail` (a share of the surface's size) become one: cut
+// cells have triangles of all sizes, and pictures need no more. At most `most` frames, evenly
+// chosen, the first and the last among them. Throws InputError if the run has written no fields,
+// IoError if they are damaged.
+SurfaceFrames read_frames(const std::filesystem::path& run_folder, double detail, int most);
+
+}  // namespace traceraft

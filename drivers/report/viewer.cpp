@@ -1,0 +1,93 @@
+#include "drivers/report/viewer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+
+#include "backends/posix/durable_file.hpp"
+#include "backends/zlib/vtk_array.hpp"
+#include "drivers/report/viewer_script.hpp"
+#include "kernel/core/error.hpp"
+#include "kernel/core/text.hpp"
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kLargestScript = 1 << 24;
+constexpr char kLibrary[] = "/usr/share/javascript/three/build/three.min.js";
+constexpr char kControls[] = "/usr/share/javascript/three/examples/js/controls/OrbitControls.js";
+constexpr char kLicence[] = "/usr/share/doc/libjs-three/copyright";
+
+template <class T>
+std::string data_block(const char* id, const std::vector<T>& values) {
+  const std::string bytes(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+  return std::string("<script type=\"text/plain\" id=\"") + id + "\">" + base64(deflated(bytes)) +
+         "</script>\n";
+}
+
+std::string mesh_blocks(const SurfaceMesh& mesh) {
+  double size = 0;
+  for (const Point& x : mesh.position) size = std::max(size, x.norm());
+  std::vector<std::int16_t> positions;
+  for (const Point& x : mesh.position)
+    for (int k = 0; k < 3; ++k)
+      positions.push_back(static_cast<std::int16_t>(std::lround(x[k] / size * 32767)));
+  std::vector<std::uint32_t> corners;
+  for (const auto& triangle : mesh.triangles)
+    for (const int corner : triangle) corners.push_back(static_cast<std::uint32_t>(corner));
+  return data_block("mesh-positions", positions) + data_block("mesh-triangles", corners);
+}
+
+std::string frame_block(const SurfaceFrames& frames, double low, double high) {
+  std::vector<std::uint8_t> bytes;
+  for (const Vec& values : frames.values)
+    for (const double c : values)
+      bytes.push_back(static_cast<std::uint8_t>(
+          std::lround(255 * std::clamp((c - low) / (high - low), 0.0, 1.0))));
+  return data_block("frames", bytes);
+}
+
+// The licence goes where the library goes. "--" must not be in a comment.
+std::string licence_comment() {
+  std::string text = read_file(kLicence, kLargestScript);
+  for (std::size_t at = 0; (at = text.find("--", at)) != std::string::npos;)
+    text.replace(at, 2, "- ");
+  return "<!-- three.js:\n" + text + "-->\n";
+}
+
+// A script must not end before its end.
+std::string script(std::string text) {
+  for (std::size_t at = 0; (at = text.find("</script", at)) != std::string::npos; at += 9)
+    text.replace(at, 2, "<\\/");
+  return "<script>" + text + "</script>\n";
+}
+
+}  // namespace
+
+std::string add_viewer(Page& page, const SurfaceFrames& frames, double low, double high,
+                       const std::string& time_unit) {
+  for (const char* file : {kLibrary, kControls, kLicence})
+    if (!fs::exists(file)) return "three.js is not installed (Debian package libjs-three)";
+  nlohmann::json labels = nlohmann::json::array();
+  for (const double t : frames.times) labels.push_back(formatted("t = %.4g ", t) + time_unit);
+  const std::string last = std::to_string(frames.times.size() - 1);
+  page.raw(
+      "<div id=\"viewer\" style=\"width:100%;max-width:640px\"></div>\n"
+      "<p><input type=\"range\" id=\"time\" min=\"0\" step=\"1\" max=\"" +
+      last + "\" value=\"" + last +
+      "\" style=\"width:60%\" aria-label=\"time\"> "
+      "<button id=\"play\">play</button> <span id=\"time-label\"></span><br>"
+      "<label><input type=\"checkbox\" id=\"through\" checked> see through to the rafts on "
+      "the far side</label></p>");
+  page.raw(mesh_blocks(frames.mesh) + frame_block(frames, low, high));
+  page.raw(licence_comment() + script(read_file(kLibrary, kLargestScript)) +
+           script(read_file(kControls, kLargestScript)) +
+           script("window.traceraftScene = " + nlohmann::json{{"labels", labels}}.dump() + ";") +
+           script(kViewerScript));
+  return "";
+}
+
+}  // namespace traceraft

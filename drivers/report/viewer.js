@@ -1,0 +1,123 @@
+// Shows fields on a surface: turn it with the mouse, move through time with the slider. Needs THREE
+// and THREE.OrbitControls; `traceraftScene` describes what there is.
+(function () {
+  'use strict';
+  const scene = window.traceraftScene;
+  const box = document.getElementById('viewer');
+  const slider = document.getElementById('time');
+  const label = document.getElementById('time-label');
+  const play = document.getElementById('play');
+  const through = document.getElementById('through');
+
+  async function bytesOf(id) {
+    const text = document.getElementById(id).textContent.trim();
+    const packed = Uint8Array.from(atob(text), (ch) => ch.charCodeAt(0));
+    const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate'));
+    return new Response(stream).arrayBuffer();
+  }
+
+  // Rafts are opaque and the rest is a veil, so that those on the far side are seen, too.
+  function material(side, paleness) {
+    return new THREE.ShaderMaterial({
+      side: side,
+      transparent: true,
+      depthWrite: false,
+      uniforms: {veil: {value: 0.3}, paleness: {value: paleness}},
+      vertexShader: `
+        attribute float value;
+        varying float share;
+        varying vec3 direction;
+        void main() {
+          share = value;
+          direction = normalMatrix * normal;
+          gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+        }`,
+      fragmentShader: `
+        uniform float veil, paleness;
+        varying float share;
+        varying vec3 direction;
+        void main() {
+          vec3 dark = vec3(38.0, 70.0, 120.0) / 255.0, bright = vec3(247.0, 193.0, 82.0) / 255.0;
+          float light = 0.55 + 0.45 * abs(dot(normalize(direction), normalize(vec3(-0.4, 0.5, 1.0))));
+          vec3 colour = mix(light * mix(dark, bright, share), vec3(1.0), paleness);
+          gl_FragColor = vec4(colour, mix(veil, 1.0, smoothstep(0.3, 0.7, share)));
+        }`
+    });
+  }
+
+  async function start() {
+    const [positions, indices, values] = await Promise.all(
+      ['mesh-positions', 'mesh-triangles', 'frames'].map(bytesOf));
+    const quantised = new Int16Array(positions);
+    const points = quantised.length / 3;
+    const frames = new Uint8Array(values);
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position',
+      new THREE.BufferAttribute(Float32Array.from(quantised, (x) => x / 32767), 3));
+    geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(indices), 1));
+    geometry.computeVertexNormals();
+    const shown = new THREE.BufferAttribute(new Uint8Array(points), 1, true);
+    geometry.setAttribute('value', shown);
+
+    const renderer = new THREE.WebGLRenderer({antialias: true, preserveDrawingBuffer: true});
+    renderer.setPixelRatio(window.devicePixelRatio);
+    renderer.setClearColor(0xffffff);
+    box.appendChild(renderer.domElement);
+    const camera = new THREE.PerspectiveCamera(30, 1, 0.1, 100);
+    camera.up.set(0, 0, 1);
+    camera.position.set(2.9, -2.3, 1.5);
+    const controls = new THREE.OrbitControls(camera, renderer.domElement);
+    controls.enablePan = false;
+    const world = new THREE.Scene();
+    const sides = [material(THREE.BackSide, 0.45), material(THREE.FrontSide, 0.0)];
+    sides.forEach((side, order) => {
+      const mesh = new THREE.Mesh(geometry, side);
+      mesh.renderOrder = order;
+      world.add(mesh);
+    });
+
+    const draw = () => renderer.render(world, camera);
+    function fit() {
+      const width = box.clientWidth;
+      renderer.setSize(width, Math.min(width, 520));
+      camera.aspect = width / Math.min(width, 520);
+      camera.updateProjectionMatrix();
+      draw();
+    }
+    function show(frame) {
+      shown.array.set(frames.subarray(frame * points, (frame + 1) * points));
+      shown.needsUpdate = true;
+      label.textContent = scene.labels[frame];
+      document.body.dataset.frame = frame;
+      draw();
+    }
+    controls.addEventListener('change', draw);
+    window.addEventListener('resize', fit);
+    slider.addEventListener('input', () => show(Number(slider.value)));
+    through.addEventListener('change', () => {
+      sides.forEach((side) => { side.uniforms.veil.value = through.checked ? 0.3 : 1.0; });
+      draw();
+    });
+    let timer = 0;
+    play.addEventListener('click', () => {
+      if (timer) {
+        clearInterval(timer);
+        timer = 0;
+      } else {
+        timer = setInterval(() => {
+          slider.value = (Number(slider.value) + 1) % scene.labels.length;
+          show(Number(slider.value));
+        }, 200);
+      }
+      play.textContent = timer ? 'stop' : 'play';
+    });
+    fit();
+    show(Number(slider.value));
+    document.body.dataset.ready = 'yes';
+  }
+
+  start().catch((error) => {
+    label.textContent = 'no three-dimensional view: ' + error.message;
+    document.body.dataset.ready = 'no';
+  });
+})();

@@ -1,0 +1,171 @@
+// Pages, pictures and animations; the page in a browser, if there is one.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::content;
+using testing::Outcome;
+using testing::shell;
+using testing::TemporaryFolder;
+using testing::traceraft;
+
+class ReportTest : public ::testing::Test {
+ protected:
+  TemporaryFolder folder;
+  std::string out(const std::string& name) const { return (folder.path / name).string(); }
+  void run(const std::string& name) const {
+    const Outcome made =
+        traceraft("run --case two-rafts --cells 20 --epsilon 0.6 --quiet --out " + out(name));
+    ASSERT_EQ(made.code, 0) << made.output;
+  }
+};
+
+TEST_F(ReportTest, MakesAPagePicturesAndAnAnimation) {
+  run("a");
+  const Outcome made = traceraft("report " + out("a") + " --frames 5 --snapshots " +
+                                 out("pictures") + " --animation " + out("a.gif") + " --pixels 64");
+  ASSERT_EQ(made.code, 0) << made.output;
+  const std::string page = content(folder.path / "a/report.html");
+  for (const char* part : {"id=\"viewer\"", "raft area fraction", "energy-guard", "mass_drift"})
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  EXPECT_EQ(page.find("http-equiv"), std::string::npos);
+  EXPECT_EQ(page.find("src=\"http"), std::string::npos) << "a page needs nothing else";
+  for (int k = 0; k < 5; ++k)
+    EXPECT_EQ(
+        content(folder.path / "pictures" / ("frame-000" + std::to_string(k) + ".png")).substr(1, 3),
+        "PNG");
+  EXPECT_FALSE(fs::exists(folder.path / "pictures/frame-0005.png"));
+  EXPECT_EQ(content(folder.path / "a.gif").substr(0, 6), "GIF89a");
+}
+
+TEST_F(ReportTest, ShowsEnsemblesAndCopiesFinishedPages) {
+  ASSERT_EQ(
+      traceraft(
+          "ensemble --case guv-2to1 --cells 20 --epsilon 0.5 --t-end 20 --runs 2 --quiet --out " +
+          out("e"))
+          .code,
+      0);
+  ASSERT_EQ(traceraft("report --quiet " + out("e")).code, 0);
+  const std::string page = content(folder.path / "e/report.html");
+  EXPECT_NE(page.find("Shown is seed-1"), std::string::npos);
+  EXPECT_NE(page.find("number of rafts"), std::string::npos);
+  ASSERT_EQ(traceraft("verify geometry --quick --quiet --out " + out("v")).code, 0);
+  ASSERT_EQ(traceraft("report --quiet " + out("v")).code, 0);
+  EXPECT_EQ(content(folder.path / "v/report.html"), content(folder.path / "v/verify.html"));
+}
+
+TEST_F(ReportTest, SaysWhatItCannotShow) {
+  EXPECT_EQ(traceraft("report " + out("nowhere")).code, 2);
+  ASSERT_EQ(
+      traceraft(
+          "run --case two-rafts --cells 16 --epsilon 0.8 --t-end 0.1 --no-fields --quiet --out " +
+          out("a"))
+          .code,
+      0);
+  const Outcome made = traceraft("report " + out("a"));
+  EXPECT_EQ(made.code, 0);
+  EXPECT_NE(made.output.find("has written no fields"), std::string::npos);
+  EXPECT_EQ(traceraft("report --quiet " + out("a") + " --animation " + out("a.gif")).code, 2);
+  run("b");
+  std::ofstream(folder.path / "b/fields/field-0003.vtu") << "damaged";
+  const Outcome damaged = traceraft("report " + out("b"));
+  EXPECT_EQ(damaged.code, 4);
+  EXPECT_NE(damaged.output.find("field-0003.vtu"), std::string::npos) << damaged.output;
+}
+
+// A browser that a program steers, by the WebDriver protocol.
+class Browser {
+ public:
+  Browser() {
+    driver_ = fork();
+    if (driver_ == 0) {
+      execlp("sh", "sh", "-c", ("exec chromedriver --port=" + port_ + " >/dev/null 2>&1").c_str(),
+             static_cast<char*>(nullptr));
+      _exit(127);
+    }
+    const json options = {{"args",
+                           {"--headless", "--no-sandbox", "--use-angle=swiftshader",
+                            "--enable-unsafe-swiftshader", "--window-size=900,900"}}};
+    const json wanted = {{"capabilities",
+                          {{"alwaysMatch",
+                            {{"browserName", "chrome"},
+                             {"goog:chromeOptions", options},
+                             {"goog:loggingPrefs", {{"browser", "ALL"}}}}}}}};
+    for (int i = 0; i < 100 && session_.empty(); ++i) {
+      usleep(200000);
+      const json answer = send("/session", wanted);
+      if (answer.contains("value") && answer["value"].contains("sessionId"))
+        session_ = "/session/" + answer["value"]["sessionId"].get<std::string>();
+    }
+  }
+  ~Browser() {
+    if (ready()) (void)shell("curl -s -X DELETE http://127.0.0.1:" + port_ + session_);
+    kill(driver_, SIGTERM);
+    waitpid(driver_, nullptr, 0);
+  }
+  bool ready() const { return !session_.empty(); }
+  void open(const fs::path& page) {
+    (void)send(session_ + "/url", {{"url", "file://" + page.string()}});
+  }
+  json evaluate(const std::string& script) {
+    return send(session_ + "/execute/sync",
+                {{"script", "return " + script}, {"args", json::array()}})["value"];
+  }
+  json complaints() { return send(session_ + "/se/log", {{"type", "browser"}})["value"]; }
+
+ private:
+  json send(const std::string& path, const json& body) const {
+    const fs::path file = scratch_.path / "body.json";
+    std::ofstream(file) << body.dump();
+    const Outcome answer = shell("curl -s --max-time 60 -H 'Content-Type: application/json' -d @" +
+                                 file.string() + " http://127.0.0.1:" + port_ + path);
+    return json::parse(answer.output, nullptr, false);
+  }
+  TemporaryFolder scratch_;
+  std::string port_ = std::to_string(20000 + getpid() % 20000), session_;
+  pid_t driver_ = -1;
+};
+
+TEST_F(ReportTest, WorksInABrowser) {
+  if (shell("command -v chromedriver && command -v chromium && command -v curl").code != 0)
+    GTEST_SKIP() << "needs the Debian packages chromium, chromium-driver and curl";
+  run("a");
+  ASSERT_EQ(traceraft("report --quiet " + out("a")).code, 0);
+  Browser browser;
+  ASSERT_TRUE(browser.ready());
+  browser.open(folder.path / "a/report.html");
+  for (int i = 0; i < 100 && browser.evaluate("document.body.dataset.ready || ''") == ""; ++i)
+    usleep(100000);
+  ASSERT_EQ(browser.evaluate("document.body.dataset.ready"), "yes")
+      << browser.evaluate("document.getElementById('time-label').textContent");
+  const std::string last = browser.evaluate("document.body.dataset.frame");
+  const std::string picture = browser.evaluate("document.querySelector('canvas').toDataURL()");
+  const std::string label = browser.evaluate("document.getElementById('time-label').textContent");
+  EXPECT_NE(last, "0");
+  (void)browser.evaluate(
+      "(() => { const s = document.getElementById('time'); s.value = 0; s.dispatchEvent(new "
+      "Event('input')); })()");
+  EXPECT_EQ(browser.evaluate("document.body.dataset.frame"), "0");
+  EXPECT_NE(browser.evaluate("document.getElementById('time-label').textContent"), label);
+  // Two rafts instead of one.
+  EXPECT_NE(browser.evaluate("document.querySelector('canvas').toDataURL()"), picture);
+  for (const json& entry : browser.complaints())
+    EXPECT_NE(entry["level"], "SEVERE") << entry["message"];
+  RecordProperty("milliseconds_to_open",
+                 static_cast<int>(browser.evaluate("performance.now()").get<double>()));
+}
+
+}  // namespace
+}  // namespace traceraft
