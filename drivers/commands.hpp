@@ -34,6 +34,7 @@ Command verify_command();
 Command ensemble_command();
 Command data_command();
 Command report_command();
+Command calibrate_command();
 Command fraction_command();
 Command list_command();
 

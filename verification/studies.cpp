@@ -12,6 +12,7 @@ const NamedList<StudyEntry>& studies() {
       linear_theory_study(),
       equilibria_study(),
       coarsening_study(),
+      raft_coarsening_study(),
       pfhub_study(),
       fine_pfhub_study(),
       integrator_agreement_study(),

@@ -15,6 +15,7 @@ StudyEntry linear_theory_study();
 StudyEntry equilibria_study();
 StudyEntry integrator_agreement_study();
 StudyEntry coarsening_study();
+StudyEntry raft_coarsening_study();
 StudyEntry pfhub_study();
 StudyEntry fine_pfhub_study();
 StudyEntry solver_iterations_study();

@@ -49,10 +49,14 @@ int draw(const DataRequest& request) {
   if (fs::exists(fs::path(request.folder) / "dataset.toml"))
     throw InputError(request.folder + " holds data already; choose another folder");
   const PublishedFacts facts = read_facts(request.facts);
-  const MeasuredVesicles data = draw_measurements(facts, static_cast<std::uint64_t>(request.seed));
+  const auto seed = static_cast<std::uint64_t>(request.seed);
+  const MeasuredVesicles data = request.ensemble.empty()
+                                    ? draw_measurements(facts, seed)
+                                    : draw_from_runs(facts, runs_of(request.ensemble), seed);
   write_dataset(request.folder, data,
-                "SYNTHETIC: drawn from published facts, not measured (seed " +
-                    std::to_string(request.seed) + ")");
+                std::string("SYNTHETIC: drawn from ") +
+                    (request.ensemble.empty() ? "published facts" : "simulations") +
+                    ", not measured (seed " + std::to_string(request.seed) + ")");
   if (!request.quiet)
     std::printf("%zu synthetic measurements in %s\n", data.measurements.size(),
                 request.folder.c_str());
@@ -76,7 +80,8 @@ Action define(CLI::App& app) {
                  "ensemble against it; draw: make a synthetic one from published facts")
       ->required();
   app.add_option("folder", request->folder, "of the measurements (dataset.toml)")->required();
-  app.add_option("--ensemble", request->ensemble, "folder of the simulations to compare with");
+  app.add_option("--ensemble", request->ensemble,
+                 "folder of the simulations to compare with, or to draw from");
   app.add_option("--window", request->window, "from which time to which a power law is fitted (s)")
       ->capture_default_str();
   app.add_option("--facts", request->facts, "TOML file to draw from");

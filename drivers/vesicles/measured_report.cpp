@@ -134,8 +134,7 @@ void print_dataset(const MeasuredVesicles& data, const std::optional<FittedLaw>&
   print_rows({kLawHeading, law_row("measured", law)});
 }
 
-int compare_with_ensemble(const MeasuredVesicles& data, const fs::path& path, const Window& window,
-                          bool quiet) {
+std::vector<History> runs_of(const fs::path& path) {
   const EnsembleFolder folder(path);
   if (!folder.started())
     throw InputError("--ensemble: " + path.string() + " holds no ensemble (traceraft ensemble)");
@@ -144,8 +143,12 @@ int compare_with_ensemble(const MeasuredVesicles& data, const fs::path& path, co
   if (units.scaled)
     throw InputError("--ensemble: " + path.string() +
                      " was run with --scaled; its times cannot be compared with seconds");
-  const EnsemblePlan plan = folder.load();
-  const std::vector<History> runs = finished_histories(folder, plan, units.length());
+  return finished_histories(folder, folder.load(), units.length());
+}
+
+int compare_with_ensemble(const MeasuredVesicles& data, const fs::path& path, const Window& window,
+                          bool quiet) {
+  const std::vector<History> runs = runs_of(path);
   const std::vector<Agreement> agreements = compare_with_runs(data, runs);
   const EnsembleSummary summary = summarise(runs);
   const auto measured = fit_measurements(data, window),

@@ -11,8 +11,12 @@ namespace traceraft {
 
 void print_dataset(const MeasuredVesicles& data, const std::optional<FittedLaw>& law);
 
-// Writes into the folder of the ensemble. Returns an exit code; throws InputError if there is no
-// ensemble with two finished runs at least, or if its times are in units of R²/D.
+// The finished runs of an ensemble, in s and R. Throws InputError if there is no ensemble, or if
+// its times are in units of R²/D.
+std::vector<History> runs_of(const std::filesystem::path& ensemble);
+
+// Writes into the folder of the ensemble. Returns an exit code; throws InputError as runs_of,
+// and if fewer than two runs have finished.
 int compare_with_ensemble(const MeasuredVesicles& data, const std::filesystem::path& ensemble,
                           const Window& window, bool quiet);
 

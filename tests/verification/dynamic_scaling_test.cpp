@@ -28,9 +28,9 @@ TEST(DynamicScaling, SizesInUnitsOfTheirMeanAreOneDistribution) {
   EXPECT_NEAR(curve[2].second, 0.5, 1e-14);
 }
 
-TEST(DynamicScaling, SpectraInUnitsOfTheirMeanDegreeAreOneDistribution) {
+TEST(DynamicScaling, SpectraInUnitsOfTheirMedianDegreeAreOneDistribution) {
   const auto spectrum = [](double scale) {
-    std::vector<double> power = {100};  // the mean does not take part
+    std::vector<double> power = {100};  // degree 0 does not take part
     for (int l = 1; l < 2000; ++l)
       power.push_back(std::exp(-std::pow(std::log(l / scale), 2)) / scale);
     return power;

@@ -4,21 +4,19 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "kernel/core/stopwatch.hpp"
 #include "kernel/core/text.hpp"
 
 namespace traceraft {
 
 Window window_where(const std::vector<double>& times,
                     const std::function<bool(std::size_t)>& holds) {
-  Window window{times.back(), times.back()};
-  bool found = false;
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    if (!holds(i)) continue;
-    if (!found) window.begin = times[i];
-    window.end = times[i];
-    found = true;
-  }
-  return window;
+  std::size_t end = times.size();
+  while (end > 0 && !holds(end - 1)) --end;
+  if (end == 0) return {times.back(), times.back()};
+  std::size_t begin = end - 1;
+  while (begin > 0 && holds(begin - 1)) --begin;
+  return {times[begin], times[end - 1]};
 }
 
 Ensemble::Ensemble(const Bench& bench, EnsembleRequest request_)
@@ -78,6 +76,51 @@ ChartSeries law_line(const std::string& name, const Points& points, const Window
 Chart coarsening_chart(const std::string& title, const std::string& y_label,
                        std::vector<ChartSeries> series) {
   return {title, "t (R^2/D)", y_label, true, true, std::move(series)};
+}
+
+EnsembleRequest ensemble_request(const std::string& mobility, double fraction, const Sizes& sizes,
+                                 double t_end) {
+  EnsembleRequest request;
+  request.mobility = mobility;
+  request.raft_fraction = fraction;
+  request.cells = sizes.cells;
+  request.epsilon = sizes.epsilon;
+  request.members = sizes.members;
+  request.tolerance = 1e-2;  // 1e-3 gives nearly the same rafts (docs/decisions/0013)
+  request.t_end = t_end;
+  request.part = sizes.part;
+  constexpr int kPerDecade = 24;
+  for (double t = 0.1; t <= t_end; t *= std::pow(10.0, 1.0 / kPerDecade))
+    request.times.push_back(t);
+  return request;
+}
+
+Ensemble measured_ensemble(const Bench& bench, const std::string& name,
+                           const EnsembleRequest& request, Findings& findings) {
+  const Stopwatch watch;
+  Ensemble ensemble(bench, request);
+  const double seconds = watch.seconds();
+  double steps = 0;
+  for (const Member& member : ensemble.members)
+    steps += member.steps / static_cast<double>(ensemble.members.size());
+  findings.cost.rows.push_back({name, static_cast<double>(request.cells), request.epsilon,
+                                10.0 / 3 / request.cells / request.epsilon,
+                                static_cast<double>(request.members), request.t_end, steps,
+                                seconds});
+  return ensemble;
+}
+
+StudyReport finished_report(Findings findings, const std::string& windows) {
+  findings.report.notes = {
+      "Seeded runs; intervals are by the bootstrap over runs and hold their scatter, not "
+      "corrections to the law. A length is |Gamma|/perimeter: " +
+      windows};
+  findings.report.tables = {findings.exponents, findings.cost};
+  return findings.report;
+}
+
+std::string at_time(double t) {
+  return formatted("t = %.3g", t);
 }
 
 }  // namespace traceraft

@@ -6,10 +6,7 @@
 
 namespace traceraft {
 
-struct Window {
-  double begin, end;
-};
-// From the first of the times at which `holds` to the last at which it does.
+// The last stretch of times in which `holds` all the time.
 Window window_where(const std::vector<double>& times,
                     const std::function<bool(std::size_t)>& holds);
 
@@ -45,5 +42,38 @@ Points as_points(const std::vector<double>& times, const std::vector<double>& va
 ChartSeries law_line(const std::string& name, const Points& points, const Window& window, double b);
 Chart coarsening_chart(const std::string& title, const std::string& y_label,
                        std::vector<ChartSeries> series);
+
+// What the studies of coarsening have in common.
+inline constexpr const char* kConstant = "constant:value=0.25";  // the mobility
+// Widths of a boundary, in |Γ|/perimeter over ε, from which on boundaries are thin.
+inline constexpr double kWidthsLate = 25;
+
+struct Sizes {
+  int cells;
+  double epsilon;
+  int members;
+  Part part = {};  // of the time that all of them take
+};
+
+// 24 times per decade from t = 0.1 on.
+EnsembleRequest ensemble_request(const std::string& mobility, double fraction, const Sizes& sizes,
+                                 double t_end);
+
+struct Findings {
+  StudyReport report;
+  Table exponents = exponents_table();
+  Table cost{
+      "cost",
+      {"ensemble", "cells", "epsilon", "h/epsilon", "members", "t_end", "steps each", "wall_s"},
+      {}};
+};
+
+// Runs it, and adds a row with its size and what it cost.
+Ensemble measured_ensemble(const Bench& bench, const std::string& name,
+                           const EnsembleRequest& request, Findings& findings);
+// With the tables, a note on the intervals and `windows`, which says where laws are looked for.
+StudyReport finished_report(Findings findings, const std::string& windows);
+
+std::string at_time(double t);
 
 }  // namespace traceraft

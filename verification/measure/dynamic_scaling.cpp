@@ -37,13 +37,13 @@ Cumulative cumulative_radii(const std::vector<double>& areas) {
 }
 
 Cumulative cumulative_spectrum(const std::vector<double>& power) {
-  const double mean = mean_degree(power);
+  const double median = median_degree(power);
   double total = 0, sum = 0;
   for (std::size_t l = 1; l < power.size(); ++l) total += power[l];
-  Cumulative curve = {{0.5 / mean, 0}};
+  Cumulative curve = {{0.5 / median, 0}};
   for (std::size_t l = 1; l < power.size(); ++l) {
     sum += power[l];
-    curve.emplace_back((static_cast<double>(l) + 0.5) / mean, sum / total);
+    curve.emplace_back((static_cast<double>(l) + 0.5) / median, sum / total);
   }
   return curve;
 }

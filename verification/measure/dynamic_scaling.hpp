@@ -1,4 +1,5 @@
-// Dynamic scaling: distributions at different times are one if lengths are measured in their mean.
+// Dynamic scaling: distributions at different times are one if lengths are measured in a typical
+// one.
 #pragma once
 
 #include <vector>
@@ -13,7 +14,7 @@ using Cumulative = Points;
 
 // Of the radii √(area/π) over their mean.
 Cumulative cumulative_radii(const std::vector<double>& areas);
-// Of the power S_l, l > 0, over l/⟨l⟩; a degree is spread over l ± ½.
+// Of the power S_l, l > 0, over l in units of the median degree; a degree is spread over l ± ½.
 Cumulative cumulative_spectrum(const std::vector<double>& power);
 
 // The largest difference of two curves (Kolmogorov, Smirnov), and that of two independent samples

@@ -10,6 +10,12 @@ namespace traceraft {
 
 using Points = std::vector<std::pair<double, double>>;
 
+// A stretch of times, both ends included.
+struct Window {
+  double begin, end;
+  bool contains(double t) const { return t >= begin && t <= end; }
+};
+
 struct Line {
   double slope, intercept;
 };

@@ -83,13 +83,12 @@ std::vector<double> spherical_spectrum(const SurfaceSpace& space, ConstVec c, in
   return spectrum;
 }
 
-double mean_degree(const std::vector<double>& spectrum) {
-  double weighted = 0, total = 0;
-  for (std::size_t l = 1; l < spectrum.size(); ++l) {
-    weighted += static_cast<double>(l) * spectrum[l];
-    total += spectrum[l];
-  }
-  return weighted / total;
+double median_degree(const std::vector<double>& spectrum) {
+  double half = 0, below = 0;
+  for (std::size_t l = 1; l < spectrum.size(); ++l) half += 0.5 * spectrum[l];
+  std::size_t l = 1;
+  while (l + 1 < spectrum.size() && below + spectrum[l] < half) below += spectrum[l++];
+  return static_cast<double>(l) - 0.5 + (half - below) / spectrum[l];
 }
 
 }  // namespace traceraft

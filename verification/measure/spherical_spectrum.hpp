@@ -12,7 +12,9 @@ namespace traceraft {
 // triangles gives out and noise begins to add up.
 std::vector<double> spherical_spectrum(const SurfaceSpace& space, ConstVec c, int highest);
 
-// Σ l S_l / Σ S_l over l > 0: 2π over it is a length.
-double mean_degree(const std::vector<double>& spectrum);
+// Below and above it lies half of the power of l > 0, a degree being spread over l ± ½: 2π over it
+// is a length. The mean is none where there are sharp boundaries: S_l falls like l^(-2) beyond
+// (Porod), so the mean grows with the range of degrees.
+double median_degree(const std::vector<double>& spectrum);
 
 }  // namespace traceraft

@@ -18,11 +18,6 @@ struct PowerLaw {
 // with t, y > 0.
 PowerLaw fit_power_law_from(const Points& points);
 
-struct Window {
-  double begin, end;  // s
-  bool contains(double t) const { return t >= begin && t <= end; }
-};
-
 // The law with its 95 % intervals by the bootstrap over vesicles, or over runs.
 struct FittedLaw {
   PowerLaw law;

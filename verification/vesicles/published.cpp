@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/core/error.hpp"
 #include "kernel/core/random.hpp"
 #include "kernel/core/types.hpp"
 
@@ -23,40 +24,80 @@ class Draws {
   std::uint64_t seed_, index_ = 0;
 };
 
-}  // namespace
-
-MeasuredVesicles draw_measurements(const PublishedFacts& facts, std::uint64_t seed) {
+MeasuredVesicles described(const PublishedFacts& facts) {
   MeasuredVesicles data;
   data.name = facts.name + ", synthetic";
   data.synthetic = true;
   data.origin = facts.origin;
   data.composition = facts.composition;
   data.celsius = facts.celsius;
+  return data;
+}
+
+// As evenly as whole numbers go.
+int looks_at(int vesicle, int vesicles, int measurements) {
+  return measurements * (vesicle + 1) / vesicles - measurements * vesicle / vesicles;
+}
+
+std::vector<double> draw_times(Draws& draw, int count, const Window& window) {
+  std::vector<double> times;
+  for (int i = 0; i < count; ++i)
+    times.push_back(window.begin * std::pow(window.end / window.begin, draw.uniform()));
+  std::sort(times.begin(), times.end());
+  return times;
+}
+
+double draw_radius(Draws& draw, const PublishedFacts& facts) {
+  return facts.radius_min + (facts.radius_max - facts.radius_min) * draw.uniform();
+}
+
+std::string vesicle_name(int index) {
+  return "v" + std::to_string(index + 1);
+}
+
+const double kShare = std::sqrt(0.5);  // of a deviation, when half of the variance is common
+
+}  // namespace
+
+MeasuredVesicles draw_measurements(const PublishedFacts& facts, std::uint64_t seed) {
+  MeasuredVesicles data = described(facts);
   data.time_zero = "as in the paper: the sample leaves the hot plate";
   Draws draw(seed);
-  const double share = std::sqrt(0.5);  // of a deviation, when half of the variance is common
   for (int k = 0; k < facts.vesicles; ++k) {
-    // As evenly as whole numbers go.
-    const int looks =
-        facts.measurements * (k + 1) / facts.vesicles - facts.measurements * k / facts.vesicles;
-    const double radius = facts.radius_min + (facts.radius_max - facts.radius_min) * draw.uniform();
+    const double radius = draw_radius(draw, facts);
     const double own_perimeter = draw.normal(), own_fraction = draw.normal();
-    std::vector<double> times;
-    for (int i = 0; i < looks; ++i)
-      times.push_back(facts.window.begin *
-                      std::pow(facts.window.end / facts.window.begin, draw.uniform()));
-    std::sort(times.begin(), times.end());
-    for (const double t : times) {
-      const double perimeter = facts.perimeter.at(t) * std::exp(facts.perimeter.scatter * share *
+    for (const double t :
+         draw_times(draw, looks_at(k, facts.vesicles, facts.measurements), facts.window)) {
+      const double perimeter = facts.perimeter.at(t) * std::exp(facts.perimeter.scatter * kShare *
                                                                 (own_perimeter + draw.normal()));
       const double fraction = std::max(
-          0.01, facts.fraction + facts.fraction_sd * share * (own_fraction + draw.normal()));
+          0.01, facts.fraction + facts.fraction_sd * kShare * (own_fraction + draw.normal()));
+      const double rafts = std::max(1.0, std::round(equal_caps(perimeter, fraction)));
+      data.measurements.push_back({vesicle_name(k), t, radius, {perimeter, rafts, fraction}, {}});
+    }
+  }
+  return data;
+}
+
+MeasuredVesicles draw_from_runs(const PublishedFacts& facts, const std::vector<History>& runs,
+                                std::uint64_t seed) {
+  MeasuredVesicles data = described(facts);
+  data.time_zero = "the start of the simulated runs";
+  const int vesicles = std::min(facts.vesicles, static_cast<int>(runs.size()));
+  Draws draw(seed);
+  for (int k = 0; k < vesicles; ++k) {
+    const History& run = runs[k];
+    if (run.time.empty() || run.time.back() < facts.window.end)
+      throw InputError("the runs end before the window of the facts does");
+    const double radius = draw_radius(draw, facts);
+    for (const double t :
+         draw_times(draw, looks_at(k, vesicles, facts.measurements), facts.window)) {
+      const double perimeter =
+          run.at(Quantity::perimeter, t) * std::exp(facts.perimeter.scatter * draw.normal());
+      const double fraction = std::max(
+          0.001, run.at(Quantity::fraction, t) + facts.fraction_sd * kShare * draw.normal());
       data.measurements.push_back(
-          {"v" + std::to_string(k + 1),
-           t,
-           radius,
-           {perimeter, std::max(1.0, std::round(equal_caps(perimeter, fraction))), fraction},
-           {}});
+          {vesicle_name(k), t, radius, {perimeter, run.at(Quantity::rafts, t), fraction}, {}});
     }
   }
   return data;

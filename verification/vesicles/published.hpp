@@ -26,4 +26,11 @@ struct PublishedFacts {
 // rounded, at least 1. Marked as synthetic.
 MeasuredVesicles draw_measurements(const PublishedFacts& facts, std::uint64_t seed);
 
+// The same looks at simulated vesicles, one run each: perimeters scatter as published, fractions
+// with half of the published variance (runs have none), numbers of rafts are exact. As many
+// vesicles as there are runs, at most; the runs have to cover the window. Throws InputError if they
+// do not.
+MeasuredVesicles draw_from_runs(const PublishedFacts& facts, const std::vector<History>& runs,
+                                std::uint64_t seed);
+
 }  // namespace traceraft

@@ -1,0 +1,189 @@
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "backends/posix/durable_file.hpp"
+#include "backends/posix/folder_lock.hpp"
+#include "backends/posix/process.hpp"
+#include "drivers/calibrate/calibration_points.hpp"
+#include "drivers/calibrate/calibration_report.hpp"
+#include "drivers/commands.hpp"
+#include "drivers/config/config_file.hpp"
+#include "drivers/config/option_flags.hpp"
+#include "drivers/exit_codes.hpp"
+#include "drivers/run/run_folder.hpp"
+#include "drivers/vesicles/dataset.hpp"
+#include "kernel/core/error.hpp"
+#include "kernel/core/parameters.hpp"
+#include "kernel/core/text.hpp"
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+
+// D is looked for within this factor of the model's.
+constexpr double kTimeRange = 8;
+// Steps in ln of the first design and of the second, around what the first one finds.
+constexpr double kFirstStep = 0.5, kSecondStep = 0.25;
+
+struct CalibrateRequest {
+  GivenValues flags;
+  std::string data, model, out, parameters = "mobility,epsilon";
+  int runs = 8, jobs = 0;
+  bool quiet = false;
+};
+
+std::vector<std::string> costly_parameters(const std::string& text) {
+  std::vector<std::string> names;
+  bool mobility = false;
+  for (const std::string& name : split_list(text)) {
+    (void)calibrated_options().find(name);
+    if (name == "mobility")
+      mobility = true;
+    else
+      names.push_back(name);
+  }
+  if (!mobility)
+    throw InputError("--parameters: mobility has to be among them; it sets the unit of time");
+  return names;
+}
+
+// Up to the latest measurement if D were twice the model's; runs hardly change after that.
+double end_of_runs(const MeasuredVesicles& data) {
+  double last = 0;
+  for (const Measurement& m : data.measurements) last = std::max(last, m.time);
+  return 2 * last;
+}
+
+class Calibrator {
+ public:
+  Calibrator(const CalibrateRequest& request, const MeasuredVesicles& data,
+             const Configuration& model, fs::path out)
+      : request_(request),
+        data_(data),
+        model_(model),
+        out_(std::move(out)),
+        names_(costly_parameters(request.parameters)) {}
+
+  // Two rounds of simulations and a fit after each. False if it was stopped.
+  bool run() {
+    std::vector<double> centre;
+    for (const double value : values_of(model_, names_)) centre.push_back(std::log(value));
+    for (const double step : {kFirstStep, kSecondStep}) {
+      if (!add_points(design_around(centre, step))) return false;
+      result_ = calibrate(data_, names_, points_, model_.units().seconds_per_unit(), kTimeRange);
+      for (std::size_t i = 0; i < centre.size(); ++i)
+        centre[i] = std::log(result_.parameters[i + 1].value);
+      if (centre.empty()) break;
+    }
+    return true;
+  }
+
+  const Calibration& result() const { return result_; }
+  const std::vector<CalibrationPoint>& points() const { return points_; }
+  const std::vector<std::string>& names() const { return names_; }
+
+ private:
+  bool add_points(const std::vector<std::vector<double>>& design) {
+    const double t_end = end_of_runs(data_);
+    for (const std::vector<double>& ln : design) {
+      std::vector<double> values;
+      std::string name = "point", words;
+      for (std::size_t i = 0; i < ln.size(); ++i) {
+        values.push_back(std::strtod(formatted("%.4g", std::exp(ln[i])).c_str(), nullptr));
+        name += "-" + format_number(values.back());
+        words += " " + names_[i] + " " + format_number(values.back());
+      }
+      if (!request_.quiet)
+        std::printf("simulations at%s\n", words.empty() ? " the model" : words.c_str());
+      const PointEnd end =
+          run_point(out_ / "points" / name, configuration_at(model_, names_, values, t_end),
+                    {request_.runs, request_.jobs, request_.quiet});
+      if (end.stopped) return false;
+      for (const MemberFailure& failure : end.failures)
+        std::fprintf(stderr, "traceraft: the run of seed %llu at%s failed: %s\n",
+                     static_cast<unsigned long long>(failure.seed), words.c_str(),
+                     failure.why.c_str());
+      if (end.runs.size() < 2)
+        throw InputError("at" + words + " fewer than two runs have finished");
+      CalibrationPoint point{{}, end.runs};
+      for (const double value : values) point.ln_parameters.push_back(std::log(value));
+      points_.push_back(std::move(point));
+    }
+    return true;
+  }
+
+  const CalibrateRequest& request_;
+  const MeasuredVesicles& data_;
+  const Configuration& model_;
+  fs::path out_;
+  std::vector<std::string> names_;
+  std::vector<CalibrationPoint> points_;
+  Calibration result_;
+};
+
+// What decides the simulations: a calibration that goes on has to be the same.
+void remember(const fs::path& out, const CalibrateRequest& request, const Configuration& model) {
+  const fs::path file = out / "calibration-model.toml";
+  const std::string identity = "# parameters " + request.parameters + ", " +
+                               std::to_string(request.runs) + " runs\n" + config_text(model);
+  if (fs::exists(file) && read_file(file, 1 << 20) != identity)
+    throw InputError("--out: " + out.string() +
+                     " holds a calibration of another model; choose another folder");
+  write_durably(file, identity);
+}
+
+int run_calibration(const CalibrateRequest& request) {
+  catch_stop_signals();
+  if (request.data.empty()) throw InputError("--data: say which measurements to calibrate with");
+  const MeasuredVesicles data = read_dataset(request.data);
+  const Configuration model(read_config_file(request.model), request.flags);
+  if (model.flag("scaled"))
+    throw InputError(model.where("scaled") + ": measurements are in seconds and micrometres");
+  const fs::path out = request.out.empty() ? first_free_folder("calibration") : request.out;
+  fs::create_directories(out / "points");
+  const FolderLock lock(out);
+  remember(out, request, model);
+  Calibrator calibrator(request, data, model, out);
+  if (!calibrator.run()) {
+    if (!request.quiet) std::printf("to go on, give the same command with --out %s\n", out.c_str());
+    return kInterrupted;
+  }
+  write_calibration(out, data, model, calibrator.names(), calibrator.points(), calibrator.result(),
+                    request.quiet);
+  return kSuccess;
+}
+
+Action define(CLI::App& app) {
+  const auto request = std::make_shared<CalibrateRequest>();
+  app.add_option("--data", request->data, "folder of the measurements (dataset.toml)");
+  app.add_option("--model", request->model, "TOML file with the flags' names as keys");
+  app.add_option("--parameters", request->parameters,
+                 "comma-separated, of mobility, epsilon, fraction, noise-length")
+      ->capture_default_str();
+  app.add_option("--runs", request->runs, "seeds that every choice of parameters is run with")
+      ->check(CLI::Range(2, 1000))
+      ->capture_default_str();
+  app.add_option("--jobs", request->jobs, "runs at a time; default: one for each processor")
+      ->check(CLI::Range(1, 1024));
+  app.add_option("--out", request->out,
+                 "folder, new or to go on with; default: runs/calibration-N");
+  app.add_flag("--quiet", request->quiet, "print nothing but errors");
+  add_options(app, request->flags, [](const OptionSpec& spec) {
+    return spec.numerical && spec.name != "seed" && spec.name != "output-times";
+  });
+  app.footer(
+      "Example: traceraft calibrate --data my-vesicles --case guv-3to1 --parameters "
+      "mobility,epsilon");
+  return [request] { return run_calibration(*request); };
+}
+
+}  // namespace
+
+Command calibrate_command() {
+  return {"calibrate", "find parameters of the model from measurements", Ranks::one, define};
+}
+
+}  // namespace traceraft

@@ -1,0 +1,95 @@
+#include "drivers/calibrate/calibration_points.hpp"
+
+#include <cmath>
+#include <thread>
+
+#include "backends/posix/durable_file.hpp"
+#include "drivers/config/config_file.hpp"
+#include "kernel/core/error.hpp"
+#include "kernel/core/parameters.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr double kBoxWidth = 10.0 / 3;  // of the mesh, in R
+
+// As many cells that the mesh is no coarser against ε than the model's, a multiple of 4.
+int cells_for(const Configuration& model, double epsilon) {
+  const double cells = static_cast<double>(model.integer("cells"));
+  const double needed = cells * std::max(1.0, model.number("epsilon") / epsilon);
+  return 4 * static_cast<int>(std::ceil(needed / 4 - 1e-9));
+}
+
+double noise_length(const Configuration& model) {
+  const long long cells =
+      model.integer("noise-cells") > 0 ? model.integer("noise-cells") : model.integer("cells") / 4;
+  return kBoxWidth * model.units().length() / static_cast<double>(cells);
+}
+
+}  // namespace
+
+const NamedList<CalibratedOption>& calibrated_options() {
+  static const NamedList<CalibratedOption> list("parameter", {{"mobility", ""},
+                                                              {"epsilon", "epsilon"},
+                                                              {"fraction", "raft-fraction"},
+                                                              {"noise-length", ""}});
+  return list;
+}
+
+std::vector<double> values_of(const Configuration& model,
+                              const std::vector<std::string>& parameters) {
+  std::vector<double> values;
+  for (const std::string& name : parameters)
+    values.push_back(name == "noise-length" ? noise_length(model)
+                                            : model.number(calibrated_options().find(name).option));
+  return values;
+}
+
+Configuration configuration_at(const Configuration& model,
+                               const std::vector<std::string>& parameters,
+                               const std::vector<double>& values, double t_end) {
+  GivenValues given;
+  const auto set = [&](const std::string& option, const std::string& text) {
+    given[option] = {text, "--" + option};
+  };
+  for (const OptionSpec& spec : run_options())
+    if (spec.numerical && spec.name != "seed" && !model.text(spec.name).empty())
+      set(spec.name, model.text(spec.name));
+  double length = noise_length(model), epsilon = model.number("epsilon");
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i] == "noise-length")
+      length = values[i];
+    else
+      set(calibrated_options().find(parameters[i]).option, format_number(values[i]));
+    if (parameters[i] == "epsilon") epsilon = values[i];
+  }
+  const int cells = cells_for(model, epsilon);
+  const auto noise = static_cast<int>(std::lround(kBoxWidth * model.units().length() / length));
+  set("cells", std::to_string(cells));
+  set("noise-cells", std::to_string(std::min(noise, cells)));
+  set("t-end", format_number(t_end));
+  set("output-times", format_number(t_end));
+  set("fields", "false");
+  return {{}, given};
+}
+
+PointEnd run_point(const std::filesystem::path& path, const Configuration& configuration,
+                   const PointRequest& request) {
+  const EnsembleFolder folder(path);
+  EnsemblePlan plan;
+  plan.runs = request.runs;
+  std::filesystem::create_directories(path / "runs");
+  if (!folder.started()) write_durably(folder.config(), config_text(configuration));
+  folder.save(plan);
+  const int processors = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const int jobs = request.jobs > 0 ? request.jobs : processors;
+  const EnsembleEnd end = work_off(plan, folder, jobs, std::max(1, processors / jobs),
+                                   configuration.number("t-end"), request.quiet);
+  const Units units = configuration.units();
+  PointEnd result{end.stopped, end.failures, finished_histories(folder, plan, units.length())};
+  for (History& run : result.runs)
+    for (double& t : run.time) t /= units.time();
+  return result;
+}
+
+}  // namespace traceraft

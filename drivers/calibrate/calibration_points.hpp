@@ -1,0 +1,47 @@
+// The simulations behind a calibration: an ensemble for every choice of the parameters.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "drivers/config/configuration.hpp"
+#include "drivers/ensemble/ensemble_runs.hpp"
+#include "kernel/core/named_list.hpp"
+#include "verification/vesicles/calibration.hpp"
+
+namespace traceraft {
+
+// What can be calibrated besides D, which costs no simulation.
+struct CalibratedOption {
+  std::string name;    // on the command line
+  std::string option;  // of a run
+};
+const NamedList<CalibratedOption>& calibrated_options();
+
+// The configuration of a run with these values (not logarithms) of the options. Where `epsilon` is
+// smaller than in the model there are as many more cells, so that h/ε is not larger; the noise
+// stays on its mesh unless it is calibrated itself. Throws InputError for values that cannot be
+// run.
+Configuration configuration_at(const Configuration& model,
+                               const std::vector<std::string>& parameters,
+                               const std::vector<double>& values, double t_end);
+
+// Where the parameters of the model are.
+std::vector<double> values_of(const Configuration& model,
+                              const std::vector<std::string>& parameters);
+
+struct PointRequest {
+  int runs, jobs;
+  bool quiet;
+};
+struct PointEnd {
+  bool stopped = false;
+  std::vector<MemberFailure> failures;
+  std::vector<History> runs;  // in units of R²/D
+};
+// Carries out, or goes on with, the ensemble in the folder.
+PointEnd run_point(const std::filesystem::path& folder, const Configuration& configuration,
+                   const PointRequest& request);
+
+}  // namespace traceraft

@@ -1,0 +1,157 @@
+#include "drivers/calibrate/calibration_report.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "backends/posix/durable_file.hpp"
+#include "drivers/calibrate/calibration_points.hpp"
+#include "drivers/config/config_file.hpp"
+#include "drivers/output/chart.hpp"
+#include "drivers/output/json_file.hpp"
+#include "drivers/output/page.hpp"
+#include "drivers/output/text_table.hpp"
+#include "kernel/core/text.hpp"
+
+namespace traceraft {
+namespace {
+
+// D in cm²/s from R²/D in seconds.
+double diffusion(const Configuration& model, double seconds_per_unit) {
+  const double radius = model.number("radius");
+  return radius * radius / (seconds_per_unit * Units::kUm2PerCm2);
+}
+
+struct Finding {
+  std::string name, unit;
+  double value, low, high;
+  bool determined;
+};
+
+std::vector<Finding> findings_of(const Configuration& model, const Calibration& result) {
+  std::vector<Finding> lines;
+  for (const CalibratedParameter& p : result.parameters) {
+    if (p.name == "seconds_per_unit")
+      lines.push_back({"mobility", "cm^2/s", diffusion(model, p.value),
+                       diffusion(model, p.interval.high), diffusion(model, p.interval.low),
+                       p.determined});
+    else
+      lines.push_back({p.name, p.name == "fraction" ? "1" : "um", p.value, p.interval.low,
+                       p.interval.high, p.determined});
+  }
+  return lines;
+}
+
+// The product of powers of D and the parameters that the data know best.
+std::string best_known(const Calibration& result) {
+  std::string text;
+  for (std::size_t i = 0; i < result.best_powers.size(); ++i) {
+    // R²/D has D to the power −1; signs are those that give D the power 1.
+    const double power = i == 0 ? result.best_powers[0] : -result.best_powers[i];
+    if (std::fabs(power) < 0.02) continue;
+    text += (text.empty() ? "" : " * ") +
+            (i == 0 ? std::string("mobility") : result.parameters[i].name) +
+            (std::fabs(power - 1) < 0.02 ? "" : formatted("^%.2f", power));
+  }
+  return text + formatted(" to %.0f %%", 100 * result.best_deviation);
+}
+
+std::vector<Row> rows_of(const std::vector<Finding>& lines) {
+  std::vector<Row> rows = {
+      {"parameter", "value", "95 % interval", "unit", "determined by the data"}};
+  for (const Finding& line : lines)
+    rows.push_back({line.name, formatted("%.3g", line.value),
+                    formatted("%.3g to %.3g", line.low, line.high), line.unit,
+                    line.determined ? "yes" : "NO"});
+  return rows;
+}
+
+Table points_table(const Configuration& model, const std::vector<std::string>& names,
+                   const std::vector<CalibrationPoint>& points, const Calibration& result) {
+  Table table{"calibration", names, {}};
+  for (const char* column : {"mobility", "scatter", "deviance", "runs"})
+    table.columns.push_back(column);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    std::vector<Cell> row;
+    for (const double ln : points[k].ln_parameters) row.emplace_back(std::exp(ln));
+    const TimeFit& fit = result.at_points[k];
+    row.emplace_back(diffusion(model, fit.seconds_per_unit));
+    row.emplace_back(fit.scatter);
+    row.emplace_back(fit.deviance);
+    row.emplace_back(static_cast<double>(points[k].runs.size()));
+    table.rows.push_back(row);
+  }
+  return table;
+}
+
+std::string json_text(const std::vector<Finding>& lines, const Calibration& result) {
+  Json json;
+  for (const Finding& line : lines)
+    json["parameters"][line.name] = {{"value", line.value},
+                                     {"interval_95", {line.low, line.high}},
+                                     {"unit", line.unit},
+                                     {"determined", line.determined}};
+  json["best_known"] = best_known(result);
+  json["scatter_of_ln_perimeter"] = result.scatter;
+  for (Eigen::Index i = 0; i < result.correlation.rows(); ++i) {
+    Json row = Json::array();
+    // Of ln D, not of ln R²/D.
+    for (Eigen::Index j = 0; j < result.correlation.cols(); ++j)
+      row.push_back(result.correlation(i, j) * ((i == 0) != (j == 0) ? -1 : 1));
+    json["correlation"].push_back(row);
+  }
+  return json.dump(2) + "\n";
+}
+
+// The model as a configuration, with the parameters that were found.
+Configuration found_model(const Configuration& model, const std::vector<std::string>& names,
+                          const std::vector<Finding>& lines) {
+  std::vector<double> values;
+  for (std::size_t i = 1; i < lines.size(); ++i) values.push_back(lines[i].value);
+  const Configuration at = configuration_at(model, names, values, model.number("t-end"));
+  GivenValues given;
+  for (const OptionSpec& spec : run_options())
+    if (!at.text(spec.name).empty() && spec.name != "output-times" && spec.name != "fields")
+      given[spec.name] = {at.text(spec.name), "--" + spec.name};
+  given["diffusion"] = {formatted("%.6g", lines[0].value), "--diffusion"};
+  return {{}, given};
+}
+
+}  // namespace
+
+void write_calibration(const std::filesystem::path& folder, const MeasuredVesicles& data,
+                       const Configuration& model, const std::vector<std::string>& names,
+                       const std::vector<CalibrationPoint>& points, const Calibration& result,
+                       bool quiet) {
+  const std::vector<Finding> lines = findings_of(model, result);
+  const std::vector<Row> rows = rows_of(lines);
+  const std::string best = "The data know best " + best_known(result) + ".";
+  const std::string scatter =
+      formatted("Perimeters scatter by %.0f %% beyond what runs do.", 100 * result.scatter);
+  const Table table = points_table(model, names, points, result);
+  write_durably(folder / "calibration.csv", csv_text(table));
+  write_durably(folder / "calibration.json", json_text(lines, result));
+  write_durably(folder / "model.toml", config_text(found_model(model, names, lines)));
+  Page page("A model calibrated with measurements");
+  page.paragraph(data.name + (data.synthetic ? " (SYNTHETIC, not measured)" : ""));
+  page.table(rows);
+  page.paragraph(best + " " + scatter);
+  page.table(table_rows(table));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    Chart chart{"Deviance over " + names[i], names[i], "-2 ln likelihood", true, false, {}};
+    chart.series = {{"simulations", {}, Mark::points}};
+    for (std::size_t k = 0; k < points.size(); ++k)
+      chart.series[0].points.emplace_back(std::exp(points[k].ln_parameters[i]),
+                                          result.at_points[k].deviance);
+    const std::string svg = draw_chart(chart, folder / ("deviance-" + names[i]));
+    if (!svg.empty()) page.figure(svg, chart.title);
+  }
+  write_durably(folder / "calibration.html", page.html());
+  if (quiet) return;
+  std::printf("\n");
+  print_rows(rows);
+  std::printf("\n%s\n%s\n\nrun it with: traceraft run --config %s\nopen next: %s\n", best.c_str(),
+              scatter.c_str(), (folder / "model.toml").c_str(),
+              (folder / "calibration.html").c_str());
+}
+
+}  // namespace traceraft

@@ -1,0 +1,179 @@
+#include "verification/vesicles/calibration.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "kernel/core/error.hpp"
+#include "kernel/core/random.hpp"
+#include "verification/vesicles/response_surface.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr int kReplicates = 200;
+constexpr double kOvershoot = 0.5;  // of what was explored, beyond it
+constexpr double kDetermined = 2;   // factor between the ends of an interval
+
+// What one data set says: ln of R²/D and of the parameters.
+struct Estimate {
+  std::vector<double> ln;
+  double scatter;
+  std::vector<TimeFit> fits;
+};
+
+struct Box {
+  std::vector<double> lower, upper;
+};
+
+Box explored(const std::vector<CalibrationPoint>& points) {
+  Box box{points.front().ln_parameters, points.front().ln_parameters};
+  for (const CalibrationPoint& point : points)
+    for (std::size_t i = 0; i < box.lower.size(); ++i) {
+      box.lower[i] = std::min(box.lower[i], point.ln_parameters[i]);
+      box.upper[i] = std::max(box.upper[i], point.ln_parameters[i]);
+    }
+  for (std::size_t i = 0; i < box.lower.size(); ++i) {
+    const double more = kOvershoot * (box.upper[i] - box.lower[i]);
+    box.lower[i] -= more;
+    box.upper[i] += more;
+  }
+  return box;
+}
+
+Estimate estimate(const MeasuredVesicles& data, const std::vector<int>& vesicles,
+                  const std::vector<CalibrationPoint>& points,
+                  const std::vector<RunStatistics>& statistics, const Box& box, double start,
+                  double range) {
+  Estimate result;
+  std::vector<std::vector<double>> x;
+  std::vector<double> deviance, seconds, scatter;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const TimeFit fit = fit_time(data, vesicles, statistics[k], start, range);
+    result.fits.push_back(fit);
+    x.push_back(points[k].ln_parameters);
+    deviance.push_back(fit.deviance);
+    seconds.push_back(std::log(fit.seconds_per_unit));
+    scatter.push_back(std::log(fit.scatter));
+  }
+  if (box.lower.empty()) {  // nothing but the unit of time
+    result.ln = {seconds.front()};
+    result.scatter = std::exp(scatter.front());
+    return result;
+  }
+  const std::vector<double> best = ResponseSurface(x, deviance).minimiser(box.lower, box.upper);
+  result.ln = {ResponseSurface(x, seconds).at(best)};
+  result.ln.insert(result.ln.end(), best.begin(), best.end());
+  result.scatter = std::exp(ResponseSurface(x, scatter).at(best));
+  return result;
+}
+
+std::vector<int> drawn(int count, std::uint64_t stream, std::uint64_t replicate) {
+  std::vector<int> sample;
+  for (int k = 0; k < count; ++k)
+    sample.push_back(std::min(
+        count - 1, static_cast<int>(
+                       uniform_random(replicate, stream, static_cast<std::uint64_t>(k)) * count)));
+  return sample;
+}
+
+std::vector<int> all_of(std::size_t count) {
+  std::vector<int> all(count);
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+Eigen::MatrixXd covariance(const std::vector<std::vector<double>>& replicates) {
+  const auto rows = static_cast<Eigen::Index>(replicates.size());
+  Eigen::MatrixXd values(rows, static_cast<Eigen::Index>(replicates.front().size()));
+  for (Eigen::Index i = 0; i < rows; ++i)
+    values.row(i) =
+        Eigen::Map<const Vec>(replicates[static_cast<std::size_t>(i)].data(), values.cols());
+  const Eigen::MatrixXd centred = values.rowwise() - values.colwise().mean();
+  return centred.transpose() * centred / static_cast<double>(rows - 1);
+}
+
+CalibratedParameter parameter(const std::string& name, double ln, std::vector<double> replicates,
+                              double lower, double upper) {
+  std::sort(replicates.begin(), replicates.end());
+  const auto share = [&](double s) {
+    return replicates[static_cast<std::size_t>(s * static_cast<double>(replicates.size() - 1))];
+  };
+  const double low = share(0.025), high = share(0.975), margin = 1e-3 * (upper - lower);
+  return {name,
+          std::exp(ln),
+          {std::exp(low), std::exp(high)},
+          high - low < std::log(kDetermined) && low > lower + margin && high < upper - margin};
+}
+
+}  // namespace
+
+Calibration calibrate(const MeasuredVesicles& data, const std::vector<std::string>& names,
+                      const std::vector<CalibrationPoint>& points, double seconds_start,
+                      double range) {
+  const int vesicles = static_cast<int>(data.vesicles().size());
+  if (vesicles < 3)
+    throw InputError("a calibration needs three vesicles at least, to know how they scatter");
+  if (static_cast<int>(points.size()) < points_of_surface(static_cast<int>(names.size())))
+    throw InputError("a calibration needs more points");
+  const Box box = explored(points);
+  std::vector<RunStatistics> statistics;
+  for (const CalibrationPoint& point : points)
+    statistics.emplace_back(point.runs, all_of(point.runs.size()));
+  const Estimate found = estimate(data, all_of(static_cast<std::size_t>(vesicles)), points,
+                                  statistics, box, seconds_start, range);
+  std::vector<std::vector<double>> replicates;
+  for (std::uint64_t r = 1; r <= kReplicates; ++r) {
+    std::vector<RunStatistics> others;
+    // The same seeds at all points: what is common to them cancels in the comparison of points.
+    for (const CalibrationPoint& point : points)
+      others.emplace_back(point.runs, drawn(static_cast<int>(point.runs.size()), 32, r));
+    replicates.push_back(
+        estimate(data, drawn(vesicles, 31, r), points, others, box, seconds_start, range).ln);
+  }
+  Calibration result;
+  for (std::size_t i = 0; i <= names.size(); ++i) {
+    std::vector<double> values;
+    for (const auto& replicate : replicates) values.push_back(replicate[i]);
+    const double width = std::log(range);
+    result.parameters.push_back(
+        parameter(i == 0 ? "seconds_per_unit" : names[i - 1], found.ln[i], values,
+                  i == 0 ? std::log(seconds_start) - width : box.lower[i - 1],
+                  i == 0 ? std::log(seconds_start) + width : box.upper[i - 1]));
+  }
+  const Eigen::MatrixXd spread = covariance(replicates);
+  const Vec deviation = spread.diagonal().cwiseSqrt().cwiseMax(1e-12);
+  result.correlation =
+      deviation.cwiseInverse().asDiagonal() * spread * deviation.cwiseInverse().asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> directions(spread);
+  Vec powers = directions.eigenvectors().col(0);
+  Eigen::Index largest = 0;
+  powers.cwiseAbs().maxCoeff(&largest);
+  // In units of the first power of the unit of time, if that takes part.
+  const double unit = std::fabs(powers[0]) > 0.1 ? powers[0] : powers[largest];
+  result.best_deviation = std::sqrt(std::max(0.0, directions.eigenvalues()[0])) / std::fabs(unit);
+  powers /= unit;
+  result.best_powers.assign(powers.data(), powers.data() + powers.size());
+  result.at_points = found.fits;
+  result.scatter = found.scatter;
+  return result;
+}
+
+std::vector<std::vector<double>> design_around(const std::vector<double>& centre, double step) {
+  std::vector<std::vector<double>> points = {centre};
+  for (std::size_t i = 0; i < centre.size(); ++i)
+    for (const double sign : {-1.0, 1.0}) {
+      points.push_back(centre);
+      points.back()[i] += sign * step;
+    }
+  for (std::size_t i = 0; i < centre.size(); ++i)
+    for (std::size_t j = i + 1; j < centre.size(); ++j) {
+      points.push_back(centre);
+      points.back()[i] += step;
+      points.back()[j] += step;
+    }
+  return points;
+}
+
+}  // namespace traceraft
