@@ -25,8 +25,8 @@ namespace fs = std::filesystem;
 
 // D is looked for within this factor of the model's.
 constexpr double kTimeRange = 8;
-// Steps in ln of the first design and of the second, around what the first one finds.
-constexpr double kFirstStep = 0.5, kSecondStep = 0.25;
+// Steps in ln of the first design and of the next, each around what the one before finds.
+constexpr double kSteps[] = {0.5, 0.25, 0.25};
 
 struct CalibrateRequest {
   GivenValues flags;
@@ -67,11 +67,11 @@ class Calibrator {
         out_(std::move(out)),
         names_(costly_parameters(request.parameters)) {}
 
-  // Two rounds of simulations and a fit after each. False if it was stopped.
+  // Rounds of simulations and a fit after each. False if it was stopped.
   bool run() {
     std::vector<double> centre;
     for (const double value : values_of(model_, names_)) centre.push_back(std::log(value));
-    for (const double step : {kFirstStep, kSecondStep}) {
+    for (const double step : kSteps) {
       if (!add_points(design_around(centre, step))) return false;
       result_ = calibrate(data_, names_, points_, model_.units().seconds_per_unit(), kTimeRange);
       for (std::size_t i = 0; i < centre.size(); ++i)

@@ -45,8 +45,7 @@ std::vector<Finding> findings_of(const Configuration& model, const Calibration& 
 std::string best_known(const Calibration& result) {
   std::string text;
   for (std::size_t i = 0; i < result.best_powers.size(); ++i) {
-    // R²/D has D to the power −1; signs are those that give D the power 1.
-    const double power = i == 0 ? result.best_powers[0] : -result.best_powers[i];
+    const double power = result.best_powers[i];
     if (std::fabs(power) < 0.02) continue;
     text += (text.empty() ? "" : " * ") +
             (i == 0 ? std::string("mobility") : result.parameters[i].name) +

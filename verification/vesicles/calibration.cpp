@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kReplicates = 200;
 constexpr double kOvershoot = 0.5;  // of what was explored, beyond it
+constexpr double kParabolic = 15;   // a deviance that much above the least counts half
 constexpr double kDetermined = 2;   // factor between the ends of an interval
 
 // What one data set says: ln of R²/D and of the parameters.
@@ -42,6 +43,15 @@ Box explored(const std::vector<CalibrationPoint>& points) {
   return box;
 }
 
+// A deviance is a parabola near its minimum only.
+std::vector<double> weights_of(const std::vector<double>& deviance) {
+  const double least = *std::min_element(deviance.begin(), deviance.end());
+  std::vector<double> weights;
+  for (const double d : deviance)
+    weights.push_back(1 / (1 + std::pow((d - least) / kParabolic, 2)));
+  return weights;
+}
+
 Estimate estimate(const MeasuredVesicles& data, const std::vector<int>& vesicles,
                   const std::vector<CalibrationPoint>& points,
                   const std::vector<RunStatistics>& statistics, const Box& box, double start,
@@ -62,10 +72,14 @@ Estimate estimate(const MeasuredVesicles& data, const std::vector<int>& vesicles
     result.scatter = std::exp(scatter.front());
     return result;
   }
-  const std::vector<double> best = ResponseSurface(x, deviance).minimiser(box.lower, box.upper);
-  result.ln = {ResponseSurface(x, seconds).at(best)};
+  const std::vector<double> weights = weights_of(deviance);
+  const auto surface = [&](const std::vector<double>& values) {
+    return ResponseSurface(x, values, weights);
+  };
+  const std::vector<double> best = surface(deviance).minimiser(box.lower, box.upper);
+  result.ln = {surface(seconds).at(best)};
   result.ln.insert(result.ln.end(), best.begin(), best.end());
-  result.scatter = std::exp(ResponseSurface(x, scatter).at(best));
+  result.scatter = std::exp(surface(scatter).at(best));
   return result;
 }
 
@@ -118,9 +132,12 @@ Calibration calibrate(const MeasuredVesicles& data, const std::vector<std::strin
   if (static_cast<int>(points.size()) < points_of_surface(static_cast<int>(names.size())))
     throw InputError("a calibration needs more points");
   const Box box = explored(points);
+  std::vector<std::vector<History>> ensembles;
+  for (const CalibrationPoint& point : points) ensembles.push_back(point.runs);
+  const ScatterLaws scatter = scatter_laws(ensembles);
   std::vector<RunStatistics> statistics;
   for (const CalibrationPoint& point : points)
-    statistics.emplace_back(point.runs, all_of(point.runs.size()));
+    statistics.emplace_back(point.runs, all_of(point.runs.size()), scatter);
   const Estimate found = estimate(data, all_of(static_cast<std::size_t>(vesicles)), points,
                                   statistics, box, seconds_start, range);
   std::vector<std::vector<double>> replicates;
@@ -128,7 +145,7 @@ Calibration calibrate(const MeasuredVesicles& data, const std::vector<std::strin
     std::vector<RunStatistics> others;
     // The same seeds at all points: what is common to them cancels in the comparison of points.
     for (const CalibrationPoint& point : points)
-      others.emplace_back(point.runs, drawn(static_cast<int>(point.runs.size()), 32, r));
+      others.emplace_back(point.runs, drawn(static_cast<int>(point.runs.size()), 32, r), scatter);
     replicates.push_back(
         estimate(data, drawn(vesicles, 31, r), points, others, box, seconds_start, range).ln);
   }
@@ -148,12 +165,12 @@ Calibration calibrate(const MeasuredVesicles& data, const std::vector<std::strin
       deviation.cwiseInverse().asDiagonal() * spread * deviation.cwiseInverse().asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> directions(spread);
   Vec powers = directions.eigenvectors().col(0);
+  powers[0] = -powers[0];  // of D, not of R²/D
   Eigen::Index largest = 0;
   powers.cwiseAbs().maxCoeff(&largest);
-  // In units of the first power of the unit of time, if that takes part.
-  const double unit = std::fabs(powers[0]) > 0.1 ? powers[0] : powers[largest];
-  result.best_deviation = std::sqrt(std::max(0.0, directions.eigenvalues()[0])) / std::fabs(unit);
-  powers /= unit;
+  result.best_deviation =
+      std::sqrt(std::max(0.0, directions.eigenvalues()[0])) / std::fabs(powers[largest]);
+  powers /= powers[largest];
   result.best_powers.assign(powers.data(), powers.data() + powers.size());
   result.at_points = found.fits;
   result.scatter = found.scatter;

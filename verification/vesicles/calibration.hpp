@@ -29,7 +29,8 @@ struct Calibration {
   Eigen::MatrixXd correlation;                  // of the logarithms, in the same order
   std::vector<TimeFit> at_points;
   double scatter;  // of ln perimeter, of the measurements
-  // The best determined product of powers of the parameters and the relative deviation of it.
+  // The best determined product of powers, of D first, the largest power being 1, and its relative
+  // deviation.
   std::vector<double> best_powers;
   double best_deviation;
 };

@@ -2,58 +2,86 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "backends/nlopt/minimise.hpp"
+#include "verification/measure/fit.hpp"
 
 namespace traceraft {
 namespace {
 
 constexpr int kPerDecade = 20;
-const double kSmoothing = std::log(2.0);
 constexpr double kLeastCount = 0.5;             // of rafts: there may be none for a moment
 constexpr double kRoundingVariance = 1 / 12.0;  // of a whole number
 constexpr double kLeastScatter = 0.01, kLargestScatter = 1;
 
-RunStatistics::Normal normal_of(const std::vector<History>& runs, const std::vector<int>& sample,
-                                Quantity quantity, double t) {
-  double sum = 0, squares = 0;
-  const double count = static_cast<double>(sample.size());
-  for (const int k : sample) {
-    const double y = std::log(std::max(runs[k].at(quantity, t), kLeastCount));
-    sum += y;
-    squares += y * y;
-  }
-  const double mean = sum / count;
-  // The mean of a few runs is itself uncertain.
-  const double variance = std::max(0.0, (squares - count * mean * mean) / std::max(1.0, count - 1));
-  return {mean, variance * (1 + 1 / count)};
+struct MeanAndVariance {
+  double mean, variance;
+};
+
+MeanAndVariance of_logarithms(const std::vector<History>& runs, const std::vector<int>& sample,
+                              Quantity quantity, double t) {
+  std::vector<double> logarithms;
+  for (const int k : sample)
+    logarithms.push_back(std::log(std::max(runs[k].at(quantity, t), kLeastCount)));
+  const Moments m = moments(logarithms);
+  return {m.mean, m.deviation * m.deviation};
 }
 
-void smooth_variances(std::vector<RunStatistics::Normal>& values, double step) {
-  const int reach = static_cast<int>(kSmoothing / step);
-  const std::vector<RunStatistics::Normal> rough = values;
-  const int count = static_cast<int>(values.size());
-  for (int i = 0; i < count; ++i) {
-    double sum = 0;
-    int terms = 0;
-    for (int k = std::max(0, i - reach); k <= std::min(count - 1, i + reach); ++k, ++terms)
-      sum += rough[k].variance;
-    values[i].variance = sum / terms;
+double independent_share(double rafts) {
+  const double n = std::max(rafts, 1.0);
+  return (n - 1) / (n * n);
+}
+
+// Least squares of variance = a + b x, with a, b ≥ 0.
+ScatterLaw fitted_scatter(const Points& points) {
+  const Line line = fit_line(points);
+  double mean_x = 0, mean_y = 0, xx = 0, xy = 0;
+  for (const auto& [x, y] : points) {
+    mean_x += x / static_cast<double>(points.size());
+    mean_y += y / static_cast<double>(points.size());
+    xx += x * x;
+    xy += x * y;
   }
+  if (line.slope < 0 || mean_x == 0) return {mean_y, 0};
+  if (line.intercept < 0) return {0, xy / xx};
+  return {line.intercept, line.slope};
 }
 
 }  // namespace
 
-RunStatistics::RunStatistics(const std::vector<History>& runs, const std::vector<int>& sample) {
+double ScatterLaw::variance(double rafts) const {
+  return a + b * independent_share(rafts);
+}
+
+ScatterLaws scatter_laws(const std::vector<std::vector<History>>& ensembles) {
+  Points perimeter, rafts;
+  for (const std::vector<History>& runs : ensembles) {
+    std::vector<int> all(runs.size());
+    std::iota(all.begin(), all.end(), 0);
+    for (const double t : common_times(runs, kPerDecade)) {
+      const MeanAndVariance count = of_logarithms(runs, all, Quantity::rafts, t);
+      const double x = independent_share(std::exp(count.mean));
+      rafts.emplace_back(x, count.variance);
+      perimeter.emplace_back(x, of_logarithms(runs, all, Quantity::perimeter, t).variance);
+    }
+  }
+  return {fitted_scatter(perimeter), fitted_scatter(rafts)};
+}
+
+RunStatistics::RunStatistics(const std::vector<History>& runs, const std::vector<int>& sample,
+                             const ScatterLaws& scatter) {
   const std::vector<double> times = common_times(runs, kPerDecade);
   begin_ = std::log(times.front());
   step_ = std::log(times.back() / times.front()) / static_cast<double>(times.size() - 1);
+  const double more = 1 + 1 / static_cast<double>(sample.size());
   for (const double t : times) {
-    perimeter_.push_back(normal_of(runs, sample, Quantity::perimeter, t));
-    rafts_.push_back(normal_of(runs, sample, Quantity::rafts, t));
+    const double rafts = of_logarithms(runs, sample, Quantity::rafts, t).mean;
+    const double count = std::exp(rafts);
+    rafts_.push_back({rafts, more * scatter.rafts.variance(count)});
+    perimeter_.push_back({of_logarithms(runs, sample, Quantity::perimeter, t).mean,
+                          more * scatter.perimeter.variance(count)});
   }
-  smooth_variances(perimeter_, step_);
-  smooth_variances(rafts_, step_);
 }
 
 RunStatistics::Normal RunStatistics::at(Quantity quantity, double t) const {
@@ -64,10 +92,6 @@ RunStatistics::Normal RunStatistics::at(Quantity quantity, double t) const {
   const double share = place - static_cast<double>(below);
   const Normal &a = values[below], &b = values[below + 1];
   return {a.mean + share * (b.mean - a.mean), a.variance + share * (b.variance - a.variance)};
-}
-
-double RunStatistics::last_time() const {
-  return std::exp(begin_ + step_ * static_cast<double>(perimeter_.size() - 1));
 }
 
 TimeFit fit_time(const MeasuredVesicles& data, const std::vector<int>& sample,
@@ -85,10 +109,8 @@ TimeFit fit_time(const MeasuredVesicles& data, const std::vector<int>& sample,
         const double t = std::max(m.time, 1e-12) / seconds_per_unit;
         if (const auto& p = m.of(Quantity::perimeter); p && *p > 0)
           add(std::log(*p), scatter * scatter, runs.at(Quantity::perimeter, t));
-        // At a given fraction the number goes with the square of the perimeter.
         if (const auto& n = m.of(Quantity::rafts); n && *n > 0)
-          add(std::log(*n), 4 * scatter * scatter + kRoundingVariance / (*n * *n),
-              runs.at(Quantity::rafts, t));
+          add(std::log(*n), kRoundingVariance / (*n * *n), runs.at(Quantity::rafts, t));
       }
     return sum;
   };

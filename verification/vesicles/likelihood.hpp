@@ -8,19 +8,31 @@
 
 namespace traceraft {
 
-// Mean and variance over runs of the logarithms of perimeter and number of rafts, on a grid of ln
-// t. The variance is smoothed over a factor of 2 in t: a few runs know it badly.
+// The scatter between vesicles of one kind: the variance of a logarithm is a + b (N − 1)/N² where
+// there are N rafts on average, which independent rafts have for large N and a single one for N
+// = 1.
+struct ScatterLaw {
+  double a = 0, b = 0;
+  double variance(double rafts) const;
+};
+struct ScatterLaws {
+  ScatterLaw perimeter, rafts;
+};
+// From the runs at all choices of parameters together: a few runs alone know it badly.
+ScatterLaws scatter_laws(const std::vector<std::vector<History>>& ensembles);
+
+// Mean over runs of the logarithms of perimeter and number of rafts, on a grid of ln t.
 class RunStatistics {
  public:
   // At least two runs, with times > 0 in any unit. `sample`: which runs, with repetition.
-  RunStatistics(const std::vector<History>& runs, const std::vector<int>& sample);
+  RunStatistics(const std::vector<History>& runs, const std::vector<int>& sample,
+                const ScatterLaws& scatter);
 
   struct Normal {
-    double mean, variance;
+    double mean, variance;  // variance: of one vesicle, and of the mean itself
   };
   // Constant beyond the ends. Perimeter or rafts only.
   Normal at(Quantity quantity, double t) const;
-  double last_time() const;
 
  private:
   double begin_, step_;  // of ln t

@@ -68,11 +68,13 @@ MeasuredVesicles draw_measurements(const PublishedFacts& facts, std::uint64_t se
     const double own_perimeter = draw.normal(), own_fraction = draw.normal();
     for (const double t :
          draw_times(draw, looks_at(k, facts.vesicles, facts.measurements), facts.window)) {
-      const double perimeter = facts.perimeter.at(t) * std::exp(facts.perimeter.scatter * kShare *
-                                                                (own_perimeter + draw.normal()));
-      const double fraction = std::max(
-          0.01, facts.fraction + facts.fraction_sd * kShare * (own_fraction + draw.normal()));
+      // What the vesicle has, and what measuring adds to it; rafts are counted without error.
+      double perimeter =
+          facts.perimeter.at(t) * std::exp(facts.perimeter.scatter * kShare * own_perimeter);
+      double fraction = std::max(0.01, facts.fraction + facts.fraction_sd * kShare * own_fraction);
       const double rafts = std::max(1.0, std::round(equal_caps(perimeter, fraction)));
+      perimeter *= std::exp(facts.perimeter.scatter * kShare * draw.normal());
+      fraction = std::max(0.01, fraction + facts.fraction_sd * kShare * draw.normal());
       data.measurements.push_back({vesicle_name(k), t, radius, {perimeter, rafts, fraction}, {}});
     }
   }

@@ -22,8 +22,8 @@ struct PublishedFacts {
 
 // Vesicles that could have been measured: as many as published, radii evenly spread, times evenly
 // spread in ln t over the window, perimeters and fractions with the given mean and scatter, half of
-// its variance common to all looks at one vesicle; the number of rafts is that of equal caps,
-// rounded, at least 1. Marked as synthetic.
+// its variance the vesicle's own and half added by each look; the number of rafts is that of equal
+// caps with the vesicle's own perimeter and fraction, rounded, at least 1. Marked as synthetic.
 MeasuredVesicles draw_measurements(const PublishedFacts& facts, std::uint64_t seed);
 
 // The same looks at simulated vesicles, one run each: perimeters scatter as published, fractions

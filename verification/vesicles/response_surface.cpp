@@ -1,6 +1,7 @@
 #include "verification/vesicles/response_surface.hpp"
 
 #include <Eigen/QR>
+#include <cmath>
 #include <stdexcept>
 
 #include "backends/nlopt/minimise.hpp"
@@ -23,15 +24,21 @@ Vec monomials(const std::vector<double>& x) {
 }  // namespace
 
 ResponseSurface::ResponseSurface(const std::vector<std::vector<double>>& x,
-                                 const std::vector<double>& values)
+                                 const std::vector<double>& values,
+                                 const std::vector<double>& weights)
     : variables_(static_cast<int>(x.front().size())) {
   const auto count = static_cast<Eigen::Index>(x.size());
   if (count < points_of_surface(variables_))
     throw std::invalid_argument("too few points for a parabola");
   Eigen::MatrixXd matrix(count, points_of_surface(variables_));
-  for (Eigen::Index i = 0; i < count; ++i)
-    matrix.row(i) = monomials(x[static_cast<std::size_t>(i)]).transpose();
-  coefficients_ = matrix.colPivHouseholderQr().solve(Eigen::Map<const Vec>(values.data(), count));
+  Vec right(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double root = std::sqrt(weights[k]);
+    matrix.row(i) = root * monomials(x[k]).transpose();
+    right[i] = root * values[k];
+  }
+  coefficients_ = matrix.colPivHouseholderQr().solve(right);
 }
 
 double ResponseSurface::at(const std::vector<double>& x) const {

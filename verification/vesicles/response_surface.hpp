@@ -9,9 +9,10 @@ namespace traceraft {
 
 class ResponseSurface {
  public:
-  // Least squares of a + g·x + ½ xᵀHx. At least (p + 1)(p + 2)/2 points for p variables, in general
-  // position. Throws std::invalid_argument if they are too few.
-  ResponseSurface(const std::vector<std::vector<double>>& x, const std::vector<double>& values);
+  // Weighted least squares of a + g·x + ½ xᵀHx. At least (p + 1)(p + 2)/2 points for p variables,
+  // in general position. Throws std::invalid_argument if they are too few.
+  ResponseSurface(const std::vector<std::vector<double>>& x, const std::vector<double>& values,
+                  const std::vector<double>& weights);
 
   double at(const std::vector<double>& x) const;
   // Its smallest value within the box.
