@@ -138,6 +138,7 @@ void remember(const fs::path& out, const CalibrateRequest& request, const Config
 int run_calibration(const CalibrateRequest& request) {
   catch_stop_signals();
   if (request.data.empty()) throw InputError("--data: say which measurements to calibrate with");
+  (void)costly_parameters(request.parameters);
   const MeasuredVesicles data = read_dataset(request.data);
   const Configuration model(read_config_file(request.model), request.flags);
   if (model.flag("scaled"))

@@ -1,0 +1,95 @@
+// A calibration as a user meets it: from files to files, interrupted, refused. What it finds is
+// tested in tests/vesicles/calibration_test.cpp.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::content;
+using testing::lines_of;
+using testing::Outcome;
+using testing::TemporaryFolder;
+using testing::traceraft;
+
+class CalibrateTest : public ::testing::Test {
+ protected:
+  TemporaryFolder folder;
+  const std::string model =
+      "--case guv-2to1 --cells 16 --epsilon 0.6 --raft-fraction 0.4 --noise-cells 16 ";
+  std::string out(const std::string& name) const { return (folder.path / name).string(); }
+  void SetUp() override {
+    fs::create_directories(folder.path / "data");
+    std::ofstream(folder.path / "data/dataset.toml")
+        << "name = \"few\"\nkind = \"synthetic\"\ntime_zero = \"start\"\nlength_unit = \"um\"\n"
+           "time_unit = \"s\"\nradius = 5\n";
+    std::ofstream(folder.path / "data/measurements.csv")
+        << "vesicle,time,perimeter,rafts\na,0.01,60,4\na,0.1,45,2\nb,0.02,55,3\nc,0.05,50,3\n"
+           "d,0.2,40,2\n";
+  }
+};
+
+TEST_F(CalibrateTest, GoesFromFilesToFiles) {
+  const std::string command =
+      "calibrate --data " + out("data") + " " + model + "--runs 3 --out " + out("c");
+  const Outcome made = traceraft(command);
+  ASSERT_EQ(made.code, 0) << made.output;
+  EXPECT_NE(made.output.find("The data know best"), std::string::npos);
+  const auto json = nlohmann::json::parse(content(folder.path / "c/calibration.json"));
+  for (const char* name : {"mobility", "epsilon"}) {
+    const auto& parameter = json["parameters"][name];
+    EXPECT_LE(parameter["interval_95"][0], parameter["value"].get<double>() * 1.0001) << name;
+    EXPECT_TRUE(parameter["determined"].is_boolean());
+  }
+  EXPECT_EQ(lines_of(folder.path / "c/calibration.csv"), 10);
+  // The model that was found can be run.
+  const Outcome valid = traceraft("run --validate --config " + out("c/model.toml"));
+  EXPECT_EQ(valid.code, 0) << valid.output;
+  // Given again, nothing is simulated again, and the same comes out.
+  const std::string before = content(folder.path / "c/calibration.json");
+  EXPECT_EQ(traceraft(command + " --quiet").code, 0);
+  EXPECT_EQ(content(folder.path / "c/calibration.json"), before);
+  const Outcome other = traceraft(command + " --runs 4");
+  EXPECT_NE(other.code, 0);
+}
+
+TEST_F(CalibrateTest, GoesOnAfterItWasStopped) {
+  const std::string command = "calibrate --quiet --data " + out("data") + " " + model +
+                              "--parameters mobility --runs 4 --jobs 1 --out ";
+  ASSERT_EQ(traceraft(command + out("whole")).code, 0);
+  const pid_t child = testing::start_traceraft(command + out("cut"));
+  const fs::path series = folder.path / "cut/points/point/runs/seed-1/series.csv";
+  for (int i = 0; i < 6000 && lines_of(series) < 10; ++i) usleep(10000);
+  kill(child, SIGTERM);
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_EQ(WEXITSTATUS(status), 5);
+  ASSERT_EQ(traceraft(command + out("cut")).code, 0);
+  EXPECT_EQ(content(folder.path / "cut/calibration.json"),
+            content(folder.path / "whole/calibration.json"));
+}
+
+TEST_F(CalibrateTest, RefusesWhatItCannotCalibrate) {
+  for (const auto& [flags, complaint] :
+       {std::pair<std::string, std::string>("", "--data: say which"),
+        {"--data " + out("nowhere"), "dataset.toml"},
+        {"--data " + out("data") + " --parameters epsilon", "mobility has to be among them"},
+        {"--data " + out("data") + " --parameters mobility,epsilom", "did you mean 'epsilon'"},
+        {"--data " + out("data") + " --scaled", "measurements are in seconds"}}) {
+    const Outcome refused = traceraft("calibrate " + flags + " --out " + out("c"));
+    EXPECT_EQ(refused.code, 2) << flags;
+    EXPECT_NE(refused.output.find(complaint), std::string::npos) << refused.output;
+  }
+}
+
+}  // namespace
+}  // namespace traceraft
