@@ -4,6 +4,7 @@
 #include "drivers/commands.hpp"
 #include "drivers/config/cases.hpp"
 #include "drivers/exit_codes.hpp"
+#include "kernel/effects/effects.hpp"
 #include "kernel/physics/mobility.hpp"
 #include "kernel/problem/initial_data.hpp"
 #include "verification/studies.hpp"
@@ -38,6 +39,7 @@ int print_lists() {
   print_list_with_parameters("Surfaces (--surface)", surfaces());
   std::printf("  %-14s %s\n\n", "formula", "any level set, from --surface-formula");
   print_list_with_parameters("Mobility laws (--mobility)", mobilities());
+  print_list_with_parameters("Effects (--effect)", effects());
   print_list_with_parameters("Initial states (--initial)", initial_fields());
   std::printf("  %-14s %s\n\n", "restart:DIR",
               "the last state of the run in DIR, on the same mesh");

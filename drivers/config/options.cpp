@@ -61,6 +61,10 @@ const std::vector<OptionSpec>& run_options() {
        "mobility law in units of D: degenerate, degenerate:outside=-1, constant:value=0.25"},
       {"well", K::text, "rho=0.25,a=0,b=1", "Physics",
        "free energy rho (c-a)^2 (b-c)^2 of a homogeneous mixture"},
+      {"effect", K::text, "", "Physics",
+       "what is added to the model, as in exchange:rate=1e-3,target=0.2; several between "
+       "semicolons "
+       "(see: traceraft list)"},
       {"potential", K::text, "consistent", "Physics",
        "f0' by quadrature, the gradient of an energy (consistent), or nodal as in the paper's "
        "code"},

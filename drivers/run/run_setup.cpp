@@ -10,6 +10,7 @@
 #include "backends/ranks.hpp"
 #include "drivers/config/config_file.hpp"
 #include "drivers/run/checkpoint_store.hpp"
+#include "kernel/effects/effects.hpp"
 #include "kernel/problem/initial_data.hpp"
 
 namespace traceraft {
@@ -85,6 +86,10 @@ CahnHilliardModel model(const Configuration& configuration, const Units& units) 
                     ? PotentialRule::nodal
                     : PotentialRule::consistent;
   result.stabilisation = configuration.number("stabilisation");
+  said_of(configuration, "effect", [&] {
+    add_effects(configuration.text("effect"), configuration.units(), result);
+    return 0;
+  });
   return result;
 }
 

@@ -25,4 +25,16 @@ void assemble_mobility_stiffness(const SurfaceSpace& space, const std::vector<do
 void add_mobility_flux(const SurfaceSpace& space, const std::vector<double>& integral, ConstVec u,
                        VecRef r);
 
+// G_T μ_T: the flux through the nodes of an element whose mobility integrates to one.
+inline std::array<double, 4> unit_flux(const CutElement& element, ConstVec mu) {
+  std::array<double, 4> flux{};
+  for (int k = 0; k < 6; ++k) {
+    const auto& [i, j] = kTetEdges[k];
+    const double along = element.coupling[k] * (mu[element.node[j]] - mu[element.node[i]]);
+    flux[i] += along;
+    flux[j] -= along;
+  }
+  return flux;
+}
+
 }  // namespace traceraft

@@ -6,22 +6,6 @@
 #include "kernel/fem/mobility_stiffness.hpp"
 
 namespace traceraft {
-namespace {
-
-// G_T μ_T: the flux through the nodes of an element whose mobility integrates to one.
-std::array<double, 4> unit_flux(const CutElement& element, ConstVec mu) {
-  std::array<double, 4> flux{};
-  for (int k = 0; k < 6; ++k) {
-    const auto& [i, j] = kTetEdges[k];
-    const double along = element.coupling[k] * (mu[element.node[j]] - mu[element.node[i]]);
-    flux[i] += along;
-    flux[j] -= along;
-  }
-  return flux;
-}
-
-}  // namespace
-
 CsrMatrix gradient_energy_matrix(const SurfaceSpace& space, const CahnHilliardModel& model) {
   const double e2 = model.epsilon * model.epsilon;
   return combine(e2, space.stiffness, e2 * model.stabilisation * space.h(), space.normal);
@@ -124,15 +108,18 @@ Status CahnHilliard::jacobian(double t, ConstVec y, ConstVec, double shift, Tang
     integral = mobility_integrals(space, *model_.mobility, c);
   }
   assemble_mobility_stiffness(space, integral, J.cm);
+  fill_curvature(c, tangent, J);
+  for (const EffectPtr& effect : model_.effects) {
+    if (tangent == Tangent::exact)
+      effect->add_tangent(space, t, c, mu, J);
+    else
+      effect->add_stabilised(space, t, c, J);
+  }
   J.mobility = mean_mobility(J.cm);
   const double rho = flux_stabilisation();
   space.team->for_range(entries, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) J.cm.values[k] += rho * space.normal.values[k];
   });
-
-  fill_curvature(c, tangent, J);
-  if (tangent == Tangent::exact)
-    for (const EffectPtr& effect : model_.effects) effect->add_tangent(space, t, c, mu, J);
   return {};
 }
 
@@ -155,6 +142,8 @@ Status CahnHilliard::jacobian_product(double t, ConstVec y, ConstVec, double shi
   if (tangent == Tangent::stabilised) {
     add_mobility_flux(space, mobility_integrals(space, *model_.mobility, c), vmu, first);
     space.stabilised_mass.multiply_add(-model_.beta(), vc, second, *space.team);
+    for (const EffectPtr& effect : model_.effects)
+      effect->add_stabilised_product(space, t, c, vmu, first);
     return {};
   }
   std::vector<std::array<double, 4>> gradient;
@@ -200,8 +189,10 @@ double CahnHilliard::field_norm(ConstVec half) const {
 double CahnHilliard::energy(ConstVec y) const {
   Vec buffer;
   const auto c = space_->with_ghosts(c_of(y), buffer);
-  return ranks().sum(potential_energy(*space_, model_.well, c)) +
-         0.5 * space_->quadratic(gradient_energy_, c_of(y));
+  double energy = ranks().sum(potential_energy(*space_, model_.well, c)) +
+                  0.5 * space_->quadratic(gradient_energy_, c_of(y));
+  for (const EffectPtr& effect : model_.effects) energy += effect->energy(*space_, c);
+  return energy;
 }
 
 bool CahnHilliard::conserves_mass() const {

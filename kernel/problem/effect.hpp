@@ -21,6 +21,18 @@ class Effect {
   virtual std::string name() const = 0;
   virtual bool conserves_mass() const = 0;
   virtual bool dissipates_energy() const = 0;
+  // The part that the stabilised tangent needs to be stable, with c frozen: a flux that is linear
+  // in μ. Adds to J.cm and, for a direction of μ, to the product.
+  virtual void add_stabilised(const SurfaceSpace&, double /*t*/, ConstVec /*c*/,
+                              BlockJacobian&) const {}
+  virtual void add_stabilised_product(const SurfaceSpace&, double /*t*/, ConstVec /*c*/,
+                                      ConstVec /*direction_mu*/, VecRef /*product_c*/) const {}
+  // Is the assembled tangent all of it? Effects that couple distant points leave their part of the
+  // Jacobian to add_tangent_product; with the assembled one Newton's method then converges
+  // linearly.
+  virtual bool tangent_is_assembled() const { return true; }
+  // What the effect adds to the energy, over all ranks; F2 is the gradient of the sum.
+  virtual double energy(const SurfaceSpace&, ConstVec /*c*/) const { return 0; }
 
   virtual void add_residual(const SurfaceSpace& space, double t, ConstVec c, ConstVec mu,
                             VecRef residual_c, VecRef residual_mu) const = 0;

@@ -1,0 +1,83 @@
+#include "kernel/effects/advection.hpp"
+
+#include "kernel/fem/trace.hpp"
+#include "kernel/fem/triangle_rule.hpp"
+#include "kernel/fem/weighted_mass.hpp"
+
+namespace traceraft {
+namespace {
+
+class Advection final : public Effect {
+ public:
+  Advection(std::string name, Velocity velocity)
+      : name_(std::move(name)), velocity_(std::move(velocity)) {}
+
+  std::string name() const override { return name_; }
+  bool conserves_mass() const override { return true; }
+  bool dissipates_energy() const override { return false; }
+
+  void add_residual(const SurfaceSpace& space, double t, ConstVec c, ConstVec, VecRef residual_c,
+                    VecRef) const override {
+    CsrMatrix matrix(space.pattern);
+    add_matrix(space, t, matrix);
+    matrix.multiply_add(1, c, residual_c, *space.team);
+  }
+  void add_tangent(const SurfaceSpace& space, double t, ConstVec, ConstVec,
+                   BlockJacobian& J) const override {
+    add_matrix(space, t, J.cc);
+  }
+  void add_tangent_product(const SurfaceSpace& space, double t, ConstVec c, ConstVec mu,
+                           ConstVec direction_c, ConstVec, VecRef product_c,
+                           VecRef product_mu) const override {
+    (void)c;
+    add_residual(space, t, direction_c, mu, product_c, product_mu);
+  }
+
+ private:
+  // A_ij = −∫ φ_j u·∇_Γφ_i.
+  void add_matrix(const SurfaceSpace& space, double t, CsrMatrix& matrix) const {
+    add_element_matrices(
+        space,
+        [&](const CutElement& element, int e) { return element_matrix(space, element, e, t); },
+        matrix);
+  }
+
+  Eigen::Matrix4d element_matrix(const SurfaceSpace& space, const CutElement& element, int e,
+                                 double t) const {
+    const ActiveTet& tet = space.mesh.tets[e];
+    const Point normal = cut_normal(space.mesh, tet);
+    const auto gradient = scaled_gradients(tet.kuhn);
+    // The weighted traces, ∫ φ_j u.
+    Eigen::Matrix<double, 4, 3> carried = Eigen::Matrix<double, 4, 3>::Zero();
+    for (int k = 0; k < element.triangles(); ++k) {
+      const auto triangle = static_cast<std::size_t>(element.first_triangle + k);
+      for (const auto& [at, weight] : kDegreeFourRule) {
+        Point x = Point::Zero();
+        Eigen::Vector4d basis = Eigen::Vector4d::Zero();
+        for (int corner = 0; corner < 3; ++corner) {
+          const int point = space.surface.triangles[triangle][corner];
+          x += at[corner] * space.surface.position[point];
+          const auto& ends = kTetEdges[element.cut_edge[kPolygonTriangles[k][corner]]];
+          const double s = space.surface.points[point].s;
+          basis[ends[0]] += at[corner] * (1 - s);
+          basis[ends[1]] += at[corner] * s;
+        }
+        const Point u = velocity_(x, t);
+        carried += weight * space.surface.triangle_area[triangle] * basis *
+                   (u - u.dot(normal) * normal).transpose();
+      }
+    }
+    return -gradient / space.h() * carried.transpose();
+  }
+
+  std::string name_;
+  Velocity velocity_;
+};
+
+}  // namespace
+
+EffectPtr advection(std::string name, Velocity velocity) {
+  return std::make_shared<Advection>(std::move(name), std::move(velocity));
+}
+
+}  // namespace traceraft

@@ -1,0 +1,17 @@
+// Lipids carried along by a flow in the membrane.
+#pragma once
+
+#include <functional>
+
+#include "kernel/problem/effect.hpp"
+
+namespace traceraft {
+
+// A velocity (R per R²/D) at a place and time; what is not tangential does not count.
+using Velocity = std::function<Point(const Point&, double)>;
+
+// ∂c/∂t + div(c u) = …, that is −∫ c u·∇_Γ v in F1: conserves ∫c for any u. With an incompressible
+// u it leaves the energy alone but for the error of the mesh.
+EffectPtr advection(std::string name, Velocity velocity);
+
+}  // namespace traceraft

@@ -1,0 +1,24 @@
+#include "kernel/effects/effects.hpp"
+#include "kernel/effects/local_density.hpp"
+
+namespace traceraft {
+
+// Lipids that turn into each other, downhill in energy: ċ = … − L μ.
+EffectEntry allen_cahn_effect() {
+  return {"allen-cahn",
+          "lipids converted into each other, as the chemical potential tells them",
+          {{"rate", "1/s", 0, 0, 1e12, "L"}},
+          MassClass::drifts,
+          EnergyClass::dissipates,
+          "small rafts vanish faster",
+          {"uptake"},
+          [](const Parameters& p, CahnHilliardModel& model) {
+            const double L = p["rate"];
+            model.effects.push_back(local_density(
+                {"allen-cahn", Slot::source, false, true, [L](const DensityPoint& at) {
+                   return DensityValue{L * at.mu, 0, L};
+                 }}));
+          }};
+}
+
+}  // namespace traceraft

@@ -1,0 +1,27 @@
+#include "kernel/effects/effects.hpp"
+#include "kernel/effects/local_density.hpp"
+
+namespace traceraft {
+
+// Wells of different curvature: f0 + a c² (1 − c)² (2c − 1), which leaves the wells where they are.
+EffectEntry asymmetry_effect() {
+  return {"asymmetry",
+          "a free energy that is steeper on the side of the rafts",
+          {{"strength", "", 0, -0.2, 0.2, "a of a c^2 (1-c)^2 (2c-1)"}},
+          MassClass::conserves,
+          EnergyClass::dissipates,
+          "contents of the phases",
+          {"line-tension"},
+          [](const Parameters& p, CahnHilliardModel& model) {
+            const double a = p["strength"];
+            model.effects.push_back(local_density(
+                {"asymmetry", Slot::potential, true, true, [a](const DensityPoint& at) {
+                   // With s = c (1 − c), s' = 1 − 2c =: d: g = −s² d.
+                   const double c = at.c, s = c * (1 - c), d = 1 - 2 * c;
+                   return DensityValue{a * (-2 * s * d * d + 2 * s * s),
+                                       a * (-2 * d * d * d + 12 * s * d), 0, -a * s * s * d};
+                 }}));
+          }};
+}
+
+}  // namespace traceraft

@@ -1,0 +1,54 @@
+// What a model may be missing: effects by name. One file per effect, one line in effects.cpp;
+// docs/extending.md shows how to add one.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "kernel/core/named_list.hpp"
+#include "kernel/core/parameters.hpp"
+#include "kernel/physics/units.hpp"
+#include "kernel/problem/cahn_hilliard.hpp"
+
+namespace traceraft {
+
+enum class MassClass { conserves, drifts };
+enum class EnergyClass { dissipates, neutral, active };
+
+struct EffectEntry {
+  std::string name;
+  std::string summary;  // the physics
+  // The strength first, whose default, 0, is the base model. Units: "" for a pure number, "1/s",
+  // "s", "um".
+  std::vector<ParameterSpec> parameters;
+  MassClass mass;
+  EnergyClass energy;
+  std::string shows_in;                    // what moves first
+  std::vector<std::string> confused_with;  // names of effects
+  // Adds it to a model. Parameters are in units of R and R²/D.
+  std::function<void(const Parameters&, CahnHilliardModel&)> add;
+};
+
+EffectEntry allen_cahn_effect();
+EffectEntry asymmetry_effect();
+EffectEntry bulk_mobility_effect();
+EffectEntry cooling_effect();
+EffectEntry curvature_effect();
+EffectEntry exchange_effect();
+EffectEntry gravity_effect();
+EffectEntry line_tension_effect();
+EffectEntry mobility_contrast_effect();
+EffectEntry mobility_exponent_effect();
+EffectEntry ohta_kawasaki_effect();
+EffectEntry rotation_effect();
+EffectEntry thermal_effect();
+EffectEntry uptake_effect();
+
+const NamedList<EffectEntry>& effects();
+
+// "exchange:rate=1e-3,target=0.2; gravity:strength=0.1" -> added to the model. Throws InputError
+// for an unknown name or key, a value out of range, and a strength that is not given.
+void add_effects(const std::string& specification, const Units& units, CahnHilliardModel& model);
+
+}  // namespace traceraft

@@ -1,0 +1,21 @@
+#include <cmath>
+
+#include "kernel/effects/effects.hpp"
+
+namespace traceraft {
+
+// ε² (1 + d): boundaries cost √(1 + d) times as much, and are as much wider.
+EffectEntry line_tension_effect() {
+  return {"line-tension",
+          "boundaries that cost more than the model says",
+          {{"excess", "", 0, -0.9, 10, "d of epsilon^2 (1 + d)"}},
+          MassClass::conserves,
+          EnergyClass::dissipates,
+          "level of the perimeter",
+          {"asymmetry"},
+          [](const Parameters& p, CahnHilliardModel& model) {
+            model.epsilon *= std::sqrt(1 + p["excess"]);
+          }};
+}
+
+}  // namespace traceraft

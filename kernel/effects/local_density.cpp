@@ -1,0 +1,105 @@
+#include "kernel/effects/local_density.hpp"
+
+#include "kernel/fem/density_load.hpp"
+#include "kernel/fem/weighted_mass.hpp"
+
+namespace traceraft {
+namespace {
+
+class LocalDensityEffect final : public Effect {
+ public:
+  explicit LocalDensityEffect(LocalDensity density) : density_(std::move(density)) {}
+
+  std::string name() const override { return density_.name; }
+  bool conserves_mass() const override { return density_.conserves_mass; }
+  bool dissipates_energy() const override { return density_.dissipates_energy; }
+
+  void add_residual(const SurfaceSpace& space, double t, ConstVec c, ConstVec mu, VecRef residual_c,
+                    VecRef residual_mu) const override {
+    const Values at(*this, space, t, c, mu);
+    add_density_load(
+        space, sign(), [&](const QuadraturePoint& point) { return at(point).value; },
+        density_.slot == Slot::source ? residual_c : residual_mu);
+  }
+
+  void add_tangent(const SurfaceSpace& space, double t, ConstVec c, ConstVec mu,
+                   BlockJacobian& J) const override {
+    const Values at(*this, space, t, c, mu);
+    const bool source = density_.slot == Slot::source;
+    const auto add = [&](double DensityValue::*derivative, CsrMatrix& block) {
+      add_weighted_mass(
+          space, sign(),
+          [&](int triangle, std::size_t p) {
+            return at(quadrature_point(space.surface, static_cast<std::size_t>(triangle), p)).*
+                   derivative;
+          },
+          block);
+    };
+    add(&DensityValue::by_c, source ? J.cc : J.mc);
+    add(&DensityValue::by_mu, source ? J.cm : J.mm);
+  }
+
+  void add_tangent_product(const SurfaceSpace& space, double t, ConstVec c, ConstVec mu,
+                           ConstVec direction_c, ConstVec direction_mu, VecRef product_c,
+                           VecRef product_mu) const override {
+    const Values at(*this, space, t, c, mu);
+    const Vec along_c = trace(space, direction_c), along_mu = trace(space, direction_mu);
+    add_density_load(
+        space, sign(),
+        [&](const QuadraturePoint& point) {
+          const DensityValue value = at(point);
+          return value.by_c * Values::between(space, point, along_c) +
+                 value.by_mu * Values::between(space, point, along_mu);
+        },
+        density_.slot == Slot::source ? product_c : product_mu);
+  }
+
+  double energy(const SurfaceSpace& space, ConstVec c) const override {
+    if (density_.slot == Slot::source) return 0;
+    const Values at(*this, space, 0, c, Vec::Zero(c.size()));
+    Vec load = Vec::Zero(space.nodes());
+    add_density_load(
+        space, 1, [&](const QuadraturePoint& point) { return at(point).energy; }, load);
+    return space.communicator->sum(load.sum());  // the basis functions sum to one
+  }
+
+ private:
+  // The density at the points of the quadrature.
+  class Values {
+   public:
+    Values(const LocalDensityEffect& effect, const SurfaceSpace& space, double t, ConstVec c,
+           ConstVec mu)
+        : value_(effect.density_.value),
+          space_(space),
+          t_(t),
+          c_(trace(space, c)),
+          mu_(trace(space, mu)) {}
+    DensityValue operator()(const QuadraturePoint& point) const {
+      return value_({point.x, t_, between(space_, point, c_), between(space_, point, mu_)});
+    }
+    static double between(const SurfaceSpace& space, const QuadraturePoint& point,
+                          const Vec& values) {
+      const auto& rule = kDegreeFourRule[point.number % kDegreeFourRule.size()];
+      const int triangle = static_cast<int>(point.number / kDegreeFourRule.size());
+      return between_corners(corner_values(space, triangle, values), rule.at);
+    }
+
+   private:
+    const std::function<DensityValue(const DensityPoint&)>& value_;
+    const SurfaceSpace& space_;
+    double t_;
+    Vec c_, mu_;
+  };
+
+  double sign() const { return density_.slot == Slot::source ? 1 : -1; }
+
+  LocalDensity density_;
+};
+
+}  // namespace
+
+EffectPtr local_density(LocalDensity density) {
+  return std::make_shared<LocalDensityEffect>(std::move(density));
+}
+
+}  // namespace traceraft

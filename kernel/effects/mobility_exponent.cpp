@@ -1,0 +1,52 @@
+#include <cmath>
+
+#include "kernel/effects/effects.hpp"
+
+namespace traceraft {
+namespace {
+
+// M(c) (4 c (1 − c))^δ: with M = c (1 − c) the exponent 1 + δ, with the same value at c = 1/2.
+class ExponentMobility final : public Mobility {
+ public:
+  ExponentMobility(MobilityPtr base, double more) : base_(std::move(base)), more_(more) {}
+  void evaluate(const double* c, int count, double* value, double* derivative) const override {
+    base_->evaluate(c, count, value, derivative);
+    for (int i = 0; i < count; ++i) {
+      const double s = c[i] * (1 - c[i]);
+      if (!(s > kLeast)) {
+        // Continuous, and no power of what is not positive.
+        const double factor = std::pow(4 * kLeast, more_);
+        value[i] *= factor;
+        if (derivative) derivative[i] *= factor;
+        continue;
+      }
+      const double factor = std::pow(4 * s, more_), before = value[i];
+      value[i] *= factor;
+      if (derivative)
+        derivative[i] = derivative[i] * factor + before * more_ * factor / s * (1 - 2 * c[i]);
+    }
+  }
+  double scale() const override { return base_->scale(); }
+
+ private:
+  static constexpr double kLeast = 1e-6;
+  MobilityPtr base_;
+  double more_;
+};
+
+}  // namespace
+
+EffectEntry mobility_exponent_effect() {
+  return {"mobility-exponent",
+          "a mobility that vanishes faster, or slower, in the phases",
+          {{"excess", "", 0, -0.9, 5, "delta of (c (1-c))^(1 + delta)"}},
+          MassClass::conserves,
+          EnergyClass::dissipates,
+          "pace of coarsening",
+          {"bulk-mobility"},
+          [](const Parameters& p, CahnHilliardModel& model) {
+            model.mobility = std::make_shared<ExponentMobility>(model.mobility, p["excess"]);
+          }};
+}
+
+}  // namespace traceraft

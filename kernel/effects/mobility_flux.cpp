@@ -1,0 +1,96 @@
+#include "kernel/effects/mobility_flux.hpp"
+
+#include "kernel/fem/mobility_stiffness.hpp"
+
+namespace traceraft {
+namespace {
+
+class MobilityFlux final : public Effect {
+ public:
+  MobilityFlux(std::string name, MobilityPtr law, std::function<double(double)> factor,
+               bool dissipates)
+      : name_(std::move(name)),
+        law_(std::move(law)),
+        factor_(std::move(factor)),
+        dissipates_(dissipates) {}
+
+  std::string name() const override { return name_; }
+  bool conserves_mass() const override { return true; }
+  bool dissipates_energy() const override { return dissipates_; }
+
+  void add_residual(const SurfaceSpace& space, double t, ConstVec c, ConstVec mu, VecRef residual_c,
+                    VecRef) const override {
+    add_mobility_flux(space, scaled(mobility_integrals(space, *law_, c), t), mu, residual_c);
+  }
+
+  void add_tangent(const SurfaceSpace& space, double t, ConstVec c, ConstVec mu,
+                   BlockJacobian& J) const override {
+    std::vector<std::array<double, 4>> gradient;
+    const std::vector<double> integral = scaled(mobility_integrals(space, *law_, c, gradient), t);
+    CsrMatrix stiffness(space.pattern);
+    assemble_mobility_stiffness(space, integral, stiffness);
+    for (std::size_t k = 0; k < stiffness.values.size(); ++k) J.cm.values[k] += stiffness.values[k];
+    const double factor = factor_(t);
+    add_element_matrices(
+        space,
+        [&](const CutElement& element, int e) -> Eigen::Matrix4d {
+          const std::array<double, 4> flux = unit_flux(element, mu);
+          return factor * Eigen::Map<const Eigen::Vector4d>(flux.data()) *
+                 Eigen::Map<const Eigen::RowVector4d>(gradient[e].data());
+        },
+        J.cc);
+  }
+
+  void add_tangent_product(const SurfaceSpace& space, double t, ConstVec c, ConstVec mu,
+                           ConstVec direction_c, ConstVec direction_mu, VecRef product_c,
+                           VecRef) const override {
+    std::vector<std::array<double, 4>> gradient;
+    std::vector<double> integral = scaled(mobility_integrals(space, *law_, c, gradient), t);
+    add_mobility_flux(space, integral, direction_mu, product_c);
+    const double factor = factor_(t);
+    for (std::size_t e = 0; e < integral.size(); ++e) {
+      integral[e] = 0;
+      for (int i = 0; i < 4; ++i)
+        integral[e] += factor * gradient[e][i] * direction_c[space.elements[e].node[i]];
+    }
+    add_mobility_flux(space, integral, mu, product_c);
+  }
+
+  void add_stabilised(const SurfaceSpace& space, double t, ConstVec c,
+                      BlockJacobian& J) const override {
+    add_stiffness(space, scaled(mobility_integrals(space, *law_, c), t), J);
+  }
+  void add_stabilised_product(const SurfaceSpace& space, double t, ConstVec c,
+                              ConstVec direction_mu, VecRef product_c) const override {
+    add_mobility_flux(space, scaled(mobility_integrals(space, *law_, c), t), direction_mu,
+                      product_c);
+  }
+
+ private:
+  static void add_stiffness(const SurfaceSpace& space, const std::vector<double>& integral,
+                            BlockJacobian& J) {
+    CsrMatrix stiffness(space.pattern);
+    assemble_mobility_stiffness(space, integral, stiffness);
+    for (std::size_t k = 0; k < stiffness.values.size(); ++k) J.cm.values[k] += stiffness.values[k];
+  }
+  std::vector<double> scaled(std::vector<double> integral, double t) const {
+    const double factor = factor_(t);
+    for (double& value : integral) value *= factor;
+    return integral;
+  }
+
+  std::string name_;
+  MobilityPtr law_;
+  std::function<double(double)> factor_;
+  bool dissipates_;
+};
+
+}  // namespace
+
+EffectPtr mobility_flux(std::string name, MobilityPtr law, std::function<double(double)> factor,
+                        bool dissipates) {
+  return std::make_shared<MobilityFlux>(std::move(name), std::move(law), std::move(factor),
+                                        dissipates);
+}
+
+}  // namespace traceraft

@@ -1,0 +1,51 @@
+#include "kernel/effects/nodal_potential.hpp"
+
+namespace traceraft {
+namespace {
+
+class NodalPotentialEffect final : public Effect {
+ public:
+  explicit NodalPotentialEffect(NodalPotential potential) : potential_(std::move(potential)) {}
+
+  std::string name() const override { return potential_.name; }
+  bool conserves_mass() const override { return true; }
+  bool dissipates_energy() const override { return true; }
+  bool tangent_is_assembled() const override { return !potential_.linear; }
+
+  void add_residual(const SurfaceSpace& space, double, ConstVec c, ConstVec, VecRef,
+                    VecRef residual_mu) const override {
+    add_load(space, c, residual_mu);
+  }
+  void add_tangent(const SurfaceSpace&, double, ConstVec, ConstVec, BlockJacobian&) const override {
+  }
+  void add_tangent_product(const SurfaceSpace& space, double, ConstVec, ConstVec,
+                           ConstVec direction_c, ConstVec, VecRef,
+                           VecRef product_mu) const override {
+    if (potential_.linear) add_load(space, direction_c, product_mu);
+  }
+  double energy(const SurfaceSpace& space, ConstVec c) const override {
+    const auto owned = c.head(space.nodes());
+    const double product =
+        space.bilinear(space.stabilised_mass, potential_.field(space, owned), owned);
+    return potential_.strength * (potential_.linear ? 0.5 : 1.0) * product;
+  }
+
+ private:
+  // F2 −= strength M̃ u.
+  void add_load(const SurfaceSpace& space, ConstVec c, VecRef r) const {
+    const Vec u = potential_.field(space, c.head(space.nodes()));
+    Vec buffer;
+    space.stabilised_mass.multiply_add(-potential_.strength, space.with_ghosts(u, buffer), r,
+                                       *space.team);
+  }
+
+  NodalPotential potential_;
+};
+
+}  // namespace
+
+EffectPtr nodal_potential(NodalPotential potential) {
+  return std::make_shared<NodalPotentialEffect>(std::move(potential));
+}
+
+}  // namespace traceraft

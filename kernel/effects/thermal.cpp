@@ -1,0 +1,119 @@
+#include <cmath>
+
+#include "kernel/core/random.hpp"
+#include "kernel/effects/effects.hpp"
+#include "kernel/fem/mobility_stiffness.hpp"
+
+namespace traceraft {
+namespace {
+
+// Two normal numbers of a stream of their own (Box and Muller).
+std::array<double, 2> normal_pair(std::uint64_t seed, std::uint64_t stream, std::uint64_t index) {
+  const double r = std::sqrt(-2 * std::log(uniform_random(seed, stream, 2 * index)));
+  const double angle = 2 * kPi * uniform_random(seed, stream, 2 * index + 1);
+  return {r * std::cos(angle), r * std::sin(angle)};
+}
+
+// Cook's noise: a random flux √(2 kT M) ξ with ξ white in space and time. In every tetrahedron one
+// vector with variance 1/|Γ_T|; in time drawn every τ with variance 1/τ and linear in between, so
+// that integrators see a continuous function that they resolve with steps below τ. Draws depend on
+// the tetrahedron's place in the mesh, not on the number of ranks.
+class ThermalNoise final : public Effect {
+ public:
+  ThermalNoise(double kT, double tau, std::uint64_t seed, MobilityPtr law)
+      : kT_(kT), tau_(tau), seed_(seed), law_(std::move(law)) {}
+
+  std::string name() const override { return "thermal"; }
+  bool conserves_mass() const override { return true; }
+  bool dissipates_energy() const override { return false; }
+
+  void add_residual(const SurfaceSpace& space, double t, ConstVec c, ConstVec, VecRef residual_c,
+                    VecRef) const override {
+    const std::vector<double> integral = mobility_integrals(space, *law_, c);
+    for (std::size_t e = 0; e < space.elements.size(); ++e)
+      add_flux(space, e, std::sqrt(integral[e]), t, residual_c);
+  }
+
+  void add_tangent(const SurfaceSpace& space, double t, ConstVec c, ConstVec,
+                   BlockJacobian& J) const override {
+    std::vector<std::array<double, 4>> gradient;
+    const std::vector<double> integral = mobility_integrals(space, *law_, c, gradient);
+    add_element_matrices(
+        space,
+        [&](const CutElement&, int e) -> Eigen::Matrix4d {
+          return element_flux(space, e, t) * root_derivative(integral[e], gradient[e]).transpose();
+        },
+        J.cc);
+  }
+
+  void add_tangent_product(const SurfaceSpace& space, double t, ConstVec c, ConstVec,
+                           ConstVec direction_c, ConstVec, VecRef product_c,
+                           VecRef) const override {
+    std::vector<std::array<double, 4>> gradient;
+    const std::vector<double> integral = mobility_integrals(space, *law_, c, gradient);
+    for (std::size_t e = 0; e < space.elements.size(); ++e) {
+      const Eigen::Vector4d derivative = root_derivative(integral[e], gradient[e]);
+      double change = 0;
+      for (int i = 0; i < 4; ++i) change += derivative[i] * direction_c[space.elements[e].node[i]];
+      add_flux(space, e, change, t, product_c);
+    }
+  }
+
+ private:
+  // ∂√I/∂c_i; 0 where the mobility vanishes, as its noise does.
+  static Eigen::Vector4d root_derivative(double integral, const std::array<double, 4>& gradient) {
+    if (!(integral > 0)) return Eigen::Vector4d::Zero();
+    return Eigen::Map<const Eigen::Vector4d>(gradient.data()) / (2 * std::sqrt(integral));
+  }
+
+  // −√(2 kT/τ) ξ·∇_Γλ_i, to be multiplied with √∫_T M.
+  Eigen::Vector4d element_flux(const SurfaceSpace& space, std::size_t e, double t) const {
+    const ActiveTet& tet = space.mesh.tets[e];
+    const auto place = static_cast<std::uint64_t>(space.mesh.node_id[tet.node[0]]) * 6 +
+                       static_cast<std::uint64_t>(tet.kuhn);
+    const double when = t / tau_;
+    const double begin = std::floor(when), share = when - begin;
+    const Point flux = (1 - share) * draw(place, begin) + share * draw(place, begin + 1);
+    const Point normal = cut_normal(space.mesh, tet);
+    return -std::sqrt(2 * kT_ / tau_) / space.h() * scaled_gradients(tet.kuhn) *
+           (flux - flux.dot(normal) * normal);
+  }
+
+  Point draw(std::uint64_t place, double when) const {
+    const auto stream = static_cast<std::uint64_t>(when) + 1000;
+    const auto first = normal_pair(seed_, stream, 2 * place);
+    const auto second = normal_pair(seed_, stream, 2 * place + 1);
+    return {first[0], first[1], second[0]};
+  }
+
+  void add_flux(const SurfaceSpace& space, std::size_t e, double weight, double t, VecRef r) const {
+    const Eigen::Vector4d flux = element_flux(space, e, t);
+    for (int i = 0; i < 4; ++i)
+      if (const int node = space.elements[e].node[i]; space.mesh.owns(node))
+        r[node] += weight * flux[i];
+  }
+
+  double kT_, tau_;
+  std::uint64_t seed_;
+  MobilityPtr law_;
+};
+
+}  // namespace
+
+EffectEntry thermal_effect() {
+  return {"thermal",
+          "thermal fluctuations of the flux (Cook's noise)",
+          {{"strength", "", 0, 0, 1, "kT, in units of the energy density times R^2"},
+           {"time", "s", 1e-3, 1e-12, 1e9, "between draws; steps have to be shorter"},
+           {"seed", "", 1, 0, 1e9, "of the draws", true}},
+          MassClass::conserves,
+          EnergyClass::active,
+          "differences between vesicles that grow with time",
+          {},
+          [](const Parameters& p, CahnHilliardModel& model) {
+            model.effects.push_back(std::make_shared<ThermalNoise>(
+                p["strength"], p["time"], static_cast<std::uint64_t>(p["seed"]), model.mobility));
+          }};
+}
+
+}  // namespace traceraft

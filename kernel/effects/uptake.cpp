@@ -1,0 +1,24 @@
+#include "kernel/effects/effects.hpp"
+#include "kernel/effects/local_density.hpp"
+
+namespace traceraft {
+
+// Raft lipids that come in where there is no raft: ċ = … + s (1 − c).
+EffectEntry uptake_effect() {
+  return {"uptake",
+          "raft lipids taken up outside rafts",
+          {{"rate", "1/s", 0, -1e12, 1e12, "s; negative: lost there"}},
+          MassClass::drifts,
+          EnergyClass::active,
+          "drift of the raft fraction",
+          {"cooling"},
+          [](const Parameters& p, CahnHilliardModel& model) {
+            const double s = p["rate"];
+            model.effects.push_back(
+                local_density({"uptake", Slot::source, false, false, [s](const DensityPoint& at) {
+                                 return DensityValue{-s * (1 - at.c), s};
+                               }}));
+          }};
+}
+
+}  // namespace traceraft

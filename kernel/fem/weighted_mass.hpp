@@ -1,0 +1,84 @@
+// Mass matrices with a weight that varies: ∫ w φ_i φ_j.
+#pragma once
+
+#include "kernel/fem/surface_space.hpp"
+#include "kernel/fem/triangle_rule.hpp"
+
+namespace traceraft {
+
+namespace detail {
+
+// λ_a λ_b times the weight at every point of the rule, for the six pairs of corners.
+inline constexpr int kPairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
+inline constexpr auto kPairWeights = [] {
+  std::array<std::array<double, 6>, kDegreeFourRule.size()> table{};
+  for (std::size_t p = 0; p < table.size(); ++p)
+    for (int k = 0; k < 6; ++k)
+      table[p][k] = kDegreeFourRule[p].weight * kDegreeFourRule[p].at[kPairs[k][0]] *
+                    kDegreeFourRule[p].at[kPairs[k][1]];
+  return table;
+}();
+
+// ∫ w λ_a λ_b between the corners of a triangle.
+template <class Weight>
+std::array<std::array<double, 3>, 3> weighted_triangle(double area, int triangle,
+                                                       const Weight& weight) {
+  std::array<double, 6> sum{};
+  for (std::size_t p = 0; p < kDegreeFourRule.size(); ++p) {
+    const double w = area * weight(triangle, p);
+    for (int k = 0; k < 6; ++k) sum[k] += w * kPairWeights[p][k];
+  }
+  return {{{sum[0], sum[3], sum[5]}, {sum[3], sum[1], sum[4]}, {sum[5], sum[4], sum[2]}}};
+}
+
+template <class Weight>
+Eigen::Matrix4d weighted_element(const SurfaceSpace& space, const CutElement& element,
+                                 double factor, const Weight& weight) {
+  Eigen::Matrix4d local = Eigen::Matrix4d::Zero();
+  for (int t = 0; t < element.triangles(); ++t) {
+    const int triangle = element.first_triangle + t;
+    const auto mass =
+        weighted_triangle(factor * space.surface.triangle_area[triangle], triangle, weight);
+    std::array<int, 2> node[3];      // at the ends of the corner's edge,
+    std::array<double, 2> share[3];  // and their traces at the corner
+    for (int k = 0; k < 3; ++k) {
+      node[k] = kTetEdges[element.cut_edge[kPolygonTriangles[t][k]]];
+      const double s = space.surface.points[space.surface.triangles[triangle][k]].s;
+      share[k] = {1 - s, s};
+    }
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b)
+        for (int i = 0; i < 2; ++i)
+          for (int j = 0; j < 2; ++j)
+            local(node[a][i], node[b][j]) += share[a][i] * mass[a][b] * share[b][j];
+  }
+  return local;
+}
+
+}  // namespace detail
+
+// The value at a point of the rule of a function that is linear on a triangle.
+inline double between_corners(const std::array<double, 3>& corner,
+                              const std::array<double, 3>& at) {
+  return at[0] * corner[0] + at[1] * corner[1] + at[2] * corner[2];
+}
+
+inline std::array<double, 3> corner_values(const SurfaceSpace& space, int triangle,
+                                           const Vec& point_value) {
+  const auto& [i, j, k] = space.surface.triangles[triangle];
+  return {point_value[i], point_value[j], point_value[k]};
+}
+
+// matrix += factor · ∫ w φ_i φ_j with w = weight(triangle, point of kDegreeFourRule).
+template <class Weight>
+void add_weighted_mass(const SurfaceSpace& space, double factor, const Weight& weight,
+                       CsrMatrix& matrix) {
+  add_element_matrices(
+      space,
+      [&](const CutElement& element, int) -> Eigen::Matrix4d {
+        return detail::weighted_element(space, element, factor, weight);
+      },
+      matrix);
+}
+
+}  // namespace traceraft

@@ -1,0 +1,192 @@
+// What every effect promises (kernel/problem/effect.hpp, kernel/effects/effects.hpp).
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "kernel/effects/effects.hpp"
+#include "tests/support/spaces.hpp"
+
+namespace traceraft {
+namespace {
+
+using testing::make_model;
+using testing::make_space;
+using testing::random_state;
+using testing::random_vector;
+
+constexpr Units kScaled{1, 1, true};
+constexpr double kTime = 0.37;
+
+// Strong enough to be seen beside the base model.
+const std::map<std::string, std::string> kStrong = {
+    {"allen-cahn", "rate=0.7"},
+    {"asymmetry", "strength=0.1"},
+    {"bulk-mobility", "strength=0.4"},
+    {"cooling", "rate=3,out=0.2,in=0.1,activation=0.3"},
+    {"curvature", "strength=0.8"},
+    {"exchange", "rate=0.9,target=0.3"},
+    {"gravity", "strength=0.6"},
+    {"line-tension", "excess=0.7"},
+    {"mobility-contrast", "strength=0.8"},
+    {"mobility-exponent", "excess=0.6"},
+    {"ohta-kawasaki", "strength=2,range=0.7"},
+    {"rotation", "rate=1.3,x=1,y=-1,z=0.5"},
+    {"thermal", "strength=0.01,time=0.1,seed=3"},
+    {"uptake", "rate=0.6"}};
+
+class EffectContract : public ::testing::TestWithParam<std::string> {
+ protected:
+  EffectContract() : space(make_space(12, "ellipsoid:a=1.1,b=1,c=0.8")), base(space, make_model()) {
+    CahnHilliardModel model = make_model();
+    add_effects(GetParam() + ":" + kStrong.at(GetParam()), kScaled, model);
+    problem = std::make_unique<CahnHilliard>(space, model);
+  }
+  const EffectEntry& entry() const { return effects().find(GetParam()); }
+
+  std::shared_ptr<const SurfaceSpace> space;
+  CahnHilliard base;
+  std::unique_ptr<CahnHilliard> problem;
+};
+
+TEST_P(EffectContract, IsSeenInTheResidual) {
+  const Vec y = random_state(*problem, 1), ydot = random_vector(problem->size(), 2);
+  Vec with(problem->size()), without(problem->size());
+  ASSERT_TRUE(problem->residual(kTime, y, ydot, with).ok());
+  ASSERT_TRUE(base.residual(kTime, y, ydot, without).ok());
+  EXPECT_GT((with - without).norm(), 1e-4 * without.norm());
+}
+
+TEST_P(EffectContract, TangentIsTheDerivativeOfTheResidual) {
+  const double shift = 2.1, step = 1e-6;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    // Within the wells, and not too near: powers have large derivatives there.
+    Vec y = random_state(*problem, seed);
+    y.head(problem->block_size()) = random_vector(problem->block_size(), seed, 0.1, 0.9);
+    const Vec ydot = random_vector(problem->size(), seed + 50),
+              v = random_vector(problem->size(), seed + 90);
+    const auto residual_at = [&](double s) {
+      Vec r(problem->size());
+      EXPECT_TRUE(problem->residual(kTime, y + s * v, ydot + s * shift * v, r).ok());
+      return r;
+    };
+    Vec product(problem->size());
+    ASSERT_TRUE(problem->jacobian_product(kTime, y, ydot, shift, Tangent::exact, v, product).ok());
+    const Vec difference = (residual_at(step) - residual_at(-step)) / (2 * step);
+    EXPECT_LT((product - difference).norm(), 2e-6 * product.norm()) << "seed " << seed;
+  }
+}
+
+TEST_P(EffectContract, AssembledTangentIsAllOfItIfItSaysSo) {
+  const Vec y = random_state(*problem, 7), ydot = random_vector(problem->size(), 8),
+            v = random_vector(problem->size(), 9);
+  BlockJacobian J = problem->make_jacobian();
+  ASSERT_TRUE(problem->jacobian(kTime, y, ydot, 1.3, Tangent::exact, J).ok());
+  Vec assembled(problem->size()), direct(problem->size());
+  J.multiply(v, assembled, *space->team);
+  ASSERT_TRUE(problem->jacobian_product(kTime, y, ydot, 1.3, Tangent::exact, v, direct).ok());
+  bool all = true;
+  for (const EffectPtr& effect : problem->model().effects)
+    all = all && effect->tangent_is_assembled();
+  EXPECT_EQ((assembled - direct).norm() < 1e-12 * direct.norm(), all);
+}
+
+TEST_P(EffectContract, StabilisedTangentAndItsProductAreOne) {
+  const Vec y = random_state(*problem, 7), ydot = random_vector(problem->size(), 8),
+            v = random_vector(problem->size(), 9);
+  BlockJacobian J = problem->make_jacobian();
+  ASSERT_TRUE(problem->jacobian(kTime, y, ydot, 1.3, Tangent::stabilised, J).ok());
+  Vec assembled(problem->size()), direct(problem->size());
+  J.multiply(v, assembled, *space->team);
+  ASSERT_TRUE(problem->jacobian_product(kTime, y, ydot, 1.3, Tangent::stabilised, v, direct).ok());
+  EXPECT_LT((assembled - direct).norm(), 1e-12 * direct.norm());
+}
+
+TEST_P(EffectContract, KeepsMassExactlyIfItSaysSo) {
+  EXPECT_EQ(problem->conserves_mass(), entry().mass == MassClass::conserves);
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Vec y = random_state(*problem, seed);
+    Vec r(problem->size());
+    ASSERT_TRUE(problem->residual(kTime, y, Vec::Zero(problem->size()), r).ok());
+    const auto first = r.head(problem->block_size());
+    EXPECT_EQ(std::fabs(first.sum()) < 1e-14 * first.cwiseAbs().sum(), problem->conserves_mass());
+  }
+}
+
+// dE/dt along ċ from a consistent state is minus the dissipation μᵀ F1(μ, ċ = 0), which is not
+// negative.
+TEST_P(EffectContract, DissipatesEnergyIfItSaysSo) {
+  EXPECT_EQ(problem->dissipates_energy(), entry().energy == EnergyClass::dissipates);
+  if (!problem->dissipates_energy()) return;
+  const int n = problem->block_size();
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    Vec y = random_state(*problem, seed), ydot(problem->size()), flux(2 * n);
+    ASSERT_TRUE(problem->consistent_initial_state(0, y, ydot).ok());
+    ASSERT_TRUE(problem->residual(0, y, Vec::Zero(2 * n), flux).ok());
+    const double dissipation = y.tail(n).dot(flux.head(n));
+    EXPECT_GE(dissipation, 0);
+    const double step = 1e-7 * y.head(n).norm() / ydot.head(n).norm();
+    const Vec forth = y + step * ydot, back = y - step * ydot;
+    const double rate = (problem->energy(forth) - problem->energy(back)) / (2 * step);
+    EXPECT_NEAR(rate / dissipation, -1, 1e-3);
+  }
+}
+
+std::vector<std::string> strong_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : kStrong) names.push_back(entry.first);
+  return names;
+}
+INSTANTIATE_TEST_SUITE_P(All, EffectContract, ::testing::ValuesIn(strong_names()),
+                         [](const auto& info) {
+                           std::string name = info.param;
+                           for (char& ch : name)
+                             if (ch == '-') ch = '_';
+                           return name;
+                         });
+
+TEST(Effects, AllAreTestedAndNameEachOther) {
+  EXPECT_EQ(effects().names(), strong_names());
+  for (const EffectEntry& entry : effects()) {
+    EXPECT_EQ(entry.parameters.front().default_value, 0) << entry.name;
+    for (const std::string& other : entry.confused_with)
+      if (other != "flow") {  // of which only the interface is there: advection.hpp
+        EXPECT_NO_THROW((void)effects().find(other)) << entry.name;
+      }
+  }
+}
+
+TEST(Effects, SayWhatIsWrong) {
+  CahnHilliardModel model = make_model();
+  const auto complaint = [&](const std::string& text) -> std::string {
+    try {
+      add_effects(text, kScaled, model);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(complaint("exchang:rate=1").find("did you mean 'exchange'"), std::string::npos);
+  EXPECT_NE(complaint("exchange:rat=1").find("rate"), std::string::npos);
+  EXPECT_NE(complaint("exchange:rate=-1").find("out of range"), std::string::npos);
+  EXPECT_NE(complaint("exchange").find("exchange:rate=..."), std::string::npos);
+  EXPECT_NE(complaint("rotation:rate=1,x=0,y=0,z=0").find("axis"), std::string::npos);
+  EXPECT_EQ(complaint(" ; gravity:strength=1 ;exchange:rate=1"), "");
+  EXPECT_EQ(model.effects.size(), 2u);
+}
+
+TEST(Effects, TakeTheirParametersInPhysicalUnits) {
+  const Units units{5, 1e-5, false};  // R²/D = 0.025 s
+  CahnHilliardModel physical = make_model(), scaled = make_model();
+  add_effects("exchange:rate=40; ohta-kawasaki:strength=1,range=2.5", units, physical);
+  add_effects("exchange:rate=1; ohta-kawasaki:strength=1,range=0.5", kScaled, scaled);
+  const auto space = make_space(10);
+  const CahnHilliard one(space, physical), other(space, scaled);
+  const Vec y = random_state(one, 4), ydot = random_vector(one.size(), 5);
+  Vec r(one.size()), s(one.size());
+  ASSERT_TRUE(one.residual(0, y, ydot, r).ok());
+  ASSERT_TRUE(other.residual(0, y, ydot, s).ok());
+  EXPECT_LT((r - s).norm(), 1e-12 * s.norm());
+}
+
+}  // namespace
+}  // namespace traceraft

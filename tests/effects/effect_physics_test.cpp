@@ -1,0 +1,176 @@
+// What effects do, against exact answers.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "kernel/effects/effects.hpp"
+#include "tests/support/spaces.hpp"
+
+namespace traceraft {
+namespace {
+
+using testing::make_model;
+using testing::make_space;
+using testing::random_state;
+using testing::random_vector;
+
+constexpr Units kScaled{1, 1, true};
+
+// F with the effect minus F without it.
+Vec contribution(const std::shared_ptr<const SurfaceSpace>& space, const std::string& effect,
+                 const Vec& y, double t = 0) {
+  CahnHilliardModel model = make_model();
+  const CahnHilliard base(space, model);
+  add_effects(effect, kScaled, model);
+  const CahnHilliard problem(space, model);
+  const Vec still = Vec::Zero(y.size());
+  Vec with(y.size()), without(y.size());
+  EXPECT_TRUE(problem.residual(t, y, still, with).ok());
+  EXPECT_TRUE(base.residual(t, y, still, without).ok());
+  return with - without;
+}
+
+class EffectPhysics : public ::testing::Test {
+ protected:
+  EffectPhysics()
+      : space(make_space(16)), n(space->nodes()), y(random_vector(2 * n, 3, 0.1, 0.9)) {}
+  double mean_rate(const std::string& effect, double t = 0) const {
+    return -contribution(space, effect, y, t).head(n).sum();
+  }
+  // A nodal field.
+  template <class Function>
+  Vec nodal(const Function& f) const {
+    Vec values(n);
+    for (int i = 0; i < n; ++i) values[i] = f(space->mesh.position(i));
+    return values;
+  }
+  const std::shared_ptr<const SurfaceSpace> space;
+  const int n;
+  Vec y;
+};
+
+TEST_F(EffectPhysics, SourcesChangeTheMassAsTheySay) {
+  const double mass = space->integral(y.head(n)), area = space->area;
+  EXPECT_NEAR(mean_rate("exchange:rate=2,target=0.3"), -2 * (mass - 0.3 * area), 1e-10);
+  EXPECT_NEAR(mean_rate("uptake:rate=2"), 2 * (area - mass), 1e-10);
+  EXPECT_NEAR(mean_rate("allen-cahn:rate=2"), -2 * space->integral(y.tail(n)), 1e-10);
+  EXPECT_NEAR(mean_rate("cooling:rate=2,out=0.1,in=0.05,activation=0"),
+              2 * (0.1 * (area - mass) - 0.05 * mass), 1e-10);
+}
+
+TEST_F(EffectPhysics, CoolingSlowsDiffusionDown) {
+  const CahnHilliard base(space, make_model());
+  Vec flux(2 * n);
+  ASSERT_TRUE(base.residual(0, y, Vec::Zero(2 * n), flux).ok());
+  space->normal.multiply_add(-space->h(), y.tail(n), flux.head(n), *space->team);
+  const Vec change =
+      contribution(space, "cooling:rate=1,out=0,in=0,activation=0.5", y, std::log(4.0));
+  EXPECT_LT((change.head(n) + 0.5 * flux.head(n)).norm(), 1e-12 * flux.head(n).norm());
+}
+
+TEST_F(EffectPhysics, RotationTurnsFieldsAround) {
+  // d/dt ∫ c y = ω ∫ c x about the z axis, but for the part of ω × x across the flat triangles.
+  const double tolerance = space->h() * space->h() * 0.05;
+  const Vec change = contribution(space, "rotation:rate=1.5", y);
+  const Vec x = nodal([](const Point&p) { return p[0]; }),
+            other = nodal([](const Point&p) { return p[1]; });
+  EXPECT_NEAR(-change.head(n).dot(other), 1.5 * space->inner(y.head(n), x), tolerance);
+  EXPECT_NEAR(-change.head(n).dot(x), -1.5 * space->inner(y.head(n), other), tolerance);
+}
+
+TEST_F(EffectPhysics, GravityPullsAlongZ) {
+  const Vec change = contribution(space, "gravity:strength=3", y);
+  const Vec z = nodal([](const Point& p) { return p[2]; });
+  EXPECT_NEAR(change.tail(n).dot(z), -3 * space->inner(z, z), 1e-10);
+}
+
+TEST_F(EffectPhysics, OhtaKawasakiSolvesItsEquation) {
+  // c = z: φ = z/(κ² + 2).
+  const auto fine = make_space(48);
+  const int nodes = fine->nodes();
+  Vec state = Vec::Zero(2 * nodes), z(nodes);
+  for (int i = 0; i < nodes; ++i) z[i] = fine->mesh.position(i).normalized()[2];
+  state.head(nodes) = z.array() + 0.4;
+  const Vec change = contribution(fine, "ohta-kawasaki:strength=3,range=0.5", state);
+  EXPECT_NEAR(change.tail(nodes).dot(z) / (-3 * fine->inner(z, z) / (4 + 2)), 1, 2e-3);
+}
+
+TEST_F(EffectPhysics, CurvatureIsThatOfTheSurface) {
+  // Of an ellipsoid of revolution with half axes 1 and c: H = (1 + c²)/(2 c) · … = at the poles
+  // c (both principal curvatures are c/1), at the equator (1 + 1/c²)/2.
+  const double c = 0.7;
+  const auto ellipsoid = make_space(64, "ellipsoid:a=1,b=1,c=0.7");
+  const int nodes = ellipsoid->nodes();
+  const Vec change =
+      contribution(ellipsoid, "curvature:strength=1", Vec::Zero(2 * nodes)).tail(nodes);
+  Vec curvature(nodes);
+  ASSERT_TRUE(ellipsoid->solve_mass(change, curvature).ok());
+  double pole = 0, equator = 0;
+  int at_pole = 0, at_equator = 0;
+  for (int i = 0; i < nodes; ++i) {
+    const Point x = ellipsoid->mesh.position(i);
+    if (std::hypot(x[0], x[1]) < 0.15) pole += curvature[i], ++at_pole;
+    if (std::fabs(x[2]) < 0.08) equator += curvature[i], ++at_equator;
+  }
+  EXPECT_NEAR(pole / at_pole, c, 0.03);
+  EXPECT_NEAR(equator / at_equator, 0.5 * (1 + 1 / (c * c)), 0.05);
+}
+
+TEST_F(EffectPhysics, MobilitiesAreTheLawsTheySay) {
+  const double c[3] = {0.2, 0.5, 0.9};
+  double value[3], derivative[3];
+  CahnHilliardModel model = make_model();
+  add_effects("mobility-contrast:strength=0.4", kScaled, model);
+  model.mobility->evaluate(c, 3, value, derivative);
+  for (int i = 0; i < 3; ++i)
+    EXPECT_NEAR(value[i], c[i] * (1 - c[i]) * (1 + 0.4 * (2 * c[i] - 1)), 1e-14);
+  model = make_model();
+  add_effects("mobility-exponent:excess=0.5", kScaled, model);
+  model.mobility->evaluate(c, 3, value, derivative);
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(value[i], 2 * std::pow(c[i] * (1 - c[i]), 1.5), 1e-14);
+  // A constant added to a constant law is that of a larger one.
+  CahnHilliardModel sum = make_model("constant:value=0.2"),
+                    whole = make_model("constant:value=0.5");
+  add_effects("bulk-mobility:strength=0.3", kScaled, sum);
+  const CahnHilliard one(space, sum), other(space, whole);
+  Vec r(2 * n), s(2 * n);
+  ASSERT_TRUE(one.residual(0, y, Vec::Zero(2 * n), r).ok());
+  ASSERT_TRUE(other.residual(0, y, Vec::Zero(2 * n), s).ok());
+  const Vec mu = y.tail(n);
+  Vec stabilisation = Vec::Zero(n);  // which knows the scale of the law
+  space->normal.multiply_add((whole.mobility->scale() - sum.mobility->scale()) * space->h(), mu,
+                             stabilisation, *space->team);
+  EXPECT_LT((s.head(n) - r.head(n) - stabilisation).norm(), 1e-12 * s.norm());
+}
+
+TEST_F(EffectPhysics, LineTensionIsThatOfALargerEpsilon) {
+  CahnHilliardModel model = make_model();
+  add_effects("line-tension:excess=0.44", kScaled, model);
+  EXPECT_DOUBLE_EQ(model.epsilon, 1.2 * make_model().epsilon);
+}
+
+// Fluctuation and dissipation: along any v the noise has the variance 2 kT vᵀ K_M v/τ at the times
+// at which it is drawn, and none of the mean.
+TEST_F(EffectPhysics, ThermalNoiseHasTheVarianceOfItsDissipation) {
+  const Vec v = nodal([](const Point& p) { return p[0] * p[1] + 0.3 * p[2]; });
+  Vec flux = y;
+  flux.tail(n) = v;
+  const CahnHilliard base(space, make_model());
+  Vec response(2 * n);
+  ASSERT_TRUE(base.residual(0, flux, Vec::Zero(2 * n), response).ok());
+  space->normal.multiply_add(-space->h(), v, response.head(n), *space->team);
+  const double expected = 2 * 0.01 * v.dot(response.head(n)) / 0.25;
+  double sum = 0, squares = 0;
+  constexpr int kDraws = 400;
+  for (int k = 0; k < kDraws; ++k) {
+    const double noise =
+        contribution(space, "thermal:strength=0.01,time=0.25,seed=9", y, 0.25 * k).head(n).dot(v);
+    sum += noise;
+    squares += noise * noise;
+  }
+  EXPECT_NEAR(squares / kDraws / expected, 1, 4 * std::sqrt(2.0 / kDraws));
+  EXPECT_LT(std::fabs(sum / kDraws), 4 * std::sqrt(expected / kDraws));
+}
+
+}  // namespace
+}  // namespace traceraft
