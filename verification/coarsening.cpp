@@ -118,8 +118,8 @@ StudyReport run(const Bench& bench) {
   if (bench.quick()) {
     measure_equal(bench, {64, 0.04, 8}, 0.06, findings);
   } else {
-    measure_equal(bench, {192, 0.0133, 6, {0, 0.9}}, 0.03, findings);
-    measure_degenerate(bench, {128, 0.02, 4, {0.9, 1}}, findings);
+    measure_equal(bench, {192, 0.0133, 6, {0, 0.7}}, 0.03, findings);
+    measure_degenerate(bench, {160, 0.016, 4, {0.7, 1}}, findings);
   }
   return finished_report(findings,
                          formatted("windows of t + offset begin where it is %.0f widths of a "

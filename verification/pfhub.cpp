@@ -199,13 +199,13 @@ StudyReport measure(const Bench& bench) {
   const Simulation run = simulate(bench, 160, 1e6, 1e-3);
   add_energies(run, report);
   report.notes.push_back(
-      "Which rafts survive late is decided by small differences early: the path between t = 1e3 "
-      "and the end is the least certain part of any run, and no more is claimed of it than that.");
+      formatted("Which rafts survive late is decided by small differences early. Between t = 3e3 "
+                "and 3e5 the largest difference is %.0f %%: on this mesh rafts merge at other "
+                "times. Nothing is claimed of it here; pfhub-fine does, on a finer mesh.",
+                100 * largest_difference(run, &Sample::discrete, 2e3, 5e5)));
   measure_convergence(bench, run, report);
   report.claims.push_back(claim_at_most("t = 0.1 to 1e3: largest relative difference",
                                         largest_difference(run, &Sample::discrete, 0, 1e3), 0.03));
-  report.claims.push_back(claim_at_most("t = 3e3 to 3e5: largest relative difference",
-                                        largest_difference(run, &Sample::discrete, 2e3, 5e5), 0.2));
   report.claims.push_back(claim_at_most("t = 1e6: relative difference, recovered",
                                         largest_difference(run, &Sample::recovered, 1e6, 1e6),
                                         0.005));
