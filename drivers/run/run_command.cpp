@@ -11,6 +11,7 @@
 #include "drivers/run/progress.hpp"
 #include "drivers/run/run_outputs.hpp"
 #include "drivers/run/summary.hpp"
+#include "kernel/core/error.hpp"
 
 namespace traceraft {
 namespace {
@@ -117,6 +118,8 @@ int run(const RunRequest& request) {
 }
 
 int resume(const ResumeRequest& request) {
+  if (request.folder.empty())
+    throw InputError("resume: needs the run folder, as in: traceraft resume runs/guv-2to1-1");
   const std::shared_ptr<const Communicator> ranks = world();
   const RunFolder folder = shared_folder(*ranks, [&] { return open_run_folder(request.folder); });
   const Configuration configuration(read_config_file(folder.config()), request.flags);
@@ -152,7 +155,7 @@ Action define_run(CLI::App& app) {
 
 Action define_resume(CLI::App& app) {
   const auto request = std::make_shared<ResumeRequest>();
-  app.add_option("folder", request->folder, "run folder")->required();
+  app.add_option("folder", request->folder, "run folder");
   app.add_flag("--quiet", request->quiet, "print nothing but errors");
   add_options(app, request->flags, [](const OptionSpec& spec) { return !spec.numerical; });
   return [request] { return resume(*request); };
