@@ -20,7 +20,7 @@ enum class Ranks { one, several, starts_them };
 
 struct Command {
   std::string name, summary;
-  Ranks ranks;  // what it works on; one that starts ranks itself is not to run below mpirun
+  Ranks ranks;  // what it works on; one that starts processes of MPI itself is not to run below mpirun
   // Adds its flags to the parser, and says what to do once they have been read.
   std::function<Action(CLI::App&)> define;
 };

@@ -46,7 +46,7 @@ void refuse_ranks(const Command& command) {
     throw InputError("only run and resume work on several ranks; start " + command.name +
                      " without mpirun");
   if (command.ranks == Ranks::starts_them && RankSession::there_is())
-    throw InputError(command.name + " starts ranks itself; start it without mpirun");
+    throw InputError(command.name + " starts processes itself; start it without mpirun");
 }
 
 int dispatch(int argc, char** argv) {

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -13,10 +14,12 @@
 #include "drivers/config/option_flags.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/run/run_folder.hpp"
+#include "drivers/run/run_setup.hpp"
 #include "drivers/vesicles/dataset.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
+#include "kernel/effects/effects.hpp"
 
 namespace traceraft {
 namespace {
@@ -42,6 +45,8 @@ std::vector<std::string> costly_parameters(const std::string& text) {
     (void)calibrated_options().find(name);
     if (name == "mobility")
       mobility = true;
+    else if (std::find(names.begin(), names.end(), name) != names.end())
+      throw InputError("--parameters: " + name + " is there twice");
     else
       names.push_back(name);
   }
@@ -135,6 +140,22 @@ void remember(const fs::path& out, const CalibrateRequest& request, const Config
   write_durably(file, identity);
 }
 
+// D shifts the axis of time only if nothing else in the model has a unit of time, and seeds only
+// differ if there is noise.
+void refuse_model(const Configuration& model) {
+  const std::string effect = model.text("effect");
+  for (const EffectEntry& entry : effects())
+    for (const ParameterSpec& parameter : entry.parameters)
+      if ((parameter.unit == "1/s" || parameter.unit == "s") &&
+          effect.find(entry.name + ":") != std::string::npos)
+        throw InputError(model.where("effect") + ": " + entry.name +
+                         " has a time of its own, so that D is more than a unit of time; it cannot "
+                         "be calibrated");
+  if (model.text("initial").compare(0, 5, "noise") != 0)
+    throw InputError(model.where("initial") + ": vesicles differ in the noise they start from");
+  (void)build_run(model, InitialState::build);
+}
+
 int run_calibration(const CalibrateRequest& request) {
   catch_stop_signals();
   if (request.data.empty()) throw InputError("--data: say which measurements to calibrate with");
@@ -143,6 +164,7 @@ int run_calibration(const CalibrateRequest& request) {
   const Configuration model(read_config_file(request.model), request.flags);
   if (model.flag("scaled"))
     throw InputError(model.where("scaled") + ": measurements are in seconds and micrometres");
+  refuse_model(model);
   const fs::path out = request.out.empty() ? first_free_folder("calibration") : request.out;
   fs::create_directories(out / "points");
   const FolderLock lock(out);
@@ -184,7 +206,8 @@ Action define(CLI::App& app) {
 }  // namespace
 
 Command calibrate_command() {
-  return {"calibrate", "find parameters of the model from measurements", Ranks::one, define};
+  return {"calibrate", "find parameters of the model from measurements", Ranks::starts_them,
+          define};
 }
 
 }  // namespace traceraft

@@ -129,7 +129,7 @@ void write_calibration(const std::filesystem::path& folder, const MeasuredVesicl
   const Table table = points_table(model, names, points, result);
   write_durably(folder / "calibration.csv", csv_text(table));
   write_durably(folder / "calibration.json", json_text(lines, result));
-  write_durably(folder / "model.toml", config_text(found_model(model, names, lines)));
+  write_durably(folder / "calibrated.toml", config_text(found_model(model, names, lines)));
   Page page("A model calibrated with measurements");
   page.paragraph(data.name + (data.synthetic ? " (SYNTHETIC, not measured)" : ""));
   page.table(rows);
@@ -149,7 +149,7 @@ void write_calibration(const std::filesystem::path& folder, const MeasuredVesicl
   std::printf("\n");
   print_rows(rows);
   std::printf("\n%s\n%s\n\nrun it with: traceraft run --config %s\nopen next: %s\n", best.c_str(),
-              scatter.c_str(), (folder / "model.toml").c_str(),
+              scatter.c_str(), (folder / "calibrated.toml").c_str(),
               (folder / "calibration.html").c_str());
 }
 

@@ -1,4 +1,4 @@
-// What a calibration found: a table, calibration.json, calibration.csv, model.toml and a page.
+// What a calibration found: a table, calibration.json, calibration.csv, calibrated.toml and a page.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace traceraft {
 
-// `names` of the parameters of the points. model.toml is the model with what was found.
+// `names` of the parameters of the points. calibrated.toml is the model with what was found.
 void write_calibration(const std::filesystem::path& folder, const MeasuredVesicles& data,
                        const Configuration& model, const std::vector<std::string>& names,
                        const std::vector<CalibrationPoint>& points, const Calibration& result,

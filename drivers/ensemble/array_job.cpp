@@ -26,7 +26,7 @@ std::string array_job_script(const EnsembleFolder& folder, const EnsemblePlan& p
          "#SBATCH --cpus-per-task=2\n"
          "#SBATCH --mem=4G\n"
          "#SBATCH --time=04:00:00\n"
-         "#SBATCH --signal=TERM@60\n"
+         "#SBATCH --signal=B:TERM@60\n"
          "# A task that is stopped or killed goes on where it was when it is submitted again.\n"
          "# When all are done: " +
          program +

@@ -183,8 +183,8 @@ Action define(CLI::App& app) {
 }  // namespace
 
 Command ensemble_command() {
-  return {"ensemble", "run one case from many seeds, and gather what is common to them", Ranks::one,
-          define};
+  return {"ensemble", "run one case from many seeds, and gather what is common to them",
+          Ranks::starts_them, define};
 }
 
 }  // namespace traceraft

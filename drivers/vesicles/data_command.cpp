@@ -46,7 +46,8 @@ int compare(const DataRequest& request) {
 // Refuses to write over data.
 int draw(const DataRequest& request) {
   if (request.facts.empty()) throw InputError("--facts: say from which published facts to draw");
-  if (fs::exists(fs::path(request.folder) / "dataset.toml"))
+  const fs::path folder = request.folder;
+  if (fs::exists(folder / "dataset.toml") || fs::exists(folder / "measurements.csv"))
     throw InputError(request.folder + " holds data already; choose another folder");
   const PublishedFacts facts = read_facts(request.facts);
   const auto seed = static_cast<std::uint64_t>(request.seed);

@@ -7,7 +7,7 @@ namespace traceraft {
 EffectEntry asymmetry_effect() {
   return {"asymmetry",
           "a free energy that is steeper on the side of the rafts",
-          {{"strength", "", 0, -0.2, 0.2, "a of a c^2 (1-c)^2 (2c-1)"}},
+          {{"strength", "", 0, -0.1, 0.1, "a of a c^2 (1-c)^2 (2c-1)"}},
           MassClass::conserves,
           EnergyClass::dissipates,
           "contents of the phases",

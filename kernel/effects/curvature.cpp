@@ -7,24 +7,45 @@
 namespace traceraft {
 namespace {
 
+// ∫ n_k φ_i of a component of the discrete outward normal, for owned nodes.
+Vec normal_load(const SurfaceSpace& space, int axis) {
+  Vec load = Vec::Zero(space.nodes());
+  for (std::size_t e = 0; e < space.elements.size(); ++e) {
+    const CutElement& element = space.elements[e];
+    const Point normal = cut_normal(space.mesh, space.mesh.tets[e]);
+    const Eigen::Matrix4d traces = trace_matrix(space.surface, element);
+    for (int t = 0; t < element.triangles(); ++t) {
+      const double share = space.surface.triangle_area[element.first_triangle + t] / 3;
+      for (const int corner : kPolygonTriangles[t])
+        for (int i = 0; i < 4; ++i)
+          if (const int node = element.node[i]; space.mesh.owns(node))
+            load[node] += share * normal[axis] * traces(corner, i);
+    }
+  }
+  return load;
+}
+
 // The mean curvature H = (κ₁ + κ₂)/2 at the nodes, 1 on the unit sphere, from −Δ_Γ x = 2 H n:
-// ∫ (2 H n) v = ∫ ∇_Γ x·∇_Γ v, with n the direction of the left-hand side's own solution.
+// ∫ (2 H n) v = ∫ ∇_Γ x·∇_Γ v, along the projected normal.
 Vec mean_curvature(const SurfaceSpace& space) {
   const int n = space.nodes();
-  Vec squares = Vec::Zero(n), x(n), load(n), component(n), buffer, sign = Vec::Zero(n);
+  Vec curvature = Vec::Zero(n), x(n), load(n), vector(n), normal(n), buffer;
+  Vec squares = Vec::Zero(n);
+  const auto solve = [&](const Vec& right, Vec& solution) {
+    if (const Status status = space.solve_mass(right, solution); !status.ok())
+      throw std::runtime_error("the curvature of the surface: " + status.why);
+  };
   for (int axis = 0; axis < 3; ++axis) {
     for (int i = 0; i < n; ++i) x[i] = space.mesh.position(i)[axis];
     load.setZero();
     space.stiffness.multiply_add(1, space.with_ghosts(x, buffer), load, *space.team);
-    if (const Status status = space.solve_mass(load, component); !status.ok())
-      throw std::runtime_error("the curvature of the surface: " + status.why);
-    squares += component.cwiseAbs2();
-    sign += component.cwiseProduct(x);  // outwards where it points away from the centre
+    solve(load, vector);
+    solve(normal_load(space, axis), normal);
+    curvature += 0.5 * vector.cwiseProduct(normal);
+    squares += normal.cwiseAbs2();
   }
-  Vec curvature = 0.5 * squares.cwiseSqrt();
-  for (int i = 0; i < n; ++i)
-    if (sign[i] < 0) curvature[i] = -curvature[i];
-  return curvature;
+  // The projected normal is not quite as long as one.
+  return curvature.cwiseQuotient(squares.cwiseSqrt().cwiseMax(0.1));
 }
 
 // Computed once, for the space that it is first asked for.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "kernel/effects/effects.hpp"
@@ -5,25 +6,21 @@
 namespace traceraft {
 namespace {
 
-// M(c) (4 c (1 − c))^δ: with M = c (1 − c) the exponent 1 + δ, with the same value at c = 1/2.
+// M(c) (4 |c (1 − c)|)^δ: with M = |c (1 − c)| the exponent 1 + δ, with the same value at c = 1/2,
+// and outside of [0, 1] likewise: curved boundaries push c out by some ε/R.
 class ExponentMobility final : public Mobility {
  public:
   ExponentMobility(MobilityPtr base, double more) : base_(std::move(base)), more_(more) {}
   void evaluate(const double* c, int count, double* value, double* derivative) const override {
     base_->evaluate(c, count, value, derivative);
     for (int i = 0; i < count; ++i) {
-      const double s = c[i] * (1 - c[i]);
-      if (!(s > kLeast)) {
-        // Continuous, and no power of what is not positive.
-        const double factor = std::pow(4 * kLeast, more_);
-        value[i] *= factor;
-        if (derivative) derivative[i] *= factor;
-        continue;
-      }
-      const double factor = std::pow(4 * s, more_), before = value[i];
+      const double s = c[i] * (1 - c[i]), size = std::fabs(s);
+      // Constant next to the wells, where negative powers grow without bound.
+      const double factor = std::pow(4 * std::max(size, kLeast), more_), before = value[i];
       value[i] *= factor;
-      if (derivative)
-        derivative[i] = derivative[i] * factor + before * more_ * factor / s * (1 - 2 * c[i]);
+      if (!derivative) continue;
+      derivative[i] *= factor;
+      if (size > kLeast) derivative[i] += before * more_ * factor / s * (1 - 2 * c[i]);
     }
   }
   double scale() const override { return base_->scale(); }

@@ -52,7 +52,7 @@ TEST_F(CalibrateTest, GoesFromFilesToFiles) {
   }
   EXPECT_EQ(lines_of(folder.path / "c/calibration.csv"), 10);
   // The model that was found can be run.
-  const Outcome valid = traceraft("run --validate --config " + out("c/model.toml"));
+  const Outcome valid = traceraft("run --validate --config " + out("c/calibrated.toml"));
   EXPECT_EQ(valid.code, 0) << valid.output;
   // Given again, nothing is simulated again, and the same comes out.
   const std::string before = content(folder.path / "c/calibration.json");

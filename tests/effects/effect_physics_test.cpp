@@ -116,6 +116,28 @@ TEST_F(EffectPhysics, CurvatureIsThatOfTheSurface) {
   EXPECT_NEAR(equator / at_equator, 0.5 * (1 + 1 / (c * c)), 0.05);
 }
 
+// H = (1/r + cos θ/(R + r cos θ))/2 on a torus, negative nowhere here, though its inner side points
+// to the centre.
+TEST_F(EffectPhysics, CurvatureOfATorusHasTheRightSign) {
+  const auto torus = make_space(64, "torus:major=1,minor=0.4");
+  const int nodes = torus->nodes();
+  const Vec change = contribution(torus, "curvature:strength=1", Vec::Zero(2 * nodes)).tail(nodes);
+  Vec curvature(nodes);
+  ASSERT_TRUE(torus->solve_mass(change, curvature).ok());
+  double inner = 0, outer = 0;
+  int at_inner = 0, at_outer = 0;
+  for (int i = 0; i < nodes; ++i) {
+    const Point x = torus->mesh.position(i);
+    if (std::fabs(x[2]) > 0.06) continue;
+    if (std::hypot(x[0], x[1]) < 1)
+      inner += curvature[i], ++at_inner;
+    else
+      outer += curvature[i], ++at_outer;
+  }
+  EXPECT_NEAR(inner / at_inner, 0.5 * (2.5 - 1 / 0.6), 0.08);
+  EXPECT_NEAR(outer / at_outer, 0.5 * (2.5 + 1 / 1.4), 0.08);
+}
+
 TEST_F(EffectPhysics, MobilitiesAreTheLawsTheySay) {
   const double c[3] = {0.2, 0.5, 0.9};
   double value[3], derivative[3];

@@ -13,6 +13,8 @@ bool relative(Quantity quantity) {
   return quantity != Quantity::fraction;
 }
 
+// Of a count or a perimeter whose logarithm is taken: there may be no raft.
+constexpr double kLeast = 0.5;
 // Rounding to whole rafts alone has this deviation.
 const double kRoundingDeviation = 1 / std::sqrt(12.0);
 
@@ -40,10 +42,10 @@ Agreement agreement(const MeasuredVesicles& data, const std::vector<History>& ru
         std::max(m.sigma_of(quantity), quantity == Quantity::rafts ? kRoundingDeviation : 0.0);
     double measured = y;
     if (relative(quantity)) {
-      if (!(y > 0)) continue;
-      sigma /= y;
-      measured = std::log(y);
-      for (double& value : values) value = std::log(std::max(value, 1e-3));
+      const double above_zero = std::max(y, kLeast);
+      sigma /= above_zero;
+      measured = std::log(above_zero);
+      for (double& value : values) value = std::log(std::max(value, kLeast));
     }
     const Moments runs_here = moments(values);
     const double deviation = std::hypot(runs_here.deviation, sigma);

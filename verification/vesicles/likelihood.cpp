@@ -35,15 +35,17 @@ double independent_share(double rafts) {
 
 // Least squares of variance = a + b x, with a, b ≥ 0.
 ScatterLaw fitted_scatter(const Points& points) {
-  const Line line = fit_line(points);
-  double mean_x = 0, mean_y = 0, xx = 0, xy = 0;
+  double mean_x = 0, mean_y = 0, xx = 0, xy = 0, spread = 0;
   for (const auto& [x, y] : points) {
     mean_x += x / static_cast<double>(points.size());
     mean_y += y / static_cast<double>(points.size());
     xx += x * x;
     xy += x * y;
   }
-  if (line.slope < 0 || mean_x == 0) return {mean_y, 0};
+  for (const auto& point : points) spread = std::max(spread, std::fabs(point.first - mean_x));
+  if (!(spread > 1e-9)) return {mean_y, 0};  // one number of rafts everywhere
+  const Line line = fit_line(points);
+  if (line.slope < 0) return {mean_y, 0};
   if (line.intercept < 0) return {0, xy / xx};
   return {line.intercept, line.slope};
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "backends/nlopt/minimise.hpp"
 
@@ -12,6 +13,7 @@ constexpr int kReplicates = 400;
 constexpr double kConfidence = 0.95;
 constexpr std::size_t kLeastPoints = 4;
 constexpr int kLeastVesicles = 3;
+constexpr double kLeastPerimeter = 1e-3;  // a run may have no raft for a moment
 
 // For a given t0 the rest is a line through logarithms.
 PowerLaw law_from(const Points& points, double t0) {
@@ -25,6 +27,13 @@ PowerLaw law_from(const Points& points, double t0) {
           std::sqrt(squares / static_cast<double>(points.size() - 3))};
 }
 
+// Four points at three different times at least: three parameters.
+bool enough(const Points& points) {
+  std::set<double> times;
+  for (const auto& point : points) times.insert(point.first);
+  return points.size() >= kLeastPoints && times.size() >= 3;
+}
+
 // The intervals of all three parameters from the same samples.
 template <class Sample>
 FittedLaw with_intervals(const Sample& points_of, int count) {
@@ -35,7 +44,7 @@ FittedLaw with_intervals(const Sample& points_of, int count) {
   const std::vector<Interval> intervals =
       bootstrap_all(count, kReplicates, kConfidence, 1, [&](const std::vector<int>& sample) {
         const Points drawn = points_of(sample);
-        const PowerLaw law = drawn.size() < kLeastPoints ? fitted.law : fit_power_law_from(drawn);
+        const PowerLaw law = enough(drawn) ? fit_power_law_from(drawn) : fitted.law;
         return std::vector<double>{law.c, law.t0, law.b};
       });
   fitted.c = intervals[0];
@@ -70,19 +79,18 @@ PowerLaw fit_power_law_from(const Points& points) {
 
 std::optional<FittedLaw> fit_measurements(const MeasuredVesicles& data, const Window& window) {
   std::vector<Points> vesicles;
-  std::size_t count = 0;
+  Points all;
   for (const auto& [begin, end] : data.vesicles()) {
     Points points;
     for (std::size_t i = begin; i < end; ++i) {
       const Measurement& m = data.measurements[i];
       const auto& y = m.of(Quantity::perimeter);
-      if (window.contains(m.time) && y && *y > 0) points.emplace_back(m.time, *y);
+      if (window.contains(m.time) && m.time > 0 && y && *y > 0) points.emplace_back(m.time, *y);
     }
-    count += points.size();
+    all.insert(all.end(), points.begin(), points.end());
     if (!points.empty()) vesicles.push_back(points);
   }
-  if (count < kLeastPoints || static_cast<int>(vesicles.size()) < kLeastVesicles)
-    return std::nullopt;
+  if (!enough(all) || static_cast<int>(vesicles.size()) < kLeastVesicles) return std::nullopt;
   return with_intervals(
       [&](const std::vector<int>& sample) {
         Points points;
@@ -105,7 +113,8 @@ std::optional<FittedLaw> fit_runs(const std::vector<History>& runs,
         Points points;
         for (const double t : within) {
           double sum = 0;
-          for (const int k : sample) sum += std::log(runs[k].at(Quantity::perimeter, t));
+          for (const int k : sample)
+            sum += std::log(std::max(runs[k].at(Quantity::perimeter, t), kLeastPerimeter));
           points.emplace_back(t, std::exp(sum / static_cast<double>(sample.size())));
         }
         return points;
