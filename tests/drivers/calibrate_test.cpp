@@ -84,10 +84,14 @@ TEST_F(CalibrateTest, RefusesWhatItCannotCalibrate) {
         {"--data " + out("nowhere"), "dataset.toml"},
         {"--data " + out("data") + " --parameters epsilon", "mobility has to be among them"},
         {"--data " + out("data") + " --parameters mobility,epsilom", "did you mean 'epsilon'"},
+        {"--data " + out("data") + " --parameters mobility,epsilon,epsilon", "there twice"},
+        {"--data " + out("data") + " --effect exchange:rate=1", "more than a unit of time"},
+        {"--data " + out("data") + " --case two-rafts", "differ in the noise"},
         {"--data " + out("data") + " --scaled", "measurements are in seconds"}}) {
     const Outcome refused = traceraft("calibrate " + flags + " --out " + out("c"));
     EXPECT_EQ(refused.code, 2) << flags;
     EXPECT_NE(refused.output.find(complaint), std::string::npos) << refused.output;
+    EXPECT_FALSE(fs::exists(folder.path / "c"));
   }
 }
 

@@ -79,6 +79,21 @@ TEST(Published, EqualCapsHaveThatPerimeterAndArea) {
   }
 }
 
+// A sample of vesicles with one look each may hold one time only.
+TEST(PowerLaw, OfFewLooksHasAnInterval) {
+  MeasuredVesicles data;
+  for (int k = 0; k < 5; ++k)
+    data.measurements.push_back(
+        {"v" + std::to_string(k), 100.0 * (k + 1), 5, {10.0 / (k + 1), 3.0, 0.1}, {}});
+  const auto law = fit_measurements(data, {0, 1000});
+  ASSERT_TRUE(law);
+  EXPECT_TRUE(std::isfinite(law->b.low) && std::isfinite(law->b.high));
+  for (Measurement& m : data.measurements) m.time = 200;
+  EXPECT_FALSE(fit_measurements(data, {0, 1000}));
+  for (Measurement& m : data.measurements) m.time = 0;
+  EXPECT_FALSE(fit_measurements(data, {0, 1000}));
+}
+
 // Runs that are power laws times a constant of their own.
 std::vector<History> runs(int count, double scale) {
   std::vector<History> all;
