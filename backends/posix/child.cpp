@@ -25,6 +25,7 @@ constexpr useconds_t kPause = 50000;  // microseconds between looks
                          pid_t parent, int report) {
   prctl(PR_SET_PDEATHSIG, kParentDied);
   if (getppid() != parent) _exit(1);  // it died before that
+  setpgid(0, 0);  // Ctrl-C reaches the parent, which asks once; twice would be "at once"
   const int input = open("/dev/null", O_RDONLY);
   const int output = open(log, O_WRONLY | O_CREAT | O_TRUNC, 0644);
   if (input >= 0 && output >= 0 && dup2(input, STDIN_FILENO) >= 0 &&

@@ -130,13 +130,17 @@ class Calibrator {
 };
 
 // What decides the simulations: a calibration that goes on has to be the same.
-void remember(const fs::path& out, const CalibrateRequest& request, const Configuration& model) {
+void remember(const fs::path& out, const CalibrateRequest& request, const MeasuredVesicles& data,
+              const Configuration& model) {
   const fs::path file = out / "calibration-model.toml";
   const std::string identity = "# parameters " + request.parameters + ", " +
-                               std::to_string(request.runs) + " runs\n" + config_text(model);
+                               std::to_string(request.runs) + " runs to " +
+                               format_number(end_of_runs(data)) + " s\n" + config_text(model);
   if (fs::exists(file) && read_file(file, 1 << 20) != identity)
-    throw InputError("--out: " + out.string() +
-                     " holds a calibration of another model; choose another folder");
+    throw InputError(
+        "--out: " + out.string() +
+        " holds a calibration of another model, or of measurements until another time; "
+        "choose another folder");
   write_durably(file, identity);
 }
 
@@ -168,7 +172,7 @@ int run_calibration(const CalibrateRequest& request) {
   const fs::path out = request.out.empty() ? first_free_folder("calibration") : request.out;
   fs::create_directories(out / "points");
   const FolderLock lock(out);
-  remember(out, request, model);
+  remember(out, request, data, model);
   Calibrator calibrator(request, data, model, out);
   if (!calibrator.run()) {
     if (!request.quiet) std::printf("to go on, give the same command with --out %s\n", out.c_str());

@@ -1,15 +1,13 @@
 #include "drivers/ensemble/ensemble_folder.hpp"
 
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+
 #include "drivers/input/csv_table.hpp"
 #include "drivers/output/json_file.hpp"
 
 namespace traceraft {
-namespace {
-
-constexpr std::uint64_t kLargestSeries = std::uint64_t{1} << 30;
-
-}  // namespace
-
 void EnsembleFolder::save(const EnsemblePlan& plan) const {
   write_durably(plan_file(),
                 Json{{"runs", plan.runs}, {"first_seed", plan.first_seed}}.dump(2) + "\n");
@@ -41,14 +39,19 @@ EnsembleFolder::Member EnsembleFolder::member(std::uint64_t seed) const {
 }
 
 double EnsembleFolder::reached(std::uint64_t seed) const {
-  const std::filesystem::path series = run_of(seed) / "series.csv";
-  if (!std::filesystem::exists(series)) return 0;
-  std::string text = read_file(series, kLargestSeries);
-  text.erase(text.rfind('\n') + 1);  // a row that is being written
-  if (text.empty()) return 0;
-  const std::size_t row = text.rfind('\n', text.size() - 2) + 1;
+  // A row that is being written, or none: it is for the progress shown alone.
+  constexpr std::streamoff kTail = 4096;
+  std::ifstream file(run_of(seed) / "series.csv", std::ios::binary | std::ios::ate);
+  const std::streamoff size = file ? static_cast<std::streamoff>(file.tellg()) : 0;
+  std::string text(static_cast<std::size_t>(std::min(size, kTail)), '\0');
+  file.seekg(size - static_cast<std::streamoff>(text.size()));
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.erase(text.rfind('\n') + 1);
+  if (!file || text.size() < 2) return 0;
+  const std::size_t row = text.rfind('\n', text.size() - 2) + 1;  // 0: the heading
   const std::size_t comma = text.find(',', row);
-  return row == 0 ? 0 : std::strtod(text.c_str() + comma + 1, nullptr);
+  return row == 0 || comma == std::string::npos ? 0
+                                                : std::strtod(text.c_str() + comma + 1, nullptr);
 }
 
 History EnsembleFolder::history(std::uint64_t seed, double radius) const {

@@ -44,6 +44,13 @@ class Workers {
   Workers(const EnsembleFolder& folder, std::vector<std::uint64_t> seeds, int threads)
       : folder_(folder), seeds_(std::move(seeds)), threads_(threads) {}
 
+  ~Workers() {  // if something else failed meanwhile
+    stop_ = true;
+    join();
+  }
+  Workers(const Workers&) = delete;
+  Workers& operator=(const Workers&) = delete;
+
   void start(int jobs) {
     working_ = jobs;
     for (int i = 0; i < jobs; ++i) workers_.emplace_back([this] { work(); });
@@ -52,7 +59,7 @@ class Workers {
   long done() const { return done_; }
   // Waits for the end of all.
   EnsembleEnd finish() {
-    for (std::thread& worker : workers_) worker.join();
+    join();
     if (error_) std::rethrow_exception(error_);
     std::sort(end_.failures.begin(), end_.failures.end(),
               [](const MemberFailure& a, const MemberFailure& b) { return a.seed < b.seed; });
@@ -60,6 +67,11 @@ class Workers {
   }
 
  private:
+  void join() {
+    for (std::thread& worker : workers_)
+      if (worker.joinable()) worker.join();
+  }
+
   void work() {
     try {
       for (std::size_t k; !stop_ && !stop_requested() && (k = next_++) < seeds_.size(); ++done_)

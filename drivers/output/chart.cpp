@@ -1,5 +1,8 @@
 #include "drivers/output/chart.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "backends/posix/child.hpp"
 #include "backends/posix/durable_file.hpp"
 #include "kernel/core/error.hpp"
@@ -34,6 +37,20 @@ std::string quoted(const std::string& text) {
   return result + "'";
 }
 
+// Logarithms have no place for what is not positive.
+bool drawable(const Chart& chart, const ChartSeries& series, std::size_t k) {
+  const auto& [x, y] = series.points[k];
+  const bool band = series.mark == Mark::band;
+  return std::isfinite(x) && std::isfinite(y) && (x > 0 || !chart.log_x) &&
+         (y > 0 || !chart.log_y) && (!band || std::isfinite(series.other[k]));
+}
+
+bool has_something(const Chart& chart, const ChartSeries& series) {
+  for (std::size_t k = 0; k < series.points.size(); ++k)
+    if (drawable(chart, series, k)) return true;
+  return false;
+}
+
 std::string script(const Chart& chart, const std::string& svg) {
   std::string text = "set terminal svg noenhanced size 720,520 dynamic font 'sans-serif,13'\n";
   text += "set output " + quoted(svg) + "\n";
@@ -47,9 +64,11 @@ std::string script(const Chart& chart, const std::string& svg) {
   std::string plots;
   for (std::size_t i = 0; i < chart.series.size(); ++i) {
     const ChartSeries& series = chart.series[i];
+    if (!has_something(chart, series)) continue;
     const std::string block = "$s" + std::to_string(i);
     text += block + " << END\n";
     for (std::size_t k = 0; k < series.points.size(); ++k) {
+      if (!drawable(chart, series, k)) continue;
       text += format_number(series.points[k].first) + " " + format_number(series.points[k].second);
       if (!series.other.empty()) text += " " + format_number(series.other[k]);
       text += "\n";
@@ -68,6 +87,10 @@ std::string draw_chart(const Chart& chart, const std::filesystem::path& stem) {
     std::filesystem::path path = stem;
     return path += extension;
   };
+  if (std::none_of(chart.series.begin(), chart.series.end(),
+                   [&](const ChartSeries& series) { return has_something(chart, series); }))
+    return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"720\" height=\"40\"><text y=\"24\">"
+           "nothing to show</text></svg>";
   write_durably(with(".gp"), script(chart, with(".svg").string()));
   const ChildResult result =
       run_child({{"gnuplot", with(".gp").string()}, with(".log"), 60, nullptr});

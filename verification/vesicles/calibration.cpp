@@ -28,7 +28,8 @@ struct Box {
   std::vector<double> lower, upper;
 };
 
-Box explored(const std::vector<CalibrationPoint>& points) {
+// Where there are points, and `overshoot` of that beyond.
+Box explored(const std::vector<CalibrationPoint>& points, double overshoot) {
   Box box{points.front().ln_parameters, points.front().ln_parameters};
   for (const CalibrationPoint& point : points)
     for (std::size_t i = 0; i < box.lower.size(); ++i) {
@@ -36,7 +37,7 @@ Box explored(const std::vector<CalibrationPoint>& points) {
       box.upper[i] = std::max(box.upper[i], point.ln_parameters[i]);
     }
   for (std::size_t i = 0; i < box.lower.size(); ++i) {
-    const double more = kOvershoot * (box.upper[i] - box.lower[i]);
+    const double more = overshoot * (box.upper[i] - box.lower[i]);
     box.lower[i] -= more;
     box.upper[i] += more;
   }
@@ -129,9 +130,13 @@ Calibration calibrate(const MeasuredVesicles& data, const std::vector<std::strin
   const int vesicles = static_cast<int>(data.vesicles().size());
   if (vesicles < 3)
     throw InputError("a calibration needs three vesicles at least, to know how they scatter");
+  if (std::none_of(data.measurements.begin(), data.measurements.end(), [](const Measurement& m) {
+        return m.of(Quantity::perimeter).value_or(0) > 0 || m.of(Quantity::rafts).value_or(0) > 0;
+      }))
+    throw InputError("a calibration needs perimeters or numbers of rafts");
   if (static_cast<int>(points.size()) < points_of_surface(static_cast<int>(names.size())))
     throw InputError("a calibration needs more points");
-  const Box box = explored(points);
+  const Box box = explored(points, kOvershoot), simulated = explored(points, 0);
   std::vector<std::vector<History>> ensembles;
   for (const CalibrationPoint& point : points) ensembles.push_back(point.runs);
   const ScatterLaws scatter = scatter_laws(ensembles);
@@ -156,8 +161,8 @@ Calibration calibrate(const MeasuredVesicles& data, const std::vector<std::strin
     const double width = std::log(range);
     result.parameters.push_back(
         parameter(i == 0 ? "seconds_per_unit" : names[i - 1], found.ln[i], values,
-                  i == 0 ? std::log(seconds_start) - width : box.lower[i - 1],
-                  i == 0 ? std::log(seconds_start) + width : box.upper[i - 1]));
+                  i == 0 ? std::log(seconds_start) - width : simulated.lower[i - 1],
+                  i == 0 ? std::log(seconds_start) + width : simulated.upper[i - 1]));
   }
   const Eigen::MatrixXd spread = covariance(replicates);
   const Vec deviation = spread.diagonal().cwiseSqrt().cwiseMax(1e-12);
