@@ -1,7 +1,6 @@
 #include "drivers/calibrate/calibration_points.hpp"
 
 #include <cmath>
-#include <thread>
 
 #include "backends/posix/durable_file.hpp"
 #include "drivers/config/config_file.hpp"
@@ -81,9 +80,7 @@ PointEnd run_point(const std::filesystem::path& path, const Configuration& confi
   std::filesystem::create_directories(path / "runs");
   if (!folder.started()) write_durably(folder.config(), config_text(configuration));
   folder.save(plan);
-  const int processors = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  const int jobs = request.jobs > 0 ? request.jobs : processors;
-  const EnsembleEnd end = work_off(plan, folder, jobs, std::max(1, processors / jobs),
+  const EnsembleEnd end = work_off(plan, folder, jobs_of(request.jobs, 0),
                                    configuration.number("t-end"), request.quiet);
   const Units units = configuration.units();
   PointEnd result{end.stopped, end.failures, finished_histories(folder, plan, units.length())};

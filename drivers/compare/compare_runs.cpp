@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <csignal>
 #include <cstdio>
 #include <functional>
 #include <optional>
@@ -26,29 +25,6 @@ namespace {
 namespace fs = std::filesystem;
 using Tick = std::function<void()>;
 
-// Does the end of a run say something of its method? Bad input (a solver that refuses the mesh),
-// numerical failure, too little memory and crashes do; a full disk, a folder in use or somebody who
-// stopped it do not.
-bool telling(const ProgramEnd& end) {
-  switch (end.exit_code) {
-    case kSuccess:
-    case kBadInput:
-    case kNumericalFailure:
-    case kInternalError:
-    case 128 + SIGKILL:
-    case 128 + SIGSEGV:
-    case 128 + SIGABRT:
-      return true;
-    default:
-      return false;
-  }
-}
-
-bool was_stopped(const ProgramEnd& end) {
-  return stop_requested() || end.exit_code == kInterrupted || end.exit_code == 128 + SIGTERM ||
-         end.exit_code == 128 + SIGINT;
-}
-
 std::vector<std::string> reference_arguments(const Reference& reference,
                                              const ComparisonFolder& folder) {
   if (fs::exists(reference.folder / "config.toml"))
@@ -70,7 +46,7 @@ WorkEnd compute(const Reference& reference, const ComparisonFolder& folder, cons
   while (!run_finished(reference.folder)) {
     const ProgramEnd end = run_program(reference_arguments(reference, folder),
                                        folder.path() / "reference.log", 1, 0, tick);
-    if (was_stopped(end)) return WorkEnd::stopped;
+    if (end.was_stopped()) return WorkEnd::stopped;
     if (end.exit_code == kLocked) {
       tick();
       usleep(200000);
@@ -106,8 +82,8 @@ WorkEnd compute(const CompareJob& job, const ComparisonFolder& folder, double ti
     folder.record(job, {"stopped after " + format_number(time_limit) + " s", time_limit});
     return WorkEnd::done;
   }
-  if (was_stopped(end)) return WorkEnd::stopped;
-  if (!telling(end)) throw IoError(job.name() + " could not run: " + end.reason());
+  if (end.was_stopped()) return WorkEnd::stopped;
+  if (!end.telling()) throw IoError(job.name() + " could not run: " + end.reason());
   folder.record(job, {end.exit_code == kSuccess ? "" : end.reason(), 0});
   return WorkEnd::done;
 }

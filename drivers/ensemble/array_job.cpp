@@ -16,12 +16,11 @@ std::string shell_word(const std::string& text) {
 
 std::string array_job_script(const EnsembleFolder& folder, const EnsemblePlan& plan) {
   const std::string path = std::filesystem::absolute(folder.path()).lexically_normal().string();
-  const std::uint64_t last = plan.first_seed + static_cast<std::uint64_t>(plan.runs) - 1;
   const std::string program = shell_word(own_path()) + " ensemble --out " + shell_word(path);
   return "#!/bin/sh\n"
          "#SBATCH --job-name=traceraft\n"
          "#SBATCH --array=" +
-         std::to_string(plan.first_seed) + "-" + std::to_string(last) +
+         std::to_string(plan.first_seed) + "-" + std::to_string(plan.last_seed()) +
          "\n"
          "#SBATCH --cpus-per-task=2\n"
          "#SBATCH --mem=4G\n"

@@ -1,7 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <optional>
-#include <thread>
 
 #include "backends/posix/durable_file.hpp"
 #include "backends/posix/folder_lock.hpp"
@@ -75,11 +74,10 @@ EnsemblePlan plan_of(const EnsembleRequest& request, const EnsembleFolder& folde
 int one_member(const EnsembleRequest& request, const EnsembleFolder& folder,
                const EnsemblePlan& plan) {
   const auto seed = static_cast<std::uint64_t>(request.member);
-  if (seed < plan.first_seed || seed >= plan.first_seed + static_cast<std::uint64_t>(plan.runs))
-    throw InputError(
-        "--member: " + std::to_string(seed) +
-        " is not in this ensemble (allowed: " + std::to_string(plan.first_seed) + " to " +
-        std::to_string(plan.first_seed + static_cast<std::uint64_t>(plan.runs) - 1) + ")");
+  if (seed < plan.first_seed || seed > plan.last_seed())
+    throw InputError("--member: " + std::to_string(seed) +
+                     " is not in this ensemble (allowed: " + std::to_string(plan.first_seed) +
+                     " to " + std::to_string(plan.last_seed()) + ")");
   return run_member(folder, seed, std::max(1, request.threads));
 }
 
@@ -87,23 +85,21 @@ std::string sentence(const Configuration& configuration, std::size_t finished,
                      const EnsemblePlan& plan) {
   return std::to_string(finished) + " of " + std::to_string(plan.runs) + " runs of the case " +
          configuration.text("case") + ", seeds " + std::to_string(plan.first_seed) + " to " +
-         std::to_string(plan.first_seed + static_cast<std::uint64_t>(plan.runs) - 1) +
-         ": raft fraction " + configuration.text("raft-fraction") + ", epsilon " +
-         configuration.text("epsilon") + ", " + configuration.text("cells") +
+         std::to_string(plan.last_seed()) + ": raft fraction " +
+         configuration.text("raft-fraction") + ", epsilon " + configuration.text("epsilon") + ", " +
+         configuration.text("cells") +
          " cells. Perimeters are diffuse ones, divided by the radius.";
 }
 
 int carry_out(const EnsembleRequest& request, const EnsembleFolder& folder,
               const EnsemblePlan& plan, const Configuration& configuration) {
-  const int processors = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  const int jobs = request.jobs > 0 ? request.jobs : processors;
-  const int threads = request.threads > 0 ? request.threads : std::max(1, processors / jobs);
+  const Jobs jobs = jobs_of(request.jobs, request.threads);
   const Units units = configuration.units();
   if (!request.quiet)
-    std::printf("%d runs, %d at a time with %d thread%s each\nfolder %s\n\n", plan.runs, jobs,
-                threads, threads == 1 ? "" : "s", folder.path().c_str());
+    std::printf("%d runs, %d at a time with %d thread%s each\nfolder %s\n\n", plan.runs,
+                jobs.at_a_time, jobs.threads, jobs.threads == 1 ? "" : "s", folder.path().c_str());
   const EnsembleEnd end =
-      work_off(plan, folder, jobs, threads, configuration.number("t-end"), request.quiet);
+      work_off(plan, folder, jobs, configuration.number("t-end"), request.quiet);
   for (const MemberFailure& failure : end.failures)
     std::fprintf(stderr, "traceraft: the run of seed %llu failed: %s\n",
                  static_cast<unsigned long long>(failure.seed), failure.why.c_str());

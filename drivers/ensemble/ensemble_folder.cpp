@@ -3,11 +3,18 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <numeric>
 
 #include "drivers/input/csv_table.hpp"
 #include "drivers/output/json_file.hpp"
 
 namespace traceraft {
+std::vector<std::uint64_t> EnsemblePlan::seeds() const {
+  std::vector<std::uint64_t> all(static_cast<std::size_t>(runs));
+  std::iota(all.begin(), all.end(), first_seed);
+  return all;
+}
+
 void EnsembleFolder::save(const EnsemblePlan& plan) const {
   write_durably(plan_file(),
                 Json{{"runs", plan.runs}, {"first_seed", plan.first_seed}}.dump(2) + "\n");
@@ -68,11 +75,9 @@ History EnsembleFolder::history(std::uint64_t seed, double radius) const {
 std::vector<History> finished_histories(const EnsembleFolder& folder, const EnsemblePlan& plan,
                                         double radius) {
   std::vector<History> histories;
-  for (int i = 0; i < plan.runs; ++i) {
-    const std::uint64_t seed = plan.first_seed + static_cast<std::uint64_t>(i);
+  for (const std::uint64_t seed : plan.seeds())
     if (folder.member(seed).end == MemberEnd::finished)
       histories.push_back(folder.history(seed, radius));
-  }
   return histories;
 }
 

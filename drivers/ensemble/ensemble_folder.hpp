@@ -13,6 +13,9 @@ namespace traceraft {
 struct EnsemblePlan {
   int runs = 10;
   std::uint64_t first_seed = 1;
+
+  std::uint64_t last_seed() const { return first_seed + static_cast<std::uint64_t>(runs) - 1; }
+  std::vector<std::uint64_t> seeds() const;  // ascending
 };
 
 enum class MemberEnd { missing, begun, finished, failed };

@@ -105,7 +105,7 @@ std::string write_ensemble(const EnsembleFolder& folder, const EnsembleSummary& 
     const Chart chart = ensemble_chart(summary, quantity, seconds);
     const std::string svg = draw_chart(chart, folder.path() / name_of(quantity).id);
     if (svg.empty())
-      missing = "gnuplot is not installed (Debian package gnuplot-nox)";
+      missing = kNoGnuplot;
     else
       page.figure(svg, chart.title);
   }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <csignal>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -87,26 +86,13 @@ class Workers {
 
   void settle(std::uint64_t seed, const ProgramEnd& end) {
     const std::lock_guard lock(mutex_);
-    switch (end.exit_code) {
-      case kSuccess:
-        return;
-      case kInterrupted:
-      case 128 + SIGTERM:
-      case 128 + SIGINT:
-        end_.stopped = stop_ = true;
-        return;
-      case kBadInput:
-      case kNumericalFailure:
-      case kInternalError:
-      case kLocked:
-      case 128 + SIGKILL:
-      case 128 + SIGSEGV:
-      case 128 + SIGABRT:
-        end_.failures.push_back({seed, end.reason()});
-        return;
-      default:  // a full disk stops all
-        throw IoError("the run of seed " + std::to_string(seed) + ": " + end.reason());
-    }
+    if (end.exit_code == kSuccess) return;
+    if (end.was_stopped())
+      end_.stopped = stop_ = true;
+    else if (end.telling() || end.exit_code == kLocked)
+      end_.failures.push_back({seed, end.reason()});
+    else  // a full disk stops all
+      throw IoError("the run of seed " + std::to_string(seed) + ": " + end.reason());
   }
 
   const EnsembleFolder& folder_;
@@ -126,8 +112,8 @@ void show_progress(const EnsemblePlan& plan, const EnsembleFolder& folder, doubl
                    double share_before, const Stopwatch& watch, StatusLine& line) {
   double share = 0;
   int finished = 0;
-  for (int i = 0; i < plan.runs; ++i) {
-    const double own = share_done(folder.reached(plan.first_seed + i), t_end);
+  for (const std::uint64_t seed : plan.seeds()) {
+    const double own = share_done(folder.reached(seed), t_end);
     share += own / plan.runs;
     finished += own >= 1;
   }
@@ -140,13 +126,18 @@ void show_progress(const EnsemblePlan& plan, const EnsembleFolder& folder, doubl
 
 }  // namespace
 
-EnsembleEnd work_off(const EnsemblePlan& plan, const EnsembleFolder& folder, int jobs, int threads,
+Jobs jobs_of(int at_a_time, int threads) {
+  const int processors = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  if (at_a_time == 0) at_a_time = processors;
+  return {at_a_time, threads > 0 ? threads : std::max(1, processors / at_a_time)};
+}
+
+EnsembleEnd work_off(const EnsemblePlan& plan, const EnsembleFolder& folder, const Jobs& jobs,
                      double t_end, bool quiet) {
   std::vector<std::uint64_t> seeds;
   EnsembleEnd known;
   double share_before = 0;
-  for (int i = 0; i < plan.runs; ++i) {
-    const std::uint64_t seed = plan.first_seed + static_cast<std::uint64_t>(i);
+  for (const std::uint64_t seed : plan.seeds()) {
     const EnsembleFolder::Member member = folder.member(seed);
     share_before += share_done(folder.reached(seed), t_end) / plan.runs;
     if (member.end == MemberEnd::failed)
@@ -156,9 +147,9 @@ EnsembleEnd work_off(const EnsemblePlan& plan, const EnsembleFolder& folder, int
   }
   StatusLine line(quiet);
   const Stopwatch watch;
-  Workers workers(folder, seeds, threads);
+  Workers workers(folder, seeds, jobs.threads);
   const long count = static_cast<long>(seeds.size());
-  workers.start(static_cast<int>(std::min<long>(jobs, count)));
+  workers.start(static_cast<int>(std::min<long>(jobs.at_a_time, count)));
   do {
     usleep(100000);
     if (line.due()) show_progress(plan, folder, t_end, share_before, watch, line);

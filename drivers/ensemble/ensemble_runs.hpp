@@ -18,10 +18,16 @@ struct EnsembleEnd {
   std::vector<MemberFailure> failures;  // of members that will not end, in the order of the seeds
 };
 
-// Does what the ensemble still lacks, `jobs` runs at a time with `threads` each. A run that fails
+struct Jobs {
+  int at_a_time, threads;  // threads of each run
+};
+// 0: as many as there are processors, and threads as those leave.
+Jobs jobs_of(int at_a_time, int threads);
+
+// Does what the ensemble still lacks. A run that fails
 // leaves the others alone. `t_end`: of the runs, in the units of their files, for the progress
 // shown. Throws IoError for what no run is to blame for.
-EnsembleEnd work_off(const EnsemblePlan& plan, const EnsembleFolder& folder, int jobs, int threads,
+EnsembleEnd work_off(const EnsemblePlan& plan, const EnsembleFolder& folder, const Jobs& jobs,
                      double t_end, bool quiet);
 
 // One member alone, for the tasks of an array job. Returns the exit code of its run.

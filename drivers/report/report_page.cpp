@@ -75,7 +75,7 @@ class Missing {
 void add_chart(Page& page, const Chart& chart, const fs::path& stem, Missing& missing) {
   const std::string svg = draw_chart(chart, stem);
   if (svg.empty())
-    missing.add("gnuplot is not installed (Debian package gnuplot-nox)");
+    missing.add(kNoGnuplot);
   else
     page.figure(svg, chart.title);
 }
@@ -161,10 +161,8 @@ fs::path run_to_show(const fs::path& path) {
   if (is_run(path)) return path;
   if (is_ensemble(path)) {
     const EnsembleFolder folder(path);
-    const EnsemblePlan plan = folder.load();
-    for (int i = 0; i < plan.runs; ++i)
-      if (folder.member(plan.first_seed + i).end == MemberEnd::finished)
-        return folder.run_of(plan.first_seed + i);
+    for (const std::uint64_t seed : folder.load().seeds())
+      if (folder.member(seed).end == MemberEnd::finished) return folder.run_of(seed);
   }
   throw InputError(path.string() + " holds no run that could be shown");
 }

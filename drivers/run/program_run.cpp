@@ -1,5 +1,6 @@
 #include "drivers/run/program_run.hpp"
 
+#include <csignal>
 #include <stdexcept>
 
 #include "backends/posix/child.hpp"
@@ -29,6 +30,26 @@ std::vector<std::string> program_on(int ranks) {
 std::string ProgramEnd::reason() const {
   if (exit_code == 127) return "mpirun is not there; install the Debian package openmpi-bin";
   return last_line.empty() ? "exit code " + std::to_string(exit_code) : last_line;
+}
+
+bool ProgramEnd::was_stopped() const {
+  return stop_requested() || exit_code == kInterrupted || exit_code == 128 + SIGTERM ||
+         exit_code == 128 + SIGINT;
+}
+
+bool ProgramEnd::telling() const {
+  switch (exit_code) {
+    case kSuccess:
+    case kBadInput:
+    case kNumericalFailure:
+    case kInternalError:
+    case 128 + SIGKILL:
+    case 128 + SIGSEGV:
+    case 128 + SIGABRT:
+      return true;
+    default:
+      return false;
+  }
 }
 
 ProgramEnd run_program(const std::vector<std::string>& arguments, const std::filesystem::path& log,

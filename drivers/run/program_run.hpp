@@ -16,6 +16,11 @@ struct ProgramEnd {
   std::string last_line;  // of what it printed
 
   std::string reason() const;  // of a failure, in a line
+  bool was_stopped() const;    // it, or this process, was asked to
+  // Does its end say something of what it was given to do? Bad input (a solver that refuses the
+  // mesh), numerical failure, too little memory and crashes do; a full disk, a folder in use or
+  // somebody who stopped it do not.
+  bool telling() const;
 };
 
 // Runs this program to its end, under mpirun if on more than one rank. What it prints goes to

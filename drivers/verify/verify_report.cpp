@@ -65,7 +65,7 @@ std::string draw_charts(const fs::path& folder, const StudyResult& result, Page&
     const Chart& chart = result.report.charts[k];
     try {
       const std::string svg = draw_chart(chart, folder / chart_name(result, k));
-      if (svg.empty()) return "gnuplot is not installed (Debian package gnuplot-nox)";
+      if (svg.empty()) return kNoGnuplot;
       page.figure(svg, chart.title);
     } catch (const IoError& error) {  // the tables are worth more than their pictures
       missing = error.what();

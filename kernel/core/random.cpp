@@ -1,5 +1,9 @@
 #include "kernel/core/random.hpp"
 
+#include <cmath>
+
+#include "kernel/core/types.hpp"
+
 namespace traceraft {
 
 std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> x,
@@ -24,6 +28,11 @@ double uniform_random(std::uint64_t seed, std::uint64_t stream, std::uint64_t in
       philox4x32({low(index), high(index), low(stream), high(stream)}, {low(seed), high(seed)});
   const std::uint64_t mantissa = (std::uint64_t{bits[1]} << 32 | bits[0]) >> 11;
   return (static_cast<double>(mantissa) + 0.5) * 0x1p-53;
+}
+
+std::array<double, 2> normal_pair(double u, double v) {
+  const double r = std::sqrt(-2 * std::log(u)), angle = 2 * kPi * v;
+  return {r * std::cos(angle), r * std::sin(angle)};
 }
 
 }  // namespace traceraft

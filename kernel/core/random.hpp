@@ -15,4 +15,7 @@ std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> counter,
 // Uniform in the open interval (0, 1) with 53 random bits.
 double uniform_random(std::uint64_t seed, std::uint64_t stream, std::uint64_t index);
 
+// Two independent normal numbers from two uniform ones in (0, 1) (Box and Muller).
+std::array<double, 2> normal_pair(double u, double v);
+
 }  // namespace traceraft

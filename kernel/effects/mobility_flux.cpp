@@ -30,30 +30,17 @@ class MobilityFlux final : public Effect {
     CsrMatrix stiffness(space.pattern);
     assemble_mobility_stiffness(space, integral, stiffness);
     for (std::size_t k = 0; k < stiffness.values.size(); ++k) J.cm.values[k] += stiffness.values[k];
-    const double factor = factor_(t);
-    add_element_matrices(
-        space,
-        [&](const CutElement& element, int e) -> Eigen::Matrix4d {
-          const std::array<double, 4> flux = unit_flux(element, mu);
-          return factor * Eigen::Map<const Eigen::Vector4d>(flux.data()) *
-                 Eigen::Map<const Eigen::RowVector4d>(gradient[e].data());
-        },
-        J.cc);
+    add_mobility_derivative(space, factor_(t), mu, gradient, J.cc);
   }
 
   void add_tangent_product(const SurfaceSpace& space, double t, ConstVec c, ConstVec mu,
                            ConstVec direction_c, ConstVec direction_mu, VecRef product_c,
                            VecRef) const override {
     std::vector<std::array<double, 4>> gradient;
-    std::vector<double> integral = scaled(mobility_integrals(space, *law_, c, gradient), t);
-    add_mobility_flux(space, integral, direction_mu, product_c);
-    const double factor = factor_(t);
-    for (std::size_t e = 0; e < integral.size(); ++e) {
-      integral[e] = 0;
-      for (int i = 0; i < 4; ++i)
-        integral[e] += factor * gradient[e][i] * direction_c[space.elements[e].node[i]];
-    }
-    add_mobility_flux(space, integral, mu, product_c);
+    add_mobility_flux(space, scaled(mobility_integrals(space, *law_, c, gradient), t), direction_mu,
+                      product_c);
+    add_mobility_flux(space, scaled(mobility_change(space, gradient, direction_c), t), mu,
+                      product_c);
   }
 
   void add_stabilised(const SurfaceSpace& space, double t, ConstVec c,

@@ -7,13 +7,6 @@
 namespace traceraft {
 namespace {
 
-// Two normal numbers of a stream of their own (Box and Muller).
-std::array<double, 2> normal_pair(std::uint64_t seed, std::uint64_t stream, std::uint64_t index) {
-  const double r = std::sqrt(-2 * std::log(uniform_random(seed, stream, 2 * index)));
-  const double angle = 2 * kPi * uniform_random(seed, stream, 2 * index + 1);
-  return {r * std::cos(angle), r * std::sin(angle)};
-}
-
 // Cook's noise: a random flux √(2 kT M) ξ with ξ white in space and time. In every tetrahedron one
 // vector with variance 1/|Γ_T|; in time drawn every τ with variance 1/τ and linear in between, so
 // that integrators see a continuous function that they resolve with steps below τ. Draws depend on
@@ -81,8 +74,11 @@ class ThermalNoise final : public Effect {
 
   Point draw(std::uint64_t place, double when) const {
     const auto stream = static_cast<std::uint64_t>(when) + 1000;
-    const auto first = normal_pair(seed_, stream, 2 * place);
-    const auto second = normal_pair(seed_, stream, 2 * place + 1);
+    const auto uniform = [&](std::uint64_t k) {
+      return uniform_random(seed_, stream, 4 * place + k);
+    };
+    const auto first = normal_pair(uniform(0), uniform(1));
+    const auto second = normal_pair(uniform(2), uniform(3));
     return {first[0], first[1], second[0]};
   }
 

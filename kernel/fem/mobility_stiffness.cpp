@@ -7,6 +7,18 @@
 namespace traceraft {
 namespace {
 
+// G_T μ_T: the flux through the nodes of an element whose mobility integrates to one.
+std::array<double, 4> unit_flux(const CutElement& element, ConstVec mu) {
+  std::array<double, 4> flux{};
+  for (int k = 0; k < 6; ++k) {
+    const auto& [i, j] = kTetEdges[k];
+    const double along = element.coupling[k] * (mu[element.node[j]] - mu[element.node[i]]);
+    flux[i] += along;
+    flux[j] -= along;
+  }
+  return flux;
+}
+
 constexpr int kBatch = 64;  // triangles evaluated by one call of the mobility law
 
 // Adds the derivative of one triangle's integral, given M' at the midpoints of its edges.
@@ -116,6 +128,31 @@ void add_mobility_flux(const SurfaceSpace& space, const std::vector<double>& int
       r[i] += flux;
     }
   });
+}
+
+std::vector<double> mobility_change(const SurfaceSpace& space,
+                                    const std::vector<std::array<double, 4>>& gradient,
+                                    ConstVec direction) {
+  std::vector<double> change(gradient.size(), 0);
+  space.team->for_range(change.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t e = begin; e < end; ++e)
+      for (int i = 0; i < 4; ++i)
+        change[e] += gradient[e][i] * direction[space.elements[e].node[i]];
+  });
+  return change;
+}
+
+void add_mobility_derivative(const SurfaceSpace& space, double factor, ConstVec mu,
+                             const std::vector<std::array<double, 4>>& gradient,
+                             CsrMatrix& matrix) {
+  add_element_matrices(
+      space,
+      [&](const CutElement& element, int e) -> Eigen::Matrix4d {
+        const std::array<double, 4> flux = unit_flux(element, mu);
+        return factor * Eigen::Map<const Eigen::Vector4d>(flux.data()) *
+               Eigen::Map<const Eigen::RowVector4d>(gradient[e].data());
+      },
+      matrix);
 }
 
 }  // namespace traceraft

@@ -25,16 +25,13 @@ void assemble_mobility_stiffness(const SurfaceSpace& space, const std::vector<do
 void add_mobility_flux(const SurfaceSpace& space, const std::vector<double>& integral, ConstVec u,
                        VecRef r);
 
-// G_T μ_T: the flux through the nodes of an element whose mobility integrates to one.
-inline std::array<double, 4> unit_flux(const CutElement& element, ConstVec mu) {
-  std::array<double, 4> flux{};
-  for (int k = 0; k < 6; ++k) {
-    const auto& [i, j] = kTetEdges[k];
-    const double along = element.coupling[k] * (mu[element.node[j]] - mu[element.node[i]]);
-    flux[i] += along;
-    flux[j] -= along;
-  }
-  return flux;
-}
+// How the integrals change along a direction of c (with ghosts).
+std::vector<double> mobility_change(const SurfaceSpace& space,
+                                    const std::vector<std::array<double, 4>>& gradient,
+                                    ConstVec direction);
+
+// matrix += factor · ∂(Σ_T I_T G_T μ)/∂c.
+void add_mobility_derivative(const SurfaceSpace& space, double factor, ConstVec mu,
+                             const std::vector<std::array<double, 4>>& gradient, CsrMatrix& matrix);
 
 }  // namespace traceraft

@@ -68,19 +68,6 @@ double CahnHilliard::mean_mobility(const CsrMatrix& mobility_stiffness) const {
   return ranks().sum(weighted) / ranks().sum(unweighted);
 }
 
-void CahnHilliard::add_mobility_derivative(ConstVec mu,
-                                           const std::vector<std::array<double, 4>>& gradient,
-                                           CsrMatrix& matrix) const {
-  add_element_matrices(
-      *space_,
-      [&](const CutElement& element, int e) -> Eigen::Matrix4d {
-        const std::array<double, 4> flux = unit_flux(element, mu);
-        return Eigen::Map<const Eigen::Vector4d>(flux.data()) *
-               Eigen::Map<const Eigen::RowVector4d>(gradient[e].data());
-      },
-      matrix);
-}
-
 Status CahnHilliard::jacobian(double t, ConstVec y, ConstVec, double shift, Tangent tangent,
                               BlockJacobian& J) const {
   const SurfaceSpace& space = *space_;
@@ -103,7 +90,7 @@ Status CahnHilliard::jacobian(double t, ConstVec y, ConstVec, double shift, Tang
   if (tangent == Tangent::exact) {
     std::vector<std::array<double, 4>> gradient;
     integral = mobility_integrals(space, *model_.mobility, c, gradient);
-    add_mobility_derivative(mu, gradient, J.cc);
+    add_mobility_derivative(space, 1, mu, gradient, J.cc);
   } else {
     integral = mobility_integrals(space, *model_.mobility, c);
   }
@@ -147,15 +134,8 @@ Status CahnHilliard::jacobian_product(double t, ConstVec y, ConstVec, double shi
     return {};
   }
   std::vector<std::array<double, 4>> gradient;
-  std::vector<double> integral = mobility_integrals(space, *model_.mobility, c, gradient);
-  add_mobility_flux(space, integral, vmu, first);
-  space.team->for_range(integral.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t e = begin; e < end; ++e) {
-      integral[e] = 0;
-      for (int i = 0; i < 4; ++i) integral[e] += gradient[e][i] * vc[space.elements[e].node[i]];
-    }
-  });
-  add_mobility_flux(space, integral, mu, first);
+  add_mobility_flux(space, mobility_integrals(space, *model_.mobility, c, gradient), vmu, first);
+  add_mobility_flux(space, mobility_change(space, gradient, vc), mu, first);
   add_potential_tangent_product(space, model_.well, model_.rule, -1, c, vc, second);
   for (const EffectPtr& effect : model_.effects)
     effect->add_tangent_product(space, t, c, mu, vc, vmu, first, second);

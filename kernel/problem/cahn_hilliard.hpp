@@ -66,8 +66,6 @@ class CahnHilliard final : public DaeProblem {
   double flux_stabilisation() const;
   double mean_mobility(const CsrMatrix& mobility_stiffness) const;
   void fill_curvature(ConstVec c, Tangent tangent, BlockJacobian& J) const;
-  void add_mobility_derivative(ConstVec mu, const std::vector<std::array<double, 4>>& gradient,
-                               CsrMatrix& matrix) const;
 
   std::shared_ptr<const SurfaceSpace> space_;
   CahnHilliardModel model_;

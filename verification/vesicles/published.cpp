@@ -15,9 +15,9 @@ class Draws {
  public:
   explicit Draws(std::uint64_t seed) : seed_(seed) {}
   double uniform() { return uniform_random(seed_, 17, index_++); }
-  double normal() {  // Box and Muller
-    const double r = std::sqrt(-2 * std::log(uniform()));
-    return r * std::cos(2 * kPi * uniform());
+  double normal() {
+    const double u = uniform();
+    return normal_pair(u, uniform())[0];
   }
 
  private:
