@@ -20,7 +20,8 @@ enum class Ranks { one, several, starts_them };
 
 struct Command {
   std::string name, summary;
-  Ranks ranks;  // what it works on; one that starts processes of MPI itself is not to run below mpirun
+  Ranks ranks;  // what it works on; one that starts processes of MPI itself is not to run below
+                // mpirun
   // Adds its flags to the parser, and says what to do once they have been read.
   std::function<Action(CLI::App&)> define;
 };
@@ -35,6 +36,7 @@ Command ensemble_command();
 Command data_command();
 Command report_command();
 Command calibrate_command();
+Command explain_command();
 Command fraction_command();
 Command list_command();
 

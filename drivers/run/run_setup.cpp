@@ -53,46 +53,6 @@ int thread_count(const Configuration& configuration, const Communicator& ranks) 
   return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 2);
 }
 
-LevelSetPtr level_set(const Configuration& configuration) {
-  const std::string formula = configuration.text("surface-formula");
-  if (configuration.text("surface") == "formula") {
-    if (formula.empty())
-      throw InputError(configuration.where("surface") +
-                       ": formula needs --surface-formula, as in "
-                       "--surface-formula \"x^2+y^2+2*z^2-1\"");
-    return std::make_shared<FunctionLevelSet>(
-        parse_formula(configuration.where("surface-formula"), formula));
-  }
-  if (!formula.empty())
-    throw InputError(configuration.where("surface-formula") + ": it needs --surface formula");
-  return said_of(configuration, "surface", [&] {
-    const std::string specification = configuration.text("surface");
-    (void)surfaces().find(split_named_arguments(specification).name, {"formula"});
-    return make_surface(specification);
-  });
-}
-
-CahnHilliardModel model(const Configuration& configuration, const Units& units) {
-  CahnHilliardModel result;
-  result.mobility = said_of(configuration, "mobility",
-                            [&] { return make_mobility(configuration.text("mobility")); });
-  result.well = double_well(configuration);
-  if (!result.mobility->constant() && (result.well.a != 0 || result.well.b != 1))
-    throw InputError(configuration.where("well") +
-                     ": the degenerate mobility c(1-c) belongs to wells at 0 and 1; choose "
-                     "--mobility constant:value=0.25");
-  result.epsilon = configuration.number("epsilon") / units.length();
-  result.rule = one_of(configuration, "potential", "potential", {"consistent", "nodal"}) == "nodal"
-                    ? PotentialRule::nodal
-                    : PotentialRule::consistent;
-  result.stabilisation = configuration.number("stabilisation");
-  said_of(configuration, "effect", [&] {
-    add_effects(configuration.text("effect"), configuration.units(), result);
-    return 0;
-  });
-  return result;
-}
-
 std::vector<CapRaft> parse_caps(const Configuration& configuration) {
   std::vector<CapRaft> caps;
   std::istringstream list(configuration.text("initial-caps"));
@@ -244,6 +204,47 @@ DoubleWell double_well(const Configuration& configuration) {
   });
 }
 
+LevelSetPtr surface_of(const Configuration& configuration) {
+  const std::string formula = configuration.text("surface-formula");
+  if (configuration.text("surface") == "formula") {
+    if (formula.empty())
+      throw InputError(configuration.where("surface") +
+                       ": formula needs --surface-formula, as in "
+                       "--surface-formula \"x^2+y^2+2*z^2-1\"");
+    return std::make_shared<FunctionLevelSet>(
+        parse_formula(configuration.where("surface-formula"), formula));
+  }
+  if (!formula.empty())
+    throw InputError(configuration.where("surface-formula") + ": it needs --surface formula");
+  return said_of(configuration, "surface", [&] {
+    const std::string specification = configuration.text("surface");
+    (void)surfaces().find(split_named_arguments(specification).name, {"formula"});
+    return make_surface(specification);
+  });
+}
+
+CahnHilliardModel physical_model(const Configuration& configuration) {
+  const Units units = configuration.units();
+  CahnHilliardModel result;
+  result.mobility = said_of(configuration, "mobility",
+                            [&] { return make_mobility(configuration.text("mobility")); });
+  result.well = double_well(configuration);
+  if (!result.mobility->constant() && (result.well.a != 0 || result.well.b != 1))
+    throw InputError(configuration.where("well") +
+                     ": the degenerate mobility c(1-c) belongs to wells at 0 and 1; choose "
+                     "--mobility constant:value=0.25");
+  result.epsilon = configuration.number("epsilon") / units.length();
+  result.rule = one_of(configuration, "potential", "potential", {"consistent", "nodal"}) == "nodal"
+                    ? PotentialRule::nodal
+                    : PotentialRule::consistent;
+  result.stabilisation = configuration.number("stabilisation");
+  said_of(configuration, "effect", [&] {
+    add_effects(configuration.text("effect"), units, result);
+    return 0;
+  });
+  return result;
+}
+
 RunSetup build_run(const Configuration& configuration, InitialState initial) {
   RunSetup run;
   run.units = configuration.units();
@@ -251,7 +252,7 @@ RunSetup build_run(const Configuration& configuration, InitialState initial) {
   run.output_labels = output_labels(configuration);
   for (const double label : run.output_labels)
     run.output_times.push_back(std::min(label / run.units.time(), run.t_end));
-  const CahnHilliardModel physics = model(configuration, run.units);
+  const CahnHilliardModel physics = physical_model(configuration);
   const IntegratorEntry& integrator = said_of(configuration, "integrator", [&] {
     return std::cref(integrators().find(configuration.text("integrator")));
   });
@@ -261,7 +262,7 @@ RunSetup build_run(const Configuration& configuration, InitialState initial) {
 
   run.ranks = world();
   run.team = std::make_shared<ThreadTeam>(thread_count(configuration, *run.ranks));
-  const LevelSetPtr surface = level_set(configuration);
+  const LevelSetPtr surface = surface_of(configuration);
   run.space = said_of(configuration, "surface", [&] {
     return std::make_shared<const SurfaceSpace>(*surface, configuration.integer("cells"), run.team,
                                                 run.ranks);

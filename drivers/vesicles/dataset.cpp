@@ -7,6 +7,7 @@
 
 #include "backends/posix/durable_file.hpp"
 #include "drivers/input/csv_table.hpp"
+#include "drivers/input/measured_units.hpp"
 #include "drivers/input/toml_table.hpp"
 #include "drivers/output/csv.hpp"
 #include "kernel/core/error.hpp"
@@ -21,20 +22,6 @@ namespace fs = std::filesystem;
 // Vesicles that a light microscope shows; what is outside is in other units than it says.
 constexpr double kSmallestRadius = 0.05, kLargestRadius = 1000;  // µm
 
-struct Unit {
-  std::string name;
-  double factor;  // to µm or s
-};
-const NamedList<Unit>& length_units() {
-  static const NamedList<Unit> list("unit of length", {{"um", 1}, {"nm", 1e-3}, {"mm", 1e3}});
-  return list;
-}
-const NamedList<Unit>& time_units() {
-  static const NamedList<Unit> list("unit of time",
-                                    {{"s", 1}, {"ms", 1e-3}, {"min", 60}, {"h", 3600}});
-  return list;
-}
-
 struct Description {
   MeasuredVesicles data;
   fs::path table;
@@ -42,14 +29,6 @@ struct Description {
   std::optional<double> radius;
   double sigmas = 1;  // standard deviations in what the table calls sigma
 };
-
-double unit_factor(const NamedList<Unit>& units, const TomlTable& toml, const char* key) {
-  try {
-    return units.find(toml.text(key)).factor;
-  } catch (const InputError& error) {
-    throw InputError(toml.where(key) + ": " + error.what());
-  }
-}
 
 Description read_description(const fs::path& folder) {
   const TomlTable toml =
@@ -66,8 +45,8 @@ Description read_description(const fs::path& folder) {
   d.data.composition = toml.text_or("composition", "");
   d.data.time_zero = toml.text("time_zero");
   if (toml.has("temperature")) d.data.celsius = toml.number("temperature");
-  d.length = unit_factor(length_units(), toml, "length_unit");
-  d.time = unit_factor(time_units(), toml, "time_unit");
+  d.length = length_factor(toml, "length_unit");
+  d.time = time_factor(toml, "time_unit");
   d.time_offset = toml.number_or("time_offset", 0);
   if (toml.has("radius")) d.radius = toml.number("radius");
   const std::string sigma = toml.text_or("sigma", "standard deviation");

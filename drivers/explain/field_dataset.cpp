@@ -1,0 +1,131 @@
+#include "drivers/explain/field_dataset.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "backends/posix/durable_file.hpp"
+#include "drivers/input/csv_table.hpp"
+#include "drivers/input/measured_units.hpp"
+#include "drivers/input/toml_table.hpp"
+#include "kernel/core/error.hpp"
+#include "kernel/core/named_list.hpp"
+#include "kernel/core/parameters.hpp"
+#include "kernel/core/text.hpp"
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Fewer points cannot show a field.
+constexpr std::size_t kFewestPoints = 100;
+
+std::string table_name(std::size_t number) {
+  return formatted("snapshot_%03zu.csv", number);
+}
+
+std::vector<double> numbers_of(const TomlTable& toml, const std::string& key) {
+  if (!toml.has(key)) throw InputError(toml.where(key) + ": it is missing");
+  if (const auto* list = std::get_if<std::vector<double>>(&toml.value(key))) return *list;
+  throw InputError(toml.where(key) + ": a list of numbers is needed here");
+}
+
+void check_columns(const CsvTable& table) {
+  const std::vector<std::string> known = {"x", "y", "z", "c", "sigma"};
+  for (const char* needed : {"x", "y", "z", "c"}) table.require(needed);
+  for (const std::string& column : table.columns())
+    if (std::find(known.begin(), known.end(), column) == known.end())
+      throw InputError(table.path().string() + ": " +
+                       unknown_name_message("column", column, known));
+  if (table.rows() < kFewestPoints)
+    throw InputError(table.path().string() + ": " + std::to_string(table.rows()) +
+                     " points are too few for a field (at least " + std::to_string(kFewestPoints) +
+                     ")");
+}
+
+FieldSnapshot read_snapshot(const fs::path& path, double time, double to_radius) {
+  const CsvTable table = CsvTable::read(path);
+  check_columns(table);
+  const auto rows = static_cast<Eigen::Index>(table.rows());
+  FieldSnapshot snapshot{time, {}, Vec(rows), Vec::Ones(rows)};
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    snapshot.points.push_back(
+        to_radius * Point(table.number(row, "x"), table.number(row, "y"), table.number(row, "z")));
+    const auto i = static_cast<Eigen::Index>(row);
+    snapshot.values[i] = table.number(row, "c");
+    if (!table.has("sigma")) continue;
+    snapshot.deviation[i] = table.number(row, "sigma");
+    if (!(snapshot.deviation[i] > 0))
+      throw InputError(table.where(row, "sigma") + ": a standard deviation has to be positive");
+  }
+  return snapshot;
+}
+
+}  // namespace
+
+FieldDataset read_field_dataset(const fs::path& folder) {
+  const TomlTable toml = TomlTable::read(
+      folder / "dataset.toml", {"name", "kind", "origin", "composition", "temperature", "time_zero",
+                                "length_unit", "time_unit", "radius", "times", "vesicles"});
+  FieldDataset data;
+  data.name = toml.text("name");
+  data.origin = toml.text_or("origin", "");
+  data.time_zero = toml.text_or("time_zero", "");
+  data.synthetic = toml.text_or("kind", "measured") == "synthetic";
+  const double length = length_factor(toml, "length_unit"), second = time_factor(toml, "time_unit");
+  data.radius_um = toml.number("radius") * length;
+  if (!(data.radius_um > 0)) throw InputError(toml.where("radius") + ": it has to be positive");
+  const std::vector<double> times = numbers_of(toml, "times");
+  const std::vector<double> vesicles =
+      toml.has("vesicles") ? numbers_of(toml, "vesicles") : std::vector<double>(times.size(), 1.0);
+  if (vesicles.size() != times.size())
+    throw InputError(toml.where("vesicles") + ": " + std::to_string(vesicles.size()) +
+                     " vesicles for " + std::to_string(times.size()) + " times");
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const std::string vesicle = format_number(vesicles[k]);
+    if (data.vesicles.empty() || data.vesicles.back().vesicle != vesicle)
+      data.vesicles.push_back({vesicle, {}});
+    auto& snapshots = data.vesicles.back().snapshots;
+    const double time = times[k] * second;
+    if (!(time >= 0) || (!snapshots.empty() && !(time > snapshots.back().time)))
+      throw InputError(toml.where("times") + ": times of a vesicle have to ascend from 0 on");
+    snapshots.push_back(read_snapshot(folder / table_name(k + 1), time, length / data.radius_um));
+  }
+  for (const FieldSeries& series : data.vesicles)
+    if (series.snapshots.size() < 2)
+      throw InputError(toml.where("times") + ": vesicle " + series.vesicle +
+                       " needs two snapshots or more");
+  if (data.vesicles.empty()) throw InputError(toml.where("times") + ": there is no snapshot");
+  return data;
+}
+
+void write_field_dataset(const fs::path& folder, const FieldDataset& data,
+                         const std::string& remark) {
+  const auto quoted = [](const std::string& text) { return nlohmann::json(text).dump(); };
+  fs::create_directories(folder);
+  std::string times, vesicles;
+  std::size_t number = 0;
+  for (const FieldSeries& series : data.vesicles)
+    for (const FieldSnapshot& snapshot : series.snapshots) {
+      const bool weighted = !(snapshot.deviation.array() == 1).all();
+      std::string csv = weighted ? "x,y,z,c,sigma\n" : "x,y,z,c\n";
+      for (std::size_t i = 0; i < snapshot.points.size(); ++i) {
+        const Point x = data.radius_um * snapshot.points[i];
+        const auto row = static_cast<Eigen::Index>(i);
+        csv += formatted("%.9g,%.9g,%.9g,%.6g", x[0], x[1], x[2], snapshot.values[row]);
+        csv += weighted ? formatted(",%.6g\n", snapshot.deviation[row]) : "\n";
+      }
+      write_durably(folder / table_name(++number), csv);
+      times += (times.empty() ? "" : ", ") + format_number(snapshot.time);
+      vesicles += (vesicles.empty() ? "" : ", ") + series.vesicle;
+    }
+  write_durably(
+      folder / "dataset.toml",
+      "# " + remark + "\nname = " + quoted(data.name) +
+          "\nkind = " + (data.synthetic ? "\"synthetic\"" : "\"measured\"") +
+          "\norigin = " + quoted(data.origin) + "\ntime_zero = " + quoted(data.time_zero) +
+          "\nlength_unit = \"um\"\ntime_unit = \"s\"\nradius = " + format_number(data.radius_um) +
+          "\ntimes = [" + times + "]\nvesicles = [" + vesicles + "]\n");
+}
+
+}  // namespace traceraft

@@ -1,0 +1,35 @@
+#include "drivers/input/measured_units.hpp"
+
+#include "kernel/core/error.hpp"
+#include "kernel/core/named_list.hpp"
+
+namespace traceraft {
+namespace {
+
+struct Unit {
+  std::string name;
+  double factor;
+};
+
+double factor(const NamedList<Unit>& units, const TomlTable& toml, const std::string& key) {
+  try {
+    return units.find(toml.text(key)).factor;
+  } catch (const InputError& error) {
+    throw InputError(toml.where(key) + ": " + error.what());
+  }
+}
+
+}  // namespace
+
+double length_factor(const TomlTable& toml, const std::string& key) {
+  static const NamedList<Unit> units("unit of length", {{"um", 1}, {"nm", 1e-3}, {"mm", 1e3}});
+  return factor(units, toml, key);
+}
+
+double time_factor(const TomlTable& toml, const std::string& key) {
+  static const NamedList<Unit> units("unit of time",
+                                     {{"s", 1}, {"ms", 1e-3}, {"min", 60}, {"h", 3600}});
+  return factor(units, toml, key);
+}
+
+}  // namespace traceraft

@@ -1,0 +1,97 @@
+#include "drivers/explain/field_dataset.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "kernel/core/error.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace traceraft {
+namespace {
+
+FieldDataset small_dataset() {
+  FieldDataset data;
+  data.name = "small";
+  data.synthetic = true;
+  data.radius_um = 5;
+  FieldSeries series{"1", {}};
+  for (int k = 0; k < 3; ++k) {
+    FieldSnapshot snapshot{10.0 * k, {}, Vec(120), Vec::Ones(120)};
+    for (int i = 0; i < 120; ++i) {
+      const double angle = 0.1 * i;
+      snapshot.points.emplace_back(std::cos(angle), std::sin(angle), 0);
+      snapshot.values[i] = 0.01 * i + k;
+      snapshot.deviation[i] = 0.1 + 0.001 * i;
+    }
+    series.snapshots.push_back(snapshot);
+  }
+  data.vesicles = {series};
+  return data;
+}
+
+class FieldDatasetTest : public ::testing::Test {
+ protected:
+  FieldDatasetTest() { write_field_dataset(folder.path, small_dataset(), "of a test"); }
+
+  void replace(const std::string& file, const std::string& text) const {
+    std::ofstream(folder.path / file) << text;
+  }
+  std::string refusal() const {
+    try {
+      (void)read_field_dataset(folder.path);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+  void expect_refusal(const std::string& part) const {
+    EXPECT_NE(refusal().find(part), std::string::npos) << refusal();
+  }
+  std::string description(const std::string& times) const {
+    return "name = \"a\"\nlength_unit = \"um\"\ntime_unit = \"s\"\nradius = 5\ntimes = " + times +
+           "\n";
+  }
+
+  testing::TemporaryFolder folder;
+};
+
+TEST_F(FieldDatasetTest, ReadsWhatItHasWritten) {
+  const FieldDataset data = read_field_dataset(folder.path);
+  ASSERT_EQ(data.vesicles.size(), 1u);
+  ASSERT_EQ(data.vesicles[0].snapshots.size(), 3u);
+  EXPECT_TRUE(data.synthetic);
+  const FieldDataset written = small_dataset();
+  const FieldSnapshot &before = written.vesicles[0].snapshots[2],
+                      &after = data.vesicles[0].snapshots[2];
+  EXPECT_EQ(after.time, before.time);
+  EXPECT_LT((after.points[7] - before.points[7]).norm(), 1e-8);
+  EXPECT_LT((after.values - before.values).norm(), 1e-4);
+  EXPECT_LT((after.deviation - before.deviation).norm(), 1e-4);
+}
+
+TEST_F(FieldDatasetTest, ConvertsUnits) {
+  replace("dataset.toml",
+          "name = \"a\"\nlength_unit = \"nm\"\ntime_unit = \"min\"\nradius = 5\n"
+          "times = [1, 2]\n");
+  const FieldDataset data = read_field_dataset(folder.path);
+  EXPECT_DOUBLE_EQ(data.radius_um, 0.005);
+  EXPECT_DOUBLE_EQ(data.vesicles[0].snapshots[1].time, 120);
+}
+
+TEST_F(FieldDatasetTest, RefusesWhatIsWrongWithItsPlace) {
+  replace("dataset.toml", description("[10, 5]"));
+  expect_refusal("dataset.toml:5: times");
+  replace("dataset.toml", description("[10]"));
+  expect_refusal("two snapshots or more");
+  replace("dataset.toml", description("[1, 2]"));
+  replace("snapshot_002.csv", "x,y,z\n1,0,0\n");
+  expect_refusal("snapshot_002.csv");
+  std::string rows = "x,y,z,c,sigma\n";
+  for (int i = 0; i < 120; ++i) rows += i == 4 ? "5,0,0,0.1,0\n" : "5,0,0,0.1,1\n";
+  replace("snapshot_002.csv", rows);
+  expect_refusal("snapshot_002.csv:6: column 'sigma'");
+}
+
+}  // namespace
+}  // namespace traceraft

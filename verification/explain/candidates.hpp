@@ -1,0 +1,67 @@
+// Effects as small changes of a model: what a data set is asked to choose from.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kernel/problem/cahn_hilliard.hpp"
+#include "verification/explain/tangent_flow.hpp"
+
+namespace traceraft {
+
+// An effect with values for all its parameters, in the order of its entry and in units of R and
+// R²/D.
+struct EffectTerm {
+  std::string effect;
+  std::vector<double> values;
+};
+
+CahnHilliardModel with_effects(CahnHilliardModel model, const std::vector<EffectTerm>& terms);
+
+// A candidate has one coefficient per direction. Its terms are linear in the coefficients near 0:
+// the effect at coefficients a is term(a).
+struct Candidate {
+  std::string effect;
+  int directions;
+  std::function<EffectTerm(const std::vector<double>& coefficients)> term;
+  // Coefficients that are small: for the derivative at 0.
+  double step;
+  bool two_sided;  // may the coefficients be negative?
+};
+
+// All effects of the kernel that deterministic data of one vesicle can tell from the base model.
+// Left out: rotation (always a nuisance) and thermal (random).
+std::vector<Candidate> candidates();
+
+// Effects with coefficients: what is held to be missing in a model.
+struct Hypothesis {
+  struct Part {
+    Candidate candidate;
+    std::vector<double> coefficients;
+  };
+  std::vector<Part> parts;
+
+  std::vector<EffectTerm> terms() const;
+  Eigen::Index coefficients() const;
+  std::string name() const;  // of its effects
+};
+
+// ∂F/∂coefficient: for all coefficients of a hypothesis, then for those of more candidates at 0.
+// By differences, which are exact where F is linear in a coefficient.
+class CoefficientForcing {
+ public:
+  // `problem` has the model with the hypothesis' effects, and must outlive this object.
+  CoefficientForcing(const CahnHilliard& problem, const CahnHilliardModel& model,
+                     const Hypothesis& hypothesis, const std::vector<Candidate>& more);
+  Columns operator()(double t, ConstVec y) const;
+
+ private:
+  struct Pair {
+    std::shared_ptr<const CahnHilliard> plus, minus;  // no minus: the problem itself
+    double distance;
+  };
+  const CahnHilliard& problem_;
+  std::vector<Pair> pairs_;
+};
+
+}  // namespace traceraft

@@ -1,0 +1,81 @@
+#include "verification/explain/disagreement.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace traceraft {
+namespace {
+
+constexpr int kFewestValues = 10;
+constexpr std::array<const char*, 3> kStates = {"outside rafts", "boundary", "inside rafts"};
+
+std::vector<Point> icosahedron() {
+  const double g = (1 + std::sqrt(5.0)) / 2;
+  std::vector<Point> corners;
+  for (const double s : {-1.0, 1.0})
+    for (const double t : {-g, g})
+      for (int d = 0; d < 3; ++d) {
+        Point x = Point::Zero();
+        x[d] = s;
+        x[(d + 1) % 3] = t;
+        corners.push_back(x.normalized());
+      }
+  return corners;
+}
+
+// A quarter of the way from one well to the other counts as the boundary.
+std::size_t state_of(double forecast, const DoubleWell& well) {
+  const double share = (forecast - well.a) / (well.b - well.a);
+  return share < 0.25 ? 0 : share > 0.75 ? 2 : 1;
+}
+
+}  // namespace
+
+std::vector<Disagreement> disagreements(const FieldSeries& series, const FilterResult& result,
+                                        const DoubleWell& well) {
+  const std::vector<Point> corners = icosahedron();
+  std::vector<Disagreement> all;
+  for (std::size_t k = 0; k < result.innovations.size(); ++k) {
+    const Innovation& in = result.innovations[k];
+    const FieldSnapshot& snapshot = series.snapshots[k + 1];
+    const auto patches = static_cast<Eigen::Index>(kStates.size() * corners.size());
+    Columns member = Columns::Zero(in.values.size(), patches);
+    for (Eigen::Index i = 0; i < in.values.size(); ++i) {
+      const Point& x = snapshot.points[static_cast<std::size_t>(i)];
+      std::size_t nearest = 0;
+      for (std::size_t c = 1; c < corners.size(); ++c)
+        if (corners[c].dot(x) > corners[nearest].dot(x)) nearest = c;
+      const std::size_t patch = state_of(in.forecast[i], well) * corners.size() + nearest;
+      member(i, static_cast<Eigen::Index>(patch)) = 1;
+    }
+    // eᵀ S⁻¹ ν against the same of noise.
+    const Eigen::MatrixXd GtG = in.state.transpose() * in.state;
+    const Eigen::LLT<Eigen::MatrixXd> factors(Eigen::MatrixXd::Identity(GtG.rows(), GtG.cols()) +
+                                              GtG);
+    const Columns weighted = member - in.state * factors.solve(in.state.transpose() * member);
+    const Vec measured = weighted.transpose() * in.values;
+    const Columns noise = weighted.transpose() * in.replicates;
+    for (Eigen::Index patch = 0; patch < patches; ++patch) {
+      if (member.col(patch).sum() < kFewestValues) continue;
+      const double z = measured[patch] / std::sqrt(noise.row(patch).squaredNorm() /
+                                                   static_cast<double>(noise.cols()));
+      const auto index = static_cast<std::size_t>(patch);
+      all.push_back({in.time, kStates[index / corners.size()], corners[index % corners.size()], z,
+                     std::erfc(std::fabs(z) / std::sqrt(2.0))});
+    }
+  }
+  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.p < b.p; });
+  return all;
+}
+
+std::size_t significant(const std::vector<Disagreement>& sorted, double level) {
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < sorted.size(); ++k)
+    if (sorted[k].p <= level * static_cast<double>(k + 1) / static_cast<double>(sorted.size()))
+      count = k + 1;
+  return count;
+}
+
+}  // namespace traceraft

@@ -1,0 +1,30 @@
+// Where measurements and forecasts disagree: when, on which side of the vesicle, and inside rafts,
+// outside or at their boundaries.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kernel/physics/double_well.hpp"
+#include "verification/explain/field_filter.hpp"
+
+namespace traceraft {
+
+struct Disagreement {
+  double time;
+  std::string state;  // "inside rafts", "boundary", "outside rafts"
+  Point direction;    // of the middle of the patch
+  double z;           // measured minus forecast, in its standard deviations
+  double p;           // of a |z| like that by noise, from the spread over the replicates
+};
+
+// All of 12 patches (around the corners of an icosahedron) × 3 states × snapshots that hold at
+// least 10 values, the most significant first.
+std::vector<Disagreement> disagreements(const FieldSeries& series, const FilterResult& result,
+                                        const DoubleWell& well);
+
+// How many of them are significant if a share of `level` of those may be false (Benjamini and
+// Hochberg 1995).
+std::size_t significant(const std::vector<Disagreement>& sorted, double level);
+
+}  // namespace traceraft

@@ -1,0 +1,219 @@
+#include "verification/explain/explanation.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+namespace traceraft {
+namespace {
+
+// The finer mesh that shows the error of the model's own.
+constexpr double kFiner = 1.4;
+// 2 ln of a likelihood ratio of 20: less does not tell two hypotheses apart.
+constexpr double kTelling = 6;
+// An effect has to change c by that share of what the model's mesh does.
+constexpr double kResolved = 1;
+
+class Search {
+ public:
+  Search(const FieldSeries& series, const ExplainRequest& request)
+      : series_(series),
+        request_(request),
+        data_(make_filter_problem(
+            series, *request.surface, request.base.epsilon, request.cells,
+            static_cast<int>(std::lround(kFiner * request.cells)), request.threads,
+            request.hold_out && series.snapshots.size() >= 4 ? 1 : 0, request.filter)),
+        model_{request.base, 1, {}, candidates()} {}
+
+  Explanation run() {
+    tell("pace of the base model");
+    fit_pace();
+    for (int k = 0; k < request_.most_effects && look_for_one(); ++k) {
+    }
+    finish();
+    return std::move(result_);
+  }
+
+ private:
+  void tell(const std::string& step) const {
+    if (request_.progress) request_.progress(step);
+  }
+
+  // With nothing missing, from a filter of a few directions.
+  void fit_pace() {
+    FilterSettings rough = request_.filter;
+    rough.rank = 80;
+    rough.replicates = 0;
+    rough.tangent_steps = 2;
+    FilterModel model{request_.base, 1, {}, {}};
+    ErrorMaps maps;
+    for (int k = 0; k < 5; ++k) {
+      const FilterResult pass = filter_fields(data_, model, rough, maps);
+      const double step = std::clamp(screen(pass, {}, 0).pace_change, -0.7, 0.7);
+      model.pace *= std::exp(step);
+      if (std::fabs(step) < 0.02) break;
+    }
+    model_.pace = model.pace;
+  }
+
+  // The noise that the innovations have is that of the measurements.
+  FilterResult full_pass() {
+    FilterResult pass = filter_fields(data_, model_, request_.filter, maps_);
+    if (!result_.rounds.empty()) return pass;
+    double squares = 0, values = 0;
+    for (std::size_t k = 0; k + 1 < data_.train; ++k) {
+      squares += pass.innovations[k].weighted_squares;
+      values += static_cast<double>(pass.innovations[k].values.size());
+    }
+    data_.noise *= std::sqrt(squares / values);
+    return filter_fields(data_, model_, request_.filter, maps_);
+  }
+
+  bool look_for_one() {
+    const std::string known = model_.hypothesis.name();
+    tell(known.empty() ? "what the base model lacks" : "what is lacking beside " + known);
+    FilterResult pass = full_pass();
+    const auto as_large = (pass.null_gaps.array() >= pass.gap).count();
+    Round round{model_,
+                screen(pass, model_.screened, model_.hypothesis.coefficients()),
+                static_cast<double>(as_large + 1) / static_cast<double>(pass.null_gaps.size() + 1),
+                {},
+                {}};
+    if (result_.rounds.empty()) {
+      result_.disagreements = disagreements(series_, pass, request_.base.well);
+      result_.disagreements.resize(significant(result_.disagreements, request_.false_alarms));
+      result_.states = std::move(pass.states);
+    }
+    tell("refits");
+    refit_shortlist(round);
+    result_.rounds.push_back(std::move(round));
+    return judge(result_.rounds.back());
+  }
+
+  void refit_shortlist(Round& round) const {
+    std::vector<FilterModel> trials{model_};
+    for (const CandidateScore& score : round.screening.scores) {
+      if (trials.size() > request_.shortlist || score.score < kTelling) break;
+      trials.push_back(model_);
+      trials.back().hypothesis.parts.push_back({candidate(score.effect), score.coefficients});
+    }
+    std::vector<Refit> refits(trials.size());
+    std::atomic<std::size_t> next{0};
+    data_.team->run([&](int) {
+      for (std::size_t k = next++; k < trials.size(); k = next++)
+        refits[k] = refit(data_, trials[k], request_.filter, maps_);
+    });
+    round.without = refits.front();
+    for (std::size_t k = 1; k < refits.size(); ++k)
+      if (refits[k].failure.empty()) round.refits.push_back(refits[k]);
+    std::sort(round.refits.begin(), round.refits.end(),
+              [this](const Refit& a, const Refit& b) { return criterion(a) < criterion(b); });
+  }
+
+  // Schwarz' (1978): an effect with a second coefficient has to earn it, above all if one without
+  // is a special case of it.
+  double criterion(const Refit& fit) const {
+    double values = 0;
+    for (std::size_t k = 1; k < data_.train; ++k)
+      values += static_cast<double>(data_.snapshots[k].values.size());
+    return fit.deviance + std::log(values) * static_cast<double>(fit.hypothesis.coefficients());
+  }
+
+  Candidate candidate(const std::string& effect) const {
+    return *std::find_if(model_.screened.begin(), model_.screened.end(),
+                         [&](const Candidate& c) { return c.effect == effect; });
+  }
+
+  // Takes the best effect into the model if it is one. Is there a reason to look for more?
+  bool judge(const Round& round) {
+    const bool first = result_.rounds.size() == 1;
+    if (first) result_.base = result_.found = round.without;
+    if (!round.without.failure.empty()) throw std::runtime_error(round.without.failure);
+    const bool gap = round.gap_p <= request_.false_alarms;
+    const CandidateScore& best_score = round.screening.scores.front();
+    const bool lacking = best_score.p <= request_.false_alarms;
+    if (!lacking || round.refits.empty()) {
+      if (gap) result_.finding = Finding::unnamed;
+      return false;
+    }
+    const Refit& best = round.refits.front();
+    const std::string effect = best.hypothesis.parts.back().candidate.effect;
+    const auto score = std::find_if(round.screening.scores.begin(), round.screening.scores.end(),
+                                    [&](const CandidateScore& s) { return s.effect == effect; });
+    if (criterion(round.without) < criterion(best) ||
+        score->response < kResolved * round.screening.mesh_error) {
+      if (first) result_.finding = Finding::below_resolution;
+      return false;
+    }
+    result_.found = best;
+    result_.equivalent = {effect};
+    for (std::size_t k = 1; k < round.refits.size(); ++k)
+      if (criterion(round.refits[k]) < criterion(best) + kTelling)
+        result_.equivalent.push_back(round.refits[k].hypothesis.parts.back().candidate.effect);
+    result_.finding = result_.equivalent.size() > 1 ? Finding::ambiguous : Finding::named;
+    model_.hypothesis = best.hypothesis;
+    model_.pace = best.pace;
+    model_.screened.erase(std::remove_if(model_.screened.begin(), model_.screened.end(),
+                                         [&](const Candidate& c) { return c.effect == effect; }),
+                          model_.screened.end());
+    return true;
+  }
+
+  Gaps gaps_of(const Refit& fit) const {
+    FilterSettings alone = request_.filter;
+    alone.replicates = 0;
+    ErrorMaps maps = maps_;
+    const FilterResult pass =
+        filter_fields(data_, {request_.base, fit.pace, fit.hypothesis, {}}, alone, maps);
+    const auto rms = [&](std::size_t from, std::size_t to) {
+      double squares = 0, values = 0;
+      for (std::size_t k = from; k < to; ++k) {
+        squares += pass.innovations[k].values.squaredNorm();
+        values += static_cast<double>(pass.innovations[k].values.size());
+      }
+      return values > 0 ? data_.noise * std::sqrt(std::max(0.0, squares / values - 1)) : 0.0;
+    };
+    return {rms(0, data_.train - 1), rms(data_.train - 1, pass.innovations.size())};
+  }
+
+  void finish() {
+    tell("gaps");
+    result_.noise = data_.noise;
+    result_.replicates = request_.filter.replicates;
+    result_.base_gap = gaps_of(result_.base);
+    result_.found_gap = gaps_of(result_.found);
+    const auto& refits = result_.rounds.front().refits;
+    result_.placebo_gap = gaps_of(refits.size() > 1 ? refits[1] : result_.base);
+  }
+
+  const FieldSeries& series_;
+  const ExplainRequest& request_;
+  FilterProblem data_;
+  FilterModel model_;
+  ErrorMaps maps_;
+  Explanation result_;
+};
+
+}  // namespace
+
+std::string word_for(Finding finding) {
+  switch (finding) {
+    case Finding::none:
+      return "none";
+    case Finding::named:
+      return "named";
+    case Finding::ambiguous:
+      return "ambiguous";
+    case Finding::below_resolution:
+      return "below-solver-resolution";
+    case Finding::unnamed:
+      return "unnamed";
+  }
+  return "";
+}
+
+Explanation explain_fields(const FieldSeries& series, const ExplainRequest& request) {
+  return Search(series, request).run();
+}
+
+}  // namespace traceraft

@@ -1,0 +1,24 @@
+// Measured fields: c at scattered points of a vesicle, at a few times.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kernel/core/types.hpp"
+
+namespace traceraft {
+
+// Times in units of R²/D of the model, places in units of R.
+struct FieldSnapshot {
+  double time;
+  std::vector<Point> points;
+  Vec values;     // of c, each with independent noise
+  Vec deviation;  // standard deviations relative to each other; all 1 if they are alike
+};
+
+struct FieldSeries {
+  std::string vesicle;
+  std::vector<FieldSnapshot> snapshots;  // in the order of time, at least two
+};
+
+}  // namespace traceraft

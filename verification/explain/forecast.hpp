@@ -1,0 +1,36 @@
+// From a state at one time to the next, with all that linear perturbations of the way need.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "kernel/problem/cahn_hilliard.hpp"
+#include "kernel/time/integrator.hpp"
+
+namespace traceraft {
+
+// Times at which a linear perturbation is advanced: fine at first, where a state that was put
+// together from measurements relaxes, and coarser later. Two-stage SDIRK method of Alexander
+// (1977): order 2, stiffly accurate and L-stable, one matrix per stage with the same shift.
+struct TangentGrid {
+  std::vector<double> stage_times;  // two per step; the second is the end of the step
+  std::vector<double> steps;
+
+  // Steps grow linearly.
+  static TangentGrid graded(double begin, double end, int steps);
+};
+
+struct Forecast {
+  TangentGrid grid;
+  std::vector<Vec> stages;  // y at the grid's stage times
+  Vec end, end_rate;        // c and ċ at the end
+};
+
+using MakeIntegrator = std::function<IntegratorPtr(const DaeProblem&)>;
+
+// Advances the nodal field c from `begin` to `end`. Throws std::runtime_error if that fails.
+Forecast forecast(const CahnHilliard& problem, const MakeIntegrator& make_integrator, ConstVec c,
+                  double begin, double end, int tangent_steps);
+
+}  // namespace traceraft

@@ -1,0 +1,111 @@
+#include "verification/explain/refit.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace traceraft {
+namespace {
+
+// Steps shorter than this share of a standard deviation change nothing that is reported.
+constexpr double kSmallStep = 0.1;
+constexpr int kMostSteps = 6, kMostHalvings = 3;
+// D is known to that factor at least.
+constexpr double kLargestPaceStep = 0.5;
+
+// ln pace first, then all coefficients.
+Vec unknowns(const FilterModel& model) {
+  Vec x(1 + model.hypothesis.coefficients());
+  x[0] = std::log(model.pace);
+  Eigen::Index next = 1;
+  for (const auto& part : model.hypothesis.parts)
+    for (const double a : part.coefficients) x[next++] = a;
+  return x;
+}
+
+void set_unknowns(FilterModel& model, const Vec& x) {
+  model.pace = std::exp(x[0]);
+  Eigen::Index next = 1;
+  for (auto& part : model.hypothesis.parts)
+    for (double& a : part.coefficients) {
+      a = part.candidate.two_sided ? x[next] : std::max(0.0, x[next]);
+      ++next;
+    }
+}
+
+struct Evaluation {
+  double deviance = std::numeric_limits<double>::infinity();
+  Vec step;                    // to the maximum, if the likelihood were Gaussian
+  Eigen::MatrixXd covariance;  // of the unknowns
+  std::vector<double> model_errors;
+  std::string failure;
+};
+
+Evaluation evaluate(const FilterProblem& data, const FilterModel& model,
+                    const FilterSettings& settings, ErrorMaps& maps) {
+  Evaluation result;
+  try {
+    const FilterResult pass = filter_fields(data, model, settings, maps);
+    const Eigen::MatrixXd inverse = pass.information.selfadjointView<Eigen::Lower>().ldlt().solve(
+        Eigen::MatrixXd::Identity(pass.information.rows(), pass.information.cols()));
+    const Vec all = inverse * pass.score;
+    std::vector<Eigen::Index> own{kPace};
+    for (Eigen::Index k = 0; k < model.hypothesis.coefficients(); ++k)
+      own.push_back(kFirstParameter + k);
+    result.step = all(own);
+    result.covariance = inverse(own, own);
+    result.deviance = pass.deviance;
+    for (const Innovation& in : pass.innovations) result.model_errors.push_back(in.model_error);
+  } catch (const std::runtime_error& error) {
+    result.failure = error.what();
+  }
+  return result;
+}
+
+}  // namespace
+
+Refit refit(const FilterProblem& data, const FilterModel& start, const FilterSettings& settings,
+            const ErrorMaps& maps) {
+  ErrorMaps kept = maps;
+  FilterSettings alone = settings;
+  alone.replicates = 0;
+  FilterModel model = start;
+  model.screened.clear();
+  Evaluation here = evaluate(data, model, alone, kept);
+  bool converged = false;
+  for (int k = 0; k < kMostSteps && !converged && here.failure.empty(); ++k) {
+    Vec step = here.step;
+    step[0] = std::clamp(step[0], -kLargestPaceStep, kLargestPaceStep);
+    const Vec x = unknowns(model);
+    bool better = false;
+    for (int half = 0; half <= kMostHalvings && !better; ++half, step *= 0.5) {
+      FilterModel trial = model;
+      set_unknowns(trial, x + step);
+      const Evaluation there = evaluate(data, trial, alone, kept);
+      better = there.deviance < here.deviance;
+      if (!better) continue;
+      const Vec moved = unknowns(trial) - x;
+      const Vec deviation = here.covariance.diagonal().cwiseMax(0).cwiseSqrt();
+      converged = (moved.array().abs() <= kSmallStep * deviation.array()).all();
+      model = trial;
+      here = there;
+    }
+    if (!better) converged = true;
+  }
+  Refit result;
+  result.hypothesis = model.hypothesis;
+  result.pace = model.pace;
+  result.deviance = here.deviance;
+  result.model_errors = here.model_errors;
+  result.converged = converged;
+  result.failure = here.failure;
+  if (here.failure.empty()) {
+    const Eigen::Index n = model.hypothesis.coefficients();
+    result.pace_deviation = std::sqrt(std::max(0.0, here.covariance(0, 0)));
+    result.covariance = here.covariance.bottomRightCorner(n, n);
+  }
+  return result;
+}
+
+}  // namespace traceraft

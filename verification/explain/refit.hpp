@@ -1,0 +1,25 @@
+// The most probable coefficients of a hypothesis: no longer to first order, but with forecasts by
+// the model that has the effects.
+#pragma once
+
+#include "verification/explain/field_filter.hpp"
+
+namespace traceraft {
+
+struct Refit {
+  Hypothesis hypothesis;
+  double pace = 1;
+  double deviance = 0;               // −2 ln of the likelihood, at its least
+  Eigen::MatrixXd covariance;        // of the coefficients, pace and mesh being free
+  double pace_deviation = 0;         // of ln pace
+  std::vector<double> model_errors;  // at every snapshot, see Innovation
+  bool converged = false;
+  std::string failure;  // why a forecast failed, if it did: no refit then
+};
+
+// Gauss and Newton's method with halved steps, from the coefficients and the pace of `start`.
+// Unstable trial models count as improbable. Coefficients keep the sign that their effect has.
+Refit refit(const FilterProblem& data, const FilterModel& start, const FilterSettings& settings,
+            const ErrorMaps& maps);
+
+}  // namespace traceraft

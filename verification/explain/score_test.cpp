@@ -1,0 +1,124 @@
+#include "verification/explain/score_test.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace traceraft {
+namespace {
+
+using Indices = std::vector<Eigen::Index>;
+
+// The quadratic form 2 sᵀa − aᵀ I a of some coefficients with all nuisances at their best.
+struct Profile {
+  Eigen::MatrixXd information;
+  Eigen::MatrixXd projection;  // scores of the coefficients = s_J − projection s_N
+
+  Profile(const Eigen::MatrixXd& F, const Indices& nuisances, const Indices& own) {
+    const Eigen::MatrixXd NN = F(nuisances, nuisances), NJ = F(nuisances, own);
+    const Eigen::MatrixXd solved = NN.ldlt().solve(NJ);
+    information = F(own, own) - NJ.transpose() * solved;
+    projection = solved.transpose();
+  }
+};
+
+struct Gain {
+  double score = 0;
+  Vec coefficients;
+};
+
+// The maximum of 2 uᵀa − aᵀ I a; where signs are fixed, over a ≥ 0 (by trying all faces: there are
+// two coefficients at most).
+Gain most_gain(const Eigen::MatrixXd& information, const Vec& u, bool two_sided) {
+  const Eigen::Index d = u.size();
+  Gain best{0, Vec::Zero(d)};
+  for (int face = 1; face < 1 << d; ++face) {
+    if (two_sided && face != (1 << d) - 1) continue;
+    Indices free;
+    for (Eigen::Index k = 0; k < d; ++k)
+      if (face >> k & 1) free.push_back(k);
+    const Vec part = information(free, free).ldlt().solve(Vec(u(free)));
+    const double score = part.dot(Vec(u(free)));
+    if (!(score > best.score) || (!two_sided && part.minCoeff() < 0)) continue;
+    best = {score, Vec::Zero(d)};
+    for (std::size_t k = 0; k < free.size(); ++k) best.coefficients[free[k]] = part[k];
+  }
+  return best;
+}
+
+struct Own {
+  Indices indices;
+  Profile profile;
+  bool seen;  // does it change anything that was measured?
+};
+
+// Less than this is no response: roundoff and the tolerance of the integrator.
+constexpr double kInvisible = 1e-6;
+
+}  // namespace
+
+Screening screen(const FilterResult& result, const std::vector<Candidate>& screened,
+                 Eigen::Index known_coefficients) {
+  const Eigen::MatrixXd& F = result.information;
+  Indices nuisances(static_cast<std::size_t>(kFirstParameter + known_coefficients));
+  std::iota(nuisances.begin(), nuisances.end(), 0);
+  std::vector<Own> own;
+  for (Eigen::Index next = static_cast<Eigen::Index>(nuisances.size()), k = 0;
+       k < static_cast<Eigen::Index>(screened.size()); ++k) {
+    Indices indices;
+    for (int d = 0; d < screened[k].directions; ++d) indices.push_back(next++);
+    const Profile profile(F, nuisances, indices);
+    const bool seen = profile.information.diagonal().maxCoeff() >
+                      kInvisible * std::max(1.0, F(indices, indices).diagonal().maxCoeff());
+    own.push_back({indices, profile, seen});
+  }
+  const auto gain = [&](std::size_t k, const Vec& score) {
+    if (!own[k].seen) return Gain{0, Vec::Zero(screened[k].directions)};
+    const Vec u = score(own[k].indices) - own[k].profile.projection * score(nuisances);
+    return most_gain(own[k].profile.information, u, screened[k].two_sided);
+  };
+
+  const Eigen::Index replicates = result.null_scores.cols();
+  Eigen::MatrixXd null(replicates, static_cast<Eigen::Index>(screened.size()));
+  for (Eigen::Index r = 0; r < replicates; ++r)
+    for (std::size_t k = 0; k < screened.size(); ++k)
+      null(r, static_cast<Eigen::Index>(k)) = gain(k, result.null_scores.col(r)).score;
+  // An effect that is seen no better than noise would be must not look certain.
+  const Vec average = null.colwise().mean().transpose().cwiseMax(0.5);
+  const Vec highest = (null * average.cwiseInverse().asDiagonal()).rowwise().maxCoeff();
+
+  Screening screening;
+  for (std::size_t k = 0; k < screened.size(); ++k) {
+    const Gain found = gain(k, result.score);
+    const double mean = average[static_cast<Eigen::Index>(k)];
+    const auto beyond = (highest.array() >= found.score / mean).count();
+    double squares = 0;
+    std::size_t values = 0;
+    for (const Innovation& in : result.innovations) {
+      squares += (in.parameters(Eigen::all, own[k].indices) * found.coefficients).squaredNorm();
+      values += static_cast<std::size_t>(in.values.size());
+    }
+    screening.scores.push_back(
+        {screened[k].effect,
+         {found.coefficients.data(), found.coefficients.data() + found.coefficients.size()},
+         found.score,
+         mean,
+         static_cast<double>(beyond + 1) / static_cast<double>(replicates + 1),
+         std::sqrt(squares / static_cast<double>(values))});
+  }
+  double squares = 0, values = 0;
+  for (const Innovation& in : result.innovations) {
+    squares += in.parameters.col(kMeshError).squaredNorm();
+    values += static_cast<double>(in.values.size());
+  }
+  screening.mesh_error = std::sqrt(squares / values);
+  const Eigen::MatrixXd inverse = F(nuisances, nuisances).inverse();
+  screening.pace_change = (inverse * result.score(nuisances))[kPace];
+  screening.pace_deviation = std::sqrt(inverse(kPace, kPace));
+  std::sort(screening.scores.begin(), screening.scores.end(),
+            [](const auto& a, const auto& b) { return a.score > b.score; });
+  return screening;
+}
+
+}  // namespace traceraft
