@@ -1,5 +1,6 @@
 #include "backends/suitesparse/direct_solver.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <mutex>
 
@@ -10,6 +11,9 @@
 
 namespace traceraft {
 namespace {
+
+// One, and as many refinements as have ever helped a system that is not singular.
+constexpr int kMostSolves = 3;
 
 // METIS draws from the process-wide random numbers of the C library: ordering once, for all lanes,
 // keeps two threads from sharing them and a resumed run on the same order.
@@ -54,28 +58,36 @@ class Lane {
     return status;
   }
 
+  // The contract: never report a wrong x as ok. LU of a poorly scaled system is checked, too, and
+  // refined if it has to be.
   SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance) {
     const ScopedTimer timer(statistics.solve_seconds);
     ++statistics.solves;
     if (!ready_) return {Status::retry(name_ + ": there is no factorisation")};
-    Vec solution;
-    const Status status = lu_->solve(system_, system_.right_side(J, b), solution);
-    if (!status.ok()) return {status};
-    system_.take_solution(J, b, solution, x);
-    ++statistics.iterations;
-    statistics.most_iterations = 1;
-    return {verify(J, b, x, tolerance), 1};
+    const double size = scaled_norm(J, b);
+    Vec defect = b, correction(b.size());
+    x.setZero();
+    double relative = 1;
+    for (int solves = 1; solves <= kMostSolves; ++solves) {
+      if (const Status status = solve_factors(J, defect, correction); !status.ok())
+        return {status, solves};
+      x += correction;
+      ++statistics.iterations;
+      statistics.most_iterations = std::max(statistics.most_iterations, solves);
+      J.multiply(x, defect, ThreadTeam(1));
+      defect = b - defect;
+      relative = scaled_norm(J, defect) / size;
+      if (size == 0 || relative <= tolerance) return {{}, solves};
+    }
+    return {Status::retry(name_ + ": relative residual " + format_number(relative)), kMostSolves};
   }
 
  private:
-  // The contract: never report a wrong x as ok. LU of a poorly scaled system is checked, too.
-  Status verify(const BlockJacobian& J, ConstVec b, ConstVec x, double tolerance) const {
-    Vec defect(b.size());
-    J.multiply(x, defect, ThreadTeam(1));
-    defect = b - defect;
-    const double relative = scaled_norm(J, defect) / scaled_norm(J, b);
-    if (b.isZero(0) || relative <= tolerance) return {};
-    return Status::retry(name_ + ": relative residual " + format_number(relative));
+  Status solve_factors(const BlockJacobian& J, ConstVec b, Vec& x) {
+    Vec solution;
+    const Status status = lu_->solve(system_, system_.right_side(J, b), solution);
+    if (status.ok()) system_.take_solution(J, b, solution, x);
+    return status;
   }
 
   std::string name_;

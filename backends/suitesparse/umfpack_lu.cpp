@@ -12,6 +12,7 @@ class UmfpackLu final : public SparseLu {
   UmfpackLu() {
     umfpack_di_defaults(control_);
     control_[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
+    control_[UMFPACK_IRSTEP] = 0;  // who solves refines where it is needed
   }
   ~UmfpackLu() override {
     umfpack_di_free_symbolic(&symbolic_);

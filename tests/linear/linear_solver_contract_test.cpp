@@ -6,6 +6,7 @@
 
 #include "backends/list.hpp"
 #include "backends/suitesparse/cholmod_solver.hpp"
+#include "backends/suitesparse/direct_solver.hpp"
 #include "kernel/linear/setup_policy.hpp"
 #include "kernel/linear/two_solve_preconditioner.hpp"
 #include "tests/support/spaces.hpp"
@@ -160,6 +161,45 @@ TEST_P(LinearSolverContract, CountsWhatItDoes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, LinearSolverContract, ::testing::ValuesIn(built_linear_solvers()));
+
+// Factors that are off by a factor.
+class Inexact final : public SparseLu {
+ public:
+  explicit Inexact(double factor) : factor_(factor) {}
+  Status factorise(AssembledSystem& system, const std::vector<int>& order) override {
+    return lu_->factorise(system, order);
+  }
+  Status solve(AssembledSystem& system, const Vec& right, Vec& solution) override {
+    const Status status = lu_->solve(system, right, solution);
+    solution *= factor_;
+    return status;
+  }
+
+ private:
+  double factor_;
+  std::unique_ptr<SparseLu> lu_ = make_umfpack_lu();
+};
+
+TEST(DirectSolver, RefinesWhereItsFactorsAreNotGoodEnough) {
+  const auto space = make_space(12);
+  const CahnHilliard problem(space, make_model("degenerate", 0.1));
+  BlockJacobian J = problem.make_jacobian();
+  const testing::StartState start = noise_state(problem, 1);
+  ASSERT_TRUE(problem.jacobian(0, start.y, start.ydot, 10, Tangent::exact, J).ok());
+  const Vec b = random_vector(problem.size(), 2);
+  const auto solves = [&](double factor) {
+    const LinearSolverPtr solver = make_direct_solver(
+        "inexact", [factor] { return std::make_unique<Inexact>(factor); }, space->pattern, 1);
+    EXPECT_TRUE(solver->setup(J).ok());
+    Vec x = Vec::Zero(b.size());
+    const SolveReport report = solver->solve(J, b, x, 1e-9);
+    return report.status.ok() ? report.iterations : 0;
+  };
+  EXPECT_EQ(solves(1), 1);
+  EXPECT_EQ(solves(1 + 1e-6), 2);
+  EXPECT_EQ(solves(1 + 1e-4), 3);
+  EXPECT_EQ(solves(1.5), 0);
+}
 
 TEST(SharedSetup, IsWornByIterationsAndByChanges) {
   SharedSetup setup(2, 5);
