@@ -1,5 +1,5 @@
 # Shared by ./run and ./check: installs what is missing, configures and builds. Sourced, not run.
-# Usage: prepare PRESET YES        (YES=1: install without asking)
+# Usage: prepare PRESET YES TARGET        (YES=1: install without asking; TARGET: traceraft or all)
 
 packages="g++ cmake ninja-build libeigen3-dev libsuitesparse-dev libmetis-dev libopenblas-dev
 libsundials-dev libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libmuparser-dev zlib1g-dev libpng-dev libgif-dev libcsv-dev libnlopt-dev
@@ -43,7 +43,8 @@ quietly() {
 
 prepare() {
   install_missing "$2" || return 1
-  say "Building (about two minutes the first time) ..."
+  say "Building (some minutes the first time) ..."
   quietly cmake --preset "$1" || return 1
-  if [ -t 2 ]; then cmake --build --preset "$1" >&2; else quietly cmake --build --preset "$1"; fi
+  set -- cmake --build --preset "$1" --target "$3"
+  if [ -t 2 ]; then "$@" >&2; else quietly "$@"; fi
 }
