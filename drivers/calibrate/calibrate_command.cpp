@@ -13,6 +13,7 @@
 #include "drivers/config/config_file.hpp"
 #include "drivers/config/option_flags.hpp"
 #include "drivers/exit_codes.hpp"
+#include "drivers/input/measured_units.hpp"
 #include "drivers/run/run_folder.hpp"
 #include "drivers/run/run_setup.hpp"
 #include "drivers/vesicles/dataset.hpp"
@@ -166,8 +167,7 @@ int run_calibration(const CalibrateRequest& request) {
   (void)costly_parameters(request.parameters);
   const MeasuredVesicles data = read_dataset(request.data);
   const Configuration model(read_config_file(request.model), request.flags);
-  if (model.flag("scaled"))
-    throw InputError(model.where("scaled") + ": measurements are in seconds and micrometres");
+  refuse_scaled(model);
   refuse_model(model);
   const fs::path out = request.out.empty() ? first_free_folder("calibration") : request.out;
   fs::create_directories(out / "points");

@@ -9,6 +9,7 @@
 #include "drivers/exit_codes.hpp"
 #include "drivers/explain/explain_report.hpp"
 #include "drivers/explain/field_dataset.hpp"
+#include "drivers/input/measured_units.hpp"
 #include "drivers/output/status_line.hpp"
 #include "drivers/run/run_folder.hpp"
 #include "drivers/run/run_setup.hpp"
@@ -36,8 +37,7 @@ GivenValues given_model(const ExplainCommand& command, double radius_um) {
 }
 
 void refuse_model(const Configuration& model) {
-  if (model.flag("scaled"))
-    throw InputError(model.where("scaled") + ": measurements are in seconds and micrometres");
+  refuse_scaled(model);
   if (!model.text("effect").empty())
     throw InputError(model.where("effect") +
                      ": the search starts from a model without effects; it finds them itself");

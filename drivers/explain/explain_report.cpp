@@ -25,13 +25,6 @@ Units found_units(Units units, const Refit& fit) {
   return units;
 }
 
-double from_model_units(const std::string& unit, const Units& units) {
-  if (unit == "1/s") return 1 / units.time();
-  if (unit == "s") return units.time();
-  if (unit == "um") return units.length();
-  return 1;
-}
-
 // Errors of the coefficients, carried on to the parameters by differences.
 std::vector<FoundParameter> found_parameters(const Refit& fit, const Units& base_units) {
   const Units units = found_units(base_units, fit);
@@ -50,7 +43,7 @@ std::vector<FoundParameter> found_parameters(const Refit& fit, const Units& base
         slope[d] = (part.candidate.term(moved).values[k] - values[k]) / step;
       }
       const double variance = slope.dot(fit.covariance.block(first, first, n, n) * slope);
-      const double factor = from_model_units(specs[k].unit, units);
+      const double factor = 1 / to_model_units(specs[k].unit, units);
       result.push_back({part.candidate.effect, specs[k].name, specs[k].unit, factor * values[k],
                         factor * std::sqrt(std::max(0.0, variance))});
     }
@@ -106,7 +99,7 @@ Json verdict_json(const Explanation& found, const Units& units) {
         {"floor", Json()}}},
       {"where", where},
       {"null",
-       {{"replicates", found.replicates}, {"false_alarm_level", first.screening.scores.front().p}}},
+       {{"replicates", found.replicates}, {"false_alarm_level", first.screening.p}}},
       {"noise", found.noise}};
 }
 
@@ -142,9 +135,8 @@ std::string sentence(const Explanation& found) {
              ": these data do not tell them apart.";
     }
     case Finding::below_resolution:
-      return "There is a disagreement, but the mesh of the model changes c as much: repeat with "
-             "more "
-             "--cells.";
+      return "There is a disagreement, but the mesh of the model changes c as much: "
+             "repeat with more --cells.";
     case Finding::unnamed:
       return "There is a disagreement that no known effect explains" +
              (name.empty() ? std::string(".") : ", even with " + name + ".");
@@ -161,7 +153,7 @@ std::string effect_text(const Hypothesis& hypothesis, const Units& units) {
     text += (text.empty() ? "" : "; ") + term.effect;
     for (std::size_t k = 0; k < specs.size(); ++k)
       text += (k ? "," : ":") + specs[k].name + "=" +
-              format_number(term.values[k] * from_model_units(specs[k].unit, units));
+              format_number(term.values[k] / to_model_units(specs[k].unit, units));
   }
   return text;
 }

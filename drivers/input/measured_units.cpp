@@ -32,4 +32,9 @@ double time_factor(const TomlTable& toml, const std::string& key) {
   return factor(units, toml, key);
 }
 
+void refuse_scaled(const Configuration& model) {
+  if (model.flag("scaled"))
+    throw InputError(model.where("scaled") + ": measurements are in seconds and micrometres");
+}
+
 }  // namespace traceraft

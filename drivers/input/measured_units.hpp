@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "drivers/config/configuration.hpp"
 #include "drivers/input/toml_table.hpp"
 
 namespace traceraft {
@@ -10,5 +11,8 @@ namespace traceraft {
 // The factor to µm or s of the unit that stands under a key. Throws InputError.
 double length_factor(const TomlTable& toml, const std::string& key);
 double time_factor(const TomlTable& toml, const std::string& key);
+
+// Throws InputError if the model that measurements are held against is in units of R and R²/D.
+void refuse_scaled(const Configuration& model);
 
 }  // namespace traceraft

@@ -3,14 +3,6 @@
 namespace traceraft {
 namespace {
 
-// The factor from the units of the command line to R and R²/D.
-double to_model_units(const std::string& unit, const Units& units) {
-  if (unit == "1/s") return units.time();
-  if (unit == "s") return 1 / units.time();
-  if (unit == "um") return 1 / units.length();
-  return 1;
-}
-
 std::string trimmed(const std::string& text) {
   const std::size_t first = text.find_first_not_of(" \t");
   return first == std::string::npos ? ""
@@ -33,6 +25,13 @@ void add_one(const std::string& text, const Units& units, CahnHilliardModel& mod
 }
 
 }  // namespace
+
+double to_model_units(const std::string& unit, const Units& units) {
+  if (unit == "1/s") return units.time();
+  if (unit == "s") return 1 / units.time();
+  if (unit == "um") return 1 / units.length();
+  return 1;
+}
 
 const NamedList<EffectEntry>& effects() {
   static const NamedList<EffectEntry> list(

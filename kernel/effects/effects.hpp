@@ -47,6 +47,9 @@ EffectEntry uptake_effect();
 
 const NamedList<EffectEntry>& effects();
 
+// The factor from a parameter's unit to R and R²/D.
+double to_model_units(const std::string& unit, const Units& units);
+
 // "exchange:rate=1e-3,target=0.2; gravity:strength=0.1" -> added to the model. Throws InputError
 // for an unknown name or key, a value out of range, and a strength that is not given.
 void add_effects(const std::string& specification, const Units& units, CahnHilliardModel& model);

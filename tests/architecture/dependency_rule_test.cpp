@@ -73,6 +73,7 @@ TEST(DependencyRule, EveryBackendKnowsTheKernelAndItsOwnLibrary) {
       {"sundials", {"sundials/", "sunlinsol/", "sunnonlinsol/", "ida/"}},
       {"muparser", {"muParser.h"}},
       {"nlopt", {"nlopt.h"}},
+      {"openblas", {"cblas.h"}},
       {"gif", {"gif_lib.h"}},
       {"png", {"png.h"}},
       {"posix",

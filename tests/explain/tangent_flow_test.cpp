@@ -31,12 +31,12 @@ class TangentFlowTest : public ::testing::Test {
       return integrators().find("ida").make(p, choose_linear_solver("direct", *space), space->team,
                                             settings);
     };
-    return forecast(problem, make_integrator, from, begin, end, steps);
+    return forecast(problem, make_integrator, from, begin, end, {steps});
   }
   Columns derivative(Columns S, const Forcing& forcing = {}) const {
     TangentFlow flow(base, choose_linear_solver("direct", *space).primary,
                      std::make_shared<ThreadTeam>(2));
-    flow.advance(along, S, forcing);
+    flow.advance(along.paths.front(), S, forcing);
     return S;
   }
   // `end`: the state for a perturbation of that size. Half of it leaves a quarter of the remainder.

@@ -93,7 +93,7 @@ class Simulation {
     return result;
   }
   Vec advance(ConstVec c, double begin, double end) const {
-    return forecast(problem_, make_integrator_, c, begin, end, 1).end;
+    return forecast(problem_, make_integrator_, c, begin, end).end;
   }
 
  private:

@@ -1,6 +1,5 @@
 #include "verification/explain/disagreement.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -51,10 +50,7 @@ std::vector<Disagreement> disagreements(const FieldSeries& series, const FilterR
       member(i, static_cast<Eigen::Index>(patch)) = 1;
     }
     // eᵀ S⁻¹ ν against the same of noise.
-    const Eigen::MatrixXd GtG = in.state.transpose() * in.state;
-    const Eigen::LLT<Eigen::MatrixXd> factors(Eigen::MatrixXd::Identity(GtG.rows(), GtG.cols()) +
-                                              GtG);
-    const Columns weighted = member - in.state * factors.solve(in.state.transpose() * member);
+    const Columns weighted = InnovationCovariance(in, 0).solve(member);
     const Vec measured = weighted.transpose() * in.values;
     const Columns noise = weighted.transpose() * in.replicates;
     for (Eigen::Index patch = 0; patch < patches; ++patch) {

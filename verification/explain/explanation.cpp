@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <stdexcept>
 
 namespace traceraft {
 namespace {
@@ -11,6 +12,9 @@ namespace {
 constexpr double kFiner = 1.4;
 // 2 ln of a likelihood ratio of 20: less does not tell two hypotheses apart.
 constexpr double kTelling = 6;
+// Candidates that gain less than this share of what the best one does, to first order, are not
+// refitted, but for the second best.
+constexpr double kWorthRefitting = 0.25;
 // An effect has to change c by that share of what the model's mesh does.
 constexpr double kResolved = 1;
 
@@ -70,44 +74,52 @@ class Search {
   }
 
   bool look_for_one() {
+    const bool first = result_.rounds.empty();
     const std::string known = model_.hypothesis.name();
-    tell(known.empty() ? "what the base model lacks" : "what is lacking beside " + known);
-    FilterResult pass = full_pass();
+    tell(first ? "what the base model lacks" : "what is lacking beside " + known);
+    const FilterResult pass = full_pass();
     const auto as_large = (pass.null_gaps.array() >= pass.gap).count();
     Round round{model_,
                 screen(pass, model_.screened, model_.hypothesis.coefficients()),
                 static_cast<double>(as_large + 1) / static_cast<double>(pass.null_gaps.size() + 1),
-                {},
+                result_.found,
                 {}};
-    if (result_.rounds.empty()) {
+    if (first) {
       result_.disagreements = disagreements(series_, pass, request_.base.well);
       result_.disagreements.resize(significant(result_.disagreements, request_.false_alarms));
-      result_.states = std::move(pass.states);
+      round.without = refit_all({model_}).front();
+      if (!round.without.failure.empty()) throw std::runtime_error(round.without.failure);
+      result_.base = result_.found = round.without;
     }
-    tell("refits");
-    refit_shortlist(round);
+    if (round.screening.p <= request_.false_alarms) refit_shortlist(round);
     result_.rounds.push_back(std::move(round));
     return judge(result_.rounds.back());
   }
 
   void refit_shortlist(Round& round) const {
-    std::vector<FilterModel> trials{model_};
+    tell("refits");
+    std::vector<FilterModel> trials;
+    const double most = round.screening.scores.front().score;
     for (const CandidateScore& score : round.screening.scores) {
-      if (trials.size() > request_.shortlist || score.score < kTelling) break;
+      const bool worth = score.score >= std::max(kTelling, kWorthRefitting * most);
+      if (trials.size() == request_.shortlist || (trials.size() >= 2 && !worth)) break;
       trials.push_back(model_);
       trials.back().hypothesis.parts.push_back({candidate(score.effect), score.coefficients});
     }
+    for (Refit& fit : refit_all(trials))
+      if (fit.failure.empty()) round.refits.push_back(std::move(fit));
+    std::sort(round.refits.begin(), round.refits.end(),
+              [this](const Refit& a, const Refit& b) { return criterion(a) < criterion(b); });
+  }
+
+  std::vector<Refit> refit_all(const std::vector<FilterModel>& trials) const {
     std::vector<Refit> refits(trials.size());
     std::atomic<std::size_t> next{0};
     data_.team->run([&](int) {
       for (std::size_t k = next++; k < trials.size(); k = next++)
         refits[k] = refit(data_, trials[k], request_.filter, maps_);
     });
-    round.without = refits.front();
-    for (std::size_t k = 1; k < refits.size(); ++k)
-      if (refits[k].failure.empty()) round.refits.push_back(refits[k]);
-    std::sort(round.refits.begin(), round.refits.end(),
-              [this](const Refit& a, const Refit& b) { return criterion(a) < criterion(b); });
+    return refits;
   }
 
   // Schwarz' (1978): an effect with a second coefficient has to earn it, above all if one without
@@ -127,13 +139,8 @@ class Search {
   // Takes the best effect into the model if it is one. Is there a reason to look for more?
   bool judge(const Round& round) {
     const bool first = result_.rounds.size() == 1;
-    if (first) result_.base = result_.found = round.without;
-    if (!round.without.failure.empty()) throw std::runtime_error(round.without.failure);
-    const bool gap = round.gap_p <= request_.false_alarms;
-    const CandidateScore& best_score = round.screening.scores.front();
-    const bool lacking = best_score.p <= request_.false_alarms;
-    if (!lacking || round.refits.empty()) {
-      if (gap) result_.finding = Finding::unnamed;
+    if (round.refits.empty()) {
+      if (round.gap_p <= request_.false_alarms) result_.finding = Finding::unnamed;
       return false;
     }
     const Refit& best = round.refits.front();
@@ -160,24 +167,13 @@ class Search {
   }
 
   Gaps gaps_of(const Refit& fit) const {
-    FilterSettings alone = request_.filter;
-    alone.replicates = 0;
-    ErrorMaps maps = maps_;
-    const FilterResult pass =
-        filter_fields(data_, {request_.base, fit.pace, fit.hypothesis, {}}, alone, maps);
-    const auto rms = [&](std::size_t from, std::size_t to) {
-      double squares = 0, values = 0;
-      for (std::size_t k = from; k < to; ++k) {
-        squares += pass.innovations[k].values.squaredNorm();
-        values += static_cast<double>(pass.innovations[k].values.size());
-      }
-      return values > 0 ? data_.noise * std::sqrt(std::max(0.0, squares / values - 1)) : 0.0;
+    const auto beyond_noise = [&](double ratio) {
+      return data_.noise * std::sqrt(std::max(0.0, ratio * ratio - 1));
     };
-    return {rms(0, data_.train - 1), rms(data_.train - 1, pass.innovations.size())};
+    return {beyond_noise(fit.train), beyond_noise(fit.heldout)};
   }
 
   void finish() {
-    tell("gaps");
     result_.noise = data_.noise;
     result_.replicates = request_.filter.replicates;
     result_.base_gap = gaps_of(result_.base);

@@ -45,8 +45,8 @@ struct Round {
   FilterModel known;
   Screening screening;
   double gap_p;               // share of replicates with a gap as large
-  Refit without;              // the pace alone
-  std::vector<Refit> refits;  // of the shortlist, most probable first
+  Refit without;              // what was known before
+  std::vector<Refit> refits;  // of the shortlist, most probable first; none if nothing is lacking
 };
 
 struct Explanation {
@@ -58,7 +58,6 @@ struct Explanation {
   std::vector<Round> rounds;
   Gaps base_gap, found_gap, placebo_gap;    // placebo: the second best of the first round
   std::vector<Disagreement> disagreements;  // with the base, the significant ones
-  std::vector<Vec> states;                  // the corrected state at every snapshot, of the base
 };
 
 // Throws std::runtime_error if the base model cannot be advanced.

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "backends/nlopt/minimise.hpp"
+#include "backends/openblas/dense_algebra.hpp"
 #include "kernel/core/random.hpp"
 #include "verification/measure/sparse_view.hpp"
 
@@ -156,14 +157,14 @@ FieldEstimate estimate_field(const SurfaceSpace& space, const NoisyValues& measu
 }
 
 void compress(const Eigen::SparseMatrix<double>& A, Eigen::MatrixXd& X, int most) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> gram(X.transpose() * (A * X));
+  const SymmetricEigen eigen = symmetric_eigen(transposed_product(X, A * X));
   const Eigen::Index columns = X.cols();
-  const double largest = columns ? gram.eigenvalues()[columns - 1] : 0;
+  const double largest = columns ? eigen.values[columns - 1] : 0;
   Eigen::Index kept = 0;
   while (kept < std::min<Eigen::Index>(most, columns) &&
-         gram.eigenvalues()[columns - 1 - kept] > 1e-10 * largest)
+         eigen.values[columns - 1 - kept] > 1e-10 * largest)
     ++kept;
-  X = (X * gram.eigenvectors().rightCols(kept)).eval();
+  X = product(X, eigen.vectors.rightCols(kept));
 }
 
 }  // namespace traceraft

@@ -23,21 +23,23 @@ TangentGrid TangentGrid::graded(double begin, double end, int steps) {
 }
 
 Forecast forecast(const CahnHilliard& problem, const MakeIntegrator& make_integrator, ConstVec c,
-                  double begin, double end, int tangent_steps) {
+                  double begin, double end, const std::vector<int>& tangent_steps) {
   Vec y = Vec::Zero(problem.size()), ydot = Vec::Zero(problem.size());
   y.head(problem.block_size()) = c;
   require(problem.consistent_initial_state(begin, y, ydot));
   const IntegratorPtr integrator = make_integrator(problem);
   require(integrator->start(begin, y, ydot, end));
-  Forecast result{TangentGrid::graded(begin, end, tangent_steps), {}, {}, {}};
-  std::size_t next = 0;
+  Forecast result;
+  for (const int steps : tangent_steps)
+    result.paths.push_back({TangentGrid::graded(begin, end, steps), {}});
   while (integrator->time() < end) {
     require(integrator->advance());
-    for (; next < result.grid.stage_times.size() &&
-           result.grid.stage_times[next] <= integrator->time();
-         ++next) {
-      require(integrator->interpolate(result.grid.stage_times[next], y));
-      result.stages.push_back(y);
+    for (TangentPath& path : result.paths) {
+      const auto& times = path.grid.stage_times;
+      while (path.stages.size() < times.size() && times[path.stages.size()] <= integrator->time()) {
+        require(integrator->interpolate(times[path.stages.size()], y));
+        path.stages.push_back(y);
+      }
     }
   }
   y = integrator->state();

@@ -21,16 +21,21 @@ struct TangentGrid {
   static TangentGrid graded(double begin, double end, int steps);
 };
 
-struct Forecast {
+struct TangentPath {
   TangentGrid grid;
   std::vector<Vec> stages;  // y at the grid's stage times
-  Vec end, end_rate;        // c and ċ at the end
+};
+
+struct Forecast {
+  std::vector<TangentPath> paths;
+  Vec end, end_rate;  // c and ċ at the end
 };
 
 using MakeIntegrator = std::function<IntegratorPtr(const DaeProblem&)>;
 
-// Advances the nodal field c from `begin` to `end`. Throws std::runtime_error if that fails.
+// Advances the nodal field c from `begin` to `end`, with a path for each number of tangent steps.
+// Throws std::runtime_error if that fails.
 Forecast forecast(const CahnHilliard& problem, const MakeIntegrator& make_integrator, ConstVec c,
-                  double begin, double end, int tangent_steps);
+                  double begin, double end, const std::vector<int>& tangent_steps = {});
 
 }  // namespace traceraft

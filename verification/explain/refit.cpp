@@ -8,8 +8,7 @@
 namespace traceraft {
 namespace {
 
-// Steps shorter than this share of a standard deviation change nothing that is reported.
-constexpr double kSmallStep = 0.1;
+constexpr double kSmallStep = 0.1;  // in standard deviations
 constexpr int kMostSteps = 6, kMostHalvings = 3;
 // D is known to that factor at least.
 constexpr double kLargestPaceStep = 0.5;
@@ -38,7 +37,7 @@ struct Evaluation {
   double deviance = std::numeric_limits<double>::infinity();
   Vec step;                    // to the maximum, if the likelihood were Gaussian
   Eigen::MatrixXd covariance;  // of the unknowns
-  std::vector<double> model_errors;
+  double train = 0, heldout = 0;
   std::string failure;
 };
 
@@ -56,11 +55,23 @@ Evaluation evaluate(const FilterProblem& data, const FilterModel& model,
     result.step = all(own);
     result.covariance = inverse(own, own);
     result.deviance = pass.deviance;
-    for (const Innovation& in : pass.innovations) result.model_errors.push_back(in.model_error);
+    const auto values = [](const Innovation& in) { return in.values; };
+    result.train = root_mean_square(pass.innovations, 0, data.train - 1, values);
+    result.heldout =
+        root_mean_square(pass.innovations, data.train - 1, pass.innovations.size(), values);
   } catch (const std::runtime_error& error) {
     result.failure = error.what();
   }
   return result;
+}
+
+// Steps this short change nothing that is reported.
+bool settled(const Evaluation& here, const FilterModel& model) {
+  const Vec x = unknowns(model);
+  FilterModel moved = model;
+  set_unknowns(moved, x + here.step);
+  const Vec deviation = here.covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  return ((unknowns(moved) - x).array().abs() <= kSmallStep * deviation.array()).all();
 }
 
 }  // namespace
@@ -73,32 +84,28 @@ Refit refit(const FilterProblem& data, const FilterModel& start, const FilterSet
   FilterModel model = start;
   model.screened.clear();
   Evaluation here = evaluate(data, model, alone, kept);
-  bool converged = false;
-  for (int k = 0; k < kMostSteps && !converged && here.failure.empty(); ++k) {
+  bool better = here.failure.empty();
+  for (int k = 0; k < kMostSteps && better && !settled(here, model); ++k) {
     Vec step = here.step;
     step[0] = std::clamp(step[0], -kLargestPaceStep, kLargestPaceStep);
     const Vec x = unknowns(model);
-    bool better = false;
+    better = false;
     for (int half = 0; half <= kMostHalvings && !better; ++half, step *= 0.5) {
       FilterModel trial = model;
       set_unknowns(trial, x + step);
-      const Evaluation there = evaluate(data, trial, alone, kept);
+      Evaluation there = evaluate(data, trial, alone, kept);
       better = there.deviance < here.deviance;
       if (!better) continue;
-      const Vec moved = unknowns(trial) - x;
-      const Vec deviation = here.covariance.diagonal().cwiseMax(0).cwiseSqrt();
-      converged = (moved.array().abs() <= kSmallStep * deviation.array()).all();
       model = trial;
-      here = there;
+      here = std::move(there);
     }
-    if (!better) converged = true;
   }
   Refit result;
   result.hypothesis = model.hypothesis;
   result.pace = model.pace;
   result.deviance = here.deviance;
-  result.model_errors = here.model_errors;
-  result.converged = converged;
+  result.train = here.train;
+  result.heldout = here.heldout;
   result.failure = here.failure;
   if (here.failure.empty()) {
     const Eigen::Index n = model.hypothesis.coefficients();

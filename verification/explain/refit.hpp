@@ -9,16 +9,18 @@ namespace traceraft {
 struct Refit {
   Hypothesis hypothesis;
   double pace = 1;
-  double deviance = 0;               // −2 ln of the likelihood, at its least
-  Eigen::MatrixXd covariance;        // of the coefficients, pace and mesh being free
-  double pace_deviation = 0;         // of ln pace
-  std::vector<double> model_errors;  // at every snapshot, see Innovation
-  bool converged = false;
+  double deviance = 0;         // −2 ln of the likelihood, at its least
+  Eigen::MatrixXd covariance;  // of the coefficients, pace and mesh being free
+  double pace_deviation = 0;   // of ln pace
+  // Root mean square of the innovations in units of the noise: of the snapshots that count, and of
+  // those that are held out.
+  double train = 0, heldout = 0;
   std::string failure;  // why a forecast failed, if it did: no refit then
 };
 
-// Gauss and Newton's method with halved steps, from the coefficients and the pace of `start`.
-// Unstable trial models count as improbable. Coefficients keep the sign that their effect has.
+// Gauss and Newton's method with halved steps, from the coefficients and the pace of `start`, until
+// what is left to go is a small part of the standard deviation. Unstable trial models count as
+// improbable. Coefficients keep the sign that their effect has.
 Refit refit(const FilterProblem& data, const FilterModel& start, const FilterSettings& settings,
             const ErrorMaps& maps);
 

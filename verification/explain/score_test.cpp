@@ -88,31 +88,29 @@ Screening screen(const FilterResult& result, const std::vector<Candidate>& scree
   const Vec average = null.colwise().mean().transpose().cwiseMax(0.5);
   const Vec highest = (null * average.cwiseInverse().asDiagonal()).rowwise().maxCoeff();
 
+  const auto all_values = [&](const auto& values) {
+    return root_mean_square(result.innovations, 0, result.innovations.size(), values);
+  };
   Screening screening;
   for (std::size_t k = 0; k < screened.size(); ++k) {
     const Gain found = gain(k, result.score);
     const double mean = average[static_cast<Eigen::Index>(k)];
     const auto beyond = (highest.array() >= found.score / mean).count();
-    double squares = 0;
-    std::size_t values = 0;
-    for (const Innovation& in : result.innovations) {
-      squares += (in.parameters(Eigen::all, own[k].indices) * found.coefficients).squaredNorm();
-      values += static_cast<std::size_t>(in.values.size());
-    }
+    const double response = all_values([&](const Innovation& in) -> Vec {
+      return in.parameters(Eigen::all, own[k].indices) * found.coefficients;
+    });
+    const double p = static_cast<double>(beyond + 1) / static_cast<double>(replicates + 1);
+    screening.p = std::min(screening.p, p);
     screening.scores.push_back(
         {screened[k].effect,
          {found.coefficients.data(), found.coefficients.data() + found.coefficients.size()},
          found.score,
          mean,
-         static_cast<double>(beyond + 1) / static_cast<double>(replicates + 1),
-         std::sqrt(squares / static_cast<double>(values))});
+         p,
+         response});
   }
-  double squares = 0, values = 0;
-  for (const Innovation& in : result.innovations) {
-    squares += in.parameters.col(kMeshError).squaredNorm();
-    values += static_cast<double>(in.values.size());
-  }
-  screening.mesh_error = std::sqrt(squares / values);
+  screening.mesh_error =
+      all_values([](const Innovation& in) -> Vec { return in.parameters.col(kMeshError); });
   const Eigen::MatrixXd inverse = F(nuisances, nuisances).inverse();
   screening.pace_change = (inverse * result.score(nuisances))[kPace];
   screening.pace_deviation = std::sqrt(inverse(kPace, kPace));

@@ -18,6 +18,7 @@ struct CandidateScore {
 
 struct Screening {
   std::vector<CandidateScore> scores;  // most probable first
+  double p = 1;                        // that the most telling of them is noise
   double pace_change, pace_deviation;  // of ln D, if nothing else is missing
   double mesh_error;                   // root mean square of what a finer mesh changes, in noise
 };

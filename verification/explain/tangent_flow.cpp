@@ -19,7 +19,7 @@ TangentFlow::TangentFlow(const CahnHilliard& problem, const LinearSolverFactory&
       solver_(make_solver(team_->size())),
       jacobian_(problem.make_jacobian()) {}
 
-void TangentFlow::advance(const Forecast& along, Columns& S, const Forcing& forcing) {
+void TangentFlow::advance(const TangentPath& along, Columns& S, const Forcing& forcing) {
   for (std::size_t k = 0; k < along.grid.steps.size(); ++k) {
     const double shift = 1 / (kTangentGamma * along.grid.steps[k]);
     const auto stage = [&](std::size_t i, const Columns& known) {

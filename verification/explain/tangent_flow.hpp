@@ -17,8 +17,8 @@ using Columns = Eigen::MatrixXd;
 // The change of F per unit of a parameter at (t, y): 2n × forced columns.
 using Forcing = std::function<Columns(double t, ConstVec y)>;
 
-// Along a forecast, the DAE F(t, y, ẏ; θ) = 0 changes by M̃ δċ + ∂F/∂y δy + ∂F/∂θ = 0: advances the
-// columns of S over the forecast's grid. The last ones, as many as `forcing` returns, are forced;
+// Along a solution, the DAE F(t, y, ẏ; θ) = 0 changes by M̃ δċ + ∂F/∂y δy + ∂F/∂θ = 0: advances the
+// columns of S over the path's grid. The last ones, as many as `forcing` returns, are forced;
 // without forcing none is. All columns share the factors of a stage. Throws std::runtime_error if a
 // system cannot be solved.
 class TangentFlow {
@@ -26,7 +26,7 @@ class TangentFlow {
   // Columns are shared out over the team. The problem must outlive this object.
   TangentFlow(const CahnHilliard& problem, const LinearSolverFactory& make_solver,
               std::shared_ptr<const ThreadTeam> team);
-  void advance(const Forecast& along, Columns& S, const Forcing& forcing = {});
+  void advance(const TangentPath& along, Columns& S, const Forcing& forcing = {});
 
  private:
   // Solves M̃ (X − G) shift + ∂F/∂y X + forcing = 0 for the differential part.

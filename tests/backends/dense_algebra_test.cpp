@@ -1,0 +1,57 @@
+#include "backends/openblas/dense_algebra.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <limits>
+
+#include "tests/support/spaces.hpp"
+
+namespace traceraft {
+namespace {
+
+using Eigen::MatrixXd;
+
+MatrixXd random_matrix(int rows, int columns, std::uint64_t seed) {
+  return testing::random_vector(rows * columns, seed).reshaped(rows, columns);
+}
+
+TEST(DenseAlgebra, AgreesWithEigen) {
+  const MatrixXd A = random_matrix(7, 5, 1), B = random_matrix(5, 3, 2), C = random_matrix(7, 4, 3);
+  EXPECT_TRUE(product(A, B).isApprox(A * B, 1e-13));
+  EXPECT_TRUE(transposed_product(A, C).isApprox(A.transpose() * C, 1e-13));
+  const MatrixXd half = (A.transpose() * A).triangularView<Eigen::Lower>();
+  EXPECT_TRUE(gram(A).isApprox(half, 1e-13));
+}
+
+TEST(DenseAlgebra, DividesByTheUpperTriangleAlone) {
+  const MatrixXd R = random_matrix(5, 5, 4) + 5 * MatrixXd::Identity(5, 5);
+  const MatrixXd X = random_matrix(7, 5, 5);
+  const MatrixXd upper = R.triangularView<Eigen::Upper>();
+  EXPECT_TRUE((divided_by_upper(X, R) * upper).isApprox(X, 1e-13));
+}
+
+TEST(DenseAlgebra, FindsEigenvectorsFromTheLowerHalf) {
+  const MatrixXd half = gram(random_matrix(9, 6, 6));
+  const MatrixXd whole = half.selfadjointView<Eigen::Lower>();
+  const SymmetricEigen eigen = symmetric_eigen(half);
+  EXPECT_TRUE((whole * eigen.vectors).isApprox(eigen.vectors * eigen.values.asDiagonal(), 1e-12));
+  EXPECT_TRUE((eigen.vectors.transpose() * eigen.vectors).isIdentity(1e-12));
+  EXPECT_TRUE(std::is_sorted(eigen.values.begin(), eigen.values.end()));
+}
+
+TEST(DenseAlgebra, TakesMatricesWithoutColumns) {
+  EXPECT_EQ(product(MatrixXd(4, 0), MatrixXd(0, 3)), MatrixXd::Zero(4, 3));
+  EXPECT_EQ(transposed_product(MatrixXd(4, 0), MatrixXd::Ones(4, 3)).rows(), 0);
+  EXPECT_EQ(gram(MatrixXd(4, 0)).size(), 0);
+  EXPECT_EQ(symmetric_eigen(MatrixXd(0, 0)).values.size(), 0);
+}
+
+TEST(DenseAlgebra, RefusesWhatIsNotFinite) {
+  MatrixXd A = MatrixXd::Identity(3, 3);
+  A(1, 0) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(symmetric_eigen(A), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace traceraft
