@@ -37,6 +37,8 @@ Command data_command();
 Command report_command();
 Command calibrate_command();
 Command explain_command();
+Command hide_command();
+Command campaign_command();
 Command fraction_command();
 Command list_command();
 

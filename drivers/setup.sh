@@ -2,7 +2,7 @@
 # Usage: prepare PRESET YES TARGET        (YES=1: install without asking; TARGET: traceraft or all)
 
 packages="g++ cmake ninja-build libeigen3-dev libsuitesparse-dev libmetis-dev libopenblas-dev
-libsundials-dev libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libmuparser-dev zlib1g-dev libpng-dev libgif-dev libcsv-dev libnlopt-dev
+libsundials-dev libcli11-dev nlohmann-json3-dev libtomlplusplus-dev libmuparser-dev zlib1g-dev libpng-dev libgif-dev libcsv-dev libnlopt-dev libsodium-dev
 libgtest-dev gnuplot-nox libjs-three"
 # For runs on several ranks: the program is complete without them. ./check needs them for its tests.
 rank_packages="libopenmpi-dev openmpi-bin trilinos-all-dev"

@@ -3,15 +3,14 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <mutex>
 #include <thread>
 
 #include "backends/posix/process.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/output/status_line.hpp"
+#include "drivers/run/job_pool.hpp"
 #include "drivers/run/program_run.hpp"
 #include "kernel/core/error.hpp"
 
@@ -37,75 +36,30 @@ ProgramEnd run_or_resume(const EnsembleFolder& folder, std::uint64_t seed, int t
   return run_program(arguments, folder.log_of(seed));
 }
 
-// The runs that are at it, side by side.
-class Workers {
+// What is known of the members' ends.
+class Ledger {
  public:
-  Workers(const EnsembleFolder& folder, std::vector<std::uint64_t> seeds, int threads)
-      : folder_(folder), seeds_(std::move(seeds)), threads_(threads) {}
-
-  ~Workers() {  // if something else failed meanwhile
-    stop_ = true;
-    join();
+  // To be gone on with?
+  bool settle(std::uint64_t seed, const ProgramEnd& end) {
+    const std::lock_guard lock(mutex_);
+    if (end.exit_code == kSuccess) return true;
+    if (end.was_stopped()) return false;
+    // A full disk stops all.
+    if (!end.telling() && end.exit_code != kLocked)
+      throw IoError("the run of seed " + std::to_string(seed) + ": " + end.reason());
+    add_failure({seed, end.reason()});
+    return true;
   }
-  Workers(const Workers&) = delete;
-  Workers& operator=(const Workers&) = delete;
-
-  void start(int jobs) {
-    working_ = jobs;
-    for (int i = 0; i < jobs; ++i) workers_.emplace_back([this] { work(); });
-  }
-  bool busy() const { return working_ > 0; }
-  long done() const { return done_; }
-  // Waits for the end of all.
-  EnsembleEnd finish() {
-    join();
-    if (error_) std::rethrow_exception(error_);
-    std::sort(end_.failures.begin(), end_.failures.end(),
+  void add_failure(MemberFailure failure) { failures_.push_back(std::move(failure)); }
+  std::vector<MemberFailure> failures() {
+    std::sort(failures_.begin(), failures_.end(),
               [](const MemberFailure& a, const MemberFailure& b) { return a.seed < b.seed; });
-    return end_;
+    return failures_;
   }
 
  private:
-  void join() {
-    for (std::thread& worker : workers_)
-      if (worker.joinable()) worker.join();
-  }
-
-  void work() {
-    try {
-      for (std::size_t k; !stop_ && !stop_requested() && (k = next_++) < seeds_.size(); ++done_)
-        settle(seeds_[k], run_or_resume(folder_, seeds_[k], threads_));
-      if (stop_requested()) stop_ = true;
-    } catch (...) {
-      const std::lock_guard lock(mutex_);
-      if (!error_) error_ = std::current_exception();
-      stop_ = true;
-    }
-    --working_;
-  }
-
-  void settle(std::uint64_t seed, const ProgramEnd& end) {
-    const std::lock_guard lock(mutex_);
-    if (end.exit_code == kSuccess) return;
-    if (end.was_stopped())
-      end_.stopped = stop_ = true;
-    else if (end.telling() || end.exit_code == kLocked)
-      end_.failures.push_back({seed, end.reason()});
-    else  // a full disk stops all
-      throw IoError("the run of seed " + std::to_string(seed) + ": " + end.reason());
-  }
-
-  const EnsembleFolder& folder_;
-  const std::vector<std::uint64_t> seeds_;
-  const int threads_;
-  std::vector<std::thread> workers_;
-  std::atomic<std::size_t> next_{0};
-  std::atomic<long> done_{0};
-  std::atomic<int> working_{0};
-  std::atomic<bool> stop_{false};
   std::mutex mutex_;
-  EnsembleEnd end_;
-  std::exception_ptr error_;
+  std::vector<MemberFailure> failures_;
 };
 
 void show_progress(const EnsemblePlan& plan, const EnsembleFolder& folder, double t_end,
@@ -135,30 +89,29 @@ Jobs jobs_of(int at_a_time, int threads) {
 EnsembleEnd work_off(const EnsemblePlan& plan, const EnsembleFolder& folder, const Jobs& jobs,
                      double t_end, bool quiet) {
   std::vector<std::uint64_t> seeds;
-  EnsembleEnd known;
+  Ledger ledger;
   double share_before = 0;
   for (const std::uint64_t seed : plan.seeds()) {
     const EnsembleFolder::Member member = folder.member(seed);
     share_before += share_done(folder.reached(seed), t_end) / plan.runs;
     if (member.end == MemberEnd::failed)
-      known.failures.push_back({seed, member.why});
+      ledger.add_failure({seed, member.why});
     else if (member.end != MemberEnd::finished)
       seeds.push_back(seed);
   }
   StatusLine line(quiet);
   const Stopwatch watch;
-  Workers workers(folder, seeds, jobs.threads);
-  const long count = static_cast<long>(seeds.size());
-  workers.start(static_cast<int>(std::min<long>(jobs.at_a_time, count)));
+  JobPool pool(seeds.size(), [&](std::size_t k) {
+    return ledger.settle(seeds[k], run_or_resume(folder, seeds[k], jobs.threads));
+  });
+  pool.start(jobs.at_a_time);
   do {
     usleep(100000);
     if (line.due()) show_progress(plan, folder, t_end, share_before, watch, line);
-  } while (workers.busy());
-  EnsembleEnd end = workers.finish();
+  } while (pool.busy());
+  const bool all = pool.finish();
   line.finish();
-  end.stopped = end.stopped || workers.done() < count;
-  end.failures.insert(end.failures.begin(), known.failures.begin(), known.failures.end());
-  return end;
+  return {!all, ledger.failures()};
 }
 
 int run_member(const EnsembleFolder& folder, std::uint64_t seed, int threads) {

@@ -86,21 +86,19 @@ Json verdict_json(const Explanation& found, const Units& units) {
              {"state", most.state}};
   }
   const Round& first = found.rounds.front();
-  return {
-      {"verdict", word_for(found.finding)},
-      {"effect", named ? Json(found.found.hypothesis.name()) : Json()},
-      {"class", found.equivalent},
-      {"parameters", parameters},
-      {"alternatives", alternatives},
-      {"gap",
-       {{"base", gap_json(found.base_gap, held_out)},
-        {"named", gap_json(found.found_gap, held_out)},
-        {"placebo", gap_json(found.placebo_gap, held_out)},
-        {"floor", Json()}}},
-      {"where", where},
-      {"null",
-       {{"replicates", found.replicates}, {"false_alarm_level", first.screening.p}}},
-      {"noise", found.noise}};
+  return {{"verdict", word_for(found.finding)},
+          {"effect", named ? Json(found.found.hypothesis.name()) : Json()},
+          {"class", found.equivalent},
+          {"parameters", parameters},
+          {"alternatives", alternatives},
+          {"gap",
+           {{"base", gap_json(found.base_gap, held_out)},
+            {"named", gap_json(found.found_gap, held_out)},
+            {"placebo", gap_json(found.placebo_gap, held_out)},
+            {"floor", gap_json(found.floor, held_out)}}},
+          {"where", where},
+          {"null", {{"replicates", found.replicates}, {"false_alarm_level", first.screening.p}}},
+          {"noise", found.noise}};
 }
 
 Table scores_table(const Explanation& found) {
@@ -186,7 +184,8 @@ void print_explanation(const Explanation& found, const GivenValues& model) {
   print_rows({{"gap in c", "fitted", "held out"},
               gap("base model", found.base_gap),
               gap("what was found", found.found_gap),
-              gap("second best", found.placebo_gap)});
+              gap("second best", found.placebo_gap),
+              gap("if nothing is missing", found.floor)});
   std::printf(
       "\nnoise of the measurements %.4f; %zu significant disagreements with the base model\n",
       found.noise, found.disagreements.size());

@@ -74,6 +74,7 @@ TEST(DependencyRule, EveryBackendKnowsTheKernelAndItsOwnLibrary) {
       {"muparser", {"muParser.h"}},
       {"nlopt", {"nlopt.h"}},
       {"openblas", {"cblas.h"}},
+      {"sodium", {"sodium.h"}},
       {"gif", {"gif_lib.h"}},
       {"png", {"png.h"}},
       {"posix",

@@ -5,7 +5,9 @@
 #include <stdexcept>
 
 #include "backends/list.hpp"
+#include "kernel/core/named_list.hpp"
 #include "kernel/core/random.hpp"
+#include "verification/explain/filter_problem.hpp"
 #include "verification/explain/forecast.hpp"
 #include "verification/explain/point_trace.hpp"
 
@@ -14,7 +16,7 @@ namespace {
 
 // Streams of random numbers: what is drawn for one purpose does not depend on how much is drawn for
 // another.
-enum Stream : std::uint64_t { kPlacement = 101, kTimes, kPoints, kNoise = 200 };
+enum Stream : std::uint64_t { kPlacement = 101, kTimes, kEffects, kPoints = 300, kNoise = 500 };
 
 // Where the vesicle lies in the mesh: turned about the z axis, which effects may know, and moved.
 struct Placement {
@@ -61,18 +63,26 @@ double spread(const SurfaceSpace& space, ConstVec c) {
   return std::sqrt(std::max(0.0, space.inner(c, c) / space.area - mean * mean));
 }
 
-// The truth and how it is advanced.
+// How a truth is advanced.
+struct Method {
+  SpacePtr space;
+  std::string integrator;
+  double tolerance;
+};
+
 class Simulation {
  public:
-  Simulation(const BlindRequest& request, SpacePtr space, const std::vector<EffectTerm>& effects)
+  Simulation(const BlindRequest& request, const Method& method,
+             const std::vector<EffectTerm>& effects)
       : request_(request),
-        problem_(space, with_effects(request.base, effects)),
-        make_integrator_([&request, space](const DaeProblem& problem) {
+        problem_(method.space, with_effects(request.base, effects)),
+        make_integrator_([method](const DaeProblem& problem) {
           IntegratorSettings settings;
-          settings.tolerance = request.tolerance;
+          settings.tolerance = method.tolerance;
           return integrators()
-              .find(request.integrator)
-              .make(problem, choose_linear_solver("block", *space), space->team, settings);
+              .find(method.integrator)
+              .make(problem, choose_linear_solver("block", *method.space), method.space->team,
+                    settings);
         }) {}
 
   // c at the times, which begin after 0.
@@ -102,44 +112,70 @@ class Simulation {
   MakeIntegrator make_integrator_;
 };
 
-// What the effect makes of the base's snapshots until the next one.
-double one_step_gap(const SurfaceSpace& space, const Simulation& base, const Simulation& changed,
-                    const std::vector<double>& times, const std::vector<Vec>& snapshots) {
-  double squares = 0;
-  for (std::size_t k = 0; k + 1 < times.size(); ++k) {
-    const Vec difference = changed.advance(snapshots[k], times[k], times[k + 1]) -
-                           base.advance(snapshots[k], times[k], times[k + 1]);
-    const double contrast = spread(space, snapshots[k]);
-    squares += space.inner(difference, difference) / space.area / (contrast * contrast);
+// Coefficients in a random direction that the effect allows.
+std::vector<double> random_coefficients(const BlindRequest& request, const Candidate& candidate,
+                                        std::uint64_t number) {
+  std::vector<double> coefficients;
+  for (int d = 0; d < candidate.directions; ++d) {
+    const double u = uniform_random(request.seed, kEffects, 10 * number + d);
+    const double sign = candidate.two_sided && u < 0.5 ? -1 : 1;
+    coefficients.push_back(sign * candidate.step * (candidate.directions > 1 ? 0.2 + u : 1));
   }
-  return std::sqrt(squares / static_cast<double>(times.size() - 1));
+  return coefficients;
 }
 
-struct Sized {
-  EffectTerm term;
-  double gap;
-};
-// The strength at which the effect makes the gap that was asked for: a small one, then in
-// proportion, twice.
-Sized sized_effect(const BlindRequest& request, const SpacePtr& space,
-                   const std::vector<double>& times) {
-  const Simulation base(request, space, {});
-  const std::vector<Vec> snapshots = base.run(times);
-  const auto all = candidates();
-  const auto candidate = std::find_if(
-      all.begin(), all.end(), [&](const Candidate& c) { return c.effect == request.effect; });
-  if (candidate == all.end())
-    throw std::runtime_error("no effect '" + request.effect + "' can be hidden");
-  std::vector<double> coefficients(candidate->directions, candidate->step);
-  double gap = 0;
-  for (int k = 0; k < 3; ++k) {
-    if (k > 0)
-      for (double& a : coefficients) a *= request.gap / gap;
-    const Simulation changed(request, space, {candidate->term(coefficients)});
-    gap = one_step_gap(*space, base, changed, times, snapshots);
+// How strong effects have to be is found on a mesh that is coarser than the truth's: it need not be
+// exact.
+class Sizing {
+ public:
+  Sizing(const BlindRequest& request, const LevelSet& surface, const std::vector<double>& times)
+      : request_(request), times_(times) {
+    constexpr double kCoarser = 0.7, kTolerance = 1e-3;
+    method_ = {serial_space(surface, static_cast<int>(kCoarser * request.cells)), "ida",
+               kTolerance};
+    snapshots_ = Simulation(request, method_, {}).run(times);
   }
-  return {candidate->term(coefficients), gap};
-}
+
+  // The effect with the strength at which it makes the gap that was asked for: a small one, then in
+  // proportion, twice.
+  EffectTerm term(const std::string& effect, std::uint64_t number) const {
+    const Candidate candidate = candidate_of(effect);
+    std::vector<double> coefficients = random_coefficients(request_, candidate, number);
+    for (int k = 0; k < 2; ++k) {
+      const double ratio = request_.gap / gap_of(candidate.term(coefficients));
+      for (double& a : coefficients) a *= ratio;
+    }
+    return candidate.term(coefficients);
+  }
+
+ private:
+  static Candidate candidate_of(const std::string& effect) {
+    const auto valid = effects_to_hide();
+    if (std::find(valid.begin(), valid.end(), effect) == valid.end())
+      throw InputError(unknown_name_message("effect to hide", effect, valid));
+    const auto all = candidates();
+    return *std::find_if(all.begin(), all.end(),
+                         [&](const Candidate& c) { return c.effect == effect; });
+  }
+  // What the effect makes of the base's snapshots until the next one.
+  double gap_of(const EffectTerm& term) const {
+    const Simulation base(request_, method_, {}), changed(request_, method_, {term});
+    const SurfaceSpace& space = *method_.space;
+    double squares = 0;
+    for (std::size_t k = 0; k + 1 < times_.size(); ++k) {
+      const Vec difference = changed.advance(snapshots_[k], times_[k], times_[k + 1]) -
+                             base.advance(snapshots_[k], times_[k], times_[k + 1]);
+      const double contrast = spread(space, snapshots_[k]);
+      squares += space.inner(difference, difference) / space.area / (contrast * contrast);
+    }
+    return std::sqrt(squares / static_cast<double>(times_.size() - 1));
+  }
+
+  const BlindRequest& request_;
+  const std::vector<double>& times_;
+  Method method_;
+  std::vector<Vec> snapshots_;
+};
 
 FieldSnapshot measure(const BlindRequest& request, const SurfaceSpace& space,
                       const Placement& placement, const Vec& c, int number, double time,
@@ -148,7 +184,8 @@ FieldSnapshot measure(const BlindRequest& request, const SurfaceSpace& space,
   std::vector<Point> places;
   for (const Point& x : snapshot.points) places.push_back(placement.in_mesh(x));
   snapshot.values = point_trace(space, places, space.h()) * c;
-  snapshot.deviation = Vec::Ones(snapshot.values.size());
+  snapshot.deviation =
+      Vec::Constant(snapshot.values.size(), request.stated > 0 ? request.stated * noise : 1);
   for (Eigen::Index i = 0; i < snapshot.values.size(); ++i) {
     const auto u = [&](std::uint64_t j) {
       return uniform_random(request.seed, kNoise + static_cast<std::uint64_t>(number),
@@ -161,23 +198,32 @@ FieldSnapshot measure(const BlindRequest& request, const SurfaceSpace& space,
 
 }  // namespace
 
+std::vector<std::string> effects_to_hide() {
+  std::vector<std::string> names;
+  for (const Candidate& candidate : candidates())
+    if (candidate.effect != "curvature") names.push_back(candidate.effect);
+  return names;
+}
+
 BlindCase draw_blind_case(const BlindRequest& request) {
   const double h = 2 * kBoxHalfWidth / request.cells;
   const Placement placement(request.seed, h);
-  const auto space = std::make_shared<const SurfaceSpace>(
-      ShiftedLevelSet(make_surface("sphere"), placement.offset), request.cells,
-      std::make_shared<ThreadTeam>(request.threads), std::make_shared<SerialCommunicator>());
+  const ShiftedLevelSet surface(make_surface("sphere"), placement.offset);
   const std::vector<double> labels = snapshot_times(request);
   std::vector<double> times;  // of the truth, whose unit is R²/(pace D)
   for (const double t : labels) times.push_back(request.pace * t);
 
-  BlindCase result{{"1", {}}, {}, 0, 0};
-  if (!request.effect.empty()) {
-    const Sized sized = sized_effect(request, space, times);
-    result.truth.push_back(sized.term);
-    result.gap = sized.gap;
+  BlindCase result{{"1", {}}, {}, 0};
+  if (!request.effects.empty()) {
+    const Sizing sizing(request, surface, times);
+    for (std::size_t k = 0; k < request.effects.size(); ++k)
+      result.truth.push_back(sizing.term(request.effects[k], k));
   }
-  const std::vector<Vec> states = Simulation(request, space, result.truth).run(times);
+  const auto space = std::make_shared<const SurfaceSpace>(
+      surface, request.cells, std::make_shared<ThreadTeam>(request.threads),
+      std::make_shared<SerialCommunicator>());
+  const Method method{space, request.integrator, request.tolerance};
+  const std::vector<Vec> states = Simulation(request, method, result.truth).run(times);
   double contrast = 0;
   for (const Vec& c : states) contrast += spread(*space, c) / static_cast<double>(states.size());
   result.noise = request.noise * contrast;

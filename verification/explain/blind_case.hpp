@@ -3,7 +3,8 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
+#include <string>
+#include <vector>
 
 #include "verification/bench.hpp"
 #include "verification/explain/candidates.hpp"
@@ -12,17 +13,19 @@
 namespace traceraft {
 
 struct BlindRequest {
-  CahnHilliardModel base;  // on the unit sphere
-  std::string effect;      // "": nothing hidden
-  double gap = 0.06;   // root mean square change of c that the effect makes from one snapshot to
-                       // the next, in units of the standard deviation of c
-  double pace = 1;     // D of the truth over that of the model
+  CahnHilliardModel base;            // on the unit sphere
+  std::vector<std::string> effects;  // hidden; signs and mixtures are drawn
+  double gap = 0.06;  // root mean square change of c that each makes from one snapshot to the next,
+                      // in units of the standard deviation of c
+  double pace = 1;    // D of the truth over that of the model
   double noise = 0.1;  // standard deviation, in units of that of c
   int snapshots = 8;
-  int points = 4000;            // per snapshot
-  double first = 2, last = 20;  // times of snapshots, in units of R²/D of the model
+  int points = 4000;             // per snapshot
+  double first = 20, last = 90;  // times of snapshots, in units of R²/D of the model
+  // The standard deviations that the data state, over the true ones; 0: they state none.
+  double stated = 0;
   double raft_fraction = 0.5;
-  int cells = 48;
+  int cells = 34;
   std::string integrator = "rosenbrock";
   double tolerance = 1e-4;
   std::uint64_t seed = 1;
@@ -33,10 +36,12 @@ struct BlindCase {
   FieldSeries series;
   std::vector<EffectTerm> truth;  // in units of R and R²/D of the truth
   double noise;                   // standard deviation of the values
-  double gap;                     // that was reached
 };
 
-// Throws std::runtime_error if a simulation fails.
+// Effects that can be hidden: those that a sphere shows.
+std::vector<std::string> effects_to_hide();
+
+// Throws std::runtime_error if a simulation fails, InputError for an effect that cannot be hidden.
 BlindCase draw_blind_case(const BlindRequest& request);
 
 }  // namespace traceraft

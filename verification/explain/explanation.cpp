@@ -18,16 +18,33 @@ constexpr double kWorthRefitting = 0.25;
 // An effect has to change c by that share of what the model's mesh does.
 constexpr double kResolved = 1;
 
+FilterProblem problem_of(const FieldSeries& series, const ExplainRequest& request) {
+  const std::size_t held_out = request.hold_out && series.snapshots.size() >= 4 ? 1 : 0;
+  return make_filter_problem(series, *request.surface, request.base.epsilon, request.cells,
+                             static_cast<int>(std::lround(kFiner * request.cells)), request.threads,
+                             held_out, request.filter);
+}
+
+std::vector<Candidate> candidates_of(const ExplainRequest& request) {
+  std::vector<Candidate> result;
+  for (const Candidate& candidate : candidates())
+    if (std::find(request.without.begin(), request.without.end(), candidate.effect) ==
+        request.without.end())
+      result.push_back(candidate);
+  return result;
+}
+
+Gaps in_units_of_c(const Gaps& gaps, double noise) {
+  return {noise * gaps.train, noise * gaps.heldout};
+}
+
 class Search {
  public:
   Search(const FieldSeries& series, const ExplainRequest& request)
       : series_(series),
         request_(request),
-        data_(make_filter_problem(
-            series, *request.surface, request.base.epsilon, request.cells,
-            static_cast<int>(std::lround(kFiner * request.cells)), request.threads,
-            request.hold_out && series.snapshots.size() >= 4 ? 1 : 0, request.filter)),
-        model_{request.base, 1, {}, candidates()} {}
+        data_(problem_of(series, request)),
+        model_{request.base, 1, {}, candidates_of(request)} {}
 
   Explanation run() {
     tell("pace of the base model");
@@ -60,37 +77,45 @@ class Search {
     model_.pace = model.pace;
   }
 
-  // The noise that the innovations have is that of the measurements.
-  FilterResult full_pass() {
-    FilterResult pass = filter_fields(data_, model_, request_.filter, maps_);
-    if (!result_.rounds.empty()) return pass;
+  // Before anything is known: the noise that the innovations have is that of the measurements.
+  FilterResult first_pass() {
+    const FilterResult pass = filter_fields(data_, model_, request_.filter, maps_);
     double squares = 0, values = 0;
     for (std::size_t k = 0; k + 1 < data_.train; ++k) {
       squares += pass.innovations[k].weighted_squares;
       values += static_cast<double>(pass.innovations[k].values.size());
     }
     data_.noise *= std::sqrt(squares / values);
+    FilterResult again = filter_fields(data_, model_, request_.filter, maps_);
+    result_.disagreements = disagreements(series_, again, request_.base.well);
+    result_.disagreements.resize(significant(result_.disagreements, request_.false_alarms));
+    set_found(refit_all({model_}).front());
+    result_.base = result_.found;
+    return again;
+  }
+
+  // With what was found last: errors of states and of the mesh are those of the model that has it.
+  FilterResult next_pass() {
+    maps_ = {};
+    (void)filter_fields(data_, model_, request_.filter, maps_);
+    set_found(refit_all({model_}).front());
     return filter_fields(data_, model_, request_.filter, maps_);
+  }
+
+  void set_found(const Refit& fit) {
+    if (!fit.failure.empty()) throw std::runtime_error(fit.failure);
+    result_.found = fit;
+    model_.hypothesis = fit.hypothesis;
+    model_.pace = fit.pace;
   }
 
   bool look_for_one() {
     const bool first = result_.rounds.empty();
-    const std::string known = model_.hypothesis.name();
-    tell(first ? "what the base model lacks" : "what is lacking beside " + known);
-    const FilterResult pass = full_pass();
-    const auto as_large = (pass.null_gaps.array() >= pass.gap).count();
-    Round round{model_,
-                screen(pass, model_.screened, model_.hypothesis.coefficients()),
-                static_cast<double>(as_large + 1) / static_cast<double>(pass.null_gaps.size() + 1),
-                result_.found,
-                {}};
-    if (first) {
-      result_.disagreements = disagreements(series_, pass, request_.base.well);
-      result_.disagreements.resize(significant(result_.disagreements, request_.false_alarms));
-      round.without = refit_all({model_}).front();
-      if (!round.without.failure.empty()) throw std::runtime_error(round.without.failure);
-      result_.base = result_.found = round.without;
-    }
+    tell(first ? "what the base model lacks"
+               : "what is lacking beside " + model_.hypothesis.name());
+    const FilterResult pass = first ? first_pass() : next_pass();
+    Round round{
+        model_, screen(pass, model_.screened, model_.hypothesis.coefficients()), result_.found, {}};
     if (round.screening.p <= request_.false_alarms) refit_shortlist(round);
     result_.rounds.push_back(std::move(round));
     return judge(result_.rounds.back());
@@ -140,7 +165,7 @@ class Search {
   bool judge(const Round& round) {
     const bool first = result_.rounds.size() == 1;
     if (round.refits.empty()) {
-      if (round.gap_p <= request_.false_alarms) result_.finding = Finding::unnamed;
+      if (round.screening.gap_p <= request_.false_alarms) result_.finding = Finding::unnamed;
       return false;
     }
     const Refit& best = round.refits.front();
@@ -152,34 +177,27 @@ class Search {
       if (first) result_.finding = Finding::below_resolution;
       return false;
     }
-    result_.found = best;
+    set_found(best);
     result_.equivalent = {effect};
     for (std::size_t k = 1; k < round.refits.size(); ++k)
       if (criterion(round.refits[k]) < criterion(best) + kTelling)
         result_.equivalent.push_back(round.refits[k].hypothesis.parts.back().candidate.effect);
     result_.finding = result_.equivalent.size() > 1 ? Finding::ambiguous : Finding::named;
-    model_.hypothesis = best.hypothesis;
-    model_.pace = best.pace;
     model_.screened.erase(std::remove_if(model_.screened.begin(), model_.screened.end(),
                                          [&](const Candidate& c) { return c.effect == effect; }),
                           model_.screened.end());
     return true;
   }
 
-  Gaps gaps_of(const Refit& fit) const {
-    const auto beyond_noise = [&](double ratio) {
-      return data_.noise * std::sqrt(std::max(0.0, ratio * ratio - 1));
-    };
-    return {beyond_noise(fit.train), beyond_noise(fit.heldout)};
-  }
-
   void finish() {
     result_.noise = data_.noise;
     result_.replicates = request_.filter.replicates;
-    result_.base_gap = gaps_of(result_.base);
-    result_.found_gap = gaps_of(result_.found);
     const auto& refits = result_.rounds.front().refits;
-    result_.placebo_gap = gaps_of(refits.size() > 1 ? refits[1] : result_.base);
+    result_.base_gap = in_units_of_c(result_.base.gap, data_.noise);
+    result_.found_gap = in_units_of_c(result_.found.gap, data_.noise);
+    result_.placebo_gap =
+        in_units_of_c((refits.size() > 1 ? refits[1] : result_.base).gap, data_.noise);
+    result_.floor = in_units_of_c(result_.found.expected, data_.noise);
   }
 
   const FieldSeries& series_;
@@ -206,6 +224,18 @@ std::string word_for(Finding finding) {
       return "unnamed";
   }
   return "";
+}
+
+Gaps gaps_of_model(const FieldSeries& series, const ExplainRequest& request, double pace,
+                   const std::vector<EffectTerm>& effects) {
+  ExplainRequest alone = request;
+  alone.filter.replicates = 0;
+  const FilterProblem data = problem_of(series, alone);
+  ErrorMaps maps;
+  const Gaps gaps = gaps_of_pass(
+      data,
+      filter_fields(data, {with_effects(request.base, effects), pace, {}, {}}, alone.filter, maps));
+  return in_units_of_c(gaps, data.noise);
 }
 
 Explanation explain_fields(const FieldSeries& series, const ExplainRequest& request) {

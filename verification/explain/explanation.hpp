@@ -28,6 +28,7 @@ struct ExplainRequest {
   int threads = 2;
   FilterSettings filter;
   int most_effects = 3;
+  std::vector<std::string> without;  // effects that are not looked for
   std::size_t shortlist = 5;
   bool hold_out = true;        // the last snapshot, where there are four or more
   double false_alarms = 0.02;  // with nothing missing, the share of data sets that seem to lack
@@ -35,16 +36,10 @@ struct ExplainRequest {
   std::function<void(const std::string& step)> progress = {};  // may be empty
 };
 
-// Root mean square of measured minus forecast that noise does not explain, in units of c.
-struct Gaps {
-  double train = 0, heldout = 0;
-};
-
 // The search for one more effect.
 struct Round {
   FilterModel known;
   Screening screening;
-  double gap_p;               // share of replicates with a gap as large
   Refit without;              // what was known before
   std::vector<Refit> refits;  // of the shortlist, most probable first; none if nothing is lacking
 };
@@ -56,9 +51,15 @@ struct Explanation {
   Refit base, found;                    // with the pace refitted; found: the base if none was
   std::vector<std::string> equivalent;  // effects that explain the data as well as the last found
   std::vector<Round> rounds;
-  Gaps base_gap, found_gap, placebo_gap;    // placebo: the second best of the first round
+  // Measured minus forecast, in units of c. Placebo: the second best of the first round. Floor:
+  // what is to be expected of the found model if nothing else is missing.
+  Gaps base_gap, found_gap, placebo_gap, floor;
   std::vector<Disagreement> disagreements;  // with the base, the significant ones
 };
+
+// The gaps of a model that has these effects already, in units of c.
+Gaps gaps_of_model(const FieldSeries& series, const ExplainRequest& request, double pace,
+                   const std::vector<EffectTerm>& effects);
 
 // Throws std::runtime_error if the base model cannot be advanced.
 Explanation explain_fields(const FieldSeries& series, const ExplainRequest& request);

@@ -64,7 +64,6 @@ class Filter {
     result_.information(kMeshError, kMeshError) = 1 / (kMeshDoubt * kMeshDoubt);
     result_.score = Vec::Zero(parameters);
     result_.null_scores = Eigen::MatrixXd::Zero(parameters, settings.replicates);
-    result_.null_gaps = Vec::Zero(settings.replicates);
   }
 
   FilterResult run() {
@@ -138,8 +137,8 @@ class Filter {
     in.values = scale.cwiseProduct(measured.values - in.forecast);
     Columns frame(scale.size(), 2);
     frame << settings_.gain * seen(belief_.c), settings_.offset * scale;
-    const Columns errors = side_by_side(belief_.errors, turned);
-    const Columns state = side_by_side(seen(errors), frame);
+    const Columns errors = side_by_side(belief_.errors, turned), error_values = seen(errors);
+    const Columns state = side_by_side(error_values, frame);
     in.directions = side_by_side(state, seen(patterns));
     in.state_directions = state.cols();
     in.gram = gram(in.directions);
@@ -148,6 +147,8 @@ class Filter {
     in.replicates = seen(belief_.replicates);
     add_noise(k, in.replicates);
     in.model_error = most_probable_error(in);
+    in.expected_squares = static_cast<double>(in.values.size()) +
+                          error_values.leftCols(belief_.errors.cols()).squaredNorm();
 
     const InnovationCovariance weight(in, in.model_error);
     if (k + 1 < data_.train) account(in, weight);
@@ -175,9 +176,8 @@ class Filter {
     result_.deviance += in.weighted_squares + weight.log_determinant();
     if (in.replicates.cols() == 0) return;
     result_.null_scores += weighted.transpose() * in.replicates;
-    const Vec gaps = explained_squares(in, kUsualGap, side_by_side(in.values, in.replicates));
-    result_.gap += gaps[0];
-    result_.null_gaps += gaps.tail(in.replicates.cols());
+    result_.gap_parts.push_back(explained_parts(
+        in, kUsualGap, side_by_side(side_by_side(in.values, in.parameters), in.replicates)));
   }
 
   // `directions`: what those of the innovation are in the state.

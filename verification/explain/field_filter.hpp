@@ -35,8 +35,9 @@ struct FilterResult {
   Vec score;                    // Σ Xᵀ S⁻¹ ν
   Eigen::MatrixXd null_scores;  // the same of the replicates, a column for each
   double deviance = 0;          // Σ νᵀ S⁻¹ ν + ln |S|
-  double gap = 0;               // Σ of the part of ν that smooth patterns explain, squared
-  Vec null_gaps;                // the same of the replicates
+  // Of every snapshot that counts, explained_parts of its values, its parameters and its
+  // replicates.
+  std::vector<Columns> gap_parts;
 };
 
 // What is held against the measurements.

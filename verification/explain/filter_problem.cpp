@@ -10,23 +10,28 @@ namespace {
 // Far below the noise of a measurement.
 constexpr double kForecastTolerance = 3e-4;
 
-SpacePtr serial_space(const LevelSet& surface, int cells) {
-  return std::make_shared<const SurfaceSpace>(surface, cells, std::make_shared<ThreadTeam>(1),
-                                              std::make_shared<SerialCommunicator>());
-}
-
 std::vector<Point> nodes_of(const SurfaceSpace& space) {
   std::vector<Point> nodes;
   for (int k = 0; k < space.nodes(); ++k) nodes.push_back(space.mesh.position(k));
   return nodes;
 }
 
+// What data state as their deviations is taken as relative to each other.
+double typical_deviation(const FieldSeries& series) {
+  double squares = 0, count = 0;
+  for (const FieldSnapshot& snapshot : series.snapshots) {
+    squares += snapshot.deviation.squaredNorm();
+    count += static_cast<double>(snapshot.deviation.size());
+  }
+  return std::sqrt(squares / count);
+}
+
 void add_snapshots(const FieldSeries& series, FilterProblem& data) {
-  const double reach = data.space->h();
+  const double reach = data.space->h(), typical = typical_deviation(series);
   for (const FieldSnapshot& snapshot : series.snapshots) {
     data.times.push_back(snapshot.time);
-    data.snapshots.push_back(
-        {point_trace(*data.space, snapshot.points, reach), snapshot.values, snapshot.deviation});
+    data.snapshots.push_back({point_trace(*data.space, snapshot.points, reach), snapshot.values,
+                              snapshot.deviation / typical});
     data.fine_trace.push_back(point_trace(*data.fine, snapshot.points, reach));
   }
   // Nodes lie within a cell's diagonal of the surface.
@@ -35,6 +40,11 @@ void add_snapshots(const FieldSeries& series, FilterProblem& data) {
 }
 
 }  // namespace
+
+SpacePtr serial_space(const LevelSet& surface, int cells) {
+  return std::make_shared<const SurfaceSpace>(surface, cells, std::make_shared<ThreadTeam>(1),
+                                              std::make_shared<SerialCommunicator>());
+}
 
 FilterProblem make_filter_problem(const FieldSeries& series, const LevelSet& surface,
                                   double epsilon, int cells, int fine_cells, int threads,

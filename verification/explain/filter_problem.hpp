@@ -43,6 +43,9 @@ struct FilterProblem {
   std::function<IntegratorPtr(const DaeProblem&, const SurfaceSpace&)> make_integrator;
 };
 
+// Of one thread, which its matrices and solvers use.
+SpacePtr serial_space(const LevelSet& surface, int cells);
+
 // `held_out`: so many snapshots at the end are forecast, but count for nothing.
 FilterProblem make_filter_problem(const FieldSeries& series, const LevelSet& surface,
                                   double epsilon, int cells, int fine_cells, int threads,

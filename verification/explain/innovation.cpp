@@ -67,23 +67,23 @@ double most_probable_error(const Innovation& innovation) {
   return best;
 }
 
-Vec explained_squares(const Innovation& innovation, double size, const Columns& values) {
+Columns explained_parts(const Innovation& innovation, double size, const Columns& values) {
   const Columns patterns = size * innovation.directions.rightCols(innovation.directions.cols() -
                                                                   innovation.state_directions);
   const Columns weighted = InnovationCovariance(innovation, 0).solve(patterns);
   const Factors factors(Eigen::MatrixXd::Identity(patterns.cols(), patterns.cols()) +
                         patterns.transpose() * weighted);
-  return factors.matrixL().solve(weighted.transpose() * values).colwise().squaredNorm().transpose();
+  return factors.matrixL().solve(transposed_product(weighted, values));
 }
 
 double root_mean_square(const std::vector<Innovation>& innovations, std::size_t begin,
-                        std::size_t end, const std::function<Vec(const Innovation&)>& values) {
-  double squares = 0, count = 0;
+                        std::size_t end, const std::function<double(const Innovation&)>& squares) {
+  double sum = 0, count = 0;
   for (std::size_t k = begin; k < end; ++k) {
-    squares += values(innovations[k]).squaredNorm();
+    sum += squares(innovations[k]);
     count += static_cast<double>(innovations[k].values.size());
   }
-  return count > 0 ? std::sqrt(squares / count) : 0.0;
+  return count > 0 ? std::sqrt(sum / count) : 0.0;
 }
 
 Columns side_by_side(const Columns& a, const Columns& b) {

@@ -20,6 +20,7 @@ struct Innovation {
   Columns parameters;           // X: derivatives of the forecast by the parameters
   Columns replicates;           // values of noise alone
   double weighted_squares = 0;  // νᵀ S⁻¹ ν, one per value on average
+  double expected_squares = 0;  // νᵀ ν, on average, of noise and what it leaves unknown of c
   double model_error;  // size of the state's error that is no noise, per step, in units of c
 };
 
@@ -45,13 +46,14 @@ class InnovationCovariance {
 // The size of the model's error that makes an innovation most probable.
 double most_probable_error(const Innovation& innovation);
 
-// How much of each column is explained by gaps of the given size, as the square of what has unit
-// variance in noise: the model's error is not allowed for.
-Vec explained_squares(const Innovation& innovation, double size, const Columns& values);
+// What gaps of the given size explain of each column, the model's error not being allowed for: one
+// row per pattern, whose sum of squares has the distribution of χ² if the column is noise and gaps
+// are larger than what noise leaves unknown of them.
+Columns explained_parts(const Innovation& innovation, double size, const Columns& values);
 
-// Over all values of some innovations.
+// Over all values of innovations from `begin` to before `end`; `squares`: their sum in one of them.
 double root_mean_square(const std::vector<Innovation>& innovations, std::size_t begin,
-                        std::size_t end, const std::function<Vec(const Innovation&)>& values);
+                        std::size_t end, const std::function<double(const Innovation&)>& squares);
 
 Columns side_by_side(const Columns& a, const Columns& b);
 

@@ -37,9 +37,16 @@ struct Evaluation {
   double deviance = std::numeric_limits<double>::infinity();
   Vec step;                    // to the maximum, if the likelihood were Gaussian
   Eigen::MatrixXd covariance;  // of the unknowns
-  double train = 0, heldout = 0;
+  Gaps gap, expected;
   std::string failure;
 };
+
+Gaps over_snapshots(const FilterProblem& data, const FilterResult& pass,
+                    const std::function<double(const Innovation&)>& squares) {
+  const std::size_t train = data.train - 1, all = pass.innovations.size();
+  return {root_mean_square(pass.innovations, 0, train, squares),
+          root_mean_square(pass.innovations, train, all, squares)};
+}
 
 Evaluation evaluate(const FilterProblem& data, const FilterModel& model,
                     const FilterSettings& settings, ErrorMaps& maps) {
@@ -55,10 +62,9 @@ Evaluation evaluate(const FilterProblem& data, const FilterModel& model,
     result.step = all(own);
     result.covariance = inverse(own, own);
     result.deviance = pass.deviance;
-    const auto values = [](const Innovation& in) { return in.values; };
-    result.train = root_mean_square(pass.innovations, 0, data.train - 1, values);
-    result.heldout =
-        root_mean_square(pass.innovations, data.train - 1, pass.innovations.size(), values);
+    result.gap = gaps_of_pass(data, pass);
+    result.expected =
+        over_snapshots(data, pass, [](const Innovation& in) { return in.expected_squares; });
   } catch (const std::runtime_error& error) {
     result.failure = error.what();
   }
@@ -75,6 +81,10 @@ bool settled(const Evaluation& here, const FilterModel& model) {
 }
 
 }  // namespace
+
+Gaps gaps_of_pass(const FilterProblem& data, const FilterResult& pass) {
+  return over_snapshots(data, pass, [](const Innovation& in) { return in.values.squaredNorm(); });
+}
 
 Refit refit(const FilterProblem& data, const FilterModel& start, const FilterSettings& settings,
             const ErrorMaps& maps) {
@@ -104,8 +114,8 @@ Refit refit(const FilterProblem& data, const FilterModel& start, const FilterSet
   result.hypothesis = model.hypothesis;
   result.pace = model.pace;
   result.deviance = here.deviance;
-  result.train = here.train;
-  result.heldout = here.heldout;
+  result.gap = here.gap;
+  result.expected = here.expected;
   result.failure = here.failure;
   if (here.failure.empty()) {
     const Eigen::Index n = model.hypothesis.coefficients();

@@ -6,17 +6,25 @@
 
 namespace traceraft {
 
+// Root mean squares: of the snapshots that count, and of those that are held out (0: none is).
+struct Gaps {
+  double train = 0, heldout = 0;
+};
+
 struct Refit {
   Hypothesis hypothesis;
   double pace = 1;
   double deviance = 0;         // −2 ln of the likelihood, at its least
   Eigen::MatrixXd covariance;  // of the coefficients, pace and mesh being free
   double pace_deviation = 0;   // of ln pace
-  // Root mean square of the innovations in units of the noise: of the snapshots that count, and of
-  // those that are held out.
-  double train = 0, heldout = 0;
+  // Measured minus forecast in units of the noise, and what is to be expected of it if nothing is
+  // missing: the noise, and what it leaves unknown of the state.
+  Gaps gap, expected;
   std::string failure;  // why a forecast failed, if it did: no refit then
 };
+
+// Measured minus forecast in units of the noise.
+Gaps gaps_of_pass(const FilterProblem& data, const FilterResult& pass);
 
 // Gauss and Newton's method with halved steps, from the coefficients and the pace of `start`, until
 // what is left to go is a small part of the standard deviation. Unstable trial models count as

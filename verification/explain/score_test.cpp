@@ -56,6 +56,29 @@ struct Own {
 // Less than this is no response: roundoff and the tolerance of the integrator.
 constexpr double kInvisible = 1e-6;
 
+// p = (1 + the number of replicates that reach it) / (1 + their number).
+double share_of_noise(const Vec& replicates, double value) {
+  const auto beyond = (replicates.array() >= value).count();
+  return static_cast<double>(beyond + 1) / static_cast<double>(replicates.size() + 1);
+}
+
+// Of gaps of any shape, after what the nuisances explain.
+double gap_probability(const FilterResult& result, const Indices& nuisances) {
+  const auto factors = Eigen::MatrixXd(result.information(nuisances, nuisances)).ldlt();
+  const Vec best = factors.solve(Vec(result.score(nuisances)));
+  const Columns null_best = factors.solve(Columns(result.null_scores(nuisances, Eigen::all)));
+  const Eigen::Index parameters = result.score.size(), replicates = null_best.cols();
+  double gap = 0;
+  Vec null_gaps = Vec::Zero(replicates);
+  for (const Columns& parts : result.gap_parts) {
+    const Columns known = parts.middleCols(1, parameters)(Eigen::all, nuisances);
+    gap += (parts.col(0) - known * best).squaredNorm();
+    null_gaps +=
+        (parts.rightCols(replicates) - known * null_best).colwise().squaredNorm().transpose();
+  }
+  return share_of_noise(null_gaps, gap);
+}
+
 }  // namespace
 
 Screening screen(const FilterResult& result, const std::vector<Candidate>& screened,
@@ -88,18 +111,17 @@ Screening screen(const FilterResult& result, const std::vector<Candidate>& scree
   const Vec average = null.colwise().mean().transpose().cwiseMax(0.5);
   const Vec highest = (null * average.cwiseInverse().asDiagonal()).rowwise().maxCoeff();
 
-  const auto all_values = [&](const auto& values) {
-    return root_mean_square(result.innovations, 0, result.innovations.size(), values);
+  const auto all_values = [&](const auto& squares) {
+    return root_mean_square(result.innovations, 0, result.innovations.size(), squares);
   };
   Screening screening;
   for (std::size_t k = 0; k < screened.size(); ++k) {
     const Gain found = gain(k, result.score);
     const double mean = average[static_cast<Eigen::Index>(k)];
-    const auto beyond = (highest.array() >= found.score / mean).count();
-    const double response = all_values([&](const Innovation& in) -> Vec {
-      return in.parameters(Eigen::all, own[k].indices) * found.coefficients;
+    const double response = all_values([&](const Innovation& in) {
+      return (in.parameters(Eigen::all, own[k].indices) * found.coefficients).squaredNorm();
     });
-    const double p = static_cast<double>(beyond + 1) / static_cast<double>(replicates + 1);
+    const double p = share_of_noise(highest, found.score / mean);
     screening.p = std::min(screening.p, p);
     screening.scores.push_back(
         {screened[k].effect,
@@ -109,8 +131,9 @@ Screening screen(const FilterResult& result, const std::vector<Candidate>& scree
          p,
          response});
   }
+  screening.gap_p = gap_probability(result, nuisances);
   screening.mesh_error =
-      all_values([](const Innovation& in) -> Vec { return in.parameters.col(kMeshError); });
+      all_values([](const Innovation& in) { return in.parameters.col(kMeshError).squaredNorm(); });
   const Eigen::MatrixXd inverse = F(nuisances, nuisances).inverse();
   screening.pace_change = (inverse * result.score(nuisances))[kPace];
   screening.pace_deviation = std::sqrt(inverse(kPace, kPace));

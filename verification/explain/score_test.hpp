@@ -19,6 +19,7 @@ struct CandidateScore {
 struct Screening {
   std::vector<CandidateScore> scores;  // most probable first
   double p = 1;                        // that the most telling of them is noise
+  double gap_p = 1;  // that there is a gap of any shape is noise, nuisances being at their best
   double pace_change, pace_deviation;  // of ln D, if nothing else is missing
   double mesh_error;                   // root mean square of what a finer mesh changes, in noise
 };

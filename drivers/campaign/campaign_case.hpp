@@ -1,0 +1,35 @@
+// One case of a campaign: drawn, explained and scored.
+#pragma once
+
+#include <map>
+
+#include "drivers/campaign/campaign_folder.hpp"
+
+namespace traceraft {
+
+enum class CaseOutcome {
+  right,     // what was hidden was named, and nothing else; or nothing where that is the aim
+  in_class,  // a class was declared that holds it
+  missed,    // no name where there is one; a disagreement where there is none
+  wrong      // another name
+};
+std::string word_for(CaseOutcome outcome);
+
+struct CaseScore {
+  CaseId id;
+  std::string hidden, verdict, effect;  // names joined by " + "; "" for none
+  CaseOutcome outcome;
+  // Of the strength of an effect that was named rightly: relative error, and error in standard
+  // deviations. NaN where there is none.
+  double error, deviations;
+  double p;                            // of the most telling candidate, first round
+  double base, named, placebo, floor;  // held-out gaps; floor: of the truth
+  double seconds;
+};
+
+// Does what the case still lacks and writes its score. Throws what drawing and explaining throw.
+void carry_out_case(const CampaignFolder& folder, const CampaignPlan& plan, const CaseId& id);
+
+CaseScore read_score(const CampaignFolder& folder, const CaseId& id);
+
+}  // namespace traceraft

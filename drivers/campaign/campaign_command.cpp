@@ -1,0 +1,169 @@
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <mutex>
+
+#include "backends/posix/folder_lock.hpp"
+#include "backends/posix/process.hpp"
+#include "drivers/campaign/campaign_report.hpp"
+#include "drivers/commands.hpp"
+#include "drivers/config/option_flags.hpp"
+#include "drivers/ensemble/ensemble_runs.hpp"
+#include "drivers/exit_codes.hpp"
+#include "drivers/output/status_line.hpp"
+#include "drivers/output/text_table.hpp"
+#include "drivers/run/job_pool.hpp"
+#include "drivers/run/program_run.hpp"
+#include "drivers/run/run_folder.hpp"
+#include "kernel/core/error.hpp"
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CampaignRequest {
+  CampaignPlan plan;
+  std::string out, only;
+  int jobs = 0;
+  bool quiet = false;
+};
+
+CampaignPlan new_plan(const CampaignRequest& request) {
+  CampaignPlan plan = request.plan;
+  if (plan.groups.empty()) plan.groups = campaign_groups().names();
+  for (const std::string& group : plan.groups) (void)campaign_groups().find(group);
+  // A vesicle of 5 µm that a search can be carried out on in a minute.
+  for (const auto& [name, text] :
+       {std::pair("epsilon", "0.6"), std::pair("cells", "24"), std::pair("raft-fraction", "0.5")})
+    plan.model.insert({name, {text, "campaign"}});
+  (void)Configuration(plan.model, {});
+  return plan;
+}
+
+int one_case(const CampaignFolder& folder, const std::string& name) {
+  const CampaignPlan plan = folder.load();
+  for (const CaseId& id : cases_of(plan))
+    if (id.name() == name) {
+      carry_out_case(folder, plan, id);
+      return kSuccess;
+    }
+  throw InputError("--case: this campaign has no case '" + name + "'");
+}
+
+// Returns the reasons of cases that failed; nothing if there is more to do.
+std::optional<std::vector<std::string>> work_off(const CampaignFolder& folder,
+                                                 const std::vector<CaseId>& cases, int jobs,
+                                                 bool quiet) {
+  std::vector<CaseId> left;
+  for (const CaseId& id : cases)
+    if (!fs::exists(folder.score_of(id))) left.push_back(id);
+  const std::size_t before = cases.size() - left.size();
+  std::mutex mutex;
+  std::vector<std::string> failures;
+  JobPool pool(left.size(), [&](std::size_t k) {
+    fs::create_directories(folder.of(left[k]));
+    const ProgramEnd end =
+        run_program({"campaign", "--out", folder.path().string(), "--case", left[k].name()},
+                    folder.log_of(left[k]));
+    if (end.exit_code == kSuccess) return true;
+    if (end.was_stopped()) return false;
+    if (!end.telling()) throw IoError(left[k].name() + ": " + end.reason());
+    const std::lock_guard lock(mutex);
+    failures.push_back(left[k].name() + ": " + end.reason());
+    return true;
+  });
+  StatusLine line(quiet);
+  const Stopwatch watch;
+  pool.start(jobs);
+  do {
+    usleep(100000);
+    if (!line.due()) continue;
+    const auto ended = static_cast<double>(pool.ended());
+    const double all = static_cast<double>(left.size());
+    line.show((static_cast<double>(before) + ended) / static_cast<double>(cases.size()),
+              std::to_string(before + pool.ended()) + "/" + std::to_string(cases.size()) +
+                  " cases  " + clock_text(watch.seconds()) + " elapsed" +
+                  (ended > 0 ? "  ~" + clock_text(watch.seconds() * (all - ended) / ended) + " left"
+                             : ""));
+  } while (pool.busy());
+  const bool all_done = pool.finish();
+  line.finish();
+  if (!all_done) return {};
+  return failures;
+}
+
+int run_campaign(const CampaignRequest& request) {
+  catch_stop_signals();
+  const bool goes_on = !request.out.empty() && CampaignFolder(request.out).started();
+  if (!request.only.empty()) {
+    if (!goes_on) throw InputError("--case: --out has to name a campaign that has begun");
+    return one_case(CampaignFolder(request.out), request.only);
+  }
+  const CampaignFolder folder(request.out.empty() ? first_free_folder("campaign") : request.out);
+  CampaignPlan plan = goes_on ? folder.load() : new_plan(request);
+  plan.cases = std::max(plan.cases, request.plan.cases);
+  fs::create_directories(folder.path() / "cases");
+  const FolderLock lock(folder.path());
+  folder.save(plan);
+  const std::vector<CaseId> cases = cases_of(plan);
+  const auto failures = work_off(folder, cases, jobs_of(request.jobs, 1).at_a_time, request.quiet);
+  if (!failures) {
+    if (!request.quiet)
+      std::printf("go on with: traceraft campaign --out %s\n", folder.path().c_str());
+    return kInterrupted;
+  }
+  for (const std::string& failure : *failures)
+    std::fprintf(stderr, "traceraft: %s\n", failure.c_str());
+  std::vector<CaseScore> scores;
+  for (const CaseId& id : cases)
+    if (fs::exists(folder.score_of(id))) scores.push_back(read_score(folder, id));
+  if (scores.empty()) return kNumericalFailure;
+  write_campaign(folder.path(), scores);
+  if (!request.quiet) {
+    print_rows(table_rows(summary_of(scores)));
+    std::printf("\nwritten: %s\n", (folder.path() / "campaign.md").c_str());
+  }
+  return failures->empty() ? kSuccess : kNumericalFailure;
+}
+
+Action define(CLI::App& app) {
+  const auto request = std::make_shared<CampaignRequest>();
+  app.add_option("--out", request->out,
+                 "folder, new or of a campaign to go on with; default: runs/campaign-<number>");
+  app.add_option("--groups", request->plan.groups, "what is tried; default: all of them")
+      ->delimiter(',');
+  app.add_option("--cases", request->plan.cases, "of each group; a campaign can grow")
+      ->check(CLI::Range(1, 999))
+      ->capture_default_str();
+  app.add_option("--seed", request->plan.seed, "what chance does")->capture_default_str();
+  app.add_option("--points", request->plan.points, "of each snapshot")
+      ->check(CLI::Range(100, 1000000))
+      ->capture_default_str();
+  app.add_option("--replicates", request->plan.replicates, "of noise alone, in each search")
+      ->check(CLI::Range(49, 9999))
+      ->capture_default_str();
+  app.add_option("--jobs", request->jobs, "cases at a time; default: one for each processor")
+      ->check(CLI::Range(1, 1024));
+  app.add_option("--case", request->only, "carry out this case alone");
+  app.add_flag("--quiet", request->quiet, "print nothing but errors");
+  add_options(app, request->plan.model, [](const OptionSpec& spec) {
+    return (spec.group == "Physics" || spec.name == "cells" || spec.name == "raft-fraction") &&
+           spec.name != "scaled" && spec.name != "effect";
+  });
+  std::string groups = "Groups:\n";
+  for (const CampaignGroup& group : campaign_groups())
+    groups += "  " + group.name + std::string(16 - group.name.size(), ' ') + group.summary + "\n";
+  app.footer(groups +
+             "Example: traceraft campaign --groups naming,null --cases 22 --out runs/campaign");
+  return [request] { return run_campaign(*request); };
+}
+
+}  // namespace
+
+Command campaign_command() {
+  return {"campaign", "hide effects, let `explain` find them, and count", Ranks::one, define};
+}
+
+}  // namespace traceraft

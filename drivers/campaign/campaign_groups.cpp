@@ -1,0 +1,54 @@
+#include "drivers/campaign/campaign_groups.hpp"
+
+#include "kernel/core/random.hpp"
+#include "verification/explain/blind_case.hpp"
+
+namespace traceraft {
+namespace {
+
+CaseSettings with(const std::function<void(CaseSettings&)>& change) {
+  CaseSettings settings;
+  change(settings);
+  return settings;
+}
+
+}  // namespace
+
+const NamedList<CampaignGroup>& campaign_groups() {
+  static const NamedList<CampaignGroup> list(
+      "group", {{"naming", "one effect, 10 % noise, 8 snapshots", Aim::name, {}, 1},
+                {"naming-noisy", "one effect, 20 % noise", Aim::name,
+                 with([](CaseSettings& s) { s.noise = 0.2; }), 1},
+                {"naming-short", "one effect, 3 snapshots", Aim::name,
+                 with([](CaseSettings& s) { s.snapshots = 3; }), 1},
+                {"two", "two effects at once", Aim::name, {}, 2},
+                {"left-out", "one effect that is not looked for", Aim::unnamed, {}, 1},
+                {"stated-half", "one effect; the data state half of their noise", Aim::name,
+                 with([](CaseSettings& s) { s.stated = 0.5; }), 1},
+                {"stated-double", "one effect; the data state twice their noise", Aim::name,
+                 with([](CaseSettings& s) { s.stated = 2; }), 1},
+                {"null", "nothing hidden, 10 % noise", Aim::nothing, {}, 0},
+                {"null-quiet", "nothing hidden, 5 % noise", Aim::nothing,
+                 with([](CaseSettings& s) { s.noise = 0.05; }), 0},
+                {"null-noisy", "nothing hidden, 20 % noise", Aim::nothing,
+                 with([](CaseSettings& s) { s.noise = 0.2; }), 0},
+                {"coarse", "nothing hidden, the model's mesh too coarse", Aim::nothing,
+                 with([](CaseSettings& s) { s.coarser = 0.67; }), 0}});
+  return list;
+}
+
+CaseSettings settings_of(const CampaignGroup& group, int number, std::uint64_t seed) {
+  CaseSettings settings = group.common;
+  const std::vector<std::string> all = effects_to_hide();
+  const std::size_t first = static_cast<std::size_t>(number) % all.size();
+  if (group.effects > 0) settings.hidden.push_back(all[first]);
+  if (group.effects > 1) {
+    const double u = uniform_random(seed, 1, 0);
+    const auto further = static_cast<std::size_t>(u * static_cast<double>(all.size() - 1));
+    settings.hidden.push_back(all[(first + 1 + further) % all.size()]);
+  }
+  if (group.aim == Aim::unnamed) settings.without = settings.hidden;
+  return settings;
+}
+
+}  // namespace traceraft

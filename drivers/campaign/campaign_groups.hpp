@@ -1,0 +1,36 @@
+// What a campaign asks of `explain`: groups of blind cases that differ in one respect.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kernel/core/named_list.hpp"
+
+namespace traceraft {
+
+struct CaseSettings {
+  std::vector<std::string> hidden;   // effects
+  std::vector<std::string> without;  // left out of those that are looked for
+  double noise = 0.1;                // standard deviation, in units of that of c
+  double stated = 0;                 // what the data state of it, over what it is; 0: nothing
+  int snapshots = 8;
+  double coarser = 1;  // cells of the model's mesh, over what its interface needs
+};
+
+// What the verdict of a case has to be.
+enum class Aim { name, nothing, unnamed };
+
+struct CampaignGroup {
+  std::string name;
+  std::string summary;
+  Aim aim;
+  CaseSettings common;
+  int effects = 1;  // that are hidden, one after the other of all that can be
+};
+
+const NamedList<CampaignGroup>& campaign_groups();
+
+// The settings of case `number` of a group; `seed` decides what chance does.
+CaseSettings settings_of(const CampaignGroup& group, int number, std::uint64_t seed);
+
+}  // namespace traceraft

@@ -1,0 +1,126 @@
+#include "drivers/campaign/campaign_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "backends/posix/durable_file.hpp"
+#include "drivers/output/text_table.hpp"
+
+namespace traceraft {
+namespace {
+
+using Scores = std::vector<CaseScore>;
+
+double median(std::vector<double> values) {
+  values.erase(
+      std::remove_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }),
+      values.end());
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
+}
+
+template <class Value>
+double median_of(const Scores& scores, const Value& value) {
+  std::vector<double> values;
+  for (const CaseScore& score : scores) values.push_back(value(score));
+  return median(values);
+}
+
+Cell cell(double value) {
+  return std::isfinite(value) ? Cell(value) : Cell("");
+}
+
+// Within 1.96 standard deviations.
+Cell coverage(const Scores& scores) {
+  double known = 0, within = 0;
+  for (const CaseScore& score : scores) {
+    known += std::isfinite(score.deviations);
+    within += std::fabs(score.deviations) <= 1.96;
+  }
+  return known > 0 ? Cell(within / known) : Cell("");
+}
+
+std::map<std::string, Scores> by_group(const Scores& scores) {
+  std::map<std::string, Scores> groups;
+  for (const CaseScore& score : scores) groups[score.id.group].push_back(score);
+  return groups;
+}
+
+// Of what the truth would close of the gap, how much was closed?
+double closed(const CaseScore& score) {
+  const double closable = score.base * score.base - score.floor * score.floor;
+  return (score.base * score.base - score.named * score.named) / closable;
+}
+
+Table cases_table(const Scores& scores) {
+  Table table{"cases",
+              {"case", "hidden", "verdict", "found", "outcome", "error", "deviations", "p",
+               "base gap", "named gap", "placebo gap", "floor", "seconds"},
+              {}};
+  for (const CaseScore& s : scores)
+    table.rows.push_back({s.id.name(), s.hidden, s.verdict, s.effect, word_for(s.outcome),
+                          cell(s.error), cell(s.deviations), cell(s.p), cell(s.base), cell(s.named),
+                          cell(s.placebo), cell(s.floor), s.seconds});
+  return table;
+}
+
+}  // namespace
+
+Table summary_of(const Scores& scores) {
+  Table table{"summary",
+              {"group", "cases", "right", "in class", "missed", "wrong", "median error", "coverage",
+               "held-out gap / floor", "closed", "s per case"},
+              {}};
+  for (const CampaignGroup& group : campaign_groups()) {
+    const Scores own = by_group(scores)[group.name];
+    if (own.empty()) continue;
+    const auto count = [&](CaseOutcome outcome) {
+      return static_cast<double>(std::count_if(
+          own.begin(), own.end(), [&](const CaseScore& s) { return s.outcome == outcome; }));
+    };
+    const bool names = group.aim == Aim::name;
+    table.rows.push_back(
+        {group.name, static_cast<double>(own.size()), count(CaseOutcome::right),
+         count(CaseOutcome::in_class), count(CaseOutcome::missed), count(CaseOutcome::wrong),
+         cell(median_of(own, [](const CaseScore& s) { return s.error; })), coverage(own),
+         cell(median_of(own, [](const CaseScore& s) { return s.named / s.floor; })),
+         names ? cell(median_of(own, closed)) : Cell(""),
+         cell(median_of(own, [](const CaseScore& s) { return s.seconds; }))});
+  }
+  return table;
+}
+
+Table confusion_of(const Scores& scores) {
+  std::map<std::string, std::map<std::string, int>> counts;
+  std::map<std::string, int> found;
+  for (const CaseScore& score : scores) {
+    if (campaign_groups().find(score.id.group).aim != Aim::name) continue;
+    const std::string verdict = score.effect.empty() ? score.verdict : score.effect;
+    ++counts[score.hidden][verdict];
+    ++found[verdict];
+  }
+  Table table{"confusion", {"hidden \\ found"}, {}};
+  for (const auto& [name, count] : found) table.columns.push_back(name);
+  for (const auto& [hidden, row] : counts) {
+    table.rows.push_back({hidden});
+    for (const auto& [name, count] : found)
+      table.rows.back().push_back(row.count(name) ? Cell(static_cast<double>(row.at(name)))
+                                                  : Cell(""));
+  }
+  return table;
+}
+
+void write_campaign(const std::filesystem::path& folder, const Scores& scores) {
+  const Table summary = summary_of(scores), confusion = confusion_of(scores);
+  write_durably(folder / "cases.csv", csv_text(cases_table(scores)));
+  write_durably(folder / "summary.csv", csv_text(summary));
+  write_durably(folder / "confusion.csv", csv_text(confusion));
+  write_durably(folder / "campaign.md",
+                markdown_table(table_rows(summary)) + "\n" + markdown_table(table_rows(confusion)));
+}
+
+}  // namespace traceraft

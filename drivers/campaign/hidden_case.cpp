@@ -1,0 +1,90 @@
+#include "drivers/campaign/hidden_case.hpp"
+
+#include "backends/sodium/seal.hpp"
+#include "drivers/config/config_file.hpp"
+#include "drivers/explain/field_dataset.hpp"
+#include "drivers/input/measured_units.hpp"
+#include "drivers/output/json_file.hpp"
+#include "drivers/run/run_setup.hpp"
+#include "kernel/effects/effects.hpp"
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+
+void refuse_model(const Configuration& model) {
+  refuse_scaled(model);
+  if (model.text("surface") != "sphere")
+    throw InputError(model.where("surface") + ": measurements are drawn on spheres only");
+  if (!model.text("effect").empty())
+    throw InputError(model.where("effect") + ": effects are hidden with --effects");
+}
+
+Json truth_json(const BlindCase& drawn, const BlindRequest& request, const Units& units) {
+  Units own = units;
+  own.diffusion_cm2_s *= request.pace;
+  Json hidden = Json::array();
+  for (const EffectTerm& term : drawn.truth) {
+    const auto& specs = effects().find(term.effect).parameters;
+    Json values = Json::object();
+    for (std::size_t k = 0; k < specs.size(); ++k)
+      values[specs[k].name] = {{"value", term.values[k] / to_model_units(specs[k].unit, own)},
+                               {"unit", specs[k].unit},
+                               {"scaled", term.values[k]}};
+    hidden.push_back({{"effect", term.effect}, {"parameters", values}});
+  }
+  return {{"salt", random_salt()},
+          {"seed", request.seed},
+          {"effects", hidden},
+          {"diffusion", own.diffusion_cm2_s},
+          {"pace", request.pace},
+          {"noise", drawn.noise},
+          {"cells", request.cells},
+          {"integrator", request.integrator},
+          {"tolerance", request.tolerance}};
+}
+
+}  // namespace
+
+void hide(const fs::path& folder, const GivenValues& model, BlindRequest request) {
+  const Configuration configuration(model, {});
+  refuse_model(configuration);
+  const Units units = configuration.units();
+  request.base = physical_model(configuration);
+  request.raft_fraction = configuration.number("raft-fraction");
+  BlindCase drawn = draw_blind_case(request);
+
+  fs::create_directories(folder / "data");
+  const std::string truth = truth_json(drawn, request, units).dump(2) + "\n";
+  write_durably(folder / "truth.json", truth);
+  write_durably(folder / "data" / "seal.txt", sha256(truth) + "\n");
+  for (FieldSnapshot& snapshot : drawn.series.snapshots) snapshot.time *= units.time();
+  FieldDataset data;
+  data.name = folder.filename().string();
+  data.synthetic = true;
+  data.origin = "drawn by traceraft hide; truth sealed by the hash in seal.txt";
+  data.radius_um = units.length();
+  data.vesicles = {std::move(drawn.series)};
+  write_field_dataset(folder / "data", data, "synthetic measurements");
+  write_durably(folder / "model.toml", config_text(configuration));
+}
+
+HiddenTruth open_truth(const fs::path& folder) {
+  constexpr std::uint64_t kMaxBytes = 1 << 20;
+  const std::string text = read_file(folder / "truth.json", kMaxBytes);
+  if (sha256(text) + "\n" != read_file(folder / "data" / "seal.txt", kMaxBytes))
+    throw IoError((folder / "truth.json").string() + " is not what was sealed");
+  return from_json(folder / "truth.json", [](const Json& json) {
+    HiddenTruth truth{{}, json.at("pace"), json.at("noise")};
+    for (const Json& hidden : json.at("effects")) {
+      EffectTerm term{hidden.at("effect"), {}};
+      for (const Json& parameter : hidden.at("parameters"))
+        term.values.push_back(parameter.at("scaled"));
+      truth.effects.push_back(term);
+    }
+    return truth;
+  });
+}
+
+}  // namespace traceraft

@@ -1,0 +1,29 @@
+// A data set with something hidden in it, on disk.
+#pragma once
+
+#include <filesystem>
+
+#include "drivers/config/configuration.hpp"
+#include "verification/explain/blind_case.hpp"
+
+namespace traceraft {
+
+// What was hidden, in the units of the model's file and in those of the model.
+struct HiddenTruth {
+  std::vector<EffectTerm> effects;  // in units of R and R²/(pace D)
+  double pace, noise;
+};
+
+// Draws a case and writes into the folder, in this order:
+//   truth.json         what is hidden, with a random salt; nothing but the score opens it
+//   data/seal.txt      the SHA-256 of truth.json
+//   data/              the measurements, as `explain --data` takes them
+//   model.toml         the model without what is hidden
+// `request`: all but the base model and the raft fraction, which are those of `model`. Throws
+// InputError for a model that cannot be used, std::runtime_error if a simulation fails, IoError.
+void hide(const std::filesystem::path& folder, const GivenValues& model, BlindRequest request);
+
+// Throws IoError if the truth is not what was sealed.
+HiddenTruth open_truth(const std::filesystem::path& folder);
+
+}  // namespace traceraft

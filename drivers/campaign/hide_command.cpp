@@ -1,0 +1,112 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "backends/posix/folder_lock.hpp"
+#include "backends/sodium/seal.hpp"
+#include "drivers/campaign/hidden_case.hpp"
+#include "drivers/commands.hpp"
+#include "drivers/config/config_file.hpp"
+#include "drivers/config/option_flags.hpp"
+#include "drivers/exit_codes.hpp"
+#include "drivers/run/run_folder.hpp"
+#include "kernel/core/error.hpp"
+#include "kernel/core/random.hpp"
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct HideCommand {
+  GivenValues flags;
+  std::string model, out, effects = "random";
+  std::int64_t seed = -1;
+  BlindRequest request;
+  double first_s = 0, last_s = 0;
+};
+
+// "random" may be nothing.
+std::vector<std::string> effects_of(const std::string& text, std::uint64_t seed) {
+  if (text == "none") return {};
+  if (text != "random") return split_list(text);
+  std::vector<std::string> all = effects_to_hide();
+  const double u = uniform_random(seed, 3, 0) * static_cast<double>(all.size() + 1);
+  const auto index = static_cast<std::size_t>(u);
+  return index < all.size() ? std::vector<std::string>{all[index]} : std::vector<std::string>{};
+}
+
+int hide_effects(const HideCommand& command) {
+  GivenValues model = read_config_file(command.model);
+  for (const auto& [name, value] : command.flags) model[name] = value;
+  const Units units = Configuration(model, {}).units();
+  BlindRequest request = command.request;
+  request.seed = command.seed >= 0 ? static_cast<std::uint64_t>(command.seed) : random_seed();
+  request.effects = effects_of(command.effects, request.seed);
+  if (command.first_s > 0) request.first = command.first_s / units.time();
+  if (command.last_s > 0) request.last = command.last_s / units.time();
+  if (!(request.first < request.last)) throw InputError("--first: it has to be before --last");
+  const fs::path out = command.out.empty() ? first_free_folder("hidden") : command.out;
+  fs::create_directories(out);
+  const FolderLock lock(out);
+  if (fs::exists(out / "truth.json"))
+    throw InputError("--out: " + out.string() + " holds a hidden truth already");
+  hide(out, model, request);
+  std::printf("find it with: traceraft explain --data %s --model %s\n", (out / "data").c_str(),
+              (out / "model.toml").c_str());
+  return kSuccess;
+}
+
+Action define(CLI::App& app) {
+  const auto command = std::make_shared<HideCommand>();
+  BlindRequest& request = command->request;
+  app.add_option("--model", command->model, "TOML file with the flags' names as keys");
+  app.add_option("--out", command->out, "folder; default: runs/hidden-<number>");
+  app.add_option("--effects", command->effects,
+                 "what is hidden: names with commas between them, none, or random")
+      ->capture_default_str();
+  app.add_option("--gap", request.gap,
+                 "change of c that each makes from one snapshot to the next, over the standard "
+                 "deviation of c")
+      ->check(CLI::Range(1e-3, 0.5))
+      ->capture_default_str();
+  app.add_option("--noise", request.noise, "of a value, over the standard deviation of c")
+      ->check(CLI::Range(1e-3, 2.0))
+      ->capture_default_str();
+  app.add_option("--stated", request.stated,
+                 "write a column sigma with this times the noise; 0: no such column")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  app.add_option("--snapshots", request.snapshots, "how many")
+      ->check(CLI::Range(2, 100))
+      ->capture_default_str();
+  app.add_option("--points", request.points, "of each snapshot")
+      ->check(CLI::Range(100, 1000000))
+      ->capture_default_str();
+  app.add_option("--first", command->first_s, "time of the first snapshot in s; default: 20 R^2/D")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--last", command->last_s, "time of the last one in s; default: 90 R^2/D")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--pace", request.pace, "D of the truth over that of the model")
+      ->check(CLI::Range(0.1, 10.0))
+      ->capture_default_str();
+  app.add_option("--truth-cells", request.cells, "of the mesh that the truth is computed on")
+      ->check(CLI::Range(8, 512))
+      ->capture_default_str();
+  app.add_option("--seed", command->seed, "what chance does; default: nobody knows")
+      ->check(CLI::NonNegativeNumber);
+  add_options(app, command->flags, [](const OptionSpec& spec) {
+    return (spec.group == "Physics" || spec.name == "cells" || spec.name == "raft-fraction") &&
+           spec.name != "scaled" && spec.name != "effect";
+  });
+  app.footer("Example: traceraft hide --epsilon 0.6 --raft-fraction 0.5 --cells 24 --out riddle");
+  return [command] { return hide_effects(*command); };
+}
+
+}  // namespace
+
+Command hide_command() {
+  return {"hide", "draw measurements with something hidden in them, for explain to find",
+          Ranks::one, define};
+}
+
+}  // namespace traceraft

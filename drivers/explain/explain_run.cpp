@@ -1,0 +1,56 @@
+#include "drivers/explain/explain_run.hpp"
+
+#include <thread>
+
+#include "drivers/config/config_file.hpp"
+#include "drivers/explain/field_dataset.hpp"
+#include "drivers/input/measured_units.hpp"
+#include "drivers/run/run_setup.hpp"
+#include "kernel/core/error.hpp"
+#include "kernel/core/parameters.hpp"
+#include "kernel/effects/effects.hpp"
+
+namespace traceraft {
+namespace {
+
+GivenValues given_model(const ExplainJob& job, double radius_um) {
+  GivenValues given = read_config_file(job.model);
+  for (const auto& [name, value] : job.flags) given[name] = value;
+  given["radius"] = {format_number(radius_um), "dataset.toml: radius"};
+  return given;
+}
+
+void refuse_model(const Configuration& model) {
+  refuse_scaled(model);
+  if (!model.text("effect").empty())
+    throw InputError(model.where("effect") +
+                     ": the search starts from a model without effects; it finds them itself");
+}
+
+}  // namespace
+
+ExplainSetup read_explain_job(const ExplainJob& job) {
+  if (job.data.empty()) throw InputError("--data: say which measurements to explain");
+  FieldDataset data = read_field_dataset(job.data);
+  if (data.vesicles.size() > 1)
+    throw InputError("--data: " + job.data + " holds several vesicles; explain them one at a time");
+  for (const std::string& effect : job.without) (void)effects().find(effect);
+  ExplainSetup setup{given_model(job, data.radius_um), std::move(data.vesicles.front()), {}};
+  const Configuration model(setup.model, {});
+  refuse_model(model);
+  for (FieldSnapshot& snapshot : setup.series.snapshots) snapshot.time /= model.units().time();
+
+  ExplainRequest& request = setup.request;
+  request.base = physical_model(model);
+  request.surface = surface_of(model);
+  request.cells = static_cast<int>(model.integer("cells"));
+  request.threads = job.threads > 0
+                        ? job.threads
+                        : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  request.most_effects = job.effects;
+  request.without = job.without;
+  request.filter.replicates = job.replicates;
+  return setup;
+}
+
+}  // namespace traceraft

@@ -1,0 +1,29 @@
+// From the files of `explain` to the search, for its command and for campaigns.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "drivers/config/configuration.hpp"
+#include "verification/explain/explanation.hpp"
+
+namespace traceraft {
+
+struct ExplainJob {
+  std::string data, model;  // a folder and a file; no file: flags alone
+  GivenValues flags;        // of the model, before what its file says
+  int threads = 0;          // 0: one for each processor
+  int effects = 3, replicates = 199;
+  std::vector<std::string> without;
+};
+
+struct ExplainSetup {
+  GivenValues model;  // with the radius of the vesicle
+  FieldSeries series;
+  ExplainRequest request;
+};
+
+// Throws InputError for data and models that cannot be used.
+ExplainSetup read_explain_job(const ExplainJob& job);
+
+}  // namespace traceraft

@@ -1,0 +1,98 @@
+// `traceraft hide` and `traceraft campaign` as their users run them.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "backends/posix/durable_file.hpp"
+#include "drivers/campaign/hidden_case.hpp"
+#include "drivers/explain/field_dataset.hpp"
+#include "kernel/core/error.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+
+class HideTest : public ::testing::Test {
+ protected:
+  testing::Outcome hide(const std::string& options) const {
+    return testing::traceraft("hide --epsilon 1 --raft-fraction 0.5 --cells 14 --truth-cells 16 " +
+                              options + " --snapshots 3 --points 300 --out " +
+                              (folder.path / "riddle").string());
+  }
+  testing::TemporaryFolder folder;
+};
+
+TEST_F(HideTest, WritesMeasurementsAndSealsTheirTruth) {
+  const auto end = hide("--effects uptake,gravity --seed 5 --pace 1.2 --stated 2");
+  ASSERT_EQ(end.code, 0) << end.output;
+  const HiddenTruth truth = open_truth(folder.path / "riddle");
+  ASSERT_EQ(truth.effects.size(), 2u);
+  EXPECT_EQ(truth.effects[0].effect, "uptake");
+  EXPECT_EQ(truth.effects[1].effect, "gravity");
+  EXPECT_EQ(truth.pace, 1.2);
+  const FieldDataset data = read_field_dataset(folder.path / "riddle" / "data");
+  ASSERT_EQ(data.vesicles.front().snapshots.size(), 3u);
+  const FieldSnapshot& snapshot = data.vesicles.front().snapshots.front();
+  EXPECT_EQ(snapshot.points.size(), 300u);
+  EXPECT_NEAR(snapshot.deviation[0], 2 * truth.noise, 1e-5 * truth.noise);
+  // Nothing that the search reads tells what was hidden.
+  for (const char* file : {"model.toml", "data/dataset.toml"}) {
+    const std::string text = testing::content(folder.path / "riddle" / file);
+    EXPECT_EQ(text.find("uptake:"), std::string::npos) << file;
+    EXPECT_EQ(text.find("gravity:"), std::string::npos) << file;
+  }
+  EXPECT_EQ(hide("--effects none").code, 2);  // the folder is taken
+}
+
+TEST_F(HideTest, SeesAChangedTruth) {
+  ASSERT_EQ(hide("--effects none --seed 5").code, 0);
+  const fs::path truth = folder.path / "riddle" / "truth.json";
+  EXPECT_TRUE(open_truth(folder.path / "riddle").effects.empty());
+  std::string text = testing::content(truth);
+  text.replace(text.find("\"pace\": 1.0"), 11, "\"pace\": 1.1");
+  write_durably(truth, text);
+  EXPECT_THROW(open_truth(folder.path / "riddle"), IoError);
+}
+
+TEST_F(HideTest, RefusesWhatCannotBeHidden) {
+  EXPECT_EQ(hide("--effects gravitty").code, 2);
+  EXPECT_NE(hide("--effects gravitty").output.find("did you mean 'gravity'"), std::string::npos);
+  EXPECT_EQ(hide("--effects none --first 2 --last 1").code, 2);
+}
+
+// Small and coarse: what is tested is that everything fits together.
+TEST(CampaignTest, CountsWhatWasFoundAndGoesOn) {
+  const testing::TemporaryFolder folder;
+  const fs::path out = folder.path / "campaign";
+  const auto begin = testing::traceraft(
+      "campaign --groups naming,null --cases 1 --epsilon 0.9 --cells 16 "
+      "--points 800 --replicates 49 --out " +
+      out.string());
+  ASSERT_EQ(begin.code, 0) << begin.output;
+  const std::string first = testing::content(out / "cases" / "null-000" / "score.json");
+  const nlohmann::json score = nlohmann::json::parse(first);
+  EXPECT_EQ(score["hidden"], "");
+  EXPECT_EQ(score["outcome"] == "right", score["effect"] == "");
+  EXPECT_GT(score["heldout"]["floor"], 0);
+  const std::string summary = testing::content(out / "summary.csv");
+  EXPECT_NE(summary.find("naming,1,"), std::string::npos) << summary;
+  EXPECT_NE(summary.find("null,1,"), std::string::npos) << summary;
+
+  fs::remove(out / "cases" / "naming-000" / "score.json");
+  const auto again = testing::traceraft("campaign --out " + out.string());
+  ASSERT_EQ(again.code, 0) << again.output;
+  EXPECT_TRUE(fs::exists(out / "cases" / "naming-000" / "score.json"));
+  EXPECT_EQ(testing::content(out / "cases" / "null-000" / "score.json"), first);
+}
+
+TEST(CampaignTest, RefusesUnknownGroups) {
+  const auto end = testing::traceraft("campaign --groups nameing");
+  EXPECT_EQ(end.code, 2);
+  EXPECT_NE(end.output.find("did you mean 'naming'"), std::string::npos) << end.output;
+}
+
+}  // namespace
+}  // namespace traceraft
