@@ -85,7 +85,13 @@ Json verdict_json(const Explanation& found, const Units& units) {
              {"region", {most.direction[0], most.direction[1], most.direction[2]}},
              {"state", most.state}};
   }
-  const Round& first = found.rounds.front();
+  Json rounds = Json::array();
+  for (const Round& round : found.rounds)
+    rounds.push_back({{"known", round.known.hypothesis.name()},
+                      {"candidate", round.screening.scores.front().effect},
+                      {"p", round.screening.p},
+                      {"gap_p", round.screening.gap_p},
+                      {"mesh_error", round.screening.mesh_error}});
   return {{"verdict", word_for(found.finding)},
           {"effect", named ? Json(found.found.hypothesis.name()) : Json()},
           {"class", found.equivalent},
@@ -97,7 +103,10 @@ Json verdict_json(const Explanation& found, const Units& units) {
             {"placebo", gap_json(found.placebo_gap, held_out)},
             {"floor", gap_json(found.floor, held_out)}}},
           {"where", where},
-          {"null", {{"replicates", found.replicates}, {"false_alarm_level", first.screening.p}}},
+          {"null",
+           {{"replicates", found.replicates},
+            {"false_alarm_level", found.rounds.front().screening.p},
+            {"rounds", rounds}}},
           {"noise", found.noise}};
 }
 

@@ -12,7 +12,7 @@ EffectEntry exchange_effect() {
           MassClass::drifts,
           EnergyClass::active,
           "drift of the raft fraction, rafts that stop growing",
-          {"ohta-kawasaki"},
+          {"ohta-kawasaki", "uptake"},
           [](const Parameters& p, CahnHilliardModel& model) {
             const double k = p["rate"], target = p["target"];
             model.effects.push_back(local_density(

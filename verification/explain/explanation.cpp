@@ -8,21 +8,18 @@
 namespace traceraft {
 namespace {
 
-// The finer mesh that shows the error of the model's own.
-constexpr double kFiner = 1.4;
 // 2 ln of a likelihood ratio of 20: less does not tell two hypotheses apart.
 constexpr double kTelling = 6;
 // Candidates that gain less than this share of what the best one does, to first order, are not
 // refitted, but for the second best.
 constexpr double kWorthRefitting = 0.25;
-// An effect has to change c by that share of what the model's mesh does.
-constexpr double kResolved = 1;
+// An effect has to change c by that many times what extrapolation to finer meshes does.
+constexpr double kResolved = 3;
 
 FilterProblem problem_of(const FieldSeries& series, const ExplainRequest& request) {
   const std::size_t held_out = request.hold_out && series.snapshots.size() >= 4 ? 1 : 0;
   return make_filter_problem(series, *request.surface, request.base.epsilon, request.cells,
-                             static_cast<int>(std::lround(kFiner * request.cells)), request.threads,
-                             held_out, request.filter);
+                             request.threads, held_out, request.filter);
 }
 
 std::vector<Candidate> candidates_of(const ExplainRequest& request) {

@@ -29,10 +29,8 @@ Columns turns(const CahnHilliard& problem, const Vec& c) {
 // Of c, in forecasts that lack something: what a gap is looked for as.
 constexpr double kUsualGap = 0.02;
 
-// Standard deviation of the share of the mesh's error that extrapolation leaves.
+// Standard deviation of the share by which extrapolation to infinitely fine meshes is wrong.
 constexpr double kMeshDoubt = 0.5;
-// The share of it that forecasts are corrected by: what is on both sides of the rest is as likely.
-constexpr double kExtrapolate = 0.5;
 
 // The state of the filter between two snapshots.
 struct Belief {
@@ -50,8 +48,9 @@ class Filter {
         pace_(model.pace),
         settings_(settings),
         maps_(maps),
+        mapping_(maps.intervals() == 0),
         problem_(data.space, with_effects(model.base, model.hypothesis.terms())),
-        fine_problem_(data.fine, problem_.model()),
+        resolved_(data.finer, problem_.model(), data.first_resolved, data.make_integrator),
         flow_(problem_, data.tangent_solver, data.team),
         forcing_(problem_, model.base, model.hypothesis, model.screened) {
     Eigen::Index parameters = kFirstParameter + model.hypothesis.coefficients();
@@ -77,33 +76,27 @@ class Filter {
  private:
   void advance(std::size_t k) {
     const double begin = pace_ * data_.times[k], end = pace_ * data_.times[k + 1];
-    const Forecast way = forecast(problem_, on(data_.space), belief_.c, begin, end,
+    const auto on_its_mesh = [this](const DaeProblem& p) {
+      return data_.make_integrator(p, *data_.space);
+    };
+    const Forecast way = forecast(problem_, on_its_mesh, belief_.c, begin, end,
                                   {settings_.tangent_steps, settings_.error_steps});
-    if (maps_.intervals() == k) map_errors(k, begin, end, way);
+    if (mapping_) map_errors(k, begin, end, way);
     belief_.errors =
         product(maps_.image[k], transposed_product(maps_.basis[k], data_.mass * belief_.errors));
     belief_.replicates = maps_.replicates[k].leftCols(settings_.replicates);
     flow_.advance(way.paths[0], belief_.parameters,
                   [this](double t, ConstVec y) { return forcing_(t, y); });
     belief_.parameters.col(kPace) += (end - begin) * way.end_rate;
-    belief_.parameters.col(kMeshError) += maps_.mesh_error[k].field;
-    belief_.c = way.end + kExtrapolate * maps_.mesh_error[k].field;
-  }
-
-  MakeIntegrator on(const SpacePtr& space) const {
-    return [this, space](const DaeProblem& p) { return data_.make_integrator(p, *space); };
+    belief_.parameters.col(kMeshError) += maps_.mesh_error[k].doubt;
+    belief_.c = way.end + maps_.mesh_error[k].field;
   }
 
   void map_errors(std::size_t k, double begin, double end, const Forecast& way) {
-    const Vec fine_start = project(*data_.fine, data_.to_fine * belief_.c);
-    const Vec fine_end = forecast(fine_problem_, on(data_.fine), fine_start, begin, end).end;
-    // Errors of order h², so the difference of two meshes tells that of the coarser one.
-    const double ratio = data_.fine->h() / data_.space->h();
-    const double all = 1 / (1 - ratio * ratio);
-    maps_.mesh_error.push_back(
-        {all * (project(*data_.space, data_.from_fine * fine_end) - way.end),
-         all * (data_.fine_trace[k + 1] * fine_end - data_.snapshots[k + 1].trace * way.end)});
-
+    ResolvedForecast::End end_state = resolved_.advance(k + 1, begin, end, *data_.team);
+    end_state.field -= way.end;
+    end_state.values -= data_.snapshots[k + 1].trace * way.end;
+    maps_.mesh_error.push_back(std::move(end_state));
     Columns basis = belief_.errors;
     orthonormalise(basis);
     Columns moved = side_by_side(basis, belief_.replicates);
@@ -130,10 +123,9 @@ class Filter {
 
     Innovation in;
     in.time = data_.times[k + 1];
+    const ResolvedForecast::End& mesh = maps_.mesh_error[k];
     // What the traces of the forecast on this mesh lack, beyond what its nodes do.
-    const Vec lacking =
-        kExtrapolate * (maps_.mesh_error[k].values - measured.trace * maps_.mesh_error[k].field);
-    in.forecast = measured.trace * belief_.c + lacking;
+    in.forecast = measured.trace * (belief_.c - mesh.field) + mesh.values;
     in.values = scale.cwiseProduct(measured.values - in.forecast);
     Columns frame(scale.size(), 2);
     frame << settings_.gain * seen(belief_.c), settings_.offset * scale;
@@ -143,7 +135,8 @@ class Filter {
     in.state_directions = state.cols();
     in.gram = gram(in.directions);
     in.parameters = seen(belief_.parameters);
-    in.parameters.col(kMeshError) += scale.cwiseProduct(lacking) / kExtrapolate;
+    in.parameters.col(kMeshError) +=
+        scale.cwiseProduct(mesh.values_doubt - measured.trace * mesh.doubt);
     in.replicates = seen(belief_.replicates);
     add_noise(k, in.replicates);
     in.model_error = most_probable_error(in);
@@ -183,7 +176,9 @@ class Filter {
   // `directions`: what those of the innovation are in the state.
   void correct(const Innovation& in, const InnovationCovariance& weight,
                const Columns& directions) {
-    belief_.c += directions * weight.amplitudes(in.values);
+    const Vec increment = directions * weight.amplitudes(in.values);
+    belief_.c += increment;
+    if (mapping_) resolved_.correct(increment);
     belief_.parameters -= product(directions, weight.amplitudes(in.parameters));
     belief_.replicates -= product(directions, weight.amplitudes(in.replicates));
     belief_.errors = weight.posterior_root(directions);
@@ -194,7 +189,9 @@ class Filter {
   const double pace_;
   const FilterSettings& settings_;
   ErrorMaps& maps_;
-  CahnHilliard problem_, fine_problem_;
+  const bool mapping_;
+  CahnHilliard problem_;
+  ResolvedForecast resolved_;
   TangentFlow flow_;
   CoefficientForcing forcing_;
   Belief belief_;

@@ -20,11 +20,7 @@ namespace traceraft {
 struct ErrorMaps {
   std::vector<Columns> basis, image;  // per interval; the basis is orthonormal in M̃
   std::vector<Columns> replicates;    // errors of the forecast at its end, a column for each
-  struct MeshError {
-    Vec field;   // at the nodes
-    Vec values;  // where the next snapshot was measured
-  };
-  std::vector<MeshError> mesh_error;  // of the forecast, extrapolated from a finer mesh
+  std::vector<ResolvedForecast::End> mesh_error;  // what the forecast's own mesh does of it lacks
 
   std::size_t intervals() const { return basis.size(); }
 };
@@ -48,8 +44,8 @@ struct FilterModel {
   std::vector<Candidate> screened;  // effects it might have: derivatives at 0
 };
 
-// Parameters: ln D first, the share of the error of the mesh second, then the coefficients of the
-// hypothesis and those of the screened candidates.
+// Parameters: ln D first, second what extrapolation to finer meshes gets wrong of its last part,
+// then the coefficients of the hypothesis and those of the screened candidates.
 inline constexpr int kPace = 0, kMeshError = 1, kFirstParameter = 2;
 
 // Model errors are sized by the innovations themselves, snapshot by snapshot. `maps` are filled if

@@ -1,16 +1,12 @@
 // What a model is held against: a series of measured fields, on the mesh of the model.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <vector>
 
-#include "kernel/geometry/level_set.hpp"
 #include "kernel/linear/linear_solver.hpp"
-#include "verification/bench.hpp"
-#include "verification/explain/field_estimate.hpp"
-#include "verification/explain/field_series.hpp"
 #include "verification/explain/gap_patterns.hpp"
+#include "verification/explain/resolved_forecast.hpp"
 
 namespace traceraft {
 
@@ -25,30 +21,26 @@ struct FilterSettings {
   int gap_degree = 6;     // of the polynomials that gaps are sought as
 };
 
-// Everything about a series that does not depend on parameters: where it was measured, on the mesh
-// of the model and on a finer one that shows what the model's own mesh does.
+// Everything about a series that does not depend on parameters.
 struct FilterProblem {
   std::shared_ptr<const ThreadTeam> team;
-  SpacePtr space, fine;                // of one thread
+  SpacePtr space;  // of one thread
+  FinerMeshes finer;
   EigenMatrix mass;                    // stabilised, on `space`
   std::vector<NoisyValues> snapshots;  // on `space`
   std::vector<double> times;           // in units of R²/D of the base model
   std::size_t train = 0;               // snapshots that count
-  std::vector<PointTrace> fine_trace;  // where they were measured, on `fine`
-  PointTrace to_fine, from_fine;       // nodal values from one mesh to the other
   FieldEstimate first;                 // of the first snapshot
+  Vec first_resolved;                  // its field on the finest mesh
   double noise;                        // of all of them
   std::shared_ptr<const GapPatterns> patterns;
   LinearSolverFactory tangent_solver;
-  std::function<IntegratorPtr(const DaeProblem&, const SurfaceSpace&)> make_integrator;
+  MakeForecaster make_integrator;
 };
-
-// Of one thread, which its matrices and solvers use.
-SpacePtr serial_space(const LevelSet& surface, int cells);
 
 // `held_out`: so many snapshots at the end are forecast, but count for nothing.
 FilterProblem make_filter_problem(const FieldSeries& series, const LevelSet& surface,
-                                  double epsilon, int cells, int fine_cells, int threads,
-                                  std::size_t held_out, const FilterSettings& settings);
+                                  double epsilon, int cells, int threads, std::size_t held_out,
+                                  const FilterSettings& settings);
 
 }  // namespace traceraft
