@@ -30,7 +30,7 @@ std::uint64_t seed_of(const CampaignPlan& plan, const CaseId& id) {
 }
 
 // The truth is on a mesh this much finer than the model's.
-constexpr double kFinerTruth = 1.4;
+constexpr double kFinerTruth = 2.5;
 
 void draw(const fs::path& folder, const CampaignPlan& plan, const CaseSettings& settings,
           std::uint64_t seed) {
@@ -128,6 +128,7 @@ void write_score(const CampaignFolder& folder, const CampaignGroup& group, const
                  {"class", v.at("class")},
                  {"outcome", word_for(outcome_of(group, truth, v))},
                  {"p", v.at("null").at("false_alarm_level")},
+                 {"rounds", v.at("null").at("rounds")},
                  {"heldout",
                   {{"base", heldout("base")},
                    {"named", heldout("named")},
@@ -169,6 +170,7 @@ void carry_out_case(const CampaignFolder& folder, const CampaignPlan& plan, cons
   job.model = path / "model.toml";
   job.threads = 1;
   job.replicates = plan.replicates;
+  job.effects = plan.effects;
   job.without = settings.without;
   const ExplainSetup setup = read_explain_job(job);
   if (!fs::exists(path / "explain" / "verdict.json")) {

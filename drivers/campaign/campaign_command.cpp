@@ -26,12 +26,15 @@ namespace fs = std::filesystem;
 struct CampaignRequest {
   CampaignPlan plan;
   std::string out, only;
+  int cases = 0;                            // of each group, if given
+  std::vector<const CLI::Option*> planned;  // what a campaign that has begun does not change
   int jobs = 0;
   bool quiet = false;
 };
 
 CampaignPlan new_plan(const CampaignRequest& request) {
   CampaignPlan plan = request.plan;
+  if (request.cases > 0) plan.cases = request.cases;
   if (plan.groups.empty()) plan.groups = campaign_groups().names();
   for (const std::string& group : plan.groups) (void)campaign_groups().find(group);
   // A vesicle of 5 µm that a search can be carried out on in a minute.
@@ -39,6 +42,17 @@ CampaignPlan new_plan(const CampaignRequest& request) {
        {std::pair("epsilon", "0.6"), std::pair("cells", "24"), std::pair("raft-fraction", "0.5")})
     plan.model.insert({name, {text, "campaign"}});
   (void)Configuration(plan.model, {});
+  return plan;
+}
+
+// What it began with, more cases aside.
+CampaignPlan grown_plan(const CampaignRequest& request, const CampaignFolder& folder) {
+  for (const CLI::Option* option : request.planned)
+    if (option->count() > 0)
+      throw InputError(option->get_name() + ": the campaign in " + folder.path().string() +
+                       " has begun without it; it can change --cases alone");
+  CampaignPlan plan = folder.load();
+  plan.cases = std::max(plan.cases, request.cases);
   return plan;
 }
 
@@ -102,8 +116,7 @@ int run_campaign(const CampaignRequest& request) {
     return one_case(CampaignFolder(request.out), request.only);
   }
   const CampaignFolder folder(request.out.empty() ? first_free_folder("campaign") : request.out);
-  CampaignPlan plan = goes_on ? folder.load() : new_plan(request);
-  plan.cases = std::max(plan.cases, request.plan.cases);
+  const CampaignPlan plan = goes_on ? grown_plan(request, folder) : new_plan(request);
   fs::create_directories(folder.path() / "cases");
   const FolderLock lock(folder.path());
   folder.save(plan);
@@ -132,11 +145,15 @@ Action define(CLI::App& app) {
   const auto request = std::make_shared<CampaignRequest>();
   app.add_option("--out", request->out,
                  "folder, new or of a campaign to go on with; default: runs/campaign-<number>");
+  app.add_option("--cases", request->cases, "of each group; default: 11; a campaign can grow")
+      ->check(CLI::Range(1, 999));
+  app.add_option("--jobs", request->jobs, "cases at a time; default: one for each processor")
+      ->check(CLI::Range(1, 1024));
+  app.add_option("--case", request->only, "carry out this case alone");
+  app.add_flag("--quiet", request->quiet, "print nothing but errors");
+  const std::size_t changing = app.get_options().size();
   app.add_option("--groups", request->plan.groups, "what is tried; default: all of them")
       ->delimiter(',');
-  app.add_option("--cases", request->plan.cases, "of each group; a campaign can grow")
-      ->check(CLI::Range(1, 999))
-      ->capture_default_str();
   app.add_option("--seed", request->plan.seed, "what chance does")->capture_default_str();
   app.add_option("--points", request->plan.points, "of each snapshot")
       ->check(CLI::Range(100, 1000000))
@@ -144,14 +161,15 @@ Action define(CLI::App& app) {
   app.add_option("--replicates", request->plan.replicates, "of noise alone, in each search")
       ->check(CLI::Range(49, 9999))
       ->capture_default_str();
-  app.add_option("--jobs", request->jobs, "cases at a time; default: one for each processor")
-      ->check(CLI::Range(1, 1024));
-  app.add_option("--case", request->only, "carry out this case alone");
-  app.add_flag("--quiet", request->quiet, "print nothing but errors");
+  app.add_option("--effects", request->plan.effects, "how many a search may name")
+      ->check(CLI::Range(1, 5))
+      ->capture_default_str();
   add_options(app, request->plan.model, [](const OptionSpec& spec) {
     return (spec.group == "Physics" || spec.name == "cells" || spec.name == "raft-fraction") &&
            spec.name != "scaled" && spec.name != "effect";
   });
+  const auto all = std::as_const(app).get_options();
+  request->planned.assign(all.begin() + static_cast<std::ptrdiff_t>(changing), all.end());
   std::string groups = "Groups:\n";
   for (const CampaignGroup& group : campaign_groups())
     groups += "  " + group.name + std::string(16 - group.name.size(), ' ') + group.summary + "\n";

@@ -8,16 +8,22 @@ namespace traceraft {
 void CampaignFolder::save(const CampaignPlan& plan) const {
   Json model = Json::object();
   for (const auto& [name, value] : plan.model) model[name] = value.text;
-  const Json json = {{"groups", plan.groups}, {"cases", plan.cases},
-                     {"seed", plan.seed},     {"points", plan.points},
-                     {"model", model},        {"replicates", plan.replicates}};
+  const Json json = {{"groups", plan.groups},  {"cases", plan.cases},
+                     {"seed", plan.seed},      {"points", plan.points},
+                     {"model", model},         {"replicates", plan.replicates},
+                     {"effects", plan.effects}};
   write_durably(plan_file(), json.dump(2) + "\n");
 }
 
 CampaignPlan CampaignFolder::load() const {
   return from_json(plan_file(), [this](const Json& json) {
-    CampaignPlan plan{json.at("groups"), json.at("cases"),      json.at("seed"),
-                      json.at("points"), json.at("replicates"), {}};
+    CampaignPlan plan{json.at("groups"),
+                      json.at("cases"),
+                      json.at("seed"),
+                      json.at("points"),
+                      json.at("replicates"),
+                      json.at("effects"),
+                      {}};
     for (const auto& [name, text] : json.at("model").items())
       plan.model[name] = {text, plan_file().string() + ": " + name};
     return plan;

@@ -16,6 +16,7 @@ struct CampaignPlan {
   int cases = 11;  // of each group
   std::uint64_t seed = 1;
   int points = 4000, replicates = 199;
+  int effects = 3;  // that a search may name
   GivenValues model;
 };
 

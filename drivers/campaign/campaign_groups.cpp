@@ -1,6 +1,9 @@
 #include "drivers/campaign/campaign_groups.hpp"
 
+#include <algorithm>
+
 #include "kernel/core/random.hpp"
+#include "kernel/effects/effects.hpp"
 #include "verification/explain/blind_case.hpp"
 
 namespace traceraft {
@@ -12,28 +15,42 @@ CaseSettings with(const std::function<void(CaseSettings&)>& change) {
   return settings;
 }
 
+// An effect and those that data may not tell from it.
+std::vector<std::string> class_of(const std::string& effect) {
+  std::vector<std::string> result{effect};
+  for (const std::string& other : effects().names()) {
+    const auto names = [](const std::string& a, const std::string& b) {
+      const auto& confused = effects().find(a).confused_with;
+      return std::find(confused.begin(), confused.end(), b) != confused.end();
+    };
+    if (names(effect, other) || names(other, effect)) result.push_back(other);
+  }
+  return result;
+}
+
 }  // namespace
 
 const NamedList<CampaignGroup>& campaign_groups() {
   static const NamedList<CampaignGroup> list(
-      "group", {{"naming", "one effect, 10 % noise, 8 snapshots", Aim::name, {}, 1},
-                {"naming-noisy", "one effect, 20 % noise", Aim::name,
-                 with([](CaseSettings& s) { s.noise = 0.2; }), 1},
-                {"naming-short", "one effect, 3 snapshots", Aim::name,
-                 with([](CaseSettings& s) { s.snapshots = 3; }), 1},
-                {"two", "two effects at once", Aim::name, {}, 2},
-                {"left-out", "one effect that is not looked for", Aim::unnamed, {}, 1},
-                {"stated-half", "one effect; the data state half of their noise", Aim::name,
-                 with([](CaseSettings& s) { s.stated = 0.5; }), 1},
-                {"stated-double", "one effect; the data state twice their noise", Aim::name,
-                 with([](CaseSettings& s) { s.stated = 2; }), 1},
-                {"null", "nothing hidden, 10 % noise", Aim::nothing, {}, 0},
-                {"null-quiet", "nothing hidden, 5 % noise", Aim::nothing,
-                 with([](CaseSettings& s) { s.noise = 0.05; }), 0},
-                {"null-noisy", "nothing hidden, 20 % noise", Aim::nothing,
-                 with([](CaseSettings& s) { s.noise = 0.2; }), 0},
-                {"coarse", "nothing hidden, the model's mesh too coarse", Aim::nothing,
-                 with([](CaseSettings& s) { s.coarser = 0.67; }), 0}});
+      "group",
+      {{"naming", "one effect, 10 % noise, 8 snapshots", Aim::name, {}, 1},
+       {"naming-noisy", "one effect, 20 % noise", Aim::name,
+        with([](CaseSettings& s) { s.noise = 0.2; }), 1},
+       {"naming-short", "one effect, 3 snapshots", Aim::name,
+        with([](CaseSettings& s) { s.snapshots = 3; }), 1},
+       {"two", "two effects at once", Aim::name, {}, 2},
+       {"left-out", "one effect; it and those like it are not looked for", Aim::unnamed, {}, 1},
+       {"stated-half", "one effect; the data state half of their noise", Aim::name,
+        with([](CaseSettings& s) { s.stated = 0.5; }), 1},
+       {"stated-double", "one effect; the data state twice their noise", Aim::name,
+        with([](CaseSettings& s) { s.stated = 2; }), 1},
+       {"null", "nothing hidden, 10 % noise", Aim::nothing, {}, 0},
+       {"null-quiet", "nothing hidden, 5 % noise", Aim::nothing,
+        with([](CaseSettings& s) { s.noise = 0.05; }), 0},
+       {"null-noisy", "nothing hidden, 20 % noise", Aim::nothing,
+        with([](CaseSettings& s) { s.noise = 0.2; }), 0},
+       {"coarse", "nothing hidden, the model's mesh too coarse", Aim::nothing,
+        with([](CaseSettings& s) { s.coarser = 0.67; }), 0}});
   return list;
 }
 
@@ -47,7 +64,7 @@ CaseSettings settings_of(const CampaignGroup& group, int number, std::uint64_t s
     const auto further = static_cast<std::size_t>(u * static_cast<double>(all.size() - 1));
     settings.hidden.push_back(all[(first + 1 + further) % all.size()]);
   }
-  if (group.aim == Aim::unnamed) settings.without = settings.hidden;
+  if (group.aim == Aim::unnamed) settings.without = class_of(settings.hidden.front());
   return settings;
 }
 

@@ -68,8 +68,8 @@ TEST(CampaignTest, CountsWhatWasFoundAndGoesOn) {
   const testing::TemporaryFolder folder;
   const fs::path out = folder.path / "campaign";
   const auto begin = testing::traceraft(
-      "campaign --groups naming,null --cases 1 --epsilon 0.9 --cells 16 "
-      "--points 800 --replicates 49 --out " +
+      "campaign --groups naming,null --cases 1 --epsilon 1 --cells 12 "
+      "--points 500 --replicates 49 --effects 1 --out " +
       out.string());
   ASSERT_EQ(begin.code, 0) << begin.output;
   const std::string first = testing::content(out / "cases" / "null-000" / "score.json");
@@ -86,6 +86,14 @@ TEST(CampaignTest, CountsWhatWasFoundAndGoesOn) {
   ASSERT_EQ(again.code, 0) << again.output;
   EXPECT_TRUE(fs::exists(out / "cases" / "naming-000" / "score.json"));
   EXPECT_EQ(testing::content(out / "cases" / "null-000" / "score.json"), first);
+}
+
+TEST(CampaignTest, KeepsThePlanItBeganWith) {
+  const testing::TemporaryFolder folder;
+  write_durably(folder.path / "plan.json", "{}");
+  const auto end = testing::traceraft("campaign --seed 2 --out " + folder.path.string());
+  EXPECT_EQ(end.code, 2);
+  EXPECT_NE(end.output.find("--seed: the campaign in"), std::string::npos) << end.output;
 }
 
 TEST(CampaignTest, RefusesUnknownGroups) {
