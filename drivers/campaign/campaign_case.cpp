@@ -119,7 +119,7 @@ void score_strength(const HiddenTruth& truth, const GivenValues& model, const Js
 void write_score(const CampaignFolder& folder, const CampaignGroup& group, const CaseId& id,
                  const ExplainSetup& setup, double seconds) {
   const HiddenTruth truth = open_truth(folder.of(id));
-  const Gaps floor = gaps_of_model(setup.series, setup.request, truth.pace, truth.effects);
+  const Gaps floor = gaps_of_model(setup.series, setup.request, truth.pace, truth.effects).gap;
   const Json score = from_json(folder.of(id) / "explain" / "verdict.json", [&](const Json& v) {
     const auto heldout = [&](const char* which) { return v.at("gap").at(which).at("heldout"); };
     Json json = {{"hidden", names_of(truth.effects)},
@@ -172,7 +172,8 @@ void carry_out_case(const CampaignFolder& folder, const CampaignPlan& plan, cons
   job.replicates = plan.replicates;
   job.effects = plan.effects;
   job.without = settings.without;
-  const ExplainSetup setup = read_explain_job(job);
+  ExplainSetup setup = read_explain_job(job);
+  setup.request.rerun = false;
   if (!fs::exists(path / "explain" / "verdict.json")) {
     fs::create_directories(path / "explain");
     write_explanation(path / "explain", explain_fields(setup.series, setup.request), setup.model);

@@ -59,13 +59,14 @@ void hide(const fs::path& folder, const GivenValues& model, BlindRequest request
   const std::string truth = truth_json(drawn, request, units).dump(2) + "\n";
   write_durably(folder / "truth.json", truth);
   write_durably(folder / "data" / "seal.txt", sha256(truth) + "\n");
-  for (FieldSnapshot& snapshot : drawn.series.snapshots) snapshot.time *= units.time();
+  for (FieldSeries& vesicle : drawn.vesicles)
+    for (FieldSnapshot& snapshot : vesicle.snapshots) snapshot.time *= units.time();
   FieldDataset data;
   data.name = folder.filename().string();
   data.synthetic = true;
   data.origin = "drawn by traceraft hide; truth sealed by the hash in seal.txt";
   data.radius_um = units.length();
-  data.vesicles = {std::move(drawn.series)};
+  data.vesicles = std::move(drawn.vesicles);
   write_field_dataset(folder / "data", data, "synthetic measurements");
   write_durably(folder / "model.toml", config_text(configuration));
 }

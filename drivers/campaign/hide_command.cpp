@@ -76,7 +76,10 @@ Action define(CLI::App& app) {
                  "write a column sigma with this times the noise; 0: no such column")
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();
-  app.add_option("--snapshots", request.snapshots, "how many")
+  app.add_option("--vesicles", request.vesicles, "how many, of one membrane and one radius")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  app.add_option("--snapshots", request.snapshots, "of each vesicle")
       ->check(CLI::Range(2, 100))
       ->capture_default_str();
   app.add_option("--points", request.points, "of each snapshot")

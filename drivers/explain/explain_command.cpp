@@ -5,8 +5,10 @@
 #include "drivers/commands.hpp"
 #include "drivers/config/option_flags.hpp"
 #include "drivers/exit_codes.hpp"
+#include "drivers/explain/explain_page.hpp"
 #include "drivers/explain/explain_report.hpp"
 #include "drivers/explain/explain_run.hpp"
+#include "drivers/explain/search_file.hpp"
 #include "drivers/output/status_line.hpp"
 #include "drivers/run/run_folder.hpp"
 
@@ -32,11 +34,15 @@ int explain(const ExplainCommand& command) {
   const fs::path out = command.out.empty() ? first_free_folder("explain") : command.out;
   fs::create_directories(out);
   const FolderLock lock(out);
-  const Explanation found = explain_fields(setup.series, setup.request);
+  const SearchFile file(out, setup);
+  setup.request.save = [&](const SearchState& state) { file.save(state); };
+  const Explanation found = explain_fields(setup.series, setup.request, file.load());
   write_explanation(out, found, setup.model);
+  const std::string missing = write_explain_page(out, found, setup);
   if (!command.quiet) {
     print_explanation(found, setup.model);
-    std::printf("\nwritten: %s\n", (out / "verdict.json").c_str());
+    std::printf("\nwritten: %s\n", (out / "explain.html").c_str());
+    if (!missing.empty()) std::printf("the page lacks: %s\n", missing.c_str());
   }
   return kSuccess;
 }

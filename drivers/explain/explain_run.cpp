@@ -32,13 +32,12 @@ void refuse_model(const Configuration& model) {
 ExplainSetup read_explain_job(const ExplainJob& job) {
   if (job.data.empty()) throw InputError("--data: say which measurements to explain");
   FieldDataset data = read_field_dataset(job.data);
-  if (data.vesicles.size() > 1)
-    throw InputError("--data: " + job.data + " holds several vesicles; explain them one at a time");
   for (const std::string& effect : job.without) (void)effects().find(effect);
-  ExplainSetup setup{given_model(job, data.radius_um), std::move(data.vesicles.front()), {}};
+  ExplainSetup setup{given_model(job, data.radius_um), std::move(data.vesicles), {}};
   const Configuration model(setup.model, {});
   refuse_model(model);
-  for (FieldSnapshot& snapshot : setup.series.snapshots) snapshot.time /= model.units().time();
+  for (FieldSeries& vesicle : setup.series)
+    for (FieldSnapshot& snapshot : vesicle.snapshots) snapshot.time /= model.units().time();
 
   ExplainRequest& request = setup.request;
   request.base = physical_model(model);

@@ -19,7 +19,7 @@ struct ExplainJob {
 
 struct ExplainSetup {
   GivenValues model;  // with the radius of the vesicle
-  FieldSeries series;
+  std::vector<FieldSeries> series;
   ExplainRequest request;
 };
 

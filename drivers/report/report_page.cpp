@@ -85,8 +85,10 @@ void add_surface(Page& page, const fs::path& run, const PageRequest& request,
   if (!fs::exists(run / "fields.pvd")) return missing.add("the run has written no fields");
   page.heading("The surface");
   const auto [low, high] = phases_of(run);
-  missing.add(
-      add_viewer(page, read_frames(run, request.detail, request.frames), low, high, time_unit));
+  const SurfaceFrames frames = read_frames(run, request.detail, request.frames);
+  View view{{}, low, high, frames.values.size() - 1};
+  for (const double t : frames.times) view.labels.push_back(formatted("t = %.4g ", t) + time_unit);
+  missing.add(add_viewer(page, frames.mesh, frames.values, view));
 }
 
 void add_summary(Page& page, const fs::path& run) {

@@ -9,7 +9,6 @@
 #include "backends/zlib/vtk_array.hpp"
 #include "drivers/report/viewer_script.hpp"
 #include "kernel/core/error.hpp"
-#include "kernel/core/text.hpp"
 
 namespace traceraft {
 namespace {
@@ -41,12 +40,12 @@ std::string mesh_blocks(const SurfaceMesh& mesh) {
   return data_block("mesh-positions", positions) + data_block("mesh-triangles", corners);
 }
 
-std::string frame_block(const SurfaceFrames& frames, double low, double high) {
+std::string frame_block(const std::vector<Vec>& frames, const View& view) {
   std::vector<std::uint8_t> bytes;
-  for (const Vec& values : frames.values)
+  for (const Vec& values : frames)
     for (const double c : values)
       bytes.push_back(static_cast<std::uint8_t>(
-          std::lround(255 * std::clamp((c - low) / (high - low), 0.0, 1.0))));
+          std::lround(255 * std::clamp((c - view.low) / (view.high - view.low), 0.0, 1.0))));
   return data_block("frames", bytes);
 }
 
@@ -67,26 +66,27 @@ std::string script(std::string text) {
 
 }  // namespace
 
-std::string add_viewer(Page& page, const SurfaceFrames& frames, double low, double high,
-                       const std::string& time_unit) {
+std::string add_viewer(Page& page, const SurfaceMesh& mesh, const std::vector<Vec>& frames,
+                       const View& view) {
   for (const char* file : {kLibrary, kControls, kLicence})
     if (!fs::exists(file)) return "three.js is not installed (Debian package libjs-three)";
-  nlohmann::json labels = nlohmann::json::array();
-  for (const double t : frames.times) labels.push_back(formatted("t = %.4g ", t) + time_unit);
-  const std::string last = std::to_string(frames.times.size() - 1);
+  const std::string last = std::to_string(frames.size() - 1);
   page.raw(
       "<div id=\"viewer\" style=\"width:100%;max-width:640px\"></div>\n"
       "<p><input type=\"range\" id=\"time\" min=\"0\" step=\"1\" max=\"" +
-      last + "\" value=\"" + last +
+      last + "\" value=\"" + std::to_string(view.first) +
       "\" style=\"width:60%\" aria-label=\"time\"> "
       "<button id=\"play\">play</button> <span id=\"time-label\"></span><br>"
-      "<label><input type=\"checkbox\" id=\"through\" checked> see through to the rafts on "
+      "<label><input type=\"checkbox\" id=\"through\" checked> see through to "
       "the far side</label></p>");
-  page.raw(mesh_blocks(frames.mesh) + frame_block(frames, low, high));
-  page.raw(licence_comment() + script(read_file(kLibrary, kLargestScript)) +
-           script(read_file(kControls, kLargestScript)) +
-           script("window.traceraftScene = " + nlohmann::json{{"labels", labels}}.dump() + ";") +
-           script(kViewerScript));
+  page.raw(mesh_blocks(mesh) + frame_block(frames, view));
+  page.raw(
+      licence_comment() + script(read_file(kLibrary, kLargestScript)) +
+      script(read_file(kControls, kLargestScript)) +
+      script("window.traceraftScene = " +
+             nlohmann::json{{"labels", view.labels}, {"differences", view.differences}}.dump() +
+             ";") +
+      script(kViewerScript));
   return "";
 }
 

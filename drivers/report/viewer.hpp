@@ -2,15 +2,23 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "drivers/output/page.hpp"
-#include "drivers/report/surface_frames.hpp"
+#include "kernel/observables/surface_view.hpp"
 
 namespace traceraft {
 
+struct View {
+  std::vector<std::string> labels;  // of the frames
+  double low, high;                 // values are shown between them, to 1/255
+  std::size_t first = 0;            // shown before anything is chosen
+  bool differences = false;         // from their middle: what is near it is a veil
+};
+
 // Adds the view with all its data and scripts, three.js among them (Debian package libjs-three).
-// Values are shown between `low` and `high`, to 1/255. Returns "", or why there is no view.
-std::string add_viewer(Page& page, const SurfaceFrames& frames, double low, double high,
-                       const std::string& time_unit);
+// `frames`: a value per point of the mesh each. Returns "", or why there is no view.
+std::string add_viewer(Page& page, const SurfaceMesh& mesh, const std::vector<Vec>& frames,
+                       const View& view);
 
 }  // namespace traceraft

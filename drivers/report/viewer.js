@@ -22,7 +22,8 @@
       side: side,
       transparent: true,
       depthWrite: false,
-      uniforms: {veil: {value: 0.3}, paleness: {value: paleness}},
+      uniforms: {veil: {value: 0.3}, paleness: {value: paleness},
+                 differences: {value: Boolean(scene.differences)}},
       vertexShader: `
         attribute float value;
         varying float share;
@@ -34,13 +35,18 @@
         }`,
       fragmentShader: `
         uniform float veil, paleness;
+        uniform bool differences;
         varying float share;
         varying vec3 direction;
         void main() {
           vec3 dark = vec3(38.0, 70.0, 120.0) / 255.0, bright = vec3(247.0, 193.0, 82.0) / 255.0;
           float light = 0.55 + 0.45 * abs(dot(normalize(direction), normalize(vec3(-0.4, 0.5, 1.0))));
-          vec3 colour = mix(light * mix(dark, bright, share), vec3(1.0), paleness);
-          gl_FragColor = vec4(colour, mix(veil, 1.0, smoothstep(0.3, 0.7, share)));
+          vec3 middle = vec3(0.93), side = share < 0.5 ? vec3(0.0, 0.447, 0.698) : vec3(0.835, 0.369, 0.0);
+          float strength = abs(2.0 * share - 1.0);
+          vec3 own = differences ? mix(middle, side, strength) : mix(dark, bright, share);
+          float seen = differences ? smoothstep(0.2, 0.6, strength) : smoothstep(0.3, 0.7, share);
+          vec3 colour = mix(light * own, vec3(1.0), paleness);
+          gl_FragColor = vec4(colour, mix(veil, 1.0, seen));
         }`
     });
   }

@@ -12,36 +12,51 @@
 namespace traceraft {
 namespace {
 
+namespace fs = std::filesystem;
+
 class ExplainTest : public ::testing::Test {
  protected:
   // What a vesicle of 5 µm with ε = 0.75 µm and D = 1e-5 cm²/s would show.
-  BlindCase draw(const std::string& effect) const {
+  BlindRequest request() const {
     BlindRequest request;
     request.base = bench_model("degenerate", 0.15);
-    if (!effect.empty()) request.effects = {effect};
     request.cells = 28;
     request.first = 30;
     request.last = 140;
     request.snapshots = 5;
     request.points = 1500;
     request.seed = 2;
-    BlindCase drawn = draw_blind_case(request);
+    return request;
+  }
+  BlindCase draw(const std::string& effect) const {
+    BlindRequest asked = request();
+    if (!effect.empty()) asked.effects = {effect};
+    BlindCase drawn = draw_blind_case(asked);
+    write(drawn.vesicles);
+    return drawn;
+  }
+  void write(std::vector<FieldSeries> vesicles) const {
     FieldDataset data;
     data.name = "drawn";
     data.synthetic = true;
     data.radius_um = 5;
-    data.vesicles = {drawn.series};
-    for (FieldSnapshot& snapshot : data.vesicles[0].snapshots) snapshot.time *= Units().time();
+    data.vesicles = std::move(vesicles);
+    for (FieldSeries& vesicle : data.vesicles)
+      for (FieldSnapshot& snapshot : vesicle.snapshots) snapshot.time *= Units().time();
     write_field_dataset(folder.path / "data", data, "drawn by a test");
-    return drawn;
+  }
+  std::string command(int cells = 20) const {
+    return "explain --data " + (folder.path / "data").string() + " --epsilon 0.75 --cells " +
+           std::to_string(cells) + " --effects 1 --replicates 49 --out " +
+           (folder.path / "out").string();
+  }
+  nlohmann::json verdict() const {
+    return nlohmann::json::parse(testing::content(folder.path / "out" / "verdict.json"));
   }
   nlohmann::json explain() const {
-    const auto end =
-        testing::traceraft("explain --data " + (folder.path / "data").string() +
-                           " --epsilon 0.75 --cells 20 --effects 1 --replicates 49 --out " +
-                           (folder.path / "out").string());
+    const auto end = testing::traceraft(command());
     EXPECT_EQ(end.code, 0) << end.output;
-    return nlohmann::json::parse(testing::content(folder.path / "out" / "verdict.json"));
+    return verdict();
   }
   testing::TemporaryFolder folder;
 };
@@ -60,6 +75,13 @@ TEST_F(ExplainTest, NamesWhatWasHidden) {
   EXPECT_NEAR(gap("named"), gap("floor"), 0.03 * gap("floor"));
   EXPECT_GT(gap("base"), 1.05 * gap("floor"));
   EXPECT_FALSE(verdict["where"].is_null());
+  const nlohmann::json& again = verdict["rerun"];
+  EXPECT_EQ(again["integrator"], "rosenbrock");
+  EXPECT_NEAR(again["named"]["heldout"], again["floor"]["heldout"], 0.05 * gap("floor"));
+  EXPECT_LT(verdict["bounds"]["bulk-mobility.strength"]["high"], 1);
+  EXPECT_FALSE(verdict["bounds"].contains("uptake.rate"));
+  const std::string page = testing::content(folder.path / "out" / "explain.html");
+  EXPECT_NE(page.find("The model lacks uptake."), std::string::npos);
   // The model that it has written is one.
   const auto end =
       testing::traceraft("run --config " + (folder.path / "out" / "model.toml").string() +
@@ -72,6 +94,58 @@ TEST_F(ExplainTest, NamesNothingWhereNothingIsHidden) {
   const nlohmann::json verdict = explain();
   EXPECT_TRUE(verdict["effect"].is_null()) << verdict.dump(2);
   EXPECT_NEAR(verdict["parameters"]["diffusion"]["value"], 1e-5, 0.05e-5);
+}
+
+// A killed search goes on from its last round and ends as if nothing had happened.
+TEST_F(ExplainTest, GoesOnWhereItWasKilled) {
+  constexpr int kCells = 13;
+  BlindRequest asked = request();
+  asked.effects = {"uptake"};
+  asked.snapshots = 3;
+  asked.points = 500;
+  write(draw_blind_case(asked).vesicles);
+  const pid_t child = testing::start_traceraft(command(kCells));
+  const fs::path saved = folder.path / "out" / "search.json";
+  for (int k = 0; k < 30000 && !fs::exists(saved); ++k) usleep(20000);
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  ASSERT_TRUE(fs::exists(saved));
+  ASSERT_FALSE(fs::exists(folder.path / "out" / "verdict.json"));
+  const auto end = testing::traceraft(command(kCells));
+  ASSERT_EQ(end.code, 0) << end.output;
+  EXPECT_NE(end.output.find("what was found before"), std::string::npos) << end.output;
+  EXPECT_EQ(end.output.find("pace of the base model"), std::string::npos) << end.output;
+  const nlohmann::json resumed = verdict();
+  fs::remove_all(folder.path / "out");
+  ASSERT_EQ(testing::traceraft(command(kCells)).code, 0);
+  const nlohmann::json whole = verdict();
+  EXPECT_EQ(resumed["effect"], whole["effect"]);
+  for (const char* model : {"base", "named", "floor"}) {
+    const double gap = whole["gap"][model]["train"];
+    EXPECT_NEAR(resumed["gap"][model]["train"], gap, 1e-5 * gap) << model;
+  }
+  // Another search does not take its place.
+  const auto other = testing::traceraft(command(kCells) + " --without gravity");
+  EXPECT_EQ(other.code, 2);
+  EXPECT_NE(other.output.find("holds a search of other data"), std::string::npos) << other.output;
+}
+
+// Vesicles with few snapshots tell together what one of them tells with more.
+TEST_F(ExplainTest, JoinsWhatVesiclesSay) {
+  BlindRequest asked = request();
+  asked.effects = {"uptake"};
+  asked.vesicles = 2;
+  asked.snapshots = 3;
+  asked.points = 1000;
+  const BlindCase drawn = draw_blind_case(asked);
+  ASSERT_EQ(drawn.vesicles.size(), 2u);
+  EXPECT_NE(drawn.vesicles[0].snapshots[0].values[0], drawn.vesicles[1].snapshots[0].values[0]);
+  write(drawn.vesicles);
+  const nlohmann::json verdict = explain();
+  EXPECT_EQ(verdict["effect"], "uptake") << verdict.dump(2);
+  const nlohmann::json& rate = verdict["parameters"]["uptake.rate"];
+  EXPECT_NEAR(rate["value"], drawn.truth[0].values[0] / Units().time(),
+              4 * rate["sigma"].get<double>());
 }
 
 TEST_F(ExplainTest, RefusesWhatItCannotUse) {

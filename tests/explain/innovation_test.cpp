@@ -15,7 +15,7 @@ using Eigen::MatrixXd;
 constexpr int kValues = 40, kState = 5, kGaps = 3;
 
 Innovation make_innovation() {
-  Innovation in;
+  Innovation in{};
   in.directions =
       testing::random_vector(kValues * (kState + kGaps), 1).reshaped(kValues, kState + kGaps);
   in.state_directions = kState;
@@ -87,9 +87,13 @@ TEST(ExplainedParts, AreThoseOfAProjection) {
 TEST(RootMeanSquare, CountsValues) {
   std::vector<Innovation> three(3, make_innovation());
   const auto squares = [](const Innovation& in) { return in.values.squaredNorm(); };
-  EXPECT_NEAR(root_mean_square(three, 0, 3, squares), root_mean_square(three, 1, 2, squares),
-              1e-14);
-  EXPECT_EQ(root_mean_square(three, 3, 3, squares), 0);
+  EXPECT_EQ(root_mean_square(three, true, squares), 0);
+  const double all = root_mean_square(three, false, squares);
+  EXPECT_NEAR(all, std::sqrt(three[0].values.squaredNorm() / kValues), 1e-14);
+  three[1].held_out = true;
+  three[1].values *= 2;
+  EXPECT_NEAR(root_mean_square(three, false, squares), all, 1e-14);
+  EXPECT_NEAR(root_mean_square(three, true, squares), 2 * all, 1e-14);
 }
 
 }  // namespace

@@ -177,24 +177,75 @@ class Sizing {
   std::vector<Vec> snapshots_;
 };
 
-FieldSnapshot measure(const BlindRequest& request, const SurfaceSpace& space,
-                      const Placement& placement, const Vec& c, int number, double time,
-                      double noise) {
-  FieldSnapshot snapshot{time, random_directions(request, number), {}, {}};
-  std::vector<Point> places;
-  for (const Point& x : snapshot.points) places.push_back(placement.in_mesh(x));
-  snapshot.values = point_trace(space, places, space.h()) * c;
-  snapshot.deviation =
-      Vec::Constant(snapshot.values.size(), request.stated > 0 ? request.stated * noise : 1);
-  for (Eigen::Index i = 0; i < snapshot.values.size(); ++i) {
-    const auto u = [&](std::uint64_t j) {
-      return uniform_random(request.seed, kNoise + static_cast<std::uint64_t>(number),
-                            2 * static_cast<std::uint64_t>(i) + j);
-    };
-    snapshot.values[i] += noise * normal_pair(u(0), u(1))[0];
+// One vesicle on a mesh of its own.
+class Vesicle {
+ public:
+  explicit Vesicle(const BlindRequest& request)
+      : request_(request),
+        placement_(request.seed, 2 * kBoxHalfWidth / request.cells),
+        surface_(make_surface("sphere"), placement_.offset),
+        labels_(snapshot_times(request)),
+        space_(std::make_shared<const SurfaceSpace>(surface_, request.cells,
+                                                    std::make_shared<ThreadTeam>(request.threads),
+                                                    std::make_shared<SerialCommunicator>())) {
+    for (const double t : labels_) times_.push_back(request.pace * t);
   }
-  return snapshot;
-}
+
+  std::vector<EffectTerm> sized_effects() const {
+    std::vector<EffectTerm> terms;
+    if (request_.effects.empty()) return terms;
+    const Sizing sizing(request_, surface_, times_);
+    for (std::size_t k = 0; k < request_.effects.size(); ++k)
+      terms.push_back(sizing.term(request_.effects[k], k));
+    return terms;
+  }
+
+  std::vector<Vec> states(const std::vector<EffectTerm>& effects) const {
+    const Method method{space_, request_.integrator, request_.tolerance};
+    return Simulation(request_, method, effects).run(times_);
+  }
+
+  double contrast(const std::vector<Vec>& states) const {
+    double sum = 0;
+    for (const Vec& c : states) sum += spread(*space_, c);
+    return sum / static_cast<double>(states.size());
+  }
+
+  std::vector<FieldSnapshot> measure(const std::vector<Vec>& states, double noise) const {
+    std::vector<FieldSnapshot> snapshots;
+    for (std::size_t k = 0; k < states.size(); ++k)
+      snapshots.push_back(measure(states[k], static_cast<int>(k), noise));
+    return snapshots;
+  }
+
+ private:
+  FieldSnapshot measure(const Vec& c, int number, double noise) const {
+    FieldSnapshot snapshot{labels_[number], random_directions(request_, number), {}, {}};
+    std::vector<Point> places;
+    for (const Point& x : snapshot.points) places.push_back(placement_.in_mesh(x));
+    snapshot.values = point_trace(*space_, places, space_->h()) * c;
+    snapshot.deviation =
+        Vec::Constant(snapshot.values.size(), request_.stated > 0 ? request_.stated * noise : 1);
+    for (Eigen::Index i = 0; i < snapshot.values.size(); ++i) {
+      const auto u = [&](std::uint64_t j) {
+        return uniform_random(request_.seed, kNoise + static_cast<std::uint64_t>(number),
+                              2 * static_cast<std::uint64_t>(i) + j);
+      };
+      snapshot.values[i] += noise * normal_pair(u(0), u(1))[0];
+    }
+    return snapshot;
+  }
+
+  const BlindRequest& request_;
+  const Placement placement_;
+  const ShiftedLevelSet surface_;
+  const std::vector<double> labels_;
+  std::vector<double> times_;  // of the truth, whose unit is R²/(pace D)
+  SpacePtr space_;
+};
+
+// Between the seeds of vesicles.
+constexpr std::uint64_t kNextVesicle = 1000003;
 
 }  // namespace
 
@@ -206,30 +257,16 @@ std::vector<std::string> effects_to_hide() {
 }
 
 BlindCase draw_blind_case(const BlindRequest& request) {
-  const double h = 2 * kBoxHalfWidth / request.cells;
-  const Placement placement(request.seed, h);
-  const ShiftedLevelSet surface(make_surface("sphere"), placement.offset);
-  const std::vector<double> labels = snapshot_times(request);
-  std::vector<double> times;  // of the truth, whose unit is R²/(pace D)
-  for (const double t : labels) times.push_back(request.pace * t);
-
-  BlindCase result{{"1", {}}, {}, 0};
-  if (!request.effects.empty()) {
-    const Sizing sizing(request, surface, times);
-    for (std::size_t k = 0; k < request.effects.size(); ++k)
-      result.truth.push_back(sizing.term(request.effects[k], k));
+  BlindCase result{{}, {}, 0};
+  for (int v = 0; v < request.vesicles; ++v) {
+    BlindRequest own = request;
+    own.seed += kNextVesicle * static_cast<std::uint64_t>(v);
+    const Vesicle vesicle(own);
+    if (v == 0) result.truth = vesicle.sized_effects();
+    const std::vector<Vec> states = vesicle.states(result.truth);
+    if (v == 0) result.noise = request.noise * vesicle.contrast(states);
+    result.vesicles.push_back({std::to_string(v + 1), vesicle.measure(states, result.noise)});
   }
-  const auto space = std::make_shared<const SurfaceSpace>(
-      surface, request.cells, std::make_shared<ThreadTeam>(request.threads),
-      std::make_shared<SerialCommunicator>());
-  const Method method{space, request.integrator, request.tolerance};
-  const std::vector<Vec> states = Simulation(request, method, result.truth).run(times);
-  double contrast = 0;
-  for (const Vec& c : states) contrast += spread(*space, c) / static_cast<double>(states.size());
-  result.noise = request.noise * contrast;
-  for (int k = 0; k < request.snapshots; ++k)
-    result.series.snapshots.push_back(
-        measure(request, *space, placement, states[k], k, labels[k], result.noise));
   return result;
 }
 

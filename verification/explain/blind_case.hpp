@@ -16,10 +16,11 @@ struct BlindRequest {
   CahnHilliardModel base;            // on the unit sphere
   std::vector<std::string> effects;  // hidden; signs and mixtures are drawn
   double gap = 0.06;  // root mean square change of c that each makes from one snapshot to the next,
-                      // in units of the standard deviation of c
+                      // in units of the standard deviation of c, in the first vesicle
   double pace = 1;    // D of the truth over that of the model
   double noise = 0.1;  // standard deviation, in units of that of c
-  int snapshots = 8;
+  int vesicles = 1;
+  int snapshots = 8;             // of each
   int points = 4000;             // per snapshot
   double first = 20, last = 90;  // times of snapshots, in units of R²/D of the model
   // The standard deviations that the data state, over the true ones; 0: they state none.
@@ -33,7 +34,7 @@ struct BlindRequest {
 };
 
 struct BlindCase {
-  FieldSeries series;
+  std::vector<FieldSeries> vesicles;
   std::vector<EffectTerm> truth;  // in units of R and R²/D of the truth
   double noise;                   // standard deviation of the values
 };

@@ -32,13 +32,12 @@ std::size_t state_of(double forecast, const DoubleWell& well) {
 
 }  // namespace
 
-std::vector<Disagreement> disagreements(const FieldSeries& series, const FilterResult& result,
-                                        const DoubleWell& well) {
+std::vector<Disagreement> disagreements(const std::vector<FieldSeries>& series,
+                                        const FilterResult& result, const DoubleWell& well) {
   const std::vector<Point> corners = icosahedron();
   std::vector<Disagreement> all;
-  for (std::size_t k = 0; k < result.innovations.size(); ++k) {
-    const Innovation& in = result.innovations[k];
-    const FieldSnapshot& snapshot = series.snapshots[k + 1];
+  for (const Innovation& in : result.innovations) {
+    const FieldSnapshot& snapshot = series[in.vesicle].snapshots[in.snapshot];
     const auto patches = static_cast<Eigen::Index>(kStates.size() * corners.size());
     Columns member = Columns::Zero(in.values.size(), patches);
     for (Eigen::Index i = 0; i < in.values.size(); ++i) {
@@ -58,8 +57,8 @@ std::vector<Disagreement> disagreements(const FieldSeries& series, const FilterR
       const double z = measured[patch] / std::sqrt(noise.row(patch).squaredNorm() /
                                                    static_cast<double>(noise.cols()));
       const auto index = static_cast<std::size_t>(patch);
-      all.push_back({in.time, kStates[index / corners.size()], corners[index % corners.size()], z,
-                     std::erfc(std::fabs(z) / std::sqrt(2.0))});
+      all.push_back({in.vesicle, snapshot.time, kStates[index / corners.size()],
+                     corners[index % corners.size()], z, std::erfc(std::fabs(z) / std::sqrt(2.0))});
     }
   }
   std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.p < b.p; });

@@ -11,6 +11,7 @@
 namespace traceraft {
 
 struct Disagreement {
+  std::size_t vesicle;
   double time;
   std::string state;  // "inside rafts", "boundary", "outside rafts"
   Point direction;    // of the middle of the patch
@@ -18,10 +19,10 @@ struct Disagreement {
   double p;           // of a |z| like that by noise, from the spread over the replicates
 };
 
-// All of 12 patches (around the corners of an icosahedron) × 3 states × snapshots that hold at
-// least 10 values, the most significant first.
-std::vector<Disagreement> disagreements(const FieldSeries& series, const FilterResult& result,
-                                        const DoubleWell& well);
+// All of 12 patches (around the corners of an icosahedron) × 3 states × snapshots, held out or not,
+// that hold at least 10 values, the most significant first.
+std::vector<Disagreement> disagreements(const std::vector<FieldSeries>& series,
+                                        const FilterResult& result, const DoubleWell& well);
 
 // How many of them are significant if a share of `level` of those may be false (Benjamini and
 // Hochberg 1995).

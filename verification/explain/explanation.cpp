@@ -1,6 +1,7 @@
 #include "verification/explain/explanation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <stdexcept>
@@ -8,18 +9,46 @@
 namespace traceraft {
 namespace {
 
-// 2 ln of a likelihood ratio of 20: less does not tell two hypotheses apart.
-constexpr double kTelling = 6;
 // Candidates that gain less than this share of what the best one does, to first order, are not
 // refitted, but for the second best.
 constexpr double kWorthRefitting = 0.25;
-// An effect has to change c by that many times what extrapolation to finer meshes does.
-constexpr double kResolved = 3;
+// From one snapshot to the next, in units of the standard deviation of c: what effects are hardly
+// looked for below.
+constexpr double kUsualChange = 0.06;
+// Of means over the neighbourhood, in widths of phase boundaries.
+constexpr double kMapWidth = 2;
+// The mesh and the integrator of the second run of what was found.
+constexpr double kOtherCells = 1.15;
+constexpr char kOtherIntegrator[] = "rosenbrock";
 
-FilterProblem problem_of(const FieldSeries& series, const ExplainRequest& request) {
-  const std::size_t held_out = request.hold_out && series.snapshots.size() >= 4 ? 1 : 0;
-  return make_filter_problem(series, *request.surface, request.base.epsilon, request.cells,
-                             request.threads, held_out, request.filter);
+FilterProblems problems_of(const std::vector<FieldSeries>& series, const ExplainRequest& request) {
+  FilterProblems problems;
+  for (std::size_t v = 0; v < series.size(); ++v) {
+    const std::size_t held_out = request.hold_out && series[v].snapshots.size() >= 4 ? 1 : 0;
+    problems.push_back(make_filter_problem(series[v], v, *request.surface, request.base.epsilon,
+                                           request.cells, request.threads, held_out,
+                                           request.filter));
+  }
+  return problems;
+}
+
+// Of the measurements, over all vesicles.
+double noise_of(const FilterProblems& problems) {
+  double squares = 0;
+  for (const FilterProblem& data : problems) squares += data.noise * data.noise;
+  return std::sqrt(squares / static_cast<double>(problems.size()));
+}
+
+// Of all that was measured, the noise among it.
+double deviation_of(const std::vector<FieldSeries>& series) {
+  double sum = 0, squares = 0, count = 0;
+  for (const FieldSeries& vesicle : series)
+    for (const FieldSnapshot& snapshot : vesicle.snapshots) {
+      sum += snapshot.values.sum();
+      squares += snapshot.values.squaredNorm();
+      count += static_cast<double>(snapshot.values.size());
+    }
+  return std::sqrt(std::max(0.0, squares / count - sum * sum / (count * count)));
 }
 
 std::vector<Candidate> candidates_of(const ExplainRequest& request) {
@@ -37,16 +66,24 @@ Gaps in_units_of_c(const Gaps& gaps, double noise) {
 
 class Search {
  public:
-  Search(const FieldSeries& series, const ExplainRequest& request)
+  Search(const std::vector<FieldSeries>& series, const ExplainRequest& request)
       : series_(series),
         request_(request),
-        data_(problem_of(series, request)),
+        data_(problems_of(series, request)),
         model_{request.base, 1, {}, candidates_of(request)} {}
 
-  Explanation run() {
-    tell("pace of the base model");
-    fit_pace();
-    for (int k = 0; k < request_.most_effects && look_for_one(); ++k) {
+  Explanation run(const std::optional<SearchState>& saved) {
+    bool more = true;
+    if (saved) {
+      more = saved->more;
+      go_on_from(*saved);
+    } else {
+      tell("pace of the base model");
+      fit_pace();
+    }
+    while (more) {
+      more = look_for_one();
+      save(more);
     }
     finish();
     return std::move(result_);
@@ -57,6 +94,29 @@ class Search {
     if (request_.progress) request_.progress(step);
   }
 
+  void save(bool more) const {
+    if (!request_.save) return;
+    SearchState state{result_, {}, more};
+    for (const FilterProblem& data : data_) state.noise.push_back(data.noise);
+    request_.save(state);
+  }
+
+  void go_on_from(const SearchState& state) {
+    tell("what was found before");
+    result_ = state.so_far;
+    for (FilterProblem& data : data_) data.noise = state.noise[data.vesicle];
+    model_.hypothesis = result_.found.hypothesis;
+    model_.pace = result_.found.pace;
+    for (const auto& part : model_.hypothesis.parts) look_no_more_for(part.candidate.effect);
+  }
+
+  void look_no_more_for(const std::string& effect) {
+    auto& screened = model_.screened;
+    screened.erase(std::remove_if(screened.begin(), screened.end(),
+                                  [&](const Candidate& c) { return c.effect == effect; }),
+                   screened.end());
+  }
+
   // With nothing missing, from a filter of a few directions.
   void fit_pace() {
     FilterSettings rough = request_.filter;
@@ -64,7 +124,7 @@ class Search {
     rough.replicates = 0;
     rough.tangent_steps = 2;
     FilterModel model{request_.base, 1, {}, {}};
-    ErrorMaps maps;
+    std::vector<ErrorMaps> maps;
     for (int k = 0; k < 5; ++k) {
       const FilterResult pass = filter_fields(data_, model, rough, maps);
       const double step = std::clamp(screen(pass, {}, 0).pace_change, -0.7, 0.7);
@@ -77,12 +137,14 @@ class Search {
   // Before anything is known: the noise that the innovations have is that of the measurements.
   FilterResult first_pass() {
     const FilterResult pass = filter_fields(data_, model_, request_.filter, maps_);
-    double squares = 0, values = 0;
-    for (std::size_t k = 0; k + 1 < data_.train; ++k) {
-      squares += pass.innovations[k].weighted_squares;
-      values += static_cast<double>(pass.innovations[k].values.size());
+    std::vector<double> squares(data_.size(), 0.0), values(data_.size(), 0.0);
+    for (const Innovation& in : pass.innovations) {
+      if (in.held_out) continue;
+      squares[in.vesicle] += in.weighted_squares;
+      values[in.vesicle] += static_cast<double>(in.values.size());
     }
-    data_.noise *= std::sqrt(squares / values);
+    for (FilterProblem& data : data_)
+      data.noise *= std::sqrt(squares[data.vesicle] / values[data.vesicle]);
     FilterResult again = filter_fields(data_, model_, request_.filter, maps_);
     result_.disagreements = disagreements(series_, again, request_.base.well);
     result_.disagreements.resize(significant(result_.disagreements, request_.false_alarms));
@@ -106,16 +168,22 @@ class Search {
     model_.pace = fit.pace;
   }
 
+  // Returns whether there may be more.
   bool look_for_one() {
     const bool first = result_.rounds.empty();
     tell(first ? "what the base model lacks"
                : "what is lacking beside " + model_.hypothesis.name());
     const FilterResult pass = first ? first_pass() : next_pass();
+    const CutSurface& surface = data_.front().space->surface;
+    result_.found_maps =
+        disagreement_maps(series_, pass, surface.position, kMapWidth * request_.base.epsilon);
+    if (first) result_.base_maps = result_.found_maps;
     Round round{
         model_, screen(pass, model_.screened, model_.hypothesis.coefficients()), result_.found, {}};
-    if (round.screening.p <= request_.false_alarms) refit_shortlist(round);
+    const bool more = model_.hypothesis.parts.size() < std::size_t(request_.most_effects);
+    if (more && round.screening.p <= request_.false_alarms) refit_shortlist(round);
     result_.rounds.push_back(std::move(round));
-    return judge(result_.rounds.back());
+    return take(result_.rounds.back());
   }
 
   void refit_shortlist(Round& round) const {
@@ -131,26 +199,28 @@ class Search {
     for (Refit& fit : refit_all(trials))
       if (fit.failure.empty()) round.refits.push_back(std::move(fit));
     std::sort(round.refits.begin(), round.refits.end(),
-              [this](const Refit& a, const Refit& b) { return criterion(a) < criterion(b); });
+              [n = values()](const Refit& a, const Refit& b) {
+                return criterion(a, n) < criterion(b, n);
+              });
   }
 
   std::vector<Refit> refit_all(const std::vector<FilterModel>& trials) const {
     std::vector<Refit> refits(trials.size());
     std::atomic<std::size_t> next{0};
-    data_.team->run([&](int) {
+    data_.front().team->run([&](int) {
       for (std::size_t k = next++; k < trials.size(); k = next++)
         refits[k] = refit(data_, trials[k], request_.filter, maps_);
     });
     return refits;
   }
 
-  // Schwarz' (1978): an effect with a second coefficient has to earn it, above all if one without
-  // is a special case of it.
-  double criterion(const Refit& fit) const {
-    double values = 0;
-    for (std::size_t k = 1; k < data_.train; ++k)
-      values += static_cast<double>(data_.snapshots[k].values.size());
-    return fit.deviance + std::log(values) * static_cast<double>(fit.hypothesis.coefficients());
+  // That were measured and count, the first snapshots aside.
+  double values() const {
+    double count = 0;
+    for (const FilterProblem& data : data_)
+      for (std::size_t k = 1; k < data.train; ++k)
+        count += static_cast<double>(data.snapshots[k].values.size());
+    return count;
   }
 
   Candidate candidate(const std::string& effect) const {
@@ -158,85 +228,81 @@ class Search {
                          [&](const Candidate& c) { return c.effect == effect; });
   }
 
-  // Takes the best effect into the model if it is one. Is there a reason to look for more?
-  bool judge(const Round& round) {
-    const bool first = result_.rounds.size() == 1;
-    if (round.refits.empty()) {
-      if (round.screening.gap_p <= request_.false_alarms) result_.finding = Finding::unnamed;
+  bool take(const Round& round) {
+    const double usual_change = kUsualChange * deviation_of(series_) / noise_of(data_);
+    const Judgement judgement = judge(round, values(), request_.false_alarms, usual_change);
+    if (!judgement.taken) {
+      // What could not be told apart before cannot be now.
+      if (judgement.finding != Finding::named) result_.finding = judgement.finding;
       return false;
     }
-    const Refit& best = round.refits.front();
-    const std::string effect = best.hypothesis.parts.back().candidate.effect;
-    const auto score = std::find_if(round.screening.scores.begin(), round.screening.scores.end(),
-                                    [&](const CandidateScore& s) { return s.effect == effect; });
-    if (criterion(round.without) < criterion(best) ||
-        score->response < kResolved * round.screening.mesh_error) {
-      if (first) result_.finding = Finding::below_resolution;
-      return false;
-    }
-    set_found(best);
-    result_.equivalent = {effect};
-    for (std::size_t k = 1; k < round.refits.size(); ++k)
-      if (criterion(round.refits[k]) < criterion(best) + kTelling)
-        result_.equivalent.push_back(round.refits[k].hypothesis.parts.back().candidate.effect);
-    result_.finding = result_.equivalent.size() > 1 ? Finding::ambiguous : Finding::named;
-    model_.screened.erase(std::remove_if(model_.screened.begin(), model_.screened.end(),
-                                         [&](const Candidate& c) { return c.effect == effect; }),
-                          model_.screened.end());
+    result_.finding = judgement.finding;
+    result_.equivalent = judgement.equivalent;
+    set_found(round.refits.front());
+    look_no_more_for(judgement.equivalent.front());
     return true;
   }
 
   void finish() {
-    result_.noise = data_.noise;
+    const double noise = noise_of(data_);
+    result_.noise = noise;
+    const CutSurface& surface = data_.front().space->surface;
+    result_.map_mesh = {surface.position, surface.triangles};
     result_.replicates = request_.filter.replicates;
     const auto& refits = result_.rounds.front().refits;
-    result_.base_gap = in_units_of_c(result_.base.gap, data_.noise);
-    result_.found_gap = in_units_of_c(result_.found.gap, data_.noise);
-    result_.placebo_gap =
-        in_units_of_c((refits.size() > 1 ? refits[1] : result_.base).gap, data_.noise);
-    result_.floor = in_units_of_c(result_.found.expected, data_.noise);
+    result_.base_gap = in_units_of_c(result_.base.gap, noise);
+    result_.found_gap = in_units_of_c(result_.found.gap, noise);
+    result_.placebo_gap = in_units_of_c((refits.size() > 1 ? refits[1] : result_.base).gap, noise);
+    result_.floor = in_units_of_c(result_.found.expected, noise);
+    const Round& last = result_.rounds.back();
+    result_.bounds = bounds_of(last.screening, last.known.screened);
+    if (request_.rerun) run_again();
   }
 
-  const FieldSeries& series_;
+  void run_again() {
+    tell("once more, on another mesh and by another integrator");
+    ExplainRequest other = request_;
+    other.cells = static_cast<int>(std::lround(kOtherCells * request_.cells));
+    other.filter.integrator = kOtherIntegrator;
+    other.threads = 1;
+    const std::array<FilterModel, 2> models{
+        {{request_.base, result_.base.pace, {}, {}},
+         {request_.base, result_.found.pace, result_.found.hypothesis, {}}}};
+    const bool same = result_.found.hypothesis.parts.empty();
+    std::array<ModelGaps, 2> gaps;
+    data_.front().team->run([&](int lane) {
+      for (int k = lane; k < (same ? 1 : 2); k += request_.threads)
+        gaps[k] = gaps_of_model(series_, other, models[k].pace, models[k].hypothesis.terms());
+    });
+    if (same) gaps[1] = gaps[0];
+    result_.rerun = {other.cells, kOtherIntegrator, gaps[0].gap, gaps[1].gap,
+                     in_units_of_c(gaps[1].expected, result_.noise)};
+  }
+
+  const std::vector<FieldSeries>& series_;
   const ExplainRequest& request_;
-  FilterProblem data_;
+  FilterProblems data_;
   FilterModel model_;
-  ErrorMaps maps_;
+  std::vector<ErrorMaps> maps_;
   Explanation result_;
 };
 
 }  // namespace
 
-std::string word_for(Finding finding) {
-  switch (finding) {
-    case Finding::none:
-      return "none";
-    case Finding::named:
-      return "named";
-    case Finding::ambiguous:
-      return "ambiguous";
-    case Finding::below_resolution:
-      return "below-solver-resolution";
-    case Finding::unnamed:
-      return "unnamed";
-  }
-  return "";
-}
-
-Gaps gaps_of_model(const FieldSeries& series, const ExplainRequest& request, double pace,
-                   const std::vector<EffectTerm>& effects) {
+ModelGaps gaps_of_model(const std::vector<FieldSeries>& series, const ExplainRequest& request,
+                        double pace, const std::vector<EffectTerm>& effects) {
   ExplainRequest alone = request;
   alone.filter.replicates = 0;
-  const FilterProblem data = problem_of(series, alone);
-  ErrorMaps maps;
-  const Gaps gaps = gaps_of_pass(
-      data,
-      filter_fields(data, {with_effects(request.base, effects), pace, {}, {}}, alone.filter, maps));
-  return in_units_of_c(gaps, data.noise);
+  const FilterProblems data = problems_of(series, alone);
+  std::vector<ErrorMaps> maps;
+  const FilterResult pass =
+      filter_fields(data, {with_effects(request.base, effects), pace, {}, {}}, alone.filter, maps);
+  return {in_units_of_c(gaps_of_pass(pass), noise_of(data)), expected_gaps(pass)};
 }
 
-Explanation explain_fields(const FieldSeries& series, const ExplainRequest& request) {
-  return Search(series, request).run();
+Explanation explain_fields(const std::vector<FieldSeries>& series, const ExplainRequest& request,
+                           const std::optional<SearchState>& saved) {
+  return Search(series, request).run(saved);
 }
 
 }  // namespace traceraft

@@ -2,24 +2,18 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "kernel/geometry/level_set.hpp"
+#include "kernel/observables/surface_view.hpp"
+#include "verification/explain/bounds.hpp"
 #include "verification/explain/disagreement.hpp"
-#include "verification/explain/refit.hpp"
-#include "verification/explain/score_test.hpp"
+#include "verification/explain/disagreement_map.hpp"
+#include "verification/explain/judgement.hpp"
 
 namespace traceraft {
-
-enum class Finding {
-  none,              // no significant disagreement
-  named,             // one effect, or several, that leave no significant disagreement
-  ambiguous,         // like it, but another one explains the data as well
-  below_resolution,  // what would explain the data changes less than the model's own mesh does
-  unnamed            // a significant disagreement that no candidate explains
-};
-std::string word_for(Finding finding);
 
 struct ExplainRequest {
   CahnHilliardModel base;
@@ -30,18 +24,19 @@ struct ExplainRequest {
   int most_effects = 3;
   std::vector<std::string> without;  // effects that are not looked for
   std::size_t shortlist = 5;
-  bool hold_out = true;        // the last snapshot, where there are four or more
+  bool hold_out = true;        // the last snapshot of vesicles that have four or more
   double false_alarms = 0.02;  // with nothing missing, the share of data sets that seem to lack
                                // something
-  std::function<void(const std::string& step)> progress = {};  // may be empty
+  bool rerun = true;           // on another mesh and by another integrator
+  std::function<void(const std::string& step)> progress = {};      // may be empty
+  std::function<void(const struct SearchState& state)> save = {};  // after every round
 };
 
-// The search for one more effect.
-struct Round {
-  FilterModel known;
-  Screening screening;
-  Refit without;              // what was known before
-  std::vector<Refit> refits;  // of the shortlist, most probable first; none if nothing is lacking
+// A model held against the data once more, on another mesh and by another integrator.
+struct Rerun {
+  int cells = 0;  // 0: there is none
+  std::string integrator;
+  Gaps base, found, floor;  // in units of c
 };
 
 struct Explanation {
@@ -54,14 +49,32 @@ struct Explanation {
   // Measured minus forecast, in units of c. Placebo: the second best of the first round. Floor:
   // what is to be expected of the found model if nothing else is missing.
   Gaps base_gap, found_gap, placebo_gap, floor;
+  Rerun rerun;
+  std::vector<Bound> bounds;                // of effects that were not found
   std::vector<Disagreement> disagreements;  // with the base, the significant ones
+  SurfaceMesh map_mesh;                     // Γ_h of the model's mesh
+  DisagreementMaps base_maps, found_maps;   // at its points
 };
 
-// The gaps of a model that has these effects already, in units of c.
-Gaps gaps_of_model(const FieldSeries& series, const ExplainRequest& request, double pace,
-                   const std::vector<EffectTerm>& effects);
+// Between two rounds: all that the search goes on from.
+struct SearchState {
+  Explanation so_far;
+  std::vector<double> noise;  // of each vesicle
+  bool more = true;           // is there another round?
+};
 
-// Throws std::runtime_error if the base model cannot be advanced.
-Explanation explain_fields(const FieldSeries& series, const ExplainRequest& request);
+// The gaps of a model that has these effects already, in units of c, and what is to be expected of
+// them, in units of the noise.
+struct ModelGaps {
+  Gaps gap, expected;
+};
+ModelGaps gaps_of_model(const std::vector<FieldSeries>& series, const ExplainRequest& request,
+                        double pace, const std::vector<EffectTerm>& effects);
+
+// Vesicles of one radius and one membrane. Throws std::runtime_error if the base model cannot be
+// advanced.
+// `saved`: of the same data and request.
+Explanation explain_fields(const std::vector<FieldSeries>& series, const ExplainRequest& request,
+                           const std::optional<SearchState>& saved = {});
 
 }  // namespace traceraft

@@ -92,11 +92,12 @@ class FieldRegression {
   }
 
   // L⁻ᵀ z with normal z has the covariance (L Lᵀ)⁻¹.
-  Eigen::MatrixXd draws(int count) const {
+  Eigen::MatrixXd draws(int count, std::uint64_t stream) const {
     Eigen::MatrixXd z(field_.size(), count);
     for (Eigen::Index i = 0; i < z.size(); ++i) {
       const auto index = 2 * static_cast<std::uint64_t>(i);
-      z.data()[i] = normal_pair(uniform_random(2, 0, index), uniform_random(2, 0, index + 1))[0];
+      z.data()[i] =
+          normal_pair(uniform_random(2, stream, index), uniform_random(2, stream, index + 1))[0];
     }
     return factors_.permutationPinv() * factors_.matrixU().solve(z);
   }
@@ -123,7 +124,8 @@ FieldEstimate result_of(FieldRegression& regression, const FieldPrior& prior,
     result.errors =
         regression.projected(result.noise * regression.errors(wanted.length, wanted.rank));
   if (wanted.draws > 0)
-    result.draws = regression.projected(result.noise * regression.draws(wanted.draws));
+    result.draws =
+        regression.projected(result.noise * regression.draws(wanted.draws, wanted.stream));
   return result;
 }
 

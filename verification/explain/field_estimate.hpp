@@ -1,6 +1,7 @@
 // A field on Γ from noisy values at scattered points, and how well they determine it.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "verification/explain/point_trace.hpp"
@@ -25,6 +26,7 @@ struct FieldPrior {
 struct ErrorRequest {
   double length = 0;
   int rank = 0, draws = 0;
+  std::uint64_t stream = 0;  // of random numbers
 };
 
 struct FieldEstimate {

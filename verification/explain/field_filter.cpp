@@ -60,7 +60,6 @@ class Filter {
     belief_.parameters = Columns::Zero(data.space->nodes(), parameters);
     belief_.replicates = data.first.draws.leftCols(settings.replicates);
     result_.information = Eigen::MatrixXd::Zero(parameters, parameters);
-    result_.information(kMeshError, kMeshError) = 1 / (kMeshDoubt * kMeshDoubt);
     result_.score = Vec::Zero(parameters);
     result_.null_scores = Eigen::MatrixXd::Zero(parameters, settings.replicates);
   }
@@ -121,8 +120,10 @@ class Filter {
     const Columns patterns = data_.patterns->at(problem_.model().well, belief_.c);
     const Columns turned = settings_.turn * turns(problem_, belief_.c);
 
-    Innovation in;
-    in.time = data_.times[k + 1];
+    Innovation in{};
+    in.vesicle = data_.vesicle;
+    in.snapshot = k + 1;
+    in.held_out = k + 1 >= data_.train;
     const ResolvedForecast::End& mesh = maps_.mesh_error[k];
     // What the traces of the forecast on this mesh lack, beyond what its nodes do.
     in.forecast = measured.trace * (belief_.c - mesh.field) + mesh.values;
@@ -144,7 +145,11 @@ class Filter {
                           error_values.leftCols(belief_.errors.cols()).squaredNorm();
 
     const InnovationCovariance weight(in, in.model_error);
-    if (k + 1 < data_.train) account(in, weight);
+    if (!in.held_out) account(in, weight);
+    if (in.replicates.cols() > 0)
+      (in.held_out ? result_.heldout_gap_parts : result_.gap_parts)
+          .push_back(explained_parts(
+              in, kUsualGap, side_by_side(side_by_side(in.values, in.parameters), in.replicates)));
     const Columns no_share = Columns::Zero(belief_.c.size(), frame.cols());
     correct(in, weight, side_by_side(side_by_side(errors, no_share), patterns));
     result_.innovations.push_back(std::move(in));
@@ -154,7 +159,8 @@ class Filter {
     for (Eigen::Index j = 0; j < values.cols(); ++j)
       for (Eigen::Index i = 0; i < values.rows(); ++i) {
         const auto u = [&](std::uint64_t which) {
-          return uniform_random(7, 1000 * (k + 1) + static_cast<std::uint64_t>(j),
+          const std::uint64_t snapshot = 1000 * data_.vesicle + k + 1;
+          return uniform_random(7, 10000 * snapshot + static_cast<std::uint64_t>(j),
                                 2 * static_cast<std::uint64_t>(i) + which);
         };
         values(i, j) += normal_pair(u(0), u(1))[0];
@@ -167,10 +173,7 @@ class Filter {
     result_.score += weighted.transpose() * in.values;
     in.weighted_squares = in.values.dot(weight.solve(in.values).col(0));
     result_.deviance += in.weighted_squares + weight.log_determinant();
-    if (in.replicates.cols() == 0) return;
-    result_.null_scores += weighted.transpose() * in.replicates;
-    result_.gap_parts.push_back(explained_parts(
-        in, kUsualGap, side_by_side(side_by_side(in.values, in.parameters), in.replicates)));
+    if (in.replicates.cols() > 0) result_.null_scores += weighted.transpose() * in.replicates;
   }
 
   // `directions`: what those of the innovation are in the state.
@@ -198,11 +201,27 @@ class Filter {
   FilterResult result_;
 };
 
+void add(FilterResult& all, FilterResult&& one) {
+  all.information += one.information;
+  all.score += one.score;
+  all.null_scores += one.null_scores;
+  all.deviance += one.deviance;
+  std::move(one.innovations.begin(), one.innovations.end(), std::back_inserter(all.innovations));
+  std::move(one.gap_parts.begin(), one.gap_parts.end(), std::back_inserter(all.gap_parts));
+  std::move(one.heldout_gap_parts.begin(), one.heldout_gap_parts.end(),
+            std::back_inserter(all.heldout_gap_parts));
+}
+
 }  // namespace
 
-FilterResult filter_fields(const FilterProblem& data, const FilterModel& model,
-                           const FilterSettings& settings, ErrorMaps& maps) {
-  return Filter(data, model, settings, maps).run();
+FilterResult filter_fields(const FilterProblems& data, const FilterModel& model,
+                           const FilterSettings& settings, std::vector<ErrorMaps>& maps) {
+  maps.resize(data.size());
+  FilterResult all = Filter(data[0], model, settings, maps[0]).run();
+  for (std::size_t v = 1; v < data.size(); ++v)
+    add(all, Filter(data[v], model, settings, maps[v]).run());
+  all.information(kMeshError, kMeshError) += 1 / (kMeshDoubt * kMeshDoubt);
+  return all;
 }
 
 }  // namespace traceraft

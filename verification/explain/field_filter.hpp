@@ -31,9 +31,9 @@ struct FilterResult {
   Vec score;                    // Σ Xᵀ S⁻¹ ν
   Eigen::MatrixXd null_scores;  // the same of the replicates, a column for each
   double deviance = 0;          // Σ νᵀ S⁻¹ ν + ln |S|
-  // Of every snapshot that counts, explained_parts of its values, its parameters and its
-  // replicates.
-  std::vector<Columns> gap_parts;
+  // Of every snapshot, explained_parts of its values, its parameters and its replicates: of those
+  // that count, and of those that are held out.
+  std::vector<Columns> gap_parts, heldout_gap_parts;
 };
 
 // What is held against the measurements.
@@ -48,10 +48,11 @@ struct FilterModel {
 // then the coefficients of the hypothesis and those of the screened candidates.
 inline constexpr int kPace = 0, kMeshError = 1, kFirstParameter = 2;
 
-// Model errors are sized by the innovations themselves, snapshot by snapshot. `maps` are filled if
-// they are empty. Replicates, and what is counted of them, only where the settings want some.
-// Throws std::runtime_error if a forecast fails.
-FilterResult filter_fields(const FilterProblem& data, const FilterModel& model,
-                           const FilterSettings& settings, ErrorMaps& maps);
+// Vesicles have a state each and share the parameters. Model errors are sized by the innovations
+// themselves, snapshot by snapshot. `maps`, one per vesicle, are filled if there are none.
+// Replicates, and what is counted of them, only where the settings want some. Throws
+// std::runtime_error if a forecast fails.
+FilterResult filter_fields(const FilterProblems& data, const FilterModel& model,
+                           const FilterSettings& settings, std::vector<ErrorMaps>& maps);
 
 }  // namespace traceraft

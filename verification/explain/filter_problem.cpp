@@ -7,8 +7,8 @@
 namespace traceraft {
 namespace {
 
-// Far below the noise of a measurement.
-constexpr double kForecastTolerance = 3e-4;
+// Of the tolerance that integrators have unless asked: far below the noise of a measurement.
+constexpr double kForecastTolerance = 0.3;
 
 // What data state as their deviations is taken as relative to each other.
 double typical_deviation(const FieldSeries& series) {
@@ -31,10 +31,11 @@ void add_snapshots(const FieldSeries& series, FilterProblem& data) {
 
 }  // namespace
 
-FilterProblem make_filter_problem(const FieldSeries& series, const LevelSet& surface,
-                                  double epsilon, int cells, int threads, std::size_t held_out,
-                                  const FilterSettings& settings) {
+FilterProblem make_filter_problem(const FieldSeries& series, std::size_t vesicle,
+                                  const LevelSet& surface, double epsilon, int cells, int threads,
+                                  std::size_t held_out, const FilterSettings& settings) {
   FilterProblem data;
+  data.vesicle = vesicle;
   // On meshes of some thousand nodes threads are better used for different columns and models.
   data.team = std::make_shared<ThreadTeam>(threads);
   data.space = serial_space(surface, cells);
@@ -44,7 +45,7 @@ FilterProblem make_filter_problem(const FieldSeries& series, const LevelSet& sur
   data.train = series.snapshots.size() - held_out;
   add_snapshots(series, data);
   data.first = estimate_field(*data.space, data.snapshots.front(),
-                              {2 * epsilon, settings.rank, settings.replicates});
+                              {2 * epsilon, settings.rank, settings.replicates, vesicle});
   NoisyValues resolved = data.snapshots.front();
   resolved.trace = data.finer.traces[1].front();
   data.first_resolved = estimate_field(*data.finer.spaces[1], resolved, data.first.prior, {}).field;
@@ -55,11 +56,12 @@ FilterProblem make_filter_problem(const FieldSeries& series, const LevelSet& sur
   }
   data.noise = std::sqrt(squares);
   data.tangent_solver = choose_linear_solver("direct", *data.space).primary;
-  data.make_integrator = [](const DaeProblem& problem, const SurfaceSpace& space) {
+  data.make_integrator = [name = settings.integrator](const DaeProblem& problem,
+                                                      const SurfaceSpace& space) {
+    const IntegratorEntry& entry = integrators().find(name);
     IntegratorSettings integrator;
-    integrator.tolerance = kForecastTolerance;
-    return integrators().find("ida").make(problem, choose_linear_solver("block", space), space.team,
-                                          integrator);
+    integrator.tolerance = kForecastTolerance * entry.tolerance;
+    return entry.make(problem, choose_linear_solver("block", space), space.team, integrator);
   };
   return data;
 }

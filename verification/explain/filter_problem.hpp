@@ -19,10 +19,12 @@ struct FilterSettings {
   double offset = 0.1;    // values, as far as they are unknown
   double turn = 0.05;     // of the angle by which a vesicle may have turned between two snapshots
   int gap_degree = 6;     // of the polynomials that gaps are sought as
+  std::string integrator = "ida";  // of forecasts
 };
 
-// Everything about a series that does not depend on parameters.
+// Everything about the series of one vesicle that does not depend on parameters.
 struct FilterProblem {
+  std::size_t vesicle;  // its number
   std::shared_ptr<const ThreadTeam> team;
   SpacePtr space;  // of one thread
   FinerMeshes finer;
@@ -38,9 +40,11 @@ struct FilterProblem {
   MakeForecaster make_integrator;
 };
 
+using FilterProblems = std::vector<FilterProblem>;
+
 // `held_out`: so many snapshots at the end are forecast, but count for nothing.
-FilterProblem make_filter_problem(const FieldSeries& series, const LevelSet& surface,
-                                  double epsilon, int cells, int threads, std::size_t held_out,
-                                  const FilterSettings& settings);
+FilterProblem make_filter_problem(const FieldSeries& series, std::size_t vesicle,
+                                  const LevelSet& surface, double epsilon, int cells, int threads,
+                                  std::size_t held_out, const FilterSettings& settings);
 
 }  // namespace traceraft

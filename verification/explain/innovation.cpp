@@ -76,12 +76,13 @@ Columns explained_parts(const Innovation& innovation, double size, const Columns
   return factors.matrixL().solve(transposed_product(weighted, values));
 }
 
-double root_mean_square(const std::vector<Innovation>& innovations, std::size_t begin,
-                        std::size_t end, const std::function<double(const Innovation&)>& squares) {
+double root_mean_square(const std::vector<Innovation>& innovations, bool held_out,
+                        const std::function<double(const Innovation&)>& squares) {
   double sum = 0, count = 0;
-  for (std::size_t k = begin; k < end; ++k) {
-    sum += squares(innovations[k]);
-    count += static_cast<double>(innovations[k].values.size());
+  for (const Innovation& in : innovations) {
+    if (in.held_out != held_out) continue;
+    sum += squares(in);
+    count += static_cast<double>(in.values.size());
   }
   return count > 0 ? std::sqrt(sum / count) : 0.0;
 }

@@ -9,9 +9,10 @@
 namespace traceraft {
 
 struct Innovation {
-  double time;
-  Vec forecast;  // c where it was measured
-  Vec values;    // measured minus forecast, in units of the noise
+  std::size_t vesicle, snapshot;  // of the data
+  bool held_out;                  // it counts for nothing
+  Vec forecast;                   // c where it was measured
+  Vec values;                     // measured minus forecast, in units of the noise
   // G: what uncertain directions do to the values: those of the state, with their standard
   // deviations, then patterns that a gap could have (GapPatterns), of size 1.
   Columns directions;
@@ -51,9 +52,9 @@ double most_probable_error(const Innovation& innovation);
 // are larger than what noise leaves unknown of them.
 Columns explained_parts(const Innovation& innovation, double size, const Columns& values);
 
-// Over all values of innovations from `begin` to before `end`; `squares`: their sum in one of them.
-double root_mean_square(const std::vector<Innovation>& innovations, std::size_t begin,
-                        std::size_t end, const std::function<double(const Innovation&)>& squares);
+// Over all values of those innovations that are held out, or not; `squares`: their sum in one.
+double root_mean_square(const std::vector<Innovation>& innovations, bool held_out,
+                        const std::function<double(const Innovation&)>& squares);
 
 Columns side_by_side(const Columns& a, const Columns& b);
 

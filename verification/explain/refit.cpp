@@ -38,18 +38,18 @@ struct Evaluation {
   Vec step;                    // to the maximum, if the likelihood were Gaussian
   Eigen::MatrixXd covariance;  // of the unknowns
   Gaps gap, expected;
+  std::vector<SnapshotGap> snapshots;
   std::string failure;
 };
 
-Gaps over_snapshots(const FilterProblem& data, const FilterResult& pass,
+Gaps over_snapshots(const FilterResult& pass,
                     const std::function<double(const Innovation&)>& squares) {
-  const std::size_t train = data.train - 1, all = pass.innovations.size();
-  return {root_mean_square(pass.innovations, 0, train, squares),
-          root_mean_square(pass.innovations, train, all, squares)};
+  return {root_mean_square(pass.innovations, false, squares),
+          root_mean_square(pass.innovations, true, squares)};
 }
 
-Evaluation evaluate(const FilterProblem& data, const FilterModel& model,
-                    const FilterSettings& settings, ErrorMaps& maps) {
+Evaluation evaluate(const FilterProblems& data, const FilterModel& model,
+                    const FilterSettings& settings, std::vector<ErrorMaps>& maps) {
   Evaluation result;
   try {
     const FilterResult pass = filter_fields(data, model, settings, maps);
@@ -62,9 +62,13 @@ Evaluation evaluate(const FilterProblem& data, const FilterModel& model,
     result.step = all(own);
     result.covariance = inverse(own, own);
     result.deviance = pass.deviance;
-    result.gap = gaps_of_pass(data, pass);
-    result.expected =
-        over_snapshots(data, pass, [](const Innovation& in) { return in.expected_squares; });
+    result.gap = gaps_of_pass(pass);
+    result.expected = expected_gaps(pass);
+    for (const Innovation& in : pass.innovations) {
+      const auto count = static_cast<double>(in.values.size());
+      result.snapshots.push_back({in.vesicle, in.snapshot, in.values.norm() / std::sqrt(count),
+                                  std::sqrt(in.expected_squares / count)});
+    }
   } catch (const std::runtime_error& error) {
     result.failure = error.what();
   }
@@ -82,13 +86,17 @@ bool settled(const Evaluation& here, const FilterModel& model) {
 
 }  // namespace
 
-Gaps gaps_of_pass(const FilterProblem& data, const FilterResult& pass) {
-  return over_snapshots(data, pass, [](const Innovation& in) { return in.values.squaredNorm(); });
+Gaps gaps_of_pass(const FilterResult& pass) {
+  return over_snapshots(pass, [](const Innovation& in) { return in.values.squaredNorm(); });
 }
 
-Refit refit(const FilterProblem& data, const FilterModel& start, const FilterSettings& settings,
-            const ErrorMaps& maps) {
-  ErrorMaps kept = maps;
+Gaps expected_gaps(const FilterResult& pass) {
+  return over_snapshots(pass, [](const Innovation& in) { return in.expected_squares; });
+}
+
+Refit refit(const FilterProblems& data, const FilterModel& start, const FilterSettings& settings,
+            const std::vector<ErrorMaps>& maps) {
+  std::vector<ErrorMaps> kept = maps;
   FilterSettings alone = settings;
   alone.replicates = 0;
   FilterModel model = start;
@@ -116,6 +124,7 @@ Refit refit(const FilterProblem& data, const FilterModel& start, const FilterSet
   result.deviance = here.deviance;
   result.gap = here.gap;
   result.expected = here.expected;
+  result.snapshots = here.snapshots;
   result.failure = here.failure;
   if (here.failure.empty()) {
     const Eigen::Index n = model.hypothesis.coefficients();

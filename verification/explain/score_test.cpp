@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace traceraft {
@@ -62,21 +63,33 @@ double share_of_noise(const Vec& replicates, double value) {
   return static_cast<double>(beyond + 1) / static_cast<double>(replicates.size() + 1);
 }
 
-// Of gaps of any shape, after what the nuisances explain.
-double gap_probability(const FilterResult& result, const Indices& nuisances) {
+Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& information, bool seen) {
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(information.rows(), information.cols());
+  return seen ? Eigen::MatrixXd(information.ldlt().solve(one)) : Eigen::MatrixXd(0 * one);
+}
+
+// Of gaps of any shape in some snapshots, after what the nuisances explain.
+double gap_probability(const FilterResult& result, const std::vector<Columns>& gap_parts,
+                       const Indices& nuisances) {
+  if (gap_parts.empty()) return 1;
   const auto factors = Eigen::MatrixXd(result.information(nuisances, nuisances)).ldlt();
   const Vec best = factors.solve(Vec(result.score(nuisances)));
   const Columns null_best = factors.solve(Columns(result.null_scores(nuisances, Eigen::all)));
   const Eigen::Index parameters = result.score.size(), replicates = null_best.cols();
   double gap = 0;
   Vec null_gaps = Vec::Zero(replicates);
-  for (const Columns& parts : result.gap_parts) {
+  for (const Columns& parts : gap_parts) {
     const Columns known = parts.middleCols(1, parameters)(Eigen::all, nuisances);
     gap += (parts.col(0) - known * best).squaredNorm();
     null_gaps +=
         (parts.rightCols(replicates) - known * null_best).colwise().squaredNorm().transpose();
   }
   return share_of_noise(null_gaps, gap);
+}
+
+// That two independent values are as small as they are (Fisher 1932).
+double both(double p, double q) {
+  return p * q * (1 - std::log(p * q));
 }
 
 }  // namespace
@@ -112,26 +125,39 @@ Screening screen(const FilterResult& result, const std::vector<Candidate>& scree
   const Vec highest = (null * average.cwiseInverse().asDiagonal()).rowwise().maxCoeff();
 
   const auto all_values = [&](const auto& squares) {
-    return root_mean_square(result.innovations, 0, result.innovations.size(), squares);
+    return root_mean_square(result.innovations, false, squares);
+  };
+  const auto response = [&](std::size_t k, const Vec& coefficients) {
+    return all_values([&](const Innovation& in) {
+      return (in.parameters(Eigen::all, own[k].indices) * coefficients).squaredNorm();
+    });
   };
   Screening screening;
   for (std::size_t k = 0; k < screened.size(); ++k) {
     const Gain found = gain(k, result.score);
     const double mean = average[static_cast<Eigen::Index>(k)];
-    const double response = all_values([&](const Innovation& in) {
-      return (in.parameters(Eigen::all, own[k].indices) * found.coefficients).squaredNorm();
-    });
+    const Eigen::MatrixXd covariance = covariance_of(own[k].profile.information, own[k].seen);
     const double p = share_of_noise(highest, found.score / mean);
     screening.p = std::min(screening.p, p);
+    double resolution = std::numeric_limits<double>::infinity();
+    for (Eigen::Index d = 0; d < covariance.rows() && own[k].seen; ++d)
+      resolution = std::min(
+          resolution, response(k, std::sqrt(covariance(d, d)) * Vec::Unit(covariance.rows(), d)));
     screening.scores.push_back(
         {screened[k].effect,
          {found.coefficients.data(), found.coefficients.data() + found.coefficients.size()},
          found.score,
          mean,
          p,
-         response});
+         response(k, found.coefficients),
+         covariance,
+         resolution});
   }
-  screening.gap_p = gap_probability(result, nuisances);
+  screening.train_gap_p = gap_probability(result, result.gap_parts, nuisances);
+  screening.heldout_gap_p = gap_probability(result, result.heldout_gap_parts, nuisances);
+  screening.gap_p = result.heldout_gap_parts.empty()
+                        ? screening.train_gap_p
+                        : both(screening.train_gap_p, screening.heldout_gap_p);
   screening.mesh_error =
       all_values([](const Innovation& in) { return in.parameters.col(kMeshError).squaredNorm(); });
   const Eigen::MatrixXd inverse = F(nuisances, nuisances).inverse();

@@ -14,12 +14,17 @@ struct CandidateScore {
   double p;          // share of replicates in which any candidate gains more, in units of its own
                      // average
   double response;   // root mean square change of c that it makes, in units of the noise
+  // Of the coefficients, nuisances being free; all 0 if nothing that was measured depends on them.
+  Eigen::MatrixXd covariance;
+  double resolution;  // response to one standard deviation of the coefficient that is known best
 };
 
 struct Screening {
   std::vector<CandidateScore> scores;  // most probable first
   double p = 1;                        // that the most telling of them is noise
-  double gap_p = 1;  // that there is a gap of any shape is noise, nuisances being at their best
+  // That there is a gap of any shape is noise, nuisances being at their best: in the snapshots that
+  // count, in those that are held out (1 if none is), and in both.
+  double train_gap_p = 1, heldout_gap_p = 1, gap_p = 1;
   double pace_change, pace_deviation;  // of ln D, if nothing else is missing
   double mesh_error;                   // root mean square of what a finer mesh changes, in noise
 };

@@ -1,0 +1,168 @@
+#include "drivers/explain/explain_page.hpp"
+
+#include <algorithm>
+
+#include "drivers/explain/explain_tables.hpp"
+#include "drivers/explain/verdict.hpp"
+#include "drivers/output/chart.hpp"
+#include "drivers/output/page.hpp"
+#include "drivers/report/viewer.hpp"
+#include "drivers/version.hpp"
+#include "kernel/core/text.hpp"
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Of the list of disagreements; the file has all.
+constexpr std::size_t kMostRows = 12;
+
+// Standard deviations at the ends of the colours.
+constexpr double kColourEnd = 6;
+
+class ExplainPage {
+ public:
+  ExplainPage(const fs::path& folder, const Explanation& found, const ExplainSetup& setup)
+      : folder_(folder),
+        found_(found),
+        setup_(setup),
+        units_(Configuration(setup.model, {}).units()),
+        page_("What the model is missing") {}
+
+  std::string write() {
+    page_.paragraph(verdict_sentence(found_));
+    page_.table(parameter_rows(found_, units_));
+    add_gaps();
+    add_where();
+    add_what();
+    page_.heading("Effects that were not found");
+    page_.paragraph("95 % bounds of their first parameters, to first order.");
+    page_.table(bound_rows(found_, units_));
+    page_.heading("Where this comes from");
+    page_.paragraph("traceraft " + std::string(kVersion) + ". " + data_text());
+    write_durably(folder_ / "explain.html", page_.html());
+    return missing_;
+  }
+
+ private:
+  void miss(const std::string& what) {
+    if (!what.empty()) missing_ += (missing_.empty() ? "" : "; ") + what;
+  }
+
+  void add_gaps() {
+    page_.heading("How the gap shrinks");
+    page_.paragraph(
+        "Every snapshot is forecast from those before it. The last one of a vesicle with four or "
+        "more is held out: no parameter was fitted to it.");
+    page_.table(gap_rows(found_));
+    Chart chart{"measured minus forecast", "time (s)", "root mean square, in c", false, false, {}};
+    chart.series = {gap_series("base model", found_.base, false)};
+    if (!found_.found.hypothesis.parts.empty())
+      chart.series.push_back(
+          gap_series("with " + found_.found.hypothesis.name(), found_.found, false));
+    chart.series.push_back(gap_series("to be expected if nothing is missing", found_.found, true));
+    const std::string svg = draw_chart(chart, folder_ / "gaps");
+    if (svg.empty())
+      miss(kNoGnuplot);
+    else
+      page_.figure(svg, chart.title);
+  }
+
+  ChartSeries gap_series(const std::string& name, const Refit& fit, bool expected) const {
+    ChartSeries series{name, {}, setup_.series.size() > 1 ? Mark::points : Mark::both};
+    for (const SnapshotGap& gap : fit.snapshots)
+      series.points.emplace_back(seconds(gap.vesicle, gap.snapshot),
+                                 found_.noise * (expected ? gap.expected : gap.gap));
+    return series;
+  }
+
+  double seconds(std::size_t vesicle, std::size_t snapshot) const {
+    return setup_.series[vesicle].snapshots[snapshot].time * units_.seconds_per_unit();
+  }
+
+  void add_where() {
+    page_.heading("Where");
+    const bool both = !found_.found.hypothesis.parts.empty();
+    page_.paragraph(
+        "Measured minus forecast near each place, in standard deviations of noise: orange where "
+        "more raft was measured, blue where less. Noise alone surpasses " +
+        formatted("%.1f anywhere in one of twenty data sets; the colours end at %.0f.",
+                  found_.base_maps.threshold, kColourEnd) +
+        (both ? " The base model first, then with " + found_.found.hypothesis.name() + "." : ""));
+    std::vector<Vec> frames;
+    View view{{}, -kColourEnd, kColourEnd, strongest(found_.base_maps), true};
+    const auto add = [&](const std::string& model, const DisagreementMaps& maps) {
+      for (const DisagreementMap& map : maps.snapshots) {
+        frames.push_back(map.z);
+        view.labels.push_back(
+            model +
+            (setup_.series.size() > 1 ? formatted(", vesicle %.0f", map.vesicle + 1.0) : "") +
+            formatted(", t = %.4g s: up to %.1f", map.time * units_.seconds_per_unit(),
+                      map.z.cwiseAbs().maxCoeff()));
+      }
+    };
+    add("base model", found_.base_maps);
+    if (both) add("with " + found_.found.hypothesis.name(), found_.found_maps);
+    miss(add_viewer(page_, found_.map_mesh, frames, view));
+    if (found_.disagreements.empty()) {
+      page_.paragraph(
+          "No patch of the surface, inside rafts, outside or at their boundaries, "
+          "disagrees significantly with the base model.");
+      return;
+    }
+    page_.paragraph(
+        formatted("%.0f patches of the surface", static_cast<double>(found_.disagreements.size())) +
+        " (a twelfth of it, inside rafts, outside or at their boundaries, in one "
+        "snapshot) disagree significantly with the base model. The strongest:");
+    page_.table(disagreement_rows(found_, units_, kMostRows));
+  }
+
+  static std::size_t strongest(const DisagreementMaps& maps) {
+    const auto extreme = [](const DisagreementMap& map) { return map.z.cwiseAbs().maxCoeff(); };
+    const auto most = std::max_element(maps.snapshots.begin(), maps.snapshots.end(),
+                                       [&](const DisagreementMap& a, const DisagreementMap& b) {
+                                         return extreme(a) < extreme(b);
+                                       });
+    return static_cast<std::size_t>(most - maps.snapshots.begin());
+  }
+
+  void add_what() {
+    page_.heading("What");
+    for (const Round& round : found_.rounds) {
+      const std::string known = round.known.hypothesis.name();
+      page_.paragraph(
+          (known.empty() ? std::string("What the base model lacks")
+                         : "What is lacking beside " + known) +
+          formatted(": p = %.3f that the best candidate is noise, p = %.3f that there is no gap of "
+                    "any shape.",
+                    round.screening.p, round.screening.gap_p));
+      page_.table(score_rows(round));
+    }
+  }
+
+  std::string data_text() const {
+    std::size_t snapshots = 0;
+    for (const FieldSeries& series : setup_.series) snapshots += series.snapshots.size();
+    return formatted(
+        "%.0f vesicles, %.0f snapshots, noise %.4f of c, %.0f replicates of noise alone.",
+        static_cast<double>(setup_.series.size()), static_cast<double>(snapshots), found_.noise,
+        static_cast<double>(found_.replicates));
+  }
+
+  const fs::path folder_;
+  const Explanation& found_;
+  const ExplainSetup& setup_;
+  const Units units_;
+  Page page_;
+  std::string missing_;
+};
+
+}  // namespace
+
+std::string write_explain_page(const fs::path& folder, const Explanation& found,
+                               const ExplainSetup& setup) {
+  return ExplainPage(folder, found, setup).write();
+}
+
+}  // namespace traceraft

@@ -1,0 +1,78 @@
+#include "drivers/explain/explain_tables.hpp"
+
+#include "kernel/core/text.hpp"
+
+namespace traceraft {
+namespace {
+
+// Two-sided 95 % of a normal distribution.
+constexpr double kInterval = 1.96;
+
+}  // namespace
+
+std::vector<Row> parameter_rows(const Explanation& found, const Units& base) {
+  std::vector<Row> rows{{"parameter", "value", "95 % +-", "unit"}};
+  for (const FoundParameter& p : found_parameters(found, base))
+    rows.push_back({p.effect + (p.effect.empty() ? "" : " ") + p.name, formatted("%.4g", p.value),
+                    formatted("%.2g", kInterval * p.sigma), p.unit});
+  return rows;
+}
+
+std::vector<Row> bound_rows(const Explanation& found, const Units& base) {
+  std::vector<Row> rows{{"effect", "parameter", "at least", "at most", "unit"}};
+  for (const FoundBound& b : found_bounds(found, base))
+    if (b.seen)
+      rows.push_back(
+          {b.effect, b.name, formatted("%.3g", b.low), formatted("%.3g", b.high), b.unit});
+    else
+      rows.push_back({b.effect, b.name, "", "not seen in these data", b.unit});
+  return rows;
+}
+
+std::vector<Row> gap_rows(const Explanation& found) {
+  std::vector<Row> rows{{"measured minus forecast, in c", "fitted", "held out"}};
+  const auto add = [&](const std::string& name, const Gaps& g) {
+    rows.push_back(
+        {name, formatted("%.4f", g.train), g.heldout > 0 ? formatted("%.4f", g.heldout) : ""});
+  };
+  add("base model", found.base_gap);
+  add("what was found", found.found_gap);
+  add("second best", found.placebo_gap);
+  add("to be expected if nothing is missing", found.floor);
+  if (found.rerun.cells > 0) {
+    const std::string where =
+        " (" + std::to_string(found.rerun.cells) + " cells, " + found.rerun.integrator + ")";
+    add("base model" + where, found.rerun.base);
+    add("what was found" + where, found.rerun.found);
+    add("to be expected" + where, found.rerun.floor);
+  }
+  return rows;
+}
+
+std::vector<Row> score_rows(const Round& round) {
+  std::vector<Row> rows{{"effect", "2 ln likelihood ratio", "of noise alone", "p", "refitted"}};
+  for (const CandidateScore& s : round.screening.scores) {
+    std::string refitted;
+    for (const Refit& fit : round.refits)
+      if (fit.hypothesis.parts.back().candidate.effect == s.effect)
+        refitted = formatted("%.1f", round.without.deviance - fit.deviance);
+    rows.push_back({s.effect, formatted("%.1f", s.score), formatted("%.1f", s.null_mean),
+                    formatted("%.3f", s.p), refitted});
+  }
+  return rows;
+}
+
+std::vector<Row> disagreement_rows(const Explanation& found, const Units& base, std::size_t most) {
+  std::vector<Row> rows{
+      {"vesicle", "time (s)", "where", "around (x, y, z)", "standard deviations", "p"}};
+  for (const Disagreement& d : found.disagreements) {
+    if (rows.size() > most) break;
+    rows.push_back({std::to_string(d.vesicle + 1),
+                    formatted("%.4g", d.time * base.seconds_per_unit()), d.state,
+                    formatted("%.2f, %.2f, %.2f", d.direction[0], d.direction[1], d.direction[2]),
+                    formatted("%+.1f", d.z), formatted("%.1e", d.p)});
+  }
+  return rows;
+}
+
+}  // namespace traceraft

@@ -1,0 +1,88 @@
+#include "drivers/explain/found_parameters.hpp"
+
+#include <cmath>
+
+#include "kernel/core/parameters.hpp"
+#include "kernel/effects/effects.hpp"
+
+namespace traceraft {
+namespace {
+
+// Times of the found model are in units of R²/(pace D).
+Units found_units(Units units, const Refit& fit) {
+  units.diffusion_cm2_s *= fit.pace;
+  return units;
+}
+
+// Errors of the coefficients, carried on to the parameters by differences.
+double variance_of(const Hypothesis::Part& part, std::size_t parameter,
+                   const Eigen::MatrixXd& covariance) {
+  const double value = part.candidate.term(part.coefficients).values[parameter];
+  Vec slope(part.candidate.directions);
+  for (int d = 0; d < part.candidate.directions; ++d) {
+    std::vector<double> moved = part.coefficients;
+    const double step = 1e-4 * std::max(part.candidate.step, std::fabs(moved[d]));
+    moved[d] += step;
+    slope[d] = (part.candidate.term(moved).values[parameter] - value) / step;
+  }
+  return std::max(0.0, slope.dot(covariance * slope));
+}
+
+}  // namespace
+
+std::vector<FoundParameter> found_parameters(const Explanation& found, const Units& base) {
+  const Refit& fit = found.found;
+  const Units units = found_units(base, fit);
+  std::vector<FoundParameter> result;
+  Eigen::Index first = 0;
+  for (const auto& part : fit.hypothesis.parts) {
+    const int n = part.candidate.directions;
+    const EffectTerm term = part.candidate.term(part.coefficients);
+    const auto& specs = effects().find(part.candidate.effect).parameters;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(n); ++k) {
+      const double factor = 1 / to_model_units(specs[k].unit, units);
+      const double variance = variance_of(part, k, fit.covariance.block(first, first, n, n));
+      result.push_back({part.candidate.effect, specs[k].name, specs[k].unit,
+                        factor * term.values[k], factor * std::sqrt(variance)});
+    }
+    first += n;
+  }
+  const double D = units.diffusion_cm2_s;
+  result.push_back({"", "diffusion", "cm^2/s", D, D * fit.pace_deviation});
+  return result;
+}
+
+std::vector<FoundBound> found_bounds(const Explanation& found, const Units& base) {
+  const Units units = found_units(base, found.found);
+  std::vector<FoundBound> result;
+  for (const Bound& bound : found.bounds) {
+    const ParameterSpec& spec = effects().find(bound.effect).parameters.front();
+    const double factor = 1 / to_model_units(spec.unit, units);
+    result.push_back(
+        {bound.effect, spec.name, spec.unit, factor * bound.low, factor * bound.high, bound.seen});
+  }
+  return result;
+}
+
+Configuration found_model(const Explanation& found, GivenValues model) {
+  const Units units = Configuration(model, {}).units();
+  const Units now = found_units(units, found.found);
+  model["diffusion"] = {format_number(now.diffusion_cm2_s), "--diffusion"};
+  if (!found.found.hypothesis.parts.empty())
+    model["effect"] = {effect_text(found.found.hypothesis, now), "--effect"};
+  return {model, {}};
+}
+
+std::string effect_text(const Hypothesis& hypothesis, const Units& units) {
+  std::string text;
+  for (const EffectTerm& term : hypothesis.terms()) {
+    const auto& specs = effects().find(term.effect).parameters;
+    text += (text.empty() ? "" : "; ") + term.effect;
+    for (std::size_t k = 0; k < specs.size(); ++k)
+      text += (k ? "," : ":") + specs[k].name + "=" +
+              format_number(term.values[k] / to_model_units(specs[k].unit, units));
+  }
+  return text;
+}
+
+}  // namespace traceraft

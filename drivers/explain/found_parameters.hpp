@@ -1,0 +1,35 @@
+// What a search has found, in the units of its user.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "drivers/config/configuration.hpp"
+#include "verification/explain/explanation.hpp"
+
+namespace traceraft {
+
+struct FoundParameter {
+  std::string effect, name, unit;
+  double value, sigma;
+};
+
+// Parameters that the coefficients of the found effects decide, then D (effect "").
+std::vector<FoundParameter> found_parameters(const Explanation& found, const Units& base);
+
+// Of the first parameter of an effect that was not found, with 95 % confidence.
+struct FoundBound {
+  std::string effect, name, unit;
+  double low, high;
+  bool seen;
+};
+std::vector<FoundBound> found_bounds(const Explanation& found, const Units& base);
+
+// The model with the effects and the diffusion that were found, as `traceraft run --config` takes
+// it. `model`: with the radius of the vesicle.
+Configuration found_model(const Explanation& found, GivenValues model);
+
+// The effects of a hypothesis as --effect takes them.
+std::string effect_text(const Hypothesis& hypothesis, const Units& units);
+
+}  // namespace traceraft

@@ -1,0 +1,26 @@
+// What a search has found so far, in a file: one that was interrupted goes on from there.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "drivers/explain/explain_run.hpp"
+
+namespace traceraft {
+
+class SearchFile {
+ public:
+  SearchFile(const std::filesystem::path& folder, const ExplainSetup& setup);
+
+  // Nothing if none has been saved. Throws InputError if it belongs to other data, another model or
+  // other settings, IoError if it is damaged.
+  std::optional<SearchState> load() const;
+  void save(const SearchState& state) const;  // throws IoError
+
+ private:
+  const std::filesystem::path path_;
+  const ExplainSetup& setup_;
+  const std::string fingerprint_;
+};
+
+}  // namespace traceraft

@@ -1,0 +1,122 @@
+#include "drivers/explain/verdict.hpp"
+
+namespace traceraft {
+namespace {
+
+Json parameters_json(const Explanation& found, const Units& base) {
+  Json parameters = Json::object();
+  for (const FoundParameter& p : found_parameters(found, base))
+    parameters[(p.effect.empty() ? "" : p.effect + ".") + p.name] = {
+        {"value", p.value}, {"sigma", p.sigma}, {"unit", p.unit}};
+  return parameters;
+}
+
+Json bounds_json(const Explanation& found, const Units& base) {
+  Json bounds = Json::object();
+  for (const FoundBound& b : found_bounds(found, base))
+    bounds[b.effect + "." + b.name] = {{"low", b.seen ? Json(b.low) : Json()},
+                                       {"high", b.seen ? Json(b.high) : Json()},
+                                       {"unit", b.unit}};
+  return bounds;
+}
+
+Json alternatives_json(const Round& round) {
+  Json alternatives = Json::array();
+  for (const Refit& refit : round.refits)
+    alternatives.push_back(
+        {{"effect", refit.hypothesis.name()}, {"score", round.without.deviance - refit.deviance}});
+  return alternatives;
+}
+
+Json gap_json(const Gaps& gaps) {
+  return {{"train", gaps.train}, {"heldout", gaps.heldout > 0 ? Json(gaps.heldout) : Json()}};
+}
+
+Json where_json(const Explanation& found, const Units& base) {
+  if (found.disagreements.empty()) return {};
+  const Disagreement& most = found.disagreements.front();
+  return {{"vesicle", most.vesicle + 1},
+          {"time", most.time * base.seconds_per_unit()},
+          {"region", {most.direction[0], most.direction[1], most.direction[2]}},
+          {"state", most.state}};
+}
+
+Json rounds_json(const Explanation& found) {
+  Json rounds = Json::array();
+  for (const Round& round : found.rounds)
+    rounds.push_back({{"known", round.known.hypothesis.name()},
+                      {"candidate", round.screening.scores.front().effect},
+                      {"p", round.screening.p},
+                      {"gap_p", round.screening.gap_p},
+                      {"gap_p_train", round.screening.train_gap_p},
+                      {"gap_p_heldout", round.screening.heldout_gap_p},
+                      {"mesh_error", round.screening.mesh_error}});
+  return rounds;
+}
+
+Json rerun_json(const Rerun& rerun) {
+  if (rerun.cells == 0) return {};
+  return {{"cells", rerun.cells},
+          {"integrator", rerun.integrator},
+          {"base", gap_json(rerun.base)},
+          {"named", gap_json(rerun.found)},
+          {"floor", gap_json(rerun.floor)}};
+}
+
+}  // namespace
+
+bool is_named(const Explanation& found) {
+  return found.finding == Finding::named || found.finding == Finding::ambiguous;
+}
+
+Json verdict_json(const Explanation& found, const Units& base) {
+  const std::string name = found.found.hypothesis.name();
+  return {{"verdict", word_for(found.finding)},
+          {"effect", is_named(found) ? Json(name) : Json()},
+          {"class", is_named(found) ? Json(found.equivalent) : Json::array()},
+          {"closest", found.finding == Finding::unnamed && !name.empty() ? Json(name) : Json()},
+          {"parameters", parameters_json(found, base)},
+          {"bounds", bounds_json(found, base)},
+          {"alternatives", alternatives_json(found.rounds.front())},
+          {"gap",
+           {{"base", gap_json(found.base_gap)},
+            {"named", gap_json(found.found_gap)},
+            {"placebo", gap_json(found.placebo_gap)},
+            {"floor", gap_json(found.floor)}}},
+          {"rerun", rerun_json(found.rerun)},
+          {"where", where_json(found, base)},
+          {"null",
+           {{"replicates", found.replicates},
+            {"false_alarm_level", found.rounds.front().screening.p},
+            {"rounds", rounds_json(found)}}},
+          {"noise", found.noise}};
+}
+
+std::string verdict_sentence(const Explanation& found) {
+  const std::string name = found.found.hypothesis.name();
+  switch (found.finding) {
+    case Finding::none:
+      return "No significant disagreement: the model explains the data within their noise.";
+    case Finding::named:
+      return "The model lacks " + name + ".";
+    case Finding::ambiguous: {
+      std::string others;
+      for (std::size_t k = 1; k < found.equivalent.size(); ++k)
+        others += (k > 1 ? ", " : "") + found.equivalent[k];
+      return "The model lacks " + name + ", or in place of " + found.equivalent[0] + ": " + others +
+             ". These data do not tell them apart.";
+    }
+    case Finding::below_resolution:
+      return "There is a disagreement, but the mesh of the model changes c as much: "
+             "repeat with more --cells.";
+    case Finding::not_identifiable:
+      return "No significant disagreement, but these data would hardly show an effect: they need "
+             "more points, less noise, or snapshots that are further apart.";
+    case Finding::unnamed:
+      return "There is a disagreement that no known effect explains" +
+             (name.empty() ? std::string(".") : "; " + name + " comes closest.");
+  }
+  return "";
+}
+
+}  // namespace traceraft

@@ -1,0 +1,18 @@
+// What a search has found, for programs and in words.
+#pragma once
+
+#include "drivers/explain/found_parameters.hpp"
+#include "drivers/output/json_file.hpp"
+
+namespace traceraft {
+
+// Did the search find effects that belong to the model?
+bool is_named(const Explanation& found);
+
+// verdict.json (docs/formats.md). `base`: units of the model that was given.
+Json verdict_json(const Explanation& found, const Units& base);
+
+// For people.
+std::string verdict_sentence(const Explanation& found);
+
+}  // namespace traceraft

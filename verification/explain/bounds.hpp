@@ -1,0 +1,21 @@
+// How strong effects that were not found may be.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "verification/explain/score_test.hpp"
+
+namespace traceraft {
+
+// Of the first parameter of an effect, in units of R and R²/D, with 95 % confidence.
+struct Bound {
+  std::string effect;
+  double low, high;  // low: 0 for effects that have one sign
+  bool seen;         // does anything that was measured depend on it? If not, there is no bound
+};
+
+// To first order. Where noise alone gains more than it should, its spread is widened accordingly.
+std::vector<Bound> bounds_of(const Screening& screening, const std::vector<Candidate>& screened);
+
+}  // namespace traceraft

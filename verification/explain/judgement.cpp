@@ -1,0 +1,78 @@
+#include "verification/explain/judgement.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace traceraft {
+namespace {
+
+// An effect has to change c by that many times what extrapolation to finer meshes does.
+constexpr double kResolved = 3;
+// Standard deviations that an effect has to have to be seen in nine cases of ten.
+constexpr double kSeen = 4;
+
+const std::string& last_effect(const Refit& fit) {
+  return fit.hypothesis.parts.back().candidate.effect;
+}
+
+bool resolved(const Round& round, const std::string& effect) {
+  return std::any_of(round.screening.scores.begin(), round.screening.scores.end(),
+                     [&](const CandidateScore& score) {
+                       return score.effect == effect &&
+                              score.response >= kResolved * round.screening.mesh_error;
+                     });
+}
+
+// Would any effect of the usual size have been seen?
+bool identifiable(const Screening& screening, double usual_change) {
+  return std::any_of(
+      screening.scores.begin(), screening.scores.end(),
+      [&](const CandidateScore& score) { return kSeen * score.resolution <= usual_change; });
+}
+
+}  // namespace
+
+std::string word_for(Finding finding) {
+  switch (finding) {
+    case Finding::none:
+      return "none";
+    case Finding::named:
+      return "named";
+    case Finding::ambiguous:
+      return "ambiguous";
+    case Finding::below_resolution:
+      return "below-solver-resolution";
+    case Finding::not_identifiable:
+      return "not-identifiable";
+    case Finding::unnamed:
+      return "unnamed";
+  }
+  return "";
+}
+
+double criterion(const Refit& fit, double values) {
+  return fit.deviance + std::log(values) * static_cast<double>(fit.hypothesis.coefficients());
+}
+
+Judgement judge(const Round& round, double values, double false_alarms, double usual_change) {
+  const bool first = round.known.hypothesis.parts.empty();
+  // What follows if nothing is added.
+  const Finding rest = round.screening.gap_p <= false_alarms         ? Finding::unnamed
+                       : !first                                      ? Finding::named
+                       : identifiable(round.screening, usual_change) ? Finding::none
+                                                                     : Finding::not_identifiable;
+  if (round.refits.empty()) return {false, rest, {}};
+  const Refit& best = round.refits.front();
+  const double least = criterion(best, values);
+  if (criterion(round.without, values) < least) return {false, rest, {}};
+  if (!resolved(round, last_effect(best)))
+    return {false, first ? Finding::below_resolution : rest, {}};
+  Judgement taken{true, Finding::named, {last_effect(best)}};
+  for (std::size_t k = 1; k < round.refits.size(); ++k)
+    if (criterion(round.refits[k], values) < least + kTelling)
+      taken.equivalent.push_back(last_effect(round.refits[k]));
+  if (taken.equivalent.size() > 1) taken.finding = Finding::ambiguous;
+  return taken;
+}
+
+}  // namespace traceraft

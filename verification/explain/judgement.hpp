@@ -1,0 +1,46 @@
+// What the search for one more effect has found, and what follows from it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "verification/explain/refit.hpp"
+#include "verification/explain/score_test.hpp"
+
+namespace traceraft {
+
+enum class Finding {
+  none,              // no significant disagreement
+  named,             // one effect, or several, that leave no significant disagreement
+  ambiguous,         // like it, but another one explains the data as well
+  below_resolution,  // what would explain the data changes less than the model's own mesh does
+  not_identifiable,  // no disagreement, but effects of the usual size would not be seen either
+  unnamed            // a significant disagreement that no candidate explains
+};
+std::string word_for(Finding finding);
+
+// The search for one more effect.
+struct Round {
+  FilterModel known;
+  Screening screening;
+  Refit without;              // what was known before
+  std::vector<Refit> refits;  // of the shortlist, most probable first; none if nothing is lacking
+};
+
+// 2 ln of a likelihood ratio of 20: less does not tell two hypotheses apart.
+inline constexpr double kTelling = 6;
+
+// Schwarz' (1978): an effect with a second coefficient has to earn it, above all if one without is
+// a special case of it. `values`: how many have been measured.
+double criterion(const Refit& fit, double values);
+
+struct Judgement {
+  bool taken;                           // the best refit's effect belongs to the model
+  Finding finding;                      // of the search up to now
+  std::vector<std::string> equivalent;  // effects that explain the data as well, itself first
+};
+// `false_alarms`: the share of data sets with nothing missing that may seem to lack something;
+// `usual_change`: of c that an effect makes, in units of the noise.
+Judgement judge(const Round& round, double values, double false_alarms, double usual_change);
+
+}  // namespace traceraft
