@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "backends/posix/durable_file.hpp"
-#include "drivers/config/config_file.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 
@@ -70,23 +68,6 @@ Configuration configuration_at(const Configuration& model,
   set("output-times", format_number(t_end));
   set("fields", "false");
   return {{}, given};
-}
-
-PointEnd run_point(const std::filesystem::path& path, const Configuration& configuration,
-                   const PointRequest& request) {
-  const EnsembleFolder folder(path);
-  EnsemblePlan plan;
-  plan.runs = request.runs;
-  std::filesystem::create_directories(path / "runs");
-  if (!folder.started()) write_durably(folder.config(), config_text(configuration));
-  folder.save(plan);
-  const EnsembleEnd end = work_off(plan, folder, jobs_of(request.jobs, 0),
-                                   configuration.number("t-end"), request.quiet);
-  const Units units = configuration.units();
-  PointEnd result{end.stopped, end.failures, finished_histories(folder, plan, units.length())};
-  for (History& run : result.runs)
-    for (double& t : run.time) t /= units.time();
-  return result;
 }
 
 }  // namespace traceraft

@@ -1,12 +1,11 @@
 // The simulations behind a calibration: an ensemble for every choice of the parameters.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "drivers/config/configuration.hpp"
-#include "drivers/ensemble/ensemble_runs.hpp"
+#include "drivers/ensemble/ensemble_point.hpp"
 #include "kernel/core/named_list.hpp"
 #include "verification/vesicles/calibration.hpp"
 
@@ -30,18 +29,5 @@ Configuration configuration_at(const Configuration& model,
 // Where the parameters of the model are.
 std::vector<double> values_of(const Configuration& model,
                               const std::vector<std::string>& parameters);
-
-struct PointRequest {
-  int runs, jobs;
-  bool quiet;
-};
-struct PointEnd {
-  bool stopped = false;
-  std::vector<MemberFailure> failures;
-  std::vector<History> runs;  // in units of R²/D
-};
-// Carries out, or goes on with, the ensemble in the folder.
-PointEnd run_point(const std::filesystem::path& folder, const Configuration& configuration,
-                   const PointRequest& request);
 
 }  // namespace traceraft

@@ -1,29 +1,42 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "backends/posix/folder_lock.hpp"
+#include "backends/posix/process.hpp"
 #include "drivers/commands.hpp"
+#include "drivers/config/config_file.hpp"
 #include "drivers/config/option_flags.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/explain/explain_page.hpp"
 #include "drivers/explain/explain_report.hpp"
 #include "drivers/explain/explain_run.hpp"
 #include "drivers/explain/search_file.hpp"
+#include "drivers/explain/series_report.hpp"
 #include "drivers/output/status_line.hpp"
 #include "drivers/run/run_folder.hpp"
+#include "drivers/vesicles/dataset.hpp"
+#include "kernel/core/error.hpp"
+#include "kernel/effects/effects.hpp"
 
 namespace traceraft {
 namespace {
 
 namespace fs = std::filesystem;
 
+// Series are explained with D within this factor of the model's.
+constexpr double kTimeRange = 8;
+
 struct ExplainCommand {
   ExplainJob job;
-  std::string out;
+  std::string series, out;
+  int runs = 8, jobs = 0;
   bool quiet = false;
 };
 
-int explain(const ExplainCommand& command) {
+void explain_field_data(const ExplainCommand& command, const fs::path& out) {
   ExplainSetup setup = read_explain_job(command.job);
   const Stopwatch watch;
   if (!command.quiet)
@@ -31,18 +44,56 @@ int explain(const ExplainCommand& command) {
       std::printf("%s  %s\n", clock_text(watch.seconds()).c_str(), step.c_str());
       std::fflush(stdout);
     };
-  const fs::path out = command.out.empty() ? first_free_folder("explain") : command.out;
-  fs::create_directories(out);
-  const FolderLock lock(out);
   const SearchFile file(out, setup);
   setup.request.save = [&](const SearchState& state) { file.save(state); };
   const Explanation found = explain_fields(setup.series, setup.request, file.load());
   write_explanation(out, found, setup.model);
   const std::string missing = write_explain_page(out, found, setup);
-  if (!command.quiet) {
-    print_explanation(found, setup.model);
-    std::printf("\nwritten: %s\n", (out / "explain.html").c_str());
-    if (!missing.empty()) std::printf("the page lacks: %s\n", missing.c_str());
+  if (command.quiet) return;
+  print_explanation(found, setup.model);
+  std::printf("\nwritten: %s\n", (out / "explain.html").c_str());
+  if (!missing.empty()) std::printf("the page lacks: %s\n", missing.c_str());
+}
+
+// False if it was stopped.
+bool explain_series_data(const ExplainCommand& command, const MeasuredVesicles& data,
+                         const fs::path& out) {
+  const Configuration model(read_config_file(command.job.model), command.job.flags);
+  SeriesEnsemblesRequest request{
+      HUGE_VAL, 0, command.runs, command.jobs, 2, command.job.without, command.quiet};
+  for (const Measurement& m : data.measurements) {
+    if (m.time > 0) request.first = std::min(request.first, m.time);
+    request.last = std::max(request.last, m.time);
+  }
+  if (!(request.first < request.last))
+    throw InputError("--series: looks at two times at least are needed");
+  const SeriesEnsembles ensembles = run_series_ensembles(out / "ensembles", model, request);
+  if (ensembles.stopped) return false;
+  SeriesRequest search{{model.units().seconds_per_unit(), kTimeRange}};
+  search.replicates = command.job.replicates;
+  const SeriesExplanation found =
+      explain_series(data, ensembles.base, ensembles.candidates, search);
+  write_series_explanation(out, data, model, ensembles, found, command.quiet);
+  return true;
+}
+
+int explain(const ExplainCommand& command) {
+  if (command.job.data.empty() && command.series.empty())
+    throw InputError("--data or --series: say which measurements to explain");
+  for (const std::string& effect : command.job.without) (void)effects().find(effect);
+  std::optional<MeasuredVesicles> series;
+  if (!command.series.empty()) {
+    catch_stop_signals();
+    series = read_dataset(command.series);
+  }
+  if (!command.job.data.empty()) (void)read_explain_job(command.job);
+  const fs::path out = command.out.empty() ? first_free_folder("explain") : command.out;
+  fs::create_directories(out);
+  const FolderLock lock(out);
+  if (!command.job.data.empty()) explain_field_data(command, out);
+  if (series && !explain_series_data(command, *series, out)) {
+    if (!command.quiet) std::printf("to go on, give the same command with --out %s\n", out.c_str());
+    return kInterrupted;
   }
   return kSuccess;
 }
@@ -51,6 +102,14 @@ Action define(CLI::App& app) {
   const auto command = std::make_shared<ExplainCommand>();
   app.add_option("--data", command->job.data,
                  "folder of measured fields (dataset.toml, snapshot_001.csv, ...)");
+  app.add_option("--series", command->series,
+                 "folder of series of vesicles (dataset.toml, measurements.csv)");
+  app.add_option("--runs", command->runs, "for --series: seeds of the model, and of each effect")
+      ->check(CLI::Range(3, 1000))
+      ->capture_default_str();
+  app.add_option("--jobs", command->jobs,
+                 "for --series: runs at a time; default: one for each processor")
+      ->check(CLI::Range(1, 1024));
   app.add_option("--model", command->job.model, "TOML file with the flags' names as keys");
   app.add_option("--out", command->out, "folder for the verdict; default: runs/explain-N");
   app.add_option("--effects", command->job.effects, "most effects to look for, one after the other")
@@ -76,7 +135,8 @@ Action define(CLI::App& app) {
 }  // namespace
 
 Command explain_command() {
-  return {"explain", "find what the model is missing, from measured fields", Ranks::one, define};
+  return {"explain", "find what the model is missing, from measured fields or series",
+          Ranks::starts_them, define};
 }
 
 }  // namespace traceraft

@@ -30,7 +30,6 @@ void refuse_model(const Configuration& model) {
 }  // namespace
 
 ExplainSetup read_explain_job(const ExplainJob& job) {
-  if (job.data.empty()) throw InputError("--data: say which measurements to explain");
   FieldDataset data = read_field_dataset(job.data);
   for (const std::string& effect : job.without) (void)effects().find(effect);
   ExplainSetup setup{given_model(job, data.radius_um), std::move(data.vesicles), {}};

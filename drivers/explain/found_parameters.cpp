@@ -69,13 +69,13 @@ Configuration found_model(const Explanation& found, GivenValues model) {
   const Units now = found_units(units, found.found);
   model["diffusion"] = {format_number(now.diffusion_cm2_s), "--diffusion"};
   if (!found.found.hypothesis.parts.empty())
-    model["effect"] = {effect_text(found.found.hypothesis, now), "--effect"};
+    model["effect"] = {effect_text(found.found.hypothesis.terms(), now), "--effect"};
   return {model, {}};
 }
 
-std::string effect_text(const Hypothesis& hypothesis, const Units& units) {
+std::string effect_text(const std::vector<EffectTerm>& terms, const Units& units) {
   std::string text;
-  for (const EffectTerm& term : hypothesis.terms()) {
+  for (const EffectTerm& term : terms) {
     const auto& specs = effects().find(term.effect).parameters;
     text += (text.empty() ? "" : "; ") + term.effect;
     for (std::size_t k = 0; k < specs.size(); ++k)

@@ -29,7 +29,7 @@ std::vector<FoundBound> found_bounds(const Explanation& found, const Units& base
 // it. `model`: with the radius of the vesicle.
 Configuration found_model(const Explanation& found, GivenValues model);
 
-// The effects of a hypothesis as --effect takes them.
-std::string effect_text(const Hypothesis& hypothesis, const Units& units);
+// Effects as --effect takes them.
+std::string effect_text(const std::vector<EffectTerm>& terms, const Units& units);
 
 }  // namespace traceraft

@@ -256,6 +256,10 @@ std::vector<std::string> effects_to_hide() {
   return names;
 }
 
+std::vector<EffectTerm> size_effects(const BlindRequest& request) {
+  return Vesicle(request).sized_effects();
+}
+
 BlindCase draw_blind_case(const BlindRequest& request) {
   BlindCase result{{}, {}, 0};
   for (int v = 0; v < request.vesicles; ++v) {

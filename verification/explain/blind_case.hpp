@@ -42,6 +42,9 @@ struct BlindCase {
 // Effects that can be hidden: those that a sphere shows.
 std::vector<std::string> effects_to_hide();
 
+// The request's effects with the strengths at which they make its gap. Throws as below.
+std::vector<EffectTerm> size_effects(const BlindRequest& request);
+
 // Throws std::runtime_error if a simulation fails, InputError for an effect that cannot be hidden.
 BlindCase draw_blind_case(const BlindRequest& request);
 

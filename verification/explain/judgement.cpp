@@ -8,6 +8,9 @@ namespace {
 
 // An effect has to change c by that many times what extrapolation to finer meshes does.
 constexpr double kResolved = 3;
+// A gap of any shape has to be that much less probable than the best candidate: what is left of
+// the errors of the mesh and of linear responses looks like one, and it names nothing.
+constexpr double kGapLevel = 0.25;
 // Standard deviations that an effect has to have to be seen in nine cases of ten.
 constexpr double kSeen = 4;
 
@@ -57,9 +60,9 @@ double criterion(const Refit& fit, double values) {
 Judgement judge(const Round& round, double values, double false_alarms, double usual_change) {
   const bool first = round.known.hypothesis.parts.empty();
   // What follows if nothing is added.
-  const Finding rest = round.screening.gap_p <= false_alarms         ? Finding::unnamed
-                       : !first                                      ? Finding::named
-                       : identifiable(round.screening, usual_change) ? Finding::none
+  const Finding rest = round.screening.gap_p <= kGapLevel * false_alarms ? Finding::unnamed
+                       : !first                                          ? Finding::named
+                       : identifiable(round.screening, usual_change)     ? Finding::none
                                                                      : Finding::not_identifiable;
   if (round.refits.empty()) return {false, rest, {}};
   const Refit& best = round.refits.front();

@@ -1,0 +1,25 @@
+// One model from several seeds, as a step of something larger.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "drivers/config/configuration.hpp"
+#include "drivers/ensemble/ensemble_runs.hpp"
+
+namespace traceraft {
+
+struct PointRequest {
+  int runs, jobs;
+  bool quiet;
+};
+struct PointEnd {
+  bool stopped = false;
+  std::vector<MemberFailure> failures;
+  std::vector<History> runs;  // in units of R²/D
+};
+// Carries out, or goes on with, the ensemble in the folder.
+PointEnd run_point(const std::filesystem::path& folder, const Configuration& configuration,
+                   const PointRequest& request);
+
+}  // namespace traceraft

@@ -1,0 +1,135 @@
+#include "drivers/explain/series_ensembles.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "drivers/config/config_file.hpp"
+#include "drivers/ensemble/ensemble_point.hpp"
+#include "drivers/explain/found_parameters.hpp"
+#include "drivers/input/measured_units.hpp"
+#include "drivers/output/json_file.hpp"
+#include "drivers/run/run_setup.hpp"
+#include "kernel/core/error.hpp"
+#include "kernel/core/parameters.hpp"
+#include "kernel/effects/effects.hpp"
+#include "verification/explain/blind_case.hpp"
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Of D over that of the model: runs last as long as if it were that.
+constexpr double kFastest = 2;
+
+void refuse_model(const Configuration& model) {
+  refuse_scaled(model);
+  if (model.text("surface") != "sphere")
+    throw InputError(model.where("surface") + ": series are explained on spheres only");
+  if (!model.text("effect").empty())
+    throw InputError(model.where("effect") +
+                     ": the search starts from a model without effects; it finds them itself");
+  if (model.text("initial").compare(0, 5, "noise") != 0)
+    throw InputError(model.where("initial") + ": vesicles differ in the noise they start from");
+}
+
+GivenValues settings_of(const Configuration& model) {
+  GivenValues given;
+  for (const OptionSpec& spec : run_options())
+    if ((spec.numerical || spec.name == "case") && spec.name != "seed" &&
+        !model.text(spec.name).empty())
+      given[spec.name] = {model.text(spec.name), "--" + spec.name};
+  return given;
+}
+
+Configuration ensemble_model(const Configuration& model, const std::string& effect, double t_end) {
+  GivenValues given = settings_of(model);
+  for (const auto& [name, text] :
+       {std::pair("t-end", format_number(t_end)), std::pair("output-times", format_number(t_end)),
+        std::pair("fields", std::string("false")), std::pair("effect", effect)})
+    given[name] = {text, std::string("--") + name};
+  return {{}, given};
+}
+
+// The strengths of all effects, found once.
+std::vector<EffectTerm> sizes(const fs::path& folder, const Configuration& model,
+                              const SeriesEnsemblesRequest& request) {
+  const fs::path file = folder / "strengths.json";
+  const Units units = model.units();
+  BlindRequest sizing;
+  sizing.base = physical_model(model);
+  sizing.raft_fraction = model.number("raft-fraction");
+  sizing.cells = static_cast<int>(model.integer("cells"));
+  sizing.first = request.first / units.time();
+  sizing.last = request.last / units.time();
+  sizing.snapshots = 5;
+  sizing.threads = request.threads;
+  for (const std::string& effect : effects_to_hide())
+    if (std::count(request.without.begin(), request.without.end(), effect) == 0)
+      sizing.effects.push_back(effect);
+  const std::string identity =
+      config_text(ensemble_model(model, "", request.last)) + format_number(request.first);
+  if (fs::exists(file))
+    return from_json(file, [&](const Json& json) {
+      if (json.at("identity") != identity)
+        throw InputError("--out: " + folder.parent_path().string() +
+                         " holds an explanation of another model, or of looks at other times; "
+                         "choose another folder");
+      std::vector<EffectTerm> terms;
+      for (const auto& [effect, values] : json.at("strengths").items())
+        if (std::count(sizing.effects.begin(), sizing.effects.end(), effect) > 0)
+          terms.push_back({effect, values});
+      return terms;
+    });
+  if (!request.quiet) std::printf("how strong effects have to be\n");
+  const std::vector<EffectTerm> terms = size_effects(sizing);
+  Json strengths = Json::object();
+  for (const EffectTerm& term : terms) strengths[term.effect] = term.values;
+  write_durably(file, Json{{"identity", identity}, {"strengths", strengths}}.dump(2) + "\n");
+  return terms;
+}
+
+bool is_two_sided(const std::string& effect) {
+  const std::vector<Candidate> all = candidates();
+  return std::any_of(all.begin(), all.end(), [&](const Candidate& candidate) {
+    return candidate.effect == effect && candidate.two_sided;
+  });
+}
+
+}  // namespace
+
+SeriesEnsembles run_series_ensembles(const fs::path& folder, const Configuration& model,
+                                     const SeriesEnsemblesRequest& request) {
+  refuse_model(model);
+  fs::create_directories(folder);
+  const std::vector<EffectTerm> terms = sizes(folder, model, request);
+  const Units units = model.units();
+  SeriesEnsembles result;
+  const auto simulate = [&](const std::string& name, const std::string& effect) {
+    if (!request.quiet)
+      std::printf("simulations with %s\n", effect.empty() ? "no effect" : effect.c_str());
+    return run_point(folder / name, ensemble_model(model, effect, kFastest * request.last),
+                     {request.runs, request.jobs, request.quiet});
+  };
+  PointEnd base = simulate("base", "");
+  if (!base.failures.empty())
+    throw InputError("the run of seed " + std::to_string(base.failures.front().seed) +
+                     " failed: " + base.failures.front().why);
+  result.base = std::move(base.runs);
+  result.stopped = base.stopped;
+  for (const EffectTerm& term : terms) {
+    if (result.stopped) return result;
+    PointEnd end = simulate(term.effect, effect_text({term}, units));
+    result.stopped = end.stopped;
+    if (!end.failures.empty())
+      result.notes.push_back(term.effect + " was left out, as the run of seed " +
+                             std::to_string(end.failures.front().seed) +
+                             " failed: " + end.failures.front().why);
+    else
+      result.candidates.push_back(
+          {term.effect, term.values.front(), is_two_sided(term.effect), std::move(end.runs)});
+  }
+  return result;
+}
+
+}  // namespace traceraft

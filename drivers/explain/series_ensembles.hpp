@@ -1,0 +1,35 @@
+// The simulations behind an explanation of series: an ensemble of the model, and one with each
+// effect.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "drivers/config/configuration.hpp"
+#include "verification/series/series_explanation.hpp"
+
+namespace traceraft {
+
+struct SeriesEnsemblesRequest {
+  double first, last;  // looks, in s
+  int runs, jobs, threads;
+  std::vector<std::string> without;  // effects
+  bool quiet;
+};
+
+struct SeriesEnsembles {
+  bool stopped = false;  // there is more to do
+  std::vector<History> base;
+  std::vector<SeriesCandidate> candidates;
+  std::vector<std::string> notes;  // effects whose runs failed
+};
+
+// Carries out, or goes on with, what is in the folder. Effects have the strength at which they
+// change c by 6 % of its standard deviation from one of five looks to the next, which a run on a
+// coarser mesh finds. Throws InputError for models that cannot be used.
+SeriesEnsembles run_series_ensembles(const std::filesystem::path& folder,
+                                     const Configuration& model,
+                                     const SeriesEnsemblesRequest& request);
+
+}  // namespace traceraft

@@ -1,0 +1,229 @@
+#include "drivers/explain/series_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "drivers/output/chart.hpp"
+#include "drivers/output/json_file.hpp"
+#include "drivers/output/page.hpp"
+#include "drivers/output/text_table.hpp"
+#include "drivers/version.hpp"
+#include "kernel/core/text.hpp"
+#include "kernel/effects/effects.hpp"
+#include "verification/vesicles/power_law.hpp"
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kPerDecade = 10;  // of the curves of charts and power laws
+
+std::string listed(const std::vector<std::string>& names, const char* between) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : between) + name;
+  return text;
+}
+
+std::string vesicles_text(double count) {
+  return count < 1e4 ? formatted("%.0f", std::ceil(count)) : "more than 10000";
+}
+
+std::string sentence(const SeriesExplanation& found) {
+  std::vector<std::string> classes;
+  for (const auto& members : found.named) classes.push_back(listed(members, ", "));
+  switch (found.finding) {
+    case Finding::none:
+      return "No significant disagreement: the model explains the series within their scatter.";
+    case Finding::not_identifiable:
+      return "No significant disagreement, but so few vesicles would not show any of the effects.";
+    case Finding::named:
+      return "The model lacks " + classes.front() + ".";
+    default:
+      return "The model lacks one of: " + listed(classes, "; or ") +
+             ". Series do not tell these apart.";
+  }
+}
+
+std::string advice(const SeriesTie& tie) {
+  return vesicles_text(tie.vesicles) + " vesicles like these would tell " + tie.effect + " from " +
+         tie.other + ", above all by their " + name_of(tie.telling).label +
+         "; one vesicle with fields at 8 times tells more (traceraft explain --data).";
+}
+
+// Of strengths, in units of R and R²/D as the series found it.
+struct Scale {
+  std::string parameter, unit;
+  double factor;
+};
+Scale scale_of(const std::string& effect, const Configuration& model,
+               const SeriesExplanation& found) {
+  const ParameterSpec& spec = effects().find(effect).parameters.front();
+  Units units = model.units();
+  units.diffusion_cm2_s *= model.units().seconds_per_unit() / std::exp(found.base.ln_unit);
+  return {spec.name, spec.unit, 1 / to_model_units(spec.unit, units)};
+}
+
+double diffusion(const Configuration& model, const SeriesExplanation& found) {
+  const Units units = model.units();
+  return units.diffusion_cm2_s * units.seconds_per_unit() / std::exp(found.base.ln_unit);
+}
+
+std::vector<Row> score_rows(const Configuration& model, const SeriesExplanation& found) {
+  std::vector<Row> rows{{"effect", "2 ln likelihood ratio", "of noise alone", "p", "parameter",
+                         "at least", "at most", "unit", "vesicles needed", "shown by"}};
+  for (const SeriesScore& s : found.scores) {
+    const Scale scale = scale_of(s.effect, model, found);
+    rows.push_back({s.effect, formatted("%.1f", s.gain), formatted("%.1f", s.null_mean),
+                    formatted("%.3f", s.p), scale.parameter,
+                    s.bounded ? formatted("%.3g", scale.factor * s.low) : "",
+                    s.bounded ? formatted("%.3g", scale.factor * s.high) : "not determined",
+                    scale.unit, vesicles_text(s.vesicles), name_of(s.telling).label});
+  }
+  return rows;
+}
+
+struct Exponent {
+  std::string model;
+  FittedLaw law;
+};
+
+std::vector<History> in_seconds(std::vector<History> runs, double seconds_per_unit) {
+  for (History& run : runs)
+    for (double& t : run.time) t *= seconds_per_unit;
+  return runs;
+}
+
+// Of the perimeter, over the times that were looked at.
+std::vector<Exponent> exponents(const MeasuredVesicles& data, const SeriesEnsembles& ensembles,
+                                const SeriesExplanation& found) {
+  double first = HUGE_VAL, last = 0;
+  for (const Measurement& m : data.measurements) {
+    if (m.time > 0) first = std::min(first, m.time);
+    last = std::max(last, m.time);
+  }
+  const Window window{first, last};
+  std::vector<Exponent> result;
+  if (const auto law = fit_measurements(data, window)) result.push_back({"measured", *law});
+  const auto add = [&](const std::string& name, const std::vector<History>& runs) {
+    const std::vector<History> seconds = in_seconds(runs, std::exp(found.base.ln_unit));
+    if (const auto law = fit_runs(seconds, common_times(seconds, kPerDecade), window))
+      result.push_back({name, *law});
+  };
+  add("the model", ensembles.base);
+  for (const SeriesCandidate& candidate : ensembles.candidates)
+    add("with " + candidate.effect, candidate.runs);
+  return result;
+}
+
+std::vector<Row> exponent_rows(const std::vector<Exponent>& laws) {
+  std::vector<Row> rows{{"perimeter over radius as c (t - t0)^b", "b", "95 % interval"}};
+  for (const Exponent& e : laws)
+    rows.push_back({e.model, formatted("%.3f", e.law.law.b),
+                    formatted("%.3f to %.3f", e.law.b.low, e.law.b.high)});
+  return rows;
+}
+
+Json series_json(const Configuration& model, const SeriesExplanation& found,
+                 const std::vector<Exponent>& laws) {
+  Json scores = Json::array(), ties = Json::array(), exponents = Json::array();
+  for (const SeriesScore& s : found.scores) {
+    const Scale scale = scale_of(s.effect, model, found);
+    scores.push_back({{"effect", s.effect},
+                      {"score", s.gain},
+                      {"null_mean", s.null_mean},
+                      {"p", s.p},
+                      {"parameter", scale.parameter},
+                      {"low", s.bounded ? Json(scale.factor * s.low) : Json()},
+                      {"high", s.bounded ? Json(scale.factor * s.high) : Json()},
+                      {"unit", scale.unit},
+                      {"vesicles_needed", s.vesicles},
+                      {"shown_by", name_of(s.telling).id}});
+  }
+  for (const SeriesTie& tie : found.ties)
+    ties.push_back({{"effect", tie.effect},
+                    {"other", tie.other},
+                    {"vesicles_needed", tie.vesicles},
+                    {"shown_by", name_of(tie.telling).id}});
+  for (const Exponent& e : laws)
+    exponents.push_back(
+        {{"model", e.model}, {"b", e.law.law.b}, {"interval_95", {e.law.b.low, e.law.b.high}}});
+  return {{"verdict", word_for(found.finding)},
+          {"class", found.named},
+          {"p", found.p},
+          {"vesicles", found.vesicles},
+          {"looks", found.looks},
+          {"diffusion", {{"value", diffusion(model, found)}, {"unit", "cm^2/s"}}},
+          {"scores", scores},
+          {"classes", found.classes},
+          {"ties", ties},
+          {"exponents", exponents}};
+}
+
+Chart curve_chart(Quantity quantity, const MeasuredVesicles& data, const SeriesEnsembles& ensembles,
+                  const SeriesExplanation& found) {
+  Chart chart{name_of(quantity).label,        "time (s)", name_of(quantity).label, true,
+              quantity != Quantity::fraction, {}};
+  ChartSeries measured{"measured", {}, Mark::points};
+  for (const Measurement& m : data.measurements)
+    if (m.of(quantity)) measured.points.emplace_back(m.time, *m.of(quantity));
+  chart.series.push_back(measured);
+  const auto add = [&](const std::string& name, const std::vector<History>& runs) {
+    const std::vector<History> seconds = in_seconds(runs, std::exp(found.base.ln_unit));
+    ChartSeries series{name, {}, Mark::line};
+    for (const double t : common_times(seconds, kPerDecade))
+      series.points.emplace_back(
+          t, std::exp(RunCurves(seconds, each_once(seconds.size())).mean(quantity, std::log(t))));
+    chart.series.push_back(series);
+  };
+  add("the model", ensembles.base);
+  for (const SeriesCandidate& candidate : ensembles.candidates)
+    if (candidate.effect == found.scores.front().effect)
+      add("with " + candidate.effect, candidate.runs);
+  return chart;
+}
+
+}  // namespace
+
+void write_series_explanation(const fs::path& folder, const MeasuredVesicles& data,
+                              const Configuration& model, const SeriesEnsembles& ensembles,
+                              const SeriesExplanation& found, bool quiet) {
+  const std::vector<Exponent> laws = exponents(data, ensembles, found);
+  std::vector<std::string> words{
+      data.name + (data.synthetic ? " (SYNTHETIC, not measured): " : ": ") +
+          std::to_string(found.vesicles) + " vesicles, " + std::to_string(found.looks) + " looks.",
+      sentence(found)};
+  for (const SeriesTie& tie : found.ties) words.push_back(advice(tie));
+  words.push_back(formatted("D is %.3g cm^2/s if nothing is missing.", diffusion(model, found)));
+  words.insert(words.end(), ensembles.notes.begin(), ensembles.notes.end());
+  for (const auto& members : found.classes)
+    if (members.size() > 1) words.push_back("Alike in series: " + listed(members, ", ") + ".");
+  const std::vector<Row> scores = score_rows(model, found), exponent = exponent_rows(laws);
+
+  Page page("What series of vesicles say of the model");
+  for (const std::string& line : words) page.paragraph(line);
+  page.table(scores);
+  page.heading("Exponents");
+  page.table(exponent);
+  page.heading("In time");
+  for (const Quantity quantity : kQuantities) {
+    const Chart chart = curve_chart(quantity, data, ensembles, found);
+    const std::string svg =
+        draw_chart(chart, folder / (std::string("series-") + name_of(quantity).id));
+    if (!svg.empty()) page.figure(svg, chart.title);
+  }
+  page.paragraph("traceraft " + std::string(kVersion) + ".");
+  write_durably(folder / "series.html", page.html());
+  write_durably(folder / "series.json", series_json(model, found, laws).dump(2) + "\n");
+  if (quiet) return;
+  std::printf("\n");
+  for (const std::string& line : words) std::printf("%s\n", line.c_str());
+  std::printf("\n");
+  print_rows(scores);
+  std::printf("\n");
+  print_rows(exponent);
+  std::printf("\nwritten: %s\n", (folder / "series.html").c_str());
+}
+
+}  // namespace traceraft

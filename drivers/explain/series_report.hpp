@@ -1,0 +1,15 @@
+// What series of vesicles say of missing effects: series.json, series.csv, series.html and words.
+#pragma once
+
+#include <filesystem>
+
+#include "drivers/explain/series_ensembles.hpp"
+
+namespace traceraft {
+
+// Throws IoError.
+void write_series_explanation(const std::filesystem::path& folder, const MeasuredVesicles& data,
+                              const Configuration& model, const SeriesEnsembles& ensembles,
+                              const SeriesExplanation& found, bool quiet);
+
+}  // namespace traceraft

@@ -1,0 +1,153 @@
+// What series say, on vesicles whose curves are formulas.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/core/error.hpp"
+#include "kernel/core/random.hpp"
+#include "verification/series/series_explanation.hpp"
+
+namespace traceraft {
+namespace {
+
+double normal(std::uint64_t stream, std::uint64_t i) {
+  return normal_pair(uniform_random(stream, 1, 2 * i), uniform_random(stream, 1, 2 * i + 1))[0];
+}
+
+// A vesicle at times of 1 to 1000 units: the perimeter falls like t^(−1/3) to a plateau, the
+// fraction drifts, and there are more rafts of the same perimeter.
+struct Law {
+  double exponent = -1 / 3.0, plateau = 0, drift = 0, more_rafts = 0;
+};
+History vesicle(const Law& law, std::uint64_t seed, double seconds_per_unit = 1) {
+  History history;
+  const double own = 0.08 * normal(seed, 0);
+  for (int k = 0; k <= 60; ++k) {
+    const double t = std::pow(10.0, k / 20.0);
+    const double p = (30 * std::pow(t, law.exponent) + law.plateau) * std::exp(own);
+    history.time.push_back(t * seconds_per_unit);
+    history.of(Quantity::perimeter).push_back(p);
+    history.of(Quantity::rafts)
+        .push_back(std::max(1.0, std::round((1 + law.more_rafts) * p * p / 10)));
+    history.of(Quantity::fraction).push_back(0.1 * (1 + law.drift * std::log(t)));
+  }
+  return history;
+}
+
+std::vector<History> ensemble(const Law& law) {
+  std::vector<History> runs;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) runs.push_back(vesicle(law, seed));
+  return runs;
+}
+
+std::vector<SeriesCandidate> candidates() {
+  return {{"uptake", 2, true, ensemble({-1 / 3.0, 0, 0.05})},
+          {"cooling", 1, true, ensemble({-1 / 3.0, 0, 0.06})},
+          {"ohta-kawasaki", 3, false, ensemble({-1 / 3.0, 2, 0})},
+          {"line-tension", 1, true, ensemble({-1 / 3.0, 0, 0, 0.3})}};
+}
+
+MeasuredVesicles measured(const Law& law, int vesicles, double noise, double seconds_per_unit) {
+  MeasuredVesicles data;
+  for (int v = 0; v < vesicles; ++v) {
+    const History history = vesicle(law, 100 + static_cast<std::uint64_t>(v), seconds_per_unit);
+    for (int k = 0; k < 6; ++k) {
+      Measurement m;
+      m.vesicle = std::to_string(v);
+      m.time = seconds_per_unit * std::pow(10.0, 0.3 + 0.45 * k + 0.02 * v);
+      m.radius = 5;
+      for (const Quantity quantity : kQuantities) {
+        const auto q = static_cast<std::size_t>(quantity);
+        const double scatter = noise * normal(7 + q, static_cast<std::uint64_t>(10 * v + k));
+        m.values[q] = history.at(quantity, m.time) * std::exp(scatter);
+      }
+      data.measurements.push_back(m);
+    }
+  }
+  return data;
+}
+
+SeriesExplanation explained(const MeasuredVesicles& data) {
+  SeriesRequest request{{1, 8}};
+  request.replicates = 99;
+  return explain_series(data, ensemble({}), candidates(), request);
+}
+
+TEST(SeriesFit, FindsUnitAndStrength) {
+  const RunCurves base(ensemble({}), each_once(10));
+  const RunCurves changed(ensemble({-1 / 3.0, 0, 0.05}), each_once(10));
+  const auto blocks = blocks_of(measured({-1 / 3.0, 0, 0.025}, 20, 0.02, 3));
+  const SeriesFit fit = fit_series(blocks, {&base, &changed}, {1, 8});
+  EXPECT_NEAR(std::exp(fit.ln_unit), 3, 0.3);
+  EXPECT_NEAR(fit.amplitude, 0.5, 4 * fit.deviation);
+  EXPECT_LT(fit.deviation, 0.1);
+  const SeriesFit without = fit_series(blocks, {&base}, {1, 8});
+  EXPECT_GT(without.deviance, fit.deviance + 20);
+}
+
+TEST(SeriesMetric, IsThatOfTheDenseCovariance) {
+  const RunCurves base(ensemble({}), each_once(10));
+  std::vector<SeriesBlock> blocks = blocks_of(measured({}, 3, 0.1, 1));
+  blocks.resize(2);
+  const SeriesScatter scatter{{0.3, 0.2, 0.1}, {0.05, 0.15, 0.25}};
+  const SeriesMetric metric(blocks, base, 0.1, scatter);
+  const Eigen::Index n = blocks[0].values.size(), all = n + blocks[1].values.size();
+  Eigen::MatrixXd S = Eigen::MatrixXd::Zero(all, all);
+  for (std::size_t b = 0; b < 2; ++b) {
+    const Eigen::Index first = b == 0 ? 0 : n, count = blocks[b].values.size();
+    const auto q = static_cast<std::size_t>(blocks[b].quantity);
+    S.block(first, first, count, count).setConstant(scatter.vesicle[q] * scatter.vesicle[q]);
+    for (Eigen::Index i = 0; i < count; ++i)
+      S(first + i, first + i) += blocks[b].variance[i] + scatter.look[q] * scatter.look[q] +
+                                 base.variance(blocks[b].quantity, blocks[b].ln_t[i] - 0.1);
+  }
+  const Vec u = Vec::LinSpaced(all, -1, 2), v = u.array().square();
+  EXPECT_NEAR(metric.product(u, v), u.dot(S.ldlt().solve(v)), 1e-9);
+  EXPECT_NEAR(metric.log_determinant(), std::log(S.determinant()), 1e-9);
+  Vec first = v;
+  first.tail(all - n).setZero();
+  EXPECT_NEAR(metric.product(u, v, blocks[0].quantity), u.dot(S.ldlt().solve(first)), 1e-9);
+}
+
+TEST(SeriesExplanation, NamesTheClassOfWhatIsMissing) {
+  const SeriesExplanation found = explained(measured({-1 / 3.0, 0, 0.05}, 15, 0.05, 2));
+  EXPECT_LE(found.p, 0.02);
+  EXPECT_EQ(found.finding, Finding::ambiguous);  // one class of two effects
+  ASSERT_EQ(found.named.size(), 1u);
+  EXPECT_EQ(found.named[0], (std::vector<std::string>{"uptake", "cooling"}));
+  EXPECT_NEAR(std::exp(found.base.ln_unit), 2, 0.5);
+  const auto score = std::find_if(found.scores.begin(), found.scores.end(),
+                                  [](const SeriesScore& s) { return s.effect == "uptake"; });
+  EXPECT_LT(score->low, 2);
+  EXPECT_GT(score->high, 2);
+  EXPECT_EQ(score->telling, Quantity::fraction);
+  EXPECT_LT(score->vesicles, 15);
+}
+
+TEST(SeriesExplanation, NamesASingleEffectThatNothingElseIsLike) {
+  const SeriesExplanation found = explained(measured({-1 / 3.0, 2, 0}, 15, 0.05, 1));
+  EXPECT_EQ(found.finding, Finding::named);
+  EXPECT_EQ(found.named[0], std::vector<std::string>{"ohta-kawasaki"});
+}
+
+TEST(SeriesExplanation, NamesNothingWhereNothingIsMissing) {
+  const SeriesExplanation found = explained(measured({}, 15, 0.05, 1));
+  EXPECT_EQ(found.finding, Finding::none);
+  EXPECT_GT(found.p, 0.05);
+  EXPECT_TRUE(found.named.empty());
+}
+
+TEST(SeriesExplanation, SaysHowManyVesiclesItWouldTake) {
+  const SeriesExplanation few = explained(measured({}, 3, 1, 1));
+  EXPECT_EQ(few.finding, Finding::not_identifiable);
+  for (const SeriesScore& score : few.scores) EXPECT_GT(score.vesicles, 3) << score.effect;
+}
+
+TEST(SeriesExplanation, RefusesTooFewVesicles) {
+  EXPECT_THROW(explained(measured({}, 2, 0.05, 1)), InputError);
+}
+
+}  // namespace
+}  // namespace traceraft

@@ -1,0 +1,293 @@
+#include "verification/series/series_explanation.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/core/error.hpp"
+#include "kernel/core/random.hpp"
+
+namespace traceraft {
+namespace {
+
+// Standard deviations at which an effect is seen in nine data sets of ten.
+constexpr double kSeen = 4;
+// Responses that correlate more are one class.
+constexpr double kAlike = 0.8;
+// Streams of random numbers.
+enum Stream : std::uint64_t { kRunOf = 1, kVesicle = 2, kLook = 3, kSample = 4 };
+
+double normal(std::uint64_t replicate, std::uint64_t stream, std::uint64_t i) {
+  return normal_pair(uniform_random(replicate, stream, 2 * i),
+                     uniform_random(replicate, stream, 2 * i + 1))[0];
+}
+
+int drawn(int count, std::uint64_t replicate, std::uint64_t stream, std::uint64_t i) {
+  return std::min(count - 1, static_cast<int>(uniform_random(replicate, stream, i) * count));
+}
+
+// The same looks at vesicles of the base model, one run each.
+MeasuredVesicles draw_base(const MeasuredVesicles& data, const std::vector<History>& runs,
+                           const SeriesFit& fit, std::uint64_t replicate) {
+  MeasuredVesicles drawn_data = data;
+  std::uint64_t vesicle = 0, look = 0;
+  for (const auto& [first, last] : data.vesicles()) {
+    const History& run = runs[static_cast<std::size_t>(
+        drawn(static_cast<int>(runs.size()), replicate, kRunOf, vesicle))];
+    for (std::size_t i = first; i < last; ++i)
+      for (const Quantity quantity : kQuantities) {
+        const auto q = static_cast<std::size_t>(quantity);
+        ++look;
+        if (!data.measurements[i].of(quantity)) continue;
+        const double t = data.measurements[i].time / std::exp(fit.ln_unit);
+        const double own = fit.scatter.vesicle[q] * normal(replicate, kVesicle, 3 * vesicle + q) +
+                           fit.scatter.look[q] * normal(replicate, kLook, look);
+        const double value = std::exp(logarithm_of(quantity, run.at(quantity, t)) + own);
+        drawn_data.measurements[i].values[q] =
+            quantity == Quantity::rafts ? std::max(1.0, std::round(value)) : value;
+      }
+    ++vesicle;
+  }
+  return drawn_data;
+}
+
+struct Ensembles {
+  RunCurves base;
+  std::vector<RunCurves> changed;
+
+  Ensembles(const std::vector<History>& runs, const std::vector<SeriesCandidate>& candidates,
+            const std::vector<int>& sample)
+      : base(runs, sample) {
+    for (const SeriesCandidate& candidate : candidates)
+      changed.emplace_back(candidate.runs, sample);
+  }
+};
+
+struct Gains {
+  SeriesFit base;
+  std::vector<SeriesFit> fits;
+  Vec values;
+};
+
+Gains gains_of(const MeasuredVesicles& data, const Ensembles& ensembles,
+               const std::vector<SeriesCandidate>& candidates, const SeriesRequest& request) {
+  const std::vector<SeriesBlock> blocks = blocks_of(data);
+  Gains gains;
+  gains.base = fit_series(blocks, {&ensembles.base}, request.unit);
+  gains.values.resize(static_cast<Eigen::Index>(candidates.size()));
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    gains.fits.push_back(
+        fit_series(blocks, {&ensembles.base, &ensembles.changed[k], candidates[k].two_sided},
+                   request.unit, gains.base));
+    gains.values[static_cast<Eigen::Index>(k)] =
+        std::max(0.0, gains.base.deviance - gains.fits[k].deviance);
+  }
+  return gains;
+}
+
+// Responses of the looks to effects, as far as the unit of time does not make them.
+class Responses {
+ public:
+  Responses(const std::vector<SeriesBlock>& blocks, const Ensembles& ensembles,
+            const SeriesFit& fit)
+      : metric_(blocks, ensembles.base, fit.ln_unit, fit.scatter) {
+    const Vec unit = unit_response(blocks, ensembles.base, fit.ln_unit);
+    const double uu = metric_.product(unit, unit) + 1e-12;
+    for (const RunCurves& changed : ensembles.changed) {
+      Vec e = response(blocks, ensembles.base, changed, fit.ln_unit);
+      e -= metric_.product(unit, e) / uu * unit;
+      own_.push_back(std::move(e));
+    }
+  }
+  double squares(std::size_t k) const { return metric_.product(own_[k], own_[k]); }
+  double correlation(std::size_t j, std::size_t k) const {
+    const double norm = std::sqrt(squares(j) * squares(k));
+    return norm > 0 ? metric_.product(own_[j], own_[k]) / norm : 0;
+  }
+  Quantity telling(const Vec& e) const {
+    return *std::max_element(kQuantities.begin(), kQuantities.end(), [&](Quantity a, Quantity b) {
+      return metric_.product(e, e, a) < metric_.product(e, e, b);
+    });
+  }
+  const Vec& of(std::size_t k) const { return own_[k]; }
+  // What effect k does of which no amount of effect j is capable.
+  Vec beyond(std::size_t k, std::size_t j) const {
+    const double jj = squares(j);
+    return jj > 0 ? Vec(own_[k] - metric_.product(own_[j], own_[k]) / jj * own_[j]) : own_[k];
+  }
+  double squares(const Vec& e) const { return metric_.product(e, e); }
+
+ private:
+  SeriesMetric metric_;
+  std::vector<Vec> own_;
+};
+
+using Classes = std::vector<std::vector<std::size_t>>;
+
+// Chains of effects that are alike.
+Classes classes_of(const Responses& responses, std::size_t count) {
+  std::vector<std::size_t> label(count);
+  for (std::size_t k = 0; k < count; ++k) label[k] = k;
+  for (std::size_t j = 0; j < count; ++j)
+    for (std::size_t k = j + 1; k < count; ++k)
+      if (std::fabs(responses.correlation(j, k)) > kAlike) {
+        const std::size_t from = label[k], to = label[j];
+        std::replace(label.begin(), label.end(), from, to);
+      }
+  Classes classes;
+  for (std::size_t first = 0; first < count; ++first) {
+    std::vector<std::size_t> members;
+    for (std::size_t k = 0; k < count; ++k)
+      if (label[k] == label[first]) members.push_back(k);
+    if (members.front() == first) classes.push_back(members);
+  }
+  return classes;
+}
+
+void refuse(const MeasuredVesicles& data, const std::vector<History>& base,
+            const std::vector<SeriesCandidate>& candidates) {
+  if (data.vesicles().size() < 3)
+    throw InputError("series need three vesicles at least, to know how they scatter");
+  if (base.size() < 3) throw InputError("series need three runs of every model at least");
+  for (const SeriesCandidate& candidate : candidates)
+    if (candidate.runs.size() != base.size())
+      throw InputError("the ensemble with " + candidate.effect + " has other runs than the base");
+}
+
+class SeriesSearch {
+ public:
+  SeriesSearch(const MeasuredVesicles& data, const std::vector<History>& base,
+               const std::vector<SeriesCandidate>& candidates, const SeriesRequest& request)
+      : data_(data),
+        base_(base),
+        candidates_(candidates),
+        request_(request),
+        ensembles_(base, candidates, each_once(base.size())),
+        gains_(gains_of(data, ensembles_, candidates, request)),
+        responses_(blocks_of(data), ensembles_, gains_.base),
+        classes_(classes_of(responses_, candidates.size())) {}
+
+  SeriesExplanation run() {
+    draw_null();
+    result_.vesicles = static_cast<int>(data_.vesicles().size());
+    result_.looks = static_cast<int>(data_.measurements.size());
+    result_.base = gains_.base;
+    result_.p = 1;
+    for (std::size_t k = 0; k < candidates_.size(); ++k) result_.scores.push_back(score_of(k));
+    for (const auto& members : classes_) result_.classes.push_back(names_of(members));
+    judge();
+    std::sort(result_.scores.begin(), result_.scores.end(),
+              [](const SeriesScore& a, const SeriesScore& b) {
+                return a.gain / a.null_mean > b.gain / b.null_mean;
+              });
+    return std::move(result_);
+  }
+
+ private:
+  // Data of the base model, fitted with curves of other runs than those they come from.
+  void draw_null() {
+    const auto count = static_cast<Eigen::Index>(candidates_.size());
+    Eigen::MatrixXd null(request_.replicates, count);
+    for (int r = 0; r < request_.replicates; ++r) {
+      const auto replicate = static_cast<std::uint64_t>(r + 1);
+      std::vector<int> sample;
+      for (std::size_t k = 0; k < base_.size(); ++k)
+        sample.push_back(drawn(static_cast<int>(base_.size()), replicate, kSample, k));
+      null.row(r) = gains_of(draw_base(data_, base_, gains_.base, replicate),
+                             {base_, candidates_, sample}, candidates_, request_)
+                        .values.transpose();
+    }
+    null_mean_ = null.colwise().mean().transpose().cwiseMax(0.5);
+    null_highest_ = (null * null_mean_.cwiseInverse().asDiagonal()).rowwise().maxCoeff();
+  }
+
+  SeriesScore score_of(std::size_t k) {
+    const SeriesFit& fit = gains_.fits[k];
+    const SeriesCandidate& candidate = candidates_[k];
+    const double gain = gains_.values[static_cast<Eigen::Index>(k)];
+    const double noise = null_mean_[static_cast<Eigen::Index>(k)];
+    const auto beyond = (null_highest_.array() >= gain / noise).count();
+    const double p =
+        static_cast<double>(beyond + 1) / static_cast<double>(null_highest_.size() + 1);
+    result_.p = std::min(result_.p, p);
+    const double width = (candidate.two_sided ? 1.96 : 1.645) * fit.deviation *
+                         std::sqrt(std::max(1.0, noise / (candidate.two_sided ? 1.0 : 0.5)));
+    const double least = candidate.two_sided ? fit.amplitude - width : 0.0;
+    const double most = fit.amplitude + width;
+    const double squares = responses_.squares(k);
+    return {candidate.effect,
+            gain,
+            noise,
+            p,
+            std::min(least * candidate.strength, most * candidate.strength),
+            std::max(least * candidate.strength, most * candidate.strength),
+            most <= 2 && least >= -2,
+            needed(squares, noise),
+            responses_.telling(responses_.of(k))};
+  }
+
+  // Vesicles like these that show what has the square of this size, noise being as it is.
+  double needed(double squares, double noise) const {
+    return static_cast<double>(data_.vesicles().size()) * kSeen * kSeen * std::max(1.0, noise) /
+           std::max(squares, 1e-12);
+  }
+
+  std::vector<std::string> names_of(const std::vector<std::size_t>& members) const {
+    std::vector<std::string> names;
+    for (const std::size_t k : members) names.push_back(candidates_[k].effect);
+    return names;
+  }
+
+  void judge() {
+    if (result_.p > request_.false_alarms) {
+      const bool blind =
+          std::none_of(result_.scores.begin(), result_.scores.end(),
+                       [&](const SeriesScore& s) { return s.vesicles <= result_.vesicles; });
+      result_.finding = blind ? Finding::not_identifiable : Finding::none;
+      return;
+    }
+    const Vec calibrated = gains_.values.cwiseQuotient(null_mean_);
+    Eigen::Index best;
+    calibrated.maxCoeff(&best);
+    for (const auto& members : classes_) {
+      const auto most = *std::max_element(
+          members.begin(), members.end(),
+          [&](std::size_t a, std::size_t b) { return calibrated[a] < calibrated[b]; });
+      const bool own = std::count(members.begin(), members.end(), best) > 0;
+      const double behind = gains_.values[best] - gains_.values[static_cast<Eigen::Index>(most)];
+      if (own) result_.named.insert(result_.named.begin(), names_of(members));
+      if (own || behind >= kTelling * std::max(1.0, null_mean_[best])) continue;
+      result_.named.push_back(names_of(members));
+      const auto b = static_cast<std::size_t>(best);
+      const Vec difference = gains_.fits[b].amplitude * responses_.beyond(b, most);
+      result_.ties.push_back({candidates_[b].effect, candidates_[most].effect,
+                              needed(responses_.squares(difference), null_mean_[best]),
+                              responses_.telling(difference)});
+    }
+    result_.finding = result_.named.size() > 1 || result_.named.front().size() > 1
+                          ? Finding::ambiguous
+                          : Finding::named;
+  }
+
+  const MeasuredVesicles& data_;
+  const std::vector<History>& base_;
+  const std::vector<SeriesCandidate>& candidates_;
+  const SeriesRequest& request_;
+  const Ensembles ensembles_;
+  const Gains gains_;
+  const Responses responses_;
+  const Classes classes_;
+  Vec null_mean_, null_highest_;
+  SeriesExplanation result_;
+};
+
+}  // namespace
+
+SeriesExplanation explain_series(const MeasuredVesicles& data, const std::vector<History>& base,
+                                 const std::vector<SeriesCandidate>& candidates,
+                                 const SeriesRequest& request) {
+  refuse(data, base, candidates);
+  return SeriesSearch(data, base, candidates, request).run();
+}
+
+}  // namespace traceraft

@@ -1,0 +1,62 @@
+// From series of vesicles (perimeter, number of rafts, their share of the area) to classes of
+// effects that the model may lack: they say less than fields, and this says how much less.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "verification/explain/judgement.hpp"
+#include "verification/series/series_fit.hpp"
+
+namespace traceraft {
+
+// Simulated vesicles that differ in their seeds, the same seeds in all ensembles.
+struct SeriesCandidate {
+  std::string effect;
+  double strength;  // of its first parameter, with its sign
+  bool two_sided;
+  std::vector<History> runs;  // in units of R²/D
+};
+
+struct SeriesRequest {
+  UnitRange unit;              // R²/D of the model, and the factor within which D is known
+  int replicates = 199;        // of data that the base model would give
+  double false_alarms = 0.05;  // with nothing missing
+};
+
+struct SeriesScore {
+  std::string effect;
+  double gain;       // 2 ln of the likelihood ratio, the effect's strength being free
+  double null_mean;  // the same of data of the base model, on average
+  double p;          // share of these in which any effect gains as much, over its own average
+  double low, high;  // 95 % bounds of the strength, in units of the parameter of the ensemble
+  bool bounded;      // they are within what has been simulated
+  double vesicles;   // so many as these would show the effect at the ensemble's strength
+  Quantity telling;  // what shows it best
+};
+
+// Two classes that the data do not tell apart.
+struct SeriesTie {
+  std::string effect, other;
+  double vesicles;   // so many would
+  Quantity telling;  // above all by that
+};
+
+struct SeriesExplanation {
+  Finding finding;
+  int vesicles, looks;
+  double p;                                       // that the best score is noise
+  SeriesFit base;                                 // without any effect
+  std::vector<SeriesScore> scores;                // most telling first
+  std::vector<std::vector<std::string>> classes;  // effects that change series alike
+  std::vector<std::vector<std::string>> named;    // those of them that explain the data
+  std::vector<SeriesTie> ties;                    // between the best effect and other classes
+};
+
+// Throws InputError if there are fewer than three vesicles, or runs.
+SeriesExplanation explain_series(const MeasuredVesicles& data, const std::vector<History>& base,
+                                 const std::vector<SeriesCandidate>& candidates,
+                                 const SeriesRequest& request);
+
+}  // namespace traceraft

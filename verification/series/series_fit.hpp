@@ -1,0 +1,82 @@
+// How probable series of vesicles are if simulated vesicles tell the truth: the likelihood of what
+// was counted and measured at a few looks, with the unit of time, all scatter and the strength of
+// an effect free.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "kernel/core/types.hpp"
+#include "verification/series/run_curves.hpp"
+#include "verification/vesicles/measurements.hpp"
+
+namespace traceraft {
+
+// Looks at one quantity of one vesicle.
+struct SeriesBlock {
+  Quantity quantity;
+  Vec ln_t;      // of seconds
+  Vec values;    // logarithms
+  Vec variance;  // that is known: of rounding, and of what the data state
+};
+// Values that are not positive say nothing.
+std::vector<SeriesBlock> blocks_of(const MeasuredVesicles& data);
+
+// Vesicles scatter around the mean of the runs; looks at a vesicle scatter around what is its own.
+struct SeriesScatter {
+  std::array<double, 3> vesicle, look;  // standard deviations, per quantity
+};
+
+// The model with an effect of strength a has the logarithms mean + a (changed − mean).
+struct SeriesModel {
+  const RunCurves* base;
+  const RunCurves* changed = nullptr;  // with the effect at strength 1; none: the base alone
+  bool two_sided = true;
+};
+
+struct SeriesFit {
+  double ln_unit = 0;    // of R²/D in seconds
+  double amplitude = 0;  // a
+  double deviation = 0;  // of a; 0 if there is no effect
+  SeriesScatter scatter;
+  double deviance;  // −2 ln of the likelihood
+};
+
+// Seconds per unit of time: what to begin with, and the factor within which the fit stays.
+struct UnitRange {
+  double start, factor;
+};
+SeriesFit fit_series(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
+                     const UnitRange& unit);
+// From the fit of a model that differs little.
+SeriesFit fit_series(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
+                     const UnitRange& unit, const SeriesFit& near);
+
+// The inner product in which looks are independent and of variance 1, of vectors with an entry per
+// look, block after block.
+class SeriesMetric {
+ public:
+  SeriesMetric(const std::vector<SeriesBlock>& blocks, const RunCurves& base, double ln_unit,
+               const SeriesScatter& scatter);
+  double product(const Vec& u, const Vec& v) const;
+  // Of one quantity alone.
+  double product(const Vec& u, const Vec& v, std::optional<Quantity> only) const;
+  double log_determinant() const;
+
+ private:
+  struct Block {
+    Quantity quantity;
+    Eigen::Index first, count;
+    double shared;  // variance of what is the vesicle's own
+    Vec inverse;    // of the variances of the looks
+  };
+  std::vector<Block> blocks_;
+};
+
+// With an entry per look: changed − mean, or the derivative of the mean by ln of the unit of time.
+Vec response(const std::vector<SeriesBlock>& blocks, const RunCurves& base,
+             const RunCurves& changed, double ln_unit);
+Vec unit_response(const std::vector<SeriesBlock>& blocks, const RunCurves& base, double ln_unit);
+
+}  // namespace traceraft
