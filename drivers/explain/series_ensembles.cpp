@@ -89,6 +89,14 @@ std::vector<EffectTerm> sizes(const fs::path& folder, const Configuration& model
   return terms;
 }
 
+// As strong as the effect may be, if it would have to be stronger.
+EffectTerm within_range(EffectTerm term, const Units& units) {
+  const ParameterSpec& spec = effects().find(term.effect).parameters.front();
+  const double factor = to_model_units(spec.unit, units);
+  term.values.front() = std::clamp(term.values.front(), factor * spec.min, factor * spec.max);
+  return term;
+}
+
 bool is_two_sided(const std::string& effect) {
   const std::vector<Candidate> all = candidates();
   return std::any_of(all.begin(), all.end(), [&](const Candidate& candidate) {
@@ -117,7 +125,8 @@ SeriesEnsembles run_series_ensembles(const fs::path& folder, const Configuration
                      " failed: " + base.failures.front().why);
   result.base = std::move(base.runs);
   result.stopped = base.stopped;
-  for (const EffectTerm& term : terms) {
+  for (const EffectTerm& sized : terms) {
+    const EffectTerm term = within_range(sized, units);
     if (result.stopped) return result;
     PointEnd end = simulate(term.effect, effect_text({term}, units));
     result.stopped = end.stopped;

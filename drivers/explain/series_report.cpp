@@ -38,6 +38,9 @@ std::string sentence(const SeriesExplanation& found) {
       return "No significant disagreement: the model explains the series within their scatter.";
     case Finding::not_identifiable:
       return "No significant disagreement, but so few vesicles would not show any of the effects.";
+    case Finding::unnamed:
+      return "There is a trend that no known effect explains" +
+             (classes.empty() ? "." : "; " + classes.front() + " comes closest.");
     case Finding::named:
       return "The model lacks " + classes.front() + ".";
     default:
@@ -152,6 +155,7 @@ Json series_json(const Configuration& model, const SeriesExplanation& found,
   return {{"verdict", word_for(found.finding)},
           {"class", found.named},
           {"p", found.p},
+          {"trend_p", found.trend_p},
           {"vesicles", found.vesicles},
           {"looks", found.looks},
           {"diffusion", {{"value", diffusion(model, found)}, {"unit", "cm^2/s"}}},

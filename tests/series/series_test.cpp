@@ -139,6 +139,12 @@ TEST(SeriesExplanation, NamesNothingWhereNothingIsMissing) {
   EXPECT_TRUE(found.named.empty());
 }
 
+TEST(SeriesExplanation, AdmitsATrendThatNothingExplains) {
+  const SeriesExplanation found = explained(measured({-0.6, 0, 0}, 15, 0.05, 1));
+  EXPECT_EQ(found.finding, Finding::unnamed);
+  EXPECT_LE(found.trend_p, 0.02);
+}
+
 TEST(SeriesExplanation, SaysHowManyVesiclesItWouldTake) {
   const SeriesExplanation few = explained(measured({}, 3, 1, 1));
   EXPECT_EQ(few.finding, Finding::not_identifiable);

@@ -63,6 +63,9 @@ double spread(const SurfaceSpace& space, ConstVec c) {
   return std::sqrt(std::max(0.0, space.inner(c, c) / space.area - mean * mean));
 }
 
+// Standard deviation of c below which there is nothing to see.
+constexpr double kLeastContrast = 0.01;
+
 // How a truth is advanced.
 struct Method {
   SpacePtr space;
@@ -166,6 +169,8 @@ class Sizing {
       const Vec difference = changed.advance(snapshots_[k], times_[k], times_[k + 1]) -
                              base.advance(snapshots_[k], times_[k], times_[k + 1]);
       const double contrast = spread(space, snapshots_[k]);
+      if (!(contrast > kLeastContrast))
+        throw InputError("the base model has no rafts at these times: c is the same everywhere");
       squares += space.inner(difference, difference) / space.area / (contrast * contrast);
     }
     return std::sqrt(squares / static_cast<double>(times_.size() - 1));

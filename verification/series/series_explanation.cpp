@@ -14,6 +14,8 @@ namespace {
 constexpr double kSeen = 4;
 // Responses that correlate more are one class.
 constexpr double kAlike = 0.8;
+// A trend that no effect explains has to be that much less probable.
+constexpr double kTrendLevel = 0.4;
 // Streams of random numbers.
 enum Stream : std::uint64_t { kRunOf = 1, kVesicle = 2, kLook = 3, kSample = 4 };
 
@@ -51,6 +53,12 @@ MeasuredVesicles draw_base(const MeasuredVesicles& data, const std::vector<Histo
   return drawn_data;
 }
 
+// p = (1 + the number of replicates that reach it) / (1 + their number).
+double share_beyond(const Vec& replicates, double value) {
+  return static_cast<double>((replicates.array() >= value).count() + 1) /
+         static_cast<double>(replicates.size() + 1);
+}
+
 struct Ensembles {
   RunCurves base;
   std::vector<RunCurves> changed;
@@ -67,6 +75,7 @@ struct Gains {
   SeriesFit base;
   std::vector<SeriesFit> fits;
   Vec values;
+  double trend;  // left of the base
 };
 
 Gains gains_of(const MeasuredVesicles& data, const Ensembles& ensembles,
@@ -74,6 +83,7 @@ Gains gains_of(const MeasuredVesicles& data, const Ensembles& ensembles,
   const std::vector<SeriesBlock> blocks = blocks_of(data);
   Gains gains;
   gains.base = fit_series(blocks, {&ensembles.base}, request.unit);
+  gains.trend = trend_left(blocks, {&ensembles.base}, gains.base);
   gains.values.resize(static_cast<Eigen::Index>(candidates.size()));
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     gains.fits.push_back(
@@ -124,22 +134,20 @@ class Responses {
 
 using Classes = std::vector<std::vector<std::size_t>>;
 
-// Chains of effects that are alike.
+// Every two members of a class are alike.
 Classes classes_of(const Responses& responses, std::size_t count) {
-  std::vector<std::size_t> label(count);
-  for (std::size_t k = 0; k < count; ++k) label[k] = k;
-  for (std::size_t j = 0; j < count; ++j)
-    for (std::size_t k = j + 1; k < count; ++k)
-      if (std::fabs(responses.correlation(j, k)) > kAlike) {
-        const std::size_t from = label[k], to = label[j];
-        std::replace(label.begin(), label.end(), from, to);
-      }
   Classes classes;
-  for (std::size_t first = 0; first < count; ++first) {
-    std::vector<std::size_t> members;
-    for (std::size_t k = 0; k < count; ++k)
-      if (label[k] == label[first]) members.push_back(k);
-    if (members.front() == first) classes.push_back(members);
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto like_all = [&](const std::vector<std::size_t>& members) {
+      return std::all_of(members.begin(), members.end(), [&](std::size_t j) {
+        return std::fabs(responses.correlation(j, k)) > kAlike;
+      });
+    };
+    const auto own = std::find_if(classes.begin(), classes.end(), like_all);
+    if (own == classes.end())
+      classes.push_back({k});
+    else
+      own->push_back(k);
   }
   return classes;
 }
@@ -148,6 +156,7 @@ void refuse(const MeasuredVesicles& data, const std::vector<History>& base,
             const std::vector<SeriesCandidate>& candidates) {
   if (data.vesicles().size() < 3)
     throw InputError("series need three vesicles at least, to know how they scatter");
+  if (candidates.empty()) throw InputError("series: no effect is left to look for");
   if (base.size() < 3) throw InputError("series need three runs of every model at least");
   for (const SeriesCandidate& candidate : candidates)
     if (candidate.runs.size() != base.size())
@@ -188,14 +197,16 @@ class SeriesSearch {
   void draw_null() {
     const auto count = static_cast<Eigen::Index>(candidates_.size());
     Eigen::MatrixXd null(request_.replicates, count);
+    null_trend_.resize(request_.replicates);
     for (int r = 0; r < request_.replicates; ++r) {
       const auto replicate = static_cast<std::uint64_t>(r + 1);
       std::vector<int> sample;
       for (std::size_t k = 0; k < base_.size(); ++k)
         sample.push_back(drawn(static_cast<int>(base_.size()), replicate, kSample, k));
-      null.row(r) = gains_of(draw_base(data_, base_, gains_.base, replicate),
-                             {base_, candidates_, sample}, candidates_, request_)
-                        .values.transpose();
+      const Gains gains = gains_of(draw_base(data_, base_, gains_.base, replicate),
+                                   {base_, candidates_, sample}, candidates_, request_);
+      null.row(r) = gains.values.transpose();
+      null_trend_[r] = gains.trend;
     }
     null_mean_ = null.colwise().mean().transpose().cwiseMax(0.5);
     null_highest_ = (null * null_mean_.cwiseInverse().asDiagonal()).rowwise().maxCoeff();
@@ -206,9 +217,7 @@ class SeriesSearch {
     const SeriesCandidate& candidate = candidates_[k];
     const double gain = gains_.values[static_cast<Eigen::Index>(k)];
     const double noise = null_mean_[static_cast<Eigen::Index>(k)];
-    const auto beyond = (null_highest_.array() >= gain / noise).count();
-    const double p =
-        static_cast<double>(beyond + 1) / static_cast<double>(null_highest_.size() + 1);
+    const double p = share_beyond(null_highest_, gain / noise);
     result_.p = std::min(result_.p, p);
     const double width = (candidate.two_sided ? 1.96 : 1.645) * fit.deviation *
                          std::sqrt(std::max(1.0, noise / (candidate.two_sided ? 1.0 : 0.5)));
@@ -239,16 +248,28 @@ class SeriesSearch {
   }
 
   void judge() {
-    if (result_.p > request_.false_alarms) {
+    const bool significant = result_.p <= request_.false_alarms;
+    const Vec calibrated = gains_.values.cwiseQuotient(null_mean_);
+    Eigen::Index best;
+    calibrated.maxCoeff(&best);
+    const auto b = static_cast<std::size_t>(best);
+    result_.trend_p = share_beyond(
+        null_trend_, significant
+                         ? trend_left(blocks_of(data_), {&ensembles_.base, &ensembles_.changed[b]},
+                                      gains_.fits[b])
+                         : gains_.trend);
+    if (result_.trend_p <= kTrendLevel * request_.false_alarms) {
+      result_.finding = Finding::unnamed;
+      if (significant) result_.named = {{candidates_[b].effect}};
+      return;
+    }
+    if (!significant) {
       const bool blind =
           std::none_of(result_.scores.begin(), result_.scores.end(),
                        [&](const SeriesScore& s) { return s.vesicles <= result_.vesicles; });
       result_.finding = blind ? Finding::not_identifiable : Finding::none;
       return;
     }
-    const Vec calibrated = gains_.values.cwiseQuotient(null_mean_);
-    Eigen::Index best;
-    calibrated.maxCoeff(&best);
     for (const auto& members : classes_) {
       const auto most = *std::max_element(
           members.begin(), members.end(),
@@ -258,7 +279,6 @@ class SeriesSearch {
       if (own) result_.named.insert(result_.named.begin(), names_of(members));
       if (own || behind >= kTelling * std::max(1.0, null_mean_[best])) continue;
       result_.named.push_back(names_of(members));
-      const auto b = static_cast<std::size_t>(best);
       const Vec difference = gains_.fits[b].amplitude * responses_.beyond(b, most);
       result_.ties.push_back({candidates_[b].effect, candidates_[most].effect,
                               needed(responses_.squares(difference), null_mean_[best]),
@@ -277,7 +297,7 @@ class SeriesSearch {
   const Gains gains_;
   const Responses responses_;
   const Classes classes_;
-  Vec null_mean_, null_highest_;
+  Vec null_mean_, null_highest_, null_trend_;
   SeriesExplanation result_;
 };
 

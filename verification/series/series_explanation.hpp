@@ -22,7 +22,7 @@ struct SeriesCandidate {
 struct SeriesRequest {
   UnitRange unit;              // R²/D of the model, and the factor within which D is known
   int replicates = 199;        // of data that the base model would give
-  double false_alarms = 0.05;  // with nothing missing
+  double false_alarms = 0.05;  // with nothing missing, that something seems to be named
 };
 
 struct SeriesScore {
@@ -47,6 +47,7 @@ struct SeriesExplanation {
   Finding finding;
   int vesicles, looks;
   double p;                                       // that the best score is noise
+  double trend_p;                                 // that what is left of the best model is
   SeriesFit base;                                 // without any effect
   std::vector<SeriesScore> scores;                // most telling first
   std::vector<std::vector<std::string>> classes;  // effects that change series alike

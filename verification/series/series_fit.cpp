@@ -12,7 +12,7 @@ namespace {
 constexpr double kRoundingVariance = 1 / 12.0;  // of a whole number
 constexpr double kLeastScatter = 0.003, kLargestScatter = 1;
 constexpr double kLargestAmplitude = 2;  // of what has been simulated
-constexpr double kLargestStep = 0.4;     // of ln of the unit of time
+constexpr int kTrendDegree = 3;
 constexpr int kRounds = 3, kNewtonSteps = 4;
 
 constexpr std::size_t index(Quantity quantity) {
@@ -40,6 +40,7 @@ class Fitter {
         model_(model),
         centre_(std::log(unit.start)),
         width_(std::log(unit.factor)),
+        weight_(4 / (width_ * width_)),
         fit_(start) {}
 
   SeriesFit run() {
@@ -51,38 +52,40 @@ class Fitter {
   }
 
  private:
-  Vec residual() const {
-    return per_look(blocks_, [this](const SeriesBlock& block, Eigen::Index i) {
-      const double t = block.ln_t[i] - fit_.ln_unit;
-      const double mean = model_.base->mean(block.quantity, t);
-      const double change =
-          model_.changed != nullptr ? model_.changed->mean(block.quantity, t) - mean : 0.0;
-      return block.values[i] - mean - fit_.amplitude * change;
-    });
-  }
+  Vec residual() const { return traceraft::residual(blocks_, model_, fit_); }
 
+  // A step of Gauss and Newton, halved until it is none backwards.
   void improve_mean() {
     const SeriesMetric metric(blocks_, *model_.base, fit_.ln_unit, fit_.scatter);
     const Vec r = residual(), u = unit_response(blocks_, *model_.base, fit_.ln_unit);
-    const double uu = metric.product(u, u) + 1e-9, ur = metric.product(u, r);
-    if (model_.changed == nullptr) {
-      move_unit(ur / uu);
-      return;
+    const double uu = metric.product(u, u) + weight_;
+    const double ur = metric.product(u, r) + weight_ * (centre_ - fit_.ln_unit);
+    double step_a = 0, step_u = ur / uu;
+    if (model_.changed != nullptr) {
+      const Vec e = response(blocks_, *model_.base, *model_.changed, fit_.ln_unit);
+      const double ue = metric.product(u, e), er = metric.product(e, r);
+      const double own = metric.product(e, e) + 1e-9 - ue * ue / uu;
+      fit_.deviation = 1 / std::sqrt(own);
+      const double lowest = model_.two_sided ? -kLargestAmplitude : 0.0;
+      step_a = std::clamp(fit_.amplitude + (er - ue * ur / uu) / own, lowest, kLargestAmplitude) -
+               fit_.amplitude;
+      step_u = (ur - ue * step_a) / uu;
     }
-    const Vec e = response(blocks_, *model_.base, *model_.changed, fit_.ln_unit);
-    const double ue = metric.product(u, e), ee = metric.product(e, e) + 1e-9;
-    const double er = metric.product(e, r), own = ee - ue * ue / uu;
-    const double before = fit_.amplitude;
-    const double lowest = model_.two_sided ? -kLargestAmplitude : 0.0;
-    fit_.amplitude = std::clamp(before + (er - ue * ur / uu) / own, lowest, kLargestAmplitude);
-    fit_.deviation = 1 / std::sqrt(own);
-    move_unit((ur - ue * (fit_.amplitude - before)) / uu);
+    const SeriesFit before = fit_;
+    const double least = metric.product(r, r) + penalty();
+    for (double share = 1; share > 0.1; share *= 0.5) {
+      fit_.amplitude = before.amplitude + share * step_a;
+      fit_.ln_unit =
+          std::clamp(before.ln_unit + share * step_u, centre_ - width_, centre_ + width_);
+      const Vec now = residual();
+      if (metric.product(now, now) + penalty() <= least) return;
+    }
+    fit_.amplitude = before.amplitude;
+    fit_.ln_unit = before.ln_unit;
   }
 
-  void move_unit(double step) {
-    fit_.ln_unit = std::clamp(fit_.ln_unit + std::clamp(step, -kLargestStep, kLargestStep),
-                              centre_ - width_, centre_ + width_);
-  }
+  // D is known: within the factor with 95 % confidence.
+  double penalty() const { return weight_ * (fit_.ln_unit - centre_) * (fit_.ln_unit - centre_); }
 
   void improve_scatter() {
     const Vec r = residual();
@@ -106,12 +109,12 @@ class Fitter {
                   start, std::vector<double>(6, low), std::vector<double>(6, high),
                   std::vector<double>(6, 0.3), 1e-3, 300});
     fit_.scatter = scatter_at(found.x);
-    fit_.deviance = found.value;
+    fit_.deviance = found.value + penalty();
   }
 
   const std::vector<SeriesBlock>& blocks_;
   const SeriesModel& model_;
-  const double centre_, width_;
+  const double centre_, width_, weight_;
   SeriesFit fit_;
 };
 
@@ -195,6 +198,42 @@ double SeriesMetric::log_determinant() const {
   for (const Block& block : blocks_)
     sum += std::log1p(block.shared * block.inverse.sum()) - block.inverse.array().log().sum();
   return sum;
+}
+
+Vec residual(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
+             const SeriesFit& fit) {
+  return per_look(blocks, [&](const SeriesBlock& block, Eigen::Index i) {
+    const double t = block.ln_t[i] - fit.ln_unit;
+    const double mean = model.base->mean(block.quantity, t);
+    const double change =
+        model.changed != nullptr ? model.changed->mean(block.quantity, t) - mean : 0.0;
+    return block.values[i] - mean - fit.amplitude * change;
+  });
+}
+
+double trend_left(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
+                  const SeriesFit& fit) {
+  const SeriesMetric metric(blocks, *model.base, fit.ln_unit, fit.scatter);
+  double sum = 0, count = 0;
+  for (const SeriesBlock& block : blocks) {
+    sum += block.ln_t.sum();
+    count += static_cast<double>(block.ln_t.size());
+  }
+  const double middle = sum / count;
+  std::vector<Vec> trends;
+  for (const Quantity quantity : kQuantities)
+    for (int power = 0; power <= kTrendDegree; ++power) {
+      Vec trend = per_look(blocks, [&](const SeriesBlock& block, Eigen::Index i) {
+        return block.quantity == quantity ? std::pow(block.ln_t[i] - middle, power) : 0.0;
+      });
+      for (const Vec& before : trends) trend -= metric.product(before, trend) * before;
+      const double norm = std::sqrt(metric.product(trend, trend));
+      if (norm > 1e-6) trends.push_back(trend / norm);
+    }
+  const Vec r = residual(blocks, model, fit);
+  double squares = 0;
+  for (const Vec& trend : trends) squares += std::pow(metric.product(trend, r), 2);
+  return squares;
 }
 
 Vec response(const std::vector<SeriesBlock>& blocks, const RunCurves& base,

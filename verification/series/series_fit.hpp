@@ -43,7 +43,8 @@ struct SeriesFit {
   double deviance;  // −2 ln of the likelihood
 };
 
-// Seconds per unit of time: what to begin with, and the factor within which the fit stays.
+// Seconds per unit of time: what is known of it before, with 95 % confidence within a factor. The
+// fit does not leave that.
 struct UnitRange {
   double start, factor;
 };
@@ -73,6 +74,14 @@ class SeriesMetric {
   };
   std::vector<Block> blocks_;
 };
+
+// With an entry per look: measured minus model.
+Vec residual(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
+             const SeriesFit& fit);
+// What is left of a fit that polynomials of ln t explain, a cubic for each quantity, in squares of
+// standard deviations.
+double trend_left(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
+                  const SeriesFit& fit);
 
 // With an entry per look: changed − mean, or the derivative of the mean by ln of the unit of time.
 Vec response(const std::vector<SeriesBlock>& blocks, const RunCurves& base,
