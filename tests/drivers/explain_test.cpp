@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "backends/posix/durable_file.hpp"
 #include "drivers/explain/field_dataset.hpp"
 #include "kernel/physics/units.hpp"
 #include "tests/support/program.hpp"
@@ -141,9 +142,10 @@ TEST_F(ExplainTest, JoinsWhatVesiclesSay) {
   ASSERT_EQ(drawn.vesicles.size(), 2u);
   EXPECT_NE(drawn.vesicles[0].snapshots[0].values[0], drawn.vesicles[1].snapshots[0].values[0]);
   write(drawn.vesicles);
-  const nlohmann::json verdict = explain();
-  EXPECT_EQ(verdict["effect"], "uptake") << verdict.dump(2);
-  const nlohmann::json& rate = verdict["parameters"]["uptake.rate"];
+  ASSERT_EQ(testing::traceraft(command(16)).code, 0);
+  const nlohmann::json found = verdict();
+  EXPECT_EQ(found["effect"], "uptake") << found.dump(2);
+  const nlohmann::json& rate = found["parameters"]["uptake.rate"];
   EXPECT_NEAR(rate["value"], drawn.truth[0].values[0] / Units().time(),
               4 * rate["sigma"].get<double>());
 }
@@ -152,6 +154,40 @@ TEST_F(ExplainTest, RefusesWhatItCannotUse) {
   const std::string data = " --data " + (folder.path / "data").string();
   EXPECT_EQ(testing::traceraft("explain").code, 2);
   EXPECT_EQ(testing::traceraft("explain" + data).code, 2);
+}
+
+// Coarse, and with a raft that is one from the start, which no measured vesicle is.
+TEST(ExplainSeriesTest, SimulatesOnceAndSaysWhatSeriesTell) {
+  const testing::TemporaryFolder folder;
+  const fs::path model = folder.path / "model.toml", out = folder.path / "out";
+  write_durably(model, "epsilon = 0.8\ncells = 16\nraft-fraction = 0.3\n");
+  const std::string command =
+      "explain --series " TRACERAFT_ROOT
+      "/verification/data/synthetic/guv-3to1 --runs 3 "
+      "--replicates 49 --without allen-cahn,asymmetry,bulk-mobility,cooling,exchange,gravity,"
+      "line-tension,mobility-contrast,mobility-exponent --out " +
+      out.string() + " --model ";
+  const auto end = testing::traceraft(command + model.string());
+  ASSERT_EQ(end.code, 0) << end.output;
+  EXPECT_NE(end.output.find("simulations with no effect"), std::string::npos) << end.output;
+  const auto series = nlohmann::json::parse(testing::content(out / "series.json"));
+  EXPECT_EQ(series["verdict"], "unnamed") << series.dump(2);
+  ASSERT_EQ(series["scores"].size(), 2u);
+  EXPECT_EQ(series["vesicles"], 17);
+  for (const auto& score : series["scores"]) EXPECT_GT(score["vesicles_needed"], 0);
+  EXPECT_EQ(series["exponents"][0]["model"], "measured");
+  EXPECT_NEAR(series["exponents"][0]["b"], -0.37, 0.1);  // as published
+  EXPECT_NE(testing::content(out / "series.html").find("SYNTHETIC"), std::string::npos);
+
+  const fs::file_time_type before = fs::last_write_time(out / "ensembles/base/runs/seed-1");
+  ASSERT_EQ(testing::traceraft(command + model.string()).code, 0);
+  EXPECT_EQ(fs::last_write_time(out / "ensembles/base/runs/seed-1"), before);
+
+  const fs::path other = folder.path / "other.toml";
+  write_durably(other, "epsilon = 0.8\ncells = 16\nraft-fraction = 0.4\n");
+  const auto refused = testing::traceraft(command + other.string());
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.output.find("another model"), std::string::npos) << refused.output;
 }
 
 }  // namespace

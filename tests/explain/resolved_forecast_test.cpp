@@ -85,7 +85,7 @@ TEST_F(ResolvedForecastTest, LeavesLittleOfTheErrorOfTheMesh) {
   const SpacePtr own = serial_space(*surface, 16);
   const FinerMeshes meshes = finer_meshes(*surface, own, 16, series);
   ResolvedForecast resolved(meshes, model, rafts(*meshes.spaces[1]), integrator);
-  const ResolvedForecast::End end = resolved.advance(1, kBegin, kEnd, ThreadTeam(2));
+  const ResolvedForecast::End end = resolved.advance(1, kBegin, kEnd);
 
   // On its own mesh, so that what no field on it can represent does not count.
   const SpacePtr exact_space = serial_space(*surface, 80);
@@ -103,8 +103,8 @@ TEST_F(ResolvedForecastTest, GoesOnFromACorrectedState) {
   const FinerMeshes meshes = finer_meshes(*surface, own, 16, series);
   ResolvedForecast plain(meshes, model, rafts(*meshes.spaces[1]), integrator), corrected = plain;
   corrected.correct(Vec::Constant(own->nodes(), 0.01));
-  const Vec change = corrected.advance(1, kBegin, kEnd, ThreadTeam(1)).field -
-                     plain.advance(1, kBegin, kEnd, ThreadTeam(1)).field;
+  const Vec change = corrected.advance(1, kBegin, kEnd).field -
+                     plain.advance(1, kBegin, kEnd).field;
   EXPECT_NEAR(mean(*own, change), 0.01, 1e-5);
 }
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "verification/explain/neighbours.hpp"
+
 namespace traceraft {
 namespace {
 
@@ -15,6 +17,8 @@ constexpr double kWorthRefitting = 0.25;
 // From one snapshot to the next, in units of the standard deviation of c: what effects are hardly
 // looked for below.
 constexpr double kUsualChange = 0.06;
+// Effects that are replaced or dropped at once.
+constexpr int kMostMoves = 3;
 // Of means over the neighbourhood, in widths of phase boundaries.
 constexpr double kMapWidth = 2;
 // The mesh and the integrator of the second run of what was found.
@@ -107,14 +111,40 @@ class Search {
     for (FilterProblem& data : data_) data.noise = state.noise[data.vesicle];
     model_.hypothesis = result_.found.hypothesis;
     model_.pace = result_.found.pace;
-    for (const auto& part : model_.hypothesis.parts) look_no_more_for(part.candidate.effect);
+    screen_the_rest();
   }
 
-  void look_no_more_for(const std::string& effect) {
-    auto& screened = model_.screened;
-    screened.erase(std::remove_if(screened.begin(), screened.end(),
-                                  [&](const Candidate& c) { return c.effect == effect; }),
-                   screened.end());
+  void screen_the_rest() {
+    model_.screened = candidates_of(request_);
+    for (const auto& part : model_.hypothesis.parts)
+      model_.screened.erase(
+          std::find_if(model_.screened.begin(), model_.screened.end(),
+                       [&](const Candidate& c) { return c.effect == part.candidate.effect; }));
+  }
+
+  // Beside an effect that was taken, those before it may stand for something else.
+  void improve() {
+    for (int k = 0; k < kMostMoves && model_.hypothesis.parts.size() > 1; ++k) {
+      tell("in place of " + model_.hypothesis.name());
+      std::vector<FilterModel> trials;
+      for (Hypothesis& near :
+           neighbours(result_.found, result_.rounds, values(), candidates_of(request_))) {
+        trials.push_back(model_);
+        trials.back().hypothesis = std::move(near);
+      }
+      const double here = criterion(result_.found, values());
+      const Refit* best = nullptr;
+      const std::vector<Refit> fits = refit_all(trials);
+      for (const Refit& fit : fits)
+        if (fit.failure.empty() && criterion(fit, values()) < here &&
+            (best == nullptr || criterion(fit, values()) < criterion(*best, values())))
+          best = &fit;
+      if (best == nullptr) break;
+      set_found(*best);
+      result_.finding = Finding::named;
+      result_.equivalent = {model_.hypothesis.parts.back().candidate.effect};
+    }
+    screen_the_rest();
   }
 
   // With nothing missing, from a filter of a few directions.
@@ -180,7 +210,9 @@ class Search {
     if (first) result_.base_maps = result_.found_maps;
     Round round{
         model_, screen(pass, model_.screened, model_.hypothesis.coefficients()), result_.found, {}};
-    const bool more = model_.hypothesis.parts.size() < std::size_t(request_.most_effects);
+    const auto most = static_cast<std::size_t>(request_.most_effects);
+    const bool more =
+        model_.hypothesis.parts.size() < most && result_.rounds.size() < most + kMostMoves;
     if (more && round.screening.p <= request_.false_alarms) refit_shortlist(round);
     result_.rounds.push_back(std::move(round));
     return take(result_.rounds.back());
@@ -205,6 +237,7 @@ class Search {
   }
 
   std::vector<Refit> refit_all(const std::vector<FilterModel>& trials) const {
+    if (trials.size() == 1) return {refit(data_, trials[0], request_.filter, maps_)};
     std::vector<Refit> refits(trials.size());
     std::atomic<std::size_t> next{0};
     data_.front().team->run([&](int) {
@@ -239,7 +272,7 @@ class Search {
     result_.finding = judgement.finding;
     result_.equivalent = judgement.equivalent;
     set_found(round.refits.front());
-    look_no_more_for(judgement.equivalent.front());
+    improve();
     return true;
   }
 
@@ -256,7 +289,7 @@ class Search {
     result_.floor = in_units_of_c(result_.found.expected, noise);
     const Round& last = result_.rounds.back();
     result_.bounds = bounds_of(last.screening, last.known.screened);
-    if (request_.rerun) run_again();
+    if (request_.rerun && !result_.found.hypothesis.parts.empty()) run_again();
   }
 
   void run_again() {
@@ -268,13 +301,11 @@ class Search {
     const std::array<FilterModel, 2> models{
         {{request_.base, result_.base.pace, {}, {}},
          {request_.base, result_.found.pace, result_.found.hypothesis, {}}}};
-    const bool same = result_.found.hypothesis.parts.empty();
     std::array<ModelGaps, 2> gaps;
     data_.front().team->run([&](int lane) {
-      for (int k = lane; k < (same ? 1 : 2); k += request_.threads)
+      for (int k = lane; k < 2; k += request_.threads)
         gaps[k] = gaps_of_model(series_, other, models[k].pace, models[k].hypothesis.terms());
     });
-    if (same) gaps[1] = gaps[0];
     result_.rerun = {other.cells, kOtherIntegrator, gaps[0].gap, gaps[1].gap,
                      in_units_of_c(gaps[1].expected, result_.noise)};
   }

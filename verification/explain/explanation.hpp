@@ -32,9 +32,9 @@ struct ExplainRequest {
   std::function<void(const struct SearchState& state)> save = {};  // after every round
 };
 
-// A model held against the data once more, on another mesh and by another integrator.
+// What was found, held against the data once more, on another mesh and by another integrator.
 struct Rerun {
-  int cells = 0;  // 0: there is none
+  int cells = 0;  // 0: there is none, as nothing was found
   std::string integrator;
   Gaps base, found, floor;  // in units of c
 };

@@ -1,5 +1,7 @@
 #include "verification/explain/field_filter.hpp"
 
+#include <future>
+
 #include "backends/openblas/dense_algebra.hpp"
 #include "kernel/core/random.hpp"
 #include "kernel/effects/effects.hpp"
@@ -51,7 +53,8 @@ class Filter {
         mapping_(maps.intervals() == 0),
         problem_(data.space, with_effects(model.base, model.hypothesis.terms())),
         resolved_(data.finer, problem_.model(), data.first_resolved, data.make_integrator),
-        flow_(problem_, data.tangent_solver, data.team),
+        flow_(problem_, data.tangent_solver,
+              mapping_ ? std::make_shared<const ThreadTeam>(1) : data.team),
         forcing_(problem_, model.base, model.hypothesis, model.screened) {
     Eigen::Index parameters = kFirstParameter + model.hypothesis.coefficients();
     for (const Candidate& candidate : model.screened) parameters += candidate.directions;
@@ -75,27 +78,35 @@ class Filter {
  private:
   void advance(std::size_t k) {
     const double begin = pace_ * data_.times[k], end = pace_ * data_.times[k + 1];
+    // The finer meshes on one processor, everything else on the other.
+    std::future<ResolvedForecast::End> resolved;
+    if (mapping_)
+      resolved = std::async(data_.team->size() > 1 ? std::launch::async : std::launch::deferred,
+                            [=] { return resolved_.advance(k + 1, begin, end); });
     const auto on_its_mesh = [this](const DaeProblem& p) {
       return data_.make_integrator(p, *data_.space);
     };
     const Forecast way = forecast(problem_, on_its_mesh, belief_.c, begin, end,
                                   {settings_.tangent_steps, settings_.error_steps});
-    if (mapping_) map_errors(k, begin, end, way);
+    if (mapping_) map_errors(way);
     belief_.errors =
         product(maps_.image[k], transposed_product(maps_.basis[k], data_.mass * belief_.errors));
     belief_.replicates = maps_.replicates[k].leftCols(settings_.replicates);
     flow_.advance(way.paths[0], belief_.parameters,
                   [this](double t, ConstVec y) { return forcing_(t, y); });
     belief_.parameters.col(kPace) += (end - begin) * way.end_rate;
+    if (mapping_) map_mesh(k, resolved.get(), way.end);
     belief_.parameters.col(kMeshError) += maps_.mesh_error[k].doubt;
     belief_.c = way.end + maps_.mesh_error[k].field;
   }
 
-  void map_errors(std::size_t k, double begin, double end, const Forecast& way) {
-    ResolvedForecast::End end_state = resolved_.advance(k + 1, begin, end, *data_.team);
-    end_state.field -= way.end;
-    end_state.values -= data_.snapshots[k + 1].trace * way.end;
-    maps_.mesh_error.push_back(std::move(end_state));
+  void map_mesh(std::size_t k, ResolvedForecast::End&& resolved, ConstVec end) {
+    resolved.field -= end;
+    resolved.values -= data_.snapshots[k + 1].trace * end;
+    maps_.mesh_error.push_back(std::move(resolved));
+  }
+
+  void map_errors(const Forecast& way) {
     Columns basis = belief_.errors;
     orthonormalise(basis);
     Columns moved = side_by_side(basis, belief_.replicates);

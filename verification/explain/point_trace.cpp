@@ -52,8 +52,11 @@ class TriangleFinder {
     const CutSurface& surface = space.surface;
     for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
       const auto corner = corners(static_cast<int>(t));
-      const Lattice cell = cell_of((corner[0] + corner[1] + corner[2]) / 3);
-      cells_[space.mesh.cube.cell_id(cell)].push_back(static_cast<int>(t));
+      const Point middle = (corner[0] + corner[1] + corner[2]) / 3;
+      double radius = 0;
+      for (const Point& x : corner) radius = std::max(radius, (x - middle).norm());
+      cells_[space.mesh.cube.cell_id(cell_of(middle))].push_back(
+          {static_cast<int>(t), middle, radius});
     }
   }
 
@@ -107,7 +110,9 @@ class TriangleFinder {
   void look(std::int64_t cell, const Point& x, Nearest& nearest) const {
     const auto found = cells_.find(cell);
     if (found == cells_.end()) return;
-    for (const int t : found->second) {
+    for (const auto& [t, middle, radius] : found->second) {
+      const double farthest = nearest.distance + radius;
+      if ((middle - x).squaredNorm() > farthest * farthest) continue;
       const auto corner = corners(t);
       const Barycentric at = nearest_in_triangle(corner, x);
       const double distance =
@@ -117,7 +122,13 @@ class TriangleFinder {
   }
 
   const SurfaceSpace& space_;
-  std::unordered_map<std::int64_t, std::vector<int>> cells_;
+  // Within a ball, most of which are too far away to be looked at.
+  struct Bounded {
+    int triangle;
+    Point middle;
+    double radius;
+  };
+  std::unordered_map<std::int64_t, std::vector<Bounded>> cells_;
 };
 
 std::string text_of(const Point& x) {

@@ -40,18 +40,14 @@ ResolvedForecast::ResolvedForecast(const FinerMeshes& meshes, const CahnHilliard
       make_integrator_(make_integrator),
       c_(std::move(c)) {}
 
-ResolvedForecast::End ResolvedForecast::advance(std::size_t k, double begin, double end,
-                                                const ThreadTeam& team) {
+ResolvedForecast::End ResolvedForecast::advance(std::size_t k, double begin, double end) {
   const std::array<Vec, 2> starts{meshes_.down(c_), c_};
   std::array<Vec, 2> ends;
-  const auto advance = [&](int m) {
+  for (std::size_t m = 0; m < 2; ++m) {
     const SpacePtr& space = meshes_.spaces[m];
     const auto on_it = [&](const DaeProblem& p) { return make_integrator_(p, *space); };
     ends[m] = forecast(problems_[m], on_it, starts[m], begin, end).end;
-  };
-  team.run([&](int lane) {
-    for (int m = lane; m < 2; m += team.size()) advance(1 - m);
-  });
+  }
   const double ratio = meshes_.spaces[1]->h() / meshes_.spaces[0]->h();
   const double share = ratio * ratio / (1 - ratio * ratio);
   // Both on the coarser of the two: how well it represents a field is no error of the flow, and

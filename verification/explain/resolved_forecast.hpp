@@ -40,7 +40,7 @@ class ResolvedForecast {
     Vec values, values_doubt;  // where snapshot k was measured
   };
   // Throws std::runtime_error if the flow cannot be advanced.
-  End advance(std::size_t k, double begin, double end, const ThreadTeam& team);
+  End advance(std::size_t k, double begin, double end);
   void correct(ConstVec increment) { c_ += meshes_.to_finest(increment); }  // of the model's mesh
 
  private:
