@@ -1,6 +1,5 @@
 #include "drivers/explain/search_file.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -40,10 +39,8 @@ Eigen::MatrixXd square_of(const Json& json) {
 }
 
 Candidate candidate_of(const std::string& effect) {
-  const std::vector<Candidate> all = candidates();
-  const auto found =
-      std::find_if(all.begin(), all.end(), [&](const Candidate& c) { return c.effect == effect; });
-  if (found == all.end()) throw IoError("a search names '" + effect + "', which is no candidate");
+  const std::optional<Candidate> found = find_candidate(effect);
+  if (!found) throw IoError("a search names '" + effect + "', which is no candidate");
   return *found;
 }
 
@@ -180,9 +177,7 @@ DisagreementMaps maps_of(const Json& json) {
 }
 
 Finding finding_of(const std::string& word) {
-  for (const Finding finding :
-       {Finding::none, Finding::named, Finding::ambiguous, Finding::below_resolution,
-        Finding::not_identifiable, Finding::unnamed})
+  for (const Finding finding : kFindings)
     if (word_for(finding) == word) return finding;
   throw IoError("a search cannot end with '" + word + "'");
 }

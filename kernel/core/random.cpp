@@ -1,5 +1,6 @@
 #include "kernel/core/random.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "kernel/core/types.hpp"
@@ -33,6 +34,15 @@ double uniform_random(std::uint64_t seed, std::uint64_t stream, std::uint64_t in
 std::array<double, 2> normal_pair(double u, double v) {
   const double r = std::sqrt(-2 * std::log(u)), angle = 2 * kPi * v;
   return {r * std::cos(angle), r * std::sin(angle)};
+}
+
+double normal_random(std::uint64_t seed, std::uint64_t stream, std::uint64_t index) {
+  return normal_pair(uniform_random(seed, stream, 2 * index),
+                     uniform_random(seed, stream, 2 * index + 1))[0];
+}
+
+int random_index(int count, std::uint64_t seed, std::uint64_t stream, std::uint64_t index) {
+  return std::min(count - 1, static_cast<int>(uniform_random(seed, stream, index) * count));
 }
 
 }  // namespace traceraft

@@ -18,4 +18,10 @@ double uniform_random(std::uint64_t seed, std::uint64_t stream, std::uint64_t in
 // Two independent normal numbers from two uniform ones in (0, 1) (Box and Muller).
 std::array<double, 2> normal_pair(double u, double v);
 
+// The normal number of the uniform ones at 2 index and 2 index + 1.
+double normal_random(std::uint64_t seed, std::uint64_t stream, std::uint64_t index);
+
+// One of 0 … count − 1.
+int random_index(int count, std::uint64_t seed, std::uint64_t stream, std::uint64_t index);
+
 }  // namespace traceraft

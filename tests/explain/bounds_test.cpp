@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace traceraft {
@@ -10,12 +9,9 @@ namespace {
 
 Bound bound_of(const std::string& effect, const std::vector<double>& coefficients,
                const Eigen::MatrixXd& covariance, double null_mean) {
-  const std::vector<Candidate> all = candidates();
-  const auto candidate =
-      std::find_if(all.begin(), all.end(), [&](const Candidate& c) { return c.effect == effect; });
   Screening screening;
   screening.scores = {{effect, coefficients, 0, null_mean, 1, 0, covariance, 1}};
-  const std::vector<Bound> bounds = bounds_of(screening, {*candidate});
+  const std::vector<Bound> bounds = bounds_of(screening, {find_candidate(effect).value()});
   return bounds.at(0);
 }
 

@@ -22,11 +22,8 @@ std::vector<Point> points_on_sphere() {
 
 Columns normal_values(int columns, std::uint64_t stream) {
   Columns values(kPoints, columns);
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    const auto index = static_cast<std::uint64_t>(2 * i);
-    values.data()[i] =
-        normal_pair(uniform_random(stream, 0, index), uniform_random(stream, 0, index + 1))[0];
-  }
+  for (Eigen::Index i = 0; i < values.size(); ++i)
+    values.data()[i] = normal_random(stream, 0, static_cast<std::uint64_t>(i));
   return values;
 }
 

@@ -2,23 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 namespace traceraft {
 namespace {
 
 constexpr double kValues = 10000, kLevel = 0.02, kUsual = 0.5;
 
-Candidate candidate(const std::string& effect) {
-  const std::vector<Candidate> all = candidates();
-  return *std::find_if(all.begin(), all.end(),
-                       [&](const Candidate& c) { return c.effect == effect; });
-}
-
 Refit refit_with(const std::vector<std::string>& effects, double deviance) {
   Refit fit;
   for (const std::string& effect : effects) {
-    const Candidate c = candidate(effect);
+    const Candidate c = find_candidate(effect).value();
     fit.hypothesis.parts.push_back({c, std::vector<double>(c.directions, 0.1)});
   }
   fit.deviance = deviance;

@@ -2,17 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 namespace traceraft {
 namespace {
 
 constexpr double kValues = 10000;
 
 Hypothesis::Part part(const std::string& effect, double coefficient) {
-  const std::vector<Candidate> all = candidates();
-  const Candidate c = *std::find_if(all.begin(), all.end(),
-                                    [&](const Candidate& one) { return one.effect == effect; });
+  const Candidate c = find_candidate(effect).value();
   return {c, std::vector<double>(static_cast<std::size_t>(c.directions), coefficient)};
 }
 

@@ -83,8 +83,9 @@ class ResolvedForecastTest : public ::testing::Test {
 TEST_F(ResolvedForecastTest, LeavesLittleOfTheErrorOfTheMesh) {
   const LevelSetPtr surface = make_surface("sphere");
   const SpacePtr own = serial_space(*surface, 16);
-  const FinerMeshes meshes = finer_meshes(*surface, own, 16, series);
-  ResolvedForecast resolved(meshes, model, rafts(*meshes.spaces[1]), integrator);
+  const FinerMeshes meshes = finer_meshes(*surface, own, 16);
+  const FinerTraces traces = finer_traces(meshes, *own, series);
+  ResolvedForecast resolved(meshes, traces, model, rafts(*meshes.spaces[1]), integrator);
   const ResolvedForecast::End end = resolved.advance(1, kBegin, kEnd);
 
   // On its own mesh, so that what no field on it can represent does not count.
@@ -100,11 +101,13 @@ TEST_F(ResolvedForecastTest, LeavesLittleOfTheErrorOfTheMesh) {
 TEST_F(ResolvedForecastTest, GoesOnFromACorrectedState) {
   const LevelSetPtr surface = make_surface("sphere");
   const SpacePtr own = serial_space(*surface, 16);
-  const FinerMeshes meshes = finer_meshes(*surface, own, 16, series);
-  ResolvedForecast plain(meshes, model, rafts(*meshes.spaces[1]), integrator), corrected = plain;
+  const FinerMeshes meshes = finer_meshes(*surface, own, 16);
+  const FinerTraces traces = finer_traces(meshes, *own, series);
+  ResolvedForecast plain(meshes, traces, model, rafts(*meshes.spaces[1]), integrator),
+      corrected = plain;
   corrected.correct(Vec::Constant(own->nodes(), 0.01));
-  const Vec change = corrected.advance(1, kBegin, kEnd).field -
-                     plain.advance(1, kBegin, kEnd).field;
+  const Vec change =
+      corrected.advance(1, kBegin, kEnd).field - plain.advance(1, kBegin, kEnd).field;
   EXPECT_NEAR(mean(*own, change), 0.01, 1e-5);
 }
 

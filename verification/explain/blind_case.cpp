@@ -156,9 +156,7 @@ class Sizing {
     const auto valid = effects_to_hide();
     if (std::find(valid.begin(), valid.end(), effect) == valid.end())
       throw InputError(unknown_name_message("effect to hide", effect, valid));
-    const auto all = candidates();
-    return *std::find_if(all.begin(), all.end(),
-                         [&](const Candidate& c) { return c.effect == effect; });
+    return *find_candidate(effect);
   }
   // What the effect makes of the base's snapshots until the next one.
   double gap_of(const EffectTerm& term) const {
@@ -182,32 +180,33 @@ class Sizing {
   std::vector<Vec> snapshots_;
 };
 
+// Where and when a vesicle is looked at.
+struct Looks {
+  Placement placement;
+  ShiftedLevelSet surface;
+  std::vector<double> labels, times;  // times: of the truth, whose unit is R²/(pace D)
+
+  explicit Looks(const BlindRequest& request)
+      : placement(request.seed, 2 * kBoxHalfWidth / request.cells),
+        surface(make_surface("sphere"), placement.offset),
+        labels(snapshot_times(request)) {
+    for (const double t : labels) times.push_back(request.pace * t);
+  }
+};
+
 // One vesicle on a mesh of its own.
 class Vesicle {
  public:
   explicit Vesicle(const BlindRequest& request)
       : request_(request),
-        placement_(request.seed, 2 * kBoxHalfWidth / request.cells),
-        surface_(make_surface("sphere"), placement_.offset),
-        labels_(snapshot_times(request)),
-        space_(std::make_shared<const SurfaceSpace>(surface_, request.cells,
+        looks_(request),
+        space_(std::make_shared<const SurfaceSpace>(looks_.surface, request.cells,
                                                     std::make_shared<ThreadTeam>(request.threads),
-                                                    std::make_shared<SerialCommunicator>())) {
-    for (const double t : labels_) times_.push_back(request.pace * t);
-  }
-
-  std::vector<EffectTerm> sized_effects() const {
-    std::vector<EffectTerm> terms;
-    if (request_.effects.empty()) return terms;
-    const Sizing sizing(request_, surface_, times_);
-    for (std::size_t k = 0; k < request_.effects.size(); ++k)
-      terms.push_back(sizing.term(request_.effects[k], k));
-    return terms;
-  }
+                                                    std::make_shared<SerialCommunicator>())) {}
 
   std::vector<Vec> states(const std::vector<EffectTerm>& effects) const {
     const Method method{space_, request_.integrator, request_.tolerance};
-    return Simulation(request_, method, effects).run(times_);
+    return Simulation(request_, method, effects).run(looks_.times);
   }
 
   double contrast(const std::vector<Vec>& states) const {
@@ -225,28 +224,22 @@ class Vesicle {
 
  private:
   FieldSnapshot measure(const Vec& c, int number, double noise) const {
-    FieldSnapshot snapshot{labels_[number], random_directions(request_, number), {}, {}};
+    FieldSnapshot snapshot{looks_.labels[number], random_directions(request_, number), {}, {}};
     std::vector<Point> places;
-    for (const Point& x : snapshot.points) places.push_back(placement_.in_mesh(x));
+    for (const Point& x : snapshot.points) places.push_back(looks_.placement.in_mesh(x));
     snapshot.values = point_trace(*space_, places, space_->h()) * c;
     snapshot.deviation =
         Vec::Constant(snapshot.values.size(), request_.stated > 0 ? request_.stated * noise : 1);
-    for (Eigen::Index i = 0; i < snapshot.values.size(); ++i) {
-      const auto u = [&](std::uint64_t j) {
-        return uniform_random(request_.seed, kNoise + static_cast<std::uint64_t>(number),
-                              2 * static_cast<std::uint64_t>(i) + j);
-      };
-      snapshot.values[i] += noise * normal_pair(u(0), u(1))[0];
-    }
+    for (Eigen::Index i = 0; i < snapshot.values.size(); ++i)
+      snapshot.values[i] +=
+          noise * normal_random(request_.seed, kNoise + static_cast<std::uint64_t>(number),
+                                static_cast<std::uint64_t>(i));
     return snapshot;
   }
 
   const BlindRequest& request_;
-  const Placement placement_;
-  const ShiftedLevelSet surface_;
-  const std::vector<double> labels_;
-  std::vector<double> times_;  // of the truth, whose unit is R²/(pace D)
-  SpacePtr space_;
+  const Looks looks_;
+  const SpacePtr space_;
 };
 
 // Between the seeds of vesicles.
@@ -262,7 +255,13 @@ std::vector<std::string> effects_to_hide() {
 }
 
 std::vector<EffectTerm> size_effects(const BlindRequest& request) {
-  return Vesicle(request).sized_effects();
+  std::vector<EffectTerm> terms;
+  if (request.effects.empty()) return terms;
+  const Looks looks(request);
+  const Sizing sizing(request, looks.surface, looks.times);
+  for (std::size_t k = 0; k < request.effects.size(); ++k)
+    terms.push_back(sizing.term(request.effects[k], k));
+  return terms;
 }
 
 BlindCase draw_blind_case(const BlindRequest& request) {
@@ -270,8 +269,8 @@ BlindCase draw_blind_case(const BlindRequest& request) {
   for (int v = 0; v < request.vesicles; ++v) {
     BlindRequest own = request;
     own.seed += kNextVesicle * static_cast<std::uint64_t>(v);
+    if (v == 0) result.truth = size_effects(own);
     const Vesicle vesicle(own);
-    if (v == 0) result.truth = vesicle.sized_effects();
     const std::vector<Vec> states = vesicle.states(result.truth);
     if (v == 0) result.noise = request.noise * vesicle.contrast(states);
     result.vesicles.push_back({std::to_string(v + 1), vesicle.measure(states, result.noise)});

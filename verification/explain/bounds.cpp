@@ -24,15 +24,20 @@ Bound bound_of(const CandidateScore& score, const Candidate& candidate) {
   const Vec slope = slopes(candidate);
   const double value = slope.dot(
       Eigen::Map<const Vec>(score.coefficients.data(), static_cast<Eigen::Index>(slope.size())));
-  // What noise gains on average: 1 per coefficient, half of it if one sign is excluded.
-  const double expected = candidate.directions * (candidate.two_sided ? 1.0 : 0.5);
-  const double variance =
-      slope.dot(score.covariance * slope) * std::max(1.0, score.null_mean / expected);
-  const double width = (candidate.two_sided ? kTwoSided : kOneSided) * std::sqrt(variance);
-  return {score.effect, candidate.two_sided ? value - width : 0.0, value + width, variance > 0};
+  const double deviation = std::sqrt(slope.dot(score.covariance * slope));
+  const double width =
+      bound_width(deviation, candidate.directions, candidate.two_sided, score.null_mean);
+  return {score.effect, candidate.two_sided ? value - width : 0.0, value + width, deviation > 0};
 }
 
 }  // namespace
+
+double bound_width(double deviation, int directions, bool two_sided, double null_mean) {
+  // What noise gains on average: 1 per coefficient, half of it if one sign is excluded.
+  const double expected = directions * (two_sided ? 1.0 : 0.5);
+  return (two_sided ? kTwoSided : kOneSided) * deviation *
+         std::sqrt(std::max(1.0, null_mean / expected));
+}
 
 std::vector<Bound> bounds_of(const Screening& screening, const std::vector<Candidate>& screened) {
   std::vector<Bound> bounds;

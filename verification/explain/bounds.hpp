@@ -15,7 +15,11 @@ struct Bound {
   bool seen;         // does anything that was measured depend on it? If not, there is no bound
 };
 
-// To first order. Where noise alone gains more than it should, its spread is widened accordingly.
+// Between a strength, or a sum of the coefficients of so many directions, and its 95 % bounds.
+// Where noise alone gains more than it should (`null_mean`), its spread is widened accordingly.
+double bound_width(double deviation, int directions, bool two_sided, double null_mean);
+
+// To first order.
 std::vector<Bound> bounds_of(const Screening& screening, const std::vector<Candidate>& screened);
 
 }  // namespace traceraft

@@ -52,6 +52,12 @@ std::vector<Candidate> candidates() {
       by_strength("ohta-kawasaki", 1e-3, false),    by_strength("uptake", 1e-3, true)};
 }
 
+std::optional<Candidate> find_candidate(const std::string& effect) {
+  for (const Candidate& candidate : candidates())
+    if (candidate.effect == effect) return candidate;
+  return {};
+}
+
 std::vector<EffectTerm> Hypothesis::terms() const {
   std::vector<EffectTerm> result;
   for (const Part& part : parts) result.push_back(part.candidate.term(part.coefficients));

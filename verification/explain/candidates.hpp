@@ -1,6 +1,7 @@
 // Effects as small changes of a model: what a data set is asked to choose from.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct Candidate {
 // All effects of the kernel that deterministic data of one vesicle can tell from the base model.
 // Left out: rotation (always a nuisance) and thermal (random).
 std::vector<Candidate> candidates();
+std::optional<Candidate> find_candidate(const std::string& effect);
 
 // Effects with coefficients: what is held to be missing in a model.
 struct Hypothesis {

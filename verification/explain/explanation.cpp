@@ -26,14 +26,8 @@ constexpr double kOtherCells = 1.15;
 constexpr char kOtherIntegrator[] = "rosenbrock";
 
 FilterProblems problems_of(const std::vector<FieldSeries>& series, const ExplainRequest& request) {
-  FilterProblems problems;
-  for (std::size_t v = 0; v < series.size(); ++v) {
-    const std::size_t held_out = request.hold_out && series[v].snapshots.size() >= 4 ? 1 : 0;
-    problems.push_back(make_filter_problem(series[v], v, *request.surface, request.base.epsilon,
-                                           request.cells, request.threads, held_out,
-                                           request.filter));
-  }
-  return problems;
+  return make_filter_problems(series, *request.surface, request.base.epsilon, request.cells,
+                              request.threads, request.hold_out, request.filter);
 }
 
 // Of the measurements, over all vesicles.
@@ -226,7 +220,7 @@ class Search {
       const bool worth = score.score >= std::max(kTelling, kWorthRefitting * most);
       if (trials.size() == request_.shortlist || (trials.size() >= 2 && !worth)) break;
       trials.push_back(model_);
-      trials.back().hypothesis.parts.push_back({candidate(score.effect), score.coefficients});
+      trials.back().hypothesis.parts.push_back({*find_candidate(score.effect), score.coefficients});
     }
     for (Refit& fit : refit_all(trials))
       if (fit.failure.empty()) round.refits.push_back(std::move(fit));
@@ -254,11 +248,6 @@ class Search {
       for (std::size_t k = 1; k < data.train; ++k)
         count += static_cast<double>(data.snapshots[k].values.size());
     return count;
-  }
-
-  Candidate candidate(const std::string& effect) const {
-    return *std::find_if(model_.screened.begin(), model_.screened.end(),
-                         [&](const Candidate& c) { return c.effect == effect; });
   }
 
   bool take(const Round& round) {

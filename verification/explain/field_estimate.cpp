@@ -94,11 +94,8 @@ class FieldRegression {
   // L⁻ᵀ z with normal z has the covariance (L Lᵀ)⁻¹.
   Eigen::MatrixXd draws(int count, std::uint64_t stream) const {
     Eigen::MatrixXd z(field_.size(), count);
-    for (Eigen::Index i = 0; i < z.size(); ++i) {
-      const auto index = 2 * static_cast<std::uint64_t>(i);
-      z.data()[i] =
-          normal_pair(uniform_random(2, stream, index), uniform_random(2, stream, index + 1))[0];
-    }
+    for (Eigen::Index i = 0; i < z.size(); ++i)
+      z.data()[i] = normal_random(2, stream, static_cast<std::uint64_t>(i));
     return factors_.permutationPinv() * factors_.matrixU().solve(z);
   }
 

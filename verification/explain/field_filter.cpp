@@ -1,6 +1,7 @@
 #include "verification/explain/field_filter.hpp"
 
 #include <future>
+#include <optional>
 
 #include "backends/openblas/dense_algebra.hpp"
 #include "kernel/core/random.hpp"
@@ -50,12 +51,13 @@ class Filter {
         pace_(model.pace),
         settings_(settings),
         maps_(maps),
-        mapping_(maps.intervals() == 0),
         problem_(data.space, with_effects(model.base, model.hypothesis.terms())),
-        resolved_(data.finer, problem_.model(), data.first_resolved, data.make_integrator),
         flow_(problem_, data.tangent_solver,
-              mapping_ ? std::make_shared<const ThreadTeam>(1) : data.team),
+              maps.intervals() == 0 ? std::make_shared<const ThreadTeam>(1) : data.team),
         forcing_(problem_, model.base, model.hypothesis, model.screened) {
+    if (maps.intervals() == 0)
+      resolved_.emplace(*data.finer, data.finer_traces, problem_.model(), data.first_resolved,
+                        data.make_integrator);
     Eigen::Index parameters = kFirstParameter + model.hypothesis.coefficients();
     for (const Candidate& candidate : model.screened) parameters += candidate.directions;
     belief_.c = data.first.field;
@@ -80,22 +82,22 @@ class Filter {
     const double begin = pace_ * data_.times[k], end = pace_ * data_.times[k + 1];
     // The finer meshes on one processor, everything else on the other.
     std::future<ResolvedForecast::End> resolved;
-    if (mapping_)
+    if (resolved_)
       resolved = std::async(data_.team->size() > 1 ? std::launch::async : std::launch::deferred,
-                            [=] { return resolved_.advance(k + 1, begin, end); });
+                            [=] { return resolved_->advance(k + 1, begin, end); });
     const auto on_its_mesh = [this](const DaeProblem& p) {
       return data_.make_integrator(p, *data_.space);
     };
     const Forecast way = forecast(problem_, on_its_mesh, belief_.c, begin, end,
                                   {settings_.tangent_steps, settings_.error_steps});
-    if (mapping_) map_errors(way);
+    if (resolved_) map_errors(way);
     belief_.errors =
         product(maps_.image[k], transposed_product(maps_.basis[k], data_.mass * belief_.errors));
     belief_.replicates = maps_.replicates[k].leftCols(settings_.replicates);
     flow_.advance(way.paths[0], belief_.parameters,
                   [this](double t, ConstVec y) { return forcing_(t, y); });
     belief_.parameters.col(kPace) += (end - begin) * way.end_rate;
-    if (mapping_) map_mesh(k, resolved.get(), way.end);
+    if (resolved_) map_mesh(k, resolved.get(), way.end);
     belief_.parameters.col(kMeshError) += maps_.mesh_error[k].doubt;
     belief_.c = way.end + maps_.mesh_error[k].field;
   }
@@ -167,15 +169,11 @@ class Filter {
   }
 
   void add_noise(std::size_t k, Columns& values) const {
+    const std::uint64_t snapshot = 1000 * data_.vesicle + k + 1;
     for (Eigen::Index j = 0; j < values.cols(); ++j)
-      for (Eigen::Index i = 0; i < values.rows(); ++i) {
-        const auto u = [&](std::uint64_t which) {
-          const std::uint64_t snapshot = 1000 * data_.vesicle + k + 1;
-          return uniform_random(7, 10000 * snapshot + static_cast<std::uint64_t>(j),
-                                2 * static_cast<std::uint64_t>(i) + which);
-        };
-        values(i, j) += normal_pair(u(0), u(1))[0];
-      }
+      for (Eigen::Index i = 0; i < values.rows(); ++i)
+        values(i, j) += normal_random(7, 10000 * snapshot + static_cast<std::uint64_t>(j),
+                                      static_cast<std::uint64_t>(i));
   }
 
   void account(Innovation& in, const InnovationCovariance& weight) {
@@ -192,7 +190,7 @@ class Filter {
                const Columns& directions) {
     const Vec increment = directions * weight.amplitudes(in.values);
     belief_.c += increment;
-    if (mapping_) resolved_.correct(increment);
+    if (resolved_) resolved_->correct(increment);
     belief_.parameters -= product(directions, weight.amplitudes(in.parameters));
     belief_.replicates -= product(directions, weight.amplitudes(in.replicates));
     belief_.errors = weight.posterior_root(directions);
@@ -203,9 +201,8 @@ class Filter {
   const double pace_;
   const FilterSettings& settings_;
   ErrorMaps& maps_;
-  const bool mapping_;
   CahnHilliard problem_;
-  ResolvedForecast resolved_;
+  std::optional<ResolvedForecast> resolved_;  // where the maps are to be filled
   TangentFlow flow_;
   CoefficientForcing forcing_;
   Belief belief_;

@@ -27,14 +27,15 @@ struct FilterProblem {
   std::size_t vesicle;  // its number
   std::shared_ptr<const ThreadTeam> team;
   SpacePtr space;  // of one thread
-  FinerMeshes finer;
+  std::shared_ptr<const FinerMeshes> finer;
   EigenMatrix mass;                    // stabilised, on `space`
   std::vector<NoisyValues> snapshots;  // on `space`
-  std::vector<double> times;           // in units of R²/D of the base model
-  std::size_t train = 0;               // snapshots that count
-  FieldEstimate first;                 // of the first snapshot
-  Vec first_resolved;                  // its field on the finest mesh
-  double noise;                        // of all of them
+  FinerTraces finer_traces;
+  std::vector<double> times;  // in units of R²/D of the base model
+  std::size_t train = 0;      // snapshots that count
+  FieldEstimate first;        // of the first snapshot
+  Vec first_resolved;         // its field on the finest mesh
+  double noise;               // of all of them
   std::shared_ptr<const GapPatterns> patterns;
   LinearSolverFactory tangent_solver;
   MakeForecaster make_integrator;
@@ -42,9 +43,10 @@ struct FilterProblem {
 
 using FilterProblems = std::vector<FilterProblem>;
 
-// `held_out`: so many snapshots at the end are forecast, but count for nothing.
-FilterProblem make_filter_problem(const FieldSeries& series, std::size_t vesicle,
-                                  const LevelSet& surface, double epsilon, int cells, int threads,
-                                  std::size_t held_out, const FilterSettings& settings);
+// Of all vesicles, on the same meshes. `hold_out`: the last of four snapshots or more is forecast,
+// but counts for nothing.
+FilterProblems make_filter_problems(const std::vector<FieldSeries>& series, const LevelSet& surface,
+                                    double epsilon, int cells, int threads, bool hold_out,
+                                    const FilterSettings& settings);
 
 }  // namespace traceraft

@@ -11,8 +11,6 @@ constexpr double kResolved = 3;
 // A gap of any shape has to be that much less probable than the best candidate: what is left of
 // the errors of the mesh and of linear responses looks like one, and it names nothing.
 constexpr double kGapLevel = 0.25;
-// Standard deviations that an effect has to have to be seen in nine cases of ten.
-constexpr double kSeen = 4;
 
 const std::string& last_effect(const Refit& fit) {
   return fit.hypothesis.parts.back().candidate.effect;

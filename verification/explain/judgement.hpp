@@ -1,6 +1,7 @@
 // What the search for one more effect has found, and what follows from it.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,12 @@ enum class Finding {
   not_identifiable,  // no disagreement, but effects of the usual size would not be seen either
   unnamed            // a significant disagreement that no candidate explains
 };
+inline constexpr std::array kFindings{Finding::none,
+                                      Finding::named,
+                                      Finding::ambiguous,
+                                      Finding::below_resolution,
+                                      Finding::not_identifiable,
+                                      Finding::unnamed};
 std::string word_for(Finding finding);
 
 // The search for one more effect.
@@ -29,6 +36,8 @@ struct Round {
 
 // 2 ln of a likelihood ratio of 20: less does not tell two hypotheses apart.
 inline constexpr double kTelling = 6;
+// Standard deviations that an effect has to have to be seen in nine cases of ten.
+inline constexpr double kSeen = 4;
 
 // Schwarz' (1978): an effect with a second coefficient has to earn it, above all if one without is
 // a special case of it. `values`: how many have been measured.

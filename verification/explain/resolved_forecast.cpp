@@ -18,14 +18,10 @@ SpacePtr serial_space(const LevelSet& surface, int cells) {
                                               std::make_shared<SerialCommunicator>());
 }
 
-FinerMeshes finer_meshes(const LevelSet& surface, const SpacePtr& own, int cells,
-                         const FieldSeries& series) {
+FinerMeshes finer_meshes(const LevelSet& surface, const SpacePtr& own, int cells) {
   FinerMeshes meshes;
-  for (std::size_t m = 0; m < kFiner.size(); ++m) {
+  for (std::size_t m = 0; m < kFiner.size(); ++m)
     meshes.spaces[m] = serial_space(surface, static_cast<int>(std::lround(kFiner[m] * cells)));
-    for (const FieldSnapshot& snapshot : series.snapshots)
-      meshes.traces[m].push_back(point_trace(*meshes.spaces[m], snapshot.points, own->h()));
-  }
   meshes.to_finest = MeshTransfer(*own, meshes.spaces[1]);
   meshes.from_finest = MeshTransfer(*meshes.spaces[1], own);
   meshes.up = MeshTransfer(*meshes.spaces[0], meshes.spaces[1]);
@@ -33,9 +29,20 @@ FinerMeshes finer_meshes(const LevelSet& surface, const SpacePtr& own, int cells
   return meshes;
 }
 
-ResolvedForecast::ResolvedForecast(const FinerMeshes& meshes, const CahnHilliardModel& model, Vec c,
+FinerTraces finer_traces(const FinerMeshes& meshes, const SurfaceSpace& own,
+                         const FieldSeries& series) {
+  FinerTraces traces;
+  for (std::size_t m = 0; m < traces.size(); ++m)
+    for (const FieldSnapshot& snapshot : series.snapshots)
+      traces[m].push_back(point_trace(*meshes.spaces[m], snapshot.points, own.h()));
+  return traces;
+}
+
+ResolvedForecast::ResolvedForecast(const FinerMeshes& meshes, const FinerTraces& traces,
+                                   const CahnHilliardModel& model, Vec c,
                                    const MakeForecaster& make_integrator)
     : meshes_(meshes),
+      traces_(traces),
       problems_{CahnHilliard(meshes.spaces[0], model), CahnHilliard(meshes.spaces[1], model)},
       make_integrator_(make_integrator),
       c_(std::move(c)) {}
@@ -55,8 +62,8 @@ ResolvedForecast::End ResolvedForecast::advance(std::size_t k, double begin, dou
   const Vec last = share * (meshes_.down(ends[1]) - ends[0]);
   const Vec up = meshes_.up(last);
   c_ = ends[1] + up;
-  return {meshes_.from_finest(c_), meshes_.from_finest(up), meshes_.traces[1][k] * c_,
-          meshes_.traces[0][k] * last};
+  return {meshes_.from_finest(c_), meshes_.from_finest(up), traces_[1][k] * c_,
+          traces_[0][k] * last};
 }
 
 }  // namespace traceraft

@@ -19,20 +19,23 @@ SpacePtr serial_space(const LevelSet& surface, int cells);
 
 // What does not depend on the model.
 struct FinerMeshes {
-  std::array<SpacePtr, 2> spaces;                 // the finest last
-  std::array<std::vector<PointTrace>, 2> traces;  // where the snapshots were measured
-  MeshTransfer to_finest, from_finest;            // from and to the model's mesh
-  MeshTransfer up, down;                          // between the two
+  std::array<SpacePtr, 2> spaces;       // the finest last
+  MeshTransfer to_finest, from_finest;  // from and to the model's mesh
+  MeshTransfer up, down;                // between the two
 };
-FinerMeshes finer_meshes(const LevelSet& surface, const SpacePtr& own, int cells,
+FinerMeshes finer_meshes(const LevelSet& surface, const SpacePtr& own, int cells);
+
+// On each of them, where the snapshots were measured.
+using FinerTraces = std::array<std::vector<PointTrace>, 2>;
+FinerTraces finer_traces(const FinerMeshes& meshes, const SurfaceSpace& own,
                          const FieldSeries& series);
 
 // A state on the finest mesh. On the mesh of a model phase boundaries may be as wide as a cell:
 // what it lacks of their shape then acts on the flow like a line tension.
 class ResolvedForecast {
  public:
-  ResolvedForecast(const FinerMeshes& meshes, const CahnHilliardModel& model, Vec c,
-                   const MakeForecaster& make_integrator);
+  ResolvedForecast(const FinerMeshes& meshes, const FinerTraces& traces,
+                   const CahnHilliardModel& model, Vec c, const MakeForecaster& make_integrator);
 
   // Errors of order h² are extrapolated (Richardson); `doubt`: by how much.
   struct End {
@@ -45,6 +48,7 @@ class ResolvedForecast {
 
  private:
   const FinerMeshes& meshes_;
+  const FinerTraces& traces_;
   std::array<CahnHilliard, 2> problems_;
   MakeForecaster make_integrator_;
   Vec c_;

@@ -57,15 +57,10 @@ struct Own {
 // Less than this is no response: roundoff and the tolerance of the integrator.
 constexpr double kInvisible = 1e-6;
 
-// p = (1 + the number of replicates that reach it) / (1 + their number).
-double share_of_noise(const Vec& replicates, double value) {
-  const auto beyond = (replicates.array() >= value).count();
-  return static_cast<double>(beyond + 1) / static_cast<double>(replicates.size() + 1);
-}
-
 Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& information, bool seen) {
-  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(information.rows(), information.cols());
-  return seen ? Eigen::MatrixXd(information.ldlt().solve(one)) : Eigen::MatrixXd(0 * one);
+  const Eigen::Index n = information.rows();
+  if (!seen) return Eigen::MatrixXd::Zero(n, n);
+  return information.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
 }
 
 // Of gaps of any shape in some snapshots, after what the nuisances explain.
@@ -93,6 +88,11 @@ double both(double p, double q) {
 }
 
 }  // namespace
+
+double share_of_noise(const Vec& replicates, double value) {
+  const auto beyond = (replicates.array() >= value).count();
+  return static_cast<double>(beyond + 1) / static_cast<double>(replicates.size() + 1);
+}
 
 Screening screen(const FilterResult& result, const std::vector<Candidate>& screened,
                  Eigen::Index known_coefficients) {

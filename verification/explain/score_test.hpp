@@ -6,6 +6,9 @@
 
 namespace traceraft {
 
+// p = (1 + the number of replicates that reach it) / (1 + their number).
+double share_of_noise(const Vec& replicates, double value);
+
 struct CandidateScore {
   std::string effect;
   std::vector<double> coefficients;  // most probable ones, to first order, within their signs
