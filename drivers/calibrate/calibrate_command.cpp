@@ -58,9 +58,7 @@ std::vector<std::string> costly_parameters(const std::string& text) {
 
 // Up to the latest measurement if D were twice the model's; runs hardly change after that.
 double end_of_runs(const MeasuredVesicles& data) {
-  double last = 0;
-  for (const Measurement& m : data.measurements) last = std::max(last, m.time);
-  return 2 * last;
+  return 2 * looks(data).end;
 }
 
 class Calibrator {
@@ -156,8 +154,7 @@ void refuse_model(const Configuration& model) {
         throw InputError(model.where("effect") + ": " + entry.name +
                          " has a time of its own, so that D is more than a unit of time; it cannot "
                          "be calibrated");
-  if (model.text("initial").compare(0, 5, "noise") != 0)
-    throw InputError(model.where("initial") + ": vesicles differ in the noise they start from");
+  refuse_without_noise(model);
   (void)build_run(model, InitialState::build);
 }
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "kernel/core/error.hpp"
+#include "drivers/ensemble/ensemble_point.hpp"
 #include "kernel/core/parameters.hpp"
 
 namespace traceraft {
@@ -45,13 +45,10 @@ std::vector<double> values_of(const Configuration& model,
 Configuration configuration_at(const Configuration& model,
                                const std::vector<std::string>& parameters,
                                const std::vector<double>& values, double t_end) {
-  GivenValues given;
+  GivenValues given = settings_until(model, t_end);
   const auto set = [&](const std::string& option, const std::string& text) {
     given[option] = {text, "--" + option};
   };
-  for (const OptionSpec& spec : run_options())
-    if (spec.numerical && spec.name != "seed" && !model.text(spec.name).empty())
-      set(spec.name, model.text(spec.name));
   double length = noise_length(model), epsilon = model.number("epsilon");
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     if (parameters[i] == "noise-length")
@@ -64,9 +61,6 @@ Configuration configuration_at(const Configuration& model,
   const auto noise = static_cast<int>(std::lround(kBoxWidth * model.units().length() / length));
   set("cells", std::to_string(cells));
   set("noise-cells", std::to_string(std::min(noise, cells)));
-  set("t-end", format_number(t_end));
-  set("output-times", format_number(t_end));
-  set("fields", "false");
   return {{}, given};
 }
 

@@ -17,8 +17,7 @@ namespace {
 
 // D in cm²/s from R²/D in seconds.
 double diffusion(const Configuration& model, double seconds_per_unit) {
-  const double radius = model.number("radius");
-  return radius * radius / (seconds_per_unit * Units::kUm2PerCm2);
+  return model.units().with_seconds_per_unit(seconds_per_unit).diffusion_cm2_s;
 }
 
 struct Finding {

@@ -2,8 +2,29 @@
 
 #include "backends/posix/durable_file.hpp"
 #include "drivers/config/config_file.hpp"
+#include "kernel/core/error.hpp"
+#include "kernel/core/parameters.hpp"
 
 namespace traceraft {
+
+GivenValues settings_until(const Configuration& model, double t_end) {
+  GivenValues given;
+  const auto set = [&](const std::string& option, const std::string& text) {
+    given[option] = {text, "--" + option};
+  };
+  for (const OptionSpec& spec : run_options())
+    if (spec.numerical && spec.name != "seed" && !model.text(spec.name).empty())
+      set(spec.name, model.text(spec.name));
+  set("t-end", format_number(t_end));
+  set("output-times", format_number(t_end));
+  set("fields", "false");
+  return given;
+}
+
+void refuse_without_noise(const Configuration& model) {
+  if (model.text("initial").compare(0, 5, "noise") != 0)
+    throw InputError(model.where("initial") + ": vesicles differ in the noise they start from");
+}
 
 PointEnd run_point(const std::filesystem::path& path, const Configuration& configuration,
                    const PointRequest& request) {

@@ -9,6 +9,13 @@
 
 namespace traceraft {
 
+// All that decides what a run of the model computes, but the seed, and until t_end (s), with no
+// output before.
+GivenValues settings_until(const Configuration& model, double t_end);
+
+// Throws InputError if seeds make no difference.
+void refuse_without_noise(const Configuration& model);
+
 struct PointRequest {
   int runs, jobs;
   bool quiet;

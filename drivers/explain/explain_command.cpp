@@ -1,6 +1,4 @@
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <optional>
 
@@ -36,8 +34,7 @@ struct ExplainCommand {
   bool quiet = false;
 };
 
-void explain_field_data(const ExplainCommand& command, const fs::path& out) {
-  ExplainSetup setup = read_explain_job(command.job);
+void explain_field_data(const ExplainCommand& command, ExplainSetup& setup, const fs::path& out) {
   const Stopwatch watch;
   if (!command.quiet)
     setup.request.progress = [&](const std::string& step) {
@@ -59,13 +56,9 @@ void explain_field_data(const ExplainCommand& command, const fs::path& out) {
 bool explain_series_data(const ExplainCommand& command, const MeasuredVesicles& data,
                          const fs::path& out) {
   const Configuration model(read_config_file(command.job.model), command.job.flags);
-  SeriesEnsemblesRequest request{
-      HUGE_VAL, 0, command.runs, command.jobs, 2, command.job.without, command.quiet};
-  for (const Measurement& m : data.measurements) {
-    if (m.time > 0) request.first = std::min(request.first, m.time);
-    request.last = std::max(request.last, m.time);
-  }
-  if (!(request.first < request.last))
+  const SeriesEnsemblesRequest request{looks(data), command.runs,        command.jobs,
+                                       2,           command.job.without, command.quiet};
+  if (!(request.looks.begin < request.looks.end))
     throw InputError("--series: looks at two times at least are needed");
   const SeriesEnsembles ensembles = run_series_ensembles(out / "ensembles", model, request);
   if (ensembles.stopped) return false;
@@ -81,16 +74,17 @@ int explain(const ExplainCommand& command) {
   if (command.job.data.empty() && command.series.empty())
     throw InputError("--data or --series: say which measurements to explain");
   for (const std::string& effect : command.job.without) (void)effects().find(effect);
+  std::optional<ExplainSetup> fields;
   std::optional<MeasuredVesicles> series;
   if (!command.series.empty()) {
     catch_stop_signals();
     series = read_dataset(command.series);
   }
-  if (!command.job.data.empty()) (void)read_explain_job(command.job);
+  if (!command.job.data.empty()) fields = read_explain_job(command.job);
   const fs::path out = command.out.empty() ? first_free_folder("explain") : command.out;
   fs::create_directories(out);
   const FolderLock lock(out);
-  if (!command.job.data.empty()) explain_field_data(command, out);
+  if (fields) explain_field_data(command, *fields, out);
   if (series && !explain_series_data(command, *series, out)) {
     if (!command.quiet) std::printf("to go on, give the same command with --out %s\n", out.c_str());
     return kInterrupted;

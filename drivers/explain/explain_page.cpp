@@ -42,14 +42,10 @@ class ExplainPage {
     page_.heading("Where this comes from");
     page_.paragraph("traceraft " + std::string(kVersion) + ". " + data_text());
     write_durably(folder_ / "explain.html", page_.html());
-    return missing_;
+    return missing_.text();
   }
 
  private:
-  void miss(const std::string& what) {
-    if (!what.empty()) missing_ += (missing_.empty() ? "" : "; ") + what;
-  }
-
   void add_gaps() {
     page_.heading("How the gap shrinks");
     page_.paragraph(
@@ -62,11 +58,7 @@ class ExplainPage {
       chart.series.push_back(
           gap_series("with " + found_.found.hypothesis.name(), found_.found, false));
     chart.series.push_back(gap_series("to be expected if nothing is missing", found_.found, true));
-    const std::string svg = draw_chart(chart, folder_ / "gaps");
-    if (svg.empty())
-      miss(kNoGnuplot);
-    else
-      page_.figure(svg, chart.title);
+    add_chart(page_, chart, folder_ / "gaps", missing_);
   }
 
   ChartSeries gap_series(const std::string& name, const Refit& fit, bool expected) const {
@@ -97,24 +89,24 @@ class ExplainPage {
         frames.push_back(map.z);
         view.labels.push_back(
             model +
-            (setup_.series.size() > 1 ? formatted(", vesicle %.0f", map.vesicle + 1.0) : "") +
+            (setup_.series.size() > 1 ? ", vesicle " + std::to_string(map.vesicle + 1) : "") +
             formatted(", t = %.4g s: up to %.1f", map.time * units_.seconds_per_unit(),
                       map.z.cwiseAbs().maxCoeff()));
       }
     };
     add("base model", found_.base_maps);
     if (both) add("with " + found_.found.hypothesis.name(), found_.found_maps);
-    miss(add_viewer(page_, found_.map_mesh, frames, view));
+    missing_.add(add_viewer(page_, found_.map_mesh, frames, view));
     if (found_.disagreements.empty()) {
       page_.paragraph(
           "No patch of the surface, inside rafts, outside or at their boundaries, "
           "disagrees significantly with the base model.");
       return;
     }
-    page_.paragraph(
-        formatted("%.0f patches of the surface", static_cast<double>(found_.disagreements.size())) +
-        " (a twelfth of it, inside rafts, outside or at their boundaries, in one "
-        "snapshot) disagree significantly with the base model. The strongest:");
+    page_.paragraph(std::to_string(found_.disagreements.size()) +
+                    " patches of the surface (a twelfth of it, inside rafts, outside or at their "
+                    "boundaries, in one "
+                    "snapshot) disagree significantly with the base model. The strongest:");
     page_.table(disagreement_rows(found_, units_, kMostRows));
   }
 
@@ -144,10 +136,9 @@ class ExplainPage {
   std::string data_text() const {
     std::size_t snapshots = 0;
     for (const FieldSeries& series : setup_.series) snapshots += series.snapshots.size();
-    return formatted(
-        "%.0f vesicles, %.0f snapshots, noise %.4f of c, %.0f replicates of noise alone.",
-        static_cast<double>(setup_.series.size()), static_cast<double>(snapshots), found_.noise,
-        static_cast<double>(found_.replicates));
+    return std::to_string(setup_.series.size()) + " vesicles, " + std::to_string(snapshots) +
+           " snapshots, noise " + formatted("%.4f of c, ", found_.noise) +
+           std::to_string(found_.replicates) + " replicates of noise alone.";
   }
 
   const fs::path folder_;
@@ -155,7 +146,7 @@ class ExplainPage {
   const ExplainSetup& setup_;
   const Units units_;
   Page page_;
-  std::string missing_;
+  Missing missing_;
 };
 
 }  // namespace

@@ -20,21 +20,20 @@ GivenValues given_model(const ExplainJob& job, double radius_um) {
   return given;
 }
 
-void refuse_model(const Configuration& model) {
-  refuse_scaled(model);
+}  // namespace
+
+void refuse_effects(const Configuration& model) {
   if (!model.text("effect").empty())
     throw InputError(model.where("effect") +
                      ": the search starts from a model without effects; it finds them itself");
 }
 
-}  // namespace
-
 ExplainSetup read_explain_job(const ExplainJob& job) {
   FieldDataset data = read_field_dataset(job.data);
-  for (const std::string& effect : job.without) (void)effects().find(effect);
   ExplainSetup setup{given_model(job, data.radius_um), std::move(data.vesicles), {}};
   const Configuration model(setup.model, {});
-  refuse_model(model);
+  refuse_scaled(model);
+  refuse_effects(model);
   for (FieldSeries& vesicle : setup.series)
     for (FieldSnapshot& snapshot : vesicle.snapshots) snapshot.time /= model.units().time();
 

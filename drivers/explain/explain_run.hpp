@@ -23,6 +23,9 @@ struct ExplainSetup {
   ExplainRequest request;
 };
 
+// Throws InputError: the search finds effects itself.
+void refuse_effects(const Configuration& model);
+
 // Throws InputError for data and models that cannot be used.
 ExplainSetup read_explain_job(const ExplainJob& job);
 

@@ -5,6 +5,7 @@
 
 #include "drivers/config/config_file.hpp"
 #include "drivers/ensemble/ensemble_point.hpp"
+#include "drivers/explain/explain_run.hpp"
 #include "drivers/explain/found_parameters.hpp"
 #include "drivers/input/measured_units.hpp"
 #include "drivers/output/json_file.hpp"
@@ -26,28 +27,14 @@ void refuse_model(const Configuration& model) {
   refuse_scaled(model);
   if (model.text("surface") != "sphere")
     throw InputError(model.where("surface") + ": series are explained on spheres only");
-  if (!model.text("effect").empty())
-    throw InputError(model.where("effect") +
-                     ": the search starts from a model without effects; it finds them itself");
-  if (model.text("initial").compare(0, 5, "noise") != 0)
-    throw InputError(model.where("initial") + ": vesicles differ in the noise they start from");
-}
-
-GivenValues settings_of(const Configuration& model) {
-  GivenValues given;
-  for (const OptionSpec& spec : run_options())
-    if ((spec.numerical || spec.name == "case") && spec.name != "seed" &&
-        !model.text(spec.name).empty())
-      given[spec.name] = {model.text(spec.name), "--" + spec.name};
-  return given;
+  refuse_effects(model);
+  refuse_without_noise(model);
 }
 
 Configuration ensemble_model(const Configuration& model, const std::string& effect, double t_end) {
-  GivenValues given = settings_of(model);
-  for (const auto& [name, text] :
-       {std::pair("t-end", format_number(t_end)), std::pair("output-times", format_number(t_end)),
-        std::pair("fields", std::string("false")), std::pair("effect", effect)})
-    given[name] = {text, std::string("--") + name};
+  GivenValues given = settings_until(model, t_end);
+  given["case"] = {model.text("case"), "--case"};
+  given["effect"] = {effect, "--effect"};
   return {{}, given};
 }
 
@@ -60,15 +47,15 @@ std::vector<EffectTerm> sizes(const fs::path& folder, const Configuration& model
   sizing.base = physical_model(model);
   sizing.raft_fraction = model.number("raft-fraction");
   sizing.cells = static_cast<int>(model.integer("cells"));
-  sizing.first = request.first / units.time();
-  sizing.last = request.last / units.time();
+  sizing.first = request.looks.begin / units.time();
+  sizing.last = request.looks.end / units.time();
   sizing.snapshots = 5;
   sizing.threads = request.threads;
   for (const std::string& effect : effects_to_hide())
     if (std::count(request.without.begin(), request.without.end(), effect) == 0)
       sizing.effects.push_back(effect);
-  const std::string identity =
-      config_text(ensemble_model(model, "", request.last)) + format_number(request.first);
+  const std::string identity = config_text(ensemble_model(model, "", request.looks.end)) +
+                               format_number(request.looks.begin);
   if (fs::exists(file))
     return from_json(file, [&](const Json& json) {
       if (json.at("identity") != identity)
@@ -97,13 +84,6 @@ EffectTerm within_range(EffectTerm term, const Units& units) {
   return term;
 }
 
-bool is_two_sided(const std::string& effect) {
-  const std::vector<Candidate> all = candidates();
-  return std::any_of(all.begin(), all.end(), [&](const Candidate& candidate) {
-    return candidate.effect == effect && candidate.two_sided;
-  });
-}
-
 }  // namespace
 
 SeriesEnsembles run_series_ensembles(const fs::path& folder, const Configuration& model,
@@ -116,7 +96,7 @@ SeriesEnsembles run_series_ensembles(const fs::path& folder, const Configuration
   const auto simulate = [&](const std::string& name, const std::string& effect) {
     if (!request.quiet)
       std::printf("simulations with %s\n", effect.empty() ? "no effect" : effect.c_str());
-    return run_point(folder / name, ensemble_model(model, effect, kFastest * request.last),
+    return run_point(folder / name, ensemble_model(model, effect, kFastest * request.looks.end),
                      {request.runs, request.jobs, request.quiet});
   };
   PointEnd base = simulate("base", "");
@@ -135,8 +115,8 @@ SeriesEnsembles run_series_ensembles(const fs::path& folder, const Configuration
                              std::to_string(end.failures.front().seed) +
                              " failed: " + end.failures.front().why);
     else
-      result.candidates.push_back(
-          {term.effect, term.values.front(), is_two_sided(term.effect), std::move(end.runs)});
+      result.candidates.push_back({term.effect, term.values.front(),
+                                   find_candidate(term.effect)->two_sided, std::move(end.runs)});
   }
   return result;
 }

@@ -12,7 +12,7 @@
 namespace traceraft {
 
 struct SeriesEnsemblesRequest {
-  double first, last;  // looks, in s
+  Window looks;  // s
   int runs, jobs, threads;
   std::vector<std::string> without;  // effects
   bool quiet;

@@ -55,6 +55,11 @@ std::string advice(const SeriesTie& tie) {
          "; one vesicle with fields at 8 times tells more (traceraft explain --data).";
 }
 
+// With the D that the series say.
+Units found_units(const Configuration& model, const SeriesExplanation& found) {
+  return model.units().with_seconds_per_unit(std::exp(found.base.ln_unit));
+}
+
 // Of strengths, in units of R and R²/D as the series found it.
 struct Scale {
   std::string parameter, unit;
@@ -63,14 +68,7 @@ struct Scale {
 Scale scale_of(const std::string& effect, const Configuration& model,
                const SeriesExplanation& found) {
   const ParameterSpec& spec = effects().find(effect).parameters.front();
-  Units units = model.units();
-  units.diffusion_cm2_s *= model.units().seconds_per_unit() / std::exp(found.base.ln_unit);
-  return {spec.name, spec.unit, 1 / to_model_units(spec.unit, units)};
-}
-
-double diffusion(const Configuration& model, const SeriesExplanation& found) {
-  const Units units = model.units();
-  return units.diffusion_cm2_s * units.seconds_per_unit() / std::exp(found.base.ln_unit);
+  return {spec.name, spec.unit, 1 / to_model_units(spec.unit, found_units(model, found))};
 }
 
 std::vector<Row> score_rows(const Configuration& model, const SeriesExplanation& found) {
@@ -87,31 +85,28 @@ std::vector<Row> score_rows(const Configuration& model, const SeriesExplanation&
   return rows;
 }
 
+SeriesEnsembles in_seconds(SeriesEnsembles ensembles, double seconds_per_unit) {
+  const auto convert = [=](std::vector<History>& runs) {
+    for (History& run : runs)
+      for (double& t : run.time) t *= seconds_per_unit;
+  };
+  convert(ensembles.base);
+  for (SeriesCandidate& candidate : ensembles.candidates) convert(candidate.runs);
+  return ensembles;
+}
+
 struct Exponent {
   std::string model;
   FittedLaw law;
 };
 
-std::vector<History> in_seconds(std::vector<History> runs, double seconds_per_unit) {
-  for (History& run : runs)
-    for (double& t : run.time) t *= seconds_per_unit;
-  return runs;
-}
-
 // Of the perimeter, over the times that were looked at.
-std::vector<Exponent> exponents(const MeasuredVesicles& data, const SeriesEnsembles& ensembles,
-                                const SeriesExplanation& found) {
-  double first = HUGE_VAL, last = 0;
-  for (const Measurement& m : data.measurements) {
-    if (m.time > 0) first = std::min(first, m.time);
-    last = std::max(last, m.time);
-  }
-  const Window window{first, last};
+std::vector<Exponent> exponents(const MeasuredVesicles& data, const SeriesEnsembles& ensembles) {
+  const Window window = looks(data);
   std::vector<Exponent> result;
   if (const auto law = fit_measurements(data, window)) result.push_back({"measured", *law});
   const auto add = [&](const std::string& name, const std::vector<History>& runs) {
-    const std::vector<History> seconds = in_seconds(runs, std::exp(found.base.ln_unit));
-    if (const auto law = fit_runs(seconds, common_times(seconds, kPerDecade), window))
+    if (const auto law = fit_runs(runs, common_times(runs, kPerDecade), window))
       result.push_back({name, *law});
   };
   add("the model", ensembles.base);
@@ -158,7 +153,7 @@ Json series_json(const Configuration& model, const SeriesExplanation& found,
           {"trend_p", found.trend_p},
           {"vesicles", found.vesicles},
           {"looks", found.looks},
-          {"diffusion", {{"value", diffusion(model, found)}, {"unit", "cm^2/s"}}},
+          {"diffusion", {{"value", found_units(model, found).diffusion_cm2_s}, {"unit", "cm^2/s"}}},
           {"scores", scores},
           {"classes", found.classes},
           {"ties", ties},
@@ -174,11 +169,10 @@ Chart curve_chart(Quantity quantity, const MeasuredVesicles& data, const SeriesE
     if (m.of(quantity)) measured.points.emplace_back(m.time, *m.of(quantity));
   chart.series.push_back(measured);
   const auto add = [&](const std::string& name, const std::vector<History>& runs) {
-    const std::vector<History> seconds = in_seconds(runs, std::exp(found.base.ln_unit));
     ChartSeries series{name, {}, Mark::line};
-    for (const double t : common_times(seconds, kPerDecade))
-      series.points.emplace_back(
-          t, std::exp(RunCurves(seconds, each_once(seconds.size())).mean(quantity, std::log(t))));
+    const RunCurves curves(runs, each_once(runs.size()));
+    for (const double t : common_times(runs, kPerDecade))
+      series.points.emplace_back(t, std::exp(curves.mean(quantity, std::log(t))));
     chart.series.push_back(series);
   };
   add("the model", ensembles.base);
@@ -191,15 +185,17 @@ Chart curve_chart(Quantity quantity, const MeasuredVesicles& data, const SeriesE
 }  // namespace
 
 void write_series_explanation(const fs::path& folder, const MeasuredVesicles& data,
-                              const Configuration& model, const SeriesEnsembles& ensembles,
+                              const Configuration& model, const SeriesEnsembles& simulated,
                               const SeriesExplanation& found, bool quiet) {
-  const std::vector<Exponent> laws = exponents(data, ensembles, found);
+  const SeriesEnsembles ensembles = in_seconds(simulated, std::exp(found.base.ln_unit));
+  const std::vector<Exponent> laws = exponents(data, ensembles);
   std::vector<std::string> words{
       data.name + (data.synthetic ? " (SYNTHETIC, not measured): " : ": ") +
           std::to_string(found.vesicles) + " vesicles, " + std::to_string(found.looks) + " looks.",
       sentence(found)};
   for (const SeriesTie& tie : found.ties) words.push_back(advice(tie));
-  words.push_back(formatted("D is %.3g cm^2/s if nothing is missing.", diffusion(model, found)));
+  words.push_back(formatted("D is %.3g cm^2/s if nothing is missing.",
+                            found_units(model, found).diffusion_cm2_s));
   words.insert(words.end(), ensembles.notes.begin(), ensembles.notes.end());
   for (const auto& members : found.classes)
     if (members.size() > 1) words.push_back("Alike in series: " + listed(members, ", ") + ".");
@@ -211,11 +207,10 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
   page.heading("Exponents");
   page.table(exponent);
   page.heading("In time");
+  Missing missing;
   for (const Quantity quantity : kQuantities) {
     const Chart chart = curve_chart(quantity, data, ensembles, found);
-    const std::string svg =
-        draw_chart(chart, folder / (std::string("series-") + name_of(quantity).id));
-    if (!svg.empty()) page.figure(svg, chart.title);
+    add_chart(page, chart, folder / (std::string("series-") + name_of(quantity).id), missing);
   }
   page.paragraph("traceraft " + std::string(kVersion) + ".");
   write_durably(folder / "series.html", page.html());
@@ -228,6 +223,7 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
   std::printf("\n");
   print_rows(exponent);
   std::printf("\nwritten: %s\n", (folder / "series.html").c_str());
+  if (!missing.text().empty()) std::printf("the page lacks: %s\n", missing.text().c_str());
 }
 
 }  // namespace traceraft

@@ -101,4 +101,13 @@ std::string draw_chart(const Chart& chart, const std::filesystem::path& stem) {
   return svg.substr(svg.find("<svg"));  // without the XML header: goes into pages
 }
 
+void add_chart(Page& page, const Chart& chart, const std::filesystem::path& stem,
+               Missing& missing) {
+  const std::string svg = draw_chart(chart, stem);
+  if (svg.empty())
+    missing.add(kNoGnuplot);
+  else
+    page.figure(svg, chart.title);
+}
+
 }  // namespace traceraft

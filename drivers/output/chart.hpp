@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "drivers/output/page.hpp"
 #include "verification/study.hpp"
 
 namespace traceraft {
@@ -14,5 +15,21 @@ inline constexpr const char* kNoGnuplot = "gnuplot is not installed (Debian pack
 // Writes `stem`.gp, gnuplot's input with the data in it, and from it `stem`.svg, whose text is
 // returned. "" if gnuplot is not installed; throws IoError if it fails.
 std::string draw_chart(const Chart& chart, const std::filesystem::path& stem);
+
+// What a page lacks, collected.
+class Missing {
+ public:
+  void add(const std::string& what) {
+    if (!what.empty() && text_.find(what) == std::string::npos)
+      text_ += (text_.empty() ? "" : "; ") + what;
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+// Draws, and shows it on the page, or notes that it is missing.
+void add_chart(Page& page, const Chart& chart, const std::filesystem::path& stem, Missing& missing);
 
 }  // namespace traceraft

@@ -59,27 +59,6 @@ Chart series_chart(const CsvTable& series, const Curve& curve, const std::string
   return chart;
 }
 
-// What the page lacks, collected.
-class Missing {
- public:
-  void add(const std::string& what) {
-    if (!what.empty() && text_.find(what) == std::string::npos)
-      text_ += (text_.empty() ? "" : "; ") + what;
-  }
-  const std::string& text() const { return text_; }
-
- private:
-  std::string text_;
-};
-
-void add_chart(Page& page, const Chart& chart, const fs::path& stem, Missing& missing) {
-  const std::string svg = draw_chart(chart, stem);
-  if (svg.empty())
-    missing.add(kNoGnuplot);
-  else
-    page.figure(svg, chart.title);
-}
-
 void add_surface(Page& page, const fs::path& run, const PageRequest& request,
                  const std::string& time_unit, Missing& missing) {
   if (!fs::exists(run / "fields.pvd")) return missing.add("the run has written no fields");

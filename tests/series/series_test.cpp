@@ -12,10 +12,6 @@
 namespace traceraft {
 namespace {
 
-double normal(std::uint64_t stream, std::uint64_t i) {
-  return normal_pair(uniform_random(stream, 1, 2 * i), uniform_random(stream, 1, 2 * i + 1))[0];
-}
-
 // A vesicle at times of 1 to 1000 units: the perimeter falls like t^(−1/3) to a plateau, the
 // fraction drifts, and there are more rafts of the same perimeter.
 struct Law {
@@ -23,7 +19,7 @@ struct Law {
 };
 History vesicle(const Law& law, std::uint64_t seed, double seconds_per_unit = 1) {
   History history;
-  const double own = 0.08 * normal(seed, 0);
+  const double own = 0.08 * normal_random(seed, 1, 0);
   for (int k = 0; k <= 60; ++k) {
     const double t = std::pow(10.0, k / 20.0);
     const double p = (30 * std::pow(t, law.exponent) + law.plateau) * std::exp(own);
@@ -60,7 +56,8 @@ MeasuredVesicles measured(const Law& law, int vesicles, double noise, double sec
       m.radius = 5;
       for (const Quantity quantity : kQuantities) {
         const auto q = static_cast<std::size_t>(quantity);
-        const double scatter = noise * normal(7 + q, static_cast<std::uint64_t>(10 * v + k));
+        const double scatter =
+            noise * normal_random(7 + q, 1, static_cast<std::uint64_t>(10 * v + k));
         m.values[q] = history.at(quantity, m.time) * std::exp(scatter);
       }
       data.measurements.push_back(m);

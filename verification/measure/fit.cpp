@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
 #include "kernel/core/random.hpp"
@@ -62,6 +63,20 @@ ObservedOrder observed_order(const Points& levels) {
   return {order, levels.size() > 2 ? std::fabs(order - between(last - 1)) : 0};
 }
 
+std::vector<int> each_once(std::size_t count) {
+  std::vector<int> all(count);
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+std::vector<int> resample(int count, std::uint64_t seed, std::uint64_t stream,
+                          std::uint64_t first) {
+  std::vector<int> sample;
+  for (int k = 0; k < count; ++k)
+    sample.push_back(random_index(count, seed, stream, first + static_cast<std::uint64_t>(k)));
+  return sample;
+}
+
 Interval bootstrap(int count, int replicates, double confidence, std::uint64_t seed,
                    const std::function<double(const std::vector<int>&)>& statistic) {
   return bootstrap_all(
@@ -74,14 +89,9 @@ std::vector<Interval> bootstrap_all(
     int count, int replicates, double confidence, std::uint64_t seed,
     const std::function<std::vector<double>(const std::vector<int>&)>& statistics) {
   std::vector<std::vector<double>> values;  // of each statistic
-  std::vector<int> sample(static_cast<std::size_t>(count));
-  std::uint64_t draw = 0;
   for (int k = 0; k < replicates; ++k) {
-    for (int& member : sample) {
-      const double u = uniform_random(seed, 91, draw++);
-      member = std::min(count - 1, static_cast<int>(u * count));
-    }
-    const std::vector<double> drawn = statistics(sample);
+    const auto first = static_cast<std::uint64_t>(k) * static_cast<std::uint64_t>(count);
+    const std::vector<double> drawn = statistics(resample(count, seed, 91, first));
     values.resize(drawn.size());
     for (std::size_t i = 0; i < drawn.size(); ++i) values[i].push_back(drawn[i]);
   }

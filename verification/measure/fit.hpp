@@ -38,8 +38,14 @@ struct ObservedOrder {
 };
 ObservedOrder observed_order(const Points& size_and_error);
 
+// Samples of 0 … count − 1: each of them once; or as many drawn with replacement, by the random
+// numbers from `first` on.
+std::vector<int> each_once(std::size_t count);
+std::vector<int> resample(int count, std::uint64_t seed, std::uint64_t stream,
+                          std::uint64_t first = 0);
+
 // Percentile bootstrap: the interval that holds the share `confidence` of statistic(sample) over
-// samples of 0 … count − 1 drawn with replacement.
+// samples drawn with replacement.
 struct Interval {
   double low, high;
   bool contains(double value) const { return value >= low && value <= high; }

@@ -15,20 +15,19 @@ class RunCurves {
   RunCurves(const std::vector<History>& runs, const std::vector<int>& sample);
 
   // Linear in ln t, constant beyond the ends.
-  double mean(Quantity quantity, double ln_t) const { return at(mean_, quantity, ln_t); }
-  double variance(Quantity quantity, double ln_t) const { return at(variance_, quantity, ln_t); }
+  double mean(Quantity quantity, double ln_t) const {
+    return grid_.at(mean_[static_cast<std::size_t>(quantity)], ln_t);
+  }
+  double variance(Quantity quantity, double ln_t) const {
+    return grid_.at(variance_[static_cast<std::size_t>(quantity)], ln_t);
+  }
   // Of the mean by ln t.
   double slope(Quantity quantity, double ln_t) const;
 
  private:
-  using Curves = std::array<std::vector<double>, 3>;
-  double at(const Curves& curves, Quantity quantity, double ln_t) const;
-  double begin_, step_;
-  Curves mean_, variance_;
+  LogTimes grid_;
+  std::array<std::vector<double>, 3> mean_, variance_;
 };
-
-// 0, 1, … count − 1.
-std::vector<int> each_once(std::size_t count);
 
 // What is compared of a quantity: its logarithm. There may be no rafts for a moment.
 double logarithm_of(Quantity quantity, double value);

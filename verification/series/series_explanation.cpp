@@ -6,27 +6,19 @@
 
 #include "kernel/core/error.hpp"
 #include "kernel/core/random.hpp"
+#include "verification/explain/bounds.hpp"
+#include "verification/explain/score_test.hpp"
+#include "verification/measure/fit.hpp"
 
 namespace traceraft {
 namespace {
 
-// Standard deviations at which an effect is seen in nine data sets of ten.
-constexpr double kSeen = 4;
 // Responses that correlate more are one class.
 constexpr double kAlike = 0.8;
 // A trend that no effect explains has to be that much less probable.
 constexpr double kTrendLevel = 0.4;
 // Streams of random numbers.
 enum Stream : std::uint64_t { kRunOf = 1, kVesicle = 2, kLook = 3, kSample = 4 };
-
-double normal(std::uint64_t replicate, std::uint64_t stream, std::uint64_t i) {
-  return normal_pair(uniform_random(replicate, stream, 2 * i),
-                     uniform_random(replicate, stream, 2 * i + 1))[0];
-}
-
-int drawn(int count, std::uint64_t replicate, std::uint64_t stream, std::uint64_t i) {
-  return std::min(count - 1, static_cast<int>(uniform_random(replicate, stream, i) * count));
-}
 
 // The same looks at vesicles of the base model, one run each.
 MeasuredVesicles draw_base(const MeasuredVesicles& data, const std::vector<History>& runs,
@@ -35,15 +27,16 @@ MeasuredVesicles draw_base(const MeasuredVesicles& data, const std::vector<Histo
   std::uint64_t vesicle = 0, look = 0;
   for (const auto& [first, last] : data.vesicles()) {
     const History& run = runs[static_cast<std::size_t>(
-        drawn(static_cast<int>(runs.size()), replicate, kRunOf, vesicle))];
+        random_index(static_cast<int>(runs.size()), replicate, kRunOf, vesicle))];
     for (std::size_t i = first; i < last; ++i)
       for (const Quantity quantity : kQuantities) {
         const auto q = static_cast<std::size_t>(quantity);
         ++look;
         if (!data.measurements[i].of(quantity)) continue;
         const double t = data.measurements[i].time / std::exp(fit.ln_unit);
-        const double own = fit.scatter.vesicle[q] * normal(replicate, kVesicle, 3 * vesicle + q) +
-                           fit.scatter.look[q] * normal(replicate, kLook, look);
+        const double own =
+            fit.scatter.vesicle[q] * normal_random(replicate, kVesicle, 3 * vesicle + q) +
+            fit.scatter.look[q] * normal_random(replicate, kLook, look);
         const double value = std::exp(logarithm_of(quantity, run.at(quantity, t)) + own);
         drawn_data.measurements[i].values[q] =
             quantity == Quantity::rafts ? std::max(1.0, std::round(value)) : value;
@@ -51,12 +44,6 @@ MeasuredVesicles draw_base(const MeasuredVesicles& data, const std::vector<Histo
     ++vesicle;
   }
   return drawn_data;
-}
-
-// p = (1 + the number of replicates that reach it) / (1 + their number).
-double share_beyond(const Vec& replicates, double value) {
-  return static_cast<double>((replicates.array() >= value).count() + 1) /
-         static_cast<double>(replicates.size() + 1);
 }
 
 struct Ensembles {
@@ -200,9 +187,7 @@ class SeriesSearch {
     null_trend_.resize(request_.replicates);
     for (int r = 0; r < request_.replicates; ++r) {
       const auto replicate = static_cast<std::uint64_t>(r + 1);
-      std::vector<int> sample;
-      for (std::size_t k = 0; k < base_.size(); ++k)
-        sample.push_back(drawn(static_cast<int>(base_.size()), replicate, kSample, k));
+      const std::vector<int> sample = resample(static_cast<int>(base_.size()), replicate, kSample);
       const Gains gains = gains_of(draw_base(data_, base_, gains_.base, replicate),
                                    {base_, candidates_, sample}, candidates_, request_);
       null.row(r) = gains.values.transpose();
@@ -217,10 +202,9 @@ class SeriesSearch {
     const SeriesCandidate& candidate = candidates_[k];
     const double gain = gains_.values[static_cast<Eigen::Index>(k)];
     const double noise = null_mean_[static_cast<Eigen::Index>(k)];
-    const double p = share_beyond(null_highest_, gain / noise);
+    const double p = share_of_noise(null_highest_, gain / noise);
     result_.p = std::min(result_.p, p);
-    const double width = (candidate.two_sided ? 1.96 : 1.645) * fit.deviation *
-                         std::sqrt(std::max(1.0, noise / (candidate.two_sided ? 1.0 : 0.5)));
+    const double width = bound_width(fit.deviation, 1, candidate.two_sided, noise);
     const double least = candidate.two_sided ? fit.amplitude - width : 0.0;
     const double most = fit.amplitude + width;
     const double squares = responses_.squares(k);
@@ -230,7 +214,7 @@ class SeriesSearch {
             p,
             std::min(least * candidate.strength, most * candidate.strength),
             std::max(least * candidate.strength, most * candidate.strength),
-            most <= 2 && least >= -2,
+            most <= kLargestAmplitude && least >= -kLargestAmplitude,
             needed(squares, noise),
             responses_.telling(responses_.of(k))};
   }
@@ -253,7 +237,7 @@ class SeriesSearch {
     Eigen::Index best;
     calibrated.maxCoeff(&best);
     const auto b = static_cast<std::size_t>(best);
-    result_.trend_p = share_beyond(
+    result_.trend_p = share_of_noise(
         null_trend_, significant
                          ? trend_left(blocks_of(data_), {&ensembles_.base, &ensembles_.changed[b]},
                                       gains_.fits[b])

@@ -11,7 +11,6 @@ namespace {
 
 constexpr double kRoundingVariance = 1 / 12.0;  // of a whole number
 constexpr double kLeastScatter = 0.003, kLargestScatter = 1;
-constexpr double kLargestAmplitude = 2;  // of what has been simulated
 constexpr int kTrendDegree = 3;
 constexpr int kRounds = 3, kNewtonSteps = 4;
 
@@ -175,10 +174,6 @@ SeriesMetric::SeriesMetric(const std::vector<SeriesBlock>& blocks, const RunCurv
         {block.quantity, next, inverse.size(), scatter.vesicle[q] * scatter.vesicle[q], inverse});
     next += inverse.size();
   }
-}
-
-double SeriesMetric::product(const Vec& u, const Vec& v) const {
-  return product(u, v, std::nullopt);
 }
 
 double SeriesMetric::product(const Vec& u, const Vec& v, std::optional<Quantity> only) const {

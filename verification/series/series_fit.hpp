@@ -35,6 +35,9 @@ struct SeriesModel {
   bool two_sided = true;
 };
 
+// Of an effect, over what has been simulated: a fit does not leave that either.
+inline constexpr double kLargestAmplitude = 2;
+
 struct SeriesFit {
   double ln_unit = 0;    // of R²/D in seconds
   double amplitude = 0;  // a
@@ -60,9 +63,8 @@ class SeriesMetric {
  public:
   SeriesMetric(const std::vector<SeriesBlock>& blocks, const RunCurves& base, double ln_unit,
                const SeriesScatter& scatter);
-  double product(const Vec& u, const Vec& v) const;
-  // Of one quantity alone.
-  double product(const Vec& u, const Vec& v, std::optional<Quantity> only) const;
+  // `only`: of one quantity alone.
+  double product(const Vec& u, const Vec& v, std::optional<Quantity> only = {}) const;
   double log_determinant() const;
 
  private:

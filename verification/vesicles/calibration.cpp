@@ -3,10 +3,9 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "kernel/core/error.hpp"
-#include "kernel/core/random.hpp"
+#include "verification/measure/fit.hpp"
 #include "verification/vesicles/response_surface.hpp"
 
 namespace traceraft {
@@ -84,21 +83,6 @@ Estimate estimate(const MeasuredVesicles& data, const std::vector<int>& vesicles
   return result;
 }
 
-std::vector<int> drawn(int count, std::uint64_t stream, std::uint64_t replicate) {
-  std::vector<int> sample;
-  for (int k = 0; k < count; ++k)
-    sample.push_back(std::min(
-        count - 1, static_cast<int>(
-                       uniform_random(replicate, stream, static_cast<std::uint64_t>(k)) * count)));
-  return sample;
-}
-
-std::vector<int> all_of(std::size_t count) {
-  std::vector<int> all(count);
-  std::iota(all.begin(), all.end(), 0);
-  return all;
-}
-
 Eigen::MatrixXd covariance(const std::vector<std::vector<double>>& replicates) {
   const auto rows = static_cast<Eigen::Index>(replicates.size());
   Eigen::MatrixXd values(rows, static_cast<Eigen::Index>(replicates.front().size()));
@@ -142,17 +126,18 @@ Calibration calibrate(const MeasuredVesicles& data, const std::vector<std::strin
   const ScatterLaws scatter = scatter_laws(ensembles);
   std::vector<RunStatistics> statistics;
   for (const CalibrationPoint& point : points)
-    statistics.emplace_back(point.runs, all_of(point.runs.size()), scatter);
-  const Estimate found = estimate(data, all_of(static_cast<std::size_t>(vesicles)), points,
+    statistics.emplace_back(point.runs, each_once(point.runs.size()), scatter);
+  const Estimate found = estimate(data, each_once(static_cast<std::size_t>(vesicles)), points,
                                   statistics, box, seconds_start, range);
   std::vector<std::vector<double>> replicates;
   for (std::uint64_t r = 1; r <= kReplicates; ++r) {
     std::vector<RunStatistics> others;
     // The same seeds at all points: what is common to them cancels in the comparison of points.
     for (const CalibrationPoint& point : points)
-      others.emplace_back(point.runs, drawn(static_cast<int>(point.runs.size()), 32, r), scatter);
+      others.emplace_back(point.runs, resample(static_cast<int>(point.runs.size()), r, 32),
+                          scatter);
     replicates.push_back(
-        estimate(data, drawn(vesicles, 31, r), points, others, box, seconds_start, range).ln);
+        estimate(data, resample(vesicles, r, 31), points, others, box, seconds_start, range).ln);
   }
   Calibration result;
   for (std::size_t i = 0; i <= names.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/core/error.hpp"
 #include "verification/measure/fit.hpp"
 
 namespace traceraft {
@@ -40,6 +41,20 @@ std::vector<double> common_times(const std::vector<History>& histories, int per_
   for (int i = 0; i <= steps; ++i) times.push_back(begin * std::pow(end / begin, i * 1.0 / steps));
   times.back() = end;
   return times;
+}
+
+LogTimes::LogTimes(const std::vector<double>& times) {
+  if (times.size() < 2) throw InputError("the runs of an ensemble have no times in common");
+  begin_ = std::log(times.front());
+  step_ = std::log(times.back() / times.front()) / static_cast<double>(times.size() - 1);
+}
+
+double LogTimes::at(const std::vector<double>& values, double ln_t) const {
+  const double place =
+      std::clamp((ln_t - begin_) / step_, 0.0, static_cast<double>(values.size() - 1));
+  const auto below = std::min(static_cast<std::size_t>(place), values.size() - 2);
+  const double share = place - static_cast<double>(below);
+  return values[below] + share * (values[below + 1] - values[below]);
 }
 
 double quantile(std::vector<double> values, double share) {

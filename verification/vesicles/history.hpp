@@ -36,6 +36,19 @@ struct History {
 // positive times, their last ones). Empty if that is nothing.
 std::vector<double> common_times(const std::vector<History>& histories, int per_decade);
 
+// Such times, at least two of them, to interpolate between: linear in ln t, constant beyond the
+// ends.
+class LogTimes {
+ public:
+  explicit LogTimes(const std::vector<double>& times);
+  double step() const { return step_; }  // of ln t
+  // `values`: one for each of the times.
+  double at(const std::vector<double>& values, double ln_t) const;
+
+ private:
+  double begin_, step_;
+};
+
 // Of several numbers. Quantiles are linear between order statistics.
 struct Distribution {
   double mean, deviation;  // deviation with n − 1; 0 of a single number

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "backends/nlopt/minimise.hpp"
 #include "verification/measure/fit.hpp"
@@ -59,8 +58,7 @@ double ScatterLaw::variance(double rafts) const {
 ScatterLaws scatter_laws(const std::vector<std::vector<History>>& ensembles) {
   Points perimeter, rafts;
   for (const std::vector<History>& runs : ensembles) {
-    std::vector<int> all(runs.size());
-    std::iota(all.begin(), all.end(), 0);
+    const std::vector<int> all = each_once(runs.size());
     for (const double t : common_times(runs, kPerDecade)) {
       const MeanAndVariance count = of_logarithms(runs, all, Quantity::rafts, t);
       const double x = independent_share(std::exp(count.mean));
@@ -72,28 +70,23 @@ ScatterLaws scatter_laws(const std::vector<std::vector<History>>& ensembles) {
 }
 
 RunStatistics::RunStatistics(const std::vector<History>& runs, const std::vector<int>& sample,
-                             const ScatterLaws& scatter) {
-  const std::vector<double> times = common_times(runs, kPerDecade);
-  begin_ = std::log(times.front());
-  step_ = std::log(times.back() / times.front()) / static_cast<double>(times.size() - 1);
+                             const ScatterLaws& scatter)
+    : grid_(common_times(runs, kPerDecade)) {
   const double more = 1 + 1 / static_cast<double>(sample.size());
-  for (const double t : times) {
+  for (const double t : common_times(runs, kPerDecade)) {
     const double rafts = of_logarithms(runs, sample, Quantity::rafts, t).mean;
     const double count = std::exp(rafts);
-    rafts_.push_back({rafts, more * scatter.rafts.variance(count)});
-    perimeter_.push_back({of_logarithms(runs, sample, Quantity::perimeter, t).mean,
-                          more * scatter.perimeter.variance(count)});
+    rafts_.mean.push_back(rafts);
+    rafts_.variance.push_back(more * scatter.rafts.variance(count));
+    perimeter_.mean.push_back(of_logarithms(runs, sample, Quantity::perimeter, t).mean);
+    perimeter_.variance.push_back(more * scatter.perimeter.variance(count));
   }
 }
 
 RunStatistics::Normal RunStatistics::at(Quantity quantity, double t) const {
-  const std::vector<Normal>& values = quantity == Quantity::perimeter ? perimeter_ : rafts_;
-  const double place =
-      std::clamp((std::log(t) - begin_) / step_, 0.0, static_cast<double>(values.size() - 1));
-  const auto below = std::min(static_cast<std::size_t>(place), values.size() - 2);
-  const double share = place - static_cast<double>(below);
-  const Normal &a = values[below], &b = values[below + 1];
-  return {a.mean + share * (b.mean - a.mean), a.variance + share * (b.variance - a.variance)};
+  const Curve& curve = quantity == Quantity::perimeter ? perimeter_ : rafts_;
+  const double ln_t = std::log(t);
+  return {grid_.at(curve.mean, ln_t), grid_.at(curve.variance, ln_t)};
 }
 
 TimeFit fit_time(const MeasuredVesicles& data, const std::vector<int>& sample,

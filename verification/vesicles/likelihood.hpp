@@ -35,8 +35,11 @@ class RunStatistics {
   Normal at(Quantity quantity, double t) const;
 
  private:
-  double begin_, step_;  // of ln t
-  std::vector<Normal> perimeter_, rafts_;
+  struct Curve {
+    std::vector<double> mean, variance;
+  };
+  LogTimes grid_;
+  Curve perimeter_, rafts_;
 };
 
 // The simulations do not know D: it only sets the unit of time, R²/D. Nor do they know the scatter

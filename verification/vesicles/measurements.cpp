@@ -1,5 +1,6 @@
 #include "verification/vesicles/measurements.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "kernel/core/types.hpp"
@@ -13,6 +14,15 @@ std::vector<std::pair<std::size_t, std::size_t>> MeasuredVesicles::vesicles() co
     ranges.back().second = i + 1;
   }
   return ranges;
+}
+
+Window looks(const MeasuredVesicles& data) {
+  Window window{HUGE_VAL, 0};
+  for (const Measurement& m : data.measurements) {
+    if (m.time > 0) window.begin = std::min(window.begin, m.time);
+    window.end = std::max(window.end, m.time);
+  }
+  return window;
 }
 
 void set_caps(Measurement& measurement, const std::vector<double>& base_radii) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "verification/measure/fit.hpp"
 #include "verification/vesicles/history.hpp"
 
 namespace traceraft {
@@ -38,6 +39,9 @@ struct MeasuredVesicles {
   // First and last index + 1 of each vesicle's measurements.
   std::vector<std::pair<std::size_t, std::size_t>> vesicles() const;
 };
+
+// From the first look after time zero to the last one; nothing if there is none, {inf, 0}.
+Window looks(const MeasuredVesicles& data);
 
 // Rafts as spherical caps on a sphere of radius r with base radii a ≤ r (Zhiliakov et al.): each
 // has the perimeter 2π a, the half angle θ = arcsin(a/r) and the area 2π r² (1 − cos θ). Sets all
