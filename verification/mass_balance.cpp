@@ -123,7 +123,8 @@ StudyReport run(const Bench& bench) {
 
 StudyEntry mass_balance_study() {
   return {"mass",
-          "the mass does not drift: surfaces, mobilities, integrators, solvers, ranks, seeds", run};
+          "the mass does not drift: surfaces, mobilities, integrators, solvers, ranks, seeds", run,
+          false, true};
 }
 
 }  // namespace traceraft

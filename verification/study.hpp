@@ -80,6 +80,8 @@ struct StudyEntry {
   std::function<StudyReport(const Bench&)> run;
   // Not part of "all", nor of the tests: takes very long, or makes claims about speed.
   bool by_name_only = false;
+  // Never beside another study: starts ranks, which wait for each other by spinning.
+  bool starts_ranks = false;
 };
 
 }  // namespace traceraft

@@ -1,17 +1,20 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <thread>
 
 #include "backends/posix/child.hpp"
 #include "backends/posix/durable_file.hpp"
 #include "backends/posix/folder_lock.hpp"
+#include "backends/posix/process.hpp"
 #include "backends/zlib/checksum.hpp"
 #include "drivers/commands.hpp"
+#include "drivers/ensemble/ensemble_runs.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/output/status_line.hpp"
 #include "drivers/run/program_run.hpp"
 #include "drivers/run/run_folder.hpp"
+#include "drivers/verify/verify_jobs.hpp"
 #include "drivers/verify/verify_report.hpp"
 #include "drivers/version.hpp"
 #include "kernel/core/error.hpp"
@@ -29,7 +32,8 @@ struct VerifyRequest {
   std::vector<std::string> studies;  // names, "all", or "list" alone
   bool quick = false, quiet = false;
   std::string integrator, linear_solver;  // "": each study's choice, or all where it compares
-  int threads = 0;                        // 0: one for each processor
+  int threads = 0;                        // 0: what the jobs leave
+  int jobs = 0;                           // studies at a time; 0: all processors if quick, else 1
   std::string out;                        // "" for the first free runs/verify-N
   std::string document;                   // Markdown file to write; "" for none
 };
@@ -70,13 +74,24 @@ std::string or_default(const std::string& name) {
   return name.empty() ? "of the study" : name;
 }
 
+// What a study is measured with.
+std::vector<std::string> flags_of(const VerifyRequest& request, int threads) {
+  std::vector<std::string> flags;
+  const auto add = [&](const char* flag, const std::string& value) {
+    if (!value.empty()) flags.insert(flags.end(), {flag, value});
+  };
+  if (request.quick) flags.emplace_back("--quick");
+  add("--integrator", request.integrator);
+  add("--linear-solver", request.linear_solver);
+  add("--threads", threads > 0 ? std::to_string(threads) : "");
+  return flags;
+}
+
 VerificationContext context_of(const VerifyRequest& request, const BenchRequest& bench) {
   std::string command = "traceraft verify";
   for (const std::string& name : request.studies) command += " " + name;
-  if (request.quick) command += " --quick";
-  if (!request.integrator.empty()) command += " --integrator " + request.integrator;
-  if (!request.linear_solver.empty()) command += " --linear-solver " + request.linear_solver;
-  if (request.threads > 0) command += " --threads " + std::to_string(request.threads);
+  for (const std::string& flag : flags_of(request, request.threads)) command += " " + flag;
+  if (request.jobs > 0) command += " --jobs " + std::to_string(request.jobs);
   if (!request.document.empty()) command += " --document " + request.document;
   // The program itself decides the numbers, and what was asked of it.
   const std::string program = formatted("%08x", crc32_of(read_file(own_path(), kLargestProgram)));
@@ -94,12 +109,38 @@ int list_studies() {
   return kSuccess;
 }
 
+// Those that one can carry out side by side.
+std::vector<StudyEntry> sharing(const std::vector<StudyEntry>& studies) {
+  std::vector<StudyEntry> found;
+  for (const StudyEntry& study : studies)
+    if (!study.by_name_only && !study.starts_ranks) found.push_back(study);
+  return found;
+}
+
+std::vector<StudyEntry> not_measured(const std::vector<StudyEntry>& chosen, const fs::path& folder,
+                                     const std::string& measured_with) {
+  std::vector<StudyEntry> left;
+  for (const StudyEntry& study : chosen)
+    if (!measured_before(folder, study, measured_with)) left.push_back(study);
+  return left;
+}
+
+bool holds(const std::vector<StudyEntry>& studies, const StudyEntry& study) {
+  return std::any_of(studies.begin(), studies.end(),
+                     [&](const StudyEntry& entry) { return entry.name == study.name; });
+}
+
+void print_verdicts(const std::vector<StudyResult>& results) {
+  for (const StudyResult& result : results)
+    std::printf("  %-14s %s\n", result.study.name.c_str(), verdict_text(result.verdict()));
+}
+
 int verify(const VerifyRequest& request) {
   if (request.studies == std::vector<std::string>{"list"}) return list_studies();
   const std::vector<StudyEntry> chosen = chosen_studies(request);
-  BenchRequest bench{request.quick, request.integrator, request.linear_solver, request.threads};
-  if (bench.threads == 0)
-    bench.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const bool alone = chosen.size() == 1 || (request.jobs == 0 && !request.quick);
+  const Jobs jobs = jobs_of(alone ? 1 : request.jobs, request.threads);
+  BenchRequest bench{request.quick, request.integrator, request.linear_solver, jobs.threads};
   (void)Bench(bench);  // refuses unknown names before anything is written
   const fs::path folder = request.out.empty() ? first_free_folder("verify") : request.out;
   fs::create_directories(folder);
@@ -107,13 +148,22 @@ int verify(const VerifyRequest& request) {
   bench.run_program = program_runner(folder / "ranks");
   const VerificationContext context = context_of(request, bench);
 
+  const std::vector<StudyEntry> left = not_measured(chosen, folder, context.measured_with);
+  const StudyJobs side_by_side{sharing(left), flags_of(request, jobs.threads),
+                               context.measured_with, jobs.at_a_time, request.quiet};
+  if (jobs.at_a_time > 1 && !carry_out_side_by_side(side_by_side, folder)) {
+    if (!request.quiet)
+      std::printf("to go on, give the same command with --out %s\n", folder.c_str());
+    return kInterrupted;
+  }
   StatusLine line(request.quiet);
   std::vector<StudyResult> results;
   bool all = true;
   for (const StudyEntry& study : chosen) {
     if (!request.quiet) std::printf("%s: %s\n\n", study.name.c_str(), study.summary.c_str());
     auto before = measured_before(folder, study, context.measured_with);
-    if (before && !request.quiet) std::printf("  (measured before, in %s)\n\n", folder.c_str());
+    if (before && !holds(left, study) && !request.quiet)
+      std::printf("  (measured before, in %s)\n\n", folder.c_str());
     results.push_back(before ? std::move(*before) : carry_out(study, bench, line));
     if (!request.quiet) print_result(results.back());
     all = all && results.back().verdict() != Verdict::fails;
@@ -122,8 +172,7 @@ int verify(const VerifyRequest& request) {
   const std::string missing = write_verification(folder, context, results);
   if (!request.document.empty()) write_document(request.document, folder, context, results);
   if (!request.quiet) {
-    for (const StudyResult& result : results)
-      std::printf("  %-14s %s\n", result.study.name.c_str(), verdict_text(result.verdict()));
+    print_verdicts(results);
     if (!missing.empty()) std::printf("\ncharts are missing: %s\n", missing.c_str());
     std::printf("\nopen next: %s\n", (folder / "verify.html").c_str());
   }
@@ -139,7 +188,10 @@ Action define(CLI::App& app) {
                  "to measure with; default: ida, or all where a study compares");
   app.add_option("--linear-solver", request->linear_solver,
                  "to measure with; default: block, or all where a study compares");
-  app.add_option("--threads", request->threads, "default: one for each processor")
+  app.add_option("--threads", request->threads, "default: what the studies at a time leave")
+      ->check(CLI::Range(1, 256));
+  app.add_option("--jobs", request->jobs,
+                 "studies at a time; default: with --quick one for each processor, else 1")
       ->check(CLI::Range(1, 256));
   app.add_option("--out", request->out,
                  "folder for tables and page; default: runs/verify-<number>");
