@@ -8,6 +8,7 @@
 #include "drivers/explain/explain_report.hpp"
 #include "drivers/explain/explain_run.hpp"
 #include "drivers/output/json_file.hpp"
+#include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/random.hpp"
 #include "kernel/core/stopwatch.hpp"
@@ -157,6 +158,13 @@ std::string word_for(CaseOutcome outcome) {
   return "";
 }
 
+CaseOutcome outcome_of(const std::string& word) {
+  for (const CaseOutcome outcome :
+       {CaseOutcome::right, CaseOutcome::in_class, CaseOutcome::missed, CaseOutcome::wrong})
+    if (word == word_for(outcome)) return outcome;
+  throw InputError("a case of a campaign cannot end with '" + word + "'");
+}
+
 void carry_out_case(const CampaignFolder& folder, const CampaignPlan& plan, const CaseId& id) {
   const CampaignGroup& group = campaign_groups().find(id.group);
   const fs::path path = folder.of(id);
@@ -187,23 +195,19 @@ CaseScore read_score(const CampaignFolder& folder, const CaseId& id) {
       return value.is_null() ? kNothing : value.get<double>();
     };
     const Json& heldout = json.at("heldout");
-    CaseScore score{id,
-                    json.at("hidden"),
-                    json.at("verdict"),
-                    json.at("effect"),
-                    CaseOutcome::missed,
-                    number(json.at("error")),
-                    number(json.at("deviations")),
-                    number(json.at("p")),
-                    number(heldout.at("base")),
-                    number(heldout.at("named")),
-                    number(heldout.at("placebo")),
-                    number(heldout.at("floor")),
-                    number(json.at("seconds"))};
-    for (const CaseOutcome outcome :
-         {CaseOutcome::right, CaseOutcome::in_class, CaseOutcome::missed, CaseOutcome::wrong})
-      if (json.at("outcome") == word_for(outcome)) score.outcome = outcome;
-    return score;
+    return CaseScore{id,
+                     json.at("hidden"),
+                     json.at("verdict"),
+                     json.at("effect"),
+                     outcome_of(json.at("outcome")),
+                     number(json.at("error")),
+                     number(json.at("deviations")),
+                     number(json.at("p")),
+                     number(heldout.at("base")),
+                     number(heldout.at("named")),
+                     number(heldout.at("placebo")),
+                     number(heldout.at("floor")),
+                     number(json.at("seconds"))};
   });
 }
 

@@ -14,6 +14,7 @@ enum class CaseOutcome {
   wrong      // another name
 };
 std::string word_for(CaseOutcome outcome);
+CaseOutcome outcome_of(const std::string& word);  // throws InputError for other words
 
 struct CaseScore {
   CaseId id;

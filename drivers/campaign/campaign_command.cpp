@@ -1,8 +1,10 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <mutex>
+#include <set>
 
 #include "backends/posix/folder_lock.hpp"
 #include "backends/posix/process.hpp"
@@ -26,6 +28,7 @@ namespace fs = std::filesystem;
 struct CampaignRequest {
   CampaignPlan plan;
   std::string out, only;
+  std::vector<std::string> elsewhere;       // folders of campaigns
   int cases = 0;                            // of each group, if given
   std::vector<const CLI::Option*> planned;  // what a campaign that has begun does not change
   int jobs = 0;
@@ -54,6 +57,21 @@ CampaignPlan grown_plan(const CampaignRequest& request, const CampaignFolder& fo
   CampaignPlan plan = folder.load();
   plan.cases = std::max(plan.cases, request.cases);
   return plan;
+}
+
+// Of campaigns with the same plan that were carried out elsewhere.
+std::vector<CaseScore> scores_of(const std::vector<std::string>& folders,
+                                 const CampaignPlan& plan) {
+  std::vector<CaseScore> scores;
+  for (const std::string& path : folders) {
+    const CampaignFolder folder(path);
+    if (!same_but_for_cases(plan, folder.load()))
+      throw InputError("--elsewhere: the campaign in " + folder.path().string() +
+                       " has another plan");
+    const std::vector<CaseScore> own = read_cases(folder.cases());
+    scores.insert(scores.end(), own.begin(), own.end());
+  }
+  return scores;
 }
 
 int one_case(const CampaignFolder& folder, const std::string& name) {
@@ -108,6 +126,16 @@ std::optional<std::vector<std::string>> work_off(const CampaignFolder& folder,
   return failures;
 }
 
+void report(const CampaignFolder& folder, std::vector<CaseScore> scores, bool quiet) {
+  if (scores.empty()) return;
+  std::sort(scores.begin(), scores.end(),
+            [](const CaseScore& a, const CaseScore& b) { return a.id.name() < b.id.name(); });
+  write_campaign(folder, scores);
+  if (quiet) return;
+  print_rows(table_rows(summary_of(scores)));
+  std::printf("\nwritten: %s\n", (folder.path() / "campaign.md").c_str());
+}
+
 int run_campaign(const CampaignRequest& request) {
   catch_stop_signals();
   const bool goes_on = !request.out.empty() && CampaignFolder(request.out).started();
@@ -116,12 +144,23 @@ int run_campaign(const CampaignRequest& request) {
     return one_case(CampaignFolder(request.out), request.only);
   }
   const CampaignFolder folder(request.out.empty() ? first_free_folder("campaign") : request.out);
-  const CampaignPlan plan = goes_on ? grown_plan(request, folder) : new_plan(request);
+  const CampaignPlan plan = goes_on ? grown_plan(request, folder)
+                            : request.elsewhere.empty()
+                                ? new_plan(request)
+                                : grown_plan(request, CampaignFolder(request.elsewhere[0]));
+  std::vector<CaseScore> scores = scores_of(request.elsewhere, plan);
   fs::create_directories(folder.path() / "cases");
   const FolderLock lock(folder.path());
   folder.save(plan);
-  const std::vector<CaseId> cases = cases_of(plan);
+  std::set<std::string> done;
+  for (const CaseScore& score : scores) done.insert(score.id.name());
+  std::vector<CaseId> cases;
+  for (const CaseId& id : cases_of(plan))
+    if (done.count(id.name()) == 0) cases.push_back(id);
   const auto failures = work_off(folder, cases, jobs_of(request.jobs, 1).at_a_time, request.quiet);
+  for (const CaseId& id : cases)
+    if (fs::exists(folder.score_of(id))) scores.push_back(read_score(folder, id));
+  report(folder, scores, request.quiet);
   if (!failures) {
     if (!request.quiet)
       std::printf("go on with: traceraft campaign --out %s\n", folder.path().c_str());
@@ -129,15 +168,6 @@ int run_campaign(const CampaignRequest& request) {
   }
   for (const std::string& failure : *failures)
     std::fprintf(stderr, "traceraft: %s\n", failure.c_str());
-  std::vector<CaseScore> scores;
-  for (const CaseId& id : cases)
-    if (fs::exists(folder.score_of(id))) scores.push_back(read_score(folder, id));
-  if (scores.empty()) return kNumericalFailure;
-  write_campaign(folder.path(), scores);
-  if (!request.quiet) {
-    print_rows(table_rows(summary_of(scores)));
-    std::printf("\nwritten: %s\n", (folder.path() / "campaign.md").c_str());
-  }
   return failures->empty() ? kSuccess : kNumericalFailure;
 }
 
@@ -149,6 +179,10 @@ Action define(CLI::App& app) {
       ->check(CLI::Range(1, 999));
   app.add_option("--jobs", request->jobs, "cases at a time; default: one for each processor")
       ->check(CLI::Range(1, 1024));
+  app.add_option("--elsewhere", request->elsewhere,
+                 "folders of campaigns with the same plan: what is in their cases.csv is counted, "
+                 "and not repeated; a new campaign takes over the plan")
+      ->delimiter(',');
   app.add_option("--case", request->only, "carry out this case alone");
   app.add_flag("--quiet", request->quiet, "print nothing but errors");
   const std::size_t changing = app.get_options().size();

@@ -25,6 +25,7 @@ struct CaseId {
   int number;
 
   std::string name() const;  // "naming-007"
+  static CaseId of(const std::string& name);
 };
 
 class CampaignFolder {
@@ -34,6 +35,7 @@ class CampaignFolder {
   bool started() const { return std::filesystem::exists(plan_file()); }
   void save(const CampaignPlan& plan) const;
   CampaignPlan load() const;  // throws IoError if it is damaged
+  std::filesystem::path cases() const { return path_ / "cases.csv"; }
 
   std::filesystem::path of(const CaseId& id) const { return path_ / "cases" / id.name(); }
   std::filesystem::path score_of(const CaseId& id) const { return of(id) / "score.json"; }
@@ -43,6 +45,9 @@ class CampaignFolder {
   std::filesystem::path plan_file() const { return path_ / "plan.json"; }
   std::filesystem::path path_;
 };
+
+// Do they differ in their groups and in how many cases there are of each, at most?
+bool same_but_for_cases(const CampaignPlan& a, const CampaignPlan& b);
 
 std::vector<CaseId> cases_of(const CampaignPlan& plan);  // groups taking turns
 

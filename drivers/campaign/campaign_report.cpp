@@ -6,7 +6,9 @@
 #include <map>
 
 #include "backends/posix/durable_file.hpp"
+#include "drivers/input/csv_table.hpp"
 #include "drivers/output/text_table.hpp"
+#include "kernel/core/error.hpp"
 
 namespace traceraft {
 namespace {
@@ -114,13 +116,39 @@ Table confusion_of(const Scores& scores) {
   return table;
 }
 
-void write_campaign(const std::filesystem::path& folder, const Scores& scores) {
+void write_campaign(const CampaignFolder& campaign, const Scores& scores) {
+  const std::filesystem::path& folder = campaign.path();
   const Table summary = summary_of(scores), confusion = confusion_of(scores);
-  write_durably(folder / "cases.csv", csv_text(cases_table(scores)));
+  write_durably(campaign.cases(), csv_text(cases_table(scores)));
   write_durably(folder / "summary.csv", csv_text(summary));
   write_durably(folder / "confusion.csv", csv_text(confusion));
   write_durably(folder / "campaign.md",
                 markdown_table(table_rows(summary)) + "\n" + markdown_table(table_rows(confusion)));
+}
+
+Scores read_cases(const std::filesystem::path& csv) {
+  const CsvTable table = CsvTable::read(csv);
+  for (const std::string& column : cases_table({}).columns) table.require(column);
+  Scores scores;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const auto text = [&](const char* column) { return table.text(row, column); };
+    const auto number = [&](const char* column) {
+      return table.empty(row, column) ? std::numeric_limits<double>::quiet_NaN()
+                                      : table.number(row, column);
+    };
+    const auto ended = [&] {
+      try {
+        return std::pair(CaseId::of(text("case")), outcome_of(text("outcome")));
+      } catch (const InputError& error) {
+        throw InputError(table.where(row) + ": " + error.what());
+      }
+    }();
+    scores.push_back({ended.first, text("hidden"), text("verdict"), text("found"), ended.second,
+                      number("error"), number("deviations"), number("p"), number("base gap"),
+                      number("named gap"), number("placebo gap"), number("floor"),
+                      number("seconds")});
+  }
+  return scores;
 }
 
 }  // namespace traceraft

@@ -15,6 +15,9 @@ Table summary_of(const std::vector<CaseScore>& scores);
 Table confusion_of(const std::vector<CaseScore>& scores);
 
 // cases.csv, summary.csv, confusion.csv and campaign.md. Throws IoError.
-void write_campaign(const std::filesystem::path& folder, const std::vector<CaseScore>& scores);
+void write_campaign(const CampaignFolder& folder, const std::vector<CaseScore>& scores);
+
+// Of cases.csv. Throws InputError naming the line of what cannot be read.
+std::vector<CaseScore> read_cases(const std::filesystem::path& csv);
 
 }  // namespace traceraft

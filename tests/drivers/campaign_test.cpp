@@ -86,6 +86,21 @@ TEST(CampaignTest, CountsWhatWasFoundAndGoesOn) {
   ASSERT_EQ(again.code, 0) << again.output;
   EXPECT_TRUE(fs::exists(out / "cases" / "naming-000" / "score.json"));
   EXPECT_EQ(testing::content(out / "cases" / "null-000" / "score.json"), first);
+
+  // Elsewhere these two need not be repeated.
+  const fs::path other = folder.path / "other";
+  const std::string there = "campaign --elsewhere " + out.string() + " --out " + other.string();
+  EXPECT_EQ(testing::traceraft(there + " --seed 3").code, 2);
+  const auto joined = testing::traceraft(there);
+  ASSERT_EQ(joined.code, 0) << joined.output;
+  EXPECT_TRUE(fs::is_empty(other / "cases"));
+  EXPECT_EQ(testing::content(other / "cases.csv"), testing::content(out / "cases.csv"));
+  std::string plan = testing::content(other / "plan.json");
+  plan.replace(plan.find("\"seed\": 1"), 9, "\"seed\": 2");
+  write_durably(other / "plan.json", plan);
+  const auto refused = testing::traceraft(there);
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.output.find("has another plan"), std::string::npos) << refused.output;
 }
 
 TEST(CampaignTest, KeepsThePlanItBeganWith) {
