@@ -52,14 +52,25 @@ void explain_field_data(const ExplainCommand& command, ExplainSetup& setup, cons
   if (!missing.empty()) std::printf("the page lacks: %s\n", missing.c_str());
 }
 
+struct SeriesSetup {
+  MeasuredVesicles data;
+  Configuration model;
+};
+
+SeriesSetup read_series_job(const ExplainCommand& command) {
+  SeriesSetup setup{read_dataset(command.series),
+                    {read_config_file(command.job.model), command.job.flags}};
+  refuse_series(setup.data, setup.model);
+  return setup;
+}
+
 // False if it was stopped.
-bool explain_series_data(const ExplainCommand& command, const MeasuredVesicles& data,
+bool explain_series_data(const ExplainCommand& command, const SeriesSetup& setup,
                          const fs::path& out) {
-  const Configuration model(read_config_file(command.job.model), command.job.flags);
-  const SeriesEnsemblesRequest request{looks(data), command.runs,        command.jobs,
-                                       2,           command.job.without, command.quiet};
-  if (!(request.looks.begin < request.looks.end))
-    throw InputError("--series: looks at two times at least are needed");
+  const auto& [data, model] = setup;
+  const SeriesEnsemblesRequest request{looks(data),         command.runs,
+                                       command.jobs,        command.job.processors(),
+                                       command.job.without, command.quiet};
   const SeriesEnsembles ensembles = run_series_ensembles(out / "ensembles", model, request);
   if (ensembles.stopped) return false;
   SeriesRequest search{{model.units().seconds_per_unit(), kTimeRange}};
@@ -75,10 +86,10 @@ int explain(const ExplainCommand& command) {
     throw InputError("--data or --series: say which measurements to explain");
   for (const std::string& effect : command.job.without) (void)effects().find(effect);
   std::optional<ExplainSetup> fields;
-  std::optional<MeasuredVesicles> series;
+  std::optional<SeriesSetup> series;
   if (!command.series.empty()) {
     catch_stop_signals();
-    series = read_dataset(command.series);
+    series = read_series_job(command);
   }
   if (!command.job.data.empty()) fields = read_explain_job(command.job);
   const fs::path out = command.out.empty() ? first_free_folder("explain") : command.out;

@@ -22,6 +22,11 @@ GivenValues given_model(const ExplainJob& job, double radius_um) {
 
 }  // namespace
 
+int ExplainJob::processors() const {
+  return threads > 0 ? threads
+                     : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
+
 void refuse_effects(const Configuration& model) {
   if (!model.text("effect").empty())
     throw InputError(model.where("effect") +
@@ -41,9 +46,7 @@ ExplainSetup read_explain_job(const ExplainJob& job) {
   request.base = physical_model(model);
   request.surface = surface_of(model);
   request.cells = static_cast<int>(model.integer("cells"));
-  request.threads = job.threads > 0
-                        ? job.threads
-                        : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  request.threads = job.processors();
   request.most_effects = job.effects;
   request.without = job.without;
   request.filter.replicates = job.replicates;

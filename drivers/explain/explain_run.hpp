@@ -15,6 +15,8 @@ struct ExplainJob {
   int threads = 0;          // 0: one for each processor
   int effects = 3, replicates = 199;
   std::vector<std::string> without;
+
+  int processors() const;  // threads, with 0 resolved
 };
 
 struct ExplainSetup {

@@ -23,14 +23,6 @@ namespace fs = std::filesystem;
 // Of D over that of the model: runs last as long as if it were that.
 constexpr double kFastest = 2;
 
-void refuse_model(const Configuration& model) {
-  refuse_scaled(model);
-  if (model.text("surface") != "sphere")
-    throw InputError(model.where("surface") + ": series are explained on spheres only");
-  refuse_effects(model);
-  refuse_without_noise(model);
-}
-
 Configuration ensemble_model(const Configuration& model, const std::string& effect, double t_end) {
   GivenValues given = settings_until(model, t_end);
   given["case"] = {model.text("case"), "--case"};
@@ -54,6 +46,7 @@ std::vector<EffectTerm> sizes(const fs::path& folder, const Configuration& model
   for (const std::string& effect : effects_to_hide())
     if (std::count(request.without.begin(), request.without.end(), effect) == 0)
       sizing.effects.push_back(effect);
+  if (sizing.effects.empty()) throw InputError("--without: no effect is left to look for");
   const std::string identity = config_text(ensemble_model(model, "", request.looks.end)) +
                                format_number(request.looks.begin);
   if (fs::exists(file))
@@ -86,9 +79,19 @@ EffectTerm within_range(EffectTerm term, const Units& units) {
 
 }  // namespace
 
+void refuse_series(const MeasuredVesicles& data, const Configuration& model) {
+  refuse_scaled(model);
+  if (model.text("surface") != "sphere")
+    throw InputError(model.where("surface") + ": series are explained on spheres only");
+  refuse_effects(model);
+  refuse_without_noise(model);
+  refuse_vesicles(data);
+  if (const Window window = looks(data); !(window.begin < window.end))
+    throw InputError("--series: looks at two times at least are needed");
+}
+
 SeriesEnsembles run_series_ensembles(const fs::path& folder, const Configuration& model,
                                      const SeriesEnsemblesRequest& request) {
-  refuse_model(model);
   fs::create_directories(folder);
   const std::vector<EffectTerm> terms = sizes(folder, model, request);
   const Units units = model.units();

@@ -25,9 +25,12 @@ struct SeriesEnsembles {
   std::vector<std::string> notes;  // effects whose runs failed
 };
 
+// Throws InputError for data and models that cannot be used.
+void refuse_series(const MeasuredVesicles& data, const Configuration& model);
+
 // Carries out, or goes on with, what is in the folder. Effects have the strength at which they
 // change c by 6 % of its standard deviation from one of five looks to the next, which a run on a
-// coarser mesh finds. Throws InputError for models that cannot be used.
+// coarser mesh finds. Throws InputError if no effect is left, or a run of the model fails.
 SeriesEnsembles run_series_ensembles(const std::filesystem::path& folder,
                                      const Configuration& model,
                                      const SeriesEnsemblesRequest& request);

@@ -185,6 +185,15 @@ TEST(ExplainSeriesTest, SimulatesOnceAndSaysWhatSeriesTell) {
 
   const fs::path other = folder.path / "other.toml";
   write_durably(other, "epsilon = 0.8\ncells = 16\nraft-fraction = 0.4\n");
+  const fs::path none = folder.path / "none";
+  write_durably(model, "epsilon = 0.8\ncells = 16\nsurface = \"torus\"\n");
+  const auto torus = testing::traceraft("explain --series " TRACERAFT_ROOT
+                                        "/verification/data/synthetic/guv-3to1 --model " +
+                                        model.string() + " --out " + none.string());
+  EXPECT_EQ(torus.code, 2);
+  EXPECT_NE(torus.output.find("on spheres only"), std::string::npos) << torus.output;
+  EXPECT_FALSE(fs::exists(none));
+
   const auto refused = testing::traceraft(command + other.string());
   EXPECT_EQ(refused.code, 2);
   EXPECT_NE(refused.output.find("another model"), std::string::npos) << refused.output;

@@ -141,8 +141,7 @@ Classes classes_of(const Responses& responses, std::size_t count) {
 
 void refuse(const MeasuredVesicles& data, const std::vector<History>& base,
             const std::vector<SeriesCandidate>& candidates) {
-  if (data.vesicles().size() < 3)
-    throw InputError("series need three vesicles at least, to know how they scatter");
+  refuse_vesicles(data);
   if (candidates.empty()) throw InputError("series: no effect is left to look for");
   if (base.size() < 3) throw InputError("series need three runs of every model at least");
   for (const SeriesCandidate& candidate : candidates)
@@ -286,6 +285,11 @@ class SeriesSearch {
 };
 
 }  // namespace
+
+void refuse_vesicles(const MeasuredVesicles& data) {
+  if (data.vesicles().size() < 3)
+    throw InputError("series need three vesicles at least, to know how they scatter");
+}
 
 SeriesExplanation explain_series(const MeasuredVesicles& data, const std::vector<History>& base,
                                  const std::vector<SeriesCandidate>& candidates,

@@ -55,6 +55,9 @@ struct SeriesExplanation {
   std::vector<SeriesTie> ties;                    // between the best effect and other classes
 };
 
+// Throws InputError if there are fewer than three, before anything is simulated for them.
+void refuse_vesicles(const MeasuredVesicles& data);
+
 // Throws InputError if there are fewer than three vesicles, or runs.
 SeriesExplanation explain_series(const MeasuredVesicles& data, const std::vector<History>& base,
                                  const std::vector<SeriesCandidate>& candidates,
