@@ -27,8 +27,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// D is looked for within this factor of the model's.
-constexpr double kTimeRange = 8;
+// D is looked for within this factor of the model's, and runs go on as long.
+constexpr double kTimeRange = 4;
 // Steps in ln of the first design and of the next, each around what the one before finds.
 constexpr double kSteps[] = {0.5, 0.25, 0.25};
 
@@ -56,9 +56,9 @@ std::vector<std::string> costly_parameters(const std::string& text) {
   return names;
 }
 
-// Up to the latest measurement if D were twice the model's; runs hardly change after that.
+// Up to the latest measurement if D were as large as it may be.
 double end_of_runs(const MeasuredVesicles& data) {
-  return 2 * looks(data).end;
+  return kTimeRange * looks(data).end;
 }
 
 class Calibrator {
@@ -76,7 +76,7 @@ class Calibrator {
     std::vector<double> centre;
     for (const double value : values_of(model_, names_)) centre.push_back(std::log(value));
     for (const double step : kSteps) {
-      if (!add_points(design_around(centre, step))) return false;
+      if (!add_points(design_around(within_range(centre, step), step))) return false;
       result_ = calibrate(data_, names_, points_, model_.units().seconds_per_unit(), kTimeRange);
       for (std::size_t i = 0; i < centre.size(); ++i)
         centre[i] = std::log(result_.parameters[i + 1].value);
@@ -90,6 +90,16 @@ class Calibrator {
   const std::vector<std::string>& names() const { return names_; }
 
  private:
+  // Moved so that all of the design can be run.
+  std::vector<double> within_range(std::vector<double> centre, double step) const {
+    for (std::size_t i = 0; i < centre.size(); ++i) {
+      const Interval range = range_of(model_, names_[i]);
+      const double low = std::log(range.low), high = std::log(range.high);
+      centre[i] =
+          high - low > 2 * step ? std::clamp(centre[i], low + step, high - step) : (low + high) / 2;
+    }
+    return centre;
+  }
   bool add_points(const std::vector<std::vector<double>>& design) {
     const double t_end = end_of_runs(data_);
     for (const std::vector<double>& ln : design) {
@@ -102,9 +112,9 @@ class Calibrator {
       }
       if (!request_.quiet)
         std::printf("simulations at%s\n", words.empty() ? " the model" : words.c_str());
+      const Configuration here = configuration_at(model_, names_, values, t_end);
       const PointEnd end =
-          run_point(out_ / "points" / name, configuration_at(model_, names_, values, t_end),
-                    {request_.runs, request_.jobs, request_.quiet});
+          run_point(out_ / "points" / name, here, {request_.runs, request_.jobs, request_.quiet});
       if (end.stopped) return false;
       for (const MemberFailure& failure : end.failures)
         std::fprintf(stderr, "traceraft: the run of seed %llu at%s failed: %s\n",
@@ -113,7 +123,8 @@ class Calibrator {
       if (end.runs.size() < 2)
         throw InputError("at" + words + " fewer than two runs have finished");
       CalibrationPoint point{{}, end.runs};
-      for (const double value : values) point.ln_parameters.push_back(std::log(value));
+      for (const double value : values_of(here, names_))
+        point.ln_parameters.push_back(std::log(value));
       points_.push_back(std::move(point));
     }
     return true;
@@ -163,7 +174,7 @@ int run_calibration(const CalibrateRequest& request) {
   if (request.data.empty()) throw InputError("--data: say which measurements to calibrate with");
   (void)costly_parameters(request.parameters);
   const MeasuredVesicles data = read_dataset(request.data);
-  const Configuration model(read_config_file(request.model), request.flags);
+  const Configuration model(read_config_file(request.model, "--model"), request.flags);
   refuse_scaled(model);
   refuse_model(model);
   const fs::path out = request.out.empty() ? first_free_folder("calibration") : request.out;

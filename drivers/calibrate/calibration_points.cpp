@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "drivers/config/options.hpp"
 #include "drivers/ensemble/ensemble_point.hpp"
 #include "kernel/core/parameters.hpp"
 
@@ -9,6 +10,8 @@ namespace traceraft {
 namespace {
 
 constexpr double kBoxWidth = 10.0 / 3;  // of the mesh, in R
+constexpr double kFewestNoiseCells = 4;
+constexpr Interval kFractions = {0.02, 0.9};
 
 // As many cells that the mesh is no coarser against ε than the model's, a multiple of 4.
 int cells_for(const Configuration& model, double epsilon) {
@@ -31,6 +34,14 @@ const NamedList<CalibratedOption>& calibrated_options() {
                                                               {"fraction", "raft-fraction"},
                                                               {"noise-length", ""}});
   return list;
+}
+
+Interval range_of(const Configuration& model, const std::string& parameter) {
+  const double box = kBoxWidth * model.units().length(), cells = model.number("cells");
+  if (parameter == "noise-length") return {box / cells, box / kFewestNoiseCells};
+  if (parameter == "fraction") return kFractions;
+  const double finest = run_option("cells").max;
+  return {model.number("epsilon") * cells / finest, 0.5 * model.units().length()};
 }
 
 std::vector<double> values_of(const Configuration& model,

@@ -7,6 +7,7 @@
 #include "drivers/config/configuration.hpp"
 #include "drivers/ensemble/ensemble_point.hpp"
 #include "kernel/core/named_list.hpp"
+#include "verification/measure/fit.hpp"
 #include "verification/vesicles/calibration.hpp"
 
 namespace traceraft {
@@ -26,7 +27,11 @@ Configuration configuration_at(const Configuration& model,
                                const std::vector<std::string>& parameters,
                                const std::vector<double>& values, double t_end);
 
-// Where the parameters of the model are.
+// What a parameter may be in simulations of the model: rafts and something between them, noise that
+// its meshes can hold. Both ends are > 0.
+Interval range_of(const Configuration& model, const std::string& parameter);
+
+// Where the parameters of the model are; of noise lengths, what its meshes make of them.
 std::vector<double> values_of(const Configuration& model,
                               const std::vector<std::string>& parameters);
 

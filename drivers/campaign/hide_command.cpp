@@ -36,7 +36,7 @@ std::vector<std::string> effects_of(const std::string& text, std::uint64_t seed)
 }
 
 int hide_effects(const HideCommand& command) {
-  GivenValues model = read_config_file(command.model);
+  GivenValues model = read_config_file(command.model, "--model");
   for (const auto& [name, value] : command.flags) model[name] = value;
   const Units units = Configuration(model, {}).units();
   BlindRequest request = command.request;

@@ -60,9 +60,9 @@ std::string toml_value(const OptionSpec& spec, const Configuration& configuratio
 
 }  // namespace
 
-GivenValues read_config_file(const std::filesystem::path& path) {
+GivenValues read_config_file(const std::filesystem::path& path, const std::string& flag) {
   if (path.empty()) return {};
-  const TomlTable table = TomlTable::read(path, run_option_names(), "--config: ");
+  const TomlTable table = TomlTable::read(path, run_option_names(), flag + ": ");
   GivenValues values;
   for (const std::string& name : table.keys())
     values[name] = {value_text(run_option(name), table, table.where(name)), table.where(name)};

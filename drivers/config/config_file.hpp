@@ -9,8 +9,9 @@
 namespace traceraft {
 
 // An empty path: no file, no values. Throws InputError with file and line for anything that is no
-// flat TOML table of known options.
-GivenValues read_config_file(const std::filesystem::path& path);
+// flat TOML table of known options. `flag`: that names the file.
+GivenValues read_config_file(const std::filesystem::path& path,
+                             const std::string& flag = "--config");
 
 // All options with their resolved values, each with its meaning: reads back as the same run.
 std::string config_text(const Configuration& configuration);

@@ -19,8 +19,9 @@ std::string array_job_script(const EnsembleFolder& folder, const EnsemblePlan& p
   const std::string program = shell_word(own_path()) + " ensemble --out " + shell_word(path);
   return "#!/bin/sh\n"
          "#SBATCH --job-name=traceraft\n"
-         "#SBATCH --array=" +
-         std::to_string(plan.first_seed) + "-" + std::to_string(plan.last_seed()) +
+         // Clusters limit the index, seeds may be anything.
+         "#SBATCH --array=0-" +
+         std::to_string(plan.runs - 1) +
          "\n"
          "#SBATCH --cpus-per-task=2\n"
          "#SBATCH --mem=4G\n"
@@ -31,7 +32,8 @@ std::string array_job_script(const EnsembleFolder& folder, const EnsemblePlan& p
          program +
          "\n"
          "exec " +
-         program + " --member \"$SLURM_ARRAY_TASK_ID\" --threads \"${SLURM_CPUS_PER_TASK:-1}\"\n";
+         program + " --member \"$((" + std::to_string(plan.first_seed) +
+         " + SLURM_ARRAY_TASK_ID))\" --threads \"${SLURM_CPUS_PER_TASK:-1}\"\n";
 }
 
 }  // namespace traceraft

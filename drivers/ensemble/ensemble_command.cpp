@@ -140,8 +140,8 @@ int run_ensemble(const EnsembleRequest& request) {
 
   fs::create_directories(folder.path() / "runs");
   const FolderLock lock(folder.path());
-  if (!goes_on) write_durably(folder.config(), config_text(configuration));
   folder.save(plan);
+  if (!goes_on) write_durably(folder.config(), config_text(configuration));
   if (!request.array_job) return carry_out(request, folder, plan, configuration);
   const fs::path script = folder.path() / "array-job.sh";
   write_durably(script, array_job_script(folder, plan));

@@ -25,7 +25,9 @@ class EnsembleFolder {
   explicit EnsembleFolder(std::filesystem::path path) : path_(std::move(path)) {}
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path config() const { return path_ / "config.toml"; }
-  bool started() const { return std::filesystem::exists(plan_file()); }
+  bool started() const {
+    return std::filesystem::exists(config()) && std::filesystem::exists(plan_file());
+  }
 
   void save(const EnsemblePlan& plan) const;
   EnsemblePlan load() const;  // throws IoError if it is damaged

@@ -59,7 +59,7 @@ struct SeriesSetup {
 
 SeriesSetup read_series_job(const ExplainCommand& command) {
   SeriesSetup setup{read_dataset(command.series),
-                    {read_config_file(command.job.model), command.job.flags}};
+                    {read_config_file(command.job.model, "--model"), command.job.flags}};
   refuse_series(setup.data, setup.model);
   return setup;
 }

@@ -14,7 +14,7 @@ namespace traceraft {
 namespace {
 
 GivenValues given_model(const ExplainJob& job, double radius_um) {
-  GivenValues given = read_config_file(job.model);
+  GivenValues given = read_config_file(job.model, "--model");
   for (const auto& [name, value] : job.flags) given[name] = value;
   given["radius"] = {format_number(radius_um), "dataset.toml: radius"};
   return given;

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "drivers/calibrate/calibration_points.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -78,6 +79,23 @@ TEST_F(CalibrateTest, GoesOnAfterItWasStopped) {
             content(folder.path / "whole/calibration.json"));
 }
 
+// At the ends of its range, too; and it says what was really run, which is whole cells of noise.
+TEST(CalibrationPoints, CanBeRun) {
+  const Configuration model({}, {{"cells", {"32", "--cells"}}, {"epsilon", {"0.3", "--epsilon"}}});
+  for (const char* name : {"epsilon", "fraction", "noise-length"}) {
+    const Interval range = range_of(model, name);
+    EXPECT_LE(range.low, values_of(model, {name})[0]) << name;
+    EXPECT_GE(range.high, values_of(model, {name})[0]) << name;
+    for (const double value : {range.low, range.high}) {
+      const Configuration there = configuration_at(model, {name}, {value}, 1);
+      EXPECT_NEAR(values_of(there, {name})[0] / value, 1, 1e-6) << name;
+    }
+  }
+  const Configuration there = configuration_at(model, {"noise-length"}, {0.7}, 1);
+  EXPECT_EQ(there.integer("noise-cells"), 24);
+  EXPECT_NEAR(values_of(there, {"noise-length"})[0], 5 * 10.0 / 3 / 24, 1e-9);
+}
+
 TEST_F(CalibrateTest, RefusesWhatItCannotCalibrate) {
   for (const auto& [flags, complaint] :
        {std::pair<std::string, std::string>("", "--data: say which"),
@@ -87,6 +105,7 @@ TEST_F(CalibrateTest, RefusesWhatItCannotCalibrate) {
         {"--data " + out("data") + " --parameters mobility,epsilon,epsilon", "there twice"},
         {"--data " + out("data") + " --effect exchange:rate=1", "more than a unit of time"},
         {"--data " + out("data") + " --case two-rafts", "differ in the noise"},
+        {"--data " + out("data") + " --model " + out("no.toml"), "--model: "},
         {"--data " + out("data") + " --scaled", "measurements are in seconds"}}) {
     const Outcome refused = traceraft("calibrate " + flags + " --out " + out("c"));
     EXPECT_EQ(refused.code, 2) << flags;

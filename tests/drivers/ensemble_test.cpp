@@ -100,12 +100,19 @@ TEST_F(EnsembleTest, IsAnArrayJobToo) {
                 out("there it is") + "'");
   ASSERT_EQ(script.code, 0) << script.output;
   const fs::path job = folder.path / "there it is/array-job.sh";
-  EXPECT_NE(content(job).find("#SBATCH --array=7-8\n"), std::string::npos);
-  for (const char* task : {"7", "8"})
+  EXPECT_NE(content(job).find("#SBATCH --array=0-1\n"), std::string::npos);
+  for (const char* task : {"0", "1"})
     ASSERT_EQ(shell("SLURM_ARRAY_TASK_ID=" + std::string(task) + " sh '" + job.string() + "'").code,
               0);
   ASSERT_EQ(traceraft("ensemble --quiet --out '" + out("there it is") + "'").code, 0);
   EXPECT_EQ(content(csv("there it is")), content(csv("here")));
+}
+
+// Killed before the first run: a plan, or the plan and no configuration.
+TEST_F(EnsembleTest, BeginsAgainWhereNothingHadBegun) {
+  fs::create_directories(folder.path / "a/runs");
+  std::ofstream(folder.path / "a/plan.json") << "{\"runs\": 1, \"first_seed\": 1}\n";
+  EXPECT_EQ(traceraft("ensemble --quiet " + runs + "--runs 1 --out " + out("a")).code, 0);
 }
 
 TEST_F(EnsembleTest, RefusesWhatMakesNoEnsemble) {
