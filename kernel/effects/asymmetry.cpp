@@ -21,7 +21,8 @@ EffectEntry asymmetry_effect() {
                    return DensityValue{a * (-2 * s * d * d + 2 * s * s),
                                        a * (-2 * d * d * d + 12 * s * d), 0, -a * s * s * d};
                  }}));
-          }};
+          },
+          true};
 }
 
 }  // namespace traceraft

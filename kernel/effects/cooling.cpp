@@ -32,7 +32,8 @@ EffectEntry cooling_effect() {
             model.effects.push_back(mobility_flux(
                 "cooling", model.mobility, [slowing](double t) { return std::expm1(-slowing * t); },
                 true));
-          }};
+          },
+          true};
 }
 
 }  // namespace traceraft

@@ -1,5 +1,7 @@
 #include "kernel/effects/effects.hpp"
 
+#include <algorithm>
+
 namespace traceraft {
 namespace {
 
@@ -9,15 +11,35 @@ std::string trimmed(const std::string& text) {
                                     : text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-void add_one(const std::string& text, const Units& units, CahnHilliardModel& model) {
-  const NamedArguments named = split_named_arguments(text);
-  const EffectEntry& entry = effects().find(named.name);
+struct ChosenEffect {
+  const EffectEntry* entry;
+  std::string arguments;
+};
+
+std::vector<ChosenEffect> chosen_effects(const std::string& specification) {
+  std::vector<ChosenEffect> chosen;
+  for (std::size_t begin = 0; begin <= specification.size();) {
+    const std::size_t end = std::min(specification.find(';', begin), specification.size());
+    const std::string one = trimmed(specification.substr(begin, end - begin));
+    begin = end + 1;
+    if (one.empty()) continue;
+    const NamedArguments named = split_named_arguments(one);
+    chosen.push_back({&effects().find(named.name), named.arguments});
+  }
+  return chosen;
+}
+
+void add_one(const ChosenEffect& chosen, const Units& units, CahnHilliardModel& model) {
+  const EffectEntry& entry = *chosen.entry;
   const Parameters given =
-      parse_parameters("effect " + named.name, named.arguments, entry.parameters);
+      parse_parameters("effect " + entry.name, chosen.arguments, entry.parameters);
   const ParameterSpec& strength = entry.parameters.front();
   if (given[strength.name] == strength.default_value)
-    throw InputError("effect " + named.name + ": say how strong it is, as in " + named.name + ":" +
+    throw InputError("effect " + entry.name + ": say how strong it is, as in " + entry.name + ":" +
                      strength.name + "=...");
+  if (entry.unit_wells && (model.well.a != 0 || model.well.b != 1))
+    throw InputError("effect " + entry.name + ": it is made for wells at 0 and 1, not at " +
+                     format_number(model.well.a) + " and " + format_number(model.well.b));
   std::vector<double> values;
   for (const ParameterSpec& spec : entry.parameters)
     values.push_back(given[spec.name] * to_model_units(spec.unit, units));
@@ -43,12 +65,10 @@ const NamedList<EffectEntry>& effects() {
 }
 
 void add_effects(const std::string& specification, const Units& units, CahnHilliardModel& model) {
-  for (std::size_t begin = 0; begin <= specification.size();) {
-    const std::size_t end = std::min(specification.find(';', begin), specification.size());
-    const std::string one = trimmed(specification.substr(begin, end - begin));
-    if (!one.empty()) add_one(one, units, model);
-    begin = end + 1;
-  }
+  std::vector<ChosenEffect> chosen = chosen_effects(specification);
+  std::stable_partition(chosen.begin(), chosen.end(),
+                        [](const ChosenEffect& one) { return one.entry->changes_mobility; });
+  for (const ChosenEffect& one : chosen) add_one(one, units, model);
 }
 
 }  // namespace traceraft

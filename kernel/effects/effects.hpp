@@ -28,6 +28,8 @@ struct EffectEntry {
   std::vector<std::string> confused_with;  // names of effects
   // Adds it to a model. Parameters are in units of R and R²/D.
   std::function<void(const Parameters&, CahnHilliardModel&)> add;
+  bool unit_wells = false;        // it takes the phases to be at c = 0 and 1
+  bool changes_mobility = false;  // of which others make something: it is added before them
 };
 
 EffectEntry allen_cahn_effect();
@@ -50,8 +52,9 @@ const NamedList<EffectEntry>& effects();
 // The factor from a parameter's unit to R and R²/D.
 double to_model_units(const std::string& unit, const Units& units);
 
-// "exchange:rate=1e-3,target=0.2; gravity:strength=0.1" -> added to the model. Throws InputError
-// for an unknown name or key, a value out of range, and a strength that is not given.
+// "exchange:rate=1e-3,target=0.2; gravity:strength=0.1" -> added to the model; in any order, the
+// same. Throws InputError for an unknown name or key, a value out of range, a strength that is not
+// given, and wells that an effect is not made for.
 void add_effects(const std::string& specification, const Units& units, CahnHilliardModel& model);
 
 }  // namespace traceraft

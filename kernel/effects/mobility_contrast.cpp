@@ -36,7 +36,9 @@ EffectEntry mobility_contrast_effect() {
           {"flow"},
           [](const Parameters& p, CahnHilliardModel& model) {
             model.mobility = std::make_shared<ContrastMobility>(model.mobility, p["strength"]);
-          }};
+          },
+          true,
+          true};
 }
 
 }  // namespace traceraft

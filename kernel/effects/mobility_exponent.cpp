@@ -43,7 +43,9 @@ EffectEntry mobility_exponent_effect() {
           {"bulk-mobility"},
           [](const Parameters& p, CahnHilliardModel& model) {
             model.mobility = std::make_shared<ExponentMobility>(model.mobility, p["excess"]);
-          }};
+          },
+          true,
+          true};
 }
 
 }  // namespace traceraft

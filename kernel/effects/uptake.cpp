@@ -18,7 +18,8 @@ EffectEntry uptake_effect() {
                 local_density({"uptake", Slot::source, false, false, [s](const DensityPoint& at) {
                                  return DensityValue{-s * (1 - at.c), s};
                                }}));
-          }};
+          },
+          true};
 }
 
 }  // namespace traceraft

@@ -146,8 +146,8 @@ Status SurfaceSpace::solve_spd(const CsrMatrix& A, ConstVec b, VecRef x, double 
   x.setZero();
   double rho = global_dot(residual, preconditioned);
   const double target = tolerance * tolerance * rho;
-  int iteration = 0;
-  for (; rho > target && iteration < 500; ++iteration) {
+  const int most = 500 + static_cast<int>(100 / h());
+  for (int iteration = 0; rho > target && iteration < most; ++iteration) {
     A.multiply(with_ghosts(direction, buffer), product, *team);
     const double alpha = rho / global_dot(direction, product);
     x += alpha * direction;

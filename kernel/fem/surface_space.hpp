@@ -64,8 +64,9 @@ class SurfaceSpace {
   // ∫_Γ c over all ranks.
   double integral(ConstVec c) const { return communicator->sum(dot(node_area, c)); }
 
-  // Solves A x = b for a symmetric positive definite A that is as well conditioned as M̃ (14–26
-  // after diagonal scaling) by conjugate gradients, to a relative tolerance.
+  // Solves A x = b for a symmetric positive definite A by conjugate gradients, to a relative
+  // tolerance. A is as well conditioned as M̃ (14–26 after diagonal scaling), or as K + κ² M̃
+  // (h^(-2), for which roundoff takes some 30/h iterations).
   Status solve_spd(const CsrMatrix& A, ConstVec b, VecRef x, double tolerance) const;
   // M̃ x = b, with ∫x = 1ᵀb exactly up to roundoff.
   Status solve_mass(ConstVec b, VecRef x) const;

@@ -174,6 +174,33 @@ TEST(Effects, SayWhatIsWrong) {
   EXPECT_EQ(model.effects.size(), 2u);
 }
 
+TEST(Effects, RefuseWellsTheyAreNotMadeFor) {
+  CahnHilliardModel model = make_model();
+  model.well = {1, 0.3, 0.7};
+  EXPECT_NO_THROW(add_effects("exchange:rate=1; gravity:strength=1", kScaled, model));
+  for (const char* effect : {"asymmetry:strength=0.1", "cooling:rate=1", "uptake:rate=1",
+                             "mobility-contrast:strength=1", "mobility-exponent:excess=1"})
+    EXPECT_THROW(add_effects(effect, kScaled, model), InputError) << effect;
+}
+
+TEST(Effects, AreTheSameInAnyOrder) {
+  const auto space = make_space(10);
+  const auto residual = [&](const std::string& text) {
+    CahnHilliardModel model = make_model();
+    add_effects(text, kScaled, model);
+    const CahnHilliard problem(space, model);
+    Vec r(problem.size());
+    const Status status =
+        problem.residual(0.7, random_state(problem, 4), random_vector(problem.size(), 5), r);
+    EXPECT_TRUE(status.ok()) << status.why;
+    return r;
+  };
+  const std::string cooling = "cooling:rate=1", thermal = "thermal:strength=1e-3,time=0.1";
+  for (const char* mobility : {"mobility-contrast:strength=0.5", "mobility-exponent:excess=1"})
+    for (const std::string& other : {cooling, thermal})
+      EXPECT_EQ(residual(other + ";" + mobility), residual(mobility + (";" + other)));
+}
+
 TEST(Effects, TakeTheirParametersInPhysicalUnits) {
   const Units units{5, 1e-5, false};  // R²/D = 0.025 s
   CahnHilliardModel physical = make_model(), scaled = make_model();
