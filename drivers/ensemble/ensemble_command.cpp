@@ -10,6 +10,7 @@
 #include "drivers/config/option_flags.hpp"
 #include "drivers/ensemble/array_job.hpp"
 #include "drivers/ensemble/ensemble_report.hpp"
+#include "drivers/ensemble/histories_file.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/run/run_folder.hpp"
 #include "drivers/run/run_setup.hpp"
@@ -110,8 +111,11 @@ int carry_out(const EnsembleRequest& request, const EnsembleFolder& folder,
   }
   const std::vector<History> runs = finished_histories(folder, plan, units.length());
   if (runs.empty()) return kNumericalFailure;
+  const EnsembleSummary summary = summarise(runs);
+  write_histories(folder.path() / kHistoriesFile, finished_seeds(folder, plan), runs,
+                  summary.times);
   const std::string missing =
-      write_ensemble(folder, summarise(runs), end, sentence(configuration, runs.size(), plan),
+      write_ensemble(folder, summary, end, sentence(configuration, runs.size(), plan),
                      !units.scaled, request.quiet);
   if (!request.quiet) {
     if (!missing.empty()) std::printf("\ncharts are missing: %s\n", missing.c_str());

@@ -72,12 +72,18 @@ History EnsembleFolder::history(std::uint64_t seed, double radius) const {
   return history;
 }
 
+std::vector<std::uint64_t> finished_seeds(const EnsembleFolder& folder, const EnsemblePlan& plan) {
+  std::vector<std::uint64_t> seeds;
+  for (const std::uint64_t seed : plan.seeds())
+    if (folder.member(seed).end == MemberEnd::finished) seeds.push_back(seed);
+  return seeds;
+}
+
 std::vector<History> finished_histories(const EnsembleFolder& folder, const EnsemblePlan& plan,
                                         double radius) {
   std::vector<History> histories;
-  for (const std::uint64_t seed : plan.seeds())
-    if (folder.member(seed).end == MemberEnd::finished)
-      histories.push_back(folder.history(seed, radius));
+  for (const std::uint64_t seed : finished_seeds(folder, plan))
+    histories.push_back(folder.history(seed, radius));
   return histories;
 }
 

@@ -55,6 +55,7 @@ class EnsembleFolder {
 };
 
 // Of all members that have finished, in the order of their seeds.
+std::vector<std::uint64_t> finished_seeds(const EnsembleFolder& folder, const EnsemblePlan& plan);
 std::vector<History> finished_histories(const EnsembleFolder& folder, const EnsemblePlan& plan,
                                         double radius);
 

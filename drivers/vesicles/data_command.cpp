@@ -3,7 +3,9 @@
 
 #include "drivers/commands.hpp"
 #include "drivers/config/configuration.hpp"
+#include "drivers/ensemble/ensemble_folder.hpp"
 #include "drivers/exit_codes.hpp"
+#include "drivers/run/run_folder.hpp"
 #include "drivers/vesicles/dataset.hpp"
 #include "drivers/vesicles/facts_file.hpp"
 #include "drivers/vesicles/measured_report.hpp"
@@ -16,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct DataRequest {
-  std::string action, folder, ensemble, facts, window = "100,1000";
+  std::string action, folder, ensemble, out, facts, window = "100,1000";
   std::int64_t seed = 1;
   bool quiet = false;
 };
@@ -39,7 +41,11 @@ int check(const DataRequest& request) {
 int compare(const DataRequest& request) {
   if (request.ensemble.empty())
     throw InputError("--ensemble: say which simulations to compare with (traceraft ensemble)");
-  return compare_with_ensemble(read_dataset(request.folder), request.ensemble,
+  fs::path out = request.out;
+  if (out.empty())
+    out = EnsembleFolder(request.ensemble).started() ? request.ensemble
+                                                     : first_free_folder("comparison");
+  return compare_with_ensemble(read_dataset(request.folder), request.ensemble, out,
                                window_of(request.window), request.quiet);
 }
 
@@ -83,6 +89,10 @@ Action define(CLI::App& app) {
   app.add_option("folder", request->folder, "of the measurements (dataset.toml)")->required();
   app.add_option("--ensemble", request->ensemble,
                  "folder of the simulations to compare with, or to draw from");
+  app.add_option(
+      "--out", request->out,
+      "folder of a comparison; default: that of the ensemble, or runs/comparison-<number> "
+      "if only its histories are there");
   app.add_option("--window", request->window, "from which time to which a power law is fitted (s)")
       ->capture_default_str();
   app.add_option("--facts", request->facts, "TOML file to draw from");
@@ -90,7 +100,9 @@ Action define(CLI::App& app) {
       ->check(CLI::Range(0.0, 9007199254740992.0))
       ->capture_default_str();
   app.add_flag("--quiet", request->quiet, "print nothing but errors");
-  app.footer("Example: traceraft data compare my-vesicles --ensemble runs/ensemble-guv-3to1-1");
+  app.footer(
+      "Example: traceraft data compare my-vesicles --ensemble "
+      "verification/data/ensembles/guv-3to1");
   return [request] { return actions().find(request->action).run(*request); };
 }
 

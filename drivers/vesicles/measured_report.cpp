@@ -6,6 +6,7 @@
 #include "backends/posix/durable_file.hpp"
 #include "drivers/config/config_file.hpp"
 #include "drivers/ensemble/ensemble_report.hpp"
+#include "drivers/ensemble/histories_file.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/output/chart.hpp"
 #include "drivers/output/page.hpp"
@@ -136,18 +137,20 @@ void print_dataset(const MeasuredVesicles& data, const std::optional<FittedLaw>&
 
 std::vector<History> runs_of(const fs::path& path) {
   const EnsembleFolder folder(path);
-  if (!folder.started())
+  const fs::path kept = path / kHistoriesFile;
+  if (!folder.started() && !(fs::exists(folder.config()) && fs::exists(kept)))
     throw InputError("--ensemble: " + path.string() + " holds no ensemble (traceraft ensemble)");
   const Configuration configuration(read_config_file(folder.config()), {});
   const Units units = configuration.units();
   if (units.scaled)
     throw InputError("--ensemble: " + path.string() +
                      " was run with --scaled; its times cannot be compared with seconds");
-  return finished_histories(folder, folder.load(), units.length());
+  return folder.started() ? finished_histories(folder, folder.load(), units.length())
+                          : read_histories(kept);
 }
 
-int compare_with_ensemble(const MeasuredVesicles& data, const fs::path& path, const Window& window,
-                          bool quiet) {
+int compare_with_ensemble(const MeasuredVesicles& data, const fs::path& path, const fs::path& out,
+                          const Window& window, bool quiet) {
   const std::vector<History> runs = runs_of(path);
   const std::vector<Agreement> agreements = compare_with_runs(data, runs);
   const EnsembleSummary summary = summarise(runs);
@@ -165,21 +168,22 @@ int compare_with_ensemble(const MeasuredVesicles& data, const fs::path& path, co
   page.table(rows);
   page.paragraph(formatted("Power laws fitted from %g to %g s.", window.begin, window.end));
   page.table(laws);
+  fs::create_directories(out);
   for (const Quantity quantity : kQuantities) {
     Chart chart = comparison_chart(data, summary, quantity);
     if (quantity == Quantity::perimeter && measured)
       chart.series.push_back(law_curve("law of the measurements", measured->law, window));
     const std::string svg =
-        draw_chart(chart, path / (std::string("comparison-") + name_of(quantity).id));
+        draw_chart(chart, out / (std::string("comparison-") + name_of(quantity).id));
     if (!svg.empty()) page.figure(svg, chart.title);
   }
-  write_durably(path / "comparison.csv", csv_text(agreement_table(agreements)));
-  write_durably(path / "comparison.html", page.html());
+  write_durably(out / "comparison.csv", csv_text(agreement_table(agreements)));
+  write_durably(out / "comparison.html", page.html());
   if (!quiet) {
     print_rows(rows);
     std::printf("\npower laws from %g to %g s\n", window.begin, window.end);
     print_rows(laws);
-    std::printf("\nopen next: %s\n", (path / "comparison.html").c_str());
+    std::printf("\nopen next: %s\n", (out / "comparison.html").c_str());
   }
   return kSuccess;
 }

@@ -11,13 +11,14 @@ namespace traceraft {
 
 void print_dataset(const MeasuredVesicles& data, const std::optional<FittedLaw>& law);
 
-// The finished runs of an ensemble, in s and R. Throws InputError if there is no ensemble, or if
-// its times are in units of R²/D.
+// The finished runs of an ensemble, in s and R, or what a folder with its config.toml and
+// histories.csv has kept of them. Throws InputError if there is no ensemble, or if its times are in
+// units of R²/D.
 std::vector<History> runs_of(const std::filesystem::path& ensemble);
 
-// Writes into the folder of the ensemble. Returns an exit code; throws InputError as runs_of,
-// and if fewer than two runs have finished.
+// Writes into the folder `out`. Returns an exit code; throws InputError as runs_of, and if fewer
+// than two runs have finished.
 int compare_with_ensemble(const MeasuredVesicles& data, const std::filesystem::path& ensemble,
-                          const Window& window, bool quiet);
+                          const std::filesystem::path& out, const Window& window, bool quiet);
 
 }  // namespace traceraft

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <fstream>
 
+#include "drivers/input/csv_table.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -27,6 +28,9 @@ class EnsembleTest : public ::testing::Test {
       "--case guv-2to1 --cells 20 --epsilon 0.5 --t-end 100 --no-fields --checkpoint-interval 0 ";
   std::string out(const std::string& name) const { return (folder.path / name).string(); }
   fs::path csv(const std::string& name) const { return folder.path / name / "ensemble.csv"; }
+  std::vector<double> misfits(const std::string& name) const {
+    return CsvTable::read(folder.path / name / "comparison.csv").numbers("misfit");
+  }
 };
 
 TEST_F(EnsembleTest, GathersRunsThatDifferInTheirSeed) {
@@ -47,6 +51,24 @@ TEST_F(EnsembleTest, GathersRunsThatDifferInTheirSeed) {
   ASSERT_EQ(traceraft("ensemble --quiet --runs 4 --out " + out("a")).code, 0);
   EXPECT_EQ(fs::last_write_time(folder.path / "a/runs/seed-3/series.csv"), before);
   EXPECT_TRUE(fs::exists(folder.path / "a/runs/seed-4/summary.json"));
+  // Without the runs it can be compared as with them.
+  fs::create_directories(folder.path / "kept");
+  for (const char* file : {"config.toml", "histories.csv"})
+    fs::copy_file(folder.path / "a" / file, folder.path / "kept" / file);
+  fs::create_directories(folder.path / "data");
+  std::ofstream(folder.path / "data/dataset.toml")
+      << "name = \"few\"\nkind = \"synthetic\"\ntime_zero = \"start\"\nlength_unit = \"um\"\n"
+         "time_unit = \"s\"\nradius = 5\n";
+  std::ofstream(folder.path / "data/measurements.csv")
+      << "vesicle,time,perimeter,rafts,fraction\na,0.001,60,4,0.2\nb,0.002,55,3,0.3\n";
+  for (const char* ensemble : {"a", "kept"})
+    ASSERT_EQ(traceraft("data compare --quiet " + out("data") + " --ensemble " + out(ensemble) +
+                        " --out " + out(std::string("by-") + ensemble))
+                  .code,
+              0);
+  const std::vector<double> with = misfits("by-a"), without = misfits("by-kept");
+  ASSERT_EQ(with.size(), 3u);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(without[k], with[k], 0.1 * with[k]);
 }
 
 TEST_F(EnsembleTest, GoesOnAfterItWasKilled) {

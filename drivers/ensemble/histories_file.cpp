@@ -1,0 +1,46 @@
+#include "drivers/ensemble/histories_file.hpp"
+
+#include "backends/posix/durable_file.hpp"
+#include "drivers/input/csv_table.hpp"
+#include "drivers/output/text_table.hpp"
+#include "kernel/core/error.hpp"
+#include "kernel/core/text.hpp"
+
+namespace traceraft {
+
+void write_histories(const std::filesystem::path& file, const std::vector<std::uint64_t>& seeds,
+                     const std::vector<History>& runs, const std::vector<double>& times) {
+  Table table{"histories", {"seed", "t"}, {}};
+  for (const Quantity quantity : kQuantities) table.columns.push_back(name_of(quantity).id);
+  for (std::size_t k = 0; k < runs.size(); ++k)
+    for (const double t : times) {
+      std::vector<Cell> row{std::to_string(seeds[k]), formatted("%.6g", t)};
+      for (const Quantity quantity : kQuantities)
+        row.emplace_back(formatted("%.6g", runs[k].at(quantity, t)));
+      table.rows.push_back(std::move(row));
+    }
+  write_durably(file, csv_text(table));
+}
+
+std::vector<History> read_histories(const std::filesystem::path& file) {
+  const CsvTable table = CsvTable::read(file);
+  table.require("seed");
+  table.require("t");
+  for (const Quantity quantity : kQuantities) table.require(name_of(quantity).id);
+  std::vector<History> runs;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const bool same = row > 0 && table.text(row, "seed") == table.text(row - 1, "seed");
+    if (!same) runs.emplace_back();
+    History& run = runs.back();
+    const double t = table.number(row, "t");
+    if (same && !(t > run.time.back()))
+      throw InputError(table.where(row, "t") + ": times of a run have to ascend");
+    run.time.push_back(t);
+    for (const Quantity quantity : kQuantities)
+      run.of(quantity).push_back(table.number(row, name_of(quantity).id));
+  }
+  if (runs.empty()) throw InputError(file.string() + ": no rows");
+  return runs;
+}
+
+}  // namespace traceraft
