@@ -27,10 +27,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// D is looked for within this factor of the model's, and runs go on as long.
-constexpr double kTimeRange = 4;
+// D is looked for up to this multiple of the model's, and runs go on as long; how small it may be
+// costs nothing.
+constexpr double kFastest = 4, kSlowest = 100;
 // Steps in ln of the first design and of the next, each around what the one before finds.
-constexpr double kSteps[] = {0.5, 0.25, 0.25};
+constexpr double kSteps[] = {0.5, 0.25, 0.1};
 
 struct CalibrateRequest {
   GivenValues flags;
@@ -58,7 +59,7 @@ std::vector<std::string> costly_parameters(const std::string& text) {
 
 // Up to the latest measurement if D were as large as it may be.
 double end_of_runs(const MeasuredVesicles& data) {
-  return kTimeRange * looks(data).end;
+  return kFastest * looks(data).end;
 }
 
 class Calibrator {
@@ -77,7 +78,9 @@ class Calibrator {
     for (const double value : values_of(model_, names_)) centre.push_back(std::log(value));
     for (const double step : kSteps) {
       if (!add_points(design_around(within_range(centre, step), step))) return false;
-      result_ = calibrate(data_, names_, points_, model_.units().seconds_per_unit(), kTimeRange);
+      const double seconds = model_.units().seconds_per_unit();
+      result_ =
+          calibrate(data_, sought(), points_, {seconds, {seconds / kFastest, seconds * kSlowest}});
       for (std::size_t i = 0; i < centre.size(); ++i)
         centre[i] = std::log(result_.parameters[i + 1].value);
       if (centre.empty()) break;
@@ -90,6 +93,11 @@ class Calibrator {
   const std::vector<std::string>& names() const { return names_; }
 
  private:
+  std::vector<SoughtParameter> sought() const {
+    std::vector<SoughtParameter> all;
+    for (const std::string& name : names_) all.push_back({name, range_of(model_, name)});
+    return all;
+  }
   // Moved so that all of the design can be run.
   std::vector<double> within_range(std::vector<double> centre, double step) const {
     for (std::size_t i = 0; i < centre.size(); ++i) {
@@ -174,6 +182,7 @@ int run_calibration(const CalibrateRequest& request) {
   if (request.data.empty()) throw InputError("--data: say which measurements to calibrate with");
   (void)costly_parameters(request.parameters);
   const MeasuredVesicles data = read_dataset(request.data);
+  refuse_calibration(data);
   const Configuration model(read_config_file(request.model, "--model"), request.flags);
   refuse_scaled(model);
   refuse_model(model);

@@ -90,6 +90,7 @@ std::string json_text(const std::vector<Finding>& lines, const Calibration& resu
                                      {"determined", line.determined}};
   json["best_known"] = best_known(result);
   json["scatter_of_ln_perimeter"] = result.scatter;
+  json["points_at_bound_of_mobility"] = result.at_bound;
   for (Eigen::Index i = 0; i < result.correlation.rows(); ++i) {
     Json row = Json::array();
     // Of ln D, not of ln R²/D.
@@ -125,6 +126,13 @@ void write_calibration(const std::filesystem::path& folder, const MeasuredVesicl
   const std::string best = "The data know best " + best_known(result) + ".";
   const std::string scatter =
       formatted("Perimeters scatter by %.0f %% beyond what runs do.", 100 * result.scatter);
+  const std::string bound =
+      result.at_bound == 0
+          ? ""
+          : formatted(
+                " At %d of %zu choices D fits best where the search for it ends: begin with "
+                "another --diffusion.",
+                result.at_bound, points.size());
   const Table table = points_table(model, names, points, result);
   write_durably(folder / "calibration.csv", csv_text(table));
   write_durably(folder / "calibration.json", json_text(lines, result));
@@ -132,7 +140,7 @@ void write_calibration(const std::filesystem::path& folder, const MeasuredVesicl
   Page page("A model calibrated with measurements");
   page.paragraph(data.name + (data.synthetic ? " (SYNTHETIC, not measured)" : ""));
   page.table(rows);
-  page.paragraph(best + " " + scatter);
+  page.paragraph(best + " " + scatter + bound);
   page.table(table_rows(table));
   for (std::size_t i = 0; i < names.size(); ++i) {
     Chart chart{"Deviance over " + names[i], names[i], "-2 ln likelihood", true, false, {}};
@@ -147,8 +155,8 @@ void write_calibration(const std::filesystem::path& folder, const MeasuredVesicl
   if (quiet) return;
   std::printf("\n");
   print_rows(rows);
-  std::printf("\n%s\n%s\n\nrun it with: traceraft run --config %s\nopen next: %s\n", best.c_str(),
-              scatter.c_str(), (folder / "calibrated.toml").c_str(),
+  std::printf("\n%s\n%s%s\n\nrun it with: traceraft run --config %s\nopen next: %s\n", best.c_str(),
+              scatter.c_str(), bound.c_str(), (folder / "calibrated.toml").c_str(),
               (folder / "calibration.html").c_str());
 }
 

@@ -97,6 +97,9 @@ TEST(CalibrationPoints, CanBeRun) {
 }
 
 TEST_F(CalibrateTest, RefusesWhatItCannotCalibrate) {
+  fs::create_directories(folder.path / "one");
+  fs::copy_file(folder.path / "data/dataset.toml", folder.path / "one/dataset.toml");
+  std::ofstream(folder.path / "one/measurements.csv") << "vesicle,time,rafts\na,1,2\n";
   for (const auto& [flags, complaint] :
        {std::pair<std::string, std::string>("", "--data: say which"),
         {"--data " + out("nowhere"), "dataset.toml"},
@@ -106,6 +109,7 @@ TEST_F(CalibrateTest, RefusesWhatItCannotCalibrate) {
         {"--data " + out("data") + " --effect exchange:rate=1", "more than a unit of time"},
         {"--data " + out("data") + " --case two-rafts", "differ in the noise"},
         {"--data " + out("data") + " --model " + out("no.toml"), "--model: "},
+        {"--data " + out("one"), "three vesicles at least"},
         {"--data " + out("data") + " --scaled", "measurements are in seconds"}}) {
     const Outcome refused = traceraft("calibrate " + flags + " --out " + out("c"));
     EXPECT_EQ(refused.code, 2) << flags;

@@ -27,8 +27,9 @@ struct Box {
   std::vector<double> lower, upper;
 };
 
-// Where there are points, and `overshoot` of that beyond.
-Box explored(const std::vector<CalibrationPoint>& points, double overshoot) {
+// Where there are points, and `overshoot` of that beyond, as far as it is allowed.
+Box explored(const std::vector<CalibrationPoint>& points,
+             const std::vector<SoughtParameter>& sought, double overshoot) {
   Box box{points.front().ln_parameters, points.front().ln_parameters};
   for (const CalibrationPoint& point : points)
     for (std::size_t i = 0; i < box.lower.size(); ++i) {
@@ -37,8 +38,8 @@ Box explored(const std::vector<CalibrationPoint>& points, double overshoot) {
     }
   for (std::size_t i = 0; i < box.lower.size(); ++i) {
     const double more = overshoot * (box.upper[i] - box.lower[i]);
-    box.lower[i] -= more;
-    box.upper[i] += more;
+    box.lower[i] = std::max(box.lower[i] - more, std::log(sought[i].allowed.low));
+    box.upper[i] = std::min(box.upper[i] + more, std::log(sought[i].allowed.high));
   }
   return box;
 }
@@ -54,13 +55,14 @@ std::vector<double> weights_of(const std::vector<double>& deviance) {
 
 Estimate estimate(const MeasuredVesicles& data, const std::vector<int>& vesicles,
                   const std::vector<CalibrationPoint>& points,
-                  const std::vector<RunStatistics>& statistics, const Box& box, double start,
-                  double range) {
+                  const std::vector<RunStatistics>& statistics, const Box& box,
+                  const TimeUnit& unit, const std::vector<TimeFit>* near = nullptr) {
   Estimate result;
   std::vector<std::vector<double>> x;
   std::vector<double> deviance, seconds, scatter;
   for (std::size_t k = 0; k < points.size(); ++k) {
-    const TimeFit fit = fit_time(data, vesicles, statistics[k], start, range);
+    const TimeFit fit = near ? fit_time(data, vesicles, statistics[k], unit, (*near)[k])
+                             : fit_time(data, vesicles, statistics[k], unit);
     result.fits.push_back(fit);
     x.push_back(points[k].ln_parameters);
     deviance.push_back(fit.deviance);
@@ -93,42 +95,48 @@ Eigen::MatrixXd covariance(const std::vector<std::vector<double>>& replicates) {
   return centred.transpose() * centred / static_cast<double>(rows - 1);
 }
 
-CalibratedParameter parameter(const std::string& name, double ln, std::vector<double> replicates,
-                              double lower, double upper) {
-  std::sort(replicates.begin(), replicates.end());
-  const auto share = [&](double s) {
-    return replicates[static_cast<std::size_t>(s * static_cast<double>(replicates.size() - 1))];
-  };
-  const double low = share(0.025), high = share(0.975), margin = 1e-3 * (upper - lower);
+CalibratedParameter parameter(const std::string& name, double ln,
+                              const std::vector<double>& replicates, double lower, double upper) {
+  const double low = quantile(replicates, 0.025), high = quantile(replicates, 0.975),
+               margin = 1e-3 * (upper - lower);
   return {name,
           std::exp(ln),
           {std::exp(low), std::exp(high)},
           high - low < std::log(kDetermined) && low > lower + margin && high < upper - margin};
 }
 
+int count_at_bound(const std::vector<TimeFit>& fits, const Interval& allowed) {
+  return static_cast<int>(std::count_if(fits.begin(), fits.end(), [&](const TimeFit& fit) {
+    return fit.seconds_per_unit < 1.01 * allowed.low || fit.seconds_per_unit > 0.99 * allowed.high;
+  }));
+}
+
 }  // namespace
 
-Calibration calibrate(const MeasuredVesicles& data, const std::vector<std::string>& names,
-                      const std::vector<CalibrationPoint>& points, double seconds_start,
-                      double range) {
-  const int vesicles = static_cast<int>(data.vesicles().size());
-  if (vesicles < 3)
+void refuse_calibration(const MeasuredVesicles& data) {
+  if (data.vesicles().size() < 3)
     throw InputError("a calibration needs three vesicles at least, to know how they scatter");
   if (std::none_of(data.measurements.begin(), data.measurements.end(), [](const Measurement& m) {
         return m.of(Quantity::perimeter).value_or(0) > 0 || m.of(Quantity::rafts).value_or(0) > 0;
       }))
     throw InputError("a calibration needs perimeters or numbers of rafts");
-  if (static_cast<int>(points.size()) < points_of_surface(static_cast<int>(names.size())))
+}
+
+Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtParameter>& sought,
+                      const std::vector<CalibrationPoint>& points, const TimeUnit& unit) {
+  refuse_calibration(data);
+  const int vesicles = static_cast<int>(data.vesicles().size());
+  if (static_cast<int>(points.size()) < points_of_surface(static_cast<int>(sought.size())))
     throw InputError("a calibration needs more points");
-  const Box box = explored(points, kOvershoot), simulated = explored(points, 0);
+  const Box box = explored(points, sought, kOvershoot), simulated = explored(points, sought, 0);
   std::vector<std::vector<History>> ensembles;
   for (const CalibrationPoint& point : points) ensembles.push_back(point.runs);
   const ScatterLaws scatter = scatter_laws(ensembles);
   std::vector<RunStatistics> statistics;
   for (const CalibrationPoint& point : points)
     statistics.emplace_back(point.runs, each_once(point.runs.size()), scatter);
-  const Estimate found = estimate(data, each_once(static_cast<std::size_t>(vesicles)), points,
-                                  statistics, box, seconds_start, range);
+  const Estimate found =
+      estimate(data, each_once(static_cast<std::size_t>(vesicles)), points, statistics, box, unit);
   std::vector<std::vector<double>> replicates;
   for (std::uint64_t r = 1; r <= kReplicates; ++r) {
     std::vector<RunStatistics> others;
@@ -137,17 +145,16 @@ Calibration calibrate(const MeasuredVesicles& data, const std::vector<std::strin
       others.emplace_back(point.runs, resample(static_cast<int>(point.runs.size()), r, 32),
                           scatter);
     replicates.push_back(
-        estimate(data, resample(vesicles, r, 31), points, others, box, seconds_start, range).ln);
+        estimate(data, resample(vesicles, r, 31), points, others, box, unit, &found.fits).ln);
   }
   Calibration result;
-  for (std::size_t i = 0; i <= names.size(); ++i) {
+  for (std::size_t i = 0; i <= sought.size(); ++i) {
     std::vector<double> values;
     for (const auto& replicate : replicates) values.push_back(replicate[i]);
-    const double width = std::log(range);
     result.parameters.push_back(
-        parameter(i == 0 ? "seconds_per_unit" : names[i - 1], found.ln[i], values,
-                  i == 0 ? std::log(seconds_start) - width : simulated.lower[i - 1],
-                  i == 0 ? std::log(seconds_start) + width : simulated.upper[i - 1]));
+        parameter(i == 0 ? "seconds_per_unit" : sought[i - 1].name, found.ln[i], values,
+                  i == 0 ? std::log(unit.allowed.low) : simulated.lower[i - 1],
+                  i == 0 ? std::log(unit.allowed.high) : simulated.upper[i - 1]));
   }
   const Eigen::MatrixXd spread = covariance(replicates);
   const Vec deviation = spread.diagonal().cwiseSqrt().cwiseMax(1e-12);
@@ -163,6 +170,7 @@ Calibration calibrate(const MeasuredVesicles& data, const std::vector<std::strin
   powers /= powers[largest];
   result.best_powers.assign(powers.data(), powers.data() + powers.size());
   result.at_points = found.fits;
+  result.at_bound = count_at_bound(found.fits, unit.allowed);
   result.scatter = found.scatter;
   return result;
 }

@@ -17,6 +17,12 @@ struct CalibrationPoint {
   std::vector<History> runs;  // in units of R²/D
 };
 
+// What is looked for besides the unit of time, and what it may be.
+struct SoughtParameter {
+  std::string name;
+  Interval allowed;
+};
+
 struct CalibratedParameter {
   std::string name;
   double value;
@@ -33,13 +39,16 @@ struct Calibration {
   // deviation.
   std::vector<double> best_powers;
   double best_deviation;
+  int at_bound;  // points at which R²/D fits best where the search for it ends
 };
 
-// `names` of the parameters of the points; `seconds_start`, `range` as of fit_time. Fits a parabola
-// to the deviance of the points. Throws InputError if there are too few points or vesicles.
-Calibration calibrate(const MeasuredVesicles& data, const std::vector<std::string>& names,
-                      const std::vector<CalibrationPoint>& points, double seconds_start,
-                      double range);
+// Throws InputError for too few vesicles, and if neither perimeters nor rafts were measured.
+void refuse_calibration(const MeasuredVesicles& data);
+
+// Fits a parabola to the deviance of the points. Throws InputError if there are too few of them,
+// and as refuse_calibration.
+Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtParameter>& sought,
+                      const std::vector<CalibrationPoint>& points, const TimeUnit& unit);
 
 // Where simulations are needed next: a star around the centre with steps of `step` in ln, and for
 // two parameters or more the corners that a parabola needs.

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "verification/measure/fit.hpp"
 #include "verification/vesicles/history.hpp"
 #include "verification/vesicles/measurements.hpp"
 
@@ -27,6 +28,8 @@ class RunStatistics {
   // At least two runs, with times > 0 in any unit. `sample`: which runs, with repetition.
   RunStatistics(const std::vector<History>& runs, const std::vector<int>& sample,
                 const ScatterLaws& scatter);
+  RunStatistics(const std::vector<History>& runs, const std::vector<int>& sample,
+                const ScatterLaws& scatter, const std::vector<double>& times);
 
   struct Normal {
     double mean, variance;  // variance: of one vesicle, and of the mean itself
@@ -50,9 +53,18 @@ struct TimeFit {
   double deviance;  // −2 ln of the likelihood, up to a constant of the data
 };
 
-// `start`: seconds per unit to begin with; the fit stays within a factor of `range` of it.
-// `sample`: which vesicles, with repetition.
+// R²/D in seconds: where to begin, and what it may be.
+struct TimeUnit {
+  double start;
+  Interval allowed;
+};
+
+// `sample`: which vesicles, with repetition. The uncertainties that the data state are part of the
+// scatter of measuring.
 TimeFit fit_time(const MeasuredVesicles& data, const std::vector<int>& sample,
-                 const RunStatistics& runs, double start, double range);
+                 const RunStatistics& runs, const TimeUnit& unit);
+// From the fit of data and runs that differ little.
+TimeFit fit_time(const MeasuredVesicles& data, const std::vector<int>& sample,
+                 const RunStatistics& runs, const TimeUnit& unit, const TimeFit& near);
 
 }  // namespace traceraft
