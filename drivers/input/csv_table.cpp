@@ -78,10 +78,10 @@ CsvTable CsvTable::read(const std::filesystem::path& path) {
   table.path_ = path;
   if (rows.rows.empty()) throw InputError(path.string() + ": the file is empty");
   table.columns_ = std::move(rows.rows.front());
+  table.heading_line_ = rows.lines.front();
   for (std::size_t i = 0; i < table.columns_.size(); ++i)
     if (table.index(table.columns_[i]) != i)
-      throw InputError(path.string() + ":" + std::to_string(rows.lines.front()) +
-                       ": two columns are called '" + table.columns_[i] + "'");
+      throw InputError(table.heading() + ": two columns are called '" + table.columns_[i] + "'");
   table.cells_.assign(std::make_move_iterator(rows.rows.begin() + 1),
                       std::make_move_iterator(rows.rows.end()));
   table.lines_.assign(rows.lines.begin() + 1, rows.lines.end());
@@ -101,7 +101,7 @@ std::optional<std::size_t> CsvTable::index(const std::string& column) const {
 
 void CsvTable::require(const std::string& column) const {
   if (!has(column))
-    throw InputError(path_.string() + ": there is no column '" + column + "' (there are: " + [&] {
+    throw InputError(heading() + ": there is no column '" + column + "' (there are: " + [&] {
       std::string names;
       for (const std::string& name : columns_) names += (names.empty() ? "" : ", ") + name;
       return names;
@@ -120,6 +120,10 @@ std::vector<double> CsvTable::numbers(const std::string& column) const {
   std::vector<double> values;
   for (std::size_t row = 0; row < rows(); ++row) values.push_back(number(row, column));
   return values;
+}
+
+std::string CsvTable::heading() const {
+  return path_.string() + ":" + std::to_string(heading_line_);
 }
 
 std::string CsvTable::where(std::size_t row) const {

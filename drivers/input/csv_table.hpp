@@ -32,6 +32,7 @@ class CsvTable {
   // "data.csv:3: column 'time'": starts every complaint about a cell.
   std::string where(std::size_t row, const std::string& column) const;
   std::string where(std::size_t row) const;  // "data.csv:3"
+  std::string heading() const;               // the same of the heading
 
  private:
   std::optional<std::size_t> index(const std::string& column) const;
@@ -40,6 +41,7 @@ class CsvTable {
   std::vector<std::string> columns_;
   std::vector<std::vector<std::string>> cells_;
   std::vector<long> lines_;
+  long heading_line_ = 1;
 };
 
 }  // namespace traceraft

@@ -34,7 +34,8 @@ Window window_of(const std::string& text) {
 
 int check(const DataRequest& request) {
   const MeasuredVesicles data = read_dataset(request.folder);
-  if (!request.quiet) print_dataset(data, fit_measurements(data, window_of(request.window)));
+  const Window window = window_of(request.window);
+  if (!request.quiet) print_dataset(data, fit_measurements(data, window), window);
   return kSuccess;
 }
 
@@ -45,8 +46,10 @@ int compare(const DataRequest& request) {
   if (out.empty())
     out = EnsembleFolder(request.ensemble).started() ? request.ensemble
                                                      : first_free_folder("comparison");
-  return compare_with_ensemble(read_dataset(request.folder), request.ensemble, out,
-                               window_of(request.window), request.quiet);
+  ComparisonRequest comparison{request.ensemble, out, window_of(request.window), std::nullopt,
+                               request.quiet};
+  if (!request.facts.empty()) comparison.facts = read_facts(request.facts);
+  return compare_with_ensemble(read_dataset(request.folder), comparison);
 }
 
 // Refuses to write over data.
@@ -95,7 +98,8 @@ Action define(CLI::App& app) {
       "if only its histories are there");
   app.add_option("--window", request->window, "from which time to which a power law is fitted (s)")
       ->capture_default_str();
-  app.add_option("--facts", request->facts, "TOML file to draw from");
+  app.add_option("--facts", request->facts,
+                 "TOML file of what is published: to draw from, or to show in a comparison");
   app.add_option("--seed", request->seed, "of what is drawn")
       ->check(CLI::Range(0.0, 9007199254740992.0))
       ->capture_default_str();

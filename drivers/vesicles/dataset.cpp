@@ -21,13 +21,22 @@ namespace fs = std::filesystem;
 
 // Vesicles that a light microscope shows; what is outside is in other units than it says.
 constexpr double kSmallestRadius = 0.05, kLargestRadius = 1000;  // µm
+constexpr double kLargestPerimeter = 1000;                       // over the radius
+constexpr double kMostRafts = 1e6;
+
+double checked_radius(double radius, const std::string& where) {
+  if (radius >= kSmallestRadius && radius <= kLargestRadius) return radius;
+  throw InputError(where + ": a vesicle of radius " + format_number(radius) +
+                   " um is impossible here (allowed: " + format_number(kSmallestRadius) + " to " +
+                   format_number(kLargestRadius) + "); is length_unit right?");
+}
 
 struct Description {
   MeasuredVesicles data;
   fs::path table;
   double length = 1, time = 1, time_offset = 0;
-  std::optional<double> radius;
-  double sigmas = 1;  // standard deviations in what the table calls sigma
+  std::optional<double> radius;  // µm
+  double sigmas = 1;             // standard deviations in what the table calls sigma
 };
 
 Description read_description(const fs::path& folder) {
@@ -48,7 +57,8 @@ Description read_description(const fs::path& folder) {
   d.length = length_factor(toml, "length_unit");
   d.time = time_factor(toml, "time_unit");
   d.time_offset = toml.number_or("time_offset", 0);
-  if (toml.has("radius")) d.radius = toml.number("radius");
+  if (toml.has("radius"))
+    d.radius = checked_radius(toml.number("radius") * d.length, toml.where("radius"));
   const std::string sigma = toml.text_or("sigma", "standard deviation");
   if (sigma != "standard deviation" && sigma != "95 % interval")
     throw InputError(toml.where("sigma") + ": '" + sigma +
@@ -70,14 +80,10 @@ double in_range(const CsvTable& table, std::size_t row, const char* column, doub
 
 double radius_of(const Description& d, const CsvTable& table, std::size_t row) {
   if (!table.has("radius") && !d.radius)
-    throw InputError(table.path().string() +
+    throw InputError(table.heading() +
                      ": there is no column 'radius', and dataset.toml has no radius for all");
-  const double radius = (table.has("radius") ? table.number(row, "radius") : *d.radius) * d.length;
-  if (radius >= kSmallestRadius && radius <= kLargestRadius) return radius;
-  throw InputError((table.has("radius") ? table.where(row, "radius") : d.table.string()) +
-                   ": a vesicle of radius " + format_number(radius) +
-                   " um is impossible here (allowed: " + format_number(kSmallestRadius) + " to " +
-                   format_number(kLargestRadius) + "); is length_unit right?");
+  if (!table.has("radius")) return *d.radius;
+  return checked_radius(table.number(row, "radius") * d.length, table.where(row, "radius"));
 }
 
 // Of vesicle, time and radius; the order of rows is checked against what is there already.
@@ -104,16 +110,18 @@ void read_value(const Description& d, const CsvTable& table, std::size_t row, Qu
                 Measurement& m) {
   const char* column = name_of(quantity).id;
   if (!table.has(column) || table.empty(row, column)) return;
-  const double highest = quantity == Quantity::fraction ? 1 : 1e6;
-  double value = in_range(table, row, column, 0, highest);
+  const double unit = quantity == Quantity::perimeter ? d.length / m.radius : 1;
+  const double highest = quantity == Quantity::fraction    ? 1
+                         : quantity == Quantity::perimeter ? kLargestPerimeter / unit
+                                                           : kMostRafts;
+  const double value = in_range(table, row, column, 0, highest);
   if (quantity == Quantity::rafts && value != std::floor(value))
     throw InputError(table.where(row, column) + ": a whole number is needed here");
-  const double unit = quantity == Quantity::perimeter ? d.length / m.radius : 1;
   m.values[static_cast<std::size_t>(quantity)] = value * unit;
   const std::string sigma = std::string(column) + "_sigma";
   if (!table.has(sigma) || table.empty(row, sigma)) return;
   m.sigma[static_cast<std::size_t>(quantity)] =
-      in_range(table, row, sigma.c_str(), 0, 1e6) * unit / d.sigmas;
+      in_range(table, row, sigma.c_str(), 0, highest) * unit / d.sigmas;
 }
 
 void check_columns(const CsvTable& table, const std::vector<std::string>& known) {
@@ -121,8 +129,7 @@ void check_columns(const CsvTable& table, const std::vector<std::string>& known)
   table.require("time");
   for (const std::string& column : table.columns())
     if (std::find(known.begin(), known.end(), column) == known.end())
-      throw InputError(table.path().string() + ": " +
-                       unknown_name_message("column", column, known));
+      throw InputError(table.heading() + ": " + unknown_name_message("column", column, known));
 }
 
 // A row per look.
@@ -139,7 +146,17 @@ void read_totals(Description& d, const CsvTable& table) {
   }
 }
 
-// A row per raft; those of one look stand together.
+// Of one raft. Nothing: the look has shown none.
+std::optional<double> cap_of(const Description& d, const CsvTable& table, std::size_t row,
+                             double radius) {
+  if (table.empty(row, "cap_radius")) return std::nullopt;
+  const double cap = in_range(table, row, "cap_radius", 0, radius / d.length) * d.length;
+  if (cap > 0) return cap;
+  throw InputError(table.where(row, "cap_radius") +
+                   ": a raft has a size; leave the cell empty for a look that shows no raft");
+}
+
+// A row per raft, or one for a look without rafts; those of one look stand together.
 void read_caps(Description& d, const CsvTable& table) {
   check_columns(table, {"vesicle", "time", "radius", "cap_radius"});
   std::set<std::string> finished;
@@ -152,7 +169,9 @@ void read_caps(Description& d, const CsvTable& table) {
          ++row) {
       if (radius_of(d, table, row) != m.radius)
         throw InputError(table.where(row, "radius") + ": one look at a vesicle, two radii");
-      caps.push_back(in_range(table, row, "cap_radius", 0, m.radius / d.length) * d.length);
+      if (row > first && (table.empty(row, "cap_radius") || table.empty(first, "cap_radius")))
+        throw InputError(table.where(row, "cap_radius") + ": a look without rafts has one row");
+      if (const auto cap = cap_of(d, table, row, m.radius)) caps.push_back(*cap);
     }
     set_caps(m, caps);
     if (*m.of(Quantity::fraction) > 1)
@@ -183,12 +202,15 @@ void write_dataset(const fs::path& folder, const MeasuredVesicles& data,
   if (!data.composition.empty()) toml += "composition = " + quoted(data.composition) + "\n";
   if (data.celsius) toml += "temperature = " + format_number(*data.celsius) + "  # C\n";
   toml += "time_zero = " + quoted(data.time_zero) + "\nlength_unit = \"um\"\ntime_unit = \"s\"\n";
-  std::string csv = "vesicle,time,radius,perimeter,rafts,fraction\n";
+  std::string csv = "# " + remark +
+                    "\nvesicle,time,radius,perimeter,perimeter_sigma,rafts,rafts_sigma,fraction,"
+                    "fraction_sigma\n";
   for (const Measurement& m : data.measurements) {
     csv += csv_cell(m.vesicle) + "," + format_number(m.time) + "," + format_number(m.radius);
     for (const Quantity quantity : kQuantities) {
       const double unit = quantity == Quantity::perimeter ? m.radius : 1;
-      csv += "," + (m.of(quantity) ? format_number(*m.of(quantity) * unit) : "");
+      for (const auto& value : {m.of(quantity), m.sigma[static_cast<std::size_t>(quantity)]})
+        csv += "," + (value ? format_number(*value * unit) : "");
     }
     csv += "\n";
   }

@@ -57,6 +57,40 @@ Row law_row(const std::string& of, const std::optional<FittedLaw>& law) {
 const Row kLawHeading = {
     "perimeter / radius = c (t - t0)^b", "b (95 %)", "t0 (s)", "c", "scatter of ln", "points"};
 
+Row law_row(const PublishedFacts& facts) {
+  const PowerLaw& law = facts.perimeter;
+  return {formatted("published, %g to %g s", facts.window.begin, facts.window.end),
+          formatted("%.3g", law.b),
+          formatted("%.3g", law.t0),
+          formatted("%.3g", law.c),
+          formatted("%.2f (assumed)", law.scatter),
+          std::to_string(facts.measurements)};
+}
+
+std::string about(const PublishedFacts& facts) {
+  std::string text =
+      "Published (" + facts.origin +
+      formatted("): raft fraction %.3g +- %.2g, %d measurements of %d vesicles.", facts.fraction,
+                facts.fraction_sd, facts.measurements, facts.vesicles);
+  if (facts.outliers >= 0)
+    text += formatted(
+        " Of their numbers of rafts, %d lie outside the range of the published "
+        "simulations.",
+        facts.outliers);
+  return text;
+}
+
+// What the numbers of a comparison would be if nothing were wrong.
+std::string expectation(std::size_t runs) {
+  const SameKind expected = same_kind(runs);
+  return formatted(
+             "Of vesicles of the same kind as %zu runs, and measured without error, %.0f %% lie "
+             "within the range of the runs",
+             runs, 100 * expected.within) +
+         (std::isfinite(expected.misfit) ? formatted(", and the misfit is %.2f.", expected.misfit)
+                                         : "; the misfit of so few runs says nothing.");
+}
+
 std::vector<Row> agreement_rows(const std::vector<Agreement>& agreements) {
   std::vector<Row> rows = {{"quantity", "compared", "outside the runs' time", "within their range",
                             "mean deviation", "misfit"}};
@@ -117,7 +151,8 @@ Chart comparison_chart(const MeasuredVesicles& data, const EnsembleSummary& summ
 
 }  // namespace
 
-void print_dataset(const MeasuredVesicles& data, const std::optional<FittedLaw>& law) {
+void print_dataset(const MeasuredVesicles& data, const std::optional<FittedLaw>& law,
+                   const Window& window) {
   std::printf("%s\n", about(data).c_str());
   double first = HUGE_VAL, last = 0;
   std::vector<double> radii;
@@ -131,7 +166,7 @@ void print_dataset(const MeasuredVesicles& data, const std::optional<FittedLaw>&
   std::printf("  %-22s %s\n", "radius (um)", spread(radii).c_str());
   for (const Quantity quantity : kQuantities)
     std::printf("  %-22s %s\n", name_of(quantity).label, spread(values_of(data, quantity)).c_str());
-  std::printf("\n");
+  std::printf("\npower law from %g to %g s\n", window.begin, window.end);
   print_rows({kLawHeading, law_row("measured", law)});
 }
 
@@ -145,45 +180,55 @@ std::vector<History> runs_of(const fs::path& path) {
   if (units.scaled)
     throw InputError("--ensemble: " + path.string() +
                      " was run with --scaled; its times cannot be compared with seconds");
-  return folder.started() ? finished_histories(folder, folder.load(), units.length())
-                          : read_histories(kept);
+  if (folder.started()) {
+    const std::vector<History> runs = finished_histories(folder, folder.load(), units.length());
+    if (!runs.empty() || !fs::exists(kept)) return runs;
+  }
+  return read_histories(kept);
 }
 
-int compare_with_ensemble(const MeasuredVesicles& data, const fs::path& path, const fs::path& out,
-                          const Window& window, bool quiet) {
-  const std::vector<History> runs = runs_of(path);
+int compare_with_ensemble(const MeasuredVesicles& data, const ComparisonRequest& request) {
+  const Window& window = request.window;
+  const std::vector<History> runs = runs_of(request.ensemble);
   const std::vector<Agreement> agreements = compare_with_runs(data, runs);
   const EnsembleSummary summary = summarise(runs);
   const auto measured = fit_measurements(data, window),
              simulated = fit_runs(runs, summary.times, window);
   const std::vector<Row> rows = agreement_rows(agreements);
-  const std::vector<Row> laws = {kLawHeading, law_row("measured", measured),
-                                 law_row("simulated", simulated)};
+  std::vector<Row> laws = {kLawHeading, law_row("measured", measured),
+                           law_row("simulated", simulated)};
+  if (request.facts) laws.push_back(law_row(*request.facts));
   Page page("Measured and simulated vesicles");
   page.paragraph(about(data) + ".");
-  page.paragraph(std::to_string(runs.size()) + " runs in " + path.string() +
-                 ". Deviations are those from the mean of the runs, over the scatter between runs "
-                 "and the uncertainty of the measurement; of logarithms for perimeters and counts. "
-                 "A misfit of 1 is what vesicles of the same kind would have.");
+  if (request.facts) page.paragraph(about(*request.facts));
+  page.paragraph(
+      std::to_string(runs.size()) + " runs in " + request.ensemble.string() +
+      ". Deviations are those from the mean of the runs, over the scatter between runs "
+      "and the uncertainty of the measurement; of logarithms for perimeters and counts. " +
+      expectation(runs.size()));
   page.table(rows);
   page.paragraph(formatted("Power laws fitted from %g to %g s.", window.begin, window.end));
   page.table(laws);
-  fs::create_directories(out);
+  fs::create_directories(request.out);
   for (const Quantity quantity : kQuantities) {
     Chart chart = comparison_chart(data, summary, quantity);
     if (quantity == Quantity::perimeter && measured)
       chart.series.push_back(law_curve("law of the measurements", measured->law, window));
+    if (quantity == Quantity::perimeter && request.facts)
+      chart.series.push_back(
+          law_curve("published law", request.facts->perimeter, request.facts->window));
     const std::string svg =
-        draw_chart(chart, out / (std::string("comparison-") + name_of(quantity).id));
+        draw_chart(chart, request.out / (std::string("comparison-") + name_of(quantity).id));
     if (!svg.empty()) page.figure(svg, chart.title);
   }
-  write_durably(out / "comparison.csv", csv_text(agreement_table(agreements)));
-  write_durably(out / "comparison.html", page.html());
-  if (!quiet) {
+  write_durably(request.out / "comparison.csv", csv_text(agreement_table(agreements)));
+  write_durably(request.out / "comparison.html", page.html());
+  if (!request.quiet) {
     print_rows(rows);
-    std::printf("\npower laws from %g to %g s\n", window.begin, window.end);
+    std::printf("%s\n\npower laws from %g to %g s\n", expectation(runs.size()).c_str(),
+                window.begin, window.end);
     print_rows(laws);
-    std::printf("\nopen next: %s\n", (out / "comparison.html").c_str());
+    std::printf("\nopen next: %s\n", (request.out / "comparison.html").c_str());
   }
   return kSuccess;
 }

@@ -66,6 +66,10 @@ TEST_F(DatasetTest, ComputesRaftsFromCaps) {
   // 1 − cos θ is 1/5 and 2/5 for sin θ of 3/5 and 4/5.
   EXPECT_NEAR(*two.of(Quantity::fraction), 0.3, 1e-12);
   EXPECT_NEAR(*data.measurements[1].of(Quantity::fraction), 0.5, 1e-12);
+  const MeasuredVesicles none = read("vesicle,time,radius,cap_radius\na,1,5000,\na,2,5000,100\n");
+  EXPECT_EQ(*none.measurements[0].of(Quantity::rafts), 0);
+  EXPECT_EQ(*none.measurements[0].of(Quantity::fraction), 0);
+  EXPECT_EQ(*none.measurements[1].of(Quantity::rafts), 1);
 }
 
 TEST_F(DatasetTest, NamesFileLineAndColumn) {
@@ -81,8 +85,17 @@ TEST_F(DatasetTest, NamesFileLineAndColumn) {
   expect_complaint(heading + "a,1,5000,1,1,0.1\nb,1,5000,1,1,0.1\na,2,5000,1,1,0.1\n",
                    ":4: column 'vesicle': vesicle 'a' is there twice");
   expect_complaint(heading, "nothing was measured");
-  expect_complaint("vesicle,radius,rafts\na,5000,1\n", "no column 'time'");
-  expect_complaint("vesicle,time,rafts\na,1,1\n", "no column 'radius'");
+  expect_complaint("vesicle,radius,rafts\na,5000,1\n",
+                   "measurements.csv:1: there is no column 'time'");
+  expect_complaint("\n# mine\nvesicle,time,rafts\na,1,1\n", ":3: there is no column 'radius'");
+  expect_complaint("vesicle,time,rafts\na,1,1\n", "dataset.toml:6: radius: a vesicle",
+                   "radius = 5\n");
+  expect_complaint(heading + "a,1,5000,5000001,1,0.1\n",
+                   "5000001 is impossible (allowed: 0 to 5e+06)");
+  for (const char* rows : {"a,1,5000,10\na,1,5000,\n", "a,1,5000,\na,1,5000,10\n"})
+    expect_complaint(std::string("vesicle,time,radius,cap_radius\n") + rows,
+                     ":3: column 'cap_radius': a look without rafts has one row");
+  expect_complaint("vesicle,time,radius,cap_radius\na,1,5000,0\n", "a raft has a size");
   expect_complaint("vesicle,time,raft\na,1,1\n", "did you mean 'rafts'");
   expect_complaint("vesicle,time,radius,cap_radius\na,1,5000,5001\n",
                    "column 'cap_radius': 5001 is impossible");
@@ -115,8 +128,11 @@ TEST_F(DatasetTest, WhatIsDrawnFromFactsReadsBack) {
   ASSERT_EQ(back.measurements.size(), drawn.measurements.size());
   for (std::size_t i = 0; i < drawn.measurements.size(); ++i) {
     EXPECT_DOUBLE_EQ(back.measurements[i].time, drawn.measurements[i].time);
-    for (const Quantity quantity : kQuantities)
+    for (const Quantity quantity : kQuantities) {
       EXPECT_NEAR(*back.measurements[i].of(quantity), *drawn.measurements[i].of(quantity), 1e-12);
+      EXPECT_NEAR(back.measurements[i].sigma_of(quantity), drawn.measurements[i].sigma_of(quantity),
+                  1e-12);
+    }
   }
 }
 
@@ -129,7 +145,15 @@ TEST_F(DatasetTest, KeptSyntheticSetsAreMarked) {
     const MeasuredVesicles drawn =
         draw_measurements(read_facts(data + "published/" + name + ".toml"), 1);
     ASSERT_EQ(kept.measurements.size(), drawn.measurements.size());
-    EXPECT_NEAR(kept.measurements.back().time, drawn.measurements.back().time, 1e-9);
+    EXPECT_NE(kept.name.find("SYNTHETIC"), std::string::npos);
+    for (std::size_t i = 0; i < kept.measurements.size(); ++i) {
+      const Measurement &one = kept.measurements[i], &other = drawn.measurements[i];
+      EXPECT_NEAR(one.time, other.time, 1e-9);
+      for (const Quantity quantity : kQuantities) {
+        EXPECT_NEAR(*one.of(quantity), *other.of(quantity), 1e-9);
+        EXPECT_NEAR(one.sigma_of(quantity), other.sigma_of(quantity), 1e-9);
+      }
+    }
   }
 }
 

@@ -48,7 +48,8 @@ Agreement agreement(const MeasuredVesicles& data, const std::vector<History>& ru
       for (double& value : values) value = std::log(std::max(value, kLeast));
     }
     const Moments runs_here = moments(values);
-    const double deviation = std::hypot(runs_here.deviation, sigma);
+    const double of_mean = 1 + 1 / static_cast<double>(runs.size());
+    const double deviation = std::hypot(runs_here.deviation * std::sqrt(of_mean), sigma);
     const double z = (measured - runs_here.mean) / std::max(deviation, 1e-6);
     result.bias += z;
     result.misfit += z * z;
@@ -68,6 +69,11 @@ std::vector<Agreement> compare_with_runs(const MeasuredVesicles& data,
   std::vector<Agreement> all;
   for (const Quantity quantity : kQuantities) all.push_back(agreement(data, runs, quantity));
   return all;
+}
+
+SameKind same_kind(std::size_t runs) {
+  const auto n = static_cast<double>(runs);
+  return {(n - 1) / (n + 1), n > 3 ? std::sqrt((n - 1) / (n - 3)) : HUGE_VAL};
 }
 
 }  // namespace traceraft

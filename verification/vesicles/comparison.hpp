@@ -15,12 +15,21 @@ struct Agreement {
   int beyond = 0;        // outside that time: not compared
   int within = 0;        // between the smallest and the largest of the runs
   double bias = 0;       // mean of (measured − mean of the runs) / deviation
-  double misfit = 0;     // root of the mean square of the same; about 1 if both are of one kind
+  double misfit = 0;     // root of the mean square of the same
 };
 
-// deviation²: the variance between runs and sigma² of the measurement; logarithms of perimeters and
-// counts, whose scatter is relative. Throws InputError if there are fewer than two runs.
+// deviation²: the variance between n runs, times 1 + 1/n as their mean scatters, too, and sigma² of
+// the measurement; logarithms of perimeters and counts, whose scatter is relative. Throws
+// InputError if there are fewer than two runs.
 std::vector<Agreement> compare_with_runs(const MeasuredVesicles& data,
                                          const std::vector<History>& runs);
+
+// Of vesicles of the same kind as n runs, without errors of measuring: the share that lies within
+// the range of the runs, and the misfit, which n runs, knowing their variance badly, make larger
+// than 1 (Student's distribution; infinite for three).
+struct SameKind {
+  double within, misfit;
+};
+SameKind same_kind(std::size_t runs);
 
 }  // namespace traceraft

@@ -26,7 +26,7 @@ class Draws {
 
 MeasuredVesicles described(const PublishedFacts& facts) {
   MeasuredVesicles data;
-  data.name = facts.name + ", synthetic";
+  data.name = facts.name + ", SYNTHETIC";
   data.synthetic = true;
   data.origin = facts.origin;
   data.composition = facts.composition;
@@ -35,8 +35,9 @@ MeasuredVesicles described(const PublishedFacts& facts) {
 }
 
 // As evenly as whole numbers go.
-int looks_at(int vesicle, int vesicles, int measurements) {
-  return measurements * (vesicle + 1) / vesicles - measurements * vesicle / vesicles;
+int looks_at(std::int64_t vesicle, std::int64_t vesicles, std::int64_t measurements) {
+  return static_cast<int>(measurements * (vesicle + 1) / vesicles -
+                          measurements * vesicle / vesicles);
 }
 
 std::vector<double> draw_times(Draws& draw, int count, const Window& window) {
@@ -75,7 +76,12 @@ MeasuredVesicles draw_measurements(const PublishedFacts& facts, std::uint64_t se
       const double rafts = std::max(1.0, std::round(equal_caps(perimeter, fraction)));
       perimeter *= std::exp(facts.perimeter.scatter * kShare * draw.normal());
       fraction = std::max(0.01, fraction + facts.fraction_sd * kShare * draw.normal());
-      data.measurements.push_back({vesicle_name(k), t, radius, {perimeter, rafts, fraction}, {}});
+      data.measurements.push_back(
+          {vesicle_name(k),
+           t,
+           radius,
+           {perimeter, rafts, fraction},
+           {perimeter * facts.perimeter.scatter * kShare, std::nullopt, facts.fraction_sd}});
     }
   }
   return data;
@@ -85,6 +91,7 @@ MeasuredVesicles draw_from_runs(const PublishedFacts& facts, const std::vector<H
                                 std::uint64_t seed) {
   MeasuredVesicles data = described(facts);
   data.time_zero = "the start of the simulated runs";
+  if (runs.empty()) throw InputError("there is no finished run to draw from");
   const int vesicles = std::min(facts.vesicles, static_cast<int>(runs.size()));
   Draws draw(seed);
   for (int k = 0; k < vesicles; ++k) {
@@ -99,7 +106,11 @@ MeasuredVesicles draw_from_runs(const PublishedFacts& facts, const std::vector<H
       const double fraction = std::max(
           0.001, run.at(Quantity::fraction, t) + facts.fraction_sd * kShare * draw.normal());
       data.measurements.push_back(
-          {vesicle_name(k), t, radius, {perimeter, run.at(Quantity::rafts, t), fraction}, {}});
+          {vesicle_name(k),
+           t,
+           radius,
+           {perimeter, run.at(Quantity::rafts, t), fraction},
+           {perimeter * facts.perimeter.scatter, std::nullopt, facts.fraction_sd * kShare}});
     }
   }
   return data;
