@@ -31,10 +31,9 @@ struct EnsembleRequest {
   bool array_job = false, quiet = false;
 };
 
-Configuration new_configuration(const EnsembleRequest& request, const GivenValues& file) {
-  for (const GivenValues* given : {&file, &request.flags})
-    if (const auto seed = given->find("seed"); seed != given->end())
-      throw InputError(seed->second.where + ": an ensemble takes --first-seed and --runs");
+// The seed of a configuration file says nothing here: those that the program writes have one.
+Configuration new_configuration(const EnsembleRequest& request, GivenValues file) {
+  file.erase("seed");
   const Configuration configuration(file, request.flags);
   if (configuration.text("initial") == "noise") return configuration;
   if (configuration.text("initial").compare(0, 12, "band-limited") == 0) return configuration;
@@ -132,7 +131,10 @@ int run_ensemble(const EnsembleRequest& request) {
     if (!goes_on) throw InputError("--member: --out has to name an ensemble that has begun");
     return one_member(request, EnsembleFolder(request.out), EnsembleFolder(request.out).load());
   }
-  if (!goes_on && !request.out.empty()) refuse_files_of_a_run(request.out);
+  if (!goes_on && !request.out.empty()) {
+    refuse_files_of_a_run(request.out);
+    EnsembleFolder(request.out).refuse_other_plan();
+  }
   const Configuration configuration =
       goes_on ? known_configuration(EnsembleFolder(request.out), request, file)
               : new_configuration(request, file);

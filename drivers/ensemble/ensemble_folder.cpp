@@ -7,6 +7,7 @@
 
 #include "drivers/input/csv_table.hpp"
 #include "drivers/output/json_file.hpp"
+#include "kernel/core/error.hpp"
 
 namespace traceraft {
 std::vector<std::uint64_t> EnsemblePlan::seeds() const {
@@ -18,6 +19,16 @@ std::vector<std::uint64_t> EnsemblePlan::seeds() const {
 void EnsembleFolder::save(const EnsemblePlan& plan) const {
   write_durably(plan_file(),
                 Json{{"runs", plan.runs}, {"first_seed", plan.first_seed}}.dump(2) + "\n");
+}
+
+void EnsembleFolder::refuse_other_plan() const {
+  if (!std::filesystem::exists(plan_file())) return;
+  try {
+    (void)load();
+  } catch (const IoError&) {
+    throw InputError("--out: " + plan_file().string() +
+                     " is no plan of an ensemble; choose another folder");
+  }
 }
 
 EnsemblePlan EnsembleFolder::load() const {

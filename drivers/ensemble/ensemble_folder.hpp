@@ -29,6 +29,9 @@ class EnsembleFolder {
     return std::filesystem::exists(config()) && std::filesystem::exists(plan_file());
   }
 
+  // Throws InputError if there is a plan of something else.
+  void refuse_other_plan() const;
+
   void save(const EnsemblePlan& plan) const;
   EnsemblePlan load() const;  // throws IoError if it is damaged
 

@@ -32,10 +32,16 @@ PointEnd run_point(const std::filesystem::path& path, const Configuration& confi
   EnsemblePlan plan;
   plan.runs = request.runs;
   std::filesystem::create_directories(path / "runs");
-  if (!folder.started()) write_durably(folder.config(), config_text(configuration));
   folder.save(plan);
+  if (!std::filesystem::exists(folder.config()))
+    write_durably(folder.config(), config_text(configuration));
   const EnsembleEnd end = work_off(plan, folder, jobs_of(request.jobs, 0),
                                    configuration.number("t-end"), request.quiet);
+  for (const MemberFailure& failure : end.failures)
+    if (failure.locked)
+      throw InputError(
+          folder.run_of(failure.seed).string() +
+          " is in use by another process; wait for its end, and give the same command");
   const Units units = configuration.units();
   PointEnd result{end.stopped, end.failures, finished_histories(folder, plan, units.length())};
   for (History& run : result.runs)

@@ -36,8 +36,9 @@ ChartSeries band(const EnsembleSummary& summary, Quantity quantity, const char* 
   return series;
 }
 
-// A few times, for people.
-std::vector<Row> overview(const EnsembleSummary& summary, bool seconds) {
+}  // namespace
+
+std::vector<Row> ensemble_rows(const EnsembleSummary& summary, bool seconds) {
   std::vector<Row> rows = {{seconds ? "time (s)" : "time"}};
   for (const Quantity quantity : kQuantities)
     rows.front().push_back(std::string(name_of(quantity).label) + ", median (range)");
@@ -51,8 +52,6 @@ std::vector<Row> overview(const EnsembleSummary& summary, bool seconds) {
   }
   return rows;
 }
-
-}  // namespace
 
 EnsembleSummary summarise(const std::vector<History>& runs) {
   EnsembleSummary summary;
@@ -97,7 +96,7 @@ std::string write_ensemble(const EnsembleFolder& folder, const EnsembleSummary& 
   page.paragraph(about);
   for (const MemberFailure& failure : end.failures)
     page.paragraph("The run of seed " + std::to_string(failure.seed) + " failed: " + failure.why);
-  const std::vector<Row> rows = overview(summary, seconds);
+  const std::vector<Row> rows = ensemble_rows(summary, seconds);
   if (!quiet) print_rows(rows);
   page.table(rows);
   std::string missing;

@@ -5,6 +5,7 @@
 
 #include "drivers/ensemble/ensemble_folder.hpp"
 #include "drivers/ensemble/ensemble_runs.hpp"
+#include "drivers/output/text_table.hpp"
 #include "verification/study.hpp"
 #include "verification/vesicles/history.hpp"
 
@@ -19,6 +20,8 @@ EnsembleSummary summarise(const std::vector<History>& runs);
 
 // A row per time: t, and for every quantity its mean, deviation, extrema and quantiles.
 Table ensemble_table(const EnsembleSummary& summary);
+// A few times, for people. `seconds`: are times in seconds?
+std::vector<Row> ensemble_rows(const EnsembleSummary& summary, bool seconds);
 // Range, quartiles and median of a quantity over time. `seconds`: are times in seconds?
 Chart ensemble_chart(const EnsembleSummary& summary, Quantity quantity, bool seconds);
 

@@ -17,6 +17,10 @@
 namespace traceraft {
 namespace {
 
+namespace fs = std::filesystem;
+
+constexpr std::uintmax_t kLeastSpace = 64 << 20;  // bytes that a disk has that is not full
+
 // What runs write about t and after it; progress is counted in ln t, over which work is spread.
 constexpr double kFirstShare = 1e-6;
 
@@ -39,15 +43,17 @@ ProgramEnd run_or_resume(const EnsembleFolder& folder, std::uint64_t seed, int t
 // What is known of the members' ends.
 class Ledger {
  public:
+  explicit Ledger(fs::path folder) : folder_(std::move(folder)) {}
   // To be gone on with?
   bool settle(std::uint64_t seed, const ProgramEnd& end) {
     const std::lock_guard lock(mutex_);
     if (end.exit_code == kSuccess) return true;
     if (end.was_stopped()) return false;
-    // A full disk stops all.
-    if (!end.telling() && end.exit_code != kLocked)
+    // A full disk stops all; damaged files of a member are its own.
+    if (!end.telling() && end.exit_code != kLocked &&
+        (end.exit_code != kInputOutput || fs::space(folder_).available < kLeastSpace))
       throw IoError("the run of seed " + std::to_string(seed) + ": " + end.reason());
-    add_failure({seed, end.reason()});
+    add_failure({seed, end.reason(), end.exit_code == kLocked});
     return true;
   }
   void add_failure(MemberFailure failure) { failures_.push_back(std::move(failure)); }
@@ -59,6 +65,7 @@ class Ledger {
 
  private:
   std::mutex mutex_;
+  fs::path folder_;
   std::vector<MemberFailure> failures_;
 };
 
@@ -89,7 +96,7 @@ Jobs jobs_of(int at_a_time, int threads) {
 EnsembleEnd work_off(const EnsemblePlan& plan, const EnsembleFolder& folder, const Jobs& jobs,
                      double t_end, bool quiet) {
   std::vector<std::uint64_t> seeds;
-  Ledger ledger;
+  Ledger ledger(folder.path());
   double share_before = 0;
   for (const std::uint64_t seed : plan.seeds()) {
     const EnsembleFolder::Member member = folder.member(seed);

@@ -11,6 +11,7 @@ namespace traceraft {
 struct MemberFailure {
   std::uint64_t seed;
   std::string why;
+  bool locked = false;  // another process works on it
 };
 
 struct EnsembleEnd {

@@ -66,6 +66,9 @@ TEST_F(EnsembleTest, GathersRunsThatDifferInTheirSeed) {
                         " --out " + out(std::string("by-") + ensemble))
                   .code,
               0);
+  EXPECT_EQ(traceraft("report --quiet " + out("by-kept")).code, 0);
+  EXPECT_EQ(content(folder.path / "by-kept/report.html"),
+            content(folder.path / "by-kept/comparison.html"));
   const std::vector<double> with = misfits("by-a"), without = misfits("by-kept");
   ASSERT_EQ(with.size(), 3u);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(without[k], with[k], 0.1 * with[k]);
@@ -135,6 +138,22 @@ TEST_F(EnsembleTest, BeginsAgainWhereNothingHadBegun) {
   fs::create_directories(folder.path / "a/runs");
   std::ofstream(folder.path / "a/plan.json") << "{\"runs\": 1, \"first_seed\": 1}\n";
   EXPECT_EQ(traceraft("ensemble --quiet " + runs + "--runs 1 --out " + out("a")).code, 0);
+}
+
+// What the program writes is a configuration; of a campaign it keeps its hands off.
+TEST_F(EnsembleTest, TakesAnyConfigurationAndNoOtherPlan) {
+  ASSERT_EQ(traceraft("ensemble --quiet " + runs + "--runs 1 --out " + out("a")).code, 0);
+  ASSERT_EQ(
+      traceraft("ensemble --quiet --config " + out("a/config.toml") + " --runs 1 --out " + out("b"))
+          .code,
+      0);
+  EXPECT_EQ(content(csv("a")), content(csv("b")));
+  fs::create_directories(folder.path / "c");
+  std::ofstream(folder.path / "c/plan.json") << "{\"groups\": []}\n";
+  const Outcome refused = traceraft("ensemble --quiet " + runs + "--runs 1 --out " + out("c"));
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.output.find("no plan of an ensemble"), std::string::npos) << refused.output;
+  EXPECT_EQ(content(folder.path / "c/plan.json"), "{\"groups\": []}\n");
 }
 
 TEST_F(EnsembleTest, RefusesWhatMakesNoEnsemble) {
