@@ -48,7 +48,7 @@ int report(const ReportRequest& request) {
   const fs::path out =
       request.out.empty() ? fs::path(request.folder) / "report.html" : fs::path(request.out);
   const std::string missing =
-      write_report_page(request.folder, out, {request.frames, request.detail});
+      write_report_page(request.folder, out, {request.frames, request.detail, out.parent_path()});
   write_pictures(request);
   if (!request.quiet) {
     if (!missing.empty()) std::printf("missing in the page: %s\n", missing.c_str());

@@ -34,7 +34,9 @@ bool is_ensemble(const fs::path& folder) {
 
 // The page that another command has written, "" if there is none.
 std::string finished_page(const fs::path& folder) {
-  for (const char* name : {"verify.html", "compare.html"})
+  std::vector<const char*> names{"verify.html", "compare.html"};
+  if (!is_run(folder) && !is_ensemble(folder)) names.push_back("comparison.html");
+  for (const char* name : names)
     if (fs::exists(folder / name)) return read_file(folder / name, kLargestPage);
   return "";
 }
@@ -106,9 +108,22 @@ void fill_run(Page& page, const fs::path& folder, const PageRequest& request, Mi
   const CsvTable series = CsvTable::read(folder / "series.csv");
   for (const Curve& curve : kCurves)
     add_chart(page, series_chart(series, curve, unit),
-              folder / ("report-" + std::string(curve.column)), missing);
+              request.charts / ("report-" + std::string(curve.column)), missing);
   add_summary(page, folder);
   add_settings(page, configuration);
+}
+
+// What `data compare` has left.
+void add_agreement(Page& page, const CsvTable& table) {
+  std::vector<Row> rows = {table.columns()};
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    rows.emplace_back();
+    for (const std::string& column : table.columns())
+      rows.back().push_back(column == "quantity" ? table.text(row, column)
+                                                 : short_number(table.number(row, column)));
+  }
+  page.paragraph("Compared with measurements:");
+  page.table(rows);
 }
 
 void fill_ensemble(Page& page, const fs::path& path, const PageRequest& request, Missing& missing) {
@@ -118,14 +133,17 @@ void fill_ensemble(Page& page, const fs::path& path, const PageRequest& request,
   const std::vector<History> runs = finished_histories(folder, folder.load(), units.length());
   if (runs.empty()) throw InputError(path.string() + ": no run of this ensemble has finished");
   const fs::path shown = run_to_show(path);
-  page.paragraph(std::to_string(runs.size()) + " runs of the case " + configuration.text("case") +
-                 ". Shown is " + shown.filename().string() + ".");
+  const EnsemblePlan plan = folder.load();
+  page.paragraph(formatted("%zu of %d runs of the case ", runs.size(), plan.runs) +
+                 configuration.text("case") + ", seeds " + std::to_string(plan.first_seed) +
+                 " to " + std::to_string(plan.last_seed()) + ". Shown is " +
+                 shown.filename().string() + ".");
   add_surface(page, shown, request, units.scaled ? "R^2/D" : "s", missing);
   page.heading("All runs");
   const EnsembleSummary summary = summarise(runs);
   for (const Quantity quantity : kQuantities)
     add_chart(page, ensemble_chart(summary, quantity, !units.scaled),
-              path / (std::string("report-") + name_of(quantity).id), missing);
+              request.charts / (std::string("report-") + name_of(quantity).id), missing);
   for (const Quantity quantity : kQuantities)
     if (const fs::path chart = path / (std::string("comparison-") + name_of(quantity).id + ".svg");
         fs::exists(chart)) {
@@ -133,6 +151,10 @@ void fill_ensemble(Page& page, const fs::path& path, const PageRequest& request,
       page.figure(svg.substr(svg.find("<svg")),
                   std::string(name_of(quantity).label) + ", compared with measurements");
     }
+  page.heading("Numbers");
+  page.table(ensemble_rows(summary, !units.scaled));
+  if (const fs::path agreement = path / "comparison.csv"; fs::exists(agreement))
+    add_agreement(page, CsvTable::read(agreement));
   add_settings(page, configuration);
 }
 

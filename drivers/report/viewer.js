@@ -74,6 +74,23 @@
     camera.position.set(2.9, -2.3, 1.5);
     const controls = new THREE.OrbitControls(camera, renderer.domElement);
     controls.enablePan = false;
+    const canvas = renderer.domElement;
+    canvas.tabIndex = 0;
+    canvas.setAttribute('role', 'img');
+    canvas.setAttribute('aria-label', 'the surface; arrow keys turn it');
+    canvas.addEventListener('keydown', (event) => {
+      const keys = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
+      const turn = keys[event.key];
+      if (!turn) return;
+      event.preventDefault();
+      camera.position.applyAxisAngle(camera.up, 0.1 * turn[0]);
+      const aside = new THREE.Vector3().crossVectors(camera.up, camera.position).normalize();
+      const tilt = camera.position.angleTo(camera.up) + 0.1 * turn[1];
+      if (tilt > 0.1 && tilt < Math.PI - 0.1)
+        camera.position.applyAxisAngle(aside, 0.1 * turn[1]);
+      controls.update();
+      draw();
+    });
     const world = new THREE.Scene();
     const sides = [material(THREE.BackSide, 0.45), material(THREE.FrontSide, 0.0)];
     sides.forEach((side, order) => {
@@ -94,6 +111,7 @@
       shown.array.set(frames.subarray(frame * points, (frame + 1) * points));
       shown.needsUpdate = true;
       label.textContent = scene.labels[frame];
+      slider.setAttribute('aria-valuetext', scene.labels[frame]);
       document.body.dataset.frame = frame;
       draw();
     }
@@ -101,7 +119,11 @@
     window.addEventListener('resize', fit);
     slider.addEventListener('input', () => show(Number(slider.value)));
     through.addEventListener('change', () => {
-      sides.forEach((side) => { side.uniforms.veil.value = through.checked ? 0.3 : 1.0; });
+      // What is opaque hides what is behind it, whichever piece is painted first.
+      sides.forEach((side) => {
+        side.uniforms.veil.value = through.checked ? 0.3 : 1.0;
+        side.depthWrite = !through.checked;
+      });
       draw();
     });
     let timer = 0;
@@ -124,6 +146,7 @@
 
   start().catch((error) => {
     label.textContent = 'no three-dimensional view: ' + error.message;
+    [slider, play, through].forEach((control) => { control.disabled = true; });
     document.body.dataset.ready = 'no';
   });
 })();
