@@ -8,10 +8,10 @@ const NamedList<CaseEntry>& cases() {
   static const std::vector<CaseEntry> entries = {
       {"guv-2to1",
        "giant vesicle, DOPC:DPPC 2:1 with 20 % cholesterol, 16 % raft",
-       {{"raft-fraction", "0.16"}, {"diffusion", "2.5e-5"}, {"noise-cells", "32"}}},
+       {{"raft-fraction", "0.16"}, {"diffusion", "2.5e-5"}}},
       {"guv-3to1",
        "giant vesicle, DOPC:DPPC 3:1 with 20 % cholesterol, 10 % raft",
-       {{"raft-fraction", "0.1"}, {"diffusion", "1e-5"}, {"noise-cells", "32"}}},
+       {{"raft-fraction", "0.1"}, {"diffusion", "1e-5"}}},
       {"spinodal",
        "50:50 mixture from nodal noise, wide phase boundaries",
        {{"raft-fraction", "0.5"},
