@@ -83,7 +83,7 @@ void compare_integrators(const Bench& bench, const Agreement& runs, StudyReport&
     chart.series.push_back({name, levels});
   }
   report.claims.push_back(claim_at_most("largest distance at tolerance " + format_number(tightest),
-                                        apart, 10 * tightest));
+                                        apart, 2 * tightest));  // the sum of the two tolerances
   report.tables.push_back(table);
   report.charts.push_back(chart);
 }
