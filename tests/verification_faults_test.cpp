@@ -88,7 +88,7 @@ std::ostream& operator<<(std::ostream& out, const Fault& fault) {
 class BrokenBench final : public Bench {
  public:
   explicit BrokenBench(const Fault& fault)
-      : Bench({true, "", "", 2, {}, fault.program}), fault_(fault) {}
+      : Bench({true, "", "", 1, {}, fault.program}), fault_(fault) {}
 
   using Bench::space;
   SpacePtr space(const LevelSet& surface, int cells, int threads) const override {

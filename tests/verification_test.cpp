@@ -10,7 +10,7 @@ namespace {
 class StudyTest : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(StudyTest, Holds) {
-  const StudyReport report = studies().find(GetParam()).run(Bench({true, "", "", 2}));
+  const StudyReport report = studies().find(GetParam()).run(Bench({true, "", "", 1}));
   if (!report.skipped.empty()) GTEST_SKIP() << report.skipped;
   EXPECT_FALSE(report.claims.empty());
   for (const Claim& claim : report.claims)
@@ -38,7 +38,7 @@ INSTANTIATE_TEST_SUITE_P(Quick, StudyTest, ::testing::ValuesIn(studies_of_all())
 // Timed studies run; what they measure is not judged here.
 TEST(TimedStudies, Run) {
   for (const char* name : {"cost", "step-cost"})
-    EXPECT_FALSE(studies().find(name).run(Bench({true, "", "", 2})).claims.empty()) << name;
+    EXPECT_FALSE(studies().find(name).run(Bench({true, "", "", 1})).claims.empty()) << name;
 }
 
 }  // namespace

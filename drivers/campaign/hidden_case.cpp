@@ -2,7 +2,7 @@
 
 #include "backends/sodium/seal.hpp"
 #include "drivers/config/config_file.hpp"
-#include "drivers/explain/field_dataset.hpp"
+#include "drivers/input/field_dataset.hpp"
 #include "drivers/input/measured_units.hpp"
 #include "drivers/output/json_file.hpp"
 #include "drivers/run/run_setup.hpp"

@@ -13,9 +13,9 @@
 #include "drivers/explain/explain_run.hpp"
 #include "drivers/explain/search_file.hpp"
 #include "drivers/explain/series_report.hpp"
+#include "drivers/input/dataset.hpp"
 #include "drivers/output/status_line.hpp"
 #include "drivers/run/run_folder.hpp"
-#include "drivers/vesicles/dataset.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/effects/effects.hpp"
 

@@ -3,7 +3,7 @@
 #include <thread>
 
 #include "drivers/config/config_file.hpp"
-#include "drivers/explain/field_dataset.hpp"
+#include "drivers/input/field_dataset.hpp"
 #include "drivers/input/measured_units.hpp"
 #include "drivers/run/run_setup.hpp"
 #include "kernel/core/error.hpp"

@@ -5,7 +5,7 @@
 
 #include "backends/posix/durable_file.hpp"
 #include "drivers/campaign/hidden_case.hpp"
-#include "drivers/explain/field_dataset.hpp"
+#include "drivers/input/field_dataset.hpp"
 #include "kernel/core/error.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -8,7 +8,6 @@
 #include "kernel/time/jacobian_solver.hpp"
 #include "tests/support/forwarding.hpp"
 #include "tests/support/spaces.hpp"
-#include "verification/measure/manufactured.hpp"
 
 namespace traceraft {
 namespace {

@@ -1,4 +1,4 @@
-#include "drivers/explain/field_dataset.hpp"
+#include "drivers/input/field_dataset.hpp"
 
 #include <cmath>
 #include <nlohmann/json.hpp>

@@ -1,12 +1,12 @@
 // Measured data from files: units, caps, and one line for everything that is wrong.
-#include "drivers/vesicles/dataset.hpp"
+#include "drivers/input/dataset.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <fstream>
 
-#include "drivers/vesicles/facts_file.hpp"
+#include "drivers/input/facts_file.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/types.hpp"
 #include "tests/support/temporary_folder.hpp"

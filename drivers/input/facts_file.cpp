@@ -1,4 +1,4 @@
-#include "drivers/vesicles/facts_file.hpp"
+#include "drivers/input/facts_file.hpp"
 
 #include "drivers/input/toml_table.hpp"
 #include "kernel/core/error.hpp"

@@ -1,4 +1,4 @@
-#include "drivers/vesicles/dataset.hpp"
+#include "drivers/input/dataset.hpp"
 
 #include <algorithm>
 #include <cmath>
