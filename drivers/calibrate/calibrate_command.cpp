@@ -17,6 +17,7 @@
 #include "drivers/input/measured_units.hpp"
 #include "drivers/run/run_folder.hpp"
 #include "drivers/run/run_setup.hpp"
+#include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
@@ -35,7 +36,7 @@ constexpr double kSteps[] = {0.5, 0.25, 0.1};
 
 struct CalibrateRequest {
   GivenValues flags;
-  std::string data, model, out, parameters = "mobility,epsilon";
+  std::string data, model, ensemble, out, parameters;
   int runs = 8, jobs = 0;
   bool quiet = false;
 };
@@ -177,12 +178,46 @@ void refuse_model(const Configuration& model) {
   (void)build_run(model, InitialState::build);
 }
 
-int run_calibration(const CalibrateRequest& request) {
+// D alone, from runs that there are: it only shifts their time.
+int calibrate_ensemble(const CalibrateRequest& request, const MeasuredVesicles& data) {
+  if (request.parameters != "mobility")
+    throw InputError("--parameters: runs of one model tell the mobility alone");
+  for (const auto& [name, value] : request.flags)
+    throw InputError(value.where + ": the model is that of --ensemble");
+  if (!request.model.empty()) throw InputError("--model: the model is that of --ensemble");
+  const fs::path folder = request.ensemble;
+  const Configuration model(read_config_file((folder / "config.toml").string(), "--ensemble"), {});
+  refuse_scaled(model);
+  refuse_model(model);
+  const double seconds = model.units().seconds_per_unit();
+  CalibrationPoint point{{}, runs_of(request.ensemble)};
+  if (point.runs.size() < 2) throw InputError("--ensemble: fewer than two runs");
+  double shortest = HUGE_VAL;
+  for (History& run : point.runs) {
+    shortest = std::min(shortest, run.time.back());
+    for (double& t : run.time) t /= seconds;
+  }
+  const double fastest = shortest / looks(data).end;
+  if (!(fastest > 1 / kSlowest))
+    throw InputError("--ensemble: its runs end long before the measurements do");
+  const Calibration result =
+      calibrate(data, {}, {point}, {seconds, {seconds / fastest, seconds * kSlowest}});
+  const fs::path out = request.out.empty() ? first_free_folder("calibration") : request.out;
+  fs::create_directories(out);
+  const FolderLock lock(out);
+  write_calibration(out, data, model, {}, {point}, result, request.quiet);
+  return kSuccess;
+}
+
+int run_calibration(CalibrateRequest request) {
   catch_stop_signals();
   if (request.data.empty()) throw InputError("--data: say which measurements to calibrate with");
+  if (request.parameters.empty())
+    request.parameters = request.ensemble.empty() ? "mobility,epsilon" : "mobility";
   (void)costly_parameters(request.parameters);
   const MeasuredVesicles data = read_dataset(request.data);
   refuse_calibration(data);
+  if (!request.ensemble.empty()) return calibrate_ensemble(request, data);
   const Configuration model(read_config_file(request.model, "--model"), request.flags);
   refuse_scaled(model);
   refuse_model(model);
@@ -204,9 +239,11 @@ Action define(CLI::App& app) {
   const auto request = std::make_shared<CalibrateRequest>();
   app.add_option("--data", request->data, "folder of the measurements (dataset.toml)");
   app.add_option("--model", request->model, "TOML file with the flags' names as keys");
+  app.add_option("--ensemble", request->ensemble,
+                 "find the mobility alone, from the runs of an ensemble or what is kept of them");
   app.add_option("--parameters", request->parameters,
-                 "comma-separated, of mobility, epsilon, fraction, noise-length")
-      ->capture_default_str();
+                 "comma-separated, of mobility, epsilon, fraction, noise-length; default: "
+                 "mobility,epsilon");
   app.add_option("--runs", request->runs, "seeds that every choice of parameters is run with")
       ->check(CLI::Range(2, 1000))
       ->capture_default_str();

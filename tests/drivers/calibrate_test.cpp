@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <csignal>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -77,6 +78,30 @@ TEST_F(CalibrateTest, GoesOnAfterItWasStopped) {
   ASSERT_EQ(traceraft(command + out("cut")).code, 0);
   EXPECT_EQ(content(folder.path / "cut/calibration.json"),
             content(folder.path / "whole/calibration.json"));
+}
+
+// The kept runs of the paper's case know D without simulating, within what is asked of them.
+TEST_F(CalibrateTest, FindsTheMobilityOfAnEnsemble) {
+  const std::string kept = TRACERAFT_ROOT "/verification/data/";
+  const std::string command = "calibrate --data " + kept + "synthetic/guv-2to1 --ensemble " + kept +
+                              "ensembles/guv-2to1 --out " + out("c");
+  const Outcome made = traceraft(command);
+  ASSERT_EQ(made.code, 0) << made.output;
+  const auto json = nlohmann::json::parse(content(folder.path / "c/calibration.json"));
+  const auto& mobility = json["parameters"]["mobility"];
+  EXPECT_EQ(json["parameters"].size(), 1u);
+  EXPECT_LT(mobility["interval_95"][0], mobility["value"]);
+  EXPECT_GT(mobility["interval_95"][1], mobility["value"]);
+  // The data are drawn from a law that was fitted to what simulations with 2.5e-5 cm²/s agree with.
+  EXPECT_NEAR(std::log(mobility["value"].get<double>() / 2.5e-5), 0, std::log(2));
+  for (const auto& [flags, complaint] :
+       {std::pair<std::string, std::string>(" --cells 32", "the model is that of --ensemble"),
+        {" --parameters mobility,epsilon", "the mobility alone"},
+        {" --model " + out("m.toml"), "the model is that of --ensemble"}}) {
+    const Outcome refused = traceraft(command + flags);
+    EXPECT_EQ(refused.code, 2) << flags;
+    EXPECT_NE(refused.output.find(complaint), std::string::npos) << refused.output;
+  }
 }
 
 // At the ends of its range, too; and it says what was really run, which is whole cells of noise.
