@@ -57,9 +57,12 @@ class Grid {
       ++count[clusters[p]];
     }
     for (std::size_t k = 0; k < count.size(); ++k) coarse.position[k] /= count[k];
-    for (const auto& [a, b, c] : field.mesh.triangles) {
-      const std::array<int, 3> corners = {clusters[a], clusters[b], clusters[c]};
-      if (corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0])
+    for (const std::array<int, 3>& fine : field.mesh.triangles) {
+      const std::array<int, 3> corners = {clusters[fine[0]], clusters[fine[1]], clusters[fine[2]]};
+      if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0])
+        continue;
+      // Means may fold a thin triangle over, on others: it would be a dark speck.
+      if (normal(field.mesh, fine).dot(normal(coarse, corners)) > 0)
         coarse.triangles.push_back(corners);
     }
     return coarse;
@@ -80,6 +83,10 @@ class Grid {
 
  private:
   using Cell = std::array<long, 3>;
+  static Point normal(const SurfaceMesh& mesh, const std::array<int, 3>& corners) {
+    const Point& a = mesh.position[corners[0]];
+    return (mesh.position[corners[1]] - a).cross(mesh.position[corners[2]] - a);
+  }
   static double size_of(const SurfaceMesh& mesh) {
     double size = 0;
     for (const Point& x : mesh.position) size = std::max(size, x.norm());
