@@ -13,6 +13,7 @@
 #include "kernel/core/random.hpp"
 #include "kernel/core/stopwatch.hpp"
 #include "kernel/effects/effects.hpp"
+#include "verification/explain/rerun.hpp"
 
 namespace traceraft {
 namespace {
@@ -83,17 +84,10 @@ CaseOutcome outcome_of(const CampaignGroup& group, const HiddenTruth& truth, con
                                : CaseOutcome::missed;
   if (!named) return CaseOutcome::missed;
   const auto hidden = sorted_parts(names_of(truth.effects));
-  std::vector<std::string> found = sorted_parts(verdict.at("effect"));
+  const std::vector<std::string> found = sorted_parts(verdict.at("effect"));
   if (found == hidden) return word == "named" ? CaseOutcome::right : CaseOutcome::in_class;
-  // The class is of the effect that was found last.
-  std::string last = verdict.at("effect");
-  last = last.substr(last.rfind(" + ") == std::string::npos ? 0 : last.rfind(" + ") + 3);
-  for (const std::string other : verdict.at("class")) {
-    auto exchanged = found;
-    std::replace(exchanged.begin(), exchanged.end(), last, other);
-    std::sort(exchanged.begin(), exchanged.end());
-    if (exchanged == hidden) return CaseOutcome::in_class;
-  }
+  for (const std::string equivalent : verdict.at("class"))
+    if (sorted_parts(equivalent) == hidden) return CaseOutcome::in_class;
   // A part of what was hidden, and nothing else, is no wrong name.
   return std::includes(hidden.begin(), hidden.end(), found.begin(), found.end())
              ? CaseOutcome::missed
@@ -181,7 +175,6 @@ void carry_out_case(const CampaignFolder& folder, const CampaignPlan& plan, cons
   job.effects = plan.effects;
   job.without = settings.without;
   ExplainSetup setup = read_explain_job(job);
-  setup.request.rerun = false;
   if (!fs::exists(path / "explain" / "verdict.json")) {
     fs::create_directories(path / "explain");
     write_explanation(path / "explain", explain_fields(setup.series, setup.request), setup.model);

@@ -73,7 +73,9 @@ Action define(CLI::App& app) {
       ->check(CLI::Range(1e-3, 2.0))
       ->capture_default_str();
   app.add_option("--stated", request.stated,
-                 "write a column sigma with this times the noise; 0: no such column")
+                 "write a column sigma, the noise, and in every second snapshot this times the "
+                 "noise; 0: no "
+                 "such column")
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();
   app.add_option("--vesicles", request.vesicles, "how many, of one membrane and one radius")

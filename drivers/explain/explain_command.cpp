@@ -18,6 +18,7 @@
 #include "drivers/run/run_folder.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/effects/effects.hpp"
+#include "verification/explain/rerun.hpp"
 
 namespace traceraft {
 namespace {
@@ -43,8 +44,13 @@ void explain_field_data(const ExplainCommand& command, ExplainSetup& setup, cons
     };
   const SearchFile file(out, setup);
   setup.request.save = [&](const SearchState& state) { file.save(state); };
-  const Explanation found = explain_fields(setup.series, setup.request, file.load());
+  Explanation found = explain_fields(setup.series, setup.request, file.load());
   write_explanation(out, found, setup.model);
+  if (!found.found.hypothesis.parts.empty()) {
+    if (!command.quiet) setup.request.progress("once more, on another mesh, by another integrator");
+    found.rerun = run_again(setup.series, setup.request, found);
+    write_explanation(out, found, setup.model);
+  }
   const std::string missing = write_explain_page(out, found, setup);
   if (command.quiet) return;
   print_explanation(found, setup.model);

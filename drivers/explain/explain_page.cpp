@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "drivers/explain/explain_tables.hpp"
+#include "drivers/explain/remarks.hpp"
 #include "drivers/explain/verdict.hpp"
 #include "drivers/output/chart.hpp"
 #include "drivers/output/page.hpp"
@@ -33,6 +34,7 @@ class ExplainPage {
   std::string write() {
     page_.paragraph(verdict_sentence(found_));
     page_.table(parameter_rows(found_, units_));
+    for (const std::string& remark : remarks(found_)) page_.paragraph(remark);
     add_gaps();
     add_where();
     add_what();

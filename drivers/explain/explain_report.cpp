@@ -4,6 +4,7 @@
 
 #include "drivers/config/config_file.hpp"
 #include "drivers/explain/explain_tables.hpp"
+#include "drivers/explain/remarks.hpp"
 #include "drivers/explain/verdict.hpp"
 #include "drivers/output/text_table.hpp"
 #include "verification/study.hpp"
@@ -46,6 +47,7 @@ void print_explanation(const Explanation& found, const GivenValues& model) {
   print_rows(parameter_rows(found, units));
   std::printf("\n");
   print_rows(gap_rows(found));
+  for (const std::string& remark : remarks(found)) std::printf("\n%s\n", remark.c_str());
   std::printf(
       "\nnoise of the measurements %.4f; %zu significant disagreements with the base model\n",
       found.noise, found.disagreements.size());

@@ -1,5 +1,7 @@
 #include "drivers/explain/explain_run.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <thread>
 
 #include "drivers/config/config_file.hpp"
@@ -13,11 +15,44 @@
 namespace traceraft {
 namespace {
 
+// In distances of the wells.
+constexpr double kFarFromWells = 5;
+
 GivenValues given_model(const ExplainJob& job, double radius_um) {
   GivenValues given = read_config_file(job.model, "--model");
   for (const auto& [name, value] : job.flags) given[name] = value;
   given["radius"] = {format_number(radius_um), "dataset.toml: radius"};
   return given;
+}
+
+// Missing values that somebody has coded as numbers, and c on another scale.
+void refuse_far_values(const std::vector<FieldSeries>& vesicles, const DoubleWell& well,
+                       const std::string& folder) {
+  const double width = well.b - well.a;
+  std::size_t number = 0;
+  for (const FieldSeries& vesicle : vesicles)
+    for (const FieldSnapshot& snapshot : vesicle.snapshots) {
+      ++number;
+      for (Eigen::Index i = 0; i < snapshot.values.size(); ++i) {
+        const double c = snapshot.values[i];
+        if (c >= well.a - kFarFromWells * width && c <= well.b + kFarFromWells * width) continue;
+        throw InputError(folder + "/" + snapshot_file(number) + ", value " + std::to_string(i + 1) +
+                         ", column c: " + format_number(c) +
+                         " is far from the phases of the model, " + format_number(well.a) +
+                         " and " + format_number(well.b) +
+                         "; leave out what is missing, and put c on their scale");
+      }
+    }
+}
+
+// With too few replicates a gap that nothing explains could never be told from noise.
+void refuse_replicates(const ExplainRequest& request, const std::vector<FieldSeries>& vesicles) {
+  const bool held_out = std::any_of(vesicles.begin(), vesicles.end(),
+                                    [](const FieldSeries& v) { return v.snapshots.size() >= 4; });
+  const int fewest = static_cast<int>(std::ceil(1 / (kGapLevel * request.false_alarms))) - 1;
+  if (!held_out && request.filter.replicates < fewest)
+    throw InputError("--replicates: vesicles of fewer than four snapshots need " +
+                     std::to_string(fewest) + " or more");
 }
 
 }  // namespace
@@ -50,6 +85,8 @@ ExplainSetup read_explain_job(const ExplainJob& job) {
   request.most_effects = job.effects;
   request.without = job.without;
   request.filter.replicates = job.replicates;
+  refuse_far_values(setup.series, request.base.well, job.data);
+  refuse_replicates(request, setup.series);
   return setup;
 }
 

@@ -37,14 +37,15 @@ std::vector<Row> gap_rows(const Explanation& found) {
   };
   add("base model", found.base_gap);
   add("what was found", found.found_gap);
-  add("second best", found.placebo_gap);
+  if (found.placebo_gap) add("second best", *found.placebo_gap);
   add("to be expected if nothing is missing", found.floor);
-  if (found.rerun.cells > 0) {
+  if (found.rerun && found.rerun->failure.empty()) {
+    const Rerun& rerun = *found.rerun;
     const std::string where =
-        " (" + std::to_string(found.rerun.cells) + " cells, " + found.rerun.integrator + ")";
-    add("base model" + where, found.rerun.base);
-    add("what was found" + where, found.rerun.found);
-    add("to be expected" + where, found.rerun.floor);
+        " (" + std::to_string(rerun.cells) + " cells, " + rerun.integrator + ")";
+    add("base model" + where, rerun.base);
+    add("what was found" + where, rerun.found);
+    add("to be expected" + where, rerun.floor);
   }
   return rows;
 }

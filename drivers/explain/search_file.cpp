@@ -75,7 +75,8 @@ Json json_of(const Refit& fit) {
           {"pace_deviation", fit.pace_deviation},
           {"gap", json_of(fit.gap)},
           {"expected", json_of(fit.expected)},
-          {"snapshots", snapshots}};
+          {"snapshots", snapshots},
+          {"settled", fit.settled}};
 }
 Refit refit_of(const Json& json) {
   Refit fit{hypothesis_of(json.at("hypothesis")),
@@ -86,6 +87,7 @@ Refit refit_of(const Json& json) {
             gaps_of(json.at("gap")),
             gaps_of(json.at("expected")),
             {},
+            json.at("settled"),
             ""};
   for (const Json& s : json.at("snapshots"))
     fit.snapshots.push_back({s.at(0), s.at(1), s.at(2), s.at(3)});
@@ -128,24 +130,30 @@ Screening screening_of(const Json& json) {
 }
 
 Json json_of(const Round& round) {
-  Json screened = Json::array(), refits = Json::array();
+  Json screened = Json::array(), refits = Json::array(), failures = Json::array();
   for (const Candidate& candidate : round.known.screened) screened.push_back(candidate.effect);
   for (const Refit& fit : round.refits) refits.push_back(json_of(fit));
+  for (const Round::Failure& failure : round.failures)
+    failures.push_back({failure.effect, failure.why});
   return {{"known", json_of(round.known.hypothesis)},
           {"pace", round.known.pace},
           {"screened", screened},
           {"screening", json_of(round.screening)},
           {"without", json_of(round.without)},
-          {"refits", refits}};
+          {"refits", refits},
+          {"failures", failures}};
 }
 Round round_of(const Json& json, const CahnHilliardModel& base) {
   Round round{{base, json.at("pace"), hypothesis_of(json.at("known")), {}},
               screening_of(json.at("screening")),
               refit_of(json.at("without")),
+              {},
               {}};
   for (const std::string effect : json.at("screened"))
     round.known.screened.push_back(candidate_of(effect));
   for (const Json& fit : json.at("refits")) round.refits.push_back(refit_of(fit));
+  for (const Json& failure : json.at("failures"))
+    round.failures.push_back({failure.at(0), failure.at(1)});
   return round;
 }
 
@@ -161,6 +169,13 @@ Disagreement disagreement_of(const Json& json) {
   return {json.at("vesicle"), json.at("time"),
           json.at("state"),   Point(vec_of(json.at("direction"))),
           json.at("z"),       json.at("p")};
+}
+
+Json json_of(const FrameChange& change) {
+  return {change.vesicle, change.snapshot, change.turn, change.gain, change.offset};
+}
+FrameChange change_of(const Json& json) {
+  return {json.at(0), json.at(1), json.at(2), json.at(3), json.at(4)};
 }
 
 Json json_of(const DisagreementMaps& maps) {
@@ -214,7 +229,7 @@ std::optional<SearchState> SearchFile::load() const {
                        "another folder");
     SearchState state;
     state.more = json.at("more");
-    state.noise = json.at("noise").get<std::vector<double>>();
+    state.noise = json.at("noise").get<std::vector<std::vector<double>>>();
     Explanation& found = state.so_far;
     found.finding = finding_of(json.at("finding"));
     found.equivalent = json.at("equivalent").get<std::vector<std::string>>();
@@ -224,6 +239,8 @@ std::optional<SearchState> SearchFile::load() const {
       found.rounds.push_back(round_of(round, setup_.request.base));
     for (const Json& d : json.at("disagreements"))
       found.disagreements.push_back(disagreement_of(d));
+    for (const Json& change : json.at("changes")) found.changes.push_back(change_of(change));
+    found.stopped = json.at("stopped");
     found.base_maps = maps_of(json.at("base_maps"));
     found.found_maps = maps_of(json.at("found_maps"));
     return std::optional(state);
@@ -232,9 +249,10 @@ std::optional<SearchState> SearchFile::load() const {
 
 void SearchFile::save(const SearchState& state) const {
   const Explanation& found = state.so_far;
-  Json rounds = Json::array(), disagreements = Json::array();
+  Json rounds = Json::array(), disagreements = Json::array(), changes = Json::array();
   for (const Round& round : found.rounds) rounds.push_back(json_of(round));
   for (const Disagreement& d : found.disagreements) disagreements.push_back(json_of(d));
+  for (const FrameChange& change : found.changes) changes.push_back(json_of(change));
   const Json json = {{"fingerprint", fingerprint_},
                      {"more", state.more},
                      {"noise", state.noise},
@@ -244,6 +262,8 @@ void SearchFile::save(const SearchState& state) const {
                      {"found", json_of(found.found)},
                      {"rounds", rounds},
                      {"disagreements", disagreements},
+                     {"changes", changes},
+                     {"stopped", found.stopped},
                      {"base_maps", json_of(found.base_maps)},
                      {"found_maps", json_of(found.found_maps)}};
   write_durably(path_, json.dump() + "\n");

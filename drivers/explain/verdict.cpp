@@ -1,5 +1,7 @@
 #include "drivers/explain/verdict.hpp"
 
+#include "drivers/explain/remarks.hpp"
+
 namespace traceraft {
 namespace {
 
@@ -29,7 +31,8 @@ Json alternatives_json(const Round& round) {
 }
 
 Json gap_json(const Gaps& gaps) {
-  return {{"train", gaps.train}, {"heldout", gaps.heldout > 0 ? Json(gaps.heldout) : Json()}};
+  return {{"train", gaps.train > 0 ? Json(gaps.train) : Json()},
+          {"heldout", gaps.heldout > 0 ? Json(gaps.heldout) : Json()}};
 }
 
 Json where_json(const Explanation& found, const Units& base) {
@@ -43,24 +46,24 @@ Json where_json(const Explanation& found, const Units& base) {
 
 Json rounds_json(const Explanation& found) {
   Json rounds = Json::array();
-  for (const Round& round : found.rounds)
+  for (const Round& round : found.rounds) {
+    const auto& scores = round.screening.scores;
     rounds.push_back({{"known", round.known.hypothesis.name()},
-                      {"candidate", round.screening.scores.front().effect},
+                      {"candidate", scores.empty() ? Json() : Json(scores.front().effect)},
                       {"p", round.screening.p},
                       {"gap_p", round.screening.gap_p},
                       {"gap_p_train", round.screening.train_gap_p},
                       {"gap_p_heldout", round.screening.heldout_gap_p},
                       {"mesh_error", round.screening.mesh_error}});
+  }
   return rounds;
 }
 
 Json rerun_json(const Rerun& rerun) {
-  if (rerun.cells == 0) return {};
-  return {{"cells", rerun.cells},
-          {"integrator", rerun.integrator},
-          {"base", gap_json(rerun.base)},
-          {"named", gap_json(rerun.found)},
-          {"floor", gap_json(rerun.floor)}};
+  if (!rerun.failure.empty()) return {{"confirms", false}, {"failure", rerun.failure}};
+  return {{"confirms", rerun.confirms()},   {"cells", rerun.cells},
+          {"integrator", rerun.integrator}, {"base", gap_json(rerun.base)},
+          {"named", gap_json(rerun.found)}, {"floor", gap_json(rerun.floor)}};
 }
 
 }  // namespace
@@ -81,15 +84,16 @@ Json verdict_json(const Explanation& found, const Units& base) {
           {"gap",
            {{"base", gap_json(found.base_gap)},
             {"named", gap_json(found.found_gap)},
-            {"placebo", gap_json(found.placebo_gap)},
+            {"placebo", gap_json(found.placebo_gap.value_or(Gaps{}))},
             {"floor", gap_json(found.floor)}}},
-          {"rerun", rerun_json(found.rerun)},
+          {"rerun", found.rerun ? rerun_json(*found.rerun) : Json()},
           {"where", where_json(found, base)},
           {"null",
            {{"replicates", found.replicates},
             {"false_alarm_level", found.rounds.front().screening.p},
             {"rounds", rounds_json(found)}}},
-          {"noise", found.noise}};
+          {"noise", found.noise},
+          {"remarks", remarks(found)}};
 }
 
 std::string verdict_sentence(const Explanation& found) {
@@ -102,9 +106,8 @@ std::string verdict_sentence(const Explanation& found) {
     case Finding::ambiguous: {
       std::string others;
       for (std::size_t k = 1; k < found.equivalent.size(); ++k)
-        others += (k > 1 ? ", " : "") + found.equivalent[k];
-      return "The model lacks " + name + ", or in place of " + found.equivalent[0] + ": " + others +
-             ". These data do not tell them apart.";
+        others += ", or " + found.equivalent[k];
+      return "The model lacks " + name + others + ": these data do not tell them apart.";
     }
     case Finding::below_resolution:
       return "There is a disagreement, but the mesh of the model changes c as much: "

@@ -20,10 +20,6 @@ namespace fs = std::filesystem;
 // Fewer points cannot show a field.
 constexpr std::size_t kFewestPoints = 100;
 
-std::string table_name(std::size_t number) {
-  return formatted("snapshot_%03zu.csv", number);
-}
-
 std::vector<double> numbers_of(const TomlTable& toml, const std::string& key) {
   if (!toml.has(key)) throw InputError(toml.where(key) + ": it is missing");
   if (const auto* list = std::get_if<std::vector<double>>(&toml.value(key))) return *list;
@@ -63,6 +59,10 @@ FieldSnapshot read_snapshot(const fs::path& path, double time, double to_radius)
 
 }  // namespace
 
+std::string snapshot_file(std::size_t number) {
+  return formatted("snapshot_%03zu.csv", number);
+}
+
 FieldDataset read_field_dataset(const fs::path& folder) {
   const TomlTable toml = TomlTable::read(
       folder / "dataset.toml", {"name", "kind", "origin", "composition", "temperature", "time_zero",
@@ -83,13 +83,19 @@ FieldDataset read_field_dataset(const fs::path& folder) {
                      " vesicles for " + std::to_string(times.size()) + " times");
   for (std::size_t k = 0; k < times.size(); ++k) {
     const std::string vesicle = format_number(vesicles[k]);
-    if (data.vesicles.empty() || data.vesicles.back().vesicle != vesicle)
+    if (data.vesicles.empty() || data.vesicles.back().vesicle != vesicle) {
+      for (const FieldSeries& before : data.vesicles)
+        if (before.vesicle == vesicle)
+          throw InputError(toml.where("vesicles") + ": snapshots of vesicle " + vesicle +
+                           " have to follow each other");
       data.vesicles.push_back({vesicle, {}});
+    }
     auto& snapshots = data.vesicles.back().snapshots;
     const double time = times[k] * second;
     if (!(time >= 0) || (!snapshots.empty() && !(time > snapshots.back().time)))
       throw InputError(toml.where("times") + ": times of a vesicle have to ascend from 0 on");
-    snapshots.push_back(read_snapshot(folder / table_name(k + 1), time, length / data.radius_um));
+    snapshots.push_back(
+        read_snapshot(folder / snapshot_file(k + 1), time, length / data.radius_um));
   }
   for (const FieldSeries& series : data.vesicles)
     if (series.snapshots.size() < 2)
@@ -115,7 +121,7 @@ void write_field_dataset(const fs::path& folder, const FieldDataset& data,
         csv += formatted("%.9g,%.9g,%.9g,%.6g", x[0], x[1], x[2], snapshot.values[row]);
         csv += weighted ? formatted(",%.6g\n", snapshot.deviation[row]) : "\n";
       }
-      write_durably(folder / table_name(++number), csv);
+      write_durably(folder / snapshot_file(++number), csv);
       times += (times.empty() ? "" : ", ") + format_number(snapshot.time);
       vesicles += (vesicles.empty() ? "" : ", ") + series.vesicle;
     }

@@ -19,6 +19,9 @@ struct FieldDataset {
 // missing, unknown or impossible.
 FieldDataset read_field_dataset(const std::filesystem::path& folder);
 
+// Of a data set, counted over all its vesicles from 1 on.
+std::string snapshot_file(std::size_t number);
+
 // Writes such a folder, the tables first. Throws IoError.
 void write_field_dataset(const std::filesystem::path& folder, const FieldDataset& data,
                          const std::string& remark);

@@ -11,39 +11,38 @@ std::string trimmed(const std::string& text) {
                                     : text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-struct ChosenEffect {
-  const EffectEntry* entry;
-  std::string arguments;
-};
-
-std::vector<ChosenEffect> chosen_effects(const std::string& specification) {
-  std::vector<ChosenEffect> chosen;
-  for (std::size_t begin = 0; begin <= specification.size();) {
-    const std::size_t end = std::min(specification.find(';', begin), specification.size());
-    const std::string one = trimmed(specification.substr(begin, end - begin));
-    begin = end + 1;
-    if (one.empty()) continue;
-    const NamedArguments named = split_named_arguments(one);
-    chosen.push_back({&effects().find(named.name), named.arguments});
-  }
-  return chosen;
-}
-
-void add_one(const ChosenEffect& chosen, const Units& units, CahnHilliardModel& model) {
-  const EffectEntry& entry = *chosen.entry;
+EffectTerm read_term(const std::string& one, const Units& units) {
+  const NamedArguments named = split_named_arguments(one);
+  const EffectEntry& entry = effects().find(named.name);
   const Parameters given =
-      parse_parameters("effect " + entry.name, chosen.arguments, entry.parameters);
+      parse_parameters("effect " + entry.name, named.arguments, entry.parameters);
   const ParameterSpec& strength = entry.parameters.front();
   if (given[strength.name] == strength.default_value)
     throw InputError("effect " + entry.name + ": say how strong it is, as in " + entry.name + ":" +
                      strength.name + "=...");
-  if (entry.unit_wells && (model.well.a != 0 || model.well.b != 1))
+  EffectTerm term{entry.name, {}};
+  for (const ParameterSpec& spec : entry.parameters)
+    term.values.push_back(given[spec.name] * to_model_units(spec.unit, units));
+  return term;
+}
+
+std::vector<EffectTerm> read_terms(const std::string& specification, const Units& units) {
+  std::vector<EffectTerm> terms;
+  for (std::size_t begin = 0; begin <= specification.size();) {
+    const std::size_t end = std::min(specification.find(';', begin), specification.size());
+    const std::string one = trimmed(specification.substr(begin, end - begin));
+    begin = end + 1;
+    if (!one.empty()) terms.push_back(read_term(one, units));
+  }
+  return terms;
+}
+
+void add(const EffectTerm& term, CahnHilliardModel& model) {
+  const EffectEntry& entry = effects().find(term.effect);
+  if (entry.unit_wells && !has_unit_wells(model))
     throw InputError("effect " + entry.name + ": it is made for wells at 0 and 1, not at " +
                      format_number(model.well.a) + " and " + format_number(model.well.b));
-  std::vector<double> values;
-  for (const ParameterSpec& spec : entry.parameters)
-    values.push_back(given[spec.name] * to_model_units(spec.unit, units));
-  entry.add(Parameters(entry.parameters, values), model);
+  entry.add(Parameters(entry.parameters, term.values), model);
 }
 
 }  // namespace
@@ -64,11 +63,21 @@ const NamedList<EffectEntry>& effects() {
   return list;
 }
 
+bool has_unit_wells(const CahnHilliardModel& model) {
+  return model.well.a == 0 && model.well.b == 1;
+}
+
+CahnHilliardModel with_effects(CahnHilliardModel model, const std::vector<EffectTerm>& terms) {
+  std::vector<EffectTerm> ordered = terms;
+  std::stable_partition(ordered.begin(), ordered.end(), [](const EffectTerm& term) {
+    return effects().find(term.effect).changes_mobility;
+  });
+  for (const EffectTerm& term : ordered) add(term, model);
+  return model;
+}
+
 void add_effects(const std::string& specification, const Units& units, CahnHilliardModel& model) {
-  std::vector<ChosenEffect> chosen = chosen_effects(specification);
-  std::stable_partition(chosen.begin(), chosen.end(),
-                        [](const ChosenEffect& one) { return one.entry->changes_mobility; });
-  for (const ChosenEffect& one : chosen) add_one(one, units, model);
+  model = with_effects(std::move(model), read_terms(specification, units));
 }
 
 }  // namespace traceraft

@@ -49,12 +49,25 @@ EffectEntry uptake_effect();
 
 const NamedList<EffectEntry>& effects();
 
+// An effect with values for all its parameters, in the order of its entry and in units of R and
+// R²/D.
+struct EffectTerm {
+  std::string effect;
+  std::vector<double> values;
+};
+
+bool has_unit_wells(const CahnHilliardModel& model);
+
+// In any order, the same. Throws InputError for an unknown name, and for wells that an effect is
+// not made for; ranges are those of whoever asks.
+CahnHilliardModel with_effects(CahnHilliardModel model, const std::vector<EffectTerm>& terms);
+
 // The factor from a parameter's unit to R and R²/D.
 double to_model_units(const std::string& unit, const Units& units);
 
-// "exchange:rate=1e-3,target=0.2; gravity:strength=0.1" -> added to the model; in any order, the
-// same. Throws InputError for an unknown name or key, a value out of range, a strength that is not
-// given, and wells that an effect is not made for.
+// "exchange:rate=1e-3,target=0.2; gravity:strength=0.1" -> added to the model, as by with_effects.
+// Throws InputError also for an unknown key, a value out of range, and a strength that is not
+// given.
 void add_effects(const std::string& specification, const Units& units, CahnHilliardModel& model);
 
 }  // namespace traceraft

@@ -46,14 +46,14 @@ class ExplainTest : public ::testing::Test {
       for (FieldSnapshot& snapshot : vesicle.snapshots) snapshot.time *= Units().time();
     write_field_dataset(folder.path / "data", data, "drawn by a test");
   }
-  std::string command(int cells = 20) const {
+  std::string command(int cells = 20, int replicates = 49) const {
     return "explain --data " + (folder.path / "data").string() + " --epsilon 0.75 --cells " +
-           std::to_string(cells) + " --effects 1 --replicates 49 --out " +
-           (folder.path / "out").string();
+           std::to_string(cells) + " --effects 1 --replicates " + std::to_string(replicates) +
+           " --out " + (folder.path / "out").string();
   }
   // Where it does not matter how many effects are looked for.
   std::string command_of_few(int cells, const std::string& also_without = "") const {
-    return command(cells) +
+    return command(cells, 199) +
            " --without allen-cahn,asymmetry,cooling,line-tension,mobility-contrast,"
            "mobility-exponent,thermal" +
            also_without;
@@ -85,6 +85,8 @@ TEST_F(ExplainTest, NamesWhatWasHidden) {
   EXPECT_FALSE(verdict["where"].is_null());
   const nlohmann::json& again = verdict["rerun"];
   EXPECT_EQ(again["integrator"], "rosenbrock");
+  EXPECT_EQ(again["confirms"], true);
+  EXPECT_EQ(verdict["remarks"], nlohmann::json::array());
   EXPECT_NEAR(again["named"]["heldout"], again["floor"]["heldout"], 0.05 * gap("floor"));
   EXPECT_LT(verdict["bounds"]["bulk-mobility.strength"]["high"], 1);
   EXPECT_FALSE(verdict["bounds"].contains("uptake.rate"));
@@ -100,7 +102,9 @@ TEST_F(ExplainTest, NamesWhatWasHidden) {
 TEST_F(ExplainTest, NamesNothingWhereNothingIsHidden) {
   draw("");
   const nlohmann::json verdict = explain();
-  EXPECT_TRUE(verdict["effect"].is_null()) << verdict.dump(2);
+  EXPECT_EQ(verdict["verdict"], "none") << verdict.dump(2);
+  EXPECT_TRUE(verdict["effect"].is_null());
+  EXPECT_TRUE(verdict["gap"]["placebo"]["train"].is_null());
   EXPECT_NEAR(verdict["parameters"]["diffusion"]["value"], 1e-5, 0.05e-5);
 }
 
@@ -157,10 +161,52 @@ TEST_F(ExplainTest, JoinsWhatVesiclesSay) {
               4 * rate["sigma"].get<double>());
 }
 
+TEST_F(ExplainTest, SaysWhatIsOddAboutTheData) {
+  BlindRequest asked = request();
+  asked.snapshots = 4;
+  asked.points = 600;
+  std::vector<FieldSeries> vesicles = draw_blind_case(asked).vesicles;
+  std::vector<FieldSnapshot>& snapshots = vesicles[0].snapshots;
+  for (Point& x : snapshots[2].points)
+    x = Point(std::cos(0.3) * x[0] - std::sin(0.3) * x[1],
+              std::sin(0.3) * x[0] + std::cos(0.3) * x[1], x[2]);
+  for (int k = 0; k < 5; ++k) snapshots[1].values[100 * k] = 4;
+  write(vesicles);
+  const auto end = testing::traceraft(command_of_few(13));
+  ASSERT_EQ(end.code, 0) << end.output;
+  const std::string remarks = verdict()["remarks"].dump();
+  EXPECT_NE(remarks.find("5 values that are far"), std::string::npos) << remarks;
+  EXPECT_NE(remarks.find("snapshot 3: it seems turned by 0."), std::string::npos) << remarks;
+  EXPECT_NE(end.output.find("seems turned"), std::string::npos) << end.output;
+}
+
 TEST_F(ExplainTest, RefusesWhatItCannotUse) {
   const std::string data = " --data " + (folder.path / "data").string();
-  EXPECT_EQ(testing::traceraft("explain").code, 2);
-  EXPECT_EQ(testing::traceraft("explain" + data).code, 2);
+  const auto refusal = [](const std::string& command) {
+    const auto end = testing::traceraft(command);
+    EXPECT_EQ(end.code, 2) << end.output;
+    return end.output;
+  };
+  refusal("explain");
+  EXPECT_NE(refusal("explain" + data).find("dataset.toml"), std::string::npos);
+
+  BlindRequest asked = request();
+  asked.snapshots = 3;
+  asked.points = 150;
+  std::vector<FieldSeries> vesicles = draw_blind_case(asked).vesicles;
+  write(vesicles);
+  std::string text = refusal(command(13));
+  EXPECT_NE(text.find("--replicates: vesicles of fewer than four snapshots need 199"),
+            std::string::npos)
+      << text;
+  vesicles[0].snapshots[1].points[7] *= 1.3;
+  write(vesicles);
+  text = refusal(command(13, 199));
+  EXPECT_NE(text.find("vesicle 1, snapshot 2: the point"), std::string::npos) << text;
+  vesicles[0].snapshots[1].values[7] = -9999;
+  write(vesicles);
+  text = refusal(command(13, 199));
+  EXPECT_NE(text.find("snapshot_002.csv, value 8, column c: -9999"), std::string::npos) << text;
 }
 
 // Coarse, and with a raft that is one from the start, which no measured vesicle is.

@@ -28,16 +28,16 @@ Columns normal_values(int columns, std::uint64_t stream) {
 }
 
 struct Example {
-  std::vector<FieldSeries> series;
+  FilterProblems data;
   FilterResult pass;
 };
 
 // Noise alone, and in the second snapshot `bump` more around (0, 0, 1).
 Example example(double bump) {
   Example result;
-  result.series.resize(1);
-  result.series[0].snapshots.resize(2);
-  FieldSnapshot& snapshot = result.series[0].snapshots[1];
+  result.data.resize(1);
+  result.data[0].series.snapshots.resize(2);
+  FieldSnapshot& snapshot = result.data[0].series.snapshots[1];
   snapshot.time = 3;
   snapshot.points = points_on_sphere();
   Innovation in{};
@@ -46,6 +46,7 @@ Example example(double bump) {
   in.replicates = normal_values(kReplicates, 12);
   for (int k = 0; k < kPoints; ++k)
     if (snapshot.points[k][2] > 0.95) in.values[k] += bump;
+  in.gap = in.values;
   result.pass.innovations.push_back(in);
   return result;
 }
@@ -53,7 +54,7 @@ Example example(double bump) {
 TEST(DisagreementMaps, StandOutWhereSomethingIsMissing) {
   const Example with = example(2);
   std::vector<Point> places = points_on_sphere();
-  const DisagreementMaps maps = disagreement_maps(with.series, with.pass, places, kLength);
+  const DisagreementMaps maps = disagreement_maps(with.data, with.pass, places, kLength);
   ASSERT_EQ(maps.snapshots.size(), 1u);
   EXPECT_EQ(maps.snapshots[0].time, 3);
   Eigen::Index most;
@@ -65,7 +66,7 @@ TEST(DisagreementMaps, StandOutWhereSomethingIsMissing) {
 TEST(DisagreementMaps, MeasureInDeviationsOfNoise) {
   const Example without = example(0);
   const DisagreementMaps maps =
-      disagreement_maps(without.series, without.pass, points_on_sphere(), kLength);
+      disagreement_maps(without.data, without.pass, points_on_sphere(), kLength);
   const Vec& z = maps.snapshots[0].z;
   EXPECT_NEAR(z.squaredNorm() / kPoints, 1, 0.5);
   EXPECT_LT(z.cwiseAbs().maxCoeff(), maps.threshold);
@@ -75,8 +76,7 @@ TEST(DisagreementMaps, MeasureInDeviationsOfNoise) {
 
 TEST(DisagreementMaps, AreZeroWhereNothingWasMeasured) {
   const Example with = example(2);
-  const DisagreementMaps maps =
-      disagreement_maps(with.series, with.pass, {Point(0, 0, 5)}, kLength);
+  const DisagreementMaps maps = disagreement_maps(with.data, with.pass, {Point(0, 0, 5)}, kLength);
   EXPECT_EQ(maps.snapshots[0].z[0], 0);
 }
 

@@ -70,6 +70,16 @@ TEST(Judgement, TakesNothingThatTheMeshChangesAsMuch) {
   EXPECT_TRUE(judged(round).taken);
 }
 
+TEST(Judgement, LooksForResolutionInAllRounds) {
+  Round first = first_round(), second = first_round();
+  first.screening.mesh_error = 0.01;
+  second.screening.mesh_error = 1;
+  const Hypothesis both = refit_with({"gravity", "uptake"}, 0).hypothesis;
+  EXPECT_TRUE(resolved({first, second}, both));
+  EXPECT_FALSE(resolved({second}, both));
+  EXPECT_FALSE(resolved({first}, refit_with({"gravity", "cooling"}, 0).hypothesis));
+}
+
 TEST(Judgement, AdmitsAGapThatNothingExplains) {
   Round round = first_round();
   round.refits.clear();

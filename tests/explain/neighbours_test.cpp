@@ -44,6 +44,11 @@ TEST(Neighbours, ReplaceByWhatCameNear) {
             std::vector<std::string>{"exchange + gravity"});
 }
 
+TEST(Neighbours, OfOneEffectAreThoseThatCameNear) {
+  EXPECT_EQ(names(neighbours(refit_of({part("uptake", 1)}, 800), rounds(), kValues, candidates())),
+            std::vector<std::string>{"exchange"});
+}
+
 TEST(Neighbours, TakeNothingThatIsNotAllowed) {
   const Refit fit = refit_of({part("uptake", 1), part("gravity", 1)}, 700);
   EXPECT_TRUE(neighbours(fit, rounds(), kValues, {part("cooling", 1).candidate}).empty());

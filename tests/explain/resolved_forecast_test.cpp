@@ -84,7 +84,7 @@ TEST_F(ResolvedForecastTest, LeavesLittleOfTheErrorOfTheMesh) {
   const LevelSetPtr surface = make_surface("sphere");
   const SpacePtr own = serial_space(*surface, 16);
   const FinerMeshes meshes = finer_meshes(*surface, own, 16);
-  const FinerTraces traces = finer_traces(meshes, *own, series);
+  const FinerTraces traces = finer_traces(meshes, series);
   ResolvedForecast resolved(meshes, traces, model, rafts(*meshes.spaces[1]), integrator);
   const ResolvedForecast::End end = resolved.advance(1, kBegin, kEnd);
 
@@ -102,7 +102,7 @@ TEST_F(ResolvedForecastTest, GoesOnFromACorrectedState) {
   const LevelSetPtr surface = make_surface("sphere");
   const SpacePtr own = serial_space(*surface, 16);
   const FinerMeshes meshes = finer_meshes(*surface, own, 16);
-  const FinerTraces traces = finer_traces(meshes, *own, series);
+  const FinerTraces traces = finer_traces(meshes, series);
   ResolvedForecast plain(meshes, traces, model, rafts(*meshes.spaces[1]), integrator),
       corrected = plain;
   corrected.correct(Vec::Constant(own->nodes(), 0.01));

@@ -56,6 +56,12 @@ class FieldDatasetTest : public ::testing::Test {
   testing::TemporaryFolder folder;
 };
 
+TEST_F(FieldDatasetTest, KeepsVesiclesTogether) {
+  std::filesystem::copy(folder.path / "snapshot_001.csv", folder.path / "snapshot_004.csv");
+  replace("dataset.toml", description("[1, 1, 2, 2]") + "vesicles = [1, 2, 1, 2]\n");
+  expect_refusal("snapshots of vesicle 1 have to follow each other");
+}
+
 TEST_F(FieldDatasetTest, ReadsWhatItHasWritten) {
   const FieldDataset data = read_field_dataset(folder.path);
   ASSERT_EQ(data.vesicles.size(), 1u);

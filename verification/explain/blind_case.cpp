@@ -228,8 +228,9 @@ class Vesicle {
     std::vector<Point> places;
     for (const Point& x : snapshot.points) places.push_back(looks_.placement.in_mesh(x));
     snapshot.values = point_trace(*space_, places, space_->h()) * c;
+    const double stated = number % 2 == 1 ? request_.stated : 1;
     snapshot.deviation =
-        Vec::Constant(snapshot.values.size(), request_.stated > 0 ? request_.stated * noise : 1);
+        Vec::Constant(snapshot.values.size(), request_.stated > 0 ? stated * noise : 1);
     for (Eigen::Index i = 0; i < snapshot.values.size(); ++i)
       snapshot.values[i] +=
           noise * normal_random(request_.seed, kNoise + static_cast<std::uint64_t>(number),

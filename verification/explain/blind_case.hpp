@@ -23,7 +23,8 @@ struct BlindRequest {
   int snapshots = 8;             // of each
   int points = 4000;             // per snapshot
   double first = 20, last = 90;  // times of snapshots, in units of R²/D of the model
-  // The standard deviations that the data state, over the true ones; 0: they state none.
+  // The standard deviations that the data state for every second snapshot, over the true ones,
+  // which they state for the others; 0: they state none.
   double stated = 0;
   double raft_fraction = 0.5;
   int cells = 34;

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "kernel/effects/effects.hpp"
 #include "verification/bench.hpp"
 
 namespace traceraft {
@@ -11,7 +11,13 @@ namespace {
 
 // The strength is the only coefficient; the other parameters keep their defaults.
 Candidate by_strength(const std::string& effect, double step, bool two_sided) {
-  return {effect, 1,
+  // Ranges of rates are there to catch slips of the pen, and have another unit.
+  const ParameterSpec& strength = effects().find(effect).parameters.front();
+  const bool pure = strength.unit.empty();
+  const double any = std::numeric_limits<double>::infinity();
+  const double least = pure ? strength.min : two_sided ? -any : 0, most = pure ? strength.max : any;
+  return {effect,
+          1,
           [effect](const std::vector<double>& a) {
             EffectTerm term{effect, {}};
             for (const ParameterSpec& spec : effects().find(effect).parameters)
@@ -19,27 +25,32 @@ Candidate by_strength(const std::string& effect, double step, bool two_sided) {
             term.values.front() = a[0];
             return term;
           },
-          step, two_sided};
+          step,
+          strength.unit == "1/s",
+          two_sided,
+          least,
+          most};
 }
 
 // k (c − c*) = a0 c + a1 (c − 1) with k = a0 + a1, c* = a1/k.
 Candidate exchange() {
-  return {"exchange", 2,
+  return {"exchange",
+          2,
           [](const std::vector<double>& a) {
             const double rate = a[0] + a[1];
             return EffectTerm{"exchange", {rate, rate != 0 ? a[1] / rate : 0}};
           },
-          1e-3, false};
+          1e-3,
+          true,
+          false,
+          0,
+          std::numeric_limits<double>::infinity()};
 }
 
 }  // namespace
 
-CahnHilliardModel with_effects(CahnHilliardModel model, const std::vector<EffectTerm>& terms) {
-  for (const EffectTerm& term : terms) {
-    const EffectEntry& entry = effects().find(term.effect);
-    entry.add(Parameters(entry.parameters, term.values), model);
-  }
-  return model;
+double Candidate::within_range(double coefficient) const {
+  return std::clamp(coefficient, least, most);
 }
 
 std::vector<Candidate> candidates() {

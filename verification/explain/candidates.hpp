@@ -5,19 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "kernel/problem/cahn_hilliard.hpp"
+#include "kernel/effects/effects.hpp"
 #include "verification/explain/tangent_flow.hpp"
 
 namespace traceraft {
-
-// An effect with values for all its parameters, in the order of its entry and in units of R and
-// R²/D.
-struct EffectTerm {
-  std::string effect;
-  std::vector<double> values;
-};
-
-CahnHilliardModel with_effects(CahnHilliardModel model, const std::vector<EffectTerm>& terms);
 
 // A candidate has one coefficient per direction. Its terms are linear in the coefficients near 0:
 // the effect at coefficients a is term(a).
@@ -27,7 +18,11 @@ struct Candidate {
   std::function<EffectTerm(const std::vector<double>& coefficients)> term;
   // Coefficients that are small: for the derivative at 0.
   double step;
-  bool two_sided;  // may the coefficients be negative?
+  bool rate;           // are the coefficients rates? They go with 1/time.
+  bool two_sided;      // may the coefficients be negative?
+  double least, most;  // that each of them may be
+
+  double within_range(double coefficient) const;
 };
 
 // All effects of the kernel that deterministic data of one vesicle can tell from the base model.

@@ -32,12 +32,12 @@ std::size_t state_of(double forecast, const DoubleWell& well) {
 
 }  // namespace
 
-std::vector<Disagreement> disagreements(const std::vector<FieldSeries>& series,
-                                        const FilterResult& result, const DoubleWell& well) {
+std::vector<Disagreement> disagreements(const FilterProblems& data, const FilterResult& result,
+                                        const DoubleWell& well) {
   const std::vector<Point> corners = icosahedron();
   std::vector<Disagreement> all;
   for (const Innovation& in : result.innovations) {
-    const FieldSnapshot& snapshot = series[in.vesicle].snapshots[in.snapshot];
+    const FieldSnapshot& snapshot = data[in.vesicle].series.snapshots[in.snapshot];
     const auto patches = static_cast<Eigen::Index>(kStates.size() * corners.size());
     Columns member = Columns::Zero(in.values.size(), patches);
     for (Eigen::Index i = 0; i < in.values.size(); ++i) {

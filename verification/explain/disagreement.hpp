@@ -21,8 +21,9 @@ struct Disagreement {
 
 // All of 12 patches (around the corners of an icosahedron) × 3 states × snapshots, held out or not,
 // that hold at least 10 values, the most significant first.
-std::vector<Disagreement> disagreements(const std::vector<FieldSeries>& series,
-                                        const FilterResult& result, const DoubleWell& well);
+// `data`: what the result is of.
+std::vector<Disagreement> disagreements(const FilterProblems& data, const FilterResult& result,
+                                        const DoubleWell& well);
 
 // How many of them are significant if a share of `level` of those may be false (Benjamini and
 // Hochberg 1995).

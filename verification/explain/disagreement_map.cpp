@@ -36,18 +36,17 @@ double common_limit(Vec values) {
 
 }  // namespace
 
-DisagreementMaps disagreement_maps(const std::vector<FieldSeries>& series,
-                                   const FilterResult& result, const std::vector<Point>& places,
-                                   double length) {
+DisagreementMaps disagreement_maps(const FilterProblems& data, const FilterResult& result,
+                                   const std::vector<Point>& places, double length) {
   DisagreementMaps maps;
   Vec highest;
   for (const Innovation& in : result.innovations) {
-    const FieldSnapshot& snapshot = series[in.vesicle].snapshots[in.snapshot];
+    const FieldSnapshot& snapshot = data[in.vesicle].series.snapshots[in.snapshot];
     const PointTrace W = weights(places, snapshot.points, length);
     const Columns noise = W * in.replicates;
     const Vec variance = noise.rowwise().squaredNorm() / static_cast<double>(noise.cols());
     const Vec inverse = (variance.array() > 0).select(variance.array().rsqrt(), 0.0);
-    maps.snapshots.push_back({in.vesicle, snapshot.time, inverse.cwiseProduct(W * in.values)});
+    maps.snapshots.push_back({in.vesicle, snapshot.time, inverse.cwiseProduct(W * in.gap)});
     const Vec extreme = (inverse.asDiagonal() * noise).cwiseAbs().colwise().maxCoeff().transpose();
     highest = highest.size() > 0 ? Vec(highest.cwiseMax(extreme)) : extreme;
   }

@@ -18,9 +18,9 @@ struct DisagreementMaps {
   double threshold = 0;  // |z| that noise alone surpasses anywhere on them in 1 of 20 data sets
 };
 
-// Means have Gaussian weights of the given length. Places near which nothing was measured get 0.
-DisagreementMaps disagreement_maps(const std::vector<FieldSeries>& series,
-                                   const FilterResult& result, const std::vector<Point>& places,
-                                   double length);
+// `data`: what the result is of. Means have Gaussian weights of the given length. Places near which
+// nothing was measured get 0.
+DisagreementMaps disagreement_maps(const FilterProblems& data, const FilterResult& result,
+                                   const std::vector<Point>& places, double length);
 
 }  // namespace traceraft

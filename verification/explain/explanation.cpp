@@ -1,11 +1,10 @@
 #include "verification/explain/explanation.hpp"
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <cmath>
 #include <stdexcept>
 
+#include "verification/explain/curvature_contrast.hpp"
 #include "verification/explain/neighbours.hpp"
 
 namespace traceraft {
@@ -21,54 +20,66 @@ constexpr double kUsualChange = 0.06;
 constexpr int kMostMoves = 3;
 // Of means over the neighbourhood, in widths of phase boundaries.
 constexpr double kMapWidth = 2;
-// The mesh and the integrator of the second run of what was found.
-constexpr double kOtherCells = 1.15;
-constexpr char kOtherIntegrator[] = "rosenbrock";
+// Beyond that many standard deviations a snapshot is said to be turned or scaled.
+constexpr double kChanged = 3;
+// Deviations that snapshots state are believed, relative to each other, as far as that factor.
+constexpr double kBelieved = 1.25;
+// Contrast of the curvature, below which it sorts nothing.
+constexpr double kCurved = 0.05;
 
-FilterProblems problems_of(const std::vector<FieldSeries>& series, const ExplainRequest& request) {
-  return make_filter_problems(series, *request.surface, request.base.epsilon, request.cells,
-                              request.threads, request.hold_out, request.filter);
-}
-
-// Of the measurements, over all vesicles.
-double noise_of(const FilterProblems& problems) {
-  double squares = 0;
-  for (const FilterProblem& data : problems) squares += data.noise * data.noise;
-  return std::sqrt(squares / static_cast<double>(problems.size()));
-}
-
-// Of all that was measured, the noise among it.
-double deviation_of(const std::vector<FieldSeries>& series) {
+// Of c, without the noise.
+double deviation_of(const FilterProblems& data, double noise) {
   double sum = 0, squares = 0, count = 0;
-  for (const FieldSeries& vesicle : series)
-    for (const FieldSnapshot& snapshot : vesicle.snapshots) {
+  for (const FilterProblem& vesicle : data)
+    for (const FieldSnapshot& snapshot : vesicle.series.snapshots) {
       sum += snapshot.values.sum();
       squares += snapshot.values.squaredNorm();
       count += static_cast<double>(snapshot.values.size());
     }
-  return std::sqrt(std::max(0.0, squares / count - sum * sum / (count * count)));
+  return std::sqrt(std::max(0.0, squares / count - sum * sum / (count * count) - noise * noise));
 }
 
-std::vector<Candidate> candidates_of(const ExplainRequest& request) {
+// On a mesh even a sphere is curved differently from place to place, in a pattern that resembles
+// nothing but is not noise.
+std::vector<Candidate> candidates_of(const ExplainRequest& request, const FilterProblems& data) {
+  const auto& places = data.front().space->surface.position;
+  const bool curved = curvature_contrast(*request.surface, places) > kCurved;
   std::vector<Candidate> result;
-  for (const Candidate& candidate : candidates())
-    if (std::find(request.without.begin(), request.without.end(), candidate.effect) ==
-        request.without.end())
+  for (const Candidate& candidate : candidates()) {
+    const bool left_out = std::find(request.without.begin(), request.without.end(),
+                                    candidate.effect) != request.without.end();
+    const bool fits = has_unit_wells(request.base) || !effects().find(candidate.effect).unit_wells;
+    if (!left_out && fits && (curved || candidate.effect != "curvature"))
       result.push_back(candidate);
+  }
   return result;
 }
 
-Gaps in_units_of_c(const Gaps& gaps, double noise) {
-  return {noise * gaps.train, noise * gaps.heldout};
+// From the noise of each snapshot but the first, whose own nobody knows.
+std::vector<double> believed(const std::vector<double>& own) {
+  std::vector<double> sorted = own;
+  std::sort(sorted.begin(), sorted.end());
+  const double usual = sorted[sorted.size() / 2];
+  double squares = 0, count = 0;
+  for (const double noise : own)
+    if (noise < kBelieved * usual && noise > usual / kBelieved) {
+      squares += noise * noise;
+      ++count;
+    }
+  const double common = std::sqrt(squares / count);
+  std::vector<double> result{common};
+  for (const double noise : own)
+    result.push_back(noise < kBelieved * usual && noise > usual / kBelieved ? common : noise);
+  return result;
 }
 
 class Search {
  public:
   Search(const std::vector<FieldSeries>& series, const ExplainRequest& request)
-      : series_(series),
-        request_(request),
+      : request_(request),
         data_(problems_of(series, request)),
-        model_{request.base, 1, {}, candidates_of(request)} {}
+        candidates_(candidates_of(request, data_)),
+        model_{request.base, 1, {}, candidates_} {}
 
   Explanation run(const std::optional<SearchState>& saved) {
     bool more = true;
@@ -109,7 +120,7 @@ class Search {
   }
 
   void screen_the_rest() {
-    model_.screened = candidates_of(request_);
+    model_.screened = candidates_;
     for (const auto& part : model_.hypothesis.parts)
       model_.screened.erase(
           std::find_if(model_.screened.begin(), model_.screened.end(),
@@ -118,27 +129,43 @@ class Search {
 
   // Beside an effect that was taken, those before it may stand for something else.
   void improve() {
-    for (int k = 0; k < kMostMoves && model_.hypothesis.parts.size() > 1; ++k) {
+    for (int move = 0; model_.hypothesis.parts.size() > 1 || move > 0; ++move) {
       tell("in place of " + model_.hypothesis.name());
       std::vector<FilterModel> trials;
-      for (Hypothesis& near :
-           neighbours(result_.found, result_.rounds, values(), candidates_of(request_))) {
+      for (Hypothesis& near : neighbours(result_.found, result_.rounds, values(), candidates_)) {
         trials.push_back(model_);
         trials.back().hypothesis = std::move(near);
       }
-      const double here = criterion(result_.found, values());
-      const Refit* best = nullptr;
-      const std::vector<Refit> fits = refit_all(trials);
-      for (const Refit& fit : fits)
-        if (fit.failure.empty() && criterion(fit, values()) < here &&
-            (best == nullptr || criterion(fit, values()) < criterion(*best, values())))
-          best = &fit;
-      if (best == nullptr) break;
+      const std::vector<Refit> fits = refit_each(data_, trials, request_.filter, maps_);
+      const Refit* best = move < kMostMoves ? better_one(fits) : nullptr;
+      if (best == nullptr) {
+        add_equivalent(fits);
+        break;
+      }
       set_found(*best);
-      result_.finding = Finding::named;
-      result_.equivalent = {model_.hypothesis.parts.back().candidate.effect};
+      result_.equivalent = {best->hypothesis.name()};
     }
+    result_.finding = result_.equivalent.size() > 1 ? Finding::ambiguous : Finding::named;
     screen_the_rest();
+  }
+
+  const Refit* better_one(const std::vector<Refit>& fits) const {
+    const Refit* best = &result_.found;
+    for (const Refit& fit : fits)
+      if (fit.failure.empty() && criterion(fit, values()) < criterion(*best, values()) &&
+          resolved(result_.rounds, fit.hypothesis))
+        best = &fit;
+    return best == &result_.found ? nullptr : best;
+  }
+
+  void add_equivalent(const std::vector<Refit>& fits) {
+    std::vector<std::string>& names = result_.equivalent;
+    const double limit = criterion(result_.found, values()) + kTelling;
+    for (const Refit& fit : fits)
+      if (fit.failure.empty() && criterion(fit, values()) < limit &&
+          fit.hypothesis.parts.size() == model_.hypothesis.parts.size() &&
+          std::find(names.begin(), names.end(), fit.hypothesis.name()) == names.end())
+        names.push_back(fit.hypothesis.name());
   }
 
   // With nothing missing, from a filter of a few directions.
@@ -158,31 +185,47 @@ class Search {
     model_.pace = model.pace;
   }
 
-  // Before anything is known: the noise that the innovations have is that of the measurements.
-  FilterResult first_pass() {
-    const FilterResult pass = filter_fields(data_, model_, request_.filter, maps_);
-    std::vector<double> squares(data_.size(), 0.0), values(data_.size(), 0.0);
+  // The noise that the innovations have is that of the measurements: one for all of a vesicle's
+  // snapshots, in units of the deviations that they state, but for those that state them wrongly.
+  void fit_noise(const FilterResult& pass) {
+    std::vector<std::vector<double>> own(data_.size());
     for (const Innovation& in : pass.innovations) {
-      if (in.held_out) continue;
-      squares[in.vesicle] += in.weighted_squares;
-      values[in.vesicle] += static_cast<double>(in.values.size());
+      const double squares = in.weighted_squares / static_cast<double>(in.values.size());
+      own[in.vesicle].push_back(data_[in.vesicle].noise[in.snapshot] * std::sqrt(squares));
     }
-    for (FilterProblem& data : data_)
-      data.noise *= std::sqrt(squares[data.vesicle] / values[data.vesicle]);
-    FilterResult again = filter_fields(data_, model_, request_.filter, maps_);
-    result_.disagreements = disagreements(series_, again, request_.base.well);
+    for (FilterProblem& data : data_) data.noise = believed(own[data.vesicle]);
+  }
+
+  FilterResult first_pass() {
+    fit_noise(filter_fields(data_, model_, request_.filter, maps_));
+    FilterResult pass = filter_fields(data_, model_, request_.filter, maps_);
+    result_.disagreements = disagreements(data_, pass, request_.base.well);
     result_.disagreements.resize(significant(result_.disagreements, request_.false_alarms));
-    set_found(refit_all({model_}).front());
+    set_found(refit(data_, model_, request_.filter, maps_));
+    bootstrap(pass, model_, result_.found);
     result_.base = result_.found;
-    return again;
+    return pass;
   }
 
   // With what was found last: errors of states and of the mesh are those of the model that has it.
   FilterResult next_pass() {
     maps_ = {};
-    (void)filter_fields(data_, model_, request_.filter, maps_);
-    set_found(refit_all({model_}).front());
-    return filter_fields(data_, model_, request_.filter, maps_);
+    fit_noise(filter_fields(data_, model_, request_.filter, maps_));
+    set_found(refit(data_, model_, request_.filter, maps_));
+    FilterResult pass = filter_fields(data_, model_, request_.filter, maps_);
+    bootstrap(pass, model_, result_.found);
+    return pass;
+  }
+
+  void note_changes(const FilterResult& pass) {
+    const FilterSettings& known = request_.filter;
+    result_.changes.clear();
+    for (const Innovation& in : pass.innovations) {
+      if (in.frame.cwiseAbs().maxCoeff() < kChanged) continue;
+      const double turn = known.turn * in.frame.head(3).norm();
+      result_.changes.push_back(
+          {in.vesicle, in.snapshot, turn, known.gain * in.frame[3], known.offset * in.frame[4]});
+    }
   }
 
   void set_found(const Refit& fit) {
@@ -197,13 +240,23 @@ class Search {
     const bool first = result_.rounds.empty();
     tell(first ? "what the base model lacks"
                : "what is lacking beside " + model_.hypothesis.name());
-    const FilterResult pass = first ? first_pass() : next_pass();
-    const CutSurface& surface = data_.front().space->surface;
-    result_.found_maps =
-        disagreement_maps(series_, pass, surface.position, kMapWidth * request_.base.epsilon);
+    FilterResult pass;
+    try {
+      pass = first ? first_pass() : next_pass();
+    } catch (const std::runtime_error& error) {
+      if (first) throw;
+      result_.stopped = error.what();
+      return false;
+    }
+    note_changes(pass);
+    result_.found_maps = disagreement_maps(data_, pass, data_.front().space->surface.position,
+                                           kMapWidth * request_.base.epsilon);
     if (first) result_.base_maps = result_.found_maps;
-    Round round{
-        model_, screen(pass, model_.screened, model_.hypothesis.coefficients()), result_.found, {}};
+    Round round{model_,
+                screen(pass, model_.screened, model_.hypothesis.coefficients()),
+                result_.found,
+                {},
+                {}};
     const auto most = static_cast<std::size_t>(request_.most_effects);
     const bool more =
         model_.hypothesis.parts.size() < most && result_.rounds.size() < most + kMostMoves;
@@ -222,23 +275,15 @@ class Search {
       trials.push_back(model_);
       trials.back().hypothesis.parts.push_back({*find_candidate(score.effect), score.coefficients});
     }
-    for (Refit& fit : refit_all(trials))
-      if (fit.failure.empty()) round.refits.push_back(std::move(fit));
+    for (Refit& fit : refit_each(data_, trials, request_.filter, maps_))
+      if (fit.failure.empty())
+        round.refits.push_back(std::move(fit));
+      else
+        round.failures.push_back({last_effect(fit.hypothesis), fit.failure});
     std::sort(round.refits.begin(), round.refits.end(),
               [n = values()](const Refit& a, const Refit& b) {
                 return criterion(a, n) < criterion(b, n);
               });
-  }
-
-  std::vector<Refit> refit_all(const std::vector<FilterModel>& trials) const {
-    if (trials.size() == 1) return {refit(data_, trials[0], request_.filter, maps_)};
-    std::vector<Refit> refits(trials.size());
-    std::atomic<std::size_t> next{0};
-    data_.front().team->run([&](int) {
-      for (std::size_t k = next++; k < trials.size(); k = next++)
-        refits[k] = refit(data_, trials[k], request_.filter, maps_);
-    });
-    return refits;
   }
 
   // That were measured and count, the first snapshots aside.
@@ -251,7 +296,8 @@ class Search {
   }
 
   bool take(const Round& round) {
-    const double usual_change = kUsualChange * deviation_of(series_) / noise_of(data_);
+    const double usual_change =
+        kUsualChange * deviation_of(data_, noise_of(data_)) / noise_of(data_);
     const Judgement judgement = judge(round, values(), request_.false_alarms, usual_change);
     if (!judgement.taken) {
       // What could not be told apart before cannot be now.
@@ -268,40 +314,23 @@ class Search {
   void finish() {
     const double noise = noise_of(data_);
     result_.noise = noise;
+    for (const FilterProblem& data : data_) result_.outliers += data.outliers;
     const CutSurface& surface = data_.front().space->surface;
     result_.map_mesh = {surface.position, surface.triangles};
     result_.replicates = request_.filter.replicates;
+    result_.false_alarms = request_.false_alarms;
     const auto& refits = result_.rounds.front().refits;
-    result_.base_gap = in_units_of_c(result_.base.gap, noise);
-    result_.found_gap = in_units_of_c(result_.found.gap, noise);
-    result_.placebo_gap = in_units_of_c((refits.size() > 1 ? refits[1] : result_.base).gap, noise);
-    result_.floor = in_units_of_c(result_.found.expected, noise);
-    const Round& last = result_.rounds.back();
-    result_.bounds = bounds_of(last.screening, last.known.screened);
-    if (request_.rerun && !result_.found.hypothesis.parts.empty()) run_again();
+    result_.base_gap = scaled(noise, result_.base.gap);
+    result_.found_gap = scaled(noise, result_.found.gap);
+    if (refits.size() > 1) result_.placebo_gap = scaled(noise, refits[1].gap);
+    result_.floor = scaled(noise, result_.found.expected);
+    screen_the_rest();
+    result_.bounds = bounds_of(result_.rounds.back().screening, model_.screened);
   }
 
-  void run_again() {
-    tell("once more, on another mesh and by another integrator");
-    ExplainRequest other = request_;
-    other.cells = static_cast<int>(std::lround(kOtherCells * request_.cells));
-    other.filter.integrator = kOtherIntegrator;
-    other.threads = 1;
-    const std::array<FilterModel, 2> models{
-        {{request_.base, result_.base.pace, {}, {}},
-         {request_.base, result_.found.pace, result_.found.hypothesis, {}}}};
-    std::array<ModelGaps, 2> gaps;
-    data_.front().team->run([&](int lane) {
-      for (int k = lane; k < 2; k += request_.threads)
-        gaps[k] = gaps_of_model(series_, other, models[k].pace, models[k].hypothesis.terms());
-    });
-    result_.rerun = {other.cells, kOtherIntegrator, gaps[0].gap, gaps[1].gap,
-                     in_units_of_c(gaps[1].expected, result_.noise)};
-  }
-
-  const std::vector<FieldSeries>& series_;
   const ExplainRequest& request_;
   FilterProblems data_;
+  const std::vector<Candidate> candidates_;
   FilterModel model_;
   std::vector<ErrorMaps> maps_;
   Explanation result_;
@@ -309,15 +338,19 @@ class Search {
 
 }  // namespace
 
-ModelGaps gaps_of_model(const std::vector<FieldSeries>& series, const ExplainRequest& request,
-                        double pace, const std::vector<EffectTerm>& effects) {
-  ExplainRequest alone = request;
-  alone.filter.replicates = 0;
-  const FilterProblems data = problems_of(series, alone);
-  std::vector<ErrorMaps> maps;
-  const FilterResult pass =
-      filter_fields(data, {with_effects(request.base, effects), pace, {}, {}}, alone.filter, maps);
-  return {in_units_of_c(gaps_of_pass(pass), noise_of(data)), expected_gaps(pass)};
+FilterProblems problems_of(const std::vector<FieldSeries>& series, const ExplainRequest& request) {
+  return make_filter_problems(series, *request.surface, request.base, request.cells,
+                              request.threads, request.hold_out, request.filter);
+}
+
+double noise_of(const FilterProblems& problems) {
+  double squares = 0, count = 0;
+  for (const FilterProblem& data : problems)
+    for (const double noise : data.noise) {
+      squares += noise * noise;
+      ++count;
+    }
+  return std::sqrt(squares / count);
 }
 
 Explanation explain_fields(const std::vector<FieldSeries>& series, const ExplainRequest& request,

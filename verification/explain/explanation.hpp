@@ -27,29 +27,45 @@ struct ExplainRequest {
   bool hold_out = true;        // the last snapshot of vesicles that have four or more
   double false_alarms = 0.02;  // with nothing missing, the share of data sets that seem to lack
                                // something
-  bool rerun = true;           // on another mesh and by another integrator
   std::function<void(const std::string& step)> progress = {};      // may be empty
   std::function<void(const struct SearchState& state)> save = {};  // after every round
 };
 
+// A snapshot that seems turned, or whose values seem to be on another scale: further than what is
+// known of them allows for. All small if it is only one of them.
+struct FrameChange {
+  std::size_t vesicle, snapshot;
+  double turn;          // since the snapshot before, as an angle
+  double gain, offset;  // measured = (1 + gain) c + offset
+};
+
 // What was found, held against the data once more, on another mesh and by another integrator.
 struct Rerun {
-  int cells = 0;  // 0: there is none, as nothing was found
+  int cells = 0;
   std::string integrator;
   Gaps base, found, floor;  // in units of c
+  std::string failure;      // why there is none, if it failed
+
+  // Is the found model better than the base there, too? By what is held out, if anything is.
+  bool confirms() const;
 };
 
 struct Explanation {
   Finding finding = Finding::none;
   int replicates = 0;                   // of noise that verdicts are judged by
+  double false_alarms = 0;              // as requested
   double noise = 0;                     // standard deviation of the values
   Refit base, found;                    // with the pace refitted; found: the base if none was
-  std::vector<std::string> equivalent;  // effects that explain the data as well as the last found
+  std::vector<std::string> equivalent;  // hypotheses that explain the data as well, found first
   std::vector<Round> rounds;
-  // Measured minus forecast, in units of c. Placebo: the second best of the first round. Floor:
-  // what is to be expected of the found model if nothing else is missing.
-  Gaps base_gap, found_gap, placebo_gap, floor;
-  Rerun rerun;
+  // Measured minus forecast, in units of c. Placebo: the second best of the first round, if there
+  // was one. Floor: what is to be expected of the found model if nothing else is missing.
+  Gaps base_gap, found_gap, floor;
+  std::optional<Gaps> placebo_gap;
+  std::size_t outliers = 0;                 // values that were left out
+  std::vector<FrameChange> changes;         // of the found model
+  std::string stopped;                      // why the search could not go on, if it had to stop
+  std::optional<Rerun> rerun;               // by run_again, if it was asked for
   std::vector<Bound> bounds;                // of effects that were not found
   std::vector<Disagreement> disagreements;  // with the base, the significant ones
   SurfaceMesh map_mesh;                     // Γ_h of the model's mesh
@@ -59,17 +75,12 @@ struct Explanation {
 // Between two rounds: all that the search goes on from.
 struct SearchState {
   Explanation so_far;
-  std::vector<double> noise;  // of each vesicle
-  bool more = true;           // is there another round?
+  std::vector<std::vector<double>> noise;  // of each vesicle, of each snapshot
+  bool more = true;                        // is there another round?
 };
 
-// The gaps of a model that has these effects already, in units of c, and what is to be expected of
-// them, in units of the noise.
-struct ModelGaps {
-  Gaps gap, expected;
-};
-ModelGaps gaps_of_model(const std::vector<FieldSeries>& series, const ExplainRequest& request,
-                        double pace, const std::vector<EffectTerm>& effects);
+FilterProblems problems_of(const std::vector<FieldSeries>& series, const ExplainRequest& request);
+double noise_of(const FilterProblems& data);  // of the measurements, over all vesicles, in c
 
 // Vesicles of one radius and one membrane. Throws std::runtime_error if the base model cannot be
 // advanced.

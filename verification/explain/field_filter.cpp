@@ -32,9 +32,6 @@ Columns turns(const CahnHilliard& problem, const Vec& c) {
 // Of c, in forecasts that lack something: what a gap is looked for as.
 constexpr double kUsualGap = 0.02;
 
-// Standard deviation of the share by which extrapolation to infinitely fine meshes is wrong.
-constexpr double kMeshDoubt = 0.5;
-
 // The state of the filter between two snapshots.
 struct Belief {
   Vec c;
@@ -70,7 +67,7 @@ class Filter {
   }
 
   FilterResult run() {
-    for (std::size_t k = 0; k + 1 < data_.times.size(); ++k) {
+    for (std::size_t k = 0; k + 1 < data_.snapshots.size(); ++k) {
       advance(k);
       compare(k);
     }
@@ -79,7 +76,7 @@ class Filter {
 
  private:
   void advance(std::size_t k) {
-    const double begin = pace_ * data_.times[k], end = pace_ * data_.times[k + 1];
+    const double begin = pace_ * data_.time(k), end = pace_ * data_.time(k + 1);
     // The finer meshes on one processor, everything else on the other.
     std::future<ResolvedForecast::End> resolved;
     if (resolved_)
@@ -126,7 +123,7 @@ class Filter {
 
   void compare(std::size_t k) {
     const NoisyValues& measured = data_.snapshots[k + 1];
-    const Vec scale = (data_.noise * measured.deviation).cwiseInverse();
+    const Vec scale = (data_.noise[k + 1] * measured.deviation).cwiseInverse();
     const auto seen = [&](const Columns& X) {
       return Columns(scale.asDiagonal() * (measured.trace * X));
     };
@@ -158,13 +155,18 @@ class Filter {
                           error_values.leftCols(belief_.errors.cols()).squaredNorm();
 
     const InnovationCovariance weight(in, in.model_error);
+    const Vec found = weight.amplitudes(in.values);
+    const Eigen::Index known = belief_.errors.cols(), frames = turned.cols() + frame.cols();
+    in.frame = found.segment(known, frames);
+    in.gap = in.values - in.directions.middleCols(known, frames) * in.frame;
+    in.weighted_squares = in.values.dot(weight.solve(in.values).col(0));
     if (!in.held_out) account(in, weight);
     if (in.replicates.cols() > 0)
       (in.held_out ? result_.heldout_gap_parts : result_.gap_parts)
           .push_back(explained_parts(
               in, kUsualGap, side_by_side(side_by_side(in.values, in.parameters), in.replicates)));
     const Columns no_share = Columns::Zero(belief_.c.size(), frame.cols());
-    correct(in, weight, side_by_side(side_by_side(errors, no_share), patterns));
+    correct(in, weight, found, side_by_side(side_by_side(errors, no_share), patterns));
     result_.innovations.push_back(std::move(in));
   }
 
@@ -176,19 +178,30 @@ class Filter {
                                       static_cast<std::uint64_t>(i));
   }
 
-  void account(Innovation& in, const InnovationCovariance& weight) {
+  void account(const Innovation& in, const InnovationCovariance& weight) {
     const Columns weighted = weight.solve(in.parameters);
     result_.information += in.parameters.transpose() * weighted;
     result_.score += weighted.transpose() * in.values;
-    in.weighted_squares = in.values.dot(weight.solve(in.values).col(0));
     result_.deviance += in.weighted_squares + weight.log_determinant();
-    if (in.replicates.cols() > 0) result_.null_scores += weighted.transpose() * in.replicates;
+    if (in.replicates.cols() > 0)
+      result_.null_scores += weighted.transpose() * in.replicates + model_errors(in, weighted);
   }
 
-  // `directions`: what those of the innovation are in the state.
-  void correct(const Innovation& in, const InnovationCovariance& weight,
+  // What errors of the model, as large as they seem to be, do to the scores of the replicates.
+  Columns model_errors(const Innovation& in, const Columns& weighted) const {
+    const Eigen::Index patterns = in.directions.cols() - in.state_directions;
+    const std::uint64_t stream = 1000 * data_.vesicle + in.snapshot;
+    Columns sizes(patterns, in.replicates.cols());
+    for (Eigen::Index i = 0; i < sizes.size(); ++i)
+      sizes.data()[i] = in.model_error * normal_random(8, stream, static_cast<std::uint64_t>(i));
+    return Columns(weighted.transpose() * in.directions.rightCols(patterns)) * sizes;
+  }
+
+  // `found`: the innovation's amplitudes; `directions`: what those of the innovation are in the
+  // state.
+  void correct(const Innovation& in, const InnovationCovariance& weight, const Vec& found,
                const Columns& directions) {
-    const Vec increment = directions * weight.amplitudes(in.values);
+    const Vec increment = directions * found;
     belief_.c += increment;
     if (resolved_) resolved_->correct(increment);
     belief_.parameters -= product(directions, weight.amplitudes(in.parameters));

@@ -47,6 +47,8 @@ struct FilterModel {
 // Parameters: ln D first, second what extrapolation to finer meshes gets wrong of its last part,
 // then the coefficients of the hypothesis and those of the screened candidates.
 inline constexpr int kPace = 0, kMeshError = 1, kFirstParameter = 2;
+// Standard deviation of the share by which extrapolation to infinitely fine meshes is wrong.
+inline constexpr double kMeshDoubt = 0.5;
 
 // Vesicles have a state each and share the parameters. Model errors are sized by the innovations
 // themselves, snapshot by snapshot. `maps`, one per vesicle, are filled if there are none.

@@ -9,6 +9,9 @@
 namespace traceraft {
 
 // Times in units of R²/D of the model, places in units of R.
+// How far off the surface a place may be; the nearest point of the surface is then meant.
+inline constexpr double kOffSurface = 0.1;
+
 struct FieldSnapshot {
   double time;
   std::vector<Point> points;

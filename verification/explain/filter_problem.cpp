@@ -3,30 +3,41 @@
 #include <cmath>
 
 #include "backends/list.hpp"
+#include "kernel/core/error.hpp"
+#include "verification/explain/outliers.hpp"
 
 namespace traceraft {
 namespace {
 
 // Of the tolerance that integrators have unless asked: far below the noise of a measurement.
 constexpr double kForecastTolerance = 0.3;
+// Outliers are that far from what is around them, in units of the distance of the wells; more than
+// that share of the values is refused, and they are looked for that often.
+constexpr double kOutlying = 0.2, kMostOutliers = 0.05;
+constexpr int kMostPasses = 6;
 
-// What data state as their deviations is taken as relative to each other.
+// What data state as their deviations is taken as relative to each other; 1: what the values would
+// have if all told as much as they do together.
 double typical_deviation(const FieldSeries& series) {
-  double squares = 0, count = 0;
+  double weights = 0, count = 0;
   for (const FieldSnapshot& snapshot : series.snapshots) {
-    squares += snapshot.deviation.squaredNorm();
+    weights += snapshot.deviation.cwiseAbs2().cwiseInverse().sum();
     count += static_cast<double>(snapshot.deviation.size());
   }
-  return std::sqrt(squares / count);
+  return std::sqrt(count / weights);
 }
 
-void add_snapshots(const FieldSeries& series, FilterProblem& data) {
-  const double typical = typical_deviation(series);
-  for (const FieldSnapshot& snapshot : series.snapshots) {
-    data.times.push_back(snapshot.time);
-    data.snapshots.push_back({point_trace(*data.space, snapshot.points, data.space->h()),
-                              snapshot.values, snapshot.deviation / typical});
-  }
+std::vector<NoisyValues> noisy_values(const FilterProblem& data) {
+  const double typical = typical_deviation(data.series);
+  std::vector<NoisyValues> result;
+  for (const FieldSnapshot& snapshot : data.series.snapshots) try {
+      result.push_back({point_trace(*data.space, snapshot.points, kOffSurface), snapshot.values,
+                        snapshot.deviation / typical});
+    } catch (const InputError& error) {
+      throw InputError("vesicle " + data.series.vesicle + ", snapshot " +
+                       std::to_string(result.size() + 1) + ": " + error.what());
+    }
+  return result;
 }
 
 // What is common to all vesicles.
@@ -50,35 +61,62 @@ FilterProblem on_meshes(const LevelSet& surface, int cells, int threads,
   return data;
 }
 
-void add_series(const FieldSeries& series, double epsilon, const FilterSettings& settings,
-                FilterProblem& data) {
-  add_snapshots(series, data);
-  data.finer_traces = finer_traces(*data.finer, *data.space, series);
-  data.first = estimate_field(*data.space, data.snapshots.front(),
-                              {2 * epsilon, settings.rank, settings.replicates, data.vesicle});
+void refuse_outliers(const FilterProblem& data) {
+  std::size_t left = 0;
+  for (const FieldSnapshot& snapshot : data.series.snapshots) left += snapshot.points.size();
+  const auto outliers = static_cast<double>(data.outliers);
+  if (outliers > kMostOutliers * (outliers + static_cast<double>(left)))
+    throw InputError("vesicle " + data.series.vesicle + ": " + std::to_string(data.outliers) +
+                     " values of c belong to no field, too many to be slips: each is far from "
+                     "those around it");
+}
+
+// The prior of the first field, the noise of all, and what is left without outliers.
+FieldPrior clean(const FieldSeries& series, const DoubleWell& well, FilterProblem& data) {
+  data.series = series;
+  FieldPrior prior{};
+  std::size_t dropped = 1;
+  for (int pass = 0; dropped > 0; ++pass) {
+    data.snapshots = noisy_values(data);
+    prior = estimate_field(*data.space, data.snapshots.front(), ErrorRequest{}).prior;
+    double squares = 0;
+    dropped = 0;
+    for (std::size_t k = 0; k < data.snapshots.size(); ++k) {
+      const FieldEstimate here = estimate_field(*data.space, data.snapshots[k], prior, {});
+      squares += here.noise * here.noise / static_cast<double>(data.snapshots.size());
+      if (pass < kMostPasses)
+        dropped += drop_outliers(data.snapshots[k].trace * here.field,
+                                 kOutlying * (well.b - well.a), data.series.snapshots[k]);
+    }
+    data.noise.assign(data.snapshots.size(), std::sqrt(squares));
+    data.outliers += dropped;
+    refuse_outliers(data);
+  }
+  return prior;
+}
+
+void add_series(const FieldSeries& series, const CahnHilliardModel& base,
+                const FilterSettings& settings, FilterProblem& data) {
+  const FieldPrior prior = clean(series, base.well, data);
+  data.finer_traces = finer_traces(*data.finer, data.series);
+  data.first = estimate_field(*data.space, data.snapshots.front(), prior,
+                              {2 * base.epsilon, settings.rank, settings.replicates, data.vesicle});
   NoisyValues resolved = data.snapshots.front();
   resolved.trace = data.finer_traces[1].front();
-  data.first_resolved =
-      estimate_field(*data.finer->spaces[1], resolved, data.first.prior, {}).field;
-  double squares = 0;
-  for (const NoisyValues& values : data.snapshots) {
-    const double noise = estimate_field(*data.space, values, data.first.prior, {}).noise;
-    squares += noise * noise / static_cast<double>(data.snapshots.size());
-  }
-  data.noise = std::sqrt(squares);
+  data.first_resolved = estimate_field(*data.finer->spaces[1], resolved, prior, {}).field;
 }
 
 }  // namespace
 
 FilterProblems make_filter_problems(const std::vector<FieldSeries>& series, const LevelSet& surface,
-                                    double epsilon, int cells, int threads, bool hold_out,
-                                    const FilterSettings& settings) {
+                                    const CahnHilliardModel& base, int cells, int threads,
+                                    bool hold_out, const FilterSettings& settings) {
   FilterProblems problems(series.size(), on_meshes(surface, cells, threads, settings));
   for (std::size_t v = 0; v < series.size(); ++v) {
     const std::size_t snapshots = series[v].snapshots.size();
     problems[v].vesicle = v;
     problems[v].train = hold_out && snapshots >= 4 ? snapshots - 1 : snapshots;
-    add_series(series[v], epsilon, settings, problems[v]);
+    add_series(series[v], base, settings, problems[v]);
   }
   return problems;
 }

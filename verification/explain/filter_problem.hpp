@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "kernel/linear/linear_solver.hpp"
+#include "kernel/problem/cahn_hilliard.hpp"
 #include "verification/explain/gap_patterns.hpp"
 #include "verification/explain/resolved_forecast.hpp"
 
@@ -25,28 +26,32 @@ struct FilterSettings {
 // Everything about the series of one vesicle that does not depend on parameters.
 struct FilterProblem {
   std::size_t vesicle;  // its number
+  FieldSeries series;   // without outliers
+  std::size_t outliers = 0;
   std::shared_ptr<const ThreadTeam> team;
   SpacePtr space;  // of one thread
   std::shared_ptr<const FinerMeshes> finer;
   EigenMatrix mass;                    // stabilised, on `space`
-  std::vector<NoisyValues> snapshots;  // on `space`
+  std::vector<NoisyValues> snapshots;  // of the series, on `space`
   FinerTraces finer_traces;
-  std::vector<double> times;  // in units of R²/D of the base model
   std::size_t train = 0;      // snapshots that count
   FieldEstimate first;        // of the first snapshot
   Vec first_resolved;         // its field on the finest mesh
-  double noise;               // of all of them
+  std::vector<double> noise;  // of each snapshot, in units of its deviations
   std::shared_ptr<const GapPatterns> patterns;
   LinearSolverFactory tangent_solver;
   MakeForecaster make_integrator;
+
+  double time(std::size_t snapshot) const { return series.snapshots[snapshot].time; }
 };
 
 using FilterProblems = std::vector<FilterProblem>;
 
 // Of all vesicles, on the same meshes. `hold_out`: the last of four snapshots or more is forecast,
-// but counts for nothing.
+// but counts for nothing. Throws InputError for places that are off the surface, and where more
+// than a twentieth of the values are outliers.
 FilterProblems make_filter_problems(const std::vector<FieldSeries>& series, const LevelSet& surface,
-                                    double epsilon, int cells, int threads, bool hold_out,
-                                    const FilterSettings& settings);
+                                    const CahnHilliardModel& base, int cells, int threads,
+                                    bool hold_out, const FilterSettings& settings);
 
 }  // namespace traceraft

@@ -1,11 +1,19 @@
 #include "verification/explain/forecast.hpp"
 
 #include <cmath>
+#include <stdexcept>
 
 #include "verification/bench.hpp"
 #include "verification/explain/tangent_flow.hpp"
 
 namespace traceraft {
+namespace {
+
+// From one snapshot to the next: some hundred are usual. Models that need so many are trials with
+// an effect far too strong.
+constexpr int kMostSteps = 1000;
+
+}  // namespace
 
 TangentGrid TangentGrid::graded(double begin, double end, int steps) {
   TangentGrid grid;
@@ -32,7 +40,8 @@ Forecast forecast(const CahnHilliard& problem, const MakeIntegrator& make_integr
   Forecast result;
   for (const int steps : tangent_steps)
     result.paths.push_back({TangentGrid::graded(begin, end, steps), {}});
-  while (integrator->time() < end) {
+  for (int step = 0; integrator->time() < end; ++step) {
+    if (step == kMostSteps) throw std::runtime_error("a forecast takes too many steps");
     require(integrator->advance());
     for (TangentPath& path : result.paths) {
       const auto& times = path.grid.stage_times;

@@ -21,7 +21,10 @@ struct Innovation {
   Columns parameters;           // X: derivatives of the forecast by the parameters
   Columns replicates;           // values of noise alone
   double weighted_squares = 0;  // νᵀ S⁻¹ ν, one per value on average
-  double expected_squares = 0;  // νᵀ ν, on average, of noise and what it leaves unknown of c
+  double expected_squares = 0;  // of the gap, by noise and what it leaves unknown of c
+  // Most probable turns about the three axes, scale and zero of the values, in their standard
+  // deviations; `gap`: the values without what these make of them.
+  Vec frame, gap;
   double model_error;  // size of the state's error that is no noise, per step, in units of c
 };
 

@@ -8,15 +8,8 @@ namespace {
 
 // An effect has to change c by that many times what extrapolation to finer meshes does.
 constexpr double kResolved = 3;
-// A gap of any shape has to be that much less probable than the best candidate: what is left of
-// the errors of the mesh and of linear responses looks like one, and it names nothing.
-constexpr double kGapLevel = 0.25;
 
-const std::string& last_effect(const Refit& fit) {
-  return fit.hypothesis.parts.back().candidate.effect;
-}
-
-bool resolved(const Round& round, const std::string& effect) {
+bool resolved_in(const Round& round, const std::string& effect) {
   return std::any_of(round.screening.scores.begin(), round.screening.scores.end(),
                      [&](const CandidateScore& score) {
                        return score.effect == effect &&
@@ -51,6 +44,18 @@ std::string word_for(Finding finding) {
   return "";
 }
 
+const std::string& last_effect(const Hypothesis& hypothesis) {
+  return hypothesis.parts.back().candidate.effect;
+}
+
+bool resolved(const std::vector<Round>& rounds, const Hypothesis& hypothesis) {
+  return std::all_of(hypothesis.parts.begin(), hypothesis.parts.end(), [&](const auto& part) {
+    return std::any_of(rounds.begin(), rounds.end(), [&](const Round& round) {
+      return resolved_in(round, part.candidate.effect);
+    });
+  });
+}
+
 double criterion(const Refit& fit, double values) {
   return fit.deviance + std::log(values) * static_cast<double>(fit.hypothesis.coefficients());
 }
@@ -66,12 +71,12 @@ Judgement judge(const Round& round, double values, double false_alarms, double u
   const Refit& best = round.refits.front();
   const double least = criterion(best, values);
   if (criterion(round.without, values) < least) return {false, rest, {}};
-  if (!resolved(round, last_effect(best)))
+  if (!resolved_in(round, last_effect(best.hypothesis)))
     return {false, first ? Finding::below_resolution : rest, {}};
-  Judgement taken{true, Finding::named, {last_effect(best)}};
+  Judgement taken{true, Finding::named, {best.hypothesis.name()}};
   for (std::size_t k = 1; k < round.refits.size(); ++k)
     if (criterion(round.refits[k], values) < least + kTelling)
-      taken.equivalent.push_back(last_effect(round.refits[k]));
+      taken.equivalent.push_back(round.refits[k].hypothesis.name());
   if (taken.equivalent.size() > 1) taken.finding = Finding::ambiguous;
   return taken;
 }

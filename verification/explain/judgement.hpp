@@ -32,6 +32,10 @@ struct Round {
   Screening screening;
   Refit without;              // what was known before
   std::vector<Refit> refits;  // of the shortlist, most probable first; none if nothing is lacking
+  struct Failure {
+    std::string effect, why;
+  };
+  std::vector<Failure> failures;  // of the shortlist, whose forecasts failed
 };
 
 // 2 ln of a likelihood ratio of 20: less does not tell two hypotheses apart.
@@ -43,10 +47,19 @@ inline constexpr double kSeen = 4;
 // a special case of it. `values`: how many have been measured.
 double criterion(const Refit& fit, double values);
 
+// Does every effect change c by more than the mesh does, in a round that it was screened in?
+bool resolved(const std::vector<Round>& rounds, const Hypothesis& hypothesis);
+
+const std::string& last_effect(const Hypothesis& hypothesis);
+
+// A gap of any shape has to be that much less probable than the best candidate: what is left of
+// the errors of the mesh and of linear responses looks like one, and it names nothing.
+inline constexpr double kGapLevel = 0.25;
+
 struct Judgement {
   bool taken;                           // the best refit's effect belongs to the model
   Finding finding;                      // of the search up to now
-  std::vector<std::string> equivalent;  // effects that explain the data as well, itself first
+  std::vector<std::string> equivalent;  // hypotheses that explain the data as well, best first
 };
 // `false_alarms`: the share of data sets with nothing missing that may seem to lack something;
 // `usual_change`: of c that an effect makes, in units of the noise.

@@ -1,6 +1,7 @@
 #include "verification/explain/refit.hpp"
 
 #include <Eigen/Dense>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -13,24 +14,66 @@ constexpr int kMostSteps = 6, kMostHalvings = 3;
 // D is known to that factor at least.
 constexpr double kLargestPaceStep = 0.5;
 
-// ln pace first, then all coefficients.
+double square(double x) {
+  return x * x;
+}
+
+// What is solved for: ln pace, then all coefficients; rates in units of time of the base model, as
+// what data tell of a rate then hardly depends on the pace. Factors from coefficients to these:
+Vec factors(const Hypothesis& hypothesis, double pace) {
+  Vec result(1 + hypothesis.coefficients());
+  result[0] = 1;
+  Eigen::Index next = 1;
+  for (const auto& part : hypothesis.parts)
+    for (int d = 0; d < part.candidate.directions; ++d)
+      result[next++] = part.candidate.rate ? pace : 1;
+  return result;
+}
+
 Vec unknowns(const FilterModel& model) {
-  Vec x(1 + model.hypothesis.coefficients());
+  Vec x = factors(model.hypothesis, model.pace);
   x[0] = std::log(model.pace);
   Eigen::Index next = 1;
   for (const auto& part : model.hypothesis.parts)
-    for (const double a : part.coefficients) x[next++] = a;
+    for (const double a : part.coefficients) x[next++] *= a;
   return x;
 }
 
 void set_unknowns(FilterModel& model, const Vec& x) {
   model.pace = std::exp(x[0]);
+  const Vec factor = factors(model.hypothesis, model.pace);
   Eigen::Index next = 1;
   for (auto& part : model.hypothesis.parts)
     for (double& a : part.coefficients) {
-      a = part.candidate.two_sided ? x[next] : std::max(0.0, x[next]);
+      a = part.candidate.within_range(x[next] / factor[next]);
       ++next;
     }
+}
+
+// Derivatives of the unknowns by ln pace and the coefficients.
+Eigen::MatrixXd jacobian(const FilterModel& model) {
+  const Vec x = unknowns(model);
+  Eigen::MatrixXd J = factors(model.hypothesis, model.pace).asDiagonal();
+  Eigen::Index next = 1;
+  for (const auto& part : model.hypothesis.parts)
+    for (int d = 0; d < part.candidate.directions; ++d, ++next)
+      if (part.candidate.rate) J(next, 0) = x[next];
+  return J;
+}
+
+// Of a refit, from that of its unknowns.
+void set_covariance(const Eigen::MatrixXd& unknown, Refit& fit) {
+  const Eigen::Index n = fit.hypothesis.coefficients();
+  const Vec inverse = factors(fit.hypothesis, fit.pace).tail(n).cwiseInverse();
+  fit.pace_deviation = std::sqrt(std::max(0.0, unknown(0, 0)));
+  fit.covariance = inverse.asDiagonal() * unknown.bottomRightCorner(n, n) * inverse.asDiagonal();
+}
+
+// Where the pace and the coefficients are among the parameters of a pass.
+std::vector<Eigen::Index> own_parameters(const Hypothesis& hypothesis) {
+  std::vector<Eigen::Index> own{kPace};
+  for (Eigen::Index k = 0; k < hypothesis.coefficients(); ++k) own.push_back(kFirstParameter + k);
+  return own;
 }
 
 struct Evaluation {
@@ -56,17 +99,18 @@ Evaluation evaluate(const FilterProblems& data, const FilterModel& model,
     const Eigen::MatrixXd inverse = pass.information.selfadjointView<Eigen::Lower>().ldlt().solve(
         Eigen::MatrixXd::Identity(pass.information.rows(), pass.information.cols()));
     const Vec all = inverse * pass.score;
-    std::vector<Eigen::Index> own{kPace};
-    for (Eigen::Index k = 0; k < model.hypothesis.coefficients(); ++k)
-      own.push_back(kFirstParameter + k);
-    result.step = all(own);
-    result.covariance = inverse(own, own);
-    result.deviance = pass.deviance;
+    const std::vector<Eigen::Index> own = own_parameters(model.hypothesis);
+    const Eigen::MatrixXd J = jacobian(model);
+    result.step = J * all(own);
+    result.covariance = J * inverse(own, own) * J.transpose();
+    // At the most probable error of the mesh, which the step takes to be free as well.
+    result.deviance =
+        pass.deviance - square(pass.score[kMeshError]) / pass.information(kMeshError, kMeshError);
     result.gap = gaps_of_pass(pass);
     result.expected = expected_gaps(pass);
     for (const Innovation& in : pass.innovations) {
       const auto count = static_cast<double>(in.values.size());
-      result.snapshots.push_back({in.vesicle, in.snapshot, in.values.norm() / std::sqrt(count),
+      result.snapshots.push_back({in.vesicle, in.snapshot, in.gap.norm() / std::sqrt(count),
                                   std::sqrt(in.expected_squares / count)});
     }
   } catch (const std::runtime_error& error) {
@@ -86,8 +130,12 @@ bool settled(const Evaluation& here, const FilterModel& model) {
 
 }  // namespace
 
+Gaps scaled(double factor, const Gaps& gaps) {
+  return {factor * gaps.train, factor * gaps.heldout};
+}
+
 Gaps gaps_of_pass(const FilterResult& pass) {
-  return over_snapshots(pass, [](const Innovation& in) { return in.values.squaredNorm(); });
+  return over_snapshots(pass, [](const Innovation& in) { return in.gap.squaredNorm(); });
 }
 
 Gaps expected_gaps(const FilterResult& pass) {
@@ -101,9 +149,17 @@ Refit refit(const FilterProblems& data, const FilterModel& start, const FilterSe
   alone.replicates = 0;
   FilterModel model = start;
   model.screened.clear();
+  Vec first = unknowns(model);
+  set_unknowns(model, first);
   Evaluation here = evaluate(data, model, alone, kept);
+  for (int half = 0; half <= kMostHalvings && !here.failure.empty(); ++half) {
+    first.tail(first.size() - 1) *= 0.5;
+    set_unknowns(model, first);
+    here = evaluate(data, model, alone, kept);
+  }
   bool better = here.failure.empty();
-  for (int k = 0; k < kMostSteps && better && !settled(here, model); ++k) {
+  bool at_rest = better && settled(here, model);
+  for (int k = 0; k < kMostSteps && better && !at_rest; ++k) {
     Vec step = here.step;
     step[0] = std::clamp(step[0], -kLargestPaceStep, kLargestPaceStep);
     const Vec x = unknowns(model);
@@ -117,6 +173,7 @@ Refit refit(const FilterProblems& data, const FilterModel& start, const FilterSe
       model = trial;
       here = std::move(there);
     }
+    at_rest = settled(here, model);
   }
   Refit result;
   result.hypothesis = model.hypothesis;
@@ -125,13 +182,40 @@ Refit refit(const FilterProblems& data, const FilterModel& start, const FilterSe
   result.gap = here.gap;
   result.expected = here.expected;
   result.snapshots = here.snapshots;
+  result.settled = at_rest;
   result.failure = here.failure;
-  if (here.failure.empty()) {
-    const Eigen::Index n = model.hypothesis.coefficients();
-    result.pace_deviation = std::sqrt(std::max(0.0, here.covariance(0, 0)));
-    result.covariance = here.covariance.bottomRightCorner(n, n);
-  }
+  if (here.failure.empty()) set_covariance(here.covariance, result);
   return result;
+}
+
+std::vector<Refit> refit_each(const FilterProblems& data, const std::vector<FilterModel>& starts,
+                              const FilterSettings& settings, const std::vector<ErrorMaps>& maps) {
+  if (starts.size() == 1) return {refit(data, starts[0], settings, maps)};
+  std::vector<Refit> refits(starts.size());
+  std::atomic<std::size_t> next{0};
+  data.front().team->run([&](int) {
+    for (std::size_t k = next++; k < starts.size(); k = next++)
+      refits[k] = refit(data, starts[k], settings, maps);
+  });
+  return refits;
+}
+
+void bootstrap(const FilterResult& pass, const FilterModel& model, Refit& fit) {
+  const Eigen::Index known = kFirstParameter + model.hypothesis.coefficients();
+  if (pass.null_scores.cols() == 0) return;
+  const Eigen::MatrixXd inverse = Eigen::MatrixXd(pass.information.topLeftCorner(known, known))
+                                      .selfadjointView<Eigen::Lower>()
+                                      .ldlt()
+                                      .solve(Eigen::MatrixXd::Identity(known, known));
+  const Eigen::MatrixXd estimates = inverse * pass.null_scores.topRows(known);
+  // The replicates have no error of the mesh; one of its size moves the other estimates by that.
+  const Vec by_mesh = inverse.col(kMeshError) / kMeshDoubt;
+  const Eigen::MatrixXd covariance =
+      estimates * estimates.transpose() / static_cast<double>(estimates.cols()) +
+      by_mesh * by_mesh.transpose();
+  const std::vector<Eigen::Index> own = own_parameters(model.hypothesis);
+  const Eigen::MatrixXd J = jacobian(model);
+  set_covariance(J * covariance(own, own) * J.transpose(), fit);
 }
 
 }  // namespace traceraft

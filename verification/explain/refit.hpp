@@ -11,6 +11,8 @@ struct Gaps {
   double train = 0, heldout = 0;
 };
 
+Gaps scaled(double factor, const Gaps& gaps);
+
 struct SnapshotGap {
   std::size_t vesicle, snapshot;
   double gap, expected;  // root mean squares
@@ -19,13 +21,16 @@ struct SnapshotGap {
 struct Refit {
   Hypothesis hypothesis;
   double pace = 1;
-  double deviance = 0;         // −2 ln of the likelihood, at its least
-  Eigen::MatrixXd covariance;  // of the coefficients, pace and mesh being free
-  double pace_deviation = 0;   // of ln pace
+  double deviance = 0;  // −2 ln of the likelihood, at its least, pace and mesh being free
+  // Of the coefficients, pace and mesh being free; of rates in units of time that do not change
+  // with the pace.
+  Eigen::MatrixXd covariance;
+  double pace_deviation = 0;  // of ln pace
   // Measured minus forecast in units of the noise, and what is to be expected of it if nothing is
   // missing: the noise, and what it leaves unknown of the state.
   Gaps gap, expected;
   std::vector<SnapshotGap> snapshots;  // the same, one by one
+  bool settled = true;                 // was the search for the coefficients over?
   std::string failure;                 // why a forecast failed, if it did: no refit then
 };
 
@@ -35,8 +40,17 @@ Gaps expected_gaps(const FilterResult& pass);  // if nothing is missing
 
 // Gauss and Newton's method with halved steps, from the coefficients and the pace of `start`, until
 // what is left to go is a small part of the standard deviation. Unstable trial models count as
-// improbable. Coefficients keep the sign that their effect has.
+// improbable; where even `start` is, its coefficients are halved until it is none. Coefficients
+// stay within the range that their effect has.
 Refit refit(const FilterProblems& data, const FilterModel& start, const FilterSettings& settings,
             const std::vector<ErrorMaps>& maps);
+
+// Of many, on all processors, in their order.
+std::vector<Refit> refit_each(const FilterProblems& data, const std::vector<FilterModel>& starts,
+                              const FilterSettings& settings, const std::vector<ErrorMaps>& maps);
+
+// The covariance that the replicates of a pass with the (refitted) model have, to first order: a
+// parametric bootstrap.
+void bootstrap(const FilterResult& pass, const FilterModel& model, Refit& fit);
 
 }  // namespace traceraft

@@ -29,12 +29,11 @@ FinerMeshes finer_meshes(const LevelSet& surface, const SpacePtr& own, int cells
   return meshes;
 }
 
-FinerTraces finer_traces(const FinerMeshes& meshes, const SurfaceSpace& own,
-                         const FieldSeries& series) {
+FinerTraces finer_traces(const FinerMeshes& meshes, const FieldSeries& series) {
   FinerTraces traces;
   for (std::size_t m = 0; m < traces.size(); ++m)
     for (const FieldSnapshot& snapshot : series.snapshots)
-      traces[m].push_back(point_trace(*meshes.spaces[m], snapshot.points, own.h()));
+      traces[m].push_back(point_trace(*meshes.spaces[m], snapshot.points, kOffSurface));
   return traces;
 }
 

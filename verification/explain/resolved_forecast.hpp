@@ -27,8 +27,7 @@ FinerMeshes finer_meshes(const LevelSet& surface, const SpacePtr& own, int cells
 
 // On each of them, where the snapshots were measured.
 using FinerTraces = std::array<std::vector<PointTrace>, 2>;
-FinerTraces finer_traces(const FinerMeshes& meshes, const SurfaceSpace& own,
-                         const FieldSeries& series);
+FinerTraces finer_traces(const FinerMeshes& meshes, const FieldSeries& series);
 
 // A state on the finest mesh. On the mesh of a model phase boundaries may be as wide as a cell:
 // what it lacks of their shape then acts on the flow like a line tension.

@@ -122,7 +122,9 @@ Screening screen(const FilterResult& result, const std::vector<Candidate>& scree
       null(r, static_cast<Eigen::Index>(k)) = gain(k, result.null_scores.col(r)).score;
   // An effect that is seen no better than noise would be must not look certain.
   const Vec average = null.colwise().mean().transpose().cwiseMax(0.5);
-  const Vec highest = (null * average.cwiseInverse().asDiagonal()).rowwise().maxCoeff();
+  const Vec highest = screened.empty()
+                          ? Vec(0)
+                          : Vec((null * average.cwiseInverse().asDiagonal()).rowwise().maxCoeff());
 
   const auto all_values = [&](const auto& squares) {
     return root_mean_square(result.innovations, false, squares);

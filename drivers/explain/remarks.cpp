@@ -1,0 +1,60 @@
+#include "drivers/explain/remarks.hpp"
+
+#include <cmath>
+
+#include "drivers/explain/verdict.hpp"
+#include "kernel/core/text.hpp"
+
+namespace traceraft {
+namespace {
+
+// "vesicle 1, snapshot 3 seems turned by 0.30 rad ..."
+std::string text_of(const FrameChange& change) {
+  return "Vesicle " + std::to_string(change.vesicle + 1) + ", snapshot " +
+         std::to_string(change.snapshot + 1) +
+         formatted(
+             ": it seems turned by %.2g rad since the one before, and its values scaled by "
+             "%.3g and shifted by %.2g. That is more than the search allows for; align and "
+             "calibrate the images first.",
+             change.turn, 1 + change.gain, change.offset);
+}
+
+void add_failures(const Explanation& found, std::vector<std::string>& all) {
+  for (const Round& round : found.rounds)
+    for (const Round::Failure& failure : round.failures)
+      all.push_back("A model with " + failure.effect + " could not be refitted: " + failure.why);
+  if (!found.stopped.empty())
+    all.push_back("The search had to stop beside " + found.found.hypothesis.name() + ": " +
+                  found.stopped);
+}
+
+void add_rerun(const Explanation& found, std::vector<std::string>& all) {
+  if (!found.rerun) return;
+  if (!found.rerun->failure.empty())
+    all.push_back("On another mesh and by another integrator it could not be repeated: " +
+                  found.rerun->failure);
+  else if (!found.rerun->confirms())
+    all.push_back(
+        "On another mesh and by another integrator what was found is no better than the base "
+        "model: do not rely on it; repeat with more --cells.");
+}
+
+}  // namespace
+
+std::vector<std::string> remarks(const Explanation& found) {
+  std::vector<std::string> all;
+  if (found.outliers > 0)
+    all.push_back(std::to_string(found.outliers) +
+                  " values that are far from all around them were left out.");
+  for (const FrameChange& change : found.changes) all.push_back(text_of(change));
+  add_failures(found, all);
+  if (!found.found.settled)
+    all.push_back("The parameters were not quite at rest when their refit ended.");
+  const Round& last = found.rounds.back();
+  if (is_named(found) && last.refits.empty() && last.screening.p <= found.false_alarms)
+    all.push_back("Something is still lacking; more --effects would look for it.");
+  add_rerun(found, all);
+  return all;
+}
+
+}  // namespace traceraft

@@ -1,0 +1,115 @@
+// Refits on a small vesicle, measured with little noise on a mesh that resolves it.
+#include "verification/explain/refit.hpp"
+
+#include <gtest/gtest.h>
+
+#include "kernel/core/error.hpp"
+#include "verification/explain/blind_case.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr int kCells = 16;
+
+BlindRequest request() {
+  BlindRequest asked;
+  asked.base = bench_model("degenerate", 0.2);
+  asked.cells = 22;
+  asked.first = 10;
+  asked.last = 60;
+  asked.snapshots = 3;
+  asked.points = 1000;
+  asked.gap = 0.2;
+  asked.effects = {"uptake"};
+  asked.noise = 0.05;
+  asked.seed = 3;
+  return asked;
+}
+
+FilterSettings settings() {
+  FilterSettings few;
+  few.rank = 80;
+  few.replicates = 0;
+  return few;
+}
+
+FilterProblems problems(const std::vector<FieldSeries>& vesicles) {
+  return make_filter_problems(vesicles, *make_surface("sphere"), request().base, kCells, 2, true,
+                              settings());
+}
+
+class RefitTest : public ::testing::Test {
+ protected:
+  // With the uptake of the given rate.
+  FilterModel model(double rate) const {
+    FilterModel result{request().base, 1, {}, {}};
+    result.hypothesis.parts = {{find_candidate("uptake").value(), {rate}}};
+    return result;
+  }
+  static const BlindCase& drawn() {
+    static const BlindCase drawn = draw_blind_case(request());
+    return drawn;
+  }
+  double truth() const { return drawn().truth[0].values[0]; }
+};
+
+TEST_F(RefitTest, FindsTheMostProbableRate) {
+  const FilterProblems data = problems(drawn().vesicles);
+  std::vector<ErrorMaps> maps;
+  (void)filter_fields(data, model(0), settings(), maps);
+  // What a rate is depends on the unit of time, R²/D, which these data hardly know.
+  const auto rate_of = [](const Refit& fit) {
+    return fit.pace * fit.hypothesis.parts[0].coefficients[0];
+  };
+  const Refit best = refit(data, model(0), settings(), maps);
+  ASSERT_EQ(best.failure, "");
+  EXPECT_TRUE(best.settled);
+  const double sigma = best.pace * std::sqrt(best.covariance(0, 0));
+  EXPECT_NEAR(rate_of(best), truth(), 4 * sigma);
+  EXPECT_LT(sigma, 0.1 * std::fabs(truth()));
+  // From elsewhere to the same place, which is as probable.
+  const Refit other = refit(data, model(2 * truth()), settings(), maps);
+  EXPECT_NEAR(rate_of(other), rate_of(best), 0.3 * sigma);
+  EXPECT_NEAR(other.deviance, best.deviance, 0.3);
+  // Without the effect they are less so, by about what the estimate says.
+  FilterModel none = model(0);
+  none.hypothesis.parts.clear();
+  const Refit base = refit(data, none, settings(), maps);
+  EXPECT_GT(base.deviance, best.deviance + 100);
+  EXPECT_GT(base.gap.train, best.gap.train);
+}
+
+// A rate that no forecast survives, however often it is halved.
+TEST_F(RefitTest, SaysWhyThereIsNone) {
+  const FilterProblems data = problems(drawn().vesicles);
+  std::vector<ErrorMaps> maps;
+  (void)filter_fields(data, model(0), settings(), maps);
+  EXPECT_NE(refit(data, model(std::nan("")), settings(), maps).failure, "");
+}
+
+TEST_F(RefitTest, GoesWithoutOutliers) {
+  std::vector<FieldSeries> spoilt = drawn().vesicles;
+  FieldSnapshot& snapshot = spoilt[0].snapshots[1];
+  for (int k = 0; k < 1000; k += 100) snapshot.values[k] = k % 200 == 0 ? 3 : -2;
+  const FilterProblems clean = problems(drawn().vesicles), data = problems(spoilt);
+  EXPECT_EQ(clean[0].outliers, 0u);
+  EXPECT_GE(data[0].outliers, 10u);
+  EXPECT_LE(data[0].outliers, 12u);
+  EXPECT_NEAR(data[0].noise[0], clean[0].noise[0], 0.05 * clean[0].noise[0]);
+  for (int k = 0; k < 1000; k += 6) snapshot.values[k] = k % 4 == 0 ? 3 : -2;
+  EXPECT_THROW((void)problems(spoilt), InputError);
+}
+
+TEST_F(RefitTest, SaysWhichPlaceIsOffTheSurface) {
+  std::vector<FieldSeries> moved = drawn().vesicles;
+  moved[0].snapshots[1].points[3] *= 1.2;
+  try {
+    (void)problems(moved);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("snapshot 2"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace traceraft

@@ -1,0 +1,117 @@
+// The score test on passes whose information and scores are written down by hand.
+#include "verification/explain/score_test.hpp"
+
+#include <gtest/gtest.h>
+
+#include "kernel/core/random.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr int kReplicates = 400;
+
+// Pace, mesh, then gravity (two-sided), uptake (two-sided), exchange (two, not negative).
+const std::vector<Candidate>& screened() {
+  static const std::vector<Candidate> list{find_candidate("gravity").value(),
+                                           find_candidate("uptake").value(),
+                                           find_candidate("exchange").value()};
+  return list;
+}
+constexpr Eigen::Index kParameters = kFirstParameter + 4;
+
+// Scores of noise have the information as their covariance.
+FilterResult pass_with(const Eigen::MatrixXd& information) {
+  FilterResult pass;
+  pass.information = information;
+  pass.score = Vec::Zero(kParameters);
+  Eigen::MatrixXd z(kParameters, kReplicates);
+  for (Eigen::Index i = 0; i < z.size(); ++i)
+    z.data()[i] = normal_random(1, 1, static_cast<std::uint64_t>(i));
+  pass.null_scores = Eigen::MatrixXd(information.llt().matrixL()) * z;
+  Innovation in{};
+  in.values = Vec::Zero(10);
+  in.parameters = Columns::Ones(10, kParameters);
+  pass.innovations.push_back(in);
+  return pass;
+}
+
+const CandidateScore& score_of(const Screening& screening, const std::string& effect) {
+  for (const CandidateScore& score : screening.scores)
+    if (score.effect == effect) return score;
+  throw std::logic_error(effect);
+}
+
+TEST(ScoreTest, GainsWhatTheLikelihoodDoes) {
+  FilterResult pass = pass_with(4 * Eigen::MatrixXd::Identity(kParameters, kParameters));
+  pass.score[2] = 20;  // gravity
+  pass.score[3] = -6;  // uptake
+  const Screening screening = screen(pass, screened(), 0);
+  EXPECT_EQ(screening.scores.front().effect, "gravity");
+  EXPECT_NEAR(screening.scores.front().score, 20 * 20 / 4.0, 1e-9);
+  EXPECT_NEAR(screening.scores.front().coefficients[0], 5, 1e-9);
+  EXPECT_NEAR(screening.scores.front().covariance(0, 0), 0.25, 1e-9);
+  EXPECT_NEAR(score_of(screening, "uptake").coefficients[0], -1.5, 1e-9);
+  EXPECT_NEAR(score_of(screening, "gravity").null_mean, 1, 0.2);
+  EXPECT_NEAR(screening.p, 1.0 / (kReplicates + 1), 1e-12);
+}
+
+// Coefficients that may not be negative are 0 then, and noise gains half as much by them.
+TEST(ScoreTest, KeepsSigns) {
+  FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
+  pass.score[4] = -5;
+  pass.score[5] = 3;
+  const Screening screening = screen(pass, screened(), 0);
+  const CandidateScore& exchange = score_of(screening, "exchange");
+  EXPECT_EQ(exchange.coefficients[0], 0);
+  EXPECT_NEAR(exchange.coefficients[1], 3, 1e-9);
+  EXPECT_NEAR(exchange.score, 9, 1e-9);
+  EXPECT_NEAR(exchange.null_mean, 1, 0.2);
+}
+
+// What a nuisance explains as well is no evidence.
+TEST(ScoreTest, ProjectsNuisancesOut) {
+  Eigen::MatrixXd information = Eigen::MatrixXd::Identity(kParameters, kParameters);
+  information(kPace, 2) = information(2, kPace) = 0.8;
+  FilterResult pass = pass_with(information);
+  pass.score[kPace] = 10;
+  pass.score[2] = 8 + 1;  // what a pace of 10 makes of it, and 1
+  const Screening screening = screen(pass, screened(), 0);
+  EXPECT_NEAR(score_of(screening, "gravity").score, 1 / (1 - 0.64), 1e-9);
+  EXPECT_GT(screening.p, 0.2);
+}
+
+// The level of p, over all candidates, is what it says.
+TEST(ScoreTest, CallsNoiseNoise) {
+  FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
+  int alarms = 0;
+  constexpr int kTrials = 300;
+  for (int k = 0; k < kTrials; ++k) {
+    for (Eigen::Index i = 0; i < kParameters; ++i)
+      pass.score[i] =
+          normal_random(2, static_cast<std::uint64_t>(k), static_cast<std::uint64_t>(i));
+    alarms += screen(pass, screened(), 0).p <= 0.1;
+  }
+  EXPECT_NEAR(alarms, 0.1 * kTrials, 4 * std::sqrt(0.09 * kTrials));
+}
+
+TEST(ScoreTest, SeesNothingWhereNothingResponds) {
+  Eigen::MatrixXd information = Eigen::MatrixXd::Identity(kParameters, kParameters);
+  information(2, 2) = 1e-12;
+  FilterResult pass = pass_with(information);
+  pass.score[2] = 1e-3;
+  const Screening screening = screen(pass, screened(), 0);
+  EXPECT_EQ(score_of(screening, "gravity").score, 0);
+  EXPECT_EQ(score_of(screening, "gravity").covariance(0, 0), 0);
+}
+
+TEST(ScoreTest, MayHaveNothingToLookFor) {
+  FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
+  pass.score[kPace] = 2;
+  const Screening screening = screen(pass, {}, 0);
+  EXPECT_TRUE(screening.scores.empty());
+  EXPECT_EQ(screening.p, 1);
+  EXPECT_NEAR(screening.pace_change, 2, 1e-9);
+}
+
+}  // namespace
+}  // namespace traceraft
