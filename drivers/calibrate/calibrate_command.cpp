@@ -122,20 +122,23 @@ class Calibrator {
       if (!request_.quiet)
         std::printf("simulations at%s\n", words.empty() ? " the model" : words.c_str());
       const Configuration here = configuration_at(model_, names_, values, t_end);
-      const PointEnd end =
+      PointEnd end =
           run_point(out_ / "points" / name, here, {request_.runs, request_.jobs, request_.quiet});
       if (end.stopped) return false;
       for (const MemberFailure& failure : end.failures)
         std::fprintf(stderr, "traceraft: the run of seed %llu at%s failed: %s\n",
                      static_cast<unsigned long long>(failure.seed), words.c_str(),
                      failure.why.c_str());
-      if (end.runs.size() < 2)
-        throw InputError("at" + words + " fewer than two runs have finished");
-      CalibrationPoint point{{}, end.runs};
+      ends_.push_back(std::move(end));
+      points_.emplace_back();
       for (const double value : values_of(here, names_))
-        point.ln_parameters.push_back(std::log(value));
-      points_.push_back(std::move(point));
+        points_.back().ln_parameters.push_back(std::log(value));
     }
+    // Differences between points are known better if they are of the same seeds.
+    keep_common_seeds(ends_);
+    if (ends_.front().runs.size() < 2)
+      throw InputError("fewer than two seeds have finished at all points");
+    for (std::size_t k = 0; k < points_.size(); ++k) points_[k].runs = ends_[k].runs;
     return true;
   }
 
@@ -144,7 +147,8 @@ class Calibrator {
   const Configuration& model_;
   fs::path out_;
   std::vector<std::string> names_;
-  std::vector<CalibrationPoint> points_;
+  std::vector<PointEnd> ends_;
+  std::vector<CalibrationPoint> points_;  // of them
   Calibration result_;
 };
 

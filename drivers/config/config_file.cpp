@@ -58,6 +58,15 @@ std::string toml_value(const OptionSpec& spec, const Configuration& configuratio
   }
 }
 
+// Quoted where a shell would make something else of it.
+std::string in_shell(const std::string& text) {
+  const char* plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_=.,:/+";
+  if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) return text;
+  std::string quoted = "'";
+  for (const char ch : text) quoted += ch == '\'' ? std::string("'\\''") : std::string(1, ch);
+  return quoted + "'";
+}
+
 }  // namespace
 
 GivenValues read_config_file(const std::filesystem::path& path, const std::string& flag) {
@@ -77,6 +86,27 @@ std::string config_text(const Configuration& configuration) {
     text += spec.name + " = " + toml_value(spec, configuration) + "  # " + spec.help + "\n";
   }
   return text.substr(1);
+}
+
+std::string flags_text(const Configuration& configuration) {
+  // What other defaults depend on.
+  GivenValues deciding;
+  for (const char* name : {"case", "scaled", "integrator"})
+    deciding[name] = {configuration.text(name), ""};
+  const Configuration usual({}, deciding);
+  const Configuration nothing({}, {});
+  std::string text;
+  for (const OptionSpec& spec : run_options()) {
+    const bool decides = deciding.count(spec.name) > 0;
+    const std::string value = toml_value(spec, configuration);
+    if (!spec.numerical || value == toml_value(spec, decides ? nothing : usual)) continue;
+    text += text.empty() ? "--" : " --";
+    if (spec.kind == OptionKind::flag)
+      text += (configuration.flag(spec.name) ? "" : "no-") + spec.name;
+    else
+      text += spec.name + " " + in_shell(configuration.text(spec.name));
+  }
+  return text;
 }
 
 std::string numerical_identity(const Configuration& configuration) {

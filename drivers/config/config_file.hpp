@@ -16,6 +16,10 @@ GivenValues read_config_file(const std::filesystem::path& path,
 // All options with their resolved values, each with its meaning: reads back as the same run.
 std::string config_text(const Configuration& configuration);
 
+// The flags that give the same numbers, as one would type them: those that are no defaults, without
+// the leading space.
+std::string flags_text(const Configuration& configuration);
+
 // The options that decide the numbers of a run, in a normal form: equal text, equal run.
 std::string numerical_identity(const Configuration& configuration);
 

@@ -1,5 +1,7 @@
 #include "drivers/ensemble/ensemble_point.hpp"
 
+#include <algorithm>
+
 #include "backends/posix/durable_file.hpp"
 #include "drivers/config/config_file.hpp"
 #include "kernel/core/error.hpp"
@@ -43,10 +45,29 @@ PointEnd run_point(const std::filesystem::path& path, const Configuration& confi
           folder.run_of(failure.seed).string() +
           " is in use by another process; wait for its end, and give the same command");
   const Units units = configuration.units();
-  PointEnd result{end.stopped, end.failures, finished_histories(folder, plan, units.length())};
+  PointEnd result{end.stopped, end.failures, finished_histories(folder, plan, units.length()),
+                  finished_seeds(folder, plan)};
   for (History& run : result.runs)
     for (double& t : run.time) t /= units.time();
   return result;
+}
+
+void keep_common_seeds(std::vector<PointEnd>& ends) {
+  const auto has = [](const PointEnd& end, std::uint64_t seed) {
+    return std::find(end.seeds.begin(), end.seeds.end(), seed) != end.seeds.end();
+  };
+  const std::vector<PointEnd> all = ends;
+  for (PointEnd& end : ends) {
+    PointEnd kept{end.stopped, end.failures, {}, {}};
+    for (std::size_t k = 0; k < end.seeds.size(); ++k) {
+      const std::uint64_t seed = end.seeds[k];
+      if (!std::all_of(all.begin(), all.end(), [&](const PointEnd& e) { return has(e, seed); }))
+        continue;
+      kept.runs.push_back(end.runs[k]);
+      kept.seeds.push_back(seed);
+    }
+    end = std::move(kept);
+  }
 }
 
 }  // namespace traceraft

@@ -23,10 +23,14 @@ struct PointRequest {
 struct PointEnd {
   bool stopped = false;
   std::vector<MemberFailure> failures;
-  std::vector<History> runs;  // in units of R²/D
+  std::vector<History> runs;         // in units of R²/D
+  std::vector<std::uint64_t> seeds;  // theirs
 };
 // Carries out, or goes on with, the ensemble in the folder.
 PointEnd run_point(const std::filesystem::path& folder, const Configuration& configuration,
                    const PointRequest& request);
+
+// Where runs are compared one by one: leaves those whose seeds have finished at all points.
+void keep_common_seeds(std::vector<PointEnd>& ends);
 
 }  // namespace traceraft

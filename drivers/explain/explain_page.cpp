@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "drivers/config/config_file.hpp"
 #include "drivers/explain/explain_tables.hpp"
 #include "drivers/explain/remarks.hpp"
 #include "drivers/explain/verdict.hpp"
@@ -42,7 +43,8 @@ class ExplainPage {
     page_.paragraph("95 % bounds of their first parameters, to first order.");
     page_.table(bound_rows(found_, units_));
     page_.heading("Where this comes from");
-    page_.paragraph("traceraft " + std::string(kVersion) + ". " + data_text());
+    page_.paragraph("traceraft " + std::string(kVersion) + ". " + data_text() + " The model:");
+    page_.code(flags_text(Configuration(setup_.model, {})));
     write_durably(folder_ / "explain.html", page_.html());
     return missing_.text();
   }

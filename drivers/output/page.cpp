@@ -25,6 +25,10 @@ void Page::paragraph(const std::string& text) {
   body_ += "<p>" + html_text(text) + "</p>\n";
 }
 
+void Page::code(const std::string& text) {
+  body_ += "<pre>" + html_text(text) + "</pre>\n";
+}
+
 void Page::figure(const std::string& svg, const std::string& caption) {
   body_ += "<figure>" + svg + "<figcaption>" + html_text(caption) + "</figcaption></figure>\n";
 }

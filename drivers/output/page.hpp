@@ -13,6 +13,7 @@ class Page {
   explicit Page(std::string title) : title_(std::move(title)) {}
   void heading(const std::string& text);
   void paragraph(const std::string& text);
+  void code(const std::string& text);
   void figure(const std::string& svg, const std::string& caption);
   // The first row is the heading. Cells that start with a digit or a sign are set as numbers.
   void table(const std::vector<std::vector<std::string>>& rows);

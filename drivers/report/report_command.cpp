@@ -8,6 +8,7 @@
 #include "drivers/exit_codes.hpp"
 #include "drivers/report/report_page.hpp"
 #include "kernel/core/error.hpp"
+#include "kernel/core/text.hpp"
 
 namespace traceraft {
 namespace {
@@ -21,6 +22,10 @@ struct ReportRequest {
   int pause = 20;
   bool quiet = false;
 };
+
+std::string frame_name(std::size_t number) {
+  return formatted("frame-%04zu.png", number);
+}
 
 void write_pictures(const ReportRequest& request) {
   if (request.snapshots.empty() && request.animation.empty()) return;
@@ -37,11 +42,12 @@ void write_pictures(const ReportRequest& request) {
   if (request.snapshots.empty()) return;
   fs::create_directories(request.snapshots);
   for (std::size_t k = 0; k < images.size(); ++k) {
-    char name[32];
-    std::snprintf(name, sizeof name, "frame-%04zu.png", k);
-    write_durably(fs::path(request.snapshots) / name, png_bytes(images[k]));
+    write_durably(fs::path(request.snapshots) / frame_name(k), png_bytes(images[k]));
   }
-  if (!request.quiet) std::printf("%zu pictures in %s\n", images.size(), request.snapshots.c_str());
+  if (request.quiet) return;
+  std::printf("%zu pictures in %s\n", images.size(), request.snapshots.c_str());
+  if (fs::exists(fs::path(request.snapshots) / frame_name(images.size())))
+    std::printf("later ones there are of another time\n");
 }
 
 int report(const ReportRequest& request) {

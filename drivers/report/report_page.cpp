@@ -92,10 +92,14 @@ void add_settings(Page& page, const Configuration& configuration) {
   page.table(rows);
 }
 
-void add_provenance(Page& page, const fs::path& folder) {
+// `command` and the flags repeat what the page shows.
+void add_provenance(Page& page, const fs::path& folder, const std::string& command,
+                    const Configuration& configuration) {
   page.heading("Where this comes from");
   page.paragraph("traceraft " + std::string(kVersion) + ", from the files in " +
-                 fs::absolute(folder).lexically_normal().string() + ".");
+                 fs::absolute(folder).lexically_normal().string() + ". To repeat it:");
+  const std::string flags = flags_text(configuration);
+  page.code(command + (flags.empty() ? "" : " ") + flags);
 }
 
 void fill_run(Page& page, const fs::path& folder, const PageRequest& request, Missing& missing) {
@@ -111,6 +115,7 @@ void fill_run(Page& page, const fs::path& folder, const PageRequest& request, Mi
               request.charts / ("report-" + std::string(curve.column)), missing);
   add_summary(page, folder);
   add_settings(page, configuration);
+  add_provenance(page, folder, "traceraft run", configuration);
 }
 
 // What `data compare` has left.
@@ -156,6 +161,10 @@ void fill_ensemble(Page& page, const fs::path& path, const PageRequest& request,
   if (const fs::path agreement = path / "comparison.csv"; fs::exists(agreement))
     add_agreement(page, CsvTable::read(agreement));
   add_settings(page, configuration);
+  add_provenance(page, path,
+                 formatted("traceraft ensemble --runs %d --first-seed ", plan.runs) +
+                     std::to_string(plan.first_seed),
+                 configuration);
 }
 
 }  // namespace
@@ -191,7 +200,6 @@ std::string write_report_page(const fs::path& folder, const fs::path& out,
   else
     throw InputError(folder.string() +
                      " holds no run, ensemble, comparison or verification of traceraft");
-  add_provenance(page, folder);
   write_durably(out, page.html());
   return missing.text();
 }

@@ -48,7 +48,8 @@ Row law_row(const std::string& of, const std::optional<FittedLaw>& law) {
   };
   return {of,
           with(law->law.b, law->b),
-          with(law->law.t0, law->t0),
+          law->t0_open ? formatted("%.3g (to %.3g)", law->law.t0, law->t0.high)
+                       : with(law->law.t0, law->t0),
           with(law->law.c, law->c),
           formatted("%.2f", law->law.scatter),
           std::to_string(law->points)};

@@ -47,6 +47,18 @@ TEST(Configuration, FlagsBeatTheFileWhichBeatsTheCaseWhichBeatsDefaults) {
   EXPECT_EQ(Configuration({}, flags({{"integrator", "euler"}})).number("tolerance"), 5e-3);
 }
 
+TEST(Configuration, KnowsTheFlagsThatRepeatIt) {
+  EXPECT_EQ(flags_text(Configuration({}, {})), "");
+  const Configuration given(read_text("case = \"guv-3to1\"\ncells = 48\n"),
+                            flags({{"scaled", "false"},
+                                   {"integrator", "euler"},
+                                   {"initial", "formula"},
+                                   {"initial-formula", "sin(3*x)^2"}}));
+  EXPECT_EQ(flags_text(given),
+            "--case guv-3to1 --cells 48 --initial formula --initial-formula 'sin(3*x)^2' "
+            "--integrator euler");
+}
+
 TEST(Configuration, ConvertsDefaultsUnderScaled) {
   const Configuration physical({}, flags({{"case", "guv-3to1"}}));
   EXPECT_EQ(physical.number("epsilon"), 0.05);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 #include "kernel/core/error.hpp"
 #include "kernel/core/random.hpp"
@@ -83,6 +84,19 @@ TEST(Published, EqualCapsHaveThatPerimeterAndArea) {
     const double fraction = 0.1, cosine = 1 - 2 * fraction / n;
     EXPECT_NEAR(equal_caps(2 * kPi * n * std::sqrt(1 - cosine * cosine), fraction), n, 1e-9);
   }
+}
+
+// An exponential is a power law whose origin is infinitely early.
+TEST(PowerLaw, SaysWhereItsOriginIsOpen) {
+  const auto open = [](const std::function<double(double)>& perimeter) {
+    MeasuredVesicles data;
+    for (int k = 0; k < 5; ++k)
+      for (double t = 100 + 20 * k; t < 1000; t += 150)
+        data.measurements.push_back({"v" + std::to_string(k), t, 5, {perimeter(t), 3.0, 0.1}, {}});
+    return fit_measurements(data, {0, 1000}).value().t0_open;
+  };
+  EXPECT_TRUE(open([](double t) { return 10 * std::exp(-t / 500); }));
+  EXPECT_FALSE(open([](double t) { return 10 * std::pow(t, -0.3); }));
 }
 
 // A sample of vesicles with one look each may hold one time only.

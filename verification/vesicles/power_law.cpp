@@ -9,6 +9,17 @@
 namespace traceraft {
 namespace {
 
+double first_time(const Points& points) {
+  double first = HUGE_VAL;
+  for (const auto& point : points) first = std::min(first, point.first);
+  return first;
+}
+
+// Of t0.
+double earliest_start(const Points& points) {
+  return -10 * first_time(points);
+}
+
 constexpr int kReplicates = 400;
 constexpr double kConfidence = 0.95;
 constexpr std::size_t kLeastPoints = 4;
@@ -40,7 +51,8 @@ FittedLaw with_intervals(const Sample& points_of, int count) {
   std::vector<int> all;
   for (int i = 0; i < count; ++i) all.push_back(i);
   const Points points = points_of(all);
-  FittedLaw fitted{fit_power_law_from(points), {}, {}, {}, static_cast<int>(points.size()), count};
+  FittedLaw fitted{fit_power_law_from(points),      {},   {}, {}, false,
+                   static_cast<int>(points.size()), count};
   const std::vector<Interval> intervals =
       bootstrap_all(count, kReplicates, kConfidence, 1, [&](const std::vector<int>& sample) {
         const Points drawn = points_of(sample);
@@ -49,6 +61,7 @@ FittedLaw with_intervals(const Sample& points_of, int count) {
       });
   fitted.c = intervals[0];
   fitted.t0 = intervals[1];
+  fitted.t0_open = fitted.t0.low < 0.99 * earliest_start(points);
   fitted.b = intervals[2];
   return fitted;
 }
@@ -60,9 +73,8 @@ double PowerLaw::at(double t) const {
 }
 
 PowerLaw fit_power_law_from(const Points& points) {
-  double first = HUGE_VAL;
-  for (const auto& point : points) first = std::min(first, point.first);
-  const double lower = -10 * first, upper = first * (1 - 1e-3);
+  const double first = first_time(points), lower = earliest_start(points),
+               upper = first * (1 - 1e-3);
   // Two valleys are possible: one where t0 explains the first points alone.
   PowerLaw best = law_from(points, 0);
   for (const double start : {-first, 0.0, 0.5 * first}) {

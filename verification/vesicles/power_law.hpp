@@ -22,6 +22,7 @@ PowerLaw fit_power_law_from(const Points& points);
 struct FittedLaw {
   PowerLaw law;
   Interval c, t0, b;
+  bool t0_open;  // the interval of t0 begins where the search for it ends
   int points, vesicles;
 };
 // Perimeters over radius within the window. Nothing if they are fewer than four, or of fewer than

@@ -1,0 +1,56 @@
+// `traceraft data` from files to files.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/support/program.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::content;
+using testing::Outcome;
+using testing::traceraft;
+
+const std::string kFacts = TRACERAFT_ROOT "/verification/data/published/guv-3to1.toml";
+
+TEST(DataTest, DrawsWhatWasPublishedAndChecksIt) {
+  const testing::TemporaryFolder folder;
+  const std::string drawn = (folder.path / "drawn").string(),
+                    again = (folder.path / "again").string(),
+                    other = (folder.path / "other").string();
+  ASSERT_EQ(traceraft("data draw " + drawn + " --facts " + kFacts).code, 0);
+  ASSERT_EQ(traceraft("data draw " + again + " --facts " + kFacts + " --seed 1").code, 0);
+  ASSERT_EQ(traceraft("data draw " + other + " --facts " + kFacts + " --seed 2").code, 0);
+  const std::string table = content(folder.path / "drawn/measurements.csv");
+  EXPECT_EQ(table, content(folder.path / "again/measurements.csv"));
+  EXPECT_NE(table, content(folder.path / "other/measurements.csv"));
+  EXPECT_EQ(table.rfind("# SYNTHETIC", 0), 0u);
+  const Outcome check = traceraft("data check " + drawn);
+  ASSERT_EQ(check.code, 0);
+  EXPECT_NE(check.output.find("SYNTHETIC, not measured): 17 vesicles, 62 measurements"),
+            std::string::npos)
+      << check.output;
+  EXPECT_NE(check.output.find("power law from 100 to 1000 s"), std::string::npos);
+  // Nothing is drawn over what is there.
+  EXPECT_EQ(traceraft("data draw " + drawn + " --facts " + kFacts).code, 2);
+  EXPECT_EQ(content(folder.path / "drawn/measurements.csv"), table);
+}
+
+TEST(DataTest, SaysWhereATableIsWrong) {
+  const testing::TemporaryFolder folder;
+  std::ofstream(folder.path / "dataset.toml")
+      << "name = \"few\"\nkind = \"measured\"\ntime_zero = \"start\"\nlength_unit = \"um\"\ntime_unit = \"s\"\n";
+  std::ofstream(folder.path / "measurements.csv")
+      << "vesicle,time,radius,perimeter\na,10,5,30\na,20,five,28\n";
+  const Outcome check = traceraft("data check " + folder.path.string());
+  EXPECT_EQ(check.code, 2);
+  EXPECT_NE(check.output.find("measurements.csv:3"), std::string::npos) << check.output;
+  EXPECT_NE(check.output.find("radius"), std::string::npos) << check.output;
+  EXPECT_EQ(traceraft("data chek " + folder.path.string()).code, 2);
+}
+
+}  // namespace
+}  // namespace traceraft
