@@ -53,7 +53,7 @@ class ExplainTest : public ::testing::Test {
   }
   // Where it does not matter how many effects are looked for.
   std::string command_of_few(int cells, const std::string& also_without = "") const {
-    return command(cells, 199) +
+    return command(cells) +
            " --without allen-cahn,asymmetry,cooling,line-tension,mobility-contrast,"
            "mobility-exponent,thermal" +
            also_without;
@@ -113,8 +113,8 @@ TEST_F(ExplainTest, GoesOnWhereItWasKilled) {
   constexpr int kCells = 13;
   BlindRequest asked = request();
   asked.effects = {"uptake"};
-  asked.snapshots = 3;
-  asked.points = 500;
+  asked.snapshots = 4;
+  asked.points = 400;
   write(draw_blind_case(asked).vesicles);
   const pid_t child = testing::start_traceraft(command_of_few(kCells));
   const fs::path saved = folder.path / "out" / "search.json";
@@ -147,8 +147,8 @@ TEST_F(ExplainTest, JoinsWhatVesiclesSay) {
   BlindRequest asked = request();
   asked.effects = {"uptake"};
   asked.vesicles = 2;
-  asked.snapshots = 3;
-  asked.points = 1000;
+  asked.snapshots = 4;
+  asked.points = 800;
   const BlindCase drawn = draw_blind_case(asked);
   ASSERT_EQ(drawn.vesicles.size(), 2u);
   EXPECT_NE(drawn.vesicles[0].snapshots[0].values[0], drawn.vesicles[1].snapshots[0].values[0]);
