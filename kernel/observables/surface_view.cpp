@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kSamples = 2;  // per pixel and direction
 
-using Colour = std::array<double, 3>;
+using Colour = std::array<std::uint8_t, 3>;
 constexpr Colour kDark = {38, 70, 120}, kBright = {247, 193, 82}, kWhite = {255, 255, 255};
 
 // The surface seen against `towards_viewer`, nearest piece in front.
@@ -39,18 +39,31 @@ class View {
     }
     const double area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
     if (area == 0) return;
-    const auto [x_min, x_max] = std::minmax_element(x.begin(), x.end());
+    // The last two weights of the corners are affine: w(column, row) = w₀ + columns dx + rows dy.
+    const auto weight = [&](int i, int j) {
+      const double dx = (y[j] - y[i]) / area, dy = (x[i] - x[j]) / area;
+      return Point((0.5 - x[i]) * dx + (0.5 - y[i]) * dy, dx, dy);
+    };
+    const Point b = weight(0, 2), c = -weight(0, 1), a = Point(1, 0, 0) - b - c;
+    const auto mix = [&](const std::array<double, 3>& v) { return v[0] * a + v[1] * b + v[2] * c; };
+    const Point depth = mix(z), part = mix(share);
     const auto [y_min, y_max] = std::minmax_element(y.begin(), y.end());
-    for (int row = first(*y_min); row <= last(*y_max); ++row)
-      for (int column = first(*x_min); column <= last(*x_max); ++column) {
-        const double px = column + 0.5, py = row + 0.5;
-        const double b = ((px - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (py - y[0])) / area;
-        const double c = ((x[1] - x[0]) * (py - y[0]) - (px - x[0]) * (y[1] - y[0])) / area;
-        const double a = 1 - b - c;
-        if (a < -1e-9 || b < -1e-9 || c < -1e-9) continue;
-        set(row, column, a * z[0] + b * z[1] + c * z[2], a * share[0] + b * share[1] + c * share[2],
-            shade);
+    for (int row = first(*y_min); row <= last(*y_max); ++row) {
+      double low = 0, high = size_ - 1;  // the columns where no weight is negative
+      for (const Point& w : {a, b, c}) {
+        const double at_zero = w[0] + row * w[2] + 1e-9;
+        if (w[1] > 0)
+          low = std::max(low, -at_zero / w[1]);
+        else if (w[1] < 0)
+          high = std::min(high, -at_zero / w[1]);
+        else if (at_zero < 0)
+          high = -1;
       }
+      for (int column = static_cast<int>(std::ceil(std::min<double>(low, size_))); column <= high;
+           ++column)
+        set(row, column, depth[0] + row * depth[2] + column * depth[1],
+            part[0] + row * part[2] + column * part[1], shade);
+    }
   }
 
   // What is in front on any of the ranks.
@@ -59,10 +72,15 @@ class View {
     const auto samples = static_cast<Eigen::Index>(depth_.size());
     Vec nearest = Eigen::Map<const Vec>(depth_.data(), samples);
     ranks.max(nearest);
-    for (std::size_t at = 0; at < depth_.size(); ++at)
-      if (depth_[at] < nearest[static_cast<Eigen::Index>(at)]) colour_[at] = {-1, -1, -1};
-    Eigen::Map<Vec> colours(colour_.data()->data(), 3 * samples);
+    Vec colours = Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1>>(
+                      colour_.data()->data(), 3 * samples)
+                      .cast<double>();
+    for (Eigen::Index at = 0; at < samples; ++at)
+      if (depth_[at] < nearest[at]) colours.segment<3>(3 * at).setConstant(-1);
     ranks.max(colours);
+    for (Eigen::Index at = 0; at < samples; ++at)
+      for (int channel = 0; channel < 3; ++channel)
+        colour_[at][channel] = static_cast<std::uint8_t>(colours[3 * at + channel]);
   }
 
   // Averages the samples of each pixel into `image`, starting at a column.
@@ -71,13 +89,13 @@ class View {
     for (int row = 0; row < pixels; ++row)
       for (int column = 0; column < pixels; ++column)
         for (int channel = 0; channel < 3; ++channel) {
-          double sum = 0;
+          int sum = 0;
           for (int i = 0; i < kSamples; ++i)
             for (int j = 0; j < kSamples; ++j)
               sum += colour_[index(row * kSamples + i, column * kSamples + j)][channel];
           const auto at = 3 * (static_cast<std::size_t>(row) * image.width + first_column + column);
           image.rgb[at + channel] =
-              static_cast<std::uint8_t>(std::lround(sum / (kSamples * kSamples)));
+              static_cast<std::uint8_t>((sum + kSamples * kSamples / 2) / (kSamples * kSamples));
         }
   }
 
@@ -93,7 +111,8 @@ class View {
     depth_[at] = depth;
     const double s = std::clamp(share, 0.0, 1.0);
     for (int channel = 0; channel < 3; ++channel)
-      colour_[at][channel] = shade * ((1 - s) * kDark[channel] + s * kBright[channel]);
+      colour_[at][channel] = static_cast<std::uint8_t>(
+          shade * ((1 - s) * kDark[channel] + s * kBright[channel]) + 0.5);
   }
 
   int size_;

@@ -89,8 +89,8 @@ TEST_F(OnRanks, ResidualAndJacobianAreBitwiseThose) {
   EXPECT_EQ(found, part_of(*whole, expected, *part));
 }
 
-// Of every combination that is offered: the solution of a fixed right-hand side is that of a direct
-// solver on one rank, or there is none.
+// Of every method, and of every inverse in every preconditioner: the solution of a fixed right-hand
+// side is that of a direct solver on one rank, or there is none.
 TEST_F(OnRanks, TekoSolvesWhatADirectSolverSolvesAlone) {
   const testing::StartState start = noise_state(alone);
   const Vec b = testing::random_vector(alone.size(), 9);
@@ -117,6 +117,7 @@ TEST_F(OnRanks, TekoSolvesWhatADirectSolverSolvesAlone) {
     for (const std::string method : {"fgmres", "gmres", "gcrodr", "bicgstab"})
       for (const std::string inverse : {"muelu", "muelu-ilu", "ifpack2"})
         for (const std::string preconditioner : {"two-solve", "gauss-seidel", "block-lu"}) {
+          if (method != "fgmres" && (inverse != "muelu" || preconditioner != "two-solve")) continue;
           const WordOptions options = {
               {"method", method}, {"inverse", inverse}, {"preconditioner", preconditioner}};
           Vec x;
