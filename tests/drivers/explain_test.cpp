@@ -21,11 +21,11 @@ class ExplainTest : public ::testing::Test {
   BlindRequest request() const {
     BlindRequest request;
     request.base = bench_model("degenerate", 0.15);
-    request.cells = 28;
+    request.cells = 24;
     request.first = 30;
     request.last = 140;
     request.snapshots = 5;
-    request.points = 1500;
+    request.points = 1200;
     request.seed = 2;
     return request;
   }
@@ -46,10 +46,10 @@ class ExplainTest : public ::testing::Test {
       for (FieldSnapshot& snapshot : vesicle.snapshots) snapshot.time *= Units().time();
     write_field_dataset(folder.path / "data", data, "drawn by a test");
   }
-  std::string command(int cells = 20, int replicates = 49) const {
+  std::string command(int cells = 16, int replicates = 49) const {
     return "explain --data " + (folder.path / "data").string() + " --epsilon 0.75 --cells " +
-           std::to_string(cells) + " --effects 1 --replicates " + std::to_string(replicates) +
-           " --out " + (folder.path / "out").string();
+           std::to_string(cells) + " --effects 1 --threads 1 --replicates " +
+           std::to_string(replicates) + " --out " + (folder.path / "out").string();
   }
   // Where it does not matter how many effects are looked for.
   std::string command_of_few(int cells, const std::string& also_without = "") const {
@@ -111,11 +111,7 @@ TEST_F(ExplainTest, NamesNothingWhereNothingIsHidden) {
 // A killed search goes on from its last round and ends as if nothing had happened.
 TEST_F(ExplainTest, GoesOnWhereItWasKilled) {
   constexpr int kCells = 13;
-  BlindRequest asked = request();
-  asked.effects = {"uptake"};
-  asked.snapshots = 4;
-  asked.points = 1000;
-  write(draw_blind_case(asked).vesicles);
+  draw("uptake");
   const pid_t child = testing::start_traceraft(command_of_few(kCells));
   const fs::path saved = folder.path / "out" / "search.json";
   for (int k = 0; k < 30000 && !fs::exists(saved); ++k) usleep(20000);
@@ -153,12 +149,12 @@ TEST_F(ExplainTest, JoinsWhatVesiclesSay) {
   asked.effects = {"uptake"};
   asked.vesicles = 2;
   asked.snapshots = 4;
-  asked.points = 800;
+  asked.points = 700;
   const BlindCase drawn = draw_blind_case(asked);
   ASSERT_EQ(drawn.vesicles.size(), 2u);
   EXPECT_NE(drawn.vesicles[0].snapshots[0].values[0], drawn.vesicles[1].snapshots[0].values[0]);
   write(drawn.vesicles);
-  ASSERT_EQ(testing::traceraft(command_of_few(16)).code, 0);
+  ASSERT_EQ(testing::traceraft(command_of_few(14)).code, 0);
   const nlohmann::json found = verdict();
   EXPECT_EQ(found["effect"], "uptake") << found.dump(2);
   const nlohmann::json& rate = found["parameters"]["uptake.rate"];
