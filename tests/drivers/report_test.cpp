@@ -61,14 +61,14 @@ TEST_F(ReportTest, ShowsEnsemblesAndCopiesFinishedPages) {
   const std::string page = content(folder.path / "e/report.html");
   EXPECT_NE(page.find("Shown is seed-1"), std::string::npos);
   EXPECT_NE(page.find("number of rafts"), std::string::npos);
-  ASSERT_EQ(traceraft("verify cost energy --quick --quiet --jobs 2 --out " + out("v")).code, 0);
+  ASSERT_EQ(traceraft("verify geometry energy --quick --quiet --jobs 2 --out " + out("v")).code, 0);
   ASSERT_EQ(traceraft("report --quiet " + out("v")).code, 0);
   EXPECT_EQ(content(folder.path / "v/report.html"), content(folder.path / "v/verify.html"));
   // The processes side by side have left their results only.
-  EXPECT_TRUE(fs::exists(folder.path / "v/cost.json"));
+  EXPECT_TRUE(fs::exists(folder.path / "v/geometry.json"));
   EXPECT_TRUE(fs::exists(folder.path / "v/energy.json"));
   EXPECT_FALSE(fs::exists(folder.path / "v/job-energy"));
-  const Outcome again = traceraft("verify cost energy --quick --jobs 2 --out " + out("v"));
+  const Outcome again = traceraft("verify geometry energy --quick --jobs 2 --out " + out("v"));
   EXPECT_EQ(again.code, 0);
   EXPECT_NE(again.output.find("measured before"), std::string::npos) << again.output;
 }
