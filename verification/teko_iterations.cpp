@@ -31,9 +31,7 @@ std::vector<CapRaft> rafts(int state) {
   std::vector<CapRaft> caps;
   for (std::uint64_t k = 0; k < 30; ++k) {
     const auto draw = [&](std::uint64_t which) { return uniform_random(1, 50 + which, k); };
-    const double z = 2 * draw(0) - 1, around = 2 * kPi * draw(1);
-    const double r = std::sqrt(1 - z * z);
-    caps.push_back({Point(r * std::cos(around), r * std::sin(around), z), 0.1 + 0.15 * draw(2)});
+    caps.push_back({uniform_direction(draw(0), draw(1)), 0.1 + 0.15 * draw(2)});
   }
   return caps;
 }

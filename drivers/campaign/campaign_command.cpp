@@ -171,7 +171,7 @@ int run_campaign(const CampaignRequest& request) {
   return failures->empty() ? kSuccess : kNumericalFailure;
 }
 
-Action define(CLI::App& app) {
+Action define_campaign(CLI::App& app) {
   const auto request = std::make_shared<CampaignRequest>();
   app.add_option("--out", request->out,
                  "folder, new or of a campaign to go on with; default: runs/campaign-<number>");
@@ -215,7 +215,8 @@ Action define(CLI::App& app) {
 }  // namespace
 
 Command campaign_command() {
-  return {"campaign", "hide effects, let `explain` find them, and count", Ranks::one, define};
+  return {"campaign", "hide effects, let `explain` find them, and count", Ranks::one,
+          define_campaign};
 }
 
 }  // namespace traceraft

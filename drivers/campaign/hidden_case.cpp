@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void refuse_model(const Configuration& model) {
+void refuse_hiding(const Configuration& model) {
   refuse_scaled(model);
   if (model.text("surface") != "sphere")
     throw InputError(model.where("surface") + ": measurements are drawn on spheres only");
@@ -49,7 +49,7 @@ Json truth_json(const BlindCase& drawn, const BlindRequest& request, const Units
 
 void hide(const fs::path& folder, const GivenValues& model, BlindRequest request) {
   const Configuration configuration(model, {});
-  refuse_model(configuration);
+  refuse_hiding(configuration);
   const Units units = configuration.units();
   request.base = physical_model(configuration);
   request.raft_fraction = configuration.number("raft-fraction");

@@ -56,7 +56,7 @@ int hide_effects(const HideCommand& command) {
   return kSuccess;
 }
 
-Action define(CLI::App& app) {
+Action define_hide(CLI::App& app) {
   const auto command = std::make_shared<HideCommand>();
   BlindRequest& request = command->request;
   app.add_option("--model", command->model, "TOML file with the flags' names as keys");
@@ -111,7 +111,7 @@ Action define(CLI::App& app) {
 
 Command hide_command() {
   return {"hide", "draw measurements with something hidden in them, for explain to find",
-          Ranks::one, define};
+          Ranks::one, define_hide};
 }
 
 }  // namespace traceraft

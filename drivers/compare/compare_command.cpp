@@ -154,7 +154,7 @@ int compare(const CompareRequest& request) {
   return carry_out(request, folder, plan, configuration, run);
 }
 
-Action define(CLI::App& app) {
+Action define_compare(CLI::App& app) {
   const auto request = std::make_shared<CompareRequest>();
   app.add_option("--config", request->config_file, "TOML file with the flags' names as keys");
   app.add_option("--out", request->out,
@@ -192,7 +192,7 @@ Action define(CLI::App& app) {
 
 Command compare_command() {
   return {"compare", "compare integrators and linear solvers at equal error", Ranks::starts_them,
-          define};
+          define_compare};
 }
 
 }  // namespace traceraft

@@ -109,7 +109,7 @@ int explain(const ExplainCommand& command) {
   return kSuccess;
 }
 
-Action define(CLI::App& app) {
+Action define_explain(CLI::App& app) {
   const auto command = std::make_shared<ExplainCommand>();
   app.add_option("--data", command->job.data,
                  "folder of measured fields (dataset.toml, snapshot_001.csv, ...)");
@@ -147,7 +147,7 @@ Action define(CLI::App& app) {
 
 Command explain_command() {
   return {"explain", "find what the model is missing, from measured fields or series",
-          Ranks::starts_them, define};
+          Ranks::starts_them, define_explain};
 }
 
 }  // namespace traceraft

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Of D over that of the model: runs last as long as if it were that.
-constexpr double kFastest = 2;
+constexpr double kFastestPace = 2;
 
 Configuration ensemble_model(const Configuration& model, const std::string& effect, double t_end) {
   GivenValues given = settings_until(model, t_end);
@@ -99,7 +99,7 @@ SeriesEnsembles run_series_ensembles(const fs::path& folder, const Configuration
   const auto simulate = [&](const std::string& name, const std::string& effect) {
     if (!request.quiet)
       std::printf("simulations with %s\n", effect.empty() ? "no effect" : effect.c_str());
-    return run_point(folder / name, ensemble_model(model, effect, kFastest * request.looks.end),
+    return run_point(folder / name, ensemble_model(model, effect, kFastestPace * request.looks.end),
                      {request.runs, request.jobs, request.quiet});
   };
   PointEnd base = simulate("base", "");

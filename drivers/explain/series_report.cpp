@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kPerDecade = 10;  // of the curves of charts and power laws
+constexpr int kOfCharts = 10;  // of the curves of charts and power laws
 
 std::string listed(const std::vector<std::string>& names, const char* between) {
   std::string text;
@@ -106,7 +106,7 @@ std::vector<Exponent> exponents(const MeasuredVesicles& data, const SeriesEnsemb
   std::vector<Exponent> result;
   if (const auto law = fit_measurements(data, window)) result.push_back({"measured", *law});
   const auto add = [&](const std::string& name, const std::vector<History>& runs) {
-    if (const auto law = fit_runs(runs, common_times(runs, kPerDecade), window))
+    if (const auto law = fit_runs(runs, common_times(runs, kOfCharts), window))
       result.push_back({name, *law});
   };
   add("the model", ensembles.base);
@@ -171,7 +171,7 @@ Chart curve_chart(Quantity quantity, const MeasuredVesicles& data, const SeriesE
   const auto add = [&](const std::string& name, const std::vector<History>& runs) {
     ChartSeries series{name, {}, Mark::line};
     const RunCurves curves(runs, each_once(runs.size()));
-    for (const double t : common_times(runs, kPerDecade))
+    for (const double t : common_times(runs, kOfCharts))
       series.points.emplace_back(t, std::exp(curves.mean(quantity, std::log(t))));
     chart.series.push_back(series);
   };

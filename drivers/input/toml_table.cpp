@@ -11,12 +11,12 @@
 namespace traceraft {
 namespace {
 
-constexpr std::uint64_t kMaxBytes = 1 << 20;
+constexpr std::uint64_t kLargestConfiguration = 1 << 20;
 
 std::string read_text(const std::filesystem::path& path, const std::string& context) {
   std::string text;
   try {
-    text = read_file(path, kMaxBytes);
+    text = read_file(path, kLargestConfiguration);
   } catch (const IoError& error) {
     throw InputError(context + error.what());
   }

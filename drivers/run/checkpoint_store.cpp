@@ -14,7 +14,7 @@ namespace {
 
 constexpr char kMagic[] = "traceraft checkpoint 3\n";  // the number is the version of the format
 constexpr std::size_t kMagicSize = sizeof kMagic - 1;
-constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 36;
+constexpr std::uint64_t kLargestCheckpoint = std::uint64_t{1} << 36;
 constexpr std::size_t kKept = 2;
 
 void write_text(std::ostream& out, const std::string& text) {
@@ -137,7 +137,7 @@ Checkpoint CheckpointStore::newest(std::vector<std::string>& refused) const {
   std::vector<std::filesystem::path> all = files();
   for (; !all.empty(); all.pop_back()) {
     try {
-      return decode(read_file(all.back(), kMaxBytes));
+      return decode(read_file(all.back(), kLargestCheckpoint));
     } catch (const IoError& error) {
       refused.push_back(all.back().string() + ": " + error.what());
     }

@@ -179,7 +179,7 @@ int verify(const VerifyRequest& request) {
   return all ? kSuccess : kClaimFailed;
 }
 
-Action define(CLI::App& app) {
+Action define_verify(CLI::App& app) {
   const auto request = std::make_shared<VerifyRequest>();
   app.add_option("studies", request->studies, "studies (list shows them), or all")
       ->default_str("all");
@@ -210,7 +210,7 @@ Action define(CLI::App& app) {
 }  // namespace
 
 Command verify_command() {
-  return {"verify", "measure what the program claims", Ranks::one, define};
+  return {"verify", "measure what the program claims", Ranks::one, define_verify};
 }
 
 }  // namespace traceraft

@@ -36,6 +36,11 @@ std::array<double, 2> normal_pair(double u, double v) {
   return {r * std::cos(angle), r * std::sin(angle)};
 }
 
+Point uniform_direction(double u, double v) {
+  const double z = 2 * u - 1, angle = 2 * kPi * v, r = std::sqrt(1 - z * z);
+  return {r * std::cos(angle), r * std::sin(angle), z};
+}
+
 double normal_random(std::uint64_t seed, std::uint64_t stream, std::uint64_t index) {
   return normal_pair(uniform_random(seed, stream, 2 * index),
                      uniform_random(seed, stream, 2 * index + 1))[0];

@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdint>
 
+#include "kernel/core/types.hpp"
+
 namespace traceraft {
 
 // Philox4x32 with 10 rounds (Salmon, Moraes, Dror, Shaw: "Parallel random numbers: as easy as
@@ -17,6 +19,9 @@ double uniform_random(std::uint64_t seed, std::uint64_t stream, std::uint64_t in
 
 // Two independent normal numbers from two uniform ones in (0, 1) (Box and Muller).
 std::array<double, 2> normal_pair(double u, double v);
+
+// Uniform on the unit sphere from two uniform numbers in (0, 1).
+Point uniform_direction(double u, double v);
 
 // The normal number of the uniform ones at 2 index and 2 index + 1.
 double normal_random(std::uint64_t seed, std::uint64_t stream, std::uint64_t index);

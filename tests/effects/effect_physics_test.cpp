@@ -14,14 +14,14 @@ using testing::make_space;
 using testing::random_state;
 using testing::random_vector;
 
-constexpr Units kScaled{1, 1, true};
+constexpr Units kUnits{1, 1, true};
 
 // F with the effect minus F without it.
 Vec contribution(const std::shared_ptr<const SurfaceSpace>& space, const std::string& effect,
                  const Vec& y, double t = 0) {
   CahnHilliardModel model = make_model();
   const CahnHilliard base(space, model);
-  add_effects(effect, kScaled, model);
+  add_effects(effect, kUnits, model);
   const CahnHilliard problem(space, model);
   const Vec still = Vec::Zero(y.size());
   Vec with(y.size()), without(y.size());
@@ -145,18 +145,18 @@ TEST_F(EffectPhysics, MobilitiesAreTheLawsTheySay) {
   const double c[3] = {0.2, 0.5, 0.9};
   double value[3], derivative[3];
   CahnHilliardModel model = make_model();
-  add_effects("mobility-contrast:strength=0.4", kScaled, model);
+  add_effects("mobility-contrast:strength=0.4", kUnits, model);
   model.mobility->evaluate(c, 3, value, derivative);
   for (int i = 0; i < 3; ++i)
     EXPECT_NEAR(value[i], c[i] * (1 - c[i]) * (1 + 0.4 * (2 * c[i] - 1)), 1e-14);
   model = make_model();
-  add_effects("mobility-exponent:excess=0.5", kScaled, model);
+  add_effects("mobility-exponent:excess=0.5", kUnits, model);
   model.mobility->evaluate(c, 3, value, derivative);
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(value[i], 2 * std::pow(c[i] * (1 - c[i]), 1.5), 1e-14);
   // A constant added to a constant law is that of a larger one.
   CahnHilliardModel sum = make_model("constant:value=0.2"),
                     whole = make_model("constant:value=0.5");
-  add_effects("bulk-mobility:strength=0.3", kScaled, sum);
+  add_effects("bulk-mobility:strength=0.3", kUnits, sum);
   const CahnHilliard one(space, sum), other(space, whole);
   Vec r(2 * n), s(2 * n);
   ASSERT_TRUE(one.residual(0, y, Vec::Zero(2 * n), r).ok());
@@ -170,7 +170,7 @@ TEST_F(EffectPhysics, MobilitiesAreTheLawsTheySay) {
 
 TEST_F(EffectPhysics, LineTensionIsThatOfALargerEpsilon) {
   CahnHilliardModel model = make_model();
-  add_effects("line-tension:excess=0.44", kScaled, model);
+  add_effects("line-tension:excess=0.44", kUnits, model);
   EXPECT_DOUBLE_EQ(model.epsilon, 1.2 * make_model().epsilon);
 }
 

@@ -8,20 +8,20 @@
 namespace traceraft {
 namespace {
 
-constexpr int kPoints = 600, kReplicates = 400;
+constexpr int kSpots = 600, kReplicates = 400;
 constexpr double kLength = 0.2;
 
 std::vector<Point> points_on_sphere() {
   std::vector<Point> points;
-  for (int k = 0; k < kPoints; ++k) {
-    const double z = 1 - (2 * k + 1.0) / kPoints, angle = 2.399963 * k, r = std::sqrt(1 - z * z);
+  for (int k = 0; k < kSpots; ++k) {
+    const double z = 1 - (2 * k + 1.0) / kSpots, angle = 2.399963 * k, r = std::sqrt(1 - z * z);
     points.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
   }
   return points;
 }
 
 Columns normal_values(int columns, std::uint64_t stream) {
-  Columns values(kPoints, columns);
+  Columns values(kSpots, columns);
   for (Eigen::Index i = 0; i < values.size(); ++i)
     values.data()[i] = normal_random(stream, 0, static_cast<std::uint64_t>(i));
   return values;
@@ -44,7 +44,7 @@ Example example(double bump) {
   in.snapshot = 1;
   in.values = normal_values(1, 11);
   in.replicates = normal_values(kReplicates, 12);
-  for (int k = 0; k < kPoints; ++k)
+  for (int k = 0; k < kSpots; ++k)
     if (snapshot.points[k][2] > 0.95) in.values[k] += bump;
   in.gap = in.values;
   result.pass.innovations.push_back(in);
@@ -68,7 +68,7 @@ TEST(DisagreementMaps, MeasureInDeviationsOfNoise) {
   const DisagreementMaps maps =
       disagreement_maps(without.data, without.pass, points_on_sphere(), kLength);
   const Vec& z = maps.snapshots[0].z;
-  EXPECT_NEAR(z.squaredNorm() / kPoints, 1, 0.5);
+  EXPECT_NEAR(z.squaredNorm() / kSpots, 1, 0.5);
   EXPECT_LT(z.cwiseAbs().maxCoeff(), maps.threshold);
   EXPECT_GT(maps.threshold, 2.5);
   EXPECT_LT(maps.threshold, 4.5);

@@ -11,8 +11,8 @@ namespace {
 
 using testing::make_space;
 
-constexpr double kNoise = 0.05;
-constexpr int kPoints = 3000;
+constexpr double kTrueNoise = 0.05;
+constexpr int kMeasured = 3000;
 
 // Two caps with smooth boundaries.
 double field(const Point& x) {
@@ -25,14 +25,12 @@ struct Measured {
   NoisyValues values;
 
   Measured() {
-    values.values.resize(kPoints);
-    values.deviation = Vec::Ones(kPoints);
-    for (int k = 0; k < kPoints; ++k) {
-      const double z = 2 * uniform_random(5, 1, k) - 1, phi = 2 * kPi * uniform_random(5, 2, k);
-      const double r = std::sqrt(1 - z * z);
-      points.emplace_back(r * std::cos(phi), r * std::sin(phi), z);
+    values.values.resize(kMeasured);
+    values.deviation = Vec::Ones(kMeasured);
+    for (int k = 0; k < kMeasured; ++k) {
+      points.push_back(testing::random_direction(5, static_cast<std::uint64_t>(k)));
       const double noise = normal_pair(uniform_random(5, 3, k), uniform_random(5, 4, k))[0];
-      values.values[k] = field(points.back()) + kNoise * noise;
+      values.values[k] = field(points.back()) + kTrueNoise * noise;
     }
     values.trace = point_trace(*space, points, space->h());
   }
@@ -41,11 +39,11 @@ struct Measured {
 TEST(FieldEstimate, FindsTheNoiseAndAveragesItOut) {
   const Measured m;
   const FieldEstimate estimate = estimate_field(*m.space, m.values, {});
-  EXPECT_NEAR(estimate.noise, kNoise, 0.1 * kNoise);
+  EXPECT_NEAR(estimate.noise, kTrueNoise, 0.1 * kTrueNoise);
   const Vec values = m.values.trace * estimate.field;
   double squares = 0;
-  for (int k = 0; k < kPoints; ++k) squares += std::pow(values[k] - field(m.points[k]), 2);
-  EXPECT_LT(std::sqrt(squares / kPoints), 0.6 * kNoise);
+  for (int k = 0; k < kMeasured; ++k) squares += std::pow(values[k] - field(m.points[k]), 2);
+  EXPECT_LT(std::sqrt(squares / kMeasured), 0.6 * kTrueNoise);
 }
 
 TEST(FieldEstimate, ErrorsAreThoseOfARegression) {
@@ -58,7 +56,7 @@ TEST(FieldEstimate, ErrorsAreThoseOfARegression) {
     Vec load(m.space->nodes());
     m.space->mass.multiply(f, load, *m.space->team);
     const double expected =
-        estimate.noise * std::sqrt(m.space->inner(f, f) * m.space->area / kPoints);
+        estimate.noise * std::sqrt(m.space->inner(f, f) * m.space->area / kMeasured);
     EXPECT_NEAR((estimate.errors.transpose() * load).norm(), expected, 0.2 * expected);
     EXPECT_NEAR((estimate.draws.transpose() * load).norm() / std::sqrt(400), expected,
                 0.25 * expected);

@@ -5,7 +5,7 @@
 namespace traceraft {
 namespace {
 
-constexpr double kValues = 10000, kLevel = 0.02, kUsual = 0.5;
+constexpr double kMeasuredValues = 10000, kLevel = 0.02, kUsual = 0.5;
 
 Refit refit_with(const std::vector<std::string>& effects, double deviance) {
   Refit fit;
@@ -34,7 +34,7 @@ Round first_round() {
 }
 
 Judgement judged(const Round& round) {
-  return judge(round, kValues, kLevel, kUsual);
+  return judge(round, kMeasuredValues, kLevel, kUsual);
 }
 
 TEST(Judgement, TakesWhatExplainsTheDataBest) {
@@ -57,8 +57,9 @@ TEST(Judgement, SaysWhatExplainsThemAsWell) {
 TEST(Judgement, LetsASecondCoefficientEarnItsPlace) {
   Round round = first_round();
   round.refits = {refit_with({"exchange"}, 900), refit_with({"uptake"}, 900)};
-  EXPECT_NEAR(criterion(round.refits[0], kValues) - criterion(round.refits[1], kValues),
-              std::log(kValues), 1e-9);
+  EXPECT_NEAR(
+      criterion(round.refits[0], kMeasuredValues) - criterion(round.refits[1], kMeasuredValues),
+      std::log(kMeasuredValues), 1e-9);
 }
 
 TEST(Judgement, TakesNothingThatTheMeshChangesAsMuch) {

@@ -5,7 +5,7 @@
 namespace traceraft {
 namespace {
 
-constexpr double kValues = 10000;
+constexpr double kEnough = 10000;
 
 Hypothesis::Part part(const std::string& effect, double coefficient) {
   const Candidate c = find_candidate(effect).value();
@@ -40,25 +40,25 @@ std::vector<std::string> names(const std::vector<Hypothesis>& hypotheses) {
 
 TEST(Neighbours, ReplaceByWhatCameNear) {
   const Refit fit = refit_of({part("uptake", 1), part("gravity", 1)}, 700);
-  EXPECT_EQ(names(neighbours(fit, rounds(), kValues, candidates())),
+  EXPECT_EQ(names(neighbours(fit, rounds(), kEnough, candidates())),
             std::vector<std::string>{"exchange + gravity"});
 }
 
 TEST(Neighbours, OfOneEffectAreThoseThatCameNear) {
-  EXPECT_EQ(names(neighbours(refit_of({part("uptake", 1)}, 800), rounds(), kValues, candidates())),
+  EXPECT_EQ(names(neighbours(refit_of({part("uptake", 1)}, 800), rounds(), kEnough, candidates())),
             std::vector<std::string>{"exchange"});
 }
 
 TEST(Neighbours, TakeNothingThatIsNotAllowed) {
   const Refit fit = refit_of({part("uptake", 1), part("gravity", 1)}, 700);
-  EXPECT_TRUE(neighbours(fit, rounds(), kValues, {part("cooling", 1).candidate}).empty());
+  EXPECT_TRUE(neighbours(fit, rounds(), kEnough, {part("cooling", 1).candidate}).empty());
 }
 
 TEST(Neighbours, DropWhatIsUncertain) {
   const Refit fit = refit_of({part("uptake", 1), part("gravity", 0.02)}, 700);
-  const auto found = names(neighbours(fit, rounds(), kValues, {}));
+  const auto found = names(neighbours(fit, rounds(), kEnough, {}));
   EXPECT_EQ(found, std::vector<std::string>{"uptake"});
-  EXPECT_TRUE(neighbours(refit_of({part("gravity", 0.02)}, 700), rounds(), kValues, {}).empty());
+  EXPECT_TRUE(neighbours(refit_of({part("gravity", 0.02)}, 700), rounds(), kEnough, {}).empty());
 }
 
 }  // namespace

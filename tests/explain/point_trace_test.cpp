@@ -9,18 +9,7 @@ namespace traceraft {
 namespace {
 
 using testing::make_space;
-
-Point direction(int k) {
-  const double z = 2 * uniform_random(3, 1, k) - 1, phi = 2 * kPi * uniform_random(3, 2, k);
-  const double r = std::sqrt(1 - z * z);
-  return {r * std::cos(phi), r * std::sin(phi), z};
-}
-
-std::vector<Point> directions(int count) {
-  std::vector<Point> points;
-  for (int k = 0; k < count; ++k) points.push_back(direction(k));
-  return points;
-}
+using testing::random_directions;
 
 TEST(PointTrace, IsExactForLinearFieldsOnTheDiscreteSurface) {
   const auto space = make_space(16, "torus");
@@ -40,7 +29,7 @@ TEST(PointTrace, ConvergesOnTheSurfaceItselfAtOrderTwo) {
     Vec nodal(space->nodes());
     const auto f = [](const Point& x) { return x[0] * x[1] + std::sin(2 * x[2]); };
     for (int k = 0; k < space->nodes(); ++k) nodal[k] = f(space->mesh.position(k).normalized());
-    const auto points = directions(400);
+    const auto points = random_directions(400);
     const Vec values = point_trace(*space, points, space->h()) * nodal;
     double squares = 0;
     for (std::size_t k = 0; k < points.size(); ++k)

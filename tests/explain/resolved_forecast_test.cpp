@@ -11,27 +11,18 @@ namespace {
 
 using testing::make_model;
 using testing::make_space;
+using testing::random_directions;
 
-constexpr double kEpsilon = 0.2;
+constexpr double kWidth = 0.2;
 
 // Rafts with phase boundaries as wide as two cells at n = 16.
 Vec rafts(const SurfaceSpace& space) {
   Vec nodal(space.nodes());
   for (int k = 0; k < space.nodes(); ++k) {
     const Point x = space.mesh.position(k).normalized();
-    nodal[k] = 0.5 + 0.45 * std::tanh((std::sin(3 * x[0] + 1) * x[1] + 0.3 * x[2]) / kEpsilon);
+    nodal[k] = 0.5 + 0.45 * std::tanh((std::sin(3 * x[0] + 1) * x[1] + 0.3 * x[2]) / kWidth);
   }
   return project(space, nodal);
-}
-
-std::vector<Point> directions(int count) {
-  std::vector<Point> points;
-  for (int k = 0; k < count; ++k) {
-    const double z = 2 * uniform_random(3, 1, k) - 1, phi = 2 * kPi * uniform_random(3, 2, k);
-    const double r = std::sqrt(1 - z * z);
-    points.push_back({r * std::cos(phi), r * std::sin(phi), z});
-  }
-  return points;
 }
 
 double mean(const SurfaceSpace& space, ConstVec c) {
@@ -62,7 +53,7 @@ class ResolvedForecastTest : public ::testing::Test {
  protected:
   static constexpr double kBegin = 0, kEnd = 0.5;
 
-  ResolvedForecastTest() { series.snapshots.assign(2, {0, directions(500), {}, {}}); }
+  ResolvedForecastTest() { series.snapshots.assign(2, {0, random_directions(500), {}, {}}); }
 
   Vec alone(const SpacePtr& space) const {
     const CahnHilliard problem(space, model);
@@ -70,7 +61,7 @@ class ResolvedForecastTest : public ::testing::Test {
     return forecast(problem, on_it, rafts(*space), kBegin, kEnd).end;
   }
 
-  CahnHilliardModel model = make_model("degenerate", kEpsilon);
+  CahnHilliardModel model = make_model("degenerate", kWidth);
   FieldSeries series;
   MakeForecaster integrator = [](const DaeProblem& problem, const SurfaceSpace& space) {
     IntegratorSettings settings;

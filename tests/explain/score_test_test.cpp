@@ -8,7 +8,7 @@
 namespace traceraft {
 namespace {
 
-constexpr int kReplicates = 400;
+constexpr int kDraws = 400;
 
 // Pace, mesh, then gravity (two-sided), uptake (two-sided), exchange (two, not negative).
 const std::vector<Candidate>& screened() {
@@ -24,7 +24,7 @@ FilterResult pass_with(const Eigen::MatrixXd& information) {
   FilterResult pass;
   pass.information = information;
   pass.score = Vec::Zero(kParameters);
-  Eigen::MatrixXd z(kParameters, kReplicates);
+  Eigen::MatrixXd z(kParameters, kDraws);
   for (Eigen::Index i = 0; i < z.size(); ++i)
     z.data()[i] = normal_random(1, 1, static_cast<std::uint64_t>(i));
   pass.null_scores = Eigen::MatrixXd(information.llt().matrixL()) * z;
@@ -52,7 +52,7 @@ TEST(ScoreTest, GainsWhatTheLikelihoodDoes) {
   EXPECT_NEAR(screening.scores.front().covariance(0, 0), 0.25, 1e-9);
   EXPECT_NEAR(score_of(screening, "uptake").coefficients[0], -1.5, 1e-9);
   EXPECT_NEAR(score_of(screening, "gravity").null_mean, 1, 0.2);
-  EXPECT_NEAR(screening.p, 1.0 / (kReplicates + 1), 1e-12);
+  EXPECT_NEAR(screening.p, 1.0 / (kDraws + 1), 1e-12);
 }
 
 // Coefficients that may not be negative are 0 then, and noise gains half as much by them.

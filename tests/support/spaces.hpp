@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "kernel/core/random.hpp"
 #include "kernel/problem/cahn_hilliard.hpp"
@@ -25,6 +26,17 @@ inline CahnHilliardModel make_model(const std::string& mobility = "degenerate",
   model.mobility = make_mobility(mobility);
   model.epsilon = epsilon;
   return model;
+}
+
+inline Point random_direction(std::uint64_t seed, std::uint64_t index) {
+  return uniform_direction(uniform_random(seed, 1, index), uniform_random(seed, 2, index));
+}
+
+inline std::vector<Point> random_directions(int count) {
+  std::vector<Point> points;
+  for (int k = 0; k < count; ++k)
+    points.push_back(random_direction(3, static_cast<std::uint64_t>(k)));
+  return points;
 }
 
 // Uniform in [low, high], the same on every machine.

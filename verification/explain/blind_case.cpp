@@ -52,8 +52,7 @@ std::vector<Point> random_directions(const BlindRequest& request, int snapshot) 
       return uniform_random(request.seed, kPoints + static_cast<std::uint64_t>(2 * snapshot + j),
                             i);
     };
-    const double z = 2 * u(0) - 1, phi = 2 * kPi * u(1), r = std::sqrt(1 - z * z);
-    points.push_back({r * std::cos(phi), r * std::sin(phi), z});
+    points.push_back(uniform_direction(u(0), u(1)));
   }
   return points;
 }

@@ -12,9 +12,9 @@
 namespace traceraft {
 namespace {
 
-using Factors = Eigen::SimplicialLLT<EigenMatrix>;
+using SparseFactors = Eigen::SimplicialLLT<EigenMatrix>;
 
-double log_determinant(const Factors& factors) {
+double log_determinant(const SparseFactors& factors) {
   return 2 * factors.matrixL().nestedExpression().diagonal().array().log().sum();
 }
 
@@ -63,7 +63,7 @@ class FieldRegression {
 
   // M̃ Y = M X, as initial data of a run: off the surface nothing is known.
   Eigen::MatrixXd projected(const Eigen::MatrixXd& X) const {
-    return Factors(mass_).solve(trace_mass_ * X);
+    return SparseFactors(mass_).solve(trace_mass_ * X);
   }
 
   // The directions of the covariance Σ that matter most for smooth parts of the field: eigenvectors
@@ -72,7 +72,7 @@ class FieldRegression {
   Eigen::MatrixXd errors(double length, int rank) const {
     constexpr int kIterations = 4, kExtra = 16;
     const EigenMatrix smoother = mass_ + length * length * stiffness_;
-    const Factors smoothing(smoother);
+    const SparseFactors smoothing(smoother);
     const auto weighted = [&](const Eigen::MatrixXd& X) -> Eigen::MatrixXd {
       return mass_ * smoothing.solve(trace_mass_ * smoothing.solve(mass_ * X));
     };
@@ -100,7 +100,7 @@ class FieldRegression {
   }
 
  private:
-  void factorise(Factors& factors, const EigenMatrix& A) {
+  void factorise(SparseFactors& factors, const EigenMatrix& A) {
     if (!factors.rows()) factors.analyzePattern(A);
     factors.factorize(A);
     if (factors.info() != Eigen::Success)
@@ -110,7 +110,7 @@ class FieldRegression {
   Eigen::Index count_;
   double mean_, squares_, log_weights_;
   Vec load_, inverse_diagonal_, field_;
-  Factors prior_factors_, factors_;
+  SparseFactors prior_factors_, factors_;
 };
 
 FieldEstimate result_of(FieldRegression& regression, const FieldPrior& prior,

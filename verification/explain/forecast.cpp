@@ -11,7 +11,7 @@ namespace {
 
 // From one snapshot to the next: some hundred are usual. Models that need so many are trials with
 // an effect far too strong.
-constexpr int kMostSteps = 1000;
+constexpr int kMostTimeSteps = 1000;
 
 }  // namespace
 
@@ -41,7 +41,7 @@ Forecast forecast(const CahnHilliard& problem, const MakeIntegrator& make_integr
   for (const int steps : tangent_steps)
     result.paths.push_back({TangentGrid::graded(begin, end, steps), {}});
   for (int step = 0; integrator->time() < end; ++step) {
-    if (step == kMostSteps) throw std::runtime_error("a forecast takes too many steps");
+    if (step == kMostTimeSteps) throw std::runtime_error("a forecast takes too many steps");
     require(integrator->advance());
     for (TangentPath& path : result.paths) {
       const auto& times = path.grid.stage_times;

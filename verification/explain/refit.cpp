@@ -10,7 +10,7 @@ namespace traceraft {
 namespace {
 
 constexpr double kSmallStep = 0.1;  // in standard deviations
-constexpr int kMostSteps = 6, kMostHalvings = 3;
+constexpr int kMostNewtonSteps = 6, kMostHalvings = 3;
 // D is known to that factor at least.
 constexpr double kLargestPaceStep = 0.5;
 
@@ -159,7 +159,7 @@ Refit refit(const FilterProblems& data, const FilterModel& start, const FilterSe
   }
   bool better = here.failure.empty();
   bool at_rest = better && settled(here, model);
-  for (int k = 0; k < kMostSteps && better && !at_rest; ++k) {
+  for (int k = 0; k < kMostNewtonSteps && better && !at_rest; ++k) {
     Vec step = here.step;
     step[0] = std::clamp(step[0], -kLargestPaceStep, kLargestPaceStep);
     const Vec x = unknowns(model);

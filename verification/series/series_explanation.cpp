@@ -18,7 +18,7 @@ constexpr double kAlike = 0.8;
 // A trend that no effect explains has to be that much less probable.
 constexpr double kTrendLevel = 0.4;
 // Streams of random numbers.
-enum Stream : std::uint64_t { kRunOf = 1, kVesicle = 2, kLook = 3, kSample = 4 };
+enum SeriesStream : std::uint64_t { kRunOf = 1, kVesicle = 2, kLook = 3, kSample = 4 };
 
 // The same looks at vesicles of the base model, one run each.
 MeasuredVesicles draw_base(const MeasuredVesicles& data, const std::vector<History>& runs,

@@ -20,7 +20,7 @@ double earliest_start(const Points& points) {
   return -10 * first_time(points);
 }
 
-constexpr int kReplicates = 400;
+constexpr int kResampled = 400;
 constexpr double kConfidence = 0.95;
 constexpr std::size_t kLeastPoints = 4;
 constexpr int kLeastVesicles = 3;
@@ -54,7 +54,7 @@ FittedLaw with_intervals(const Sample& points_of, int count) {
   FittedLaw fitted{fit_power_law_from(points),      {},   {}, {}, false,
                    static_cast<int>(points.size()), count};
   const std::vector<Interval> intervals =
-      bootstrap_all(count, kReplicates, kConfidence, 1, [&](const std::vector<int>& sample) {
+      bootstrap_all(count, kResampled, kConfidence, 1, [&](const std::vector<int>& sample) {
         const Points drawn = points_of(sample);
         const PowerLaw law = enough(drawn) ? fit_power_law_from(drawn) : fitted.law;
         return std::vector<double>{law.c, law.t0, law.b};
