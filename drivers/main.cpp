@@ -1,6 +1,7 @@
 // traceraft: the command line, and what becomes of exceptions.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
@@ -33,6 +34,19 @@ void refuse_unknown(const CLI::App& command) {
   }
 }
 
+// CLI11's ranges let "nan" pass, since it compares false with both ends.
+void refuse_no_numbers(CLI::App& command) {
+  const CLI::Validator finite(
+      [](std::string& text) {
+        double value = 0;
+        const bool number = CLI::detail::lexical_cast(text, value);
+        return !number || std::isfinite(value) ? std::string() : "'" + text + "' is not a number";
+      },
+      "");
+  for (CLI::Option* option : command.get_options())
+    if (option->get_type_name().compare(0, 5, "FLOAT") == 0) option->check(finite);
+}
+
 // "a, b or c"
 std::string any_of(const std::vector<std::string>& names) {
   std::string text;
@@ -60,6 +74,7 @@ int dispatch(int argc, char** argv) {
     CLI::App* sub = app.add_subcommand(command.name, command.summary);
     sub->allow_extras();
     defined.emplace_back(sub, command.define(*sub));
+    refuse_no_numbers(*sub);
   }
 
   try {

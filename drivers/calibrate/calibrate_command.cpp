@@ -31,8 +31,10 @@ namespace fs = std::filesystem;
 // D is looked for up to this multiple of the model's, and runs go on as long; how small it may be
 // costs nothing.
 constexpr double kFastest = 4, kSlowest = 100;
-// Steps in ln of the first design and of the next, each around what the one before finds.
+// Steps in ln of the designs, each around what the one before finds: a smaller one follows where
+// that lies within the design, the same size again where it does not.
 constexpr double kSteps[] = {0.5, 0.25, 0.1};
+constexpr int kMostRounds = 6;
 
 struct CalibrateRequest {
   GivenValues flags;
@@ -77,15 +79,22 @@ class Calibrator {
   bool run() {
     std::vector<double> centre;
     for (const double value : values_of(model_, names_)) centre.push_back(std::log(value));
-    for (const double step : kSteps) {
-      if (!add_points(design_around(within_range(centre, step), step))) return false;
+    const double* step = std::begin(kSteps);
+    for (int round = 0; round < kMostRounds && step != std::end(kSteps); ++round) {
+      const std::vector<double> design = within_range(centre, *step);
+      if (!add_points(design_around(design, *step))) return false;
       const double seconds = model_.units().seconds_per_unit();
       result_ =
           calibrate(data_, sought(), points_, {seconds, {seconds / kFastest, seconds * kSlowest}});
-      for (std::size_t i = 0; i < centre.size(); ++i)
+      double moved = 0;
+      for (std::size_t i = 0; i < centre.size(); ++i) {
         centre[i] = std::log(result_.parameters[i + 1].value);
-      if (centre.empty()) break;
+        moved = std::max(moved, std::fabs(centre[i] - design[i]));
+      }
+      if (centre.empty()) return true;
+      if (moved <= *step) ++step;
     }
+    if (step != std::end(kSteps)) mark_unconverged(result_);
     return true;
   }
 
@@ -169,7 +178,7 @@ void remember(const fs::path& out, const CalibrateRequest& request, const Measur
 
 // D shifts the axis of time only if nothing else in the model has a unit of time, and seeds only
 // differ if there is noise.
-void refuse_model(const Configuration& model) {
+void refuse_calibrating(const Configuration& model) {
   const std::string effect = model.text("effect");
   for (const EffectEntry& entry : effects())
     for (const ParameterSpec& parameter : entry.parameters)
@@ -192,7 +201,7 @@ int calibrate_ensemble(const CalibrateRequest& request, const MeasuredVesicles& 
   const fs::path folder = request.ensemble;
   const Configuration model(read_config_file((folder / "config.toml").string(), "--ensemble"), {});
   refuse_scaled(model);
-  refuse_model(model);
+  refuse_calibrating(model);
   const double seconds = model.units().seconds_per_unit();
   CalibrationPoint point{{}, runs_of(request.ensemble)};
   if (point.runs.size() < 2) throw InputError("--ensemble: fewer than two runs");
@@ -224,7 +233,7 @@ int run_calibration(CalibrateRequest request) {
   if (!request.ensemble.empty()) return calibrate_ensemble(request, data);
   const Configuration model(read_config_file(request.model, "--model"), request.flags);
   refuse_scaled(model);
-  refuse_model(model);
+  refuse_calibrating(model);
   const fs::path out = request.out.empty() ? first_free_folder("calibration") : request.out;
   fs::create_directories(out / "points");
   const FolderLock lock(out);
@@ -239,7 +248,7 @@ int run_calibration(CalibrateRequest request) {
   return kSuccess;
 }
 
-Action define(CLI::App& app) {
+Action define_calibrate(CLI::App& app) {
   const auto request = std::make_shared<CalibrateRequest>();
   app.add_option("--data", request->data, "folder of the measurements (dataset.toml)");
   app.add_option("--model", request->model, "TOML file with the flags' names as keys");
@@ -269,7 +278,7 @@ Action define(CLI::App& app) {
 
 Command calibrate_command() {
   return {"calibrate", "find parameters of the model from measurements", Ranks::starts_them,
-          define};
+          define_calibrate};
 }
 
 }  // namespace traceraft

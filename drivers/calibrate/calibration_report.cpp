@@ -1,5 +1,6 @@
 #include "drivers/calibrate/calibration_report.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -9,7 +10,9 @@
 #include "drivers/output/chart.hpp"
 #include "drivers/output/json_file.hpp"
 #include "drivers/output/page.hpp"
+#include "drivers/output/provenance.hpp"
 #include "drivers/output/text_table.hpp"
+#include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/text.hpp"
 
 namespace traceraft {
@@ -20,14 +23,14 @@ double diffusion(const Configuration& model, double seconds_per_unit) {
   return model.units().with_seconds_per_unit(seconds_per_unit).diffusion_cm2_s;
 }
 
-struct Finding {
+struct FoundLine {
   std::string name, unit;
   double value, low, high;
   bool determined;
 };
 
-std::vector<Finding> findings_of(const Configuration& model, const Calibration& result) {
-  std::vector<Finding> lines;
+std::vector<FoundLine> findings_of(const Configuration& model, const Calibration& result) {
+  std::vector<FoundLine> lines;
   for (const CalibratedParameter& p : result.parameters) {
     if (p.name == "seconds_per_unit")
       lines.push_back({"mobility", "cm^2/s", diffusion(model, p.value),
@@ -53,10 +56,10 @@ std::string best_known(const Calibration& result) {
   return text + formatted(" to %.0f %%", 100 * result.best_deviation);
 }
 
-std::vector<Row> rows_of(const std::vector<Finding>& lines) {
+std::vector<Row> rows_of(const std::vector<FoundLine>& lines) {
   std::vector<Row> rows = {
       {"parameter", "value", "95 % interval", "unit", "determined by the data"}};
-  for (const Finding& line : lines)
+  for (const FoundLine& line : lines)
     rows.push_back({line.name, formatted("%.3g", line.value),
                     formatted("%.3g to %.3g", line.low, line.high), line.unit,
                     line.determined ? "yes" : "NO"});
@@ -81,9 +84,9 @@ Table points_table(const Configuration& model, const std::vector<std::string>& n
   return table;
 }
 
-std::string json_text(const std::vector<Finding>& lines, const Calibration& result) {
+std::string json_text(const std::vector<FoundLine>& lines, const Calibration& result) {
   Json json;
-  for (const Finding& line : lines)
+  for (const FoundLine& line : lines)
     json["parameters"][line.name] = {{"value", line.value},
                                      {"interval_95", {line.low, line.high}},
                                      {"unit", line.unit},
@@ -91,6 +94,7 @@ std::string json_text(const std::vector<Finding>& lines, const Calibration& resu
   json["best_known"] = best_known(result);
   json["scatter_of_ln_perimeter"] = result.scatter;
   json["points_at_bound_of_mobility"] = result.at_bound;
+  json["converged"] = result.converged;
   for (Eigen::Index i = 0; i < result.correlation.rows(); ++i) {
     Json row = Json::array();
     // Of ln D, not of ln R²/D.
@@ -103,7 +107,7 @@ std::string json_text(const std::vector<Finding>& lines, const Calibration& resu
 
 // The model as a configuration, with the parameters that were found.
 Configuration found_model(const Configuration& model, const std::vector<std::string>& names,
-                          const std::vector<Finding>& lines) {
+                          const std::vector<FoundLine>& lines) {
   std::vector<double> values;
   for (std::size_t i = 1; i < lines.size(); ++i) values.push_back(lines[i].value);
   const Configuration at = configuration_at(model, names, values, model.number("t-end"));
@@ -115,14 +119,32 @@ Configuration found_model(const Configuration& model, const std::vector<std::str
   return {{}, given};
 }
 
+// What the numbers rest on.
+std::vector<std::string> notes_on(const MeasuredVesicles& data, const Configuration& found,
+                                  const std::vector<std::string>& names,
+                                  const Calibration& result) {
+  std::vector<std::string> notes;
+  if (!result.converged)
+    notes.push_back(
+        "NOT CONVERGED: the last simulations do not surround what was found; begin again from the "
+        "calibrated model.");
+  if (!names.empty() && std::find(names.begin(), names.end(), "noise-length") == names.end())
+    notes.push_back(
+        "The intervals hold if the initial noise is as long as the model's; if it is not, the "
+        "others take the blame. With noise-length among --parameters it is looked for, too.");
+  for (const std::string& note : differences(data, vesicle_of(found))) notes.push_back(note);
+  return notes;
+}
+
 }  // namespace
 
 void write_calibration(const std::filesystem::path& folder, const MeasuredVesicles& data,
                        const Configuration& model, const std::vector<std::string>& names,
                        const std::vector<CalibrationPoint>& points, const Calibration& result,
                        bool quiet) {
-  const std::vector<Finding> lines = findings_of(model, result);
+  const std::vector<FoundLine> lines = findings_of(model, result);
   const std::vector<Row> rows = rows_of(lines);
+  const Configuration found = found_model(model, names, lines);
   const std::string best = "The data know best " + best_known(result) + ".";
   const std::string scatter =
       formatted("Perimeters scatter by %.0f %% beyond what runs do.", 100 * result.scatter);
@@ -133,14 +155,16 @@ void write_calibration(const std::filesystem::path& folder, const MeasuredVesicl
                 " At %d of %zu choices D fits best where the search for it ends: begin with "
                 "another --diffusion.",
                 result.at_bound, points.size());
+  const std::vector<std::string> notes = notes_on(data, found, names, result);
   const Table table = points_table(model, names, points, result);
   write_durably(folder / "calibration.csv", csv_text(table));
   write_durably(folder / "calibration.json", json_text(lines, result));
-  write_durably(folder / "calibrated.toml", config_text(found_model(model, names, lines)));
+  write_durably(folder / "calibrated.toml", config_text(found));
   Page page("A model calibrated with measurements");
   page.paragraph(data.name + (data.synthetic ? " (SYNTHETIC, not measured)" : ""));
   page.table(rows);
   page.paragraph(best + " " + scatter + bound);
+  for (const std::string& note : notes) page.paragraph(note);
   page.table(table_rows(table));
   for (std::size_t i = 0; i < names.size(); ++i) {
     Chart chart{"Deviance over " + names[i], names[i], "-2 ln likelihood", true, false, {}};
@@ -151,10 +175,12 @@ void write_calibration(const std::filesystem::path& folder, const MeasuredVesicl
     const std::string svg = draw_chart(chart, folder / ("deviance-" + names[i]));
     if (!svg.empty()) page.figure(svg, chart.title);
   }
+  add_settings(page, found);
   write_durably(folder / "calibration.html", page.html());
   if (quiet) return;
   std::printf("\n");
   print_rows(rows);
+  for (const std::string& note : notes) std::printf("\n%s\n", note.c_str());
   std::printf("\n%s\n%s%s\n\nrun it with: traceraft run --config %s\nopen next: %s\n", best.c_str(),
               scatter.c_str(), bound.c_str(), (folder / "calibrated.toml").c_str(),
               (folder / "calibration.html").c_str());

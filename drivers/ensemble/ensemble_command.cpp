@@ -98,8 +98,10 @@ int carry_out(const EnsembleRequest& request, const EnsembleFolder& folder,
   if (!request.quiet)
     std::printf("%d runs, %d at a time with %d thread%s each\nfolder %s\n\n", plan.runs,
                 jobs.at_a_time, jobs.threads, jobs.threads == 1 ? "" : "s", folder.path().c_str());
-  const EnsembleEnd end =
-      work_off(plan, folder, jobs, configuration.number("t-end"), request.quiet);
+  const double t_end = configuration.number("t-end");
+  EnsembleEnd end = work_off(plan, folder, jobs, t_end, request.quiet);
+  const FinishedMembers finished = finished_members(folder, units.length(), t_end);
+  end.failures.insert(end.failures.end(), finished.damaged.begin(), finished.damaged.end());
   for (const MemberFailure& failure : end.failures)
     std::fprintf(stderr, "traceraft: the run of seed %llu failed: %s\n",
                  static_cast<unsigned long long>(failure.seed), failure.why.c_str());
@@ -108,11 +110,10 @@ int carry_out(const EnsembleRequest& request, const EnsembleFolder& folder,
       std::printf("go on with: traceraft ensemble --out %s\n", folder.path().c_str());
     return kInterrupted;
   }
-  const std::vector<History> runs = finished_histories(folder, plan, units.length());
+  const std::vector<History>& runs = finished.histories;
   if (runs.empty()) return kNumericalFailure;
   const EnsembleSummary summary = summarise(runs);
-  write_histories(folder.path() / kHistoriesFile, finished_seeds(folder, plan), runs,
-                  summary.times);
+  write_histories(folder.path() / kHistoriesFile, finished.seeds, runs, summary.times);
   const std::string missing =
       write_ensemble(folder, summary, end, sentence(configuration, runs.size(), plan),
                      !units.scaled, request.quiet);
@@ -133,6 +134,8 @@ int run_ensemble(const EnsembleRequest& request) {
   }
   if (!goes_on && !request.out.empty()) {
     refuse_files_of_a_run(request.out);
+    if (fs::exists(fs::path(request.out) / "dataset.toml"))
+      throw InputError("--out: " + request.out + " holds measurements; choose another folder");
     EnsembleFolder(request.out).refuse_other_plan();
   }
   const Configuration configuration =
@@ -155,7 +158,7 @@ int run_ensemble(const EnsembleRequest& request) {
   return kSuccess;
 }
 
-Action define(CLI::App& app) {
+Action define_ensemble(CLI::App& app) {
   const auto request = std::make_shared<EnsembleRequest>();
   app.add_option("--config", request->config_file, "TOML file with the flags' names as keys");
   app.add_option("--out", request->out,
@@ -186,7 +189,7 @@ Action define(CLI::App& app) {
 
 Command ensemble_command() {
   return {"ensemble", "run one case from many seeds, and gather what is common to them",
-          Ranks::starts_them, define};
+          Ranks::starts_them, define_ensemble};
 }
 
 }  // namespace traceraft

@@ -8,6 +8,7 @@
 #include "drivers/input/csv_table.hpp"
 #include "drivers/output/json_file.hpp"
 #include "kernel/core/error.hpp"
+#include "kernel/core/parameters.hpp"
 
 namespace traceraft {
 std::vector<std::uint64_t> EnsemblePlan::seeds() const {
@@ -49,11 +50,15 @@ EnsembleFolder::Member EnsembleFolder::member(std::uint64_t seed) const {
   const std::filesystem::path run = run_of(seed), summary = run / "summary.json";
   if (!std::filesystem::exists(run / "config.toml")) return {MemberEnd::missing, ""};
   if (!std::filesystem::exists(summary)) return {MemberEnd::begun, ""};
-  return from_json(summary, [](const Json& json) -> Member {
-    const std::string end = json.at("end");
-    if (end == "failed") return {MemberEnd::failed, json.value("why", std::string())};
-    return {end == "finished" ? MemberEnd::finished : MemberEnd::begun, ""};
-  });
+  try {
+    return from_json(summary, [](const Json& json) -> Member {
+      const std::string end = json.at("end");
+      if (end == "failed") return {MemberEnd::failed, json.value("why", std::string())};
+      return {end == "finished" ? MemberEnd::finished : MemberEnd::begun, ""};
+    });
+  } catch (const IoError& error) {
+    return {MemberEnd::failed, error.what()};
+  }
 }
 
 double EnsembleFolder::reached(std::uint64_t seed) const {
@@ -83,19 +88,32 @@ History EnsembleFolder::history(std::uint64_t seed, double radius) const {
   return history;
 }
 
-std::vector<std::uint64_t> finished_seeds(const EnsembleFolder& folder, const EnsemblePlan& plan) {
-  std::vector<std::uint64_t> seeds;
-  for (const std::uint64_t seed : plan.seeds())
-    if (folder.member(seed).end == MemberEnd::finished) seeds.push_back(seed);
-  return seeds;
-}
-
-std::vector<History> finished_histories(const EnsembleFolder& folder, const EnsemblePlan& plan,
-                                        double radius) {
-  std::vector<History> histories;
-  for (const std::uint64_t seed : finished_seeds(folder, plan))
-    histories.push_back(folder.history(seed, radius));
-  return histories;
+FinishedMembers finished_members(const EnsembleFolder& folder, double radius, double t_end) {
+  constexpr double kRoundoff = 1e-9;
+  FinishedMembers result;
+  const auto damaged = [&](std::uint64_t seed, const std::string& why) {
+    result.damaged.push_back(
+        {seed, why + "; delete " + folder.run_of(seed).string() + " to have it repeated"});
+  };
+  for (const std::uint64_t seed : folder.load().seeds()) {
+    if (folder.member(seed).end != MemberEnd::finished) continue;
+    try {
+      History history = folder.history(seed, radius);
+      const double last = history.time.empty() ? 0 : history.time.back();
+      if (last < (1 - kRoundoff) * t_end) {
+        damaged(seed, "its series.csv ends at t = " + format_number(last) + " instead of " +
+                          format_number(t_end));
+        continue;
+      }
+      result.seeds.push_back(seed);
+      result.histories.push_back(std::move(history));
+    } catch (const InputError& error) {
+      damaged(seed, error.what());
+    } catch (const IoError& error) {
+      damaged(seed, error.what());
+    }
+  }
+  return result;
 }
 
 }  // namespace traceraft

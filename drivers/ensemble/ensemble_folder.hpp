@@ -38,7 +38,7 @@ class EnsembleFolder {
   std::filesystem::path run_of(std::uint64_t seed) const;
   std::filesystem::path log_of(std::uint64_t seed) const;
 
-  // What is there of a member, and why it failed. Throws IoError if its summary is damaged.
+  // What is there of a member, and why it failed; one whose summary is damaged has failed.
   struct Member {
     MemberEnd end;
     std::string why;
@@ -49,7 +49,7 @@ class EnsembleFolder {
   double reached(std::uint64_t seed) const;
 
   // Of a member that has begun; perimeters are divided by `radius`, given in the units of the
-  // files.
+  // files. Throws InputError or IoError if its series is damaged.
   History history(std::uint64_t seed, double radius) const;
 
  private:
@@ -57,9 +57,20 @@ class EnsembleFolder {
   std::filesystem::path path_;
 };
 
-// Of all members that have finished, in the order of their seeds.
-std::vector<std::uint64_t> finished_seeds(const EnsembleFolder& folder, const EnsemblePlan& plan);
-std::vector<History> finished_histories(const EnsembleFolder& folder, const EnsemblePlan& plan,
-                                        double radius);
+struct MemberFailure {
+  std::uint64_t seed;
+  std::string why;
+  bool locked = false;  // another process works on it
+};
+
+// All members that have finished, in the order of their seeds. Damaged: those that say so, but
+// whose series cannot be read or ends before it should; the others do not depend on them.
+struct FinishedMembers {
+  std::vector<std::uint64_t> seeds;
+  std::vector<History> histories;  // theirs
+  std::vector<MemberFailure> damaged;
+};
+// `radius`, `t_end`: of the runs, in the units of their files.
+FinishedMembers finished_members(const EnsembleFolder& folder, double radius, double t_end);
 
 }  // namespace traceraft

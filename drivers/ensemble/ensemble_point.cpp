@@ -37,16 +37,18 @@ PointEnd run_point(const std::filesystem::path& path, const Configuration& confi
   folder.save(plan);
   if (!std::filesystem::exists(folder.config()))
     write_durably(folder.config(), config_text(configuration));
-  const EnsembleEnd end = work_off(plan, folder, jobs_of(request.jobs, 0),
-                                   configuration.number("t-end"), request.quiet);
+  const double t_end = configuration.number("t-end");
+  const EnsembleEnd end = work_off(plan, folder, jobs_of(request.jobs, 0), t_end, request.quiet);
   for (const MemberFailure& failure : end.failures)
     if (failure.locked)
       throw InputError(
           folder.run_of(failure.seed).string() +
           " is in use by another process; wait for its end, and give the same command");
   const Units units = configuration.units();
-  PointEnd result{end.stopped, end.failures, finished_histories(folder, plan, units.length()),
-                  finished_seeds(folder, plan)};
+  FinishedMembers finished = finished_members(folder, units.length(), t_end);
+  PointEnd result{end.stopped, end.failures, std::move(finished.histories),
+                  std::move(finished.seeds)};
+  result.failures.insert(result.failures.end(), finished.damaged.begin(), finished.damaged.end());
   for (History& run : result.runs)
     for (double& t : run.time) t /= units.time();
   return result;

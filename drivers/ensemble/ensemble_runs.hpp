@@ -8,12 +8,6 @@
 
 namespace traceraft {
 
-struct MemberFailure {
-  std::uint64_t seed;
-  std::string why;
-  bool locked = false;  // another process works on it
-};
-
 struct EnsembleEnd {
   bool stopped = false;                 // there is more to do
   std::vector<MemberFailure> failures;  // of members that will not end, in the order of the seeds

@@ -13,13 +13,15 @@
 namespace traceraft {
 namespace {
 
-constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 30;
+constexpr std::uint64_t kLargestTable = std::uint64_t{1} << 30;
 
 struct Rows {
   std::vector<std::string> row;
   std::vector<std::vector<std::string>> rows;
   std::vector<long> lines;
   long line = 0;  // that is being read
+  // Lines that begin with #, below the heading.
+  std::vector<std::pair<long, std::string>> remarks;
 };
 
 void take_cell(void* cell, std::size_t size, void* target) {
@@ -63,17 +65,34 @@ Rows parse(const std::filesystem::path& path, std::string text) {
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
     ++rows.line;
-    if (text[begin] != '#' && !parser.feed(text.substr(begin, end - begin), rows)) refuse();
+    const std::string line = text.substr(begin, end - begin);
+    if (line[0] != '#') {
+      if (!parser.feed(line, rows)) refuse();
+    } else if (!rows.rows.empty()) {
+      rows.remarks.emplace_back(rows.line, line);
+    }
     begin = end;
   }
   if (!parser.finish(rows)) refuse();
   return rows;
 }
 
+// A row whose first cell begins with # would be lost without a word.
+void refuse_rows_as_remarks(const std::filesystem::path& path,
+                            const std::vector<std::pair<long, std::string>>& remarks,
+                            std::size_t columns) {
+  for (const auto& [line, text] : remarks)
+    if (columns > 1 &&
+        static_cast<std::size_t>(std::count(text.begin(), text.end(), ',')) == columns - 1)
+      throw InputError(path.string() + ":" + std::to_string(line) +
+                       ": this remark has as many commas as a row; names cannot begin with #, and "
+                       "a row to leave out has to be deleted");
+}
+
 }  // namespace
 
 CsvTable CsvTable::read(const std::filesystem::path& path) {
-  Rows rows = parse(path, read_file(path, kMaxBytes));
+  Rows rows = parse(path, read_file(path, kLargestTable));
   CsvTable table;
   table.path_ = path;
   if (rows.rows.empty()) throw InputError(path.string() + ": the file is empty");
@@ -85,6 +104,7 @@ CsvTable CsvTable::read(const std::filesystem::path& path) {
   table.cells_.assign(std::make_move_iterator(rows.rows.begin() + 1),
                       std::make_move_iterator(rows.rows.end()));
   table.lines_.assign(rows.lines.begin() + 1, rows.lines.end());
+  refuse_rows_as_remarks(path, rows.remarks, table.columns_.size());
   for (std::size_t i = 0; i < table.rows(); ++i)
     if (table.cells_[i].size() != table.columns_.size())
       throw InputError(table.where(i) + ": " + std::to_string(table.cells_[i].size()) +

@@ -13,6 +13,8 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/named_list.hpp"
 #include "kernel/core/parameters.hpp"
+#include "kernel/core/types.hpp"
+#include "verification/vesicles/raft_fraction.hpp"
 
 namespace traceraft {
 namespace {
@@ -23,12 +25,25 @@ namespace fs = std::filesystem;
 constexpr double kSmallestRadius = 0.05, kLargestRadius = 1000;  // µm
 constexpr double kLargestPerimeter = 1000;                       // over the radius
 constexpr double kMostRafts = 1e6;
+constexpr double kLatest = 1e9;                   // s
+constexpr double kColdest = -20, kHottest = 100;  // °C
+// Of one vesicle between looks; and by how much a perimeter may be shorter than the shortest one
+// of its area: both are read off images.
+constexpr double kSameRadius = 1.2, kTooShort = 0.7;
 
 double checked_radius(double radius, const std::string& where) {
   if (radius >= kSmallestRadius && radius <= kLargestRadius) return radius;
   throw InputError(where + ": a vesicle of radius " + format_number(radius) +
                    " um is impossible here (allowed: " + format_number(kSmallestRadius) + " to " +
                    format_number(kLargestRadius) + "); is length_unit right?");
+}
+
+double celsius_of(const TomlTable& toml) {
+  const double celsius = toml.number("temperature");
+  if (celsius >= kColdest && celsius <= kHottest) return celsius;
+  throw InputError(toml.where("temperature") + ": " + format_number(celsius) +
+                   " degrees Celsius is impossible here (allowed: " + format_number(kColdest) +
+                   " to " + format_number(kHottest) + ")");
 }
 
 struct Description {
@@ -52,8 +67,10 @@ Description read_description(const fs::path& folder) {
   d.data.synthetic = kind == "synthetic";
   d.data.origin = toml.text_or("origin", "");
   d.data.composition = toml.text_or("composition", "");
+  if (!d.data.composition.empty())
+    (void)membrane_mixture(toml.where("composition"), d.data.composition);
   d.data.time_zero = toml.text("time_zero");
-  if (toml.has("temperature")) d.data.celsius = toml.number("temperature");
+  if (toml.has("temperature")) d.data.celsius = celsius_of(toml);
   d.length = length_factor(toml, "length_unit");
   d.time = time_factor(toml, "time_unit");
   d.time_offset = toml.number_or("time_offset", 0);
@@ -95,6 +112,10 @@ Measurement begin_measurement(const Description& d, const CsvTable& table, std::
   m.time = table.number(row, "time") * d.time + d.time_offset * d.time;
   if (!(m.time >= 0))
     throw InputError(table.where(row, "time") + ": a time before time zero is impossible");
+  if (m.time > kLatest)
+    throw InputError(table.where(row, "time") + ": " + format_number(m.time) +
+                     " s is impossible (allowed: to " + format_number(kLatest) +
+                     " s); is time_unit right?");
   if (before.empty()) return m;
   if (before.back().vesicle != m.vesicle) finished.insert(before.back().vesicle);
   if (finished.count(m.vesicle))
@@ -103,7 +124,32 @@ Measurement begin_measurement(const Description& d, const CsvTable& table, std::
   if (before.back().vesicle == m.vesicle && !(m.time > before.back().time))
     throw InputError(table.where(row, "time") + ": times of a vesicle have to ascend (before it: " +
                      format_number(before.back().time / d.time - d.time_offset) + ")");
+  if (before.back().vesicle == m.vesicle &&
+      std::max(m.radius, before.back().radius) >
+          kSameRadius * std::min(m.radius, before.back().radius))
+    throw InputError(table.where(row, "radius") + ": vesicle '" + m.vesicle + "' had a radius of " +
+                     format_number(before.back().radius) + " um a look before, and has " +
+                     format_number(m.radius) + " um now; are these two vesicles?");
   return m;
+}
+
+// Quantities of one look that exclude each other.
+void refuse_contradictions(const CsvTable& table, std::size_t row, const Measurement& m) {
+  const auto perimeter = m.of(Quantity::perimeter), rafts = m.of(Quantity::rafts),
+             fraction = m.of(Quantity::fraction);
+  for (const Quantity quantity : {Quantity::perimeter, Quantity::fraction})
+    if (const auto value = m.of(quantity); rafts && value && (*rafts > 0) != (*value > 0))
+      throw InputError(table.where(row, name_of(quantity).id) + ": " +
+                       (*rafts > 0 ? "rafts have a boundary and an area"
+                                   : "without rafts there is no boundary and no area"));
+  if (!perimeter || !fraction) return;
+  // The isoperimetric inequality on a sphere of radius 1: P² ≥ A (4π − A), with equality for caps.
+  const double shortest = 4 * kPi * std::sqrt(*fraction * (1 - *fraction));
+  if (*perimeter < kTooShort * shortest)
+    throw InputError(table.where(row, "perimeter") + ": " + format_number(*perimeter * m.radius) +
+                     " um is too short: the shortest boundary of a raft fraction of " +
+                     format_number(*fraction) + " has " + format_number(shortest * m.radius) +
+                     " um");
 }
 
 void read_value(const Description& d, const CsvTable& table, std::size_t row, Quantity quantity,
@@ -130,6 +176,12 @@ void check_columns(const CsvTable& table, const std::vector<std::string>& known)
   for (const std::string& column : table.columns())
     if (std::find(known.begin(), known.end(), column) == known.end())
       throw InputError(table.heading() + ": " + unknown_name_message("column", column, known));
+  for (const Quantity quantity : kQuantities) {
+    const std::string name = name_of(quantity).id;
+    if (table.has(name + "_sigma") && !table.has(name))
+      throw InputError(table.heading() + ": there is a column '" + name + "_sigma', but none '" +
+                       name + "'");
+  }
 }
 
 // A row per look.
@@ -142,6 +194,7 @@ void read_totals(Description& d, const CsvTable& table) {
     for (const Quantity quantity : kQuantities) read_value(d, table, row, quantity, m);
     if (!m.values[0] && !m.values[1] && !m.values[2])
       throw InputError(table.where(row) + ": nothing was measured (perimeter, rafts, fraction)");
+    refuse_contradictions(table, row, m);
     d.data.measurements.push_back(m);
   }
 }

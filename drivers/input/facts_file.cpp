@@ -1,8 +1,11 @@
 #include "drivers/input/facts_file.hpp"
 
+#include <cmath>
+
 #include "drivers/input/toml_table.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
+#include "verification/vesicles/raft_fraction.hpp"
 
 namespace traceraft {
 namespace {
@@ -12,6 +15,12 @@ double in_range(const TomlTable& toml, const char* key, double low, double high)
   if (value >= low && value <= high) return value;
   throw InputError(toml.where(key) + ": " + format_number(value) + " is out of range (allowed: " +
                    format_number(low) + " to " + format_number(high) + ")");
+}
+
+int whole_number(const TomlTable& toml, const char* key, double low, double high) {
+  const double value = in_range(toml, key, low, high);
+  if (value == std::floor(value)) return static_cast<int>(value);
+  throw InputError(toml.where(key) + ": " + format_number(value) + " is not a whole number");
 }
 
 }  // namespace
@@ -25,9 +34,10 @@ PublishedFacts read_facts(const std::filesystem::path& path) {
   facts.name = toml.text("name");
   facts.origin = toml.text("origin");
   facts.composition = toml.text("composition");
+  (void)membrane_mixture(toml.where("composition"), facts.composition);
   facts.celsius = in_range(toml, "temperature", -10, 100);
-  facts.vesicles = static_cast<int>(in_range(toml, "vesicles", 1, 1e6));
-  facts.measurements = static_cast<int>(in_range(toml, "measurements", facts.vesicles, 1e6));
+  facts.vesicles = whole_number(toml, "vesicles", 1, 1e6);
+  facts.measurements = whole_number(toml, "measurements", facts.vesicles, 1e6);
   facts.fraction = in_range(toml, "fraction", 1e-3, 0.999);
   facts.fraction_sd = in_range(toml, "fraction_sd", 0, 1);
   facts.radius_min = in_range(toml, "radius_min", 0.05, 1000);
@@ -38,7 +48,8 @@ PublishedFacts read_facts(const std::filesystem::path& path) {
                      in_range(toml, "perimeter_t0", -1e9, 0.999 * facts.window.begin),
                      in_range(toml, "perimeter_b", -10, 10),
                      in_range(toml, "perimeter_scatter", 0, 2)};
-  facts.outliers = static_cast<int>(toml.number_or("outliers", -1));
+  facts.outliers =
+      toml.has("outliers") ? whole_number(toml, "outliers", 0, facts.measurements) : -1;
   return facts;
 }
 

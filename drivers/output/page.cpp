@@ -17,6 +17,14 @@ std::string html_text(const std::string& text) {
   return result;
 }
 
+std::string page_body(const std::string& html) {
+  const std::string after = "</h1>\n";
+  const std::size_t title = html.find(after), end = html.rfind("</body>");
+  if (title == std::string::npos || end == std::string::npos) return "";
+  const std::size_t begin = title + after.size();
+  return html.substr(begin, end - begin);
+}
+
 void Page::heading(const std::string& text) {
   body_ += "<h2>" + html_text(text) + "</h2>\n";
 }

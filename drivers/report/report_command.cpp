@@ -8,6 +8,7 @@
 #include "drivers/exit_codes.hpp"
 #include "drivers/report/report_page.hpp"
 #include "kernel/core/error.hpp"
+#include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
 
 namespace traceraft {
@@ -41,9 +42,12 @@ void write_pictures(const ReportRequest& request) {
   }
   if (request.snapshots.empty()) return;
   fs::create_directories(request.snapshots);
+  std::string times = "picture,t\n";
   for (std::size_t k = 0; k < images.size(); ++k) {
     write_durably(fs::path(request.snapshots) / frame_name(k), png_bytes(images[k]));
+    times += frame_name(k) + "," + format_number(frames.times[k]) + "\n";
   }
+  write_durably(fs::path(request.snapshots) / "frames.csv", times);
   if (request.quiet) return;
   std::printf("%zu pictures in %s\n", images.size(), request.snapshots.c_str());
   if (fs::exists(fs::path(request.snapshots) / frame_name(images.size())))
@@ -53,6 +57,7 @@ void write_pictures(const ReportRequest& request) {
 int report(const ReportRequest& request) {
   const fs::path out =
       request.out.empty() ? fs::path(request.folder) / "report.html" : fs::path(request.out);
+  if (out.has_parent_path()) fs::create_directories(out.parent_path());
   const std::string missing =
       write_report_page(request.folder, out, {request.frames, request.detail, out.parent_path()});
   write_pictures(request);
@@ -63,7 +68,7 @@ int report(const ReportRequest& request) {
   return kSuccess;
 }
 
-Action define(CLI::App& app) {
+Action define_report(CLI::App& app) {
   const auto request = std::make_shared<ReportRequest>();
   app.add_option("folder", request->folder, "of a run, ensemble, comparison or verification")
       ->required();
@@ -92,7 +97,7 @@ Action define(CLI::App& app) {
 
 Command report_command() {
   return {"report", "make a page, pictures and animations of what a folder holds", Ranks::one,
-          define};
+          define_report};
 }
 
 }  // namespace traceraft

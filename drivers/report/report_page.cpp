@@ -9,10 +9,10 @@
 #include "drivers/output/chart.hpp"
 #include "drivers/output/json_file.hpp"
 #include "drivers/output/page.hpp"
+#include "drivers/output/provenance.hpp"
 #include "drivers/output/text_table.hpp"
 #include "drivers/report/viewer.hpp"
 #include "drivers/run/run_setup.hpp"
-#include "drivers/version.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/text.hpp"
 
@@ -34,7 +34,8 @@ bool is_ensemble(const fs::path& folder) {
 
 // The page that another command has written, "" if there is none.
 std::string finished_page(const fs::path& folder) {
-  std::vector<const char*> names{"verify.html", "compare.html"};
+  std::vector<const char*> names{"verify.html", "compare.html", "calibration.html", "explain.html",
+                                 "series.html"};
   if (!is_run(folder) && !is_ensemble(folder)) names.push_back("comparison.html");
   for (const char* name : names)
     if (fs::exists(folder / name)) return read_file(folder / name, kLargestPage);
@@ -84,22 +85,9 @@ void add_summary(Page& page, const fs::path& run) {
   page.table(rows);
 }
 
-void add_settings(Page& page, const Configuration& configuration) {
-  std::vector<Row> rows = {{"setting", "value", "meaning"}};
-  for (const OptionSpec& spec : run_options())
-    rows.push_back({spec.name, configuration.text(spec.name), spec.help});
-  page.heading("Settings");
-  page.table(rows);
-}
-
-// `command` and the flags repeat what the page shows.
-void add_provenance(Page& page, const fs::path& folder, const std::string& command,
-                    const Configuration& configuration) {
-  page.heading("Where this comes from");
-  page.paragraph("traceraft " + std::string(kVersion) + ", from the files in " +
-                 fs::absolute(folder).lexically_normal().string() + ". To repeat it:");
+std::string with_flags(const std::string& command, const Configuration& configuration) {
   const std::string flags = flags_text(configuration);
-  page.code(command + (flags.empty() ? "" : " ") + flags);
+  return command + (flags.empty() ? "" : " ") + flags;
 }
 
 void fill_run(Page& page, const fs::path& folder, const PageRequest& request, Missing& missing) {
@@ -115,27 +103,30 @@ void fill_run(Page& page, const fs::path& folder, const PageRequest& request, Mi
               request.charts / ("report-" + std::string(curve.column)), missing);
   add_summary(page, folder);
   add_settings(page, configuration);
-  add_provenance(page, folder, "traceraft run", configuration);
+  add_provenance(page, folder, with_flags("traceraft run", configuration));
 }
 
-// What `data compare` has left.
-void add_agreement(Page& page, const CsvTable& table) {
-  std::vector<Row> rows = {table.columns()};
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    rows.emplace_back();
-    for (const std::string& column : table.columns())
-      rows.back().push_back(column == "quantity" ? table.text(row, column)
-                                                 : short_number(table.number(row, column)));
-  }
-  page.paragraph("Compared with measurements:");
-  page.table(rows);
+// What `data compare` has left, as it is, and whether it is of the same runs.
+void add_comparison(Page& page, const fs::path& folder, std::size_t runs) {
+  if (!fs::exists(folder / "comparison.html") || !fs::exists(folder / "comparison.json")) return;
+  page.heading("Compared with measurements");
+  const auto compared = from_json(folder / "comparison.json", [](const Json& json) {
+    return json.at("runs").get<std::size_t>();
+  });
+  if (compared != runs)
+    page.paragraph(
+        formatted("OUT OF DATE: made of %zu runs, and there are %zu now; repeat "
+                  "traceraft data compare.",
+                  compared, runs));
+  page.raw(page_body(read_file(folder / "comparison.html", kLargestPage)));
 }
 
 void fill_ensemble(Page& page, const fs::path& path, const PageRequest& request, Missing& missing) {
   const EnsembleFolder folder(path);
   const Configuration configuration(read_config_file(folder.config()), {});
   const Units units = configuration.units();
-  const std::vector<History> runs = finished_histories(folder, folder.load(), units.length());
+  const std::vector<History> runs =
+      finished_members(folder, units.length(), configuration.number("t-end")).histories;
   if (runs.empty()) throw InputError(path.string() + ": no run of this ensemble has finished");
   const fs::path shown = run_to_show(path);
   const EnsemblePlan plan = folder.load();
@@ -149,22 +140,14 @@ void fill_ensemble(Page& page, const fs::path& path, const PageRequest& request,
   for (const Quantity quantity : kQuantities)
     add_chart(page, ensemble_chart(summary, quantity, !units.scaled),
               request.charts / (std::string("report-") + name_of(quantity).id), missing);
-  for (const Quantity quantity : kQuantities)
-    if (const fs::path chart = path / (std::string("comparison-") + name_of(quantity).id + ".svg");
-        fs::exists(chart)) {
-      const std::string svg = read_file(chart, kLargestPage);
-      page.figure(svg.substr(svg.find("<svg")),
-                  std::string(name_of(quantity).label) + ", compared with measurements");
-    }
   page.heading("Numbers");
   page.table(ensemble_rows(summary, !units.scaled));
-  if (const fs::path agreement = path / "comparison.csv"; fs::exists(agreement))
-    add_agreement(page, CsvTable::read(agreement));
+  add_comparison(page, path, runs.size());
   add_settings(page, configuration);
   add_provenance(page, path,
-                 formatted("traceraft ensemble --runs %d --first-seed ", plan.runs) +
-                     std::to_string(plan.first_seed),
-                 configuration);
+                 with_flags(formatted("traceraft ensemble --runs %d --first-seed ", plan.runs) +
+                                std::to_string(plan.first_seed),
+                            configuration));
 }
 
 }  // namespace

@@ -46,8 +46,11 @@ int compare(const DataRequest& request) {
   if (out.empty())
     out = EnsembleFolder(request.ensemble).started() ? request.ensemble
                                                      : first_free_folder("comparison");
-  ComparisonRequest comparison{request.ensemble, out, window_of(request.window), std::nullopt,
-                               request.quiet};
+  const std::string command = "traceraft data compare " + request.folder + " --ensemble " +
+                              request.ensemble + " --window " + request.window +
+                              (request.facts.empty() ? "" : " --facts " + request.facts);
+  ComparisonRequest comparison{request.ensemble,          out,          command,
+                               window_of(request.window), std::nullopt, request.quiet};
   if (!request.facts.empty()) comparison.facts = read_facts(request.facts);
   return compare_with_ensemble(read_dataset(request.folder), comparison);
 }
@@ -83,7 +86,7 @@ const NamedList<DataAction>& actions() {
   return list;
 }
 
-Action define(CLI::App& app) {
+Action define_data(CLI::App& app) {
   const auto request = std::make_shared<DataRequest>();
   app.add_option("action", request->action,
                  "check: read a folder of measurements and say what is in it; compare: hold an "
@@ -114,7 +117,7 @@ Action define(CLI::App& app) {
 
 Command data_command() {
   return {"data", "check measurements of vesicles, and hold simulations against them", Ranks::one,
-          define};
+          define_data};
 }
 
 }  // namespace traceraft

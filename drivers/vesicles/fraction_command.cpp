@@ -47,7 +47,7 @@ int estimate_fraction(const FractionRequest& request) {
   return kSuccess;
 }
 
-Action define(CLI::App& app) {
+Action define_fraction(CLI::App& app) {
   const auto request = std::make_shared<FractionRequest>();
   app.add_option("--composition", request->composition,
                  "parts of DOPC : DPPC : mol % of cholesterol, such as 3:1:20");
@@ -64,7 +64,8 @@ Action define(CLI::App& app) {
 }  // namespace
 
 Command fraction_command() {
-  return {"fraction", "estimate the raft fraction of a lipid composition", Ranks::one, define};
+  return {"fraction", "estimate the raft fraction of a lipid composition", Ranks::one,
+          define_fraction};
 }
 
 }  // namespace traceraft

@@ -9,11 +9,14 @@
 #include "drivers/ensemble/histories_file.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/output/chart.hpp"
+#include "drivers/output/json_file.hpp"
 #include "drivers/output/page.hpp"
+#include "drivers/output/provenance.hpp"
 #include "drivers/output/text_table.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/text.hpp"
 #include "verification/vesicles/comparison.hpp"
+#include "verification/vesicles/raft_fraction.hpp"
 
 namespace traceraft {
 namespace {
@@ -39,6 +42,17 @@ std::string about(const MeasuredVesicles& data) {
          std::to_string(data.vesicles().size()) + " vesicles, " +
          std::to_string(data.measurements.size()) + " measurements" +
          (data.origin.empty() ? "" : "; " + data.origin);
+}
+
+// From composition and temperature alone.
+std::string estimated_fraction(const std::string& composition, double celsius) {
+  try {
+    const RaftFractionEstimate estimate =
+        estimated_raft_fraction(membrane_mixture("composition", composition), celsius);
+    return formatted("%.4g, ", estimate.area) + estimate.how;
+  } catch (const InputError& error) {
+    return std::string("unknown (") + error.what() + ")";
+  }
 }
 
 Row law_row(const std::string& of, const std::optional<FittedLaw>& law) {
@@ -116,6 +130,12 @@ Table agreement_table(const std::vector<Agreement>& agreements) {
   return table;
 }
 
+void refuse_other_membrane(const MeasuredVesicles& data, const PublishedFacts& facts) {
+  if (data.composition.empty() || same_membrane(data.composition, facts.composition)) return;
+  throw InputError("--facts: they are of " + facts.composition + ", the measurements of " +
+                   data.composition);
+}
+
 ChartSeries law_curve(const std::string& name, const PowerLaw& law, const Window& window) {
   ChartSeries series{name, {}, Mark::line};
   constexpr int kPoints = 40;
@@ -167,22 +187,35 @@ void print_dataset(const MeasuredVesicles& data, const std::optional<FittedLaw>&
   std::printf("  %-22s %s\n", "radius (um)", spread(radii).c_str());
   for (const Quantity quantity : kQuantities)
     std::printf("  %-22s %s\n", name_of(quantity).label, spread(values_of(data, quantity)).c_str());
+  if (!data.composition.empty() && data.celsius)
+    std::printf("  %-22s %s\n", "estimated fraction",
+                estimated_fraction(data.composition, *data.celsius).c_str());
   std::printf("\npower law from %g to %g s\n", window.begin, window.end);
   print_rows({kLawHeading, law_row("measured", law)});
 }
 
-std::vector<History> runs_of(const fs::path& path) {
+Configuration model_of(const fs::path& path) {
   const EnsembleFolder folder(path);
-  const fs::path kept = path / kHistoriesFile;
-  if (!folder.started() && !(fs::exists(folder.config()) && fs::exists(kept)))
+  if (!folder.started() && !(fs::exists(folder.config()) && fs::exists(path / kHistoriesFile)))
     throw InputError("--ensemble: " + path.string() + " holds no ensemble (traceraft ensemble)");
   const Configuration configuration(read_config_file(folder.config()), {});
-  const Units units = configuration.units();
-  if (units.scaled)
+  if (configuration.units().scaled)
     throw InputError("--ensemble: " + path.string() +
                      " was run with --scaled; its times cannot be compared with seconds");
+  return configuration;
+}
+
+SimulatedVesicle vesicle_of(const Configuration& model) {
+  return {model.units().length(), model.number("raft-fraction")};
+}
+
+std::vector<History> runs_of(const fs::path& path) {
+  const Configuration model = model_of(path);
+  const EnsembleFolder folder(path);
+  const fs::path kept = path / kHistoriesFile;
   if (folder.started()) {
-    const std::vector<History> runs = finished_histories(folder, folder.load(), units.length());
+    const std::vector<History> runs =
+        finished_members(folder, model.units().length(), model.number("t-end")).histories;
     if (!runs.empty() || !fs::exists(kept)) return runs;
   }
   return read_histories(kept);
@@ -190,6 +223,7 @@ std::vector<History> runs_of(const fs::path& path) {
 
 int compare_with_ensemble(const MeasuredVesicles& data, const ComparisonRequest& request) {
   const Window& window = request.window;
+  if (request.facts) refuse_other_membrane(data, *request.facts);
   const std::vector<History> runs = runs_of(request.ensemble);
   const std::vector<Agreement> agreements = compare_with_runs(data, runs);
   const EnsembleSummary summary = summarise(runs);
@@ -208,6 +242,8 @@ int compare_with_ensemble(const MeasuredVesicles& data, const ComparisonRequest&
       "and the uncertainty of the measurement; of logarithms for perimeters and counts. " +
       expectation(runs.size()));
   page.table(rows);
+  const std::vector<std::string> notes = differences(data, vesicle_of(model_of(request.ensemble)));
+  for (const std::string& note : notes) page.paragraph(note);
   page.paragraph(formatted("Power laws fitted from %g to %g s.", window.begin, window.end));
   page.table(laws);
   fs::create_directories(request.out);
@@ -222,6 +258,9 @@ int compare_with_ensemble(const MeasuredVesicles& data, const ComparisonRequest&
         draw_chart(chart, request.out / (std::string("comparison-") + name_of(quantity).id));
     if (!svg.empty()) page.figure(svg, chart.title);
   }
+  add_provenance(page, request.ensemble, request.command);
+  write_durably(request.out / "comparison.json",
+                Json{{"runs", runs.size()}, {"data", data.name}}.dump(2) + "\n");
   write_durably(request.out / "comparison.csv", csv_text(agreement_table(agreements)));
   write_durably(request.out / "comparison.html", page.html());
   if (!request.quiet) {
@@ -229,6 +268,7 @@ int compare_with_ensemble(const MeasuredVesicles& data, const ComparisonRequest&
     std::printf("%s\n\npower laws from %g to %g s\n", expectation(runs.size()).c_str(),
                 window.begin, window.end);
     print_rows(laws);
+    for (const std::string& note : notes) std::printf("\n%s\n", note.c_str());
     std::printf("\nopen next: %s\n", (request.out / "comparison.html").c_str());
   }
   return kSuccess;

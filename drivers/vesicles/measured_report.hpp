@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <optional>
 
+#include "drivers/config/configuration.hpp"
+#include "verification/vesicles/differences.hpp"
 #include "verification/vesicles/measurements.hpp"
 #include "verification/vesicles/power_law.hpp"
 #include "verification/vesicles/published.hpp"
@@ -14,13 +16,18 @@ namespace traceraft {
 void print_dataset(const MeasuredVesicles& data, const std::optional<FittedLaw>& law,
                    const Window& window);
 
+// The model of an ensemble, or of what a folder has kept of one. Throws InputError if there is
+// none, or if its times are in units of R²/D.
+Configuration model_of(const std::filesystem::path& ensemble);
+SimulatedVesicle vesicle_of(const Configuration& model);
+
 // The finished runs of an ensemble, in s and R, or what a folder with its config.toml and
-// histories.csv has kept of them. Throws InputError if there is no ensemble, or if its times are in
-// units of R²/D.
+// histories.csv has kept of them. Throws InputError as model_of.
 std::vector<History> runs_of(const std::filesystem::path& ensemble);
 
 struct ComparisonRequest {
   std::filesystem::path ensemble, out;
+  std::string command;  // that asks for it
   Window window;
   std::optional<PublishedFacts> facts;  // shown beside both
   bool quiet;

@@ -69,6 +69,16 @@ TEST_F(EnsembleTest, GathersRunsThatDifferInTheirSeed) {
   EXPECT_EQ(traceraft("report --quiet " + out("by-kept")).code, 0);
   EXPECT_EQ(content(folder.path / "by-kept/report.html"),
             content(folder.path / "by-kept/comparison.html"));
+  // A report of the ensemble shows it, and says when it is of other runs than there are.
+  ASSERT_EQ(traceraft("data compare --quiet " + out("data") + " --ensemble " + out("a")).code, 0);
+  ASSERT_EQ(traceraft("report --quiet " + out("a")).code, 0);
+  const fs::path page = folder.path / "a/report.html";
+  EXPECT_NE(content(page).find("the misfit is"), std::string::npos);
+  EXPECT_NE(content(page).find("SYNTHETIC, not measured"), std::string::npos);
+  EXPECT_EQ(content(page).find("OUT OF DATE"), std::string::npos);
+  ASSERT_EQ(traceraft("ensemble --quiet --runs 5 --out " + out("a")).code, 0);
+  ASSERT_EQ(traceraft("report --quiet " + out("a")).code, 0);
+  EXPECT_NE(content(page).find("OUT OF DATE: made of 4 runs, and there are 5"), std::string::npos);
   const std::vector<double> with = misfits("by-a"), without = misfits("by-kept");
   ASSERT_EQ(with.size(), 3u);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(without[k], with[k], 0.1 * with[k]);
@@ -114,6 +124,25 @@ TEST_F(EnsembleTest, IsolatesARunThatFails) {
   EXPECT_NE(content(folder.path / "a/ensemble.html").find("2 of 3 runs"), std::string::npos);
   fs::remove(folder.path / "a/runs/seed-2");
   EXPECT_EQ(traceraft("ensemble --quiet --out " + out("a")).code, 0);
+}
+
+// Files that were damaged after their run had finished are their member's own.
+TEST_F(EnsembleTest, GathersTheOthersOfADamagedRun) {
+  ASSERT_EQ(traceraft("ensemble --quiet " + runs + "--runs 4 --out " + out("a")).code, 0);
+  const fs::path first = folder.path / "a/runs/seed-1/series.csv";
+  std::string series = content(first);
+  series.resize(series.rfind('\n', series.size() / 2) + 1);
+  std::ofstream(first) << series;
+  std::ofstream(folder.path / "a/runs/seed-2/series.csv") << "t,";
+  std::ofstream(folder.path / "a/runs/seed-3/summary.json") << "{";
+  const Outcome made = traceraft("ensemble --out " + out("a"));
+  EXPECT_EQ(made.code, 3) << made.output;
+  for (const char* words :
+       {"seed 1 failed: its series.csv ends at t = ", "seed 2 failed", "seed 3 failed"})
+    EXPECT_NE(made.output.find(words), std::string::npos) << made.output;
+  EXPECT_NE(content(folder.path / "a/ensemble.html").find("1 of 4 runs"), std::string::npos);
+  // Time goes on to the end of the run that is whole.
+  EXPECT_NEAR(CsvTable::read(csv("a")).numbers("t").back(), 100, 10);
 }
 
 TEST_F(EnsembleTest, IsAnArrayJobToo) {

@@ -74,7 +74,7 @@ TEST_F(DatasetTest, ComputesRaftsFromCaps) {
 
 TEST_F(DatasetTest, NamesFileLineAndColumn) {
   const std::string heading = "vesicle,time,radius,perimeter,rafts,fraction\n";
-  expect_complaint(heading + "a,2,5000,1,1,0.1\na,1,5000,1,1,0.1\n",
+  expect_complaint(heading + "a,2,5000,20000,1,0.1\na,1,5000,20000,1,0.1\n",
                    "measurements.csv:3: column 'time': times of a vesicle have to ascend");
   expect_complaint(heading + "a,1,5000,1,1,1.2\n", "column 'fraction': 1.2 is impossible");
   expect_complaint(heading + "a,1,5000,1,1.5,0.2\n", "column 'rafts': a whole number");
@@ -82,7 +82,7 @@ TEST_F(DatasetTest, NamesFileLineAndColumn) {
   expect_complaint(heading + "a,1,5000,,,\n", ":2: nothing was measured");
   expect_complaint(heading + "a,-1,5000,1,1,0.2\n", "before time zero");
   expect_complaint(heading + "a,x,5000,1,1,0.2\n", ":2: column 'time': 'x' is not a finite number");
-  expect_complaint(heading + "a,1,5000,1,1,0.1\nb,1,5000,1,1,0.1\na,2,5000,1,1,0.1\n",
+  expect_complaint(heading + "a,1,5000,,1,0.1\nb,1,5000,,1,0.1\na,2,5000,,1,0.1\n",
                    ":4: column 'vesicle': vesicle 'a' is there twice");
   expect_complaint(heading, "nothing was measured");
   expect_complaint("vesicle,radius,rafts\na,5000,1\n",
@@ -103,6 +103,35 @@ TEST_F(DatasetTest, NamesFileLineAndColumn) {
                    "more than the whole vesicle");
   expect_complaint("vesicle,time,rafts\na,1,1\n", "unknown key 'radiu'", "radiu = 3\n");
   expect_complaint("vesicle,time,rafts\na,1,1\n", "dataset.toml:6: sigma", "sigma = \"?\"\n");
+}
+
+TEST_F(DatasetTest, RefusesWhatContradictsItself) {
+  const std::string heading = "vesicle,time,radius,perimeter,rafts,fraction\n";
+  expect_complaint(heading + "a,1,5000,20000,0,\n", "column 'perimeter': without rafts");
+  expect_complaint(heading + "a,1,5000,,3,0\n", "column 'fraction': rafts have a boundary");
+  // The shortest boundary of half of a sphere of 5 um is a great circle of 31.4 um.
+  expect_complaint(heading + "a,1,5000,20000,1,0.5\n",
+                   ":2: column 'perimeter': 20 um is too short: the shortest boundary of a raft "
+                   "fraction of 0.5 has 31.4");
+  EXPECT_EQ(read(heading + "a,1,5000,25000,1,0.5\n").measurements.size(), 1u);  // read off an image
+  expect_complaint(heading + "a,1,5000,20000,1,0.1\na,2,8000,20000,1,0.05\n",
+                   ":3: column 'radius': vesicle 'a' had a radius of 5 um");
+  expect_complaint(heading + "a,1e300,5000,,1,\n", "is time_unit right?");
+  expect_complaint("vesicle,time,radius,rafts,perimeter_sigma\na,1,5000,1,2\n",
+                   ":1: there is a column 'perimeter_sigma', but none 'perimeter'");
+  expect_complaint(heading + "a,1,5000,,1,\n#1,1,5000,,1,\n",
+                   "measurements.csv:3: this remark has as many commas as a row");
+  EXPECT_EQ(
+      read("# one, two\n" + heading + "# a remark, short\na,1,5000,,1,\n").measurements.size(), 1u);
+}
+
+TEST_F(DatasetTest, ChecksMembraneAndTemperature) {
+  const std::string rows = "vesicle,time,radius,rafts\na,1,5000,1\n";
+  expect_complaint(rows, "dataset.toml:6: composition: 'banana' is not parts of DOPC",
+                   "composition = \"banana\"\n");
+  expect_complaint(rows, "dataset.toml:6: temperature: 288 degrees", "temperature = 288\n");
+  expect_complaint(rows, "dataset.toml:6: temperature: nan degrees", "temperature = nan\n");
+  EXPECT_EQ(read(rows, "composition = \"2:1:20 %\"\ntemperature = 19.2\n").celsius, 19.2);
 }
 
 TEST_F(DatasetTest, SaysWhatADescriptionLacks) {

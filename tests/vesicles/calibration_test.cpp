@@ -150,6 +150,42 @@ TEST(Calibration, StaysWithinWhatIsAllowed) {
             below.high * 1.0001);
 }
 
+// The raft fraction is what was measured of it, whatever perimeters and numbers say.
+TEST(Calibration, FindsTheFractionThatWasMeasured) {
+  constexpr double kFraction = 0.1;  // that of the data
+  std::vector<CalibrationPoint> points;
+  for (const double step : {0.25, 0.1})
+    for (const auto& ln : design_around({std::log(1.2 * kFraction)}, step)) {
+      points.push_back({ln, simulate(kEpsilon, true, 20, 5)});
+      for (History& run : points.back().runs)
+        for (double& value : run.of(Quantity::fraction)) value = std::exp(ln[0]);
+    }
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const MeasuredVesicles data = measured(true, seed);
+    double mean = 0, count = 0;
+    for (const auto& value : mean_fractions(data)) {
+      mean += *value;
+      ++count;
+    }
+    mean /= count;
+    const auto found = calibrate(data, {{"fraction", {0.02, 0.9}}}, points, around(kSeconds));
+    EXPECT_NEAR(found.parameters[1].value, mean, 0.02 * mean) << seed;
+    EXPECT_TRUE(found.parameters[1].determined) << seed;
+  }
+}
+
+TEST(Calibration, DeterminesNothingUnlessItConverges) {
+  std::vector<CalibrationPoint> points;
+  for (const auto& ln : design_around({std::log(kEpsilon)}, 0.25))
+    points.push_back({ln, simulate(std::exp(ln[0]), true, 40, 5)});
+  Calibration found = calibrate(measured(true, 1), kSought, points, around(kSeconds));
+  ASSERT_TRUE(found.parameters[1].determined);
+  EXPECT_TRUE(found.converged);
+  mark_unconverged(found);
+  EXPECT_FALSE(found.parameters[1].determined);
+  EXPECT_FALSE(found.converged);
+}
+
 TEST(Calibration, RefusesTooLittle) {
   MeasuredVesicles two = measured(true, 1);
   two.measurements.resize(7);

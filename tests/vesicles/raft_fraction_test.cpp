@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "kernel/core/error.hpp"
 
 namespace traceraft {
@@ -50,6 +52,16 @@ TEST(RaftFraction, RefusesWhatNothingIsKnownOf) {
 }
 
 // Equal phases in all but name have areas in proportion to their lipids.
+TEST(RaftFraction, RefusesAMembraneOffTheTieLine) {
+  const CoexistingPhases phases{{0.22, 0.43, 0.35}, {0.66, 0.16, 0.18}};
+  // Its DOPC lies between those of the phases, its cholesterol does not.
+  EXPECT_THROW((void)raft_fraction(membrane_mixture("", "2:1:50"), phases, 15), InputError);
+  EXPECT_NO_THROW((void)raft_fraction(membrane_mixture("", "3:1:20"), phases, 15));
+  EXPECT_THROW((void)estimate("3:1:20", std::nan("")), InputError);
+  EXPECT_TRUE(same_membrane("3:1:20", "6:2:20%"));
+  EXPECT_FALSE(same_membrane("3:1:20", "2:1:20"));
+}
+
 TEST(RaftFraction, IsThatOfLipidsIfAreasAreEqual) {
   const CoexistingPhases phases{{0.3, 0.5, 0.2}, {0.5, 0.3, 0.2}};
   const RaftFraction half = raft_fraction({0.4, 0.4, 0.2}, phases, 20);

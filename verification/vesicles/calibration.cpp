@@ -16,6 +16,36 @@ constexpr double kOvershoot = 0.5;  // of what was explored, beyond it
 constexpr double kParabolic = 15;   // a deviance that much above the least counts half
 constexpr double kDetermined = 2;   // factor between the ends of an interval
 
+// Mean raft fractions of vesicles, which scatter from vesicle to vesicle.
+class MeasuredFractions {
+ public:
+  explicit MeasuredFractions(const MeasuredVesicles& data)
+      : window_(looks(data)), means_(mean_fractions(data)) {
+    std::vector<double> known;
+    for (const auto& mean : means_)
+      if (mean) known.push_back(*mean);
+    if (known.size() > 1 && window_.end > 0) variance_ = std::pow(moments(known).deviation, 2);
+  }
+
+  // −2 ln of the likelihood of those of `sample`, if runs of that unit of time tell the truth.
+  double deviance(const std::vector<int>& sample, const std::vector<History>& runs,
+                  double seconds_per_unit) const {
+    if (!(variance_ > 0)) return 0;
+    const double t = std::sqrt(window_.begin * window_.end) / seconds_per_unit;
+    double simulated = 0, sum = 0;
+    for (const History& run : runs)
+      simulated += run.at(Quantity::fraction, t) / static_cast<double>(runs.size());
+    for (const int k : sample)
+      if (means_[k]) sum += std::pow(*means_[k] - simulated, 2) / variance_;
+    return sum;
+  }
+
+ private:
+  Window window_;
+  std::vector<std::optional<double>> means_;
+  double variance_ = 0;  // 0: too few to say anything
+};
+
 // What one data set says: ln of R²/D and of the parameters.
 struct Estimate {
   std::vector<double> ln;
@@ -56,13 +86,16 @@ std::vector<double> weights_of(const std::vector<double>& deviance) {
 Estimate estimate(const MeasuredVesicles& data, const std::vector<int>& vesicles,
                   const std::vector<CalibrationPoint>& points,
                   const std::vector<RunStatistics>& statistics, const Box& box,
-                  const TimeUnit& unit, const std::vector<TimeFit>* near = nullptr) {
+                  const TimeUnit& unit, const MeasuredFractions* fractions,
+                  const std::vector<TimeFit>* near = nullptr) {
   Estimate result;
   std::vector<std::vector<double>> x;
   std::vector<double> deviance, seconds, scatter;
   for (std::size_t k = 0; k < points.size(); ++k) {
-    const TimeFit fit = near ? fit_time(data, vesicles, statistics[k], unit, (*near)[k])
-                             : fit_time(data, vesicles, statistics[k], unit);
+    TimeFit fit = near ? fit_time(data, vesicles, statistics[k], unit, (*near)[k])
+                       : fit_time(data, vesicles, statistics[k], unit);
+    if (fractions)
+      fit.deviance += fractions->deviance(vesicles, points[k].runs, fit.seconds_per_unit);
     result.fits.push_back(fit);
     x.push_back(points[k].ln_parameters);
     deviance.push_back(fit.deviance);
@@ -135,8 +168,12 @@ Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtPara
   std::vector<RunStatistics> statistics;
   for (const CalibrationPoint& point : points)
     statistics.emplace_back(point.runs, each_once(point.runs.size()), scatter);
-  const Estimate found =
-      estimate(data, each_once(static_cast<std::size_t>(vesicles)), points, statistics, box, unit);
+  const MeasuredFractions measured(data);
+  const bool sought_fraction = std::any_of(
+      sought.begin(), sought.end(), [](const SoughtParameter& s) { return s.name == "fraction"; });
+  const MeasuredFractions* fractions = sought_fraction ? &measured : nullptr;
+  const Estimate found = estimate(data, each_once(static_cast<std::size_t>(vesicles)), points,
+                                  statistics, box, unit, fractions);
   std::vector<std::vector<double>> replicates;
   for (std::uint64_t r = 1; r <= kReplicates; ++r) {
     std::vector<RunStatistics> others;
@@ -145,7 +182,8 @@ Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtPara
       others.emplace_back(point.runs, resample(static_cast<int>(point.runs.size()), r, 32),
                           scatter);
     replicates.push_back(
-        estimate(data, resample(vesicles, r, 31), points, others, box, unit, &found.fits).ln);
+        estimate(data, resample(vesicles, r, 31), points, others, box, unit, fractions, &found.fits)
+            .ln);
   }
   Calibration result;
   for (std::size_t i = 0; i <= sought.size(); ++i) {
@@ -173,6 +211,11 @@ Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtPara
   result.at_bound = count_at_bound(found.fits, unit.allowed);
   result.scatter = found.scatter;
   return result;
+}
+
+void mark_unconverged(Calibration& calibration) {
+  calibration.converged = false;
+  for (CalibratedParameter& parameter : calibration.parameters) parameter.determined = false;
 }
 
 std::vector<std::vector<double>> design_around(const std::vector<double>& centre, double step) {

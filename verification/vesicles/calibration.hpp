@@ -39,8 +39,12 @@ struct Calibration {
   // deviation.
   std::vector<double> best_powers;
   double best_deviation;
-  int at_bound;  // points at which R²/D fits best where the search for it ends
+  int at_bound;           // points at which R²/D fits best where the search for it ends
+  bool converged = true;  // do the last simulations surround what was found?
 };
+
+// Of an estimate that the simulations do not surround nothing is determined.
+void mark_unconverged(Calibration& calibration);
 
 // Throws InputError for too few vesicles, and if neither perimeters nor rafts were measured.
 void refuse_calibration(const MeasuredVesicles& data);

@@ -25,6 +25,20 @@ Window looks(const MeasuredVesicles& data) {
   return window;
 }
 
+std::vector<std::optional<double>> mean_fractions(const MeasuredVesicles& data) {
+  std::vector<std::optional<double>> means;
+  for (const auto& [first, last] : data.vesicles()) {
+    double sum = 0, count = 0;
+    for (std::size_t i = first; i < last; ++i)
+      if (const auto& value = data.measurements[i].of(Quantity::fraction)) {
+        sum += *value;
+        ++count;
+      }
+    means.push_back(count > 0 ? std::optional(sum / count) : std::nullopt);
+  }
+  return means;
+}
+
 void set_caps(Measurement& measurement, const std::vector<double>& base_radii) {
   const double r = measurement.radius;
   double perimeter = 0, area = 0;

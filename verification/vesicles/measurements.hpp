@@ -43,6 +43,9 @@ struct MeasuredVesicles {
 // From the first look after time zero to the last one; nothing if there is none, {inf, 0}.
 Window looks(const MeasuredVesicles& data);
 
+// Of each vesicle over its looks; nothing if its fraction was not measured.
+std::vector<std::optional<double>> mean_fractions(const MeasuredVesicles& data);
+
 // Rafts as spherical caps on a sphere of radius r with base radii a ≤ r (Zhiliakov et al.): each
 // has the perimeter 2π a, the half angle θ = arcsin(a/r) and the area 2π r² (1 − cos θ). Sets all
 // three quantities.

@@ -12,7 +12,8 @@
 namespace traceraft {
 namespace {
 
-constexpr double kFarthest = 5;  // °C beyond the published temperatures
+constexpr double kFarthest = 5;       // °C beyond the published temperatures
+constexpr double kOffTieLine = 0.03;  // mole fraction that reading a diagram may be off
 
 // What is published of a membrane: a tie line, and one more raft fraction whose tie line is not.
 struct PublishedMembrane {
@@ -27,7 +28,7 @@ constexpr PublishedMembrane kPublished[] = {
 
 std::array<double, 3> three_numbers(const std::string& context, std::string text,
                                     const std::string& such_as) {
-  if (!text.empty() && text.back() == '%') text.pop_back();
+  while (!text.empty() && (text.back() == '%' || text.back() == ' ')) text.pop_back();
   std::array<double, 3> numbers{};
   const std::size_t first = text.find(':'), second = text.find(':', first + 1);
   if (first == std::string::npos || second == std::string::npos ||
@@ -73,6 +74,10 @@ LipidMixture membrane_mixture(const std::string& context, const std::string& tex
   return {rest * dopc, rest * dppc, percent / 100};
 }
 
+bool same_membrane(const std::string& a, const std::string& b) {
+  return equal(membrane_mixture("composition", a), membrane_mixture("composition", b));
+}
+
 LipidMixture phase_mixture(const std::string& context, const std::string& text) {
   const auto [dopc, dppc, cholesterol] =
       three_numbers(context, text, "mol % of DOPC : DPPC : cholesterol, such as 22:43:35");
@@ -103,6 +108,12 @@ RaftFraction raft_fraction(const LipidMixture& membrane, const CoexistingPhases&
       (phases.disordered.dopc - membrane.dopc) / (phases.disordered.dopc - phases.ordered.dopc);
   if (!(lipids >= 0 && lipids <= 1))
     throw InputError("--composition: its DOPC does not lie between that of the two phases");
+  const double dppc = lipids * phases.ordered.dppc + (1 - lipids) * phases.disordered.dppc;
+  if (std::fabs(dppc - membrane.dppc) > kOffTieLine)
+    throw InputError(formatted(
+        "--composition: the membrane does not lie on the tie line: of these phases it would have "
+        "%.1f mol %% of DPPC, not %.1f",
+        100 * dppc, 100 * membrane.dppc));
   const double ordered = area(phases.ordered, lipids, celsius);
   return {lipids, ordered / (ordered + area(phases.disordered, 1 - lipids, celsius))};
 }
@@ -113,7 +124,7 @@ RaftFractionEstimate estimated_raft_fraction(const LipidMixture& membrane, doubl
   if (celsius == known.celsius)
     return {here, known.phases, formatted("tie line of %s at %.4g C", known.name, celsius)};
   const auto [low, high] = std::minmax(known.celsius, known.other_celsius);
-  if (celsius < low - kFarthest || celsius > high + kFarthest)
+  if (!(celsius >= low - kFarthest && celsius <= high + kFarthest))
     throw InputError(
         formatted("--temperature: %.4g is too far from the %.4g to %.4g C of which "
                   "raft fractions of %s are known; choose %.4g to %.4g",

@@ -15,6 +15,7 @@ struct LipidMixture {
 // "3:1:20" (or "3:1:20%"): three parts of DOPC to one of DPPC, with 20 mol % of cholesterol. Throws
 // InputError that starts with `context`.
 LipidMixture membrane_mixture(const std::string& context, const std::string& text);
+bool same_membrane(const std::string& a, const std::string& b);
 // "22:43:35": mole percent of each, which add up to 100.
 LipidMixture phase_mixture(const std::string& context, const std::string& text);
 

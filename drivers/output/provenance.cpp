@@ -1,0 +1,22 @@
+#include "drivers/output/provenance.hpp"
+
+#include "drivers/version.hpp"
+
+namespace traceraft {
+
+void add_settings(Page& page, const Configuration& configuration) {
+  std::vector<std::vector<std::string>> rows = {{"setting", "value", "meaning"}};
+  for (const OptionSpec& spec : run_options())
+    rows.push_back({spec.name, configuration.text(spec.name), spec.help});
+  page.heading("Settings");
+  page.table(rows);
+}
+
+void add_provenance(Page& page, const std::filesystem::path& folder, const std::string& command) {
+  page.heading("Where this comes from");
+  page.paragraph("traceraft " + std::string(kVersion) + ", from the files in " +
+                 std::filesystem::absolute(folder).lexically_normal().string() + ". To repeat it:");
+  page.code(command);
+}
+
+}  // namespace traceraft

@@ -1,0 +1,18 @@
+// What a page says about where its numbers come from.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "drivers/config/configuration.hpp"
+#include "drivers/output/page.hpp"
+
+namespace traceraft {
+
+// All settings of a run, with what they mean.
+void add_settings(Page& page, const Configuration& configuration);
+
+// The version, the folder, and the command that makes it again.
+void add_provenance(Page& page, const std::filesystem::path& folder, const std::string& command);
+
+}  // namespace traceraft

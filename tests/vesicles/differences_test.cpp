@@ -1,0 +1,35 @@
+#include "verification/vesicles/differences.hpp"
+
+#include <gtest/gtest.h>
+
+namespace traceraft {
+namespace {
+
+MeasuredVesicles vesicles(const std::vector<double>& radii, const std::vector<double>& fractions) {
+  MeasuredVesicles data;
+  for (std::size_t k = 0; k < radii.size(); ++k)
+    for (const double change : {-0.01, 0.01}) {
+      Measurement m{std::to_string(k), 10 + change, radii[k], {}, {}};
+      m.values[static_cast<std::size_t>(Quantity::fraction)] = fractions[k] + change;
+      data.measurements.push_back(m);
+    }
+  return data;
+}
+
+TEST(Differences, AreSilentWhereOneModelStandsForAll) {
+  EXPECT_TRUE(differences(vesicles({4.6, 5, 5.5}, {0.09, 0.1, 0.12}), {5, 0.1}).empty());
+  // Nothing is known of a fraction that was not measured twice.
+  EXPECT_TRUE(differences(vesicles({5}, {0.3}), {5, 0.1}).empty());
+}
+
+TEST(Differences, NameRadiiAndFractions) {
+  const auto large = differences(vesicles({5, 5, 8.5}, {0.09, 0.1, 0.12}), {5, 0.1});
+  ASSERT_EQ(large.size(), 1u);
+  EXPECT_NE(large[0].find("5 to 8.5 um (median 5)"), std::string::npos) << large[0];
+  const auto other = differences(vesicles({5, 5, 5}, {0.15, 0.16, 0.155}), {5, 0.1});
+  ASSERT_EQ(other.size(), 1u);
+  EXPECT_NE(other[0].find("0.155 of the vesicles"), std::string::npos) << other[0];
+}
+
+}  // namespace
+}  // namespace traceraft

@@ -1,0 +1,50 @@
+#include "verification/vesicles/differences.hpp"
+
+#include <cmath>
+
+#include "kernel/core/text.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr double kSameSize = 1.2;                       // ratio of radii
+constexpr double kDeviations = 2, kSameFraction = 0.1;  // the latter relative
+
+std::string difference_of_radii(const MeasuredVesicles& data, double radius) {
+  std::vector<double> radii;
+  for (const auto& [first, last] : data.vesicles())
+    radii.push_back(data.measurements[first].radius);
+  const Distribution d = distribution(radii);
+  if (d.max <= kSameSize * radius && d.min >= radius / kSameSize) return "";
+  return formatted(
+      "The vesicles have radii of %.3g to %.3g um (median %.3g), the simulated one %.3g um: at the "
+      "same time larger vesicles have more rafts and a larger perimeter over radius, so that part "
+      "of a deviation may be due to their size.",
+      d.min, d.max, d.median, radius);
+}
+
+std::string difference_of_fractions(const MeasuredVesicles& data, double fraction) {
+  std::vector<double> means;
+  for (const auto& mean : mean_fractions(data))
+    if (mean) means.push_back(*mean);
+  if (means.size() < 2) return "";
+  const Distribution d = distribution(means);
+  const double off = std::fabs(d.mean - fraction);
+  if (off <= kDeviations * d.deviation || off <= kSameFraction * fraction) return "";
+  return formatted(
+      "Rafts cover %.3g of the vesicles (standard deviation %.2g), but %.3g of the simulated one: "
+      "are these the same membrane and temperature?",
+      d.mean, d.deviation, fraction);
+}
+
+}  // namespace
+
+std::vector<std::string> differences(const MeasuredVesicles& data, const SimulatedVesicle& model) {
+  std::vector<std::string> sentences;
+  for (const std::string& sentence : {difference_of_radii(data, model.radius),
+                                      difference_of_fractions(data, model.raft_fraction)})
+    if (!sentence.empty()) sentences.push_back(sentence);
+  return sentences;
+}
+
+}  // namespace traceraft

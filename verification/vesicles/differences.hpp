@@ -1,0 +1,22 @@
+// In what measured vesicles differ from the one that is simulated, more than one model can stand
+// for.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "verification/vesicles/measurements.hpp"
+
+namespace traceraft {
+
+struct SimulatedVesicle {
+  double radius;         // µm
+  double raft_fraction;  // of the area
+};
+
+// Sentences: radii that are further from the simulated one than by a fifth, since at the same time
+// a larger vesicle has more rafts and a longer perimeter over radius; a mean raft fraction that is
+// more than two standard deviations between vesicles, and a tenth, off.
+std::vector<std::string> differences(const MeasuredVesicles& data, const SimulatedVesicle& model);
+
+}  // namespace traceraft
