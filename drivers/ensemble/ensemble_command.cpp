@@ -14,6 +14,7 @@
 #include "drivers/exit_codes.hpp"
 #include "drivers/run/run_folder.hpp"
 #include "drivers/run/run_setup.hpp"
+#include "drivers/run/summary.hpp"
 #include "kernel/core/error.hpp"
 
 namespace traceraft {
@@ -145,7 +146,10 @@ int run_ensemble(const EnsembleRequest& request) {
                                   ? first_free_folder("ensemble-" + configuration.text("case"))
                                   : request.out);
   const EnsemblePlan plan = plan_of(request, folder);
-  if (!goes_on) (void)build_run(configuration, InitialState::build);  // refuses what cannot be run
+  if (!goes_on) {
+    const RunSetup run = build_run(configuration, InitialState::build);  // or refuses it
+    if (!request.quiet) std::printf("%s\n", resolution_text(run).c_str());
+  }
 
   fs::create_directories(folder.path() / "runs");
   const FolderLock lock(folder.path());

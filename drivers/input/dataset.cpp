@@ -29,7 +29,7 @@ constexpr double kLatest = 1e9;                   // s
 constexpr double kColdest = -20, kHottest = 100;  // °C
 // Of one vesicle between looks; and by how much a perimeter may be shorter than the shortest one
 // of its area: both are read off images.
-constexpr double kSameRadius = 1.2, kTooShort = 0.7;
+constexpr double kSameRadius = 1.2, kTooShort = 0.5;
 
 double checked_radius(double radius, const std::string& where) {
   if (radius >= kSmallestRadius && radius <= kLargestRadius) return radius;
@@ -74,6 +74,8 @@ Description read_description(const fs::path& folder) {
   d.length = length_factor(toml, "length_unit");
   d.time = time_factor(toml, "time_unit");
   d.time_offset = toml.number_or("time_offset", 0);
+  if (!std::isfinite(d.time_offset))
+    throw InputError(toml.where("time_offset") + ": a finite number is needed here");
   if (toml.has("radius"))
     d.radius = checked_radius(toml.number("radius") * d.length, toml.where("radius"));
   const std::string sigma = toml.text_or("sigma", "standard deviation");
@@ -237,6 +239,8 @@ void read_caps(Description& d, const CsvTable& table) {
 
 MeasuredVesicles read_dataset(const fs::path& folder) {
   Description d = read_description(folder);
+  if (!std::filesystem::exists(d.table))
+    throw InputError(d.table.string() + ": there is no such table of measurements");
   const CsvTable table = CsvTable::read(d.table);
   if (table.has("cap_radius"))
     read_caps(d, table);

@@ -12,8 +12,9 @@ struct Unit {
 };
 
 double factor(const NamedList<Unit>& units, const TomlTable& toml, const std::string& key) {
+  const std::string name = toml.text(key);
   try {
-    return units.find(toml.text(key)).factor;
+    return units.find(name).factor;
   } catch (const InputError& error) {
     throw InputError(toml.where(key) + ": " + error.what());
   }
@@ -22,7 +23,12 @@ double factor(const NamedList<Unit>& units, const TomlTable& toml, const std::st
 }  // namespace
 
 double length_factor(const TomlTable& toml, const std::string& key) {
-  static const NamedList<Unit> units("unit of length", {{"um", 1}, {"nm", 1e-3}, {"mm", 1e3}});
+  static const NamedList<Unit> units("unit of length", {{"um", 1},
+                                                        // with the micro sign, and with a mu
+                                                        {"\u00b5m", 1},
+                                                        {"\u03bcm", 1},
+                                                        {"nm", 1e-3},
+                                                        {"mm", 1e3}});
   return factor(units, toml, key);
 }
 

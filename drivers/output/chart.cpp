@@ -51,6 +51,20 @@ bool has_something(const Chart& chart, const ChartSeries& series) {
   return false;
 }
 
+constexpr double kBelow = 0.85;
+
+double least(const Chart& chart) {
+  double value = HUGE_VAL;
+  for (const ChartSeries& series : chart.series)
+    for (std::size_t k = 0; k < series.points.size(); ++k)
+      if (drawable(chart, series, k)) {
+        value = std::min(value, series.points[k].second);
+        if (series.mark == Mark::band && series.other[k] > 0)
+          value = std::min(value, series.other[k]);
+      }
+  return value;
+}
+
 std::string script(const Chart& chart, const std::string& svg) {
   std::string text = "set terminal svg noenhanced size 720,520 dynamic font 'sans-serif,13'\n";
   text += "set output " + quoted(svg) + "\n";
@@ -58,6 +72,8 @@ std::string script(const Chart& chart, const std::string& svg) {
   text += "set xlabel " + quoted(chart.x_label) + "\nset ylabel " + quoted(chart.y_label) + "\n";
   for (const auto& [axis, log] : {std::pair("x", chart.log_x), std::pair("y", chart.log_y)})
     if (log) text += std::string("set logscale ") + axis + "\nset format " + axis + " '%.0e'\n";
+  // What is 1 all the time does not lie on the axis then.
+  if (chart.log_y) text += "set yrange [" + format_number(kBelow * least(chart)) + ":*]\n";
   text += "set key outside below\nset grid lc rgb '#dddddd'\n";
   for (std::size_t i = 0; i < std::size(kColours); ++i)
     text += "set linetype " + std::to_string(i + 1) + " lw 2 lc rgb '" + kColours[i] + "'\n";

@@ -69,7 +69,8 @@ std::string Page::html() const {
          "table{border-collapse:collapse;font-size:14px}\n"
          "th,td{padding:.25em .7em;border-bottom:1px solid #ddd;text-align:left}\n"
          "td.n{text-align:right;font-variant-numeric:tabular-nums}\n"
-         ".wide{overflow-x:auto}\nfigure{margin:1em 0}\nfigcaption{color:#555;font-size:14px}\n"
+         ".wide,pre{overflow-x:auto}\nfigure{margin:1em "
+         "0}\nsvg{max-width:100%;height:auto}\nfigcaption{color:#555;font-size:14px}\n"
          "</style></head><body>\n<h1>" +
          html_text(title_) + "</h1>\n" + body_ + "</body></html>\n";
 }

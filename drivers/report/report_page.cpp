@@ -99,8 +99,7 @@ void fill_run(Page& page, const fs::path& folder, const PageRequest& request, Mi
   page.heading("In time");
   const CsvTable series = CsvTable::read(folder / "series.csv");
   for (const Curve& curve : kCurves)
-    add_chart(page, series_chart(series, curve, unit),
-              request.charts / ("report-" + std::string(curve.column)), missing);
+    add_chart(page, series_chart(series, curve, unit), request.charts / curve.column, missing);
   add_summary(page, folder);
   add_settings(page, configuration);
   add_provenance(page, folder, with_flags("traceraft run", configuration));
@@ -139,7 +138,7 @@ void fill_ensemble(Page& page, const fs::path& path, const PageRequest& request,
   const EnsembleSummary summary = summarise(runs);
   for (const Quantity quantity : kQuantities)
     add_chart(page, ensemble_chart(summary, quantity, !units.scaled),
-              request.charts / (std::string("report-") + name_of(quantity).id), missing);
+              request.charts / name_of(quantity).id, missing);
   page.heading("Numbers");
   page.table(ensemble_rows(summary, !units.scaled));
   add_comparison(page, path, runs.size());

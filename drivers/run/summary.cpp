@@ -115,9 +115,16 @@ std::string summary_json(const Configuration& configuration, const RunSetup& run
   return json.dump(2) + "\n";
 }
 
+std::string resolution_text(const RunSetup& run) {
+  constexpr double kCoarse = 4;  // h/epsilon beyond which the mesh shapes the boundaries
+  const double epsilon = run.problem->model().epsilon, ratio = run.space->h() / epsilon;
+  return formatted("epsilon = %g um = %g R, h/epsilon = %.2f, %.1f %% of its energy resolved%s",
+                   epsilon * run.units.radius_um, epsilon, ratio, 100 * run.perimeter.resolved,
+                   ratio > kCoarse ? "; TOO COARSE: take more --cells" : "");
+}
+
 void print_setup(const Configuration& configuration, const RunSetup& run) {
   const Units& units = run.units;
-  const double h = run.space->h(), epsilon = run.problem->model().epsilon;
   std::printf("traceraft %s\n", kVersion);
   line("case", configuration.text("case"));
   line("surface",
@@ -128,9 +135,7 @@ void print_setup(const Configuration& configuration, const RunSetup& run) {
        formatted("%lld cells per edge, %lld cut tetrahedra, %lld nodes, %lld unknowns",
                  configuration.integer("cells"), static_cast<long long>(totals.elements),
                  static_cast<long long>(totals.nodes), static_cast<long long>(2 * totals.nodes)));
-  line("phase boundary",
-       formatted("epsilon = %g um = %g R, h/epsilon = %.2f, %.1f %% of its energy resolved",
-                 epsilon * units.radius_um, epsilon, h / epsilon, 100 * run.perimeter.resolved));
+  line("phase boundary", resolution_text(run));
   line("mobility", formatted("%s, D = %g cm^2/s", configuration.text("mobility").c_str(),
                              units.diffusion_cm2_s));
   line("units", formatted("length R = %g um, time R^2/D = %g s; the run ends at %g s = %g R^2/D",

@@ -15,6 +15,9 @@ std::string summary_json(const Configuration& configuration, const RunSetup& run
                          const RunState& state, const RunResult& result, const RunCost& cost,
                          double memory_mb);
 
+// How well the mesh resolves the phase boundary, and a warning if it does not.
+std::string resolution_text(const RunSetup& run);
+
 void print_setup(const Configuration& configuration, const RunSetup& run);
 void print_summary(const Configuration& configuration, const RunSetup& run, const RunState& state,
                    const RunResult& result, const RunCost& cost, double memory_mb,

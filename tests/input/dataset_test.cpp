@@ -110,8 +110,8 @@ TEST_F(DatasetTest, RefusesWhatContradictsItself) {
   expect_complaint(heading + "a,1,5000,20000,0,\n", "column 'perimeter': without rafts");
   expect_complaint(heading + "a,1,5000,,3,0\n", "column 'fraction': rafts have a boundary");
   // The shortest boundary of half of a sphere of 5 um is a great circle of 31.4 um.
-  expect_complaint(heading + "a,1,5000,20000,1,0.5\n",
-                   ":2: column 'perimeter': 20 um is too short: the shortest boundary of a raft "
+  expect_complaint(heading + "a,1,5000,15000,1,0.5\n",
+                   ":2: column 'perimeter': 15 um is too short: the shortest boundary of a raft "
                    "fraction of 0.5 has 31.4");
   EXPECT_EQ(read(heading + "a,1,5000,25000,1,0.5\n").measurements.size(), 1u);  // read off an image
   expect_complaint(heading + "a,1,5000,20000,1,0.1\na,2,8000,20000,1,0.05\n",

@@ -90,6 +90,10 @@ MeasuredVesicles draw_measurements(const PublishedFacts& facts, std::uint64_t se
 MeasuredVesicles draw_from_runs(const PublishedFacts& facts, const std::vector<History>& runs,
                                 std::uint64_t seed) {
   MeasuredVesicles data = described(facts);
+  data.name = "simulated vesicles, looked at as " + facts.name + ", SYNTHETIC";
+  data.origin = "simulated runs; times, radii and scatter as in " + facts.origin;
+  data.composition.clear();
+  data.celsius.reset();
   data.time_zero = "the start of the simulated runs";
   if (runs.empty()) throw InputError("there is no finished run to draw from");
   const int vesicles = std::min(facts.vesicles, static_cast<int>(runs.size()));
