@@ -40,7 +40,8 @@ void refuse_no_numbers(CLI::App& command) {
       [](std::string& text) {
         double value = 0;
         const bool number = CLI::detail::lexical_cast(text, value);
-        return !number || std::isfinite(value) ? std::string() : "'" + text + "' is not a number";
+        return !number || std::isfinite(value) ? std::string()
+                                               : "'" + text + "' is not a finite number";
       },
       "");
   for (CLI::Option* option : command.get_options())

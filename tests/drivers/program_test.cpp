@@ -268,7 +268,7 @@ INSTANTIATE_TEST_SUITE_P(
         std::pair{"run --cells 3", "allowed: 4 to 4096"},
         std::pair{"run --epsilon nan", "--epsilon: 'nan'"},
         std::pair{"fraction --composition 3:1:20 --temperature nan",
-                  "--temperature: 'nan' is not a number"},
+                  "--temperature: 'nan' is not a finite number"},
         std::pair{"report runs --detail nan", "--detail: 'nan'"},
         std::pair{"run --epsilon -1", "--epsilon: -1 is out of range"},
         std::pair{"run --case guv", "did you mean"},
