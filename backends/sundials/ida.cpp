@@ -342,7 +342,8 @@ class Ida final : public Integrator {
             "no step size: " + (reason.empty() ? "Newton's method does not converge" : reason) +
             " down to the smallest step");
       default:
-        return Status::fatal("IDA code " + std::to_string(flag) + ": " + reason);
+        return Status::fatal("IDA code " + std::to_string(flag) + ": " + reason +
+                             " (its times are in R^2/D)");
     }
   }
 
