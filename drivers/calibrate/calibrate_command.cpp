@@ -198,9 +198,7 @@ int calibrate_ensemble(const CalibrateRequest& request, const MeasuredVesicles& 
   for (const auto& [name, value] : request.flags)
     throw InputError(value.where + ": the model is that of --ensemble");
   if (!request.model.empty()) throw InputError("--model: the model is that of --ensemble");
-  const fs::path folder = request.ensemble;
-  const Configuration model(read_config_file((folder / "config.toml").string(), "--ensemble"), {});
-  refuse_scaled(model);
+  const Configuration model = model_of(request.ensemble);
   refuse_calibrating(model);
   const double seconds = model.units().seconds_per_unit();
   CalibrationPoint point{{}, runs_of(request.ensemble)};

@@ -20,8 +20,6 @@ struct Rows {
   std::vector<std::vector<std::string>> rows;
   std::vector<long> lines;
   long line = 0;  // that is being read
-  // Lines that begin with #, below the heading.
-  std::vector<std::pair<long, std::string>> remarks;
 };
 
 void take_cell(void* cell, std::size_t size, void* target) {
@@ -53,6 +51,17 @@ class Parser {
   csv_parser parser_;
 };
 
+// A row whose first cell begins with # would be lost without a word.
+void refuse_row_as_remark(const std::filesystem::path& path, const Rows& rows,
+                          const std::string& remark) {
+  if (rows.rows.empty()) return;
+  const auto columns = static_cast<std::ptrdiff_t>(rows.rows.front().size());
+  if (columns > 1 && std::count(remark.begin(), remark.end(), ',') == columns - 1)
+    throw InputError(path.string() + ":" + std::to_string(rows.line) +
+                     ": this remark has as many commas as a row; names cannot begin with #, and "
+                     "a row to leave out has to be deleted");
+}
+
 // Line by line, so that every row knows where it stands.
 Rows parse(const std::filesystem::path& path, std::string text) {
   if (text.compare(0, 3, "\xEF\xBB\xBF") == 0) text.erase(0, 3);  // as spreadsheets begin
@@ -66,27 +75,14 @@ Rows parse(const std::filesystem::path& path, std::string text) {
     const std::size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
     ++rows.line;
     const std::string line = text.substr(begin, end - begin);
-    if (line[0] != '#') {
-      if (!parser.feed(line, rows)) refuse();
-    } else if (!rows.rows.empty()) {
-      rows.remarks.emplace_back(rows.line, line);
-    }
+    if (line[0] == '#')
+      refuse_row_as_remark(path, rows, line);
+    else if (!parser.feed(line, rows))
+      refuse();
     begin = end;
   }
   if (!parser.finish(rows)) refuse();
   return rows;
-}
-
-// A row whose first cell begins with # would be lost without a word.
-void refuse_rows_as_remarks(const std::filesystem::path& path,
-                            const std::vector<std::pair<long, std::string>>& remarks,
-                            std::size_t columns) {
-  for (const auto& [line, text] : remarks)
-    if (columns > 1 &&
-        static_cast<std::size_t>(std::count(text.begin(), text.end(), ',')) == columns - 1)
-      throw InputError(path.string() + ":" + std::to_string(line) +
-                       ": this remark has as many commas as a row; names cannot begin with #, and "
-                       "a row to leave out has to be deleted");
 }
 
 }  // namespace
@@ -104,7 +100,6 @@ CsvTable CsvTable::read(const std::filesystem::path& path) {
   table.cells_.assign(std::make_move_iterator(rows.rows.begin() + 1),
                       std::make_move_iterator(rows.rows.end()));
   table.lines_.assign(rows.lines.begin() + 1, rows.lines.end());
-  refuse_rows_as_remarks(path, rows.remarks, table.columns_.size());
   for (std::size_t i = 0; i < table.rows(); ++i)
     if (table.cells_[i].size() != table.columns_.size())
       throw InputError(table.where(i) + ": " + std::to_string(table.cells_[i].size()) +

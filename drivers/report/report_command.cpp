@@ -57,10 +57,8 @@ void write_pictures(const ReportRequest& request) {
 int report(const ReportRequest& request) {
   const fs::path out =
       request.out.empty() ? fs::path(request.folder) / "report.html" : fs::path(request.out);
-  const fs::path charts = out.parent_path() / "report-charts";
-  fs::create_directories(charts);
-  const std::string missing =
-      write_report_page(request.folder, out, {request.frames, request.detail, charts});
+  const std::string missing = write_report_page(
+      request.folder, out, {request.frames, request.detail, out.parent_path() / "report-charts"});
   write_pictures(request);
   if (!request.quiet) {
     if (!missing.empty()) std::printf("missing in the page: %s\n", missing.c_str());

@@ -169,19 +169,25 @@ std::pair<double, double> phases_of(const fs::path& run_folder) {
 
 std::string write_report_page(const fs::path& folder, const fs::path& out,
                               const PageRequest& request) {
+  const auto make_folder = [](const fs::path& path) {
+    if (!path.empty()) fs::create_directories(path);
+  };
   if (const std::string page = finished_page(folder); !page.empty()) {
+    make_folder(out.parent_path());
     write_durably(out, page);
     return "";
   }
+  if (!is_run(folder) && !is_ensemble(folder))
+    throw InputError(folder.string() +
+                     " holds no run, ensemble, comparison or verification of traceraft");
+  make_folder(out.parent_path());
+  make_folder(request.charts);
   Page page("traceraft: " + fs::absolute(folder).lexically_normal().filename().string());
   Missing missing;
   if (is_run(folder))
     fill_run(page, folder, request, missing);
-  else if (is_ensemble(folder))
-    fill_ensemble(page, folder, request, missing);
   else
-    throw InputError(folder.string() +
-                     " holds no run, ensemble, comparison or verification of traceraft");
+    fill_ensemble(page, folder, request, missing);
   write_durably(out, page.html());
   return missing.text();
 }

@@ -19,7 +19,7 @@ std::pair<double, double> phases_of(const std::filesystem::path& run_folder);
 struct PageRequest {
   int frames;
   double detail;
-  std::filesystem::path charts;  // folder for the charts' files
+  std::filesystem::path charts;  // folder for the charts' files; made if there is something to show
 };
 // Writes the page of a run or an ensemble: surface, charts, numbers, settings; those of a
 // comparison and a verification have been written by their commands and are copied. Returns what is

@@ -75,6 +75,7 @@ TEST_F(ReportTest, ShowsEnsemblesAndCopiesFinishedPages) {
 
 TEST_F(ReportTest, SaysWhatItCannotShow) {
   EXPECT_EQ(traceraft("report " + out("nowhere")).code, 2);
+  EXPECT_FALSE(fs::exists(folder.path / "nowhere")) << "a question leaves nothing behind";
   ASSERT_EQ(
       traceraft(
           "run --case two-rafts --cells 16 --epsilon 0.8 --t-end 0.1 --no-fields --quiet --out " +
