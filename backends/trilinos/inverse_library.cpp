@@ -40,29 +40,30 @@ void add_muelu(ParameterList& library) {
       .set("relaxation: sweeps", 1);
 }
 
-// Without the addition to the diagonal the factorisation breaks down for the longest steps.
-void set_ilu(ParameterList& settings, int fill) {
-  settings.set("fact: iluk level-of-fill", fill).set("fact: relative threshold", 1.02);
+// Without an addition to the diagonal, as a share of it, the factorisation breaks down for the
+// longest steps. The more fill, the less it needs.
+void set_ilu(ParameterList& settings, int fill, double addition) {
+  settings.set("fact: iluk level-of-fill", fill).set("fact: relative threshold", 1 + addition);
 }
 
 // For the longest steps. Where the mobility vanishes the stabilisation acts like a fourth-order
 // operator, which point smoothers hardly damp: an incomplete factorisation does, with more fill on
-// the finest mesh. Measured at n = 256: 24 iterations where one on the finest mesh alone takes 39.
+// the finest mesh (measured in docs/decisions/0012-teko.md).
 void add_muelu_ilu(ParameterList& library) {
   ParameterList& list = add_cycle(library, "muelu-ilu", 30, 100);
   list.set("multigrid algorithm", "sa");
   list.set("smoother: type", "RILUK");
-  set_ilu(list.sublist("smoother: params"), 1);
+  set_ilu(list.sublist("smoother: params"), 1, 0.02);
   ParameterList& finest = list.sublist("level 0");
   finest.set("smoother: type", "RILUK");
-  set_ilu(finest.sublist("smoother: params"), 2);
+  set_ilu(finest.sublist("smoother: params"), 3, 0.01);
 }
 
 void add_ifpack2(ParameterList& library) {
   ParameterList& list = library.sublist("ifpack2");
   list.set("Type", "Ifpack2");
   list.set("Prec Type", "RILUK");
-  set_ilu(list.sublist("Ifpack2 Settings"), 2);
+  set_ilu(list.sublist("Ifpack2 Settings"), 2, 0.02);
 }
 
 void add_direct(ParameterList& library) {

@@ -72,6 +72,17 @@ Row law_row(const std::string& of, const std::optional<FittedLaw>& law) {
 const Row kLawHeading = {
     "perimeter / radius = c (t - t0)^b", "b (95 %)", "t0 (s)", "c", "scatter of ln", "points"};
 
+// For readers of laws whose start may lie before all that was tried; nothing if there is none.
+std::vector<std::string> remarks_on(std::initializer_list<std::optional<FittedLaw>> laws) {
+  for (const std::optional<FittedLaw>& law : laws)
+    if (law && law->t0_open)
+      return {
+          "Where t0 has no lower end, it may be earlier than ten times the time before time zero "
+          "of the first point, where it is no longer looked for; b may then be lower and c larger "
+          "than their intervals."};
+  return {};
+}
+
 Row law_row(const PublishedFacts& facts) {
   const PowerLaw& law = facts.perimeter;
   return {formatted("published, %g to %g s", facts.window.begin, facts.window.end),
@@ -192,6 +203,7 @@ void print_dataset(const MeasuredVesicles& data, const std::optional<FittedLaw>&
                 estimated_fraction(data.composition, *data.celsius).c_str());
   std::printf("\npower law from %g to %g s\n", window.begin, window.end);
   print_rows({kLawHeading, law_row("measured", law)});
+  for (const std::string& remark : remarks_on({law})) std::printf("%s\n", remark.c_str());
 }
 
 Configuration model_of(const fs::path& path) {
@@ -246,6 +258,8 @@ int compare_with_ensemble(const MeasuredVesicles& data, const ComparisonRequest&
   for (const std::string& note : notes) page.paragraph(note);
   page.paragraph(formatted("Power laws fitted from %g to %g s.", window.begin, window.end));
   page.table(laws);
+  const std::vector<std::string> remarks = remarks_on({measured, simulated});
+  for (const std::string& remark : remarks) page.paragraph(remark);
   fs::create_directories(request.out);
   for (const Quantity quantity : kQuantities) {
     Chart chart = comparison_chart(data, summary, quantity);
@@ -268,6 +282,7 @@ int compare_with_ensemble(const MeasuredVesicles& data, const ComparisonRequest&
     std::printf("%s\n\npower laws from %g to %g s\n", expectation(runs.size()).c_str(),
                 window.begin, window.end);
     print_rows(laws);
+    for (const std::string& remark : remarks) std::printf("%s\n", remark.c_str());
     for (const std::string& note : notes) std::printf("\n%s\n", note.c_str());
     std::printf("\nopen next: %s\n", (request.out / "comparison.html").c_str());
   }

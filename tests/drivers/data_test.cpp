@@ -1,7 +1,9 @@
 // `traceraft data` from files to files.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
+#include <functional>
 
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -39,10 +41,32 @@ TEST(DataTest, DrawsWhatWasPublishedAndChecksIt) {
   EXPECT_EQ(content(folder.path / "drawn/measurements.csv"), table);
 }
 
+// An exponential is a power law whose origin is infinitely early.
+TEST(DataTest, SaysWhereIntervalsOfALawAreOpen) {
+  const auto check = [](const std::function<double(double)>& perimeter) {
+    const testing::TemporaryFolder folder;
+    std::ofstream(folder.path / "dataset.toml")
+        << "name = \"law\"\nkind = \"measured\"\ntime_zero = \"start\"\nlength_unit = "
+           "\"um\"\ntime_unit = \"s\"\nradius = 5\n";
+    std::ofstream table(folder.path / "measurements.csv");
+    table << "vesicle,time,perimeter\n";
+    for (int k = 0; k < 5; ++k)
+      for (double t = 100 + 20 * k; t < 1000; t += 150)
+        table << "v" << k << "," << t << "," << 5 * perimeter(t) << "\n";
+    table.close();
+    return traceraft("data check " + folder.path.string()).output;
+  };
+  const std::string remark = "b may then be lower and c larger";
+  EXPECT_NE(check([](double t) { return 10 * std::exp(-t / 500); }).find(remark),
+            std::string::npos);
+  EXPECT_EQ(check([](double t) { return 10 * std::pow(t, -0.3); }).find(remark), std::string::npos);
+}
+
 TEST(DataTest, SaysWhereATableIsWrong) {
   const testing::TemporaryFolder folder;
   std::ofstream(folder.path / "dataset.toml")
-      << "name = \"few\"\nkind = \"measured\"\ntime_zero = \"start\"\nlength_unit = \"um\"\ntime_unit = \"s\"\n";
+      << "name = \"few\"\nkind = \"measured\"\ntime_zero = \"start\"\nlength_unit = "
+         "\"um\"\ntime_unit = \"s\"\n";
   std::ofstream(folder.path / "measurements.csv")
       << "vesicle,time,radius,perimeter\na,10,5,30\na,20,five,28\n";
   const Outcome check = traceraft("data check " + folder.path.string());

@@ -72,6 +72,28 @@ TEST_F(DatasetTest, ComputesRaftsFromCaps) {
   EXPECT_EQ(*none.measurements[1].of(Quantity::rafts), 1);
 }
 
+TEST_F(DatasetTest, ComputesSigmasFromThoseOfCaps) {
+  const std::string heading = "vesicle,time,radius,cap_radius,cap_radius_sigma\n";
+  const MeasuredVesicles data =
+      read(heading + "a,1,5000,3000,5\na,1,5000,4000,12\na,2,5000,5000,300\na,3,5000,1000,\n");
+  const Measurement& two = data.measurements[0];
+  EXPECT_NEAR(two.sigma_of(Quantity::perimeter), 2 * kPi * 13 / 5000, 1e-12);
+  // df/da = tan θ/(2 r) for each cap.
+  EXPECT_NEAR(two.sigma_of(Quantity::fraction), std::hypot(0.75 * 5, 4.0 / 3 * 12) / (2 * 5000),
+              1e-6);
+  EXPECT_FALSE(two.sigma[static_cast<std::size_t>(Quantity::rafts)]);
+  // Of half of the sphere only less can be meant: cos θ = 0.34 for 300 less.
+  EXPECT_NEAR(data.measurements[1].sigma_of(Quantity::fraction), std::sqrt(1 - 0.94 * 0.94) / 2,
+              1e-12);
+  EXPECT_FALSE(data.measurements[2].sigma[0]);
+  const MeasuredVesicles halves =
+      read(heading + "a,1,5000,3000,9.79982\n", "sigma = \"95 % interval\"\n");
+  EXPECT_NEAR(halves.measurements[0].sigma_of(Quantity::perimeter), 2 * kPi * 0.001, 1e-9);
+  expect_complaint(heading + "a,1,5000,3000,5\na,1,5000,4000,\n",
+                   ":3: column 'cap_radius_sigma': of the rafts of one look either all");
+  expect_complaint(heading + "a,1,5000,3000,-1\n", "column 'cap_radius_sigma': -1 is impossible");
+}
+
 TEST_F(DatasetTest, NamesFileLineAndColumn) {
   const std::string heading = "vesicle,time,radius,perimeter,rafts,fraction\n";
   expect_complaint(heading + "a,2,5000,20000,1,0.1\na,1,5000,20000,1,0.1\n",

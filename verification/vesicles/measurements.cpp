@@ -39,15 +39,37 @@ std::vector<std::optional<double>> mean_fractions(const MeasuredVesicles& data) 
   return means;
 }
 
-void set_caps(Measurement& measurement, const std::vector<double>& base_radii) {
+namespace {
+
+// (1 − cos θ)/2 with sin θ = a/r.
+double cap_fraction(double a, double r) {
+  return (1 - std::sqrt(1 - a * a / (r * r))) / 2;
+}
+
+// By the mean slope within one sigma: at a = r, half of the sphere, there is no derivative.
+double cap_fraction_sigma(double a, double sigma, double r) {
+  const double low = std::max(a - sigma, 0.0), high = std::min(a + sigma, r);
+  if (!(high > low)) return 0;
+  return sigma * (cap_fraction(high, r) - cap_fraction(low, r)) / (high - low);
+}
+
+}  // namespace
+
+void set_caps(Measurement& measurement, const std::vector<Cap>& caps) {
   const double r = measurement.radius;
-  double perimeter = 0, area = 0;
-  for (const double a : base_radii) {
-    perimeter += 2 * kPi * a;
-    area += 2 * kPi * r * r * (1 - std::cos(std::asin(a / r)));
+  double perimeter = 0, fraction = 0, perimeter_squares = 0, fraction_squares = 0;
+  bool known = !caps.empty();
+  for (const auto& [a, sigma] : caps) {
+    perimeter += 2 * kPi * a / r;
+    fraction += cap_fraction(a, r);
+    known = known && sigma.has_value();
+    if (!known) continue;
+    perimeter_squares += std::pow(2 * kPi * *sigma / r, 2);
+    fraction_squares += std::pow(cap_fraction_sigma(a, *sigma, r), 2);
   }
-  measurement.values = {perimeter / r, static_cast<double>(base_radii.size()),
-                        area / (4 * kPi * r * r)};
+  measurement.values = {perimeter, static_cast<double>(caps.size()), fraction};
+  if (known)
+    measurement.sigma = {std::sqrt(perimeter_squares), std::nullopt, std::sqrt(fraction_squares)};
 }
 
 double equal_caps(double perimeter, double fraction) {

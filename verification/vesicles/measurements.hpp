@@ -46,10 +46,15 @@ Window looks(const MeasuredVesicles& data);
 // Of each vesicle over its looks; nothing if its fraction was not measured.
 std::vector<std::optional<double>> mean_fractions(const MeasuredVesicles& data);
 
-// Rafts as spherical caps on a sphere of radius r with base radii a ≤ r (Zhiliakov et al.): each
-// has the perimeter 2π a, the half angle θ = arcsin(a/r) and the area 2π r² (1 − cos θ). Sets all
-// three quantities.
-void set_caps(Measurement& measurement, const std::vector<double>& base_radii);
+// A raft as a spherical cap.
+struct Cap {
+  double base_radius;           // µm
+  std::optional<double> sigma;  // of it, one standard deviation
+};
+// Caps on a sphere of radius r with base radii a ≤ r (Zhiliakov et al.): each has the perimeter
+// 2π a, the half angle θ = arcsin(a/r) and the area 2π r² (1 − cos θ). Sets all three quantities,
+// and the sigmas of the first and the last if all caps have one: their errors are independent.
+void set_caps(Measurement& measurement, const std::vector<Cap>& caps);
 
 // The number of equal caps that have this perimeter over radius together and cover this share of
 // the area: P = 2π N sin θ with cos θ = 1 − 2f/N gives N = f + P²/(16 π² f).

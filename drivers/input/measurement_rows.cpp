@@ -1,0 +1,202 @@
+#include "drivers/input/measurement_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "kernel/core/error.hpp"
+#include "kernel/core/named_list.hpp"
+#include "kernel/core/parameters.hpp"
+#include "kernel/core/types.hpp"
+
+namespace traceraft {
+namespace {
+
+// Vesicles that a light microscope shows; what is outside is in other units than it says.
+constexpr double kSmallestRadius = 0.05, kLargestRadius = 1000;  // µm
+constexpr double kLargestPerimeter = 1000;                       // over the radius
+constexpr double kMostRafts = 1e6;
+constexpr double kLatest = 1e9;  // s
+// Of one vesicle between looks; and by how much a perimeter may be shorter than the shortest one
+// of its area: both are read off images.
+constexpr double kSameRadius = 1.2, kTooShort = 0.5;
+
+double in_range(const CsvTable& table, std::size_t row, const char* column, double low,
+                double high) {
+  const double value = table.number(row, column);
+  if (value >= low && value <= high) return value;
+  throw InputError(table.where(row, column) + ": " + format_number(value) +
+                   " is impossible (allowed: " + format_number(low) + " to " + format_number(high) +
+                   ")");
+}
+
+double radius_of(const TableUnits& units, const CsvTable& table, std::size_t row) {
+  if (!table.has("radius") && !units.radius)
+    throw InputError(table.heading() +
+                     ": there is no column 'radius', and dataset.toml has no radius for all");
+  if (!table.has("radius")) return *units.radius;
+  return checked_radius(table.number(row, "radius") * units.length, table.where(row, "radius"));
+}
+
+// Of vesicle, time and radius; the order of rows is checked against what is there already.
+Measurement begin_measurement(const TableUnits& units, const CsvTable& table, std::size_t row,
+                              const std::vector<Measurement>& before,
+                              std::set<std::string>& finished) {
+  Measurement m{table.text(row, "vesicle"), 0, radius_of(units, table, row), {}, {}};
+  if (m.vesicle.empty()) throw InputError(table.where(row, "vesicle") + ": a name is needed here");
+  m.time = table.number(row, "time") * units.time + units.time_offset * units.time;
+  if (!(m.time >= 0))
+    throw InputError(table.where(row, "time") + ": a time before time zero is impossible");
+  if (m.time > kLatest)
+    throw InputError(table.where(row, "time") + ": " + format_number(m.time) +
+                     " s is impossible (allowed: to " + format_number(kLatest) +
+                     " s); is time_unit right?");
+  if (before.empty()) return m;
+  if (before.back().vesicle != m.vesicle) finished.insert(before.back().vesicle);
+  if (finished.count(m.vesicle))
+    throw InputError(table.where(row, "vesicle") + ": vesicle '" + m.vesicle +
+                     "' is there twice; keep its rows together, or give it another name");
+  if (before.back().vesicle == m.vesicle && !(m.time > before.back().time))
+    throw InputError(table.where(row, "time") + ": times of a vesicle have to ascend (before it: " +
+                     format_number(before.back().time / units.time - units.time_offset) + ")");
+  if (before.back().vesicle == m.vesicle &&
+      std::max(m.radius, before.back().radius) >
+          kSameRadius * std::min(m.radius, before.back().radius))
+    throw InputError(table.where(row, "radius") + ": vesicle '" + m.vesicle + "' had a radius of " +
+                     format_number(before.back().radius) + " um a look before, and has " +
+                     format_number(m.radius) + " um now; are these two vesicles?");
+  return m;
+}
+
+// Quantities of one look that exclude each other.
+void refuse_contradictions(const CsvTable& table, std::size_t row, const Measurement& m) {
+  const auto perimeter = m.of(Quantity::perimeter), rafts = m.of(Quantity::rafts),
+             fraction = m.of(Quantity::fraction);
+  for (const Quantity quantity : {Quantity::perimeter, Quantity::fraction})
+    if (const auto value = m.of(quantity); rafts && value && (*rafts > 0) != (*value > 0))
+      throw InputError(table.where(row, name_of(quantity).id) + ": " +
+                       (*rafts > 0 ? "rafts have a boundary and an area"
+                                   : "without rafts there is no boundary and no area"));
+  if (!perimeter || !fraction) return;
+  // The isoperimetric inequality on a sphere of radius 1: P² ≥ A (4π − A), with equality for caps.
+  const double shortest = 4 * kPi * std::sqrt(*fraction * (1 - *fraction));
+  if (*perimeter < kTooShort * shortest)
+    throw InputError(table.where(row, "perimeter") + ": " + format_number(*perimeter * m.radius) +
+                     " um is too short: the shortest boundary of a raft fraction of " +
+                     format_number(*fraction) + " has " + format_number(shortest * m.radius) +
+                     " um");
+}
+
+// The column `name`_sigma as a standard deviation, in the unit of the table; nothing if the cell is
+// empty.
+std::optional<double> sigma_in(const TableUnits& units, const CsvTable& table, std::size_t row,
+                               const std::string& name, double highest) {
+  const std::string column = name + "_sigma";
+  if (!table.has(column) || table.empty(row, column)) return std::nullopt;
+  return in_range(table, row, column.c_str(), 0, highest) / units.sigmas;
+}
+
+void read_value(const TableUnits& units, const CsvTable& table, std::size_t row, Quantity quantity,
+                Measurement& m) {
+  const char* column = name_of(quantity).id;
+  if (!table.has(column) || table.empty(row, column)) return;
+  const double unit = quantity == Quantity::perimeter ? units.length / m.radius : 1;
+  const double highest = quantity == Quantity::fraction    ? 1
+                         : quantity == Quantity::perimeter ? kLargestPerimeter / unit
+                                                           : kMostRafts;
+  const double value = in_range(table, row, column, 0, highest);
+  if (quantity == Quantity::rafts && value != std::floor(value))
+    throw InputError(table.where(row, column) + ": a whole number is needed here");
+  m.values[static_cast<std::size_t>(quantity)] = value * unit;
+  if (const auto sigma = sigma_in(units, table, row, column, highest))
+    m.sigma[static_cast<std::size_t>(quantity)] = *sigma * unit;
+}
+
+void check_columns(const CsvTable& table, const std::vector<std::string>& known) {
+  table.require("vesicle");
+  table.require("time");
+  for (const std::string& column : table.columns())
+    if (std::find(known.begin(), known.end(), column) == known.end())
+      throw InputError(table.heading() + ": " + unknown_name_message("column", column, known));
+  for (const Quantity quantity : kQuantities) {
+    const std::string name = name_of(quantity).id;
+    if (table.has(name + "_sigma") && !table.has(name))
+      throw InputError(table.heading() + ": there is a column '" + name + "_sigma', but none '" +
+                       name + "'");
+  }
+}
+
+// A row per look.
+std::vector<Measurement> read_totals(const TableUnits& units, const CsvTable& table) {
+  check_columns(table, {"vesicle", "time", "radius", "perimeter", "perimeter_sigma", "rafts",
+                        "rafts_sigma", "fraction", "fraction_sigma"});
+  std::vector<Measurement> looks;
+  std::set<std::string> finished;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    Measurement m = begin_measurement(units, table, row, looks, finished);
+    for (const Quantity quantity : kQuantities) read_value(units, table, row, quantity, m);
+    if (!m.values[0] && !m.values[1] && !m.values[2])
+      throw InputError(table.where(row) + ": nothing was measured (perimeter, rafts, fraction)");
+    refuse_contradictions(table, row, m);
+    looks.push_back(m);
+  }
+  return looks;
+}
+
+// Of one raft. Nothing: the look has shown none.
+std::optional<Cap> cap_of(const TableUnits& units, const CsvTable& table, std::size_t row,
+                          double radius) {
+  if (table.empty(row, "cap_radius")) return std::nullopt;
+  const double largest = radius / units.length;
+  Cap cap{in_range(table, row, "cap_radius", 0, largest) * units.length, std::nullopt};
+  if (const auto sigma = sigma_in(units, table, row, "cap_radius", largest))
+    cap.sigma = *sigma * units.length;
+  if (cap.base_radius > 0) return cap;
+  throw InputError(table.where(row, "cap_radius") +
+                   ": a raft has a size; leave the cell empty for a look that shows no raft");
+}
+
+// A row per raft, or one for a look without rafts; those of one look stand together.
+std::vector<Measurement> read_caps(const TableUnits& units, const CsvTable& table) {
+  check_columns(table, {"vesicle", "time", "radius", "cap_radius", "cap_radius_sigma"});
+  std::vector<Measurement> looks;
+  std::set<std::string> finished;
+  for (std::size_t row = 0; row < table.rows();) {
+    Measurement m = begin_measurement(units, table, row, looks, finished);
+    std::vector<Cap> caps;
+    const std::size_t first = row;
+    for (; row < table.rows() && table.text(row, "vesicle") == m.vesicle &&
+           table.number(row, "time") == table.number(first, "time");
+         ++row) {
+      if (radius_of(units, table, row) != m.radius)
+        throw InputError(table.where(row, "radius") + ": one look at a vesicle, two radii");
+      if (row > first && (table.empty(row, "cap_radius") || table.empty(first, "cap_radius")))
+        throw InputError(table.where(row, "cap_radius") + ": a look without rafts has one row");
+      const auto cap = cap_of(units, table, row, m.radius);
+      if (cap && !caps.empty() && cap->sigma.has_value() != caps.front().sigma.has_value())
+        throw InputError(table.where(row, "cap_radius_sigma") +
+                         ": of the rafts of one look either all have a sigma or none");
+      if (cap) caps.push_back(*cap);
+    }
+    set_caps(m, caps);
+    if (*m.of(Quantity::fraction) > 1)
+      throw InputError(table.where(first) + ": these caps cover more than the whole vesicle");
+    looks.push_back(m);
+  }
+  return looks;
+}
+
+}  // namespace
+
+double checked_radius(double radius, const std::string& where) {
+  if (radius >= kSmallestRadius && radius <= kLargestRadius) return radius;
+  throw InputError(where + ": a vesicle of radius " + format_number(radius) +
+                   " um is impossible here (allowed: " + format_number(kSmallestRadius) + " to " +
+                   format_number(kLargestRadius) + "); is length_unit right?");
+}
+
+std::vector<Measurement> read_measurements(const TableUnits& units, const CsvTable& table) {
+  return table.has("cap_radius") ? read_caps(units, table) : read_totals(units, table);
+}
+
+}  // namespace traceraft

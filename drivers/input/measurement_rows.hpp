@@ -1,0 +1,27 @@
+// The rows of a table of measurements: one per look at a vesicle, or one per raft of a look.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/input/csv_table.hpp"
+#include "verification/vesicles/measurements.hpp"
+
+namespace traceraft {
+
+// What turns the numbers of a table into µm, s and standard deviations.
+struct TableUnits {
+  double length = 1, time = 1, time_offset = 0;
+  std::optional<double> radius;  // µm, of all vesicles
+  double sigmas = 1;             // standard deviations in what the table calls sigma
+};
+
+// In µm. Throws InputError, which begins with `where`, if it is no radius of a vesicle.
+double checked_radius(double radius, const std::string& where);
+
+// Of all looks, in the order of the rows. Throws InputError with file, line and column for what is
+// missing, unknown, impossible or contradicts itself.
+std::vector<Measurement> read_measurements(const TableUnits& units, const CsvTable& table);
+
+}  // namespace traceraft
