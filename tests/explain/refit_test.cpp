@@ -111,5 +111,16 @@ TEST_F(RefitTest, SaysWhichPlaceIsOffTheSurface) {
   }
 }
 
+// What is hidden has to be something that a model may have.
+TEST(BlindCase, HidesNoMoreThanTheRangeOfAnEffect) {
+  BlindRequest asked = request();
+  asked.effects = {"asymmetry"};
+  asked.gap = 2;
+  const EffectTerm term = size_effects(asked).front();
+  EXPECT_EQ(std::fabs(term.values.front()), effects().find("asymmetry").parameters.front().max);
+  asked.gap = 0.02;
+  EXPECT_LT(std::fabs(size_effects(asked).front().values.front()), 0.2);
+}
+
 }  // namespace
 }  // namespace traceraft

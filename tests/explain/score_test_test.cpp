@@ -45,7 +45,7 @@ TEST(ScoreTest, GainsWhatTheLikelihoodDoes) {
   FilterResult pass = pass_with(4 * Eigen::MatrixXd::Identity(kParameters, kParameters));
   pass.score[2] = 20;  // gravity
   pass.score[3] = -6;  // uptake
-  const Screening screening = screen(pass, screened(), 0);
+  const Screening screening = screen(pass, screened(), {});
   EXPECT_EQ(screening.scores.front().effect, "gravity");
   EXPECT_NEAR(screening.scores.front().score, 20 * 20 / 4.0, 1e-9);
   EXPECT_NEAR(screening.scores.front().coefficients[0], 5, 1e-9);
@@ -60,7 +60,7 @@ TEST(ScoreTest, KeepsSigns) {
   FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
   pass.score[4] = -5;
   pass.score[5] = 3;
-  const Screening screening = screen(pass, screened(), 0);
+  const Screening screening = screen(pass, screened(), {});
   const CandidateScore& exchange = score_of(screening, "exchange");
   EXPECT_EQ(exchange.coefficients[0], 0);
   EXPECT_NEAR(exchange.coefficients[1], 3, 1e-9);
@@ -75,7 +75,7 @@ TEST(ScoreTest, ProjectsNuisancesOut) {
   FilterResult pass = pass_with(information);
   pass.score[kPace] = 10;
   pass.score[2] = 8 + 1;  // what a pace of 10 makes of it, and 1
-  const Screening screening = screen(pass, screened(), 0);
+  const Screening screening = screen(pass, screened(), {});
   EXPECT_NEAR(score_of(screening, "gravity").score, 1 / (1 - 0.64), 1e-9);
   EXPECT_GT(screening.p, 0.2);
 }
@@ -89,7 +89,7 @@ TEST(ScoreTest, CallsNoiseNoise) {
     for (Eigen::Index i = 0; i < kParameters; ++i)
       pass.score[i] =
           normal_random(2, static_cast<std::uint64_t>(k), static_cast<std::uint64_t>(i));
-    alarms += screen(pass, screened(), 0).p <= 0.1;
+    alarms += screen(pass, screened(), {}).p <= 0.1;
   }
   EXPECT_NEAR(alarms, 0.1 * kTrials, 4 * std::sqrt(0.09 * kTrials));
 }
@@ -99,7 +99,7 @@ TEST(ScoreTest, SeesNothingWhereNothingResponds) {
   information(2, 2) = 1e-12;
   FilterResult pass = pass_with(information);
   pass.score[2] = 1e-3;
-  const Screening screening = screen(pass, screened(), 0);
+  const Screening screening = screen(pass, screened(), {});
   EXPECT_EQ(score_of(screening, "gravity").score, 0);
   EXPECT_EQ(score_of(screening, "gravity").covariance(0, 0), 0);
 }
@@ -107,7 +107,7 @@ TEST(ScoreTest, SeesNothingWhereNothingResponds) {
 TEST(ScoreTest, MayHaveNothingToLookFor) {
   FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
   pass.score[kPace] = 2;
-  const Screening screening = screen(pass, {}, 0);
+  const Screening screening = screen(pass, {}, {});
   EXPECT_TRUE(screening.scores.empty());
   EXPECT_EQ(screening.p, 1);
   EXPECT_NEAR(screening.pace_change, 2, 1e-9);

@@ -138,14 +138,14 @@ class Sizing {
     snapshots_ = Simulation(request, method_, {}).run(times);
   }
 
-  // The effect with the strength at which it makes the gap that was asked for: a small one, then in
-  // proportion, twice.
+  // The effect with the strength at which it makes the gap that was asked for, or the largest one
+  // that it may have: a small one, then in proportion, twice.
   EffectTerm term(const std::string& effect, std::uint64_t number) const {
     const Candidate candidate = candidate_of(effect);
     std::vector<double> coefficients = random_coefficients(request_, candidate, number);
     for (int k = 0; k < 2; ++k) {
       const double ratio = request_.gap / gap_of(candidate.term(coefficients));
-      for (double& a : coefficients) a *= ratio;
+      for (double& a : coefficients) a = candidate.within_range(ratio * a);
     }
     return candidate.term(coefficients);
   }

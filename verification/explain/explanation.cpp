@@ -178,7 +178,7 @@ class Search {
     std::vector<ErrorMaps> maps;
     for (int k = 0; k < 5; ++k) {
       const FilterResult pass = filter_fields(data_, model, rough, maps);
-      const double step = std::clamp(screen(pass, {}, 0).pace_change, -0.7, 0.7);
+      const double step = std::clamp(screen(pass, {}, {}).pace_change, -0.7, 0.7);
       model.pace *= std::exp(step);
       if (std::fabs(step) < 0.02) break;
     }
@@ -252,11 +252,7 @@ class Search {
     result_.found_maps = disagreement_maps(data_, pass, data_.front().space->surface.position,
                                            kMapWidth * request_.base.epsilon);
     if (first) result_.base_maps = result_.found_maps;
-    Round round{model_,
-                screen(pass, model_.screened, model_.hypothesis.coefficients()),
-                result_.found,
-                {},
-                {}};
+    Round round{model_, screen(pass, model_.screened, model_.hypothesis), result_.found, {}, {}};
     const auto most = static_cast<std::size_t>(request_.most_effects);
     const bool more =
         model_.hypothesis.parts.size() < most && result_.rounds.size() < most + kMostMoves;

@@ -6,6 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "verification/explain/free_parameters.hpp"
+
 namespace traceraft {
 namespace {
 
@@ -78,7 +80,7 @@ std::vector<Eigen::Index> own_parameters(const Hypothesis& hypothesis) {
 
 struct Evaluation {
   double deviance = std::numeric_limits<double>::infinity();
-  Vec step;                    // to the maximum, if the likelihood were Gaussian
+  Vec step;                    // to the maximum in range, if the likelihood were Gaussian
   Eigen::MatrixXd covariance;  // of the unknowns
   Gaps gap, expected;
   std::vector<SnapshotGap> snapshots;
@@ -98,7 +100,9 @@ Evaluation evaluate(const FilterProblems& data, const FilterModel& model,
     const FilterResult pass = filter_fields(data, model, settings, maps);
     const Eigen::MatrixXd inverse = pass.information.selfadjointView<Eigen::Lower>().ldlt().solve(
         Eigen::MatrixXd::Identity(pass.information.rows(), pass.information.cols()));
-    const Vec all = inverse * pass.score;
+    const std::vector<Eigen::Index> free = free_parameters(pass, model.hypothesis);
+    Vec all = Vec::Zero(pass.score.size());
+    all(free) = newton_step(pass, free);
     const std::vector<Eigen::Index> own = own_parameters(model.hypothesis);
     const Eigen::MatrixXd J = jacobian(model);
     result.step = J * all(own);

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+
+#include "verification/explain/free_parameters.hpp"
 
 namespace traceraft {
 namespace {
@@ -95,12 +96,11 @@ double share_of_noise(const Vec& replicates, double value) {
 }
 
 Screening screen(const FilterResult& result, const std::vector<Candidate>& screened,
-                 Eigen::Index known_coefficients) {
+                 const Hypothesis& known) {
   const Eigen::MatrixXd& F = result.information;
-  Indices nuisances(static_cast<std::size_t>(kFirstParameter + known_coefficients));
-  std::iota(nuisances.begin(), nuisances.end(), 0);
+  const Indices nuisances = free_parameters(result, known);
   std::vector<Own> own;
-  for (Eigen::Index next = static_cast<Eigen::Index>(nuisances.size()), k = 0;
+  for (Eigen::Index next = kFirstParameter + known.coefficients(), k = 0;
        k < static_cast<Eigen::Index>(screened.size()); ++k) {
     Indices indices;
     for (int d = 0; d < screened[k].directions; ++d) indices.push_back(next++);

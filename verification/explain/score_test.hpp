@@ -32,7 +32,8 @@ struct Screening {
   double mesh_error;                   // root mean square of what a finer mesh changes, in noise
 };
 
+// `known`: the hypothesis of the model whose pass the result is.
 Screening screen(const FilterResult& result, const std::vector<Candidate>& screened,
-                 Eigen::Index known_coefficients);
+                 const Hypothesis& known);
 
 }  // namespace traceraft

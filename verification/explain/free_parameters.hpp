@@ -1,0 +1,19 @@
+// Which parameters of a found model the data may still move.
+#pragma once
+
+#include <vector>
+
+#include "verification/explain/field_filter.hpp"
+
+namespace traceraft {
+
+// The parameters of `pass` that belong to a model with this hypothesis (pace, error of the mesh,
+// coefficients), without the coefficients at an end of their range that the likelihood, a Gaussian
+// to first order, would push beyond it: the others have their optimum with these held where they
+// are. `pass`: of that model.
+std::vector<Eigen::Index> free_parameters(const FilterResult& pass, const Hypothesis& hypothesis);
+
+// Where that optimum is: the change of each of the free parameters.
+Vec newton_step(const FilterResult& pass, const std::vector<Eigen::Index>& free);
+
+}  // namespace traceraft
