@@ -9,6 +9,7 @@
 #include "drivers/input/csv_table.hpp"
 #include "drivers/output/text_table.hpp"
 #include "kernel/core/error.hpp"
+#include "verification/explain/refit.hpp"
 
 namespace traceraft {
 namespace {
@@ -52,10 +53,10 @@ std::map<std::string, Scores> by_group(const Scores& scores) {
   return groups;
 }
 
-// Of what the truth would close of the gap, how much was closed?
+// Of what the truth would close of the held-out gap, how much was closed?
 double closed(const CaseScore& score) {
-  const double closable = score.base * score.base - score.floor * score.floor;
-  return (score.base * score.base - score.named * score.named) / closable;
+  return share_closed(score.base, score.named, score.floor)
+      .value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
 Table cases_table(const Scores& scores) {

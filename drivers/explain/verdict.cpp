@@ -35,6 +35,16 @@ Json gap_json(const Gaps& gaps) {
           {"heldout", gaps.heldout > 0 ? Json(gaps.heldout) : Json()}};
 }
 
+Json closed_json(const Explanation& found) {
+  const auto share = [](double base, double named, double floor) {
+    const auto closed = share_closed(base, named, floor);
+    return closed ? Json(*closed) : Json();
+  };
+  if (found.found.hypothesis.parts.empty()) return {};
+  return {{"train", share(found.base_gap.train, found.found_gap.train, found.floor.train)},
+          {"heldout", share(found.base_gap.heldout, found.found_gap.heldout, found.floor.heldout)}};
+}
+
 Json where_json(const Explanation& found, const Units& base) {
   if (found.disagreements.empty()) return {};
   const Disagreement& most = found.disagreements.front();
@@ -86,6 +96,7 @@ Json verdict_json(const Explanation& found, const Units& base) {
             {"named", gap_json(found.found_gap)},
             {"placebo", gap_json(found.placebo_gap.value_or(Gaps{}))},
             {"floor", gap_json(found.floor)}}},
+          {"closed", closed_json(found)},
           {"rerun", found.rerun ? rerun_json(*found.rerun) : Json()},
           {"where", where_json(found, base)},
           {"null",

@@ -82,6 +82,7 @@ TEST_F(ExplainTest, NamesWhatWasHidden) {
   const auto gap = [&](const char* which) { return verdict["gap"][which]["train"].get<double>(); };
   EXPECT_NEAR(gap("named"), gap("floor"), 0.03 * gap("floor"));
   EXPECT_GT(gap("base"), 1.05 * gap("floor"));
+  EXPECT_NEAR(verdict["closed"]["train"], 1, 0.1);
   EXPECT_FALSE(verdict["where"].is_null());
   const nlohmann::json& again = verdict["rerun"];
   EXPECT_EQ(again["integrator"], "rosenbrock");

@@ -111,6 +111,14 @@ TEST_F(RefitTest, SaysWhichPlaceIsOffTheSurface) {
   }
 }
 
+TEST(ShareClosed, IsOfMeanSquares) {
+  EXPECT_NEAR(share_closed(5, 4, 3).value(), 9.0 / 16, 1e-14);
+  EXPECT_NEAR(share_closed(2, 1, 1).value(), 1, 1e-14);
+  EXPECT_LT(share_closed(2, 2.1, 1).value(), 0);
+  EXPECT_FALSE(share_closed(1.01, 1, 1));
+  EXPECT_FALSE(share_closed(0, 0, 0));  // nothing is held out
+}
+
 // What is hidden has to be something that a model may have.
 TEST(BlindCase, HidesNoMoreThanTheRangeOfAnEffect) {
   BlindRequest asked = request();

@@ -138,6 +138,12 @@ Gaps scaled(double factor, const Gaps& gaps) {
   return {factor * gaps.train, factor * gaps.heldout};
 }
 
+std::optional<double> share_closed(double base, double found, double floor) {
+  constexpr double kTold = 1.02;
+  if (!(floor > 0 && base > kTold * floor)) return std::nullopt;
+  return (square(base) - square(found)) / (square(base) - square(floor));
+}
+
 Gaps gaps_of_pass(const FilterResult& pass) {
   return over_snapshots(pass, [](const Innovation& in) { return in.gap.squaredNorm(); });
 }

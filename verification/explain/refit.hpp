@@ -2,6 +2,8 @@
 // the model that has the effects.
 #pragma once
 
+#include <optional>
+
 #include "verification/explain/field_filter.hpp"
 
 namespace traceraft {
@@ -12,6 +14,10 @@ struct Gaps {
 };
 
 Gaps scaled(double factor, const Gaps& gaps);
+
+// The share of what the base lacks that was closed, in mean squares; nothing where the base is
+// within 2 % of the floor, which it may be by noise.
+std::optional<double> share_closed(double base, double found, double floor);
 
 struct SnapshotGap {
   std::size_t vesicle, snapshot;
