@@ -39,6 +39,8 @@ std::vector<EffectTerm> sizes(const fs::path& folder, const Configuration& model
   sizing.base = physical_model(model);
   sizing.raft_fraction = model.number("raft-fraction");
   sizing.cells = static_cast<int>(model.integer("cells"));
+  sizing.initial = model.text("initial");
+  sizing.noise_cells = model.integer("noise-cells");
   sizing.first = request.looks.begin / units.time();
   sizing.last = request.looks.end / units.time();
   sizing.snapshots = 5;

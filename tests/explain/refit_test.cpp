@@ -130,5 +130,14 @@ TEST(BlindCase, HidesNoMoreThanTheRangeOfAnEffect) {
   EXPECT_LT(std::fabs(size_effects(asked).front().values.front()), 0.2);
 }
 
+// Smooth noise dissolves where the mixture is stable, as vesicles of few rafts are.
+TEST(BlindCase, StartsFromWhatTheModelDoes) {
+  BlindRequest asked = request();
+  asked.raft_fraction = 0.16;
+  EXPECT_THROW((void)size_effects(asked), InputError);
+  asked.initial = "noise";
+  EXPECT_GT(std::fabs(size_effects(asked).front().values.front()), 0);
+}
+
 }  // namespace
 }  // namespace traceraft

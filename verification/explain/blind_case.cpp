@@ -92,8 +92,13 @@ class Simulation {
     InitialRequest initial;
     initial.raft_fraction = request_.raft_fraction;
     initial.seed = request_.seed;
-    const std::string wavelength = std::to_string(6 * request_.base.epsilon);
-    StartState start = initial_state(problem_, "band-limited:wavelength=" + wavelength, initial);
+    const std::int64_t cells = problem_.space().mesh.cube.cells;
+    initial.noise_cells =
+        std::min(cells, request_.noise_cells > 0 ? request_.noise_cells : request_.cells / 4);
+    const std::string smooth =
+        "band-limited:wavelength=" + std::to_string(6 * request_.base.epsilon);
+    StartState start =
+        initial_state(problem_, request_.initial.empty() ? smooth : request_.initial, initial);
     std::vector<Vec> result;
     Vec c = problem_.c_of(start.y);
     double t = 0;
@@ -135,7 +140,10 @@ class Sizing {
     constexpr double kCoarser = 0.7, kTolerance = 1e-3;
     method_ = {serial_space(surface, static_cast<int>(kCoarser * request.cells)), "ida",
                kTolerance};
-    snapshots_ = Simulation(request, method_, {}).run(times);
+    const Simulation base(request, method_, {});
+    snapshots_ = base.run(times);
+    for (std::size_t k = 0; k + 1 < times.size(); ++k)
+      next_.push_back(base.advance(snapshots_[k], times[k], times[k + 1]));
   }
 
   // The effect with the strength at which it makes the gap that was asked for, or the largest one
@@ -159,12 +167,11 @@ class Sizing {
   }
   // What the effect makes of the base's snapshots until the next one.
   double gap_of(const EffectTerm& term) const {
-    const Simulation base(request_, method_, {}), changed(request_, method_, {term});
+    const Simulation changed(request_, method_, {term});
     const SurfaceSpace& space = *method_.space;
     double squares = 0;
     for (std::size_t k = 0; k + 1 < times_.size(); ++k) {
-      const Vec difference = changed.advance(snapshots_[k], times_[k], times_[k + 1]) -
-                             base.advance(snapshots_[k], times_[k], times_[k + 1]);
+      const Vec difference = changed.advance(snapshots_[k], times_[k], times_[k + 1]) - next_[k];
       const double contrast = spread(space, snapshots_[k]);
       if (!(contrast > kLeastContrast))
         throw InputError("the base model has no rafts at these times: c is the same everywhere");
@@ -176,7 +183,7 @@ class Sizing {
   const BlindRequest& request_;
   const std::vector<double>& times_;
   Method method_;
-  std::vector<Vec> snapshots_;
+  std::vector<Vec> snapshots_, next_;  // of the base; what becomes of each until the next time
 };
 
 // Where and when a vesicle is looked at.

@@ -27,6 +27,11 @@ struct BlindRequest {
   // which they state for the others; 0: they state none.
   double stated = 0;
   double raft_fraction = 0.5;
+  // What a vesicle starts from, as in --initial; "": band-limited noise, six widths of a boundary
+  // long, which makes no rafts of raft fractions below 0.21.
+  std::string initial;
+  std::int64_t noise_cells =
+      0;  // of the mesh that other noise is drawn on; 0: a quarter of `cells`
   int cells = 34;
   std::string integrator = "rosenbrock";
   double tolerance = 1e-4;
