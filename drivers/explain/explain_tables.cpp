@@ -39,14 +39,14 @@ std::vector<Row> gap_rows(const Explanation& found) {
   add("what was found", found.found_gap);
   if (found.placebo_gap) add("second best", *found.placebo_gap);
   add("to be expected if nothing is missing", found.floor);
-  const auto closed = [](double base, double named, double floor) {
-    const auto share = share_closed(base, named, floor);
-    return share ? formatted("%.0f %%", 100 * *share) : "";
-  };
-  if (!found.found.hypothesis.parts.empty())
-    rows.push_back({"closed of what can be closed, in squares",
-                    closed(found.base_gap.train, found.found_gap.train, found.floor.train),
-                    closed(found.base_gap.heldout, found.found_gap.heldout, found.floor.heldout)});
+  if (!found.found.hypothesis.parts.empty()) {
+    const auto text = [](const std::optional<double>& share) {
+      return share ? formatted("%.0f %%", 100 * *share) : "";
+    };
+    const SharesClosed closed = shares_closed(found.base_gap, found.found_gap, found.floor);
+    rows.push_back(
+        {"closed of what can be closed, in squares", text(closed.train), text(closed.heldout)});
+  }
   if (found.rerun && found.rerun->failure.empty()) {
     const Rerun& rerun = *found.rerun;
     const std::string where =

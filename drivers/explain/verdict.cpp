@@ -36,13 +36,12 @@ Json gap_json(const Gaps& gaps) {
 }
 
 Json closed_json(const Explanation& found) {
-  const auto share = [](double base, double named, double floor) {
-    const auto closed = share_closed(base, named, floor);
-    return closed ? Json(*closed) : Json();
-  };
   if (found.found.hypothesis.parts.empty()) return {};
-  return {{"train", share(found.base_gap.train, found.found_gap.train, found.floor.train)},
-          {"heldout", share(found.base_gap.heldout, found.found_gap.heldout, found.floor.heldout)}};
+  const auto json = [](const std::optional<double>& share) {
+    return share ? Json(*share) : Json();
+  };
+  const SharesClosed closed = shares_closed(found.base_gap, found.found_gap, found.floor);
+  return {{"train", json(closed.train)}, {"heldout", json(closed.heldout)}};
 }
 
 Json where_json(const Explanation& found, const Units& base) {

@@ -30,8 +30,8 @@ struct BlindRequest {
   // What a vesicle starts from, as in --initial; "": band-limited noise, six widths of a boundary
   // long, which makes no rafts of raft fractions below 0.21.
   std::string initial;
-  std::int64_t noise_cells =
-      0;  // of the mesh that other noise is drawn on; 0: a quarter of `cells`
+  // Of the mesh that other noise is drawn on; 0: a quarter of `cells`.
+  std::int64_t noise_cells = 0;
   int cells = 34;
   std::string integrator = "rosenbrock";
   double tolerance = 1e-4;

@@ -144,6 +144,11 @@ std::optional<double> share_closed(double base, double found, double floor) {
   return (square(base) - square(found)) / (square(base) - square(floor));
 }
 
+SharesClosed shares_closed(const Gaps& base, const Gaps& found, const Gaps& floor) {
+  return {share_closed(base.train, found.train, floor.train),
+          share_closed(base.heldout, found.heldout, floor.heldout)};
+}
+
 Gaps gaps_of_pass(const FilterResult& pass) {
   return over_snapshots(pass, [](const Innovation& in) { return in.gap.squaredNorm(); });
 }

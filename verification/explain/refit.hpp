@@ -18,6 +18,10 @@ Gaps scaled(double factor, const Gaps& gaps);
 // The share of what the base lacks that was closed, in mean squares; nothing where the base is
 // within 2 % of the floor, which it may be by noise.
 std::optional<double> share_closed(double base, double found, double floor);
+struct SharesClosed {
+  std::optional<double> train, heldout;
+};
+SharesClosed shares_closed(const Gaps& base, const Gaps& found, const Gaps& floor);
 
 struct SnapshotGap {
   std::size_t vesicle, snapshot;
