@@ -17,8 +17,11 @@ Refit refit_with(const std::vector<std::string>& effects, double deviance) {
   return fit;
 }
 
+// With a coefficient of 0.1, to which the response is.
 CandidateScore score(const std::string& effect, double response, double resolution) {
-  return {effect, {0.1}, 50, 1, 0.005, response, Eigen::MatrixXd::Ones(1, 1), resolution};
+  const double deviation = 0.1 * resolution / response;
+  const Eigen::MatrixXd covariance = Eigen::MatrixXd::Constant(1, 1, deviation * deviation);
+  return {effect, {0.1}, 50, 1, 0.005, response, covariance, resolution};
 }
 
 // The search for a first effect, which gravity explains best.

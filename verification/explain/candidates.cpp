@@ -32,6 +32,12 @@ Candidate by_strength(const std::string& effect, double step, bool two_sided) {
           most};
 }
 
+Candidate of_mobility(const std::string& effect, double step, bool two_sided) {
+  Candidate candidate = by_strength(effect, step, two_sided);
+  candidate.like_pace = true;
+  return candidate;
+}
+
 // k (c − c*) = a0 c + a1 (c − 1) with k = a0 + a1, c* = a1/k.
 Candidate exchange() {
   return {"exchange",
@@ -56,10 +62,10 @@ double Candidate::within_range(double coefficient) const {
 std::vector<Candidate> candidates() {
   return {
       by_strength("allen-cahn", 1e-3, false),       by_strength("asymmetry", 1e-3, true),
-      by_strength("bulk-mobility", 1e-3, false),    by_strength("cooling", 1e-5, true),
+      of_mobility("bulk-mobility", 1e-3, false),    by_strength("cooling", 1e-5, true),
       by_strength("curvature", 1e-3, true),         exchange(),
       by_strength("gravity", 1e-3, true),           by_strength("line-tension", 1e-3, true),
-      by_strength("mobility-contrast", 1e-3, true), by_strength("mobility-exponent", 1e-3, true),
+      by_strength("mobility-contrast", 1e-3, true), of_mobility("mobility-exponent", 1e-3, true),
       by_strength("ohta-kawasaki", 1e-3, false),    by_strength("uptake", 1e-3, true)};
 }
 

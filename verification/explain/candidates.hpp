@@ -21,6 +21,9 @@ struct Candidate {
   bool rate;           // are the coefficients rates? They go with 1/time.
   bool two_sided;      // may the coefficients be negative?
   double least, most;  // that each of them may be
+  // Does it make the mobility as a whole larger or smaller? Another D takes its place near 0, so
+  // there is next to nothing to gain there, however much there is further on.
+  bool like_pace = false;
 
   double within_range(double coefficient) const;
 };

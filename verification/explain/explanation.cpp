@@ -6,13 +6,11 @@
 
 #include "verification/explain/curvature_contrast.hpp"
 #include "verification/explain/neighbours.hpp"
+#include "verification/explain/shortlist.hpp"
 
 namespace traceraft {
 namespace {
 
-// Candidates that gain less than this share of what the best one does, to first order, are not
-// refitted, but for the second best.
-constexpr double kWorthRefitting = 0.25;
 // From one snapshot to the next, in units of the standard deviation of c: what effects are hardly
 // looked for below.
 constexpr double kUsualChange = 0.06;
@@ -264,12 +262,9 @@ class Search {
   void refit_shortlist(Round& round) const {
     tell("refits");
     std::vector<FilterModel> trials;
-    const double most = round.screening.scores.front().score;
-    for (const CandidateScore& score : round.screening.scores) {
-      const bool worth = score.score >= std::max(kTelling, kWorthRefitting * most);
-      if (trials.size() == request_.shortlist || (trials.size() >= 2 && !worth)) break;
+    for (Hypothesis::Part& part : shortlist(round.screening, request_.shortlist)) {
       trials.push_back(model_);
-      trials.back().hypothesis.parts.push_back({*find_candidate(score.effect), score.coefficients});
+      trials.back().hypothesis.parts.push_back(std::move(part));
     }
     for (Refit& fit : refit_each(data_, trials, request_.filter, maps_))
       if (fit.failure.empty())

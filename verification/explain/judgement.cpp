@@ -9,11 +9,19 @@ namespace {
 // An effect has to change c by that many times what extrapolation to finer meshes does.
 constexpr double kResolved = 3;
 
-bool resolved_in(const Round& round, const std::string& effect) {
+// To the coefficients of a refit, of which there may be two: those of exchange are known to first
+// order, as its term is linear in c.
+double response_to(const Hypothesis::Part& part, const CandidateScore& score) {
+  if (part.coefficients.size() > 1 || !std::isfinite(score.resolution)) return score.response;
+  const double deviation = std::sqrt(score.covariance(0, 0));
+  return std::fabs(part.coefficients[0]) / deviation * score.resolution;
+}
+
+bool resolved_in(const Round& round, const Hypothesis::Part& part) {
   return std::any_of(round.screening.scores.begin(), round.screening.scores.end(),
                      [&](const CandidateScore& score) {
-                       return score.effect == effect &&
-                              score.response >= kResolved * round.screening.mesh_error;
+                       return score.effect == part.candidate.effect &&
+                              response_to(part, score) >= kResolved * round.screening.mesh_error;
                      });
 }
 
@@ -50,9 +58,8 @@ const std::string& last_effect(const Hypothesis& hypothesis) {
 
 bool resolved(const std::vector<Round>& rounds, const Hypothesis& hypothesis) {
   return std::all_of(hypothesis.parts.begin(), hypothesis.parts.end(), [&](const auto& part) {
-    return std::any_of(rounds.begin(), rounds.end(), [&](const Round& round) {
-      return resolved_in(round, part.candidate.effect);
-    });
+    return std::any_of(rounds.begin(), rounds.end(),
+                       [&](const Round& round) { return resolved_in(round, part); });
   });
 }
 
@@ -71,7 +78,7 @@ Judgement judge(const Round& round, double values, double false_alarms, double u
   const Refit& best = round.refits.front();
   const double least = criterion(best, values);
   if (criterion(round.without, values) < least) return {false, rest, {}};
-  if (!resolved_in(round, last_effect(best.hypothesis)))
+  if (!resolved_in(round, best.hypothesis.parts.back()))
     return {false, first ? Finding::below_resolution : rest, {}};
   Judgement taken{true, Finding::named, {best.hypothesis.name()}};
   for (std::size_t k = 1; k < round.refits.size(); ++k)

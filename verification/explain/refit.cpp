@@ -123,13 +123,33 @@ Evaluation evaluate(const FilterProblems& data, const FilterModel& model,
   return result;
 }
 
+// A curved valley is walked along in many steps of one direction, which may then be longer.
+class StepLength {
+ public:
+  // For the next of the steps, in standard deviations.
+  double next(const Vec& step) {
+    const bool ahead = last_.size() > 0 && step.dot(last_) > kAhead * step.norm() * last_.norm();
+    length_ = ahead ? std::min(2 * length_, kLongest) : 1;
+    last_ = step;
+    return length_;
+  }
+
+ private:
+  static constexpr double kAhead = 0.9, kLongest = 8;
+  Vec last_;
+  double length_ = 1;
+};
+
+Vec deviations(const Evaluation& here) {
+  return here.covariance.diagonal().cwiseMax(0).cwiseSqrt();
+}
+
 // Steps this short change nothing that is reported.
 bool settled(const Evaluation& here, const FilterModel& model) {
   const Vec x = unknowns(model);
   FilterModel moved = model;
   set_unknowns(moved, x + here.step);
-  const Vec deviation = here.covariance.diagonal().cwiseMax(0).cwiseSqrt();
-  return ((unknowns(moved) - x).array().abs() <= kSmallStep * deviation.array()).all();
+  return ((unknowns(moved) - x).array().abs() <= kSmallStep * deviations(here).array()).all();
 }
 
 }  // namespace
@@ -174,12 +194,15 @@ Refit refit(const FilterProblems& data, const FilterModel& start, const FilterSe
   }
   bool better = here.failure.empty();
   bool at_rest = better && settled(here, model);
+  StepLength length;
   for (int k = 0; k < kMostNewtonSteps && better && !at_rest; ++k) {
-    Vec step = here.step;
+    const double factor = length.next(here.step.cwiseQuotient(deviations(here)));
+    Vec step = factor * here.step;
     step[0] = std::clamp(step[0], -kLargestPaceStep, kLargestPaceStep);
     const Vec x = unknowns(model);
     better = false;
-    for (int half = 0; half <= kMostHalvings && !better; ++half, step *= 0.5) {
+    const int halvings = kMostHalvings + std::ilogb(factor);
+    for (int half = 0; half <= halvings && !better; ++half, step *= 0.5) {
       FilterModel trial = model;
       set_unknowns(trial, x + step);
       Evaluation there = evaluate(data, trial, alone, kept);
