@@ -4,6 +4,7 @@
 
 #include <cstring>
 #include <memory>
+#include <mutex>
 #include <stdexcept>
 
 #include "backends/suitesparse/blas.hpp"
@@ -102,6 +103,9 @@ class CholmodSolver final : public SpdSolver {
 }  // namespace
 
 std::vector<int> metis_ordering(const SparsityPattern& pattern) {
+  // METIS seeds and draws from the C library's random numbers, which all threads share.
+  static std::mutex one_at_a_time;
+  const std::lock_guard<std::mutex> lock(one_at_a_time);
   Workspace workspace;
   cholmod_sparse* A = upper_triangle(pattern, nullptr, &workspace.common);
   std::vector<int> ordering(pattern.rows());
@@ -113,9 +117,13 @@ std::vector<int> metis_ordering(const SparsityPattern& pattern) {
 
 SpdSolverFactory cholmod_factory(PatternPtr pattern) {
   use_one_blas_thread();
-  return [pattern, ordering = std::make_shared<std::vector<int>>()](int lanes) -> SpdSolverPtr {
-    if (ordering->empty()) *ordering = metis_ordering(*pattern);
-    return std::make_unique<CholmodSolver>(*pattern, *ordering, lanes);
+  struct Ordering {
+    std::once_flag once;
+    std::vector<int> nodes;
+  };
+  return [pattern, ordering = std::make_shared<Ordering>()](int lanes) -> SpdSolverPtr {
+    std::call_once(ordering->once, [&] { ordering->nodes = metis_ordering(*pattern); });
+    return std::make_unique<CholmodSolver>(*pattern, ordering->nodes, lanes);
   };
 }
 
