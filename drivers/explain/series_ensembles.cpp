@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Of D over that of the model: runs last as long as if it were that.
-constexpr double kFastestPace = 2;
+constexpr double kFastestPace = 4;
 
 Configuration ensemble_model(const Configuration& model, const std::string& effect, double t_end) {
   GivenValues given = settings_until(model, t_end);
@@ -46,28 +46,33 @@ std::vector<EffectTerm> sizes(const fs::path& folder, const Configuration& model
   sizing.snapshots = 5;
   sizing.threads = request.threads;
   for (const std::string& effect : effects_to_hide())
-    if (std::count(request.without.begin(), request.without.end(), effect) == 0)
+    if (std::count(request.without.begin(), request.without.end(), effect) == 0 &&
+        (has_unit_wells(sizing.base) || !effects().find(effect).unit_wells))
       sizing.effects.push_back(effect);
   if (sizing.effects.empty()) throw InputError("--without: no effect is left to look for");
   const std::string identity = config_text(ensemble_model(model, "", request.looks.end)) +
                                format_number(request.looks.begin);
+  Json strengths = Json::object();
   if (fs::exists(file))
-    return from_json(file, [&](const Json& json) {
+    strengths = from_json(file, [&](const Json& json) {
       if (json.at("identity") != identity)
         throw InputError("--out: " + folder.parent_path().string() +
                          " holds an explanation of another model, or of looks at other times; "
                          "choose another folder");
-      std::vector<EffectTerm> terms;
-      for (const auto& [effect, values] : json.at("strengths").items())
-        if (std::count(sizing.effects.begin(), sizing.effects.end(), effect) > 0)
-          terms.push_back({effect, values});
-      return terms;
+      return json.at("strengths");
     });
-  if (!request.quiet) std::printf("how strong effects have to be\n");
-  const std::vector<EffectTerm> terms = size_effects(sizing);
-  Json strengths = Json::object();
-  for (const EffectTerm& term : terms) strengths[term.effect] = term.values;
-  write_durably(file, Json{{"identity", identity}, {"strengths", strengths}}.dump(2) + "\n");
+  const std::vector<std::string> wanted = sizing.effects;
+  auto& missing = sizing.effects;
+  missing.erase(std::remove_if(missing.begin(), missing.end(),
+                               [&](const auto& effect) { return strengths.contains(effect); }),
+                missing.end());
+  if (!missing.empty()) {
+    if (!request.quiet) std::printf("how strong effects have to be\n");
+    for (const EffectTerm& term : size_effects(sizing)) strengths[term.effect] = term.values;
+    write_durably(file, Json{{"identity", identity}, {"strengths", strengths}}.dump(2) + "\n");
+  }
+  std::vector<EffectTerm> terms;
+  for (const std::string& effect : wanted) terms.push_back({effect, strengths.at(effect)});
   return terms;
 }
 

@@ -136,6 +136,39 @@ TEST(SeriesExplanation, NamesNothingWhereNothingIsMissing) {
   EXPECT_TRUE(found.named.empty());
 }
 
+// Errors that are stated are no signal, and the data that calibrate it have them as well.
+TEST(SeriesExplanation, KnowsErrorsThatAreStated) {
+  int alarms = 0;
+  for (std::uint64_t set = 0; set < 8; ++set) {
+    MeasuredVesicles data = measured({}, 10, 0, 1);
+    std::uint64_t k = 0;
+    for (Measurement& m : data.measurements)
+      for (const Quantity quantity : kQuantities) {
+        const auto q = static_cast<std::size_t>(quantity);
+        m.sigma[q] = 0.2 * *m.values[q];
+        m.values[q] = *m.values[q] * std::exp(0.2 * normal_random(50 + set, 1, k++));
+      }
+    alarms += explained(data).p <= 0.05;
+  }
+  EXPECT_LE(alarms, 2);
+}
+
+// Beyond the end of the runs nothing is known of them.
+TEST(SeriesExplanation, StaysWithinTheRuns) {
+  const SeriesExplanation found = explained(measured({}, 15, 0.05, 0.2));
+  EXPECT_GT(std::exp(found.base.ln_unit), 0.15);
+  // At the same times, of vesicles three times as fast.
+  MeasuredVesicles fast = measured({}, 15, 0.05, 1);
+  for (Measurement& m : fast.measurements) {
+    const History run = vesicle({}, 3);
+    for (const Quantity quantity : kQuantities)
+      m.values[static_cast<std::size_t>(quantity)] = run.at(quantity, std::min(1000.0, 3 * m.time));
+  }
+  EXPECT_GT(std::exp(explained(fast).base.ln_unit), 0.6);
+  for (Measurement& m : fast.measurements) m.time *= 20;
+  EXPECT_THROW(explained(fast), InputError);
+}
+
 TEST(SeriesExplanation, AdmitsATrendThatNothingExplains) {
   const SeriesExplanation found = explained(measured({-0.6, 0, 0}, 15, 0.05, 1));
   EXPECT_EQ(found.finding, Finding::unnamed);

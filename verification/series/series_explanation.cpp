@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "kernel/core/error.hpp"
 #include "kernel/core/random.hpp"
@@ -18,7 +19,7 @@ constexpr double kAlike = 0.8;
 // A trend that no effect explains has to be that much less probable.
 constexpr double kTrendLevel = 0.4;
 // Streams of random numbers.
-enum SeriesStream : std::uint64_t { kRunOf = 1, kVesicle = 2, kLook = 3, kSample = 4 };
+enum SeriesStream : std::uint64_t { kRunOf = 1, kVesicle = 2, kLook = 3, kSample = 4, kStated = 5 };
 
 // The same looks at vesicles of the base model, one run each.
 MeasuredVesicles draw_base(const MeasuredVesicles& data, const std::vector<History>& runs,
@@ -34,7 +35,10 @@ MeasuredVesicles draw_base(const MeasuredVesicles& data, const std::vector<Histo
         ++look;
         if (!data.measurements[i].of(quantity)) continue;
         const double t = data.measurements[i].time / std::exp(fit.ln_unit);
+        const double stated =
+            data.measurements[i].sigma_of(quantity) / *data.measurements[i].of(quantity);
         const double own =
+            stated * normal_random(replicate, kStated, look) +
             fit.scatter.vesicle[q] * normal_random(replicate, kVesicle, 3 * vesicle + q) +
             fit.scatter.look[q] * normal_random(replicate, kLook, look);
         const double value = std::exp(logarithm_of(quantity, run.at(quantity, t)) + own);
@@ -149,6 +153,19 @@ void refuse(const MeasuredVesicles& data, const std::vector<History>& base,
       throw InputError("the ensemble with " + candidate.effect + " has other runs than the base");
 }
 
+// With a larger D the last looks would lie beyond the runs.
+double shortest_unit(const MeasuredVesicles& data, const std::vector<History>& base,
+                     const std::vector<SeriesCandidate>& candidates) {
+  double end = std::numeric_limits<double>::infinity(), last = 0;
+  const auto shorten = [&](const std::vector<History>& runs) {
+    for (const History& run : runs) end = std::min(end, run.time.back());
+  };
+  shorten(base);
+  for (const SeriesCandidate& candidate : candidates) shorten(candidate.runs);
+  for (const Measurement& m : data.measurements) last = std::max(last, m.time);
+  return last / end;
+}
+
 class SeriesSearch {
  public:
   SeriesSearch(const MeasuredVesicles& data, const std::vector<History>& base,
@@ -179,7 +196,8 @@ class SeriesSearch {
   }
 
  private:
-  // Data of the base model, fitted with curves of other runs than those they come from.
+  // Data of the base model, fitted with curves of resampled runs, which hold a third of the runs
+  // that data come from not at all and others more than once.
   void draw_null() {
     const auto count = static_cast<Eigen::Index>(candidates_.size());
     Eigen::MatrixXd null(request_.replicates, count);
@@ -295,7 +313,11 @@ SeriesExplanation explain_series(const MeasuredVesicles& data, const std::vector
                                  const std::vector<SeriesCandidate>& candidates,
                                  const SeriesRequest& request) {
   refuse(data, base, candidates);
-  return SeriesSearch(data, base, candidates, request).run();
+  SeriesRequest covered = request;
+  covered.unit.least = shortest_unit(data, base, candidates);
+  if (covered.unit.least > request.unit.start * request.unit.factor)
+    throw InputError("series: the runs end before the last measurement, whatever D is");
+  return SeriesSearch(data, base, candidates, covered).run();
 }
 
 }  // namespace traceraft

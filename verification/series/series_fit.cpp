@@ -39,8 +39,11 @@ class Fitter {
         model_(model),
         centre_(std::log(unit.start)),
         width_(std::log(unit.factor)),
+        least_(std::max(centre_ - width_, std::log(unit.least))),
         weight_(4 / (width_ * width_)),
-        fit_(start) {}
+        fit_(start) {
+    fit_.ln_unit = std::max(fit_.ln_unit, least_);
+  }
 
   SeriesFit run() {
     for (int k = 0; k < kRounds; ++k) {
@@ -74,8 +77,7 @@ class Fitter {
     const double least = metric.product(r, r) + penalty();
     for (double share = 1; share > 0.1; share *= 0.5) {
       fit_.amplitude = before.amplitude + share * step_a;
-      fit_.ln_unit =
-          std::clamp(before.ln_unit + share * step_u, centre_ - width_, centre_ + width_);
+      fit_.ln_unit = std::clamp(before.ln_unit + share * step_u, least_, centre_ + width_);
       const Vec now = residual();
       if (metric.product(now, now) + penalty() <= least) return;
     }
@@ -113,7 +115,7 @@ class Fitter {
 
   const std::vector<SeriesBlock>& blocks_;
   const SeriesModel& model_;
-  const double centre_, width_, weight_;
+  const double centre_, width_, least_, weight_;
   SeriesFit fit_;
 };
 

@@ -47,9 +47,10 @@ struct SeriesFit {
 };
 
 // Seconds per unit of time: what is known of it before, with 95 % confidence within a factor. The
-// fit does not leave that.
+// fit does not leave that, nor what is at least needed for runs to last as long as the data.
 struct UnitRange {
   double start, factor;
+  double least = 0;
 };
 SeriesFit fit_series(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
                      const UnitRange& unit);
