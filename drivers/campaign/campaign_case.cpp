@@ -31,9 +31,6 @@ std::uint64_t seed_of(const CampaignPlan& plan, const CaseId& id) {
   return hash >> 11;
 }
 
-// The truth is on a mesh this much finer than the model's.
-constexpr double kFinerTruth = 2.5;
-
 void draw(const fs::path& folder, const CampaignPlan& plan, const CaseSettings& settings,
           std::uint64_t seed) {
   const Configuration model(plan.model, {});
@@ -44,8 +41,7 @@ void draw(const fs::path& folder, const CampaignPlan& plan, const CaseSettings& 
   request.snapshots = settings.snapshots;
   request.points = plan.points;
   request.pace = std::exp(0.4 * (uniform_random(seed, 2, 0) - 0.5));
-  request.cells =
-      static_cast<int>(std::lround(kFinerTruth * static_cast<double>(model.integer("cells"))));
+  request.cells = truth_cells(plan.model);
   request.seed = seed;
   request.threads = 1;
   GivenValues given = plan.model;
@@ -75,9 +71,9 @@ CaseOutcome outcome_of(const CampaignGroup& group, const HiddenTruth& truth, con
   const std::string word = verdict.at("verdict");
   const bool named = !verdict.at("effect").is_null();
   if (group.aim == Aim::nothing)
-    return named               ? CaseOutcome::wrong
-           : word == "unnamed" ? CaseOutcome::missed
-                               : CaseOutcome::right;
+    return named || word == "unnamed" ? CaseOutcome::wrong
+           : word == "none"           ? CaseOutcome::right
+                                      : CaseOutcome::missed;
   if (group.aim == Aim::unnamed)
     return named               ? CaseOutcome::wrong
            : word == "unnamed" ? CaseOutcome::right
@@ -98,7 +94,7 @@ CaseOutcome outcome_of(const CampaignGroup& group, const HiddenTruth& truth, con
 void score_strength(const HiddenTruth& truth, const GivenValues& model, const Json& verdict,
                     Json& score) {
   score["error"] = score["deviations"] = nullptr;
-  if (truth.effects.empty()) return;
+  if (truth.effects.empty() || verdict.at("effect").is_null()) return;
   const EffectTerm& term = truth.effects.front();
   const ParameterSpec& strength = effects().find(term.effect).parameters.front();
   const auto found = verdict.at("parameters").find(term.effect + "." + strength.name);
@@ -122,7 +118,7 @@ void write_score(const CampaignFolder& folder, const CampaignGroup& group, const
                  {"effect", v.at("effect").is_null() ? Json("") : v.at("effect")},
                  {"class", v.at("class")},
                  {"outcome", word_for(outcome_of(group, truth, v))},
-                 {"p", v.at("null").at("false_alarm_level")},
+                 {"p", v.at("null").at("p")},
                  {"rounds", v.at("null").at("rounds")},
                  {"heldout",
                   {{"base", heldout("base")},

@@ -9,6 +9,7 @@
 #include "backends/posix/folder_lock.hpp"
 #include "backends/posix/process.hpp"
 #include "drivers/campaign/campaign_report.hpp"
+#include "drivers/campaign/hidden_case.hpp"
 #include "drivers/commands.hpp"
 #include "drivers/config/option_flags.hpp"
 #include "drivers/ensemble/ensemble_runs.hpp"
@@ -40,10 +41,7 @@ CampaignPlan new_plan(const CampaignRequest& request) {
   if (request.cases > 0) plan.cases = request.cases;
   if (plan.groups.empty()) plan.groups = campaign_groups().names();
   for (const std::string& group : plan.groups) (void)campaign_groups().find(group);
-  // A vesicle of 5 µm that a search can be carried out on in a minute.
-  for (const auto& [name, text] :
-       {std::pair("epsilon", "0.6"), std::pair("cells", "24"), std::pair("raft-fraction", "0.5")})
-    plan.model.insert({name, {text, "campaign"}});
+  add_small_vesicle(plan.model, "campaign");
   (void)Configuration(plan.model, {});
   return plan;
 }
@@ -59,17 +57,19 @@ CampaignPlan grown_plan(const CampaignRequest& request, const CampaignFolder& fo
   return plan;
 }
 
-// Of campaigns with the same plan that were carried out elsewhere.
+// Of campaigns with the same plan that were carried out elsewhere; a case that several of them have
+// counts once, as in the first.
 std::vector<CaseScore> scores_of(const std::vector<std::string>& folders,
                                  const CampaignPlan& plan) {
   std::vector<CaseScore> scores;
+  std::set<std::string> counted;
   for (const std::string& path : folders) {
     const CampaignFolder folder(path);
     if (!same_but_for_cases(plan, folder.load()))
       throw InputError("--elsewhere: the campaign in " + folder.path().string() +
                        " has another plan");
-    const std::vector<CaseScore> own = read_cases(folder.cases());
-    scores.insert(scores.end(), own.begin(), own.end());
+    for (CaseScore& score : read_cases(folder.cases()))
+      if (counted.insert(score.id.name()).second) scores.push_back(std::move(score));
   }
   return scores;
 }
@@ -94,6 +94,7 @@ std::optional<std::vector<std::string>> work_off(const CampaignFolder& folder,
   const std::size_t before = cases.size() - left.size();
   std::mutex mutex;
   std::vector<std::string> failures;
+  if (left.empty()) return failures;
   JobPool pool(left.size(), [&](std::size_t k) {
     fs::create_directories(folder.of(left[k]));
     const ProgramEnd end =
@@ -133,16 +134,18 @@ void report(const CampaignFolder& folder, std::vector<CaseScore> scores, bool qu
   write_campaign(folder, scores);
   if (quiet) return;
   print_rows(table_rows(summary_of(scores)));
+  std::printf("\n");
+  print_rows(table_rows(confusion_of(scores)));
   std::printf("\nwritten: %s\n", (folder.path() / "campaign.md").c_str());
 }
 
 int run_campaign(const CampaignRequest& request) {
-  catch_stop_signals();
   const bool goes_on = !request.out.empty() && CampaignFolder(request.out).started();
   if (!request.only.empty()) {
     if (!goes_on) throw InputError("--case: --out has to name a campaign that has begun");
     return one_case(CampaignFolder(request.out), request.only);
   }
+  catch_stop_signals();
   const CampaignFolder folder(request.out.empty() ? first_free_folder("campaign") : request.out);
   const CampaignPlan plan = goes_on ? grown_plan(request, folder)
                             : request.elsewhere.empty()

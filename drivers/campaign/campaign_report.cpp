@@ -102,7 +102,10 @@ Table confusion_of(const Scores& scores) {
   std::map<std::string, int> found;
   for (const CaseScore& score : scores) {
     if (campaign_groups().find(score.id.group).aim != Aim::name) continue;
-    const std::string verdict = score.effect.empty() ? score.verdict : score.effect;
+    const std::string verdict =
+        score.effect.empty()
+            ? score.verdict
+            : score.effect + (score.outcome == CaseOutcome::in_class ? " (in class)" : "");
     ++counts[score.hidden][verdict];
     ++found[verdict];
   }

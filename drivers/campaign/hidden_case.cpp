@@ -1,5 +1,7 @@
 #include "drivers/campaign/hidden_case.hpp"
 
+#include <cmath>
+
 #include "backends/sodium/seal.hpp"
 #include "drivers/config/config_file.hpp"
 #include "drivers/input/field_dataset.hpp"
@@ -12,6 +14,9 @@ namespace traceraft {
 namespace {
 
 namespace fs = std::filesystem;
+
+// The truth is on a mesh this much finer than the model's.
+constexpr double kFinerTruth = 2.5;
 
 void refuse_hiding(const Configuration& model) {
   refuse_scaled(model);
@@ -47,9 +52,24 @@ Json truth_json(const BlindCase& drawn, const BlindRequest& request, const Units
 
 }  // namespace
 
+void add_small_vesicle(GivenValues& model, const std::string& source) {
+  for (const auto& [name, text] :
+       {std::pair("epsilon", "0.6"), std::pair("cells", "24"), std::pair("raft-fraction", "0.5")})
+    model.insert({name, {text, source}});
+}
+
+int truth_cells(const GivenValues& model) {
+  const auto cells = static_cast<double>(Configuration(model, {}).integer("cells"));
+  return static_cast<int>(std::lround(kFinerTruth * cells));
+}
+
 void hide(const fs::path& folder, const GivenValues& model, BlindRequest request) {
   const Configuration configuration(model, {});
   refuse_hiding(configuration);
+  if (request.cells <= configuration.integer("cells"))
+    throw InputError("--truth-cells: " + std::to_string(request.cells) +
+                     " has to be more than the model's cells, " +
+                     std::to_string(configuration.integer("cells")));
   const Units units = configuration.units();
   request.base = physical_model(configuration);
   request.raft_fraction = configuration.number("raft-fraction");

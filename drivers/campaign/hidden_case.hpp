@@ -14,6 +14,13 @@ struct HiddenTruth {
   double pace, noise;
 };
 
+// What a model is that is not said to be another: a vesicle of 5 µm with wide phase boundaries,
+// which explain takes a minute or two for. Values that are given stay. `source`: of the others.
+void add_small_vesicle(GivenValues& model, const std::string& source);
+
+// Of a truth for this model, unless asked for others.
+int truth_cells(const GivenValues& model);
+
 // Draws a case and writes into the folder, in this order:
 //   truth.json         what is hidden, with a random salt; nothing but the score opens it
 //   data/seal.txt      the SHA-256 of truth.json

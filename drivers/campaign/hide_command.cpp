@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 
 #include "backends/posix/folder_lock.hpp"
@@ -23,12 +24,19 @@ struct HideCommand {
   std::int64_t seed = -1;
   BlindRequest request;
   double first_s = 0, last_s = 0;
+  int truth_cells = 0;
 };
 
 // "random" may be nothing.
 std::vector<std::string> effects_of(const std::string& text, std::uint64_t seed) {
   if (text == "none") return {};
-  if (text != "random") return split_list(text);
+  if (text != "random") {
+    std::vector<std::string> names = split_list(text);
+    for (const std::string& name : names)
+      if (name == "none" || name == "random" || std::count(names.begin(), names.end(), name) > 1)
+        throw InputError("--effects: '" + name + "' stands beside others, or twice");
+    return names;
+  }
   std::vector<std::string> all = effects_to_hide();
   const double u = uniform_random(seed, 3, 0) * static_cast<double>(all.size() + 1);
   const auto index = static_cast<std::size_t>(u);
@@ -38,8 +46,10 @@ std::vector<std::string> effects_of(const std::string& text, std::uint64_t seed)
 int hide_effects(const HideCommand& command) {
   GivenValues model = read_config_file(command.model, "--model");
   for (const auto& [name, value] : command.flags) model[name] = value;
+  if (command.model.empty()) add_small_vesicle(model, "hide");
   const Units units = Configuration(model, {}).units();
   BlindRequest request = command.request;
+  request.cells = command.truth_cells > 0 ? command.truth_cells : truth_cells(model);
   request.seed = command.seed >= 0 ? static_cast<std::uint64_t>(command.seed) : random_seed();
   request.effects = effects_of(command.effects, request.seed);
   if (command.first_s > 0) request.first = command.first_s / units.time();
@@ -94,16 +104,19 @@ Action define_hide(CLI::App& app) {
   app.add_option("--pace", request.pace, "D of the truth over that of the model")
       ->check(CLI::Range(0.1, 10.0))
       ->capture_default_str();
-  app.add_option("--truth-cells", request.cells, "of the mesh that the truth is computed on")
-      ->check(CLI::Range(8, 512))
-      ->capture_default_str();
+  app.add_option("--truth-cells", command->truth_cells,
+                 "of the mesh that the truth is computed on; default: 2.5 times --cells")
+      ->check(CLI::Range(8, 512));
   app.add_option("--seed", command->seed, "what chance does; default: nobody knows")
       ->check(CLI::NonNegativeNumber);
   add_options(app, command->flags, [](const OptionSpec& spec) {
     return (spec.group == "Physics" || spec.name == "cells" || spec.name == "raft-fraction") &&
            spec.name != "scaled" && spec.name != "effect";
   });
-  app.footer("Example: traceraft hide --epsilon 0.6 --raft-fraction 0.5 --cells 24 --out riddle");
+  app.footer(
+      "Without --model: epsilon 0.6, cells 24, raft-fraction 0.5, a vesicle that explain takes "
+      "some "
+      "minutes for.\nExample: traceraft hide --out riddle");
   return [command] { return hide_effects(*command); };
 }
 

@@ -174,7 +174,9 @@ class Sizing {
       const Vec difference = changed.advance(snapshots_[k], times_[k], times_[k + 1]) - next_[k];
       const double contrast = spread(space, snapshots_[k]);
       if (!(contrast > kLeastContrast))
-        throw InputError("the base model has no rafts at these times: c is the same everywhere");
+        throw InputError(
+            "the base model has no rafts at these times: c is the same everywhere; take "
+            "a larger raft fraction (smooth noise of less than 0.21 dissolves), or other times");
       squares += space.inner(difference, difference) / space.area / (contrast * contrast);
     }
     return std::sqrt(squares / static_cast<double>(times_.size() - 1));
