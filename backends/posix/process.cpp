@@ -16,6 +16,16 @@ namespace {
 volatile std::sig_atomic_t stop_flag = 0;
 const auto process_start = std::chrono::steady_clock::now();
 
+int code_at_end = 0;
+std::string line_at_end;
+
+void on_end(int) {
+  // Nothing can be done about an error here.
+  [[maybe_unused]] const ssize_t written =
+      write(STDERR_FILENO, line_at_end.data(), line_at_end.size());
+  _exit(code_at_end);
+}
+
 void on_stop(int signal) {
   if (stop_flag) {
     std::signal(signal, SIG_DFL);
@@ -64,6 +74,15 @@ void catch_stop_signals() {
   sigaction(SIGTERM, &action, nullptr);
   action.sa_handler = [](int) { stop_flag = 1; };
   sigaction(kParentDied, &action, nullptr);
+}
+
+void end_on_stop_signals(int exit_code, const std::string& line) {
+  code_at_end = exit_code;
+  line_at_end = line + "\n";
+  struct sigaction action {};
+  action.sa_handler = on_end;
+  sigemptyset(&action.sa_mask);
+  for (const int signal : {SIGINT, SIGTERM, kParentDied}) sigaction(signal, &action, nullptr);
 }
 
 bool stop_requested() {

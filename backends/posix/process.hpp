@@ -22,6 +22,9 @@ inline constexpr int kParentDied = SIGUSR1;
 // process at once.
 void catch_stop_signals();
 bool stop_requested();
+// From now on they end the process at once, with this exit code and a line on stderr: for work
+// whose results are safe at any moment. Until catch_stop_signals is called.
+void end_on_stop_signals(int exit_code, const std::string& line);
 // Writing beyond a file size limit becomes an error of the write instead of a signal.
 void ignore_file_size_signal();
 

@@ -42,6 +42,8 @@ void explain_field_data(const ExplainCommand& command, ExplainSetup& setup, cons
       std::printf("%s  %s\n", clock_text(watch.seconds()).c_str(), step.c_str());
       std::fflush(stdout);
     };
+  if (!command.quiet)
+    std::printf("the model: %s\n", flags_text(Configuration(setup.model, {})).c_str());
   const SearchFile file(out, setup);
   setup.request.save = [&](const SearchState& state) { file.save(state); };
   Explanation found = explain_fields(setup.series, setup.request, file.load());
@@ -93,17 +95,21 @@ int explain(const ExplainCommand& command) {
   for (const std::string& effect : command.job.without) (void)effects().find(effect);
   std::optional<ExplainSetup> fields;
   std::optional<SeriesSetup> series;
-  if (!command.series.empty()) {
-    catch_stop_signals();
-    series = read_series_job(command);
-  }
+  if (!command.series.empty()) series = read_series_job(command);
   if (!command.job.data.empty()) fields = read_explain_job(command.job);
   const fs::path out = command.out.empty() ? first_free_folder("explain") : command.out;
+  for (const std::string& data : {command.job.data, command.series})
+    if (!data.empty() && fs::exists(out) && fs::equivalent(data, out))
+      throw InputError("--out: " + out.string() + " holds the measurements; choose another folder");
   fs::create_directories(out);
   const FolderLock lock(out);
+  // The search is on disk after every round.
+  const std::string go_on = "to go on, give the same command with --out " + out.string();
+  end_on_stop_signals(kInterrupted, command.quiet ? "" : go_on);
   if (fields) explain_field_data(command, *fields, out);
+  catch_stop_signals();
   if (series && !explain_series_data(command, *series, out)) {
-    if (!command.quiet) std::printf("to go on, give the same command with --out %s\n", out.c_str());
+    if (!command.quiet) std::printf("%s\n", go_on.c_str());
     return kInterrupted;
   }
   return kSuccess;
@@ -126,8 +132,10 @@ Action define_explain(CLI::App& app) {
   app.add_option("--effects", command->job.effects, "most effects to look for, one after the other")
       ->check(CLI::Range(1, 5))
       ->capture_default_str();
-  app.add_option("--replicates", command->job.replicates,
-                 "of noise alone, that what is found is judged by")
+  app.add_option(
+         "--replicates", command->job.replicates,
+         "of noise alone, that what is found is judged by; 199 at least where no vesicle has "
+         "four snapshots")
       ->check(CLI::Range(49, 9999))
       ->capture_default_str();
   app.add_option("--threads", command->job.threads, "default: one for each processor")

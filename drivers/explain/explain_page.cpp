@@ -40,7 +40,9 @@ class ExplainPage {
     add_where();
     add_what();
     page_.heading("Effects that were not found");
-    page_.paragraph("95 % bounds of their first parameters, to first order.");
+    page_.paragraph(
+        "95 % bounds of their first parameters, to first order, beside what was found. With ten "
+        "effects one of them excludes 0 by chance in four data sets of ten.");
     page_.table(bound_rows(found_, units_));
     page_.heading("Where this comes from");
     page_.paragraph("traceraft " + std::string(kVersion) + ". " + data_text() + " The model:");
@@ -69,7 +71,7 @@ class ExplainPage {
     ChartSeries series{name, {}, setup_.series.size() > 1 ? Mark::points : Mark::both};
     for (const SnapshotGap& gap : fit.snapshots)
       series.points.emplace_back(seconds(gap.vesicle, gap.snapshot),
-                                 found_.noise * (expected ? gap.expected : gap.gap));
+                                 expected ? gap.expected : gap.gap);
     return series;
   }
 
@@ -103,8 +105,8 @@ class ExplainPage {
     missing_.add(add_viewer(page_, found_.map_mesh, frames, view));
     if (found_.disagreements.empty()) {
       page_.paragraph(
-          "No patch of the surface, inside rafts, outside or at their boundaries, "
-          "disagrees significantly with the base model.");
+          "No patch of the surface, inside rafts, outside or at their boundaries, disagrees "
+          "significantly with the base model by itself; what is said above rests on all together.");
       return;
     }
     page_.paragraph(std::to_string(found_.disagreements.size()) +
@@ -127,22 +129,28 @@ class ExplainPage {
     page_.heading("What");
     for (const Round& round : found_.rounds) {
       const std::string known = round.known.hypothesis.name();
-      page_.paragraph(
-          (known.empty() ? std::string("What the base model lacks")
-                         : "What is lacking beside " + known) +
-          formatted(": p = %.3f that the best candidate is noise, p = %.3f that there is no gap of "
-                    "any shape.",
-                    round.screening.p, round.screening.gap_p));
+      page_.paragraph((known.empty() ? std::string("What the base model lacks")
+                                     : "What is lacking beside " + known) +
+                      ". Noise alone gains as much by any candidate in " +
+                      share(round.screening.p) +
+                      " of data sets, and leaves as large a gap of any shape in " +
+                      share(round.screening.gap_p) + ".");
       page_.table(score_rows(round));
     }
+  }
+
+  static std::string share(double p) {
+    return p < 1e-3 ? "less than 0.1 %" : formatted("%.1f %%", 100 * p);
   }
 
   std::string data_text() const {
     std::size_t snapshots = 0;
     for (const FieldSeries& series : setup_.series) snapshots += series.snapshots.size();
-    return std::to_string(setup_.series.size()) + " vesicles, " + std::to_string(snapshots) +
-           " snapshots, noise " + formatted("%.4f of c, ", found_.noise) +
-           std::to_string(found_.replicates) + " replicates of noise alone.";
+    const std::size_t vesicles = setup_.series.size();
+    return std::to_string(vesicles) + (vesicles == 1 ? " vesicle, " : " vesicles, ") +
+           std::to_string(snapshots) + " snapshots, noise " +
+           formatted("%.4f of c, ", found_.noise) + std::to_string(found_.replicates) +
+           " replicates of noise alone.";
   }
 
   const fs::path folder_;

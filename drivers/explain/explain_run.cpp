@@ -68,6 +68,14 @@ void refuse_effects(const Configuration& model) {
                      ": the search starts from a model without effects; it finds them itself");
 }
 
+void refuse_leaving_out_all(const ExplainRequest& request) {
+  const std::vector<Candidate> all = candidates();
+  if (std::all_of(all.begin(), all.end(), [&](const Candidate& c) {
+        return std::count(request.without.begin(), request.without.end(), c.effect) > 0;
+      }))
+    throw InputError("--without: no effect is left to look for");
+}
+
 ExplainSetup read_explain_job(const ExplainJob& job) {
   FieldDataset data = read_field_dataset(job.data);
   ExplainSetup setup{given_model(job, data.radius_um), std::move(data.vesicles), {}};
@@ -87,6 +95,7 @@ ExplainSetup read_explain_job(const ExplainJob& job) {
   request.filter.replicates = job.replicates;
   refuse_far_values(setup.series, request.base.well, job.data);
   refuse_replicates(request, setup.series);
+  refuse_leaving_out_all(request);
   return setup;
 }
 

@@ -14,7 +14,7 @@ std::vector<Row> parameter_rows(const Explanation& found, const Units& base) {
   std::vector<Row> rows{{"parameter", "value", "95 % +-", "unit"}};
   for (const FoundParameter& p : found_parameters(found, base))
     rows.push_back({p.effect + (p.effect.empty() ? "" : " ") + p.name, formatted("%.4g", p.value),
-                    formatted("%.2g", kInterval * p.sigma), p.unit});
+                    p.sigma ? formatted("%.2g", kInterval * *p.sigma) : "assumed", p.unit});
   return rows;
 }
 
@@ -33,7 +33,7 @@ std::vector<Row> gap_rows(const Explanation& found) {
   std::vector<Row> rows{{"measured minus forecast, in c", "fitted", "held out"}};
   const auto add = [&](const std::string& name, const Gaps& g) {
     rows.push_back(
-        {name, formatted("%.4f", g.train), g.heldout > 0 ? formatted("%.4f", g.heldout) : ""});
+        {name, formatted("%.4g", g.train), g.heldout > 0 ? formatted("%.4g", g.heldout) : ""});
   };
   add("base model", found.base_gap);
   add("what was found", found.found_gap);
@@ -41,7 +41,7 @@ std::vector<Row> gap_rows(const Explanation& found) {
   add("to be expected if nothing is missing", found.floor);
   if (!found.found.hypothesis.parts.empty()) {
     const auto text = [](const std::optional<double>& share) {
-      return share ? formatted("%.0f %%", 100 * *share) : "";
+      return share ? formatted("%.0f %%", 100 * *share) : "base within 2 % of what is expected";
     };
     const SharesClosed closed = shares_closed(found.base_gap, found.found_gap, found.floor);
     rows.push_back(

@@ -39,11 +39,14 @@ std::vector<FoundParameter> found_parameters(const Explanation& found, const Uni
     const int n = part.candidate.directions;
     const EffectTerm term = part.candidate.term(part.coefficients);
     const auto& specs = effects().find(part.candidate.effect).parameters;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(n); ++k) {
+    for (std::size_t k = 0; k < specs.size(); ++k) {
       const double factor = 1 / to_model_units(specs[k].unit, units);
-      const double variance = variance_of(part, k, fit.covariance.block(first, first, n, n));
-      result.push_back({part.candidate.effect, specs[k].name, specs[k].unit,
-                        factor * term.values[k], factor * std::sqrt(variance)});
+      FoundParameter parameter{part.candidate.effect, specs[k].name, specs[k].unit,
+                               factor * term.values[k], std::nullopt};
+      if (k < static_cast<std::size_t>(n))
+        parameter.sigma =
+            factor * std::sqrt(variance_of(part, k, fit.covariance.block(first, first, n, n)));
+      result.push_back(std::move(parameter));
     }
     first += n;
   }

@@ -1,6 +1,7 @@
 // What a search has found, in the units of its user.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,10 +12,11 @@ namespace traceraft {
 
 struct FoundParameter {
   std::string effect, name, unit;
-  double value, sigma;
+  double value;
+  std::optional<double> sigma;  // none: it was assumed, not found
 };
 
-// Parameters that the coefficients of the found effects decide, then D (effect "").
+// Parameters of the found effects, then D (effect "").
 std::vector<FoundParameter> found_parameters(const Explanation& found, const Units& base);
 
 // Of the first parameter of an effect that was not found, with 95 % confidence.

@@ -1,6 +1,7 @@
 #include "drivers/explain/verdict.hpp"
 
 #include "drivers/explain/remarks.hpp"
+#include "kernel/effects/effects.hpp"
 
 namespace traceraft {
 namespace {
@@ -9,7 +10,7 @@ Json parameters_json(const Explanation& found, const Units& base) {
   Json parameters = Json::object();
   for (const FoundParameter& p : found_parameters(found, base))
     parameters[(p.effect.empty() ? "" : p.effect + ".") + p.name] = {
-        {"value", p.value}, {"sigma", p.sigma}, {"unit", p.unit}};
+        {"value", p.value}, {"sigma", p.sigma ? Json(*p.sigma) : Json()}, {"unit", p.unit}};
   return parameters;
 }
 
@@ -100,11 +101,24 @@ Json verdict_json(const Explanation& found, const Units& base) {
           {"where", where_json(found, base)},
           {"null",
            {{"replicates", found.replicates},
-            {"false_alarm_level", found.rounds.front().screening.p},
+            {"false_alarm_level", found.false_alarms},
+            {"p", found.rounds.front().screening.p},
             {"rounds", rounds_json(found)}}},
           {"noise", found.noise},
           {"remarks", remarks(found)}};
 }
+
+namespace {
+
+// "rafts that repel each other over a distance; ..."
+std::string in_words(const Hypothesis& hypothesis) {
+  std::string words;
+  for (const auto& part : hypothesis.parts)
+    words += (words.empty() ? "" : "; ") + effects().find(part.candidate.effect).summary;
+  return words;
+}
+
+}  // namespace
 
 std::string verdict_sentence(const Explanation& found) {
   const std::string name = found.found.hypothesis.name();
@@ -112,17 +126,24 @@ std::string verdict_sentence(const Explanation& found) {
     case Finding::none:
       return "No significant disagreement: the model explains the data within their noise.";
     case Finding::named:
-      return "The model lacks " + name + ".";
+      return "The model lacks " + name + ": " + in_words(found.found.hypothesis) + ".";
     case Finding::ambiguous: {
       std::string others;
       for (std::size_t k = 1; k < found.equivalent.size(); ++k)
         others += ", or " + found.equivalent[k];
-      return "The model lacks " + name + others + ": these data do not tell them apart.";
+      return "The model lacks " + name + others +
+             ": these data do not tell them apart. The first of "
+             "them explains most: " +
+             in_words(found.found.hypothesis) + ".";
     }
     case Finding::below_resolution:
       return "There is a disagreement, but the mesh of the model changes c as much: "
              "repeat with more --cells.";
     case Finding::not_identifiable:
+      if (found.rounds.front().screening.p <= found.false_alarms)
+        return "Something seems to be missing, too little of it to say what: " +
+               found.rounds.front().screening.scores.front().effect +
+               " would explain most of it. More points, less noise or more snapshots would tell.";
       return "No significant disagreement, but these data would hardly show an effect: they need "
              "more points, less noise, or snapshots that are further apart.";
     case Finding::unnamed:

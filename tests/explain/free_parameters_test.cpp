@@ -46,5 +46,18 @@ TEST(FreeParameters, HaveTheirOptimumBesideThoseThatAreHeld) {
   EXPECT_NEAR(newton_step(pass, free_parameters(pass, hypothesis(9, 1)))[0], 5, 1e-12);
 }
 
+// The covariance of those that are free does not know of those that are held.
+TEST(FreeParameters, HaveACovarianceOfTheirOwn) {
+  Eigen::MatrixXd information = 2 * Eigen::MatrixXd::Identity(3, 3);
+  information(0, 2) = information(2, 0) = 1;
+  const Eigen::MatrixXd held = covariance_beside_held(information, {0, 1});
+  EXPECT_NEAR(held(0, 0), 1 / 2.0, 1e-12);
+  EXPECT_NEAR(held(2, 2), 2 / 3.0, 1e-12);
+  EXPECT_EQ(held(0, 2), 0);
+  const Eigen::MatrixXd all = covariance_beside_held(information, {0, 1, 2});
+  EXPECT_NEAR(all(0, 0), 2 / 3.0, 1e-12);
+  EXPECT_NEAR(all(0, 2), -1 / 3.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace traceraft

@@ -108,6 +108,23 @@ TEST(Judgement, KnowsWhatDataCannotShow) {
   EXPECT_EQ(judged(round).finding, Finding::not_identifiable);
 }
 
+TEST(Judgement, SaysThatTooLittleIsMissingToNameIt) {
+  Round round = first_round();
+  round.screening.gap_p = 0.5;
+  for (Refit& fit : round.refits) fit.deviance = round.without.deviance - 1;
+  EXPECT_FALSE(judged(round).taken);
+  EXPECT_EQ(judged(round).finding, Finding::not_identifiable);
+}
+
+// What counts is how strong the effect is that was refitted, not how strong it seemed before.
+TEST(Judgement, HoldsRefittedStrengthsAgainstTheMesh) {
+  Round round = first_round();
+  round.refits[0].hypothesis.parts[0].coefficients[0] = 0.005;
+  EXPECT_FALSE(judged(round).taken);
+  round.refits[0].hypothesis.parts[0].coefficients[0] = 0.05;
+  EXPECT_TRUE(judged(round).taken);
+}
+
 TEST(Judgement, HasAWordForEveryFinding) {
   EXPECT_EQ(word_for(Finding::not_identifiable), "not-identifiable");
   EXPECT_EQ(word_for(Finding::below_resolution), "below-solver-resolution");

@@ -87,6 +87,27 @@ TEST_F(RefitTest, SaysWhyThereIsNone) {
   EXPECT_NE(refit(data, model(std::nan("")), settings(), maps).failure, "");
 }
 
+// Against differences, where the model itself changes in time.
+TEST_F(RefitTest, KnowsWhatThePaceDoesBesideCooling) {
+  const FilterProblems data = problems(drawn().vesicles);
+  FilterModel model{request().base, 1, {}, {}};
+  model.hypothesis.parts = {{find_candidate("cooling").value(), {0.1}}};
+  std::vector<ErrorMaps> maps;
+  const FilterResult here = filter_fields(data, model, settings(), maps);
+  constexpr double kStep = 0.01;
+  const auto forecast_at = [&](double pace) {
+    FilterModel other = model;
+    other.pace = pace;
+    std::vector<ErrorMaps> same = maps;
+    const Innovation in = filter_fields(data, other, settings(), same).innovations[0];
+    return Vec(in.forecast.cwiseQuotient(in.noise));
+  };
+  const Vec difference =
+      (forecast_at(std::exp(kStep)) - forecast_at(std::exp(-kStep))) / (2 * kStep);
+  const Vec derivative = here.innovations[0].parameters.col(kPace);
+  EXPECT_LT((derivative - difference).norm(), 0.03 * difference.norm());
+}
+
 TEST_F(RefitTest, GoesWithoutOutliers) {
   std::vector<FieldSeries> spoilt = drawn().vesicles;
   FieldSnapshot& snapshot = spoilt[0].snapshots[1];

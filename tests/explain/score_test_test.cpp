@@ -104,6 +104,60 @@ TEST(ScoreTest, SeesNothingWhereNothingResponds) {
   EXPECT_EQ(score_of(screening, "gravity").covariance(0, 0), 0);
 }
 
+// With uptake found, one of the two coefficients of exchange is uptake once more.
+TEST(ScoreTest, LeavesOutCoefficientsThatAreKnownAlready) {
+  const Hypothesis known{{{find_candidate("uptake").value(), {1}}}};
+  const std::vector<Candidate> left{find_candidate("gravity").value(),
+                                    find_candidate("exchange").value()};
+  // Pace, mesh, uptake, gravity, exchange: the last is uptake but for roundoff.
+  Eigen::MatrixXd information = Eigen::MatrixXd::Identity(kParameters, kParameters);
+  information(2, 5) = information(5, 2) = 1 - 1e-15;
+  FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
+  pass.information = information;
+  pass.score[4] = 3;
+  pass.score[5] = 1e-6;
+  const Screening screening = screen(pass, left, known);
+  const CandidateScore& exchange = score_of(screening, "exchange");
+  EXPECT_NEAR(exchange.score, 9, 1e-6);
+  EXPECT_NEAR(exchange.covariance(0, 0), 1, 1e-9);
+  EXPECT_EQ(exchange.covariance(1, 1), 0);
+  EXPECT_EQ(exchange.coefficients[1], 0);
+}
+
+// Patterns in gaps: of the replicates, 19 of 400 leave a larger one, of those held out 99.
+TEST(ScoreTest, JoinsGapsThatCountAndThatAreHeldOut) {
+  FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
+  const auto parts = [](double gap) {
+    Columns row = Columns::Zero(1, 1 + kParameters + kDraws);
+    row(0, 0) = gap;
+    for (int r = 0; r < kDraws; ++r) row(0, 1 + kParameters + r) = (r % 2 ? 1 : -1) * (r + 0.5);
+    return row;
+  };
+  pass.gap_parts = {parts(-(kDraws - 19))};
+  const Screening alone = screen(pass, {}, {});
+  const double p = 20.0 / (kDraws + 1), q = 100.0 / (kDraws + 1);
+  EXPECT_NEAR(alone.train_gap_p, p, 1e-12);
+  EXPECT_EQ(alone.gap_p, alone.train_gap_p);
+  pass.heldout_gap_parts = {parts(kDraws - 99)};
+  const Screening both = screen(pass, {}, {});
+  EXPECT_NEAR(both.heldout_gap_p, q, 1e-12);
+  EXPECT_NEAR(both.gap_p, p * q * (1 - std::log(p * q)), 1e-12);
+}
+
+// What nuisances explain is no gap; the replicates are freed of it as well.
+TEST(ScoreTest, FreesGapsOfNuisances) {
+  FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
+  Columns row = Columns::Zero(1, 1 + kParameters + kDraws);
+  row(0, 0) = 10;
+  row(0, 1 + kPace) = 2;
+  for (int r = 0; r < kDraws; ++r) row(0, 1 + kParameters + r) = 1 + 2 * pass.null_scores(kPace, r);
+  pass.gap_parts = {row};
+  pass.score[kPace] = 5;  // the pace explains all of it
+  EXPECT_EQ(screen(pass, {}, {}).train_gap_p, 1);
+  pass.score[kPace] = 4;
+  EXPECT_NEAR(screen(pass, {}, {}).train_gap_p, 1.0 / (kDraws + 1), 1e-12);
+}
+
 TEST(ScoreTest, MayHaveNothingToLookFor) {
   FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
   pass.score[kPace] = 2;

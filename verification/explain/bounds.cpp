@@ -27,7 +27,9 @@ Bound bound_of(const CandidateScore& score, const Candidate& candidate) {
   const double deviation = std::sqrt(slope.dot(score.covariance * slope));
   const double width =
       bound_width(deviation, candidate.directions, candidate.two_sided, score.null_mean);
-  return {score.effect, candidate.two_sided ? value - width : 0.0, value + width, deviation > 0};
+  const bool seen = (score.covariance.diagonal().array() > 0).all();
+  const double low = candidate.two_sided ? std::max(value - width, candidate.least) : 0.0;
+  return {score.effect, low, std::min(value + width, candidate.most), seen};
 }
 
 }  // namespace

@@ -9,6 +9,9 @@
 namespace traceraft {
 namespace {
 
+// Of parameters that are lengths and are not looked for: R.
+constexpr double kLength = 1;
+
 // The strength is the only coefficient; the other parameters keep their defaults.
 Candidate by_strength(const std::string& effect, double step, bool two_sided) {
   // Ranges of rates are there to catch slips of the pen, and have another unit.
@@ -21,7 +24,7 @@ Candidate by_strength(const std::string& effect, double step, bool two_sided) {
           [effect](const std::vector<double>& a) {
             EffectTerm term{effect, {}};
             for (const ParameterSpec& spec : effects().find(effect).parameters)
-              term.values.push_back(spec.default_value);
+              term.values.push_back(spec.unit == "um" ? kLength : spec.default_value);
             term.values.front() = a[0];
             return term;
           },

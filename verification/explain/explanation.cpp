@@ -53,13 +53,15 @@ std::vector<Candidate> candidates_of(const ExplainRequest& request, const Filter
   return result;
 }
 
-// From the noise of each snapshot but the first, whose own nobody knows.
-std::vector<double> believed(const std::vector<double>& own) {
-  std::vector<double> sorted = own;
+// From the noise of each snapshot but the first, whose own nobody knows; `train` of all count.
+std::vector<double> believed(const std::vector<double>& own, std::size_t train) {
+  const std::vector<double> counting(own.begin(),
+                                     own.begin() + static_cast<std::ptrdiff_t>(train) - 1);
+  std::vector<double> sorted = counting;
   std::sort(sorted.begin(), sorted.end());
   const double usual = sorted[sorted.size() / 2];
   double squares = 0, count = 0;
-  for (const double noise : own)
+  for (const double noise : counting)
     if (noise < kBelieved * usual && noise > usual / kBelieved) {
       squares += noise * noise;
       ++count;
@@ -191,7 +193,7 @@ class Search {
       const double squares = in.weighted_squares / static_cast<double>(in.values.size());
       own[in.vesicle].push_back(data_[in.vesicle].noise[in.snapshot] * std::sqrt(squares));
     }
-    for (FilterProblem& data : data_) data.noise = believed(own[data.vesicle]);
+    for (FilterProblem& data : data_) data.noise = believed(own[data.vesicle], data.train);
   }
 
   FilterResult first_pass() {
@@ -303,18 +305,18 @@ class Search {
   }
 
   void finish() {
-    const double noise = noise_of(data_);
-    result_.noise = noise;
+    result_.noise = noise_of(data_);
     for (const FilterProblem& data : data_) result_.outliers += data.outliers;
     const CutSurface& surface = data_.front().space->surface;
     result_.map_mesh = {surface.position, surface.triangles};
     result_.replicates = request_.filter.replicates;
     result_.false_alarms = request_.false_alarms;
     const auto& refits = result_.rounds.front().refits;
-    result_.base_gap = scaled(noise, result_.base.gap);
-    result_.found_gap = scaled(noise, result_.found.gap);
-    if (refits.size() > 1) result_.placebo_gap = scaled(noise, refits[1].gap);
-    result_.floor = scaled(noise, result_.found.expected);
+    for (const FilterProblem& data : data_) result_.noises.push_back(data.noise);
+    result_.base_gap = result_.base.gap;
+    result_.found_gap = result_.found.gap;
+    if (refits.size() > 1) result_.placebo_gap = refits[1].gap;
+    result_.floor = result_.found.expected;
     screen_the_rest();
     result_.bounds = bounds_of(result_.rounds.back().screening, model_.screened);
   }
@@ -337,9 +339,10 @@ FilterProblems problems_of(const std::vector<FieldSeries>& series, const Explain
 double noise_of(const FilterProblems& problems) {
   double squares = 0, count = 0;
   for (const FilterProblem& data : problems)
-    for (const double noise : data.noise) {
-      squares += noise * noise;
-      ++count;
+    for (std::size_t k = 0; k < data.train; ++k) {
+      const Vec& deviation = data.snapshots[k].deviation;
+      squares += data.noise[k] * data.noise[k] * deviation.squaredNorm();
+      count += static_cast<double>(deviation.size());
     }
   return std::sqrt(squares / count);
 }

@@ -52,13 +52,14 @@ struct Rerun {
 
 struct Explanation {
   Finding finding = Finding::none;
-  int replicates = 0;                   // of noise that verdicts are judged by
-  double false_alarms = 0;              // as requested
-  double noise = 0;                     // standard deviation of the values
-  Refit base, found;                    // with the pace refitted; found: the base if none was
-  std::vector<std::string> equivalent;  // hypotheses that explain the data as well, found first
+  int replicates = 0;                       // of noise that verdicts are judged by
+  double false_alarms = 0;                  // as requested
+  double noise = 0;                         // standard deviation of the values that count
+  std::vector<std::vector<double>> noises;  // of each vesicle's snapshots, in units of deviations
+  Refit base, found;                        // with the pace refitted; found: the base if none was
+  std::vector<std::string> equivalent;      // hypotheses that explain the data as well, found first
   std::vector<Round> rounds;
-  // Measured minus forecast, in units of c. Placebo: the second best of the first round, if there
+  // Measured minus forecast. Placebo: the second best of the first round, if there
   // was one. Floor: what is to be expected of the found model if nothing else is missing.
   Gaps base_gap, found_gap, floor;
   std::optional<Gaps> placebo_gap;
@@ -80,7 +81,7 @@ struct SearchState {
 };
 
 FilterProblems problems_of(const std::vector<FieldSeries>& series, const ExplainRequest& request);
-double noise_of(const FilterProblems& data);  // of the measurements, over all vesicles, in c
+double noise_of(const FilterProblems& data);  // root mean square over the values that count
 
 // Vesicles of one radius and one membrane. Throws std::runtime_error if the base model cannot be
 // advanced.

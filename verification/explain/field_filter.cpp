@@ -92,11 +92,26 @@ class Filter {
         product(maps_.image[k], transposed_product(maps_.basis[k], data_.mass * belief_.errors));
     belief_.replicates = maps_.replicates[k].leftCols(settings_.replicates);
     flow_.advance(way.paths[0], belief_.parameters,
-                  [this](double t, ConstVec y) { return forcing_(t, y); });
+                  [&](double t, ConstVec y) { return forcing(begin, end, t, y); });
     belief_.parameters.col(kPace) += (end - begin) * way.end_rate;
     if (resolved_) map_mesh(k, resolved.get(), way.end);
     belief_.parameters.col(kMeshError) += maps_.mesh_error[k].doubt;
     belief_.c = way.end + maps_.mesh_error[k].field;
+  }
+
+  // ∂F/∂θ of all parameters. With F = F(pace t, …) the derivative S of c by ln pace has two parts:
+  // (t − begin) ċ, which is added at the end, and what an F that changes in time does at another
+  // time of the vesicle, begin ∂F/∂t.
+  Columns forcing(double begin, double end, double t, ConstVec y) const {
+    const double step = 1e-4 * (end - begin);
+    const Vec no_rate = Vec::Zero(problem_.size());
+    Vec before(problem_.size()), after(problem_.size());
+    require(problem_.residual(t - step, y, no_rate, before));
+    require(problem_.residual(t + step, y, no_rate, after));
+    Columns all = Columns::Zero(problem_.size(), belief_.parameters.cols());
+    all.col(kPace) = begin / (2 * step) * (after - before);
+    all.rightCols(all.cols() - kFirstParameter) = forcing_(t, y);
+    return all;
   }
 
   void map_mesh(std::size_t k, ResolvedForecast::End&& resolved, ConstVec end) {
@@ -123,7 +138,7 @@ class Filter {
 
   void compare(std::size_t k) {
     const NoisyValues& measured = data_.snapshots[k + 1];
-    const Vec scale = (data_.noise[k + 1] * measured.deviation).cwiseInverse();
+    const Vec noise = data_.noise[k + 1] * measured.deviation, scale = noise.cwiseInverse();
     const auto seen = [&](const Columns& X) {
       return Columns(scale.asDiagonal() * (measured.trace * X));
     };
@@ -151,8 +166,10 @@ class Filter {
     in.replicates = seen(belief_.replicates);
     add_noise(k, in.replicates);
     in.model_error = most_probable_error(in);
-    in.expected_squares = static_cast<double>(in.values.size()) +
-                          error_values.leftCols(belief_.errors.cols()).squaredNorm();
+    in.noise = noise;
+    in.expected_squares =
+        noise.squaredNorm() +
+        (noise.asDiagonal() * error_values.leftCols(belief_.errors.cols())).squaredNorm();
 
     const InnovationCovariance weight(in, in.model_error);
     const Vec found = weight.amplitudes(in.values);

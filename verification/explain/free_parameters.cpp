@@ -18,6 +18,17 @@ Vec newton_step(const FilterResult& pass, const std::vector<Eigen::Index>& free)
   return F(free, free).ldlt().solve(Vec(pass.score(free)));
 }
 
+Eigen::MatrixXd covariance_beside_held(const Eigen::MatrixXd& information,
+                                       const std::vector<Eigen::Index>& free) {
+  const auto inverse = [](const Eigen::MatrixXd& A) {
+    const Eigen::MatrixXd whole = A.selfadjointView<Eigen::Lower>();
+    return Eigen::MatrixXd(whole.ldlt().solve(Eigen::MatrixXd::Identity(A.rows(), A.cols())));
+  };
+  Eigen::MatrixXd result = inverse(information).diagonal().asDiagonal();
+  result(free, free) = inverse(information(free, free));
+  return result;
+}
+
 std::vector<Eigen::Index> free_parameters(const FilterResult& pass, const Hypothesis& hypothesis) {
   std::vector<Eigen::Index> free{kPace, kMeshError};
   struct Bounded {

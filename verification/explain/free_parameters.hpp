@@ -13,6 +13,11 @@ namespace traceraft {
 // are. `pass`: of that model.
 std::vector<Eigen::Index> free_parameters(const FilterResult& pass, const Hypothesis& hypothesis);
 
+// The inverse of the information: of the free parameters with the others held, and of each of the
+// others, if it were free, without correlations.
+Eigen::MatrixXd covariance_beside_held(const Eigen::MatrixXd& information,
+                                       const std::vector<Eigen::Index>& free);
+
 // Where that optimum is: the change of each of the free parameters.
 Vec newton_step(const FilterResult& pass, const std::vector<Eigen::Index>& free);
 

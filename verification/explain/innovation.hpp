@@ -12,6 +12,7 @@ struct Innovation {
   std::size_t vesicle, snapshot;  // of the data
   bool held_out;                  // it counts for nothing
   Vec forecast;                   // c where it was measured
+  Vec noise;                      // standard deviation of each value, in c
   Vec values;                     // measured minus forecast, in units of the noise
   // G: what uncertain directions do to the values: those of the state, with their standard
   // deviations, then patterns that a gap could have (GapPatterns), of size 1.
@@ -21,7 +22,7 @@ struct Innovation {
   Columns parameters;           // X: derivatives of the forecast by the parameters
   Columns replicates;           // values of noise alone
   double weighted_squares = 0;  // νᵀ S⁻¹ ν, one per value on average
-  double expected_squares = 0;  // of the gap, by noise and what it leaves unknown of c
+  double expected_squares = 0;  // of the gap in c, by noise and what it leaves unknown of c
   // Most probable turns about the three axes, scale and zero of the values, in their standard
   // deviations; `gap`: the values without what these make of them.
   Vec frame, gap;

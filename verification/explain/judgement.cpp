@@ -69,11 +69,13 @@ double criterion(const Refit& fit, double values) {
 
 Judgement judge(const Round& round, double values, double false_alarms, double usual_change) {
   const bool first = round.known.hypothesis.parts.empty();
+  const bool quiet = round.screening.p > false_alarms;
   // What follows if nothing is added.
   const Finding rest = round.screening.gap_p <= kGapLevel * false_alarms ? Finding::unnamed
                        : !first                                          ? Finding::named
-                       : identifiable(round.screening, usual_change)     ? Finding::none
-                                                                     : Finding::not_identifiable;
+                       : quiet && identifiable(round.screening, usual_change)
+                           ? Finding::none
+                           : Finding::not_identifiable;
   if (round.refits.empty()) return {false, rest, {}};
   const Refit& best = round.refits.front();
   const double least = criterion(best, values);

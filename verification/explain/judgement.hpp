@@ -15,7 +15,8 @@ enum class Finding {
   named,             // one effect, or several, that leave no significant disagreement
   ambiguous,         // like it, but another one explains the data as well
   below_resolution,  // what would explain the data changes less than the model's own mesh does
-  not_identifiable,  // no disagreement, but effects of the usual size would not be seen either
+  not_identifiable,  // no disagreement, but effects of the usual size would not be seen either; or
+                     // one that is too small to tell which effect it is
   unnamed            // a significant disagreement that no candidate explains
 };
 inline constexpr std::array kFindings{Finding::none,

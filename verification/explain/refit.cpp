@@ -78,6 +78,10 @@ std::vector<Eigen::Index> own_parameters(const Hypothesis& hypothesis) {
   return own;
 }
 
+double squares_of_gap(const Innovation& in) {
+  return in.noise.cwiseProduct(in.gap).squaredNorm();
+}
+
 struct Evaluation {
   double deviance = std::numeric_limits<double>::infinity();
   Vec step;                    // to the maximum in range, if the likelihood were Gaussian
@@ -98,9 +102,8 @@ Evaluation evaluate(const FilterProblems& data, const FilterModel& model,
   Evaluation result;
   try {
     const FilterResult pass = filter_fields(data, model, settings, maps);
-    const Eigen::MatrixXd inverse = pass.information.selfadjointView<Eigen::Lower>().ldlt().solve(
-        Eigen::MatrixXd::Identity(pass.information.rows(), pass.information.cols()));
     const std::vector<Eigen::Index> free = free_parameters(pass, model.hypothesis);
+    const Eigen::MatrixXd inverse = covariance_beside_held(pass.information, free);
     Vec all = Vec::Zero(pass.score.size());
     all(free) = newton_step(pass, free);
     const std::vector<Eigen::Index> own = own_parameters(model.hypothesis);
@@ -110,11 +113,12 @@ Evaluation evaluate(const FilterProblems& data, const FilterModel& model,
     // At the most probable error of the mesh, which the step takes to be free as well.
     result.deviance =
         pass.deviance - square(pass.score[kMeshError]) / pass.information(kMeshError, kMeshError);
+    if (!std::isfinite(result.deviance)) throw std::runtime_error("its likelihood is no number");
     result.gap = gaps_of_pass(pass);
     result.expected = expected_gaps(pass);
     for (const Innovation& in : pass.innovations) {
       const auto count = static_cast<double>(in.values.size());
-      result.snapshots.push_back({in.vesicle, in.snapshot, in.gap.norm() / std::sqrt(count),
+      result.snapshots.push_back({in.vesicle, in.snapshot, std::sqrt(squares_of_gap(in) / count),
                                   std::sqrt(in.expected_squares / count)});
     }
   } catch (const std::runtime_error& error) {
@@ -154,10 +158,6 @@ bool settled(const Evaluation& here, const FilterModel& model) {
 
 }  // namespace
 
-Gaps scaled(double factor, const Gaps& gaps) {
-  return {factor * gaps.train, factor * gaps.heldout};
-}
-
 std::optional<double> share_closed(double base, double found, double floor) {
   constexpr double kTold = 1.02;
   if (!(floor > 0 && base > kTold * floor)) return std::nullopt;
@@ -170,7 +170,7 @@ SharesClosed shares_closed(const Gaps& base, const Gaps& found, const Gaps& floo
 }
 
 Gaps gaps_of_pass(const FilterResult& pass) {
-  return over_snapshots(pass, [](const Innovation& in) { return in.gap.squaredNorm(); });
+  return over_snapshots(pass, squares_of_gap);
 }
 
 Gaps expected_gaps(const FilterResult& pass) {
@@ -241,10 +241,8 @@ std::vector<Refit> refit_each(const FilterProblems& data, const std::vector<Filt
 void bootstrap(const FilterResult& pass, const FilterModel& model, Refit& fit) {
   const Eigen::Index known = kFirstParameter + model.hypothesis.coefficients();
   if (pass.null_scores.cols() == 0) return;
-  const Eigen::MatrixXd inverse = Eigen::MatrixXd(pass.information.topLeftCorner(known, known))
-                                      .selfadjointView<Eigen::Lower>()
-                                      .ldlt()
-                                      .solve(Eigen::MatrixXd::Identity(known, known));
+  const Eigen::MatrixXd inverse = covariance_beside_held(
+      pass.information.topLeftCorner(known, known), free_parameters(pass, model.hypothesis));
   const Eigen::MatrixXd estimates = inverse * pass.null_scores.topRows(known);
   // The replicates have no error of the mesh; one of its size moves the other estimates by that.
   const Vec by_mesh = inverse.col(kMeshError) / kMeshDoubt;

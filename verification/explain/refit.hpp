@@ -8,12 +8,10 @@
 
 namespace traceraft {
 
-// Root mean squares: of the snapshots that count, and of those that are held out (0: none is).
+// Root mean squares in c: of the snapshots that count, and of those that are held out (0: none is).
 struct Gaps {
   double train = 0, heldout = 0;
 };
-
-Gaps scaled(double factor, const Gaps& gaps);
 
 // The share of what the base lacks that was closed, in mean squares; nothing where the base is
 // within 2 % of the floor, which it may be by noise.
@@ -36,15 +34,15 @@ struct Refit {
   // with the pace.
   Eigen::MatrixXd covariance;
   double pace_deviation = 0;  // of ln pace
-  // Measured minus forecast in units of the noise, and what is to be expected of it if nothing is
-  // missing: the noise, and what it leaves unknown of the state.
+  // Measured minus forecast, and what is to be expected of it if nothing is missing: the noise, and
+  // what it leaves unknown of the state.
   Gaps gap, expected;
   std::vector<SnapshotGap> snapshots;  // the same, one by one
   bool settled = true;                 // was the search for the coefficients over?
   std::string failure;                 // why a forecast failed, if it did: no refit then
 };
 
-// Measured minus forecast in units of the noise.
+// Measured minus forecast.
 Gaps gaps_of_pass(const FilterResult& pass);
 Gaps expected_gaps(const FilterResult& pass);  // if nothing is missing
 

@@ -30,29 +30,31 @@ Rerun run_again(const std::vector<FieldSeries>& series, const ExplainRequest& re
   try {
     ThreadTeam(std::min(request.threads, 2)).run([&](int lane) {
       for (int k = lane; k < 2; k += std::min(request.threads, 2))
-        gaps[k] =
-            k == 0 ? gaps_of_model(series, other, found.base.pace, {})
-                   : gaps_of_model(series, other, found.found.pace, found.found.hypothesis.terms());
+        gaps[k] = k == 0 ? gaps_of_model(series, other, found.base.pace, {}, found.noises)
+                         : gaps_of_model(series, other, found.found.pace,
+                                         found.found.hypothesis.terms(), found.noises);
     });
   } catch (const std::runtime_error& error) {
     result.failure = error.what();
   }
   result.base = gaps[0].gap;
   result.found = gaps[1].gap;
-  // The search knows the noise better than the fields of single snapshots do.
-  result.floor = scaled(found.noise, gaps[1].expected);
+  result.floor = gaps[1].expected;
   return result;
 }
 
 ModelGaps gaps_of_model(const std::vector<FieldSeries>& series, const ExplainRequest& request,
-                        double pace, const std::vector<EffectTerm>& effects) {
+                        double pace, const std::vector<EffectTerm>& effects,
+                        const std::vector<std::vector<double>>& noises) {
   ExplainRequest alone = request;
   alone.filter.replicates = 0;
-  const FilterProblems data = problems_of(series, alone);
+  FilterProblems data = problems_of(series, alone);
+  if (!noises.empty())
+    for (FilterProblem& vesicle : data) vesicle.noise = noises[vesicle.vesicle];
   std::vector<ErrorMaps> maps;
   const FilterResult pass =
       filter_fields(data, {with_effects(request.base, effects), pace, {}, {}}, alone.filter, maps);
-  return {scaled(noise_of(data), gaps_of_pass(pass)), expected_gaps(pass)};
+  return {gaps_of_pass(pass), expected_gaps(pass)};
 }
 
 }  // namespace traceraft

@@ -8,12 +8,14 @@ namespace traceraft {
 Rerun run_again(const std::vector<FieldSeries>& series, const ExplainRequest& request,
                 const Explanation& found);
 
-// The gaps of a model that has these effects already, in units of c, and what is to be expected of
-// them, in units of the noise. Throws std::runtime_error if it cannot be advanced.
+// The gaps of a model that has these effects already, and what is to be expected of them with this
+// noise of each vesicle's snapshots, in units of their deviations (none: as single fields tell it).
+// Throws std::runtime_error if it cannot be advanced.
 struct ModelGaps {
   Gaps gap, expected;
 };
 ModelGaps gaps_of_model(const std::vector<FieldSeries>& series, const ExplainRequest& request,
-                        double pace, const std::vector<EffectTerm>& effects);
+                        double pace, const std::vector<EffectTerm>& effects,
+                        const std::vector<std::vector<double>>& noises = {});
 
 }  // namespace traceraft

@@ -32,18 +32,19 @@ struct Gain {
 
 // The maximum of 2 uᵀa − aᵀ I a; where signs are fixed, over a ≥ 0 (by trying all faces: there are
 // two coefficients at most).
-Gain most_gain(const Eigen::MatrixXd& information, const Vec& u, bool two_sided) {
-  const Eigen::Index d = u.size();
-  Gain best{0, Vec::Zero(d)};
+Gain most_gain(const Eigen::MatrixXd& information, const Vec& u, const Indices& seen,
+               bool two_sided) {
+  const auto d = static_cast<Eigen::Index>(seen.size());
+  Gain best{0, Vec::Zero(u.size())};
   for (int face = 1; face < 1 << d; ++face) {
     if (two_sided && face != (1 << d) - 1) continue;
     Indices free;
     for (Eigen::Index k = 0; k < d; ++k)
-      if (face >> k & 1) free.push_back(k);
+      if (face >> k & 1) free.push_back(seen[k]);
     const Vec part = information(free, free).ldlt().solve(Vec(u(free)));
     const double score = part.dot(Vec(u(free)));
     if (!(score > best.score) || (!two_sided && part.minCoeff() < 0)) continue;
-    best = {score, Vec::Zero(d)};
+    best = {score, Vec::Zero(u.size())};
     for (std::size_t k = 0; k < free.size(); ++k) best.coefficients[free[k]] = part[k];
   }
   return best;
@@ -52,16 +53,33 @@ Gain most_gain(const Eigen::MatrixXd& information, const Vec& u, bool two_sided)
 struct Own {
   Indices indices;
   Profile profile;
-  bool seen;  // does it change anything that was measured?
+  Indices seen;  // of its coefficients: those that change what was measured in a way of their own
 };
 
-// Less than this is no response: roundoff and the tolerance of the integrator.
+// Less than this share of a response is none: roundoff and the tolerance of the integrator.
 constexpr double kInvisible = 1e-6;
 
-Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& information, bool seen) {
-  const Eigen::Index n = information.rows();
-  if (!seen) return Eigen::MatrixXd::Zero(n, n);
-  return information.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+// Coefficients whose responses are not those of the nuisances, nor of the coefficients before them.
+Indices seen_ones(const Eigen::MatrixXd& F, const Indices& nuisances, const Indices& own) {
+  Indices seen, known = nuisances;
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    const Profile alone(F, known, {own[k]});
+    const double response = F(own[k], own[k]);
+    if (!(alone.information(0, 0) > kInvisible * std::max(1.0, response))) continue;
+    seen.push_back(static_cast<Eigen::Index>(k));
+    known.push_back(own[k]);
+  }
+  return seen;
+}
+
+// 0 for coefficients that are not seen.
+Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& information, const Indices& seen) {
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(information.rows(), information.cols());
+  const auto n = static_cast<Eigen::Index>(seen.size());
+  const Eigen::MatrixXd own = information(seen, seen);
+  const Eigen::MatrixXd inverse = own.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+  if (n > 0) result(seen, seen) = inverse;
+  return result;
 }
 
 // Of gaps of any shape in some snapshots, after what the nuisances explain.
@@ -104,15 +122,11 @@ Screening screen(const FilterResult& result, const std::vector<Candidate>& scree
        k < static_cast<Eigen::Index>(screened.size()); ++k) {
     Indices indices;
     for (int d = 0; d < screened[k].directions; ++d) indices.push_back(next++);
-    const Profile profile(F, nuisances, indices);
-    const bool seen = profile.information.diagonal().maxCoeff() >
-                      kInvisible * std::max(1.0, F(indices, indices).diagonal().maxCoeff());
-    own.push_back({indices, profile, seen});
+    own.push_back({indices, Profile(F, nuisances, indices), seen_ones(F, nuisances, indices)});
   }
   const auto gain = [&](std::size_t k, const Vec& score) {
-    if (!own[k].seen) return Gain{0, Vec::Zero(screened[k].directions)};
     const Vec u = score(own[k].indices) - own[k].profile.projection * score(nuisances);
-    return most_gain(own[k].profile.information, u, screened[k].two_sided);
+    return most_gain(own[k].profile.information, u, own[k].seen, screened[k].two_sided);
   };
 
   const Eigen::Index replicates = result.null_scores.cols();
@@ -142,7 +156,7 @@ Screening screen(const FilterResult& result, const std::vector<Candidate>& scree
     const double p = share_of_noise(highest, found.score / mean);
     screening.p = std::min(screening.p, p);
     double resolution = std::numeric_limits<double>::infinity();
-    for (Eigen::Index d = 0; d < covariance.rows() && own[k].seen; ++d)
+    for (const Eigen::Index d : own[k].seen)
       resolution = std::min(
           resolution, response(k, std::sqrt(covariance(d, d)) * Vec::Unit(covariance.rows(), d)));
     screening.scores.push_back(

@@ -17,7 +17,8 @@ struct CandidateScore {
   double p;          // share of replicates in which any candidate gains more, in units of its own
                      // average
   double response;   // root mean square change of c that it makes, in units of the noise
-  // Of the coefficients, nuisances being free; all 0 if nothing that was measured depends on them.
+  // Of the coefficients, nuisances being free; 0 for those on which nothing that was measured
+  // depends in a way of its own.
   Eigen::MatrixXd covariance;
   double resolution;  // response to one standard deviation of the coefficient that is known best
 };

@@ -22,7 +22,7 @@ std::vector<Hypothesis::Part> shortlist(const Screening& screening, std::size_t 
     const Candidate candidate = find_candidate(score.effect).value();
     const bool gains = gaining < kAlways || (gaining < size && score.score >= least);
     if (gains) ++gaining;
-    if (!gains && !candidate.like_pace) continue;
+    if (!gains && !(candidate.like_pace && score.covariance(0, 0) > 0)) continue;
     result.push_back({candidate, score.coefficients});
     // From where it does nothing there may be no way on.
     if (candidate.like_pace && score.score == 0)
