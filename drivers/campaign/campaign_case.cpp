@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "drivers/campaign/case_outcome.hpp"
 #include "drivers/campaign/hidden_case.hpp"
 #include "drivers/explain/explain_report.hpp"
 #include "drivers/explain/explain_run.hpp"
@@ -50,63 +51,6 @@ void draw(const fs::path& folder, const CampaignPlan& plan, const CaseSettings& 
   hide(folder, given, request);
 }
 
-std::string names_of(const std::vector<EffectTerm>& terms) {
-  std::string names;
-  for (const EffectTerm& term : terms) names += (names.empty() ? "" : " + ") + term.effect;
-  return names;
-}
-
-std::vector<std::string> sorted_parts(const std::string& names) {
-  std::vector<std::string> parts;
-  for (std::size_t at = 0; at < names.size();) {
-    const std::size_t end = std::min(names.find(" + ", at), names.size());
-    parts.push_back(names.substr(at, end - at));
-    at = end + 3;
-  }
-  std::sort(parts.begin(), parts.end());
-  return parts;
-}
-
-CaseOutcome outcome_of(const CampaignGroup& group, const HiddenTruth& truth, const Json& verdict) {
-  const std::string word = verdict.at("verdict");
-  const bool named = !verdict.at("effect").is_null();
-  if (group.aim == Aim::nothing)
-    return named || word == "unnamed" ? CaseOutcome::wrong
-           : word == "none"           ? CaseOutcome::right
-                                      : CaseOutcome::missed;
-  if (group.aim == Aim::unnamed)
-    return named               ? CaseOutcome::wrong
-           : word == "unnamed" ? CaseOutcome::right
-                               : CaseOutcome::missed;
-  if (!named) return CaseOutcome::missed;
-  const auto hidden = sorted_parts(names_of(truth.effects));
-  const std::vector<std::string> found = sorted_parts(verdict.at("effect"));
-  if (found == hidden) return word == "named" ? CaseOutcome::right : CaseOutcome::in_class;
-  for (const std::string equivalent : verdict.at("class"))
-    if (sorted_parts(equivalent) == hidden) return CaseOutcome::in_class;
-  // A part of what was hidden, and nothing else, is no wrong name.
-  return std::includes(hidden.begin(), hidden.end(), found.begin(), found.end())
-             ? CaseOutcome::missed
-             : CaseOutcome::wrong;
-}
-
-// How far the first hidden effect's strength is off, if it was named.
-void score_strength(const HiddenTruth& truth, const GivenValues& model, const Json& verdict,
-                    Json& score) {
-  score["error"] = score["deviations"] = nullptr;
-  if (truth.effects.empty() || verdict.at("effect").is_null()) return;
-  const EffectTerm& term = truth.effects.front();
-  const ParameterSpec& strength = effects().find(term.effect).parameters.front();
-  const auto found = verdict.at("parameters").find(term.effect + "." + strength.name);
-  if (found == verdict.at("parameters").end()) return;
-  Units units = Configuration(model, {}).units();
-  units.diffusion_cm2_s *= truth.pace;
-  const double value = term.values.front() / to_model_units(strength.unit, units);
-  const double difference = found->at("value").get<double>() - value;
-  score["error"] = std::fabs(difference / value);
-  score["deviations"] = difference / found->at("sigma").get<double>();
-}
-
 void write_score(const CampaignFolder& folder, const CampaignGroup& group, const CaseId& id,
                  const ExplainSetup& setup, double seconds) {
   const HiddenTruth truth = open_truth(folder.of(id));
@@ -117,7 +61,7 @@ void write_score(const CampaignFolder& folder, const CampaignGroup& group, const
                  {"verdict", v.at("verdict")},
                  {"effect", v.at("effect").is_null() ? Json("") : v.at("effect")},
                  {"class", v.at("class")},
-                 {"outcome", word_for(outcome_of(group, truth, v))},
+                 {"outcome", word_for(outcome_of(group.aim, names_of(truth.effects), v))},
                  {"p", v.at("null").at("p")},
                  {"rounds", v.at("null").at("rounds")},
                  {"heldout",
@@ -126,34 +70,15 @@ void write_score(const CampaignFolder& folder, const CampaignGroup& group, const
                    {"placebo", heldout("placebo")},
                    {"floor", floor.heldout > 0 ? Json(floor.heldout) : Json()}}},
                  {"seconds", seconds}};
-    score_strength(truth, setup.model, v, json);
+    const auto strength = strength_error(truth, Configuration(setup.model, {}).units(), v);
+    json["error"] = strength ? Json(strength->relative) : Json();
+    json["deviations"] = strength ? Json(strength->deviations) : Json();
     return json;
   });
   write_durably(folder.score_of(id), score.dump(2) + "\n");
 }
 
 }  // namespace
-
-std::string word_for(CaseOutcome outcome) {
-  switch (outcome) {
-    case CaseOutcome::right:
-      return "right";
-    case CaseOutcome::in_class:
-      return "in class";
-    case CaseOutcome::missed:
-      return "missed";
-    case CaseOutcome::wrong:
-      return "wrong";
-  }
-  return "";
-}
-
-CaseOutcome outcome_of(const std::string& word) {
-  for (const CaseOutcome outcome :
-       {CaseOutcome::right, CaseOutcome::in_class, CaseOutcome::missed, CaseOutcome::wrong})
-    if (word == word_for(outcome)) return outcome;
-  throw InputError("a case of a campaign cannot end with '" + word + "'");
-}
 
 void carry_out_case(const CampaignFolder& folder, const CampaignPlan& plan, const CaseId& id) {
   const CampaignGroup& group = campaign_groups().find(id.group);

@@ -1,20 +1,10 @@
 // One case of a campaign: drawn, explained and scored.
 #pragma once
 
-#include <map>
-
 #include "drivers/campaign/campaign_folder.hpp"
+#include "drivers/campaign/case_outcome.hpp"
 
 namespace traceraft {
-
-enum class CaseOutcome {
-  right,     // what was hidden was named, and nothing else; or nothing where that is the aim
-  in_class,  // a class was declared that holds it
-  missed,    // no name where there is one; a disagreement where there is none
-  wrong      // another name
-};
-std::string word_for(CaseOutcome outcome);
-CaseOutcome outcome_of(const std::string& word);  // throws InputError for other words
 
 struct CaseScore {
   CaseId id;

@@ -33,9 +33,10 @@ FilterSettings settings() {
   return few;
 }
 
-FilterProblems problems(const std::vector<FieldSeries>& vesicles) {
+FilterProblems problems(const std::vector<FieldSeries>& vesicles,
+                        const FilterSettings& how = settings()) {
   return make_filter_problems(vesicles, *make_surface("sphere"), request().base, kCells, 2, true,
-                              settings());
+                              how);
 }
 
 class RefitTest : public ::testing::Test {
@@ -106,6 +107,52 @@ TEST_F(RefitTest, KnowsWhatThePaceDoesBesideCooling) {
       (forecast_at(std::exp(kStep)) - forecast_at(std::exp(-kStep))) / (2 * kStep);
   const Vec derivative = here.innovations[0].parameters.col(kPace);
   EXPECT_LT((derivative - difference).norm(), 0.03 * difference.norm());
+}
+
+// Four snapshots, the last of which is held out.
+std::vector<FieldSeries> four_snapshots() {
+  BlindRequest asked = request();
+  asked.snapshots = 4;
+  return draw_blind_case(asked).vesicles;
+}
+
+TEST(Filter, DoesNotLookAtWhatIsHeldOut) {
+  std::vector<FieldSeries> vesicles = four_snapshots();
+  FilterSettings few = settings();
+  few.replicates = 5;
+  const FilterModel model{request().base, 1, {}, candidates()};
+  const auto pass_of = [&](const std::vector<FieldSeries>& measured) {
+    std::vector<ErrorMaps> maps;
+    return filter_fields(problems(measured, few), model, few, maps);
+  };
+  const FilterResult before = pass_of(vesicles);
+  vesicles[0].snapshots[3].values.array() += 0.05;
+  const FilterResult after = pass_of(vesicles);
+  EXPECT_EQ(before.deviance, after.deviance);
+  EXPECT_EQ(before.score, after.score);
+  EXPECT_EQ(before.information, after.information);
+  EXPECT_EQ(before.null_scores, after.null_scores);
+  EXPECT_NE(before.innovations[2].values, after.innovations[2].values);
+  EXPECT_TRUE(after.innovations[2].held_out);
+  EXPECT_EQ(after.gap_parts.size(), 2u);
+  EXPECT_EQ(after.heldout_gap_parts.size(), 1u);
+  EXPECT_EQ(before.gap_parts[1], after.gap_parts[1]);
+}
+
+// The scores of noise have the information as their covariance where the model is right.
+TEST(Filter, KnowsHowScoresOfNoiseScatter) {
+  FilterSettings many = settings();
+  many.replicates = 199;
+  FilterModel model{request().base, 1, {}, {find_candidate("gravity").value()}};
+  BlindRequest asked = request();
+  asked.effects.clear();
+  const FilterProblems data = problems(draw_blind_case(asked).vesicles, many);
+  std::vector<ErrorMaps> maps;
+  const FilterResult pass = filter_fields(data, model, many, maps);
+  for (const Eigen::Index k : {kPace, kFirstParameter}) {
+    const double variance = pass.null_scores.row(k).squaredNorm() / many.replicates;
+    EXPECT_NEAR(variance / pass.information(k, k), 1, 0.3) << k;
+  }
 }
 
 TEST_F(RefitTest, GoesWithoutOutliers) {

@@ -71,7 +71,7 @@ void refuse_outliers(const FilterProblem& data) {
                      "those around it");
 }
 
-// The prior of the first field, the noise of all, and what is left without outliers.
+// The prior of the first field, the noise of those that count, and what is left without outliers.
 FieldPrior clean(const FieldSeries& series, const DoubleWell& well, FilterProblem& data) {
   data.series = series;
   FieldPrior prior{};
@@ -83,7 +83,8 @@ FieldPrior clean(const FieldSeries& series, const DoubleWell& well, FilterProble
     dropped = 0;
     for (std::size_t k = 0; k < data.snapshots.size(); ++k) {
       const FieldEstimate here = estimate_field(*data.space, data.snapshots[k], prior, {});
-      squares += here.noise * here.noise / static_cast<double>(data.snapshots.size());
+      if (k < data.train)
+        squares += here.noise * here.noise / static_cast<double>(data.train);
       if (pass < kMostPasses)
         dropped += drop_outliers(data.snapshots[k].trace * here.field,
                                  kOutlying * (well.b - well.a), data.series.snapshots[k]);

@@ -1,0 +1,90 @@
+#include "drivers/campaign/case_outcome.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/core/error.hpp"
+#include "kernel/core/parameters.hpp"
+#include "kernel/effects/effects.hpp"
+
+namespace traceraft {
+namespace {
+
+std::vector<std::string> sorted_parts(const std::string& names) {
+  std::vector<std::string> parts;
+  for (std::size_t at = 0; at < names.size();) {
+    const std::size_t end = std::min(names.find(" + ", at), names.size());
+    parts.push_back(names.substr(at, end - at));
+    at = end + 3;
+  }
+  std::sort(parts.begin(), parts.end());
+  return parts;
+}
+
+}  // namespace
+
+std::string word_for(CaseOutcome outcome) {
+  switch (outcome) {
+    case CaseOutcome::right:
+      return "right";
+    case CaseOutcome::in_class:
+      return "in class";
+    case CaseOutcome::missed:
+      return "missed";
+    case CaseOutcome::wrong:
+      return "wrong";
+  }
+  return "";
+}
+
+CaseOutcome outcome_of(const std::string& word) {
+  for (const CaseOutcome outcome :
+       {CaseOutcome::right, CaseOutcome::in_class, CaseOutcome::missed, CaseOutcome::wrong})
+    if (word == word_for(outcome)) return outcome;
+  throw InputError("a case of a campaign cannot end with '" + word + "'");
+}
+
+std::string names_of(const std::vector<EffectTerm>& terms) {
+  std::string names;
+  for (const EffectTerm& term : terms) names += (names.empty() ? "" : " + ") + term.effect;
+  return names;
+}
+
+CaseOutcome outcome_of(Aim aim, const std::string& hidden_names, const Json& verdict) {
+  const std::string word = verdict.at("verdict");
+  const bool named = !verdict.at("effect").is_null();
+  if (aim == Aim::nothing)
+    return named || word == "unnamed" ? CaseOutcome::wrong
+           : word == "none"           ? CaseOutcome::right
+                                      : CaseOutcome::missed;
+  if (aim == Aim::unnamed)
+    return named               ? CaseOutcome::wrong
+           : word == "unnamed" ? CaseOutcome::right
+                               : CaseOutcome::missed;
+  if (!named) return CaseOutcome::missed;
+  const auto hidden = sorted_parts(hidden_names);
+  const std::vector<std::string> found = sorted_parts(verdict.at("effect"));
+  if (found == hidden) return word == "named" ? CaseOutcome::right : CaseOutcome::in_class;
+  for (const std::string equivalent : verdict.at("class"))
+    if (sorted_parts(equivalent) == hidden) return CaseOutcome::in_class;
+  // A part of what was hidden, and nothing else, is no wrong name.
+  return std::includes(hidden.begin(), hidden.end(), found.begin(), found.end())
+             ? CaseOutcome::missed
+             : CaseOutcome::wrong;
+}
+
+std::optional<StrengthError> strength_error(const HiddenTruth& truth, Units units,
+                                            const Json& verdict) {
+  if (truth.effects.empty() || verdict.at("effect").is_null()) return {};
+  const EffectTerm& term = truth.effects.front();
+  const ParameterSpec& strength = effects().find(term.effect).parameters.front();
+  const auto found = verdict.at("parameters").find(term.effect + "." + strength.name);
+  if (found == verdict.at("parameters").end()) return {};
+  units.diffusion_cm2_s *= truth.pace;
+  const double value = term.values.front() / to_model_units(strength.unit, units);
+  const double difference = found->at("value").get<double>() - value;
+  return StrengthError{std::fabs(difference / value),
+                       difference / found->at("sigma").get<double>()};
+}
+
+}  // namespace traceraft

@@ -1,0 +1,36 @@
+// Whether a verdict is right, given what was hidden.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "drivers/campaign/campaign_groups.hpp"
+#include "drivers/campaign/hidden_case.hpp"
+#include "drivers/output/json_file.hpp"
+
+namespace traceraft {
+
+enum class CaseOutcome {
+  right,     // what was hidden was named, and nothing else; or nothing where that is the aim
+  in_class,  // a class was declared that holds it
+  missed,    // no name where there is one, or a part of the name; a doubt where there is nothing
+  wrong      // another name, or a disagreement where there is none
+};
+std::string word_for(CaseOutcome outcome);
+CaseOutcome outcome_of(const std::string& word);  // throws InputError for other words
+
+// Names joined by " + ".
+std::string names_of(const std::vector<EffectTerm>& terms);
+
+// `hidden`: names_of the truth; `verdict`: the content of verdict.json.
+CaseOutcome outcome_of(Aim aim, const std::string& hidden, const Json& verdict);
+
+// Of the first hidden effect's strength, if the verdict has it; relative, and in the standard
+// deviations that the verdict says. `units`: of the model.
+struct StrengthError {
+  double relative, deviations;
+};
+std::optional<StrengthError> strength_error(const HiddenTruth& truth, Units units,
+                                            const Json& verdict);
+
+}  // namespace traceraft

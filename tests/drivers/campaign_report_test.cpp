@@ -1,0 +1,62 @@
+// What cases add up to, on scores that are written down by hand.
+#include "drivers/campaign/campaign_report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "drivers/output/text_table.hpp"
+
+namespace traceraft {
+namespace {
+
+CaseScore score(int number, const std::string& hidden, const std::string& found,
+                CaseOutcome outcome, double deviations) {
+  // Of 5² − 3² the named model closes 5² − 4², the placebo nothing.
+  return {{"naming", number}, hidden, "named", found, outcome, 0.01 * number,
+          deviations,         0.005,  5,       4,     5,       3,
+          10.0 * number};
+}
+
+std::vector<CaseScore> scores() {
+  return {score(1, "gravity", "gravity", CaseOutcome::right, 1.9),
+          score(2, "uptake", "exchange", CaseOutcome::in_class, std::nan("")),
+          score(3, "uptake", "gravity", CaseOutcome::wrong, -2.1),
+          score(5, "cooling", "cooling", CaseOutcome::right, -0.3)};
+}
+
+TEST(CampaignReport, SumsUpGroups) {
+  const auto rows = table_rows(summary_of(scores()));
+  ASSERT_EQ(rows.size(), 2u);
+  const auto of = [&](const std::string& column) {
+    for (std::size_t k = 0; k < rows[0].size(); ++k)
+      if (rows[0][k] == column) return rows[1][k];
+    return std::string("no such column");
+  };
+  EXPECT_EQ(of("group"), "naming");
+  EXPECT_EQ(std::stod(of("cases")), 4);
+  EXPECT_EQ(std::stod(of("right")), 2);
+  EXPECT_EQ(std::stod(of("in class")), 1);
+  EXPECT_EQ(std::stod(of("missed")), 0);
+  EXPECT_EQ(std::stod(of("wrong")), 1);
+  EXPECT_NEAR(std::stod(of("median error")), 0.025, 1e-4);
+  EXPECT_NEAR(std::stod(of("coverage")), 2 / 3.0, 1e-3);
+  EXPECT_NEAR(std::stod(of("held-out gap / floor")), 4 / 3.0, 1e-3);
+  EXPECT_NEAR(std::stod(of("closed")), 9 / 16.0, 1e-4);
+  EXPECT_NEAR(std::stod(of("s per case")), 25, 1e-9);
+}
+
+TEST(CampaignReport, TellsClassesFromConfusion) {
+  const auto rows = table_rows(confusion_of(scores()));
+  ASSERT_EQ(rows.size(), 4u);
+  const std::vector<std::string> columns{"hidden \\ found", "cooling", "exchange (in class)",
+                                         "gravity"};
+  EXPECT_EQ(rows[0], columns);
+  EXPECT_EQ(rows[3][0], "uptake");
+  EXPECT_EQ(rows[3][1], "");
+  EXPECT_EQ(std::stod(rows[3][2]), 1);
+  EXPECT_EQ(std::stod(rows[3][3]), 1);
+}
+
+}  // namespace
+}  // namespace traceraft
