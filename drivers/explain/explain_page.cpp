@@ -44,6 +44,13 @@ class ExplainPage {
         "95 % bounds of their first parameters, to first order, beside what was found. With ten "
         "effects one of them excludes 0 by chance in four data sets of ten.");
     page_.table(bound_rows(found_, units_));
+    std::string others;
+    for (const std::string& name : not_looked_for(found_))
+      others += (others.empty() ? "" : ", ") + name;
+    page_.paragraph("Not looked for: " + others +
+                    ". Turns are allowed for between snapshots, thermal noise makes no forecast, "
+                    "curvature sorts "
+                    "nothing where it is the same everywhere; others were left out on request.");
     page_.heading("Where this comes from");
     page_.paragraph("traceraft " + std::string(kVersion) + ". " + data_text() + " The model:");
     page_.code(flags_text(Configuration(setup_.model, {})));

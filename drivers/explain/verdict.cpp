@@ -1,5 +1,7 @@
 #include "drivers/explain/verdict.hpp"
 
+#include <algorithm>
+
 #include "drivers/explain/remarks.hpp"
 #include "kernel/effects/effects.hpp"
 
@@ -78,6 +80,16 @@ Json rerun_json(const Rerun& rerun) {
 
 }  // namespace
 
+std::vector<std::string> not_looked_for(const Explanation& found) {
+  const std::vector<Candidate>& looked_for = found.rounds.front().known.screened;
+  std::vector<std::string> names;
+  for (const std::string& name : effects().names())
+    if (std::none_of(looked_for.begin(), looked_for.end(),
+                     [&](const Candidate& candidate) { return candidate.effect == name; }))
+      names.push_back(name);
+  return names;
+}
+
 bool is_named(const Explanation& found) {
   return found.finding == Finding::named || found.finding == Finding::ambiguous;
 }
@@ -90,6 +102,7 @@ Json verdict_json(const Explanation& found, const Units& base) {
           {"closest", found.finding == Finding::unnamed && !name.empty() ? Json(name) : Json()},
           {"parameters", parameters_json(found, base)},
           {"bounds", bounds_json(found, base)},
+          {"not_looked_for", not_looked_for(found)},
           {"alternatives", alternatives_json(found.rounds.front())},
           {"gap",
            {{"base", gap_json(found.base_gap)},

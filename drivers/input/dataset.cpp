@@ -34,16 +34,15 @@ struct Dataset {
 };
 
 Dataset read_description(const fs::path& folder) {
+  if (fs::exists(folder / "snapshot_001.csv"))
+    throw InputError(folder.string() + " holds measured fields, which are for --data of explain");
   const TomlTable toml =
       TomlTable::read(folder / "dataset.toml",
                       {"name", "kind", "origin", "composition", "temperature", "time_zero",
                        "time_offset", "length_unit", "time_unit", "radius", "sigma", "table"});
   Dataset d;
   d.data.name = toml.text("name");
-  const std::string kind = toml.text("kind");
-  if (kind != "measured" && kind != "synthetic")
-    throw InputError(toml.where("kind") + ": '" + kind + "' is neither measured nor synthetic");
-  d.data.synthetic = kind == "synthetic";
+  d.data.synthetic = is_synthetic(toml);
   d.data.origin = toml.text_or("origin", "");
   d.data.composition = toml.text_or("composition", "");
   if (!d.data.composition.empty())

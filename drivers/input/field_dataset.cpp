@@ -64,6 +64,9 @@ std::string snapshot_file(std::size_t number) {
 }
 
 FieldDataset read_field_dataset(const fs::path& folder) {
+  if (!fs::exists(folder / snapshot_file(1)) && fs::exists(folder / "measurements.csv"))
+    throw InputError(folder.string() +
+                     " holds series of vesicles, which are for --series of explain");
   const TomlTable toml = TomlTable::read(
       folder / "dataset.toml", {"name", "kind", "origin", "composition", "temperature", "time_zero",
                                 "length_unit", "time_unit", "radius", "times", "vesicles"});
@@ -71,7 +74,7 @@ FieldDataset read_field_dataset(const fs::path& folder) {
   data.name = toml.text("name");
   data.origin = toml.text_or("origin", "");
   data.time_zero = toml.text_or("time_zero", "");
-  data.synthetic = toml.text_or("kind", "measured") == "synthetic";
+  data.synthetic = toml.has("kind") && is_synthetic(toml);
   const double length = length_factor(toml, "length_unit"), second = time_factor(toml, "time_unit");
   data.radius_um = toml.number("radius") * length;
   if (!(data.radius_um > 0)) throw InputError(toml.where("radius") + ": it has to be positive");
@@ -101,6 +104,9 @@ FieldDataset read_field_dataset(const fs::path& folder) {
     if (series.snapshots.size() < 2)
       throw InputError(toml.where("times") + ": vesicle " + series.vesicle +
                        " needs two snapshots or more");
+  if (const fs::path more = folder / snapshot_file(times.size() + 1); fs::exists(more))
+    throw InputError(toml.where("times") + ": " + std::to_string(times.size()) +
+                     " times, but there is " + more.filename().string());
   if (data.vesicles.empty()) throw InputError(toml.where("times") + ": there is no snapshot");
   return data;
 }

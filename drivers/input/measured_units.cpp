@@ -22,6 +22,13 @@ double factor(const NamedList<Unit>& units, const TomlTable& toml, const std::st
 
 }  // namespace
 
+bool is_synthetic(const TomlTable& toml) {
+  const std::string kind = toml.text("kind");
+  if (kind != "measured" && kind != "synthetic")
+    throw InputError(toml.where("kind") + ": '" + kind + "' is neither measured nor synthetic");
+  return kind == "synthetic";
+}
+
 double length_factor(const TomlTable& toml, const std::string& key) {
   static const NamedList<Unit> units("unit of length", {{"um", 1},
                                                         // with the micro sign, and with a mu

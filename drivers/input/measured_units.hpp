@@ -10,6 +10,8 @@ namespace traceraft {
 
 // The factor to µm or s of the unit that stands under a key. Throws InputError.
 double length_factor(const TomlTable& toml, const std::string& key);
+// Of the key `kind`: "measured" or "synthetic". Throws InputError for other words.
+bool is_synthetic(const TomlTable& toml);
 double time_factor(const TomlTable& toml, const std::string& key);
 
 // Throws InputError if the model that measurements are held against is in units of R and R²/D.

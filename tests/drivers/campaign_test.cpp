@@ -66,6 +66,8 @@ TEST_F(HideTest, RefusesWhatCannotBeHidden) {
   EXPECT_NE(hide("--effects gravitty").output.find("did you mean 'gravity'"), std::string::npos);
   EXPECT_EQ(hide("--effects none --first 2 --last 1").code, 2);
   EXPECT_EQ(hide("--effects gravity,gravity").code, 2);
+  EXPECT_NE(hide("--effects thermal").output.find("none that explain looks for"),
+            std::string::npos);
   EXPECT_EQ(hide("--effects none,gravity").code, 2);
   EXPECT_EQ(testing::traceraft("hide --cells 40 --truth-cells 40 --out " +
                                (folder.path / "coarse").string())

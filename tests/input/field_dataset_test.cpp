@@ -76,10 +76,16 @@ TEST_F(FieldDatasetTest, ReadsWhatItHasWritten) {
   EXPECT_LT((after.deviation - before.deviation).norm(), 1e-4);
 }
 
+TEST_F(FieldDatasetTest, KnowsSeriesFromFields) {
+  std::filesystem::remove(folder.path / "snapshot_001.csv");
+  replace("measurements.csv", "vesicle,time\n");
+  expect_refusal("--series");
+}
+
 TEST_F(FieldDatasetTest, ConvertsUnits) {
   replace("dataset.toml",
           "name = \"a\"\nlength_unit = \"nm\"\ntime_unit = \"min\"\nradius = 5\n"
-          "times = [1, 2]\n");
+          "times = [1, 2, 3]\n");
   const FieldDataset data = read_field_dataset(folder.path);
   EXPECT_DOUBLE_EQ(data.radius_um, 0.005);
   EXPECT_DOUBLE_EQ(data.vesicles[0].snapshots[1].time, 120);
@@ -90,6 +96,10 @@ TEST_F(FieldDatasetTest, RefusesWhatIsWrongWithItsPlace) {
   expect_refusal("dataset.toml:5: times");
   replace("dataset.toml", description("[10]"));
   expect_refusal("two snapshots or more");
+  replace("dataset.toml", description("[1, 2]"));
+  expect_refusal("2 times, but there is snapshot_003.csv");
+  replace("dataset.toml", description("[1, 2, 3]") + "kind = \"real\"\n");
+  expect_refusal("'real' is neither measured nor synthetic");
   replace("dataset.toml", description("[1, 2]"));
   replace("snapshot_002.csv", "x,y,z\n1,0,0\n");
   expect_refusal("snapshot_002.csv");

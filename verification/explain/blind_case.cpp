@@ -160,9 +160,11 @@ class Sizing {
 
  private:
   static Candidate candidate_of(const std::string& effect) {
-    const auto valid = effects_to_hide();
+    const auto valid = effects_to_hide(), known = effects().names();
     if (std::find(valid.begin(), valid.end(), effect) == valid.end())
-      throw InputError(unknown_name_message("effect to hide", effect, valid));
+      throw InputError(std::find(known.begin(), known.end(), effect) != known.end()
+                           ? "the effect " + effect + " is none that explain looks for on a sphere"
+                           : unknown_name_message("effect to hide", effect, valid));
     return *find_candidate(effect);
   }
   // What the effect makes of the base's snapshots until the next one.
