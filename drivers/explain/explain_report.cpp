@@ -49,7 +49,8 @@ void print_explanation(const Explanation& found, const GivenValues& model) {
   print_rows(gap_rows(found));
   for (const std::string& remark : remarks(found)) std::printf("\n%s\n", remark.c_str());
   std::printf(
-      "\nnoise of the measurements %.4f; %zu significant disagreements with the base model\n",
+      "\nnoise of the measurements %.4f; patches that disagree significantly with the base model: "
+      "%zu\n",
       found.noise, found.disagreements.size());
 }
 

@@ -41,7 +41,7 @@ std::vector<Row> gap_rows(const Explanation& found) {
   add("to be expected if nothing is missing", found.floor);
   if (!found.found.hypothesis.parts.empty()) {
     const auto text = [](const std::optional<double>& share) {
-      return share ? formatted("%.0f %%", 100 * *share) : "base within 2 % of what is expected";
+      return share ? formatted("%.0f %%", 100 * *share) : "too little to tell";
     };
     const SharesClosed closed = shares_closed(found.base_gap, found.found_gap, found.floor);
     rows.push_back(

@@ -34,6 +34,18 @@ TEST(FreeParameters, StayWhereTheyCannotGoFurther) {
   EXPECT_EQ(free_parameters(up, hypothesis(0, 0)), (Indices{0, 1, 2, 3, 4}));
 }
 
+TEST(FreeParameters, StayBelowTheUpperEnd) {
+  const Candidate asymmetry = find_candidate("asymmetry").value();
+  const auto at = [&](double value) { return Hypothesis{{{asymmetry, {value}}}}; };
+  FilterResult pass = pass_with(Vec::Constant(5, 1));
+  EXPECT_EQ(free_parameters(pass, at(asymmetry.most)), (Indices{0, 1}));
+  EXPECT_EQ(free_parameters(pass, at(0.9 * asymmetry.most)), (Indices{0, 1, 2}));
+  EXPECT_EQ(free_parameters(pass, at(asymmetry.least)), (Indices{0, 1, 2}));
+  pass.score *= -1;
+  EXPECT_EQ(free_parameters(pass, at(asymmetry.most)), (Indices{0, 1, 2}));
+  EXPECT_EQ(free_parameters(pass, at(asymmetry.least)), (Indices{0, 1}));
+}
+
 // What a coefficient that is held would explain is left to the others, and they may be free then.
 TEST(FreeParameters, HaveTheirOptimumBesideThoseThatAreHeld) {
   FilterResult pass = pass_with(Vec::Zero(5));

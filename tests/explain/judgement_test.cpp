@@ -99,6 +99,16 @@ TEST(Judgement, AdmitsAGapThatNothingExplains) {
   EXPECT_EQ(judged(round).finding, Finding::named);
 }
 
+// A gap of any shape has to be less probable than a candidate.
+TEST(Judgement, IsSlowToAdmitAGap) {
+  Round round = first_round();
+  round.refits.clear();
+  round.screening.gap_p = 0.99 * kGapLevel * kLevel;
+  EXPECT_EQ(judged(round).finding, Finding::unnamed);
+  round.screening.gap_p = 0.0051;
+  EXPECT_EQ(judged(round).finding, Finding::not_identifiable);
+}
+
 TEST(Judgement, KnowsWhatDataCannotShow) {
   Round round = first_round();
   round.refits.clear();
