@@ -1,19 +1,14 @@
 #include "drivers/campaign/campaign_case.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "drivers/campaign/case_outcome.hpp"
 #include "drivers/campaign/hidden_case.hpp"
 #include "drivers/explain/explain_report.hpp"
 #include "drivers/explain/explain_run.hpp"
 #include "drivers/output/json_file.hpp"
-#include "kernel/core/error.hpp"
-#include "kernel/core/parameters.hpp"
 #include "kernel/core/random.hpp"
 #include "kernel/core/stopwatch.hpp"
-#include "kernel/effects/effects.hpp"
 #include "verification/explain/rerun.hpp"
 
 namespace traceraft {

@@ -115,8 +115,7 @@ Action define_hide(CLI::App& app) {
   });
   app.footer(
       "Without --model: epsilon 0.6, cells 24, raft-fraction 0.5, a vesicle that explain takes "
-      "some "
-      "minutes for.\nExample: traceraft hide --out riddle");
+      "some minutes for.\nExample: traceraft hide --out riddle");
   return [command] { return hide_effects(*command); };
 }
 

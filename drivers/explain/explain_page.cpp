@@ -49,8 +49,8 @@ class ExplainPage {
       others += (others.empty() ? "" : ", ") + name;
     page_.paragraph("Not looked for: " + others +
                     ". Turns are allowed for between snapshots, thermal noise makes no forecast, "
-                    "curvature sorts "
-                    "nothing where it is the same everywhere; others were left out on request.");
+                    "curvature sorts nothing where it is the same everywhere; others were left out "
+                    "on request.");
     page_.heading("Where this comes from");
     page_.paragraph("traceraft " + std::string(kVersion) + ". " + data_text() + " The model:");
     page_.code(flags_text(Configuration(setup_.model, {})));

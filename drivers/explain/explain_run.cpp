@@ -55,6 +55,14 @@ void refuse_replicates(const ExplainRequest& request, const std::vector<FieldSer
                      std::to_string(fewest) + " or more");
 }
 
+void refuse_leaving_out_all(const ExplainRequest& request) {
+  const std::vector<Candidate> all = candidates();
+  if (std::all_of(all.begin(), all.end(), [&](const Candidate& c) {
+        return std::count(request.without.begin(), request.without.end(), c.effect) > 0;
+      }))
+    throw InputError("--without: no effect is left to look for");
+}
+
 }  // namespace
 
 int ExplainJob::processors() const {
@@ -66,14 +74,6 @@ void refuse_effects(const Configuration& model) {
   if (!model.text("effect").empty())
     throw InputError(model.where("effect") +
                      ": the search starts from a model without effects; it finds them itself");
-}
-
-void refuse_leaving_out_all(const ExplainRequest& request) {
-  const std::vector<Candidate> all = candidates();
-  if (std::all_of(all.begin(), all.end(), [&](const Candidate& c) {
-        return std::count(request.without.begin(), request.without.end(), c.effect) > 0;
-      }))
-    throw InputError("--without: no effect is left to look for");
 }
 
 ExplainSetup read_explain_job(const ExplainJob& job) {

@@ -145,8 +145,7 @@ std::string verdict_sentence(const Explanation& found) {
       for (std::size_t k = 1; k < found.equivalent.size(); ++k)
         others += ", or " + found.equivalent[k];
       return "The model lacks " + name + others +
-             ": these data do not tell them apart. The first of "
-             "them explains most: " +
+             ": these data do not tell them apart. The first of them explains most: " +
              in_words(found.found.hypothesis) + ".";
     }
     case Finding::below_resolution:

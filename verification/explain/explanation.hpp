@@ -59,8 +59,8 @@ struct Explanation {
   Refit base, found;                        // with the pace refitted; found: the base if none was
   std::vector<std::string> equivalent;      // hypotheses that explain the data as well, found first
   std::vector<Round> rounds;
-  // Measured minus forecast. Placebo: the second best of the first round, if there
-  // was one. Floor: what is to be expected of the found model if nothing else is missing.
+  // Measured minus forecast. Placebo: the second best of the first round, if there was one. Floor:
+  // what is to be expected of the found model if nothing else is missing.
   Gaps base_gap, found_gap, floor;
   std::optional<Gaps> placebo_gap;
   std::size_t outliers = 0;                 // values that were left out
