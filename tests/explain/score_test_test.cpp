@@ -124,6 +124,18 @@ TEST(ScoreTest, LeavesOutCoefficientsThatAreKnownAlready) {
   EXPECT_EQ(exchange.coefficients[1], 0);
 }
 
+// Of two coefficients that do the same, one is left.
+TEST(ScoreTest, LeavesOutCoefficientsThatAreAlike) {
+  FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
+  pass.information(4, 5) = pass.information(5, 4) = 1 - 1e-15;
+  pass.score[4] = pass.score[5] = 3;
+  const Screening screening = screen(pass, screened(), {});
+  const CandidateScore& exchange = score_of(screening, "exchange");
+  EXPECT_NEAR(exchange.score, 9, 1e-6);
+  EXPECT_NEAR(exchange.covariance(0, 0), 1, 1e-9);
+  EXPECT_EQ(exchange.covariance(1, 1), 0);
+}
+
 // Patterns in gaps: of the replicates, 19 of 400 leave a larger one, of those held out 99.
 TEST(ScoreTest, JoinsGapsThatCountAndThatAreHeldOut) {
   FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
