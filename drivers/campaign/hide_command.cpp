@@ -12,6 +12,7 @@
 #include "drivers/run/run_folder.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/random.hpp"
+#include "verification/explain/effect_size.hpp"
 
 namespace traceraft {
 namespace {

@@ -45,12 +45,14 @@ void explain_field_data(const ExplainCommand& command, ExplainSetup& setup, cons
   if (!command.quiet)
     std::printf("the model: %s\n", flags_text(Configuration(setup.model, {})).c_str());
   const SearchFile file(out, setup);
-  setup.request.save = [&](const SearchState& state) { file.save(state); };
-  Explanation found = explain_fields(setup.series, setup.request, file.load());
+  std::optional<SearchState> search = file.load();
+  setup.request.save = [&](const SearchState& state) { file.save(*(search = state)); };
+  Explanation found = explain_fields(setup.series, setup.request, search);
   write_explanation(out, found, setup.model);
-  if (!found.found.hypothesis.parts.empty()) {
+  if (!found.found.hypothesis.parts.empty() && !found.rerun) {
     if (!command.quiet) setup.request.progress("once more, on another mesh, by another integrator");
-    found.rerun = run_again(setup.series, setup.request, found);
+    search->so_far.rerun = found.rerun = run_again(setup.series, setup.request, found);
+    file.save(*search);
     write_explanation(out, found, setup.model);
   }
   const std::string missing = write_explain_page(out, found, setup);

@@ -1,200 +1,16 @@
 #include "drivers/explain/search_file.hpp"
 
-#include <cmath>
-#include <limits>
-
 #include "backends/sodium/seal.hpp"
 #include "drivers/config/config_file.hpp"
-#include "drivers/output/json_file.hpp"
+#include "drivers/explain/search_json.hpp"
 #include "drivers/version.hpp"
 #include "kernel/core/error.hpp"
 
 namespace traceraft {
 namespace {
 
-// JSON has no infinity.
-Json json_of(double value) {
-  return std::isfinite(value) ? Json(value) : Json();
-}
-double number_of(const Json& json) {
-  return json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>();
-}
-
-Json json_of(const Vec& values) {
-  return std::vector<double>(values.begin(), values.end());
-}
-Vec vec_of(const Json& json) {
-  const std::vector<double> values = json;
-  return Eigen::Map<const Vec>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
-
-// Symmetric ones.
-Json json_of(const Eigen::MatrixXd& square) {
-  return json_of(Vec(square.reshaped()));
-}
-Eigen::MatrixXd square_of(const Json& json) {
-  const Vec values = vec_of(json);
-  const auto n = static_cast<Eigen::Index>(std::lround(std::sqrt(double(values.size()))));
-  return values.reshaped(n, n);
-}
-
-Candidate candidate_of(const std::string& effect) {
-  const std::optional<Candidate> found = find_candidate(effect);
-  if (!found) throw IoError("a search names '" + effect + "', which is no candidate");
-  return *found;
-}
-
-Json json_of(const Hypothesis& hypothesis) {
-  Json parts = Json::array();
-  for (const auto& part : hypothesis.parts)
-    parts.push_back({{"effect", part.candidate.effect}, {"coefficients", part.coefficients}});
-  return parts;
-}
-Hypothesis hypothesis_of(const Json& json) {
-  Hypothesis hypothesis;
-  for (const Json& part : json)
-    hypothesis.parts.push_back({candidate_of(part.at("effect")), part.at("coefficients")});
-  return hypothesis;
-}
-
-Json json_of(const Gaps& gaps) {
-  return {gaps.train, gaps.heldout};
-}
-Gaps gaps_of(const Json& json) {
-  return {json.at(0), json.at(1)};
-}
-
-Json json_of(const Refit& fit) {
-  Json snapshots = Json::array();
-  for (const SnapshotGap& s : fit.snapshots)
-    snapshots.push_back({s.vesicle, s.snapshot, s.gap, s.expected});
-  return {{"hypothesis", json_of(fit.hypothesis)},
-          {"pace", fit.pace},
-          {"deviance", fit.deviance},
-          {"covariance", json_of(fit.covariance)},
-          {"pace_deviation", fit.pace_deviation},
-          {"gap", json_of(fit.gap)},
-          {"expected", json_of(fit.expected)},
-          {"snapshots", snapshots},
-          {"settled", fit.settled}};
-}
-Refit refit_of(const Json& json) {
-  Refit fit{hypothesis_of(json.at("hypothesis")),
-            json.at("pace"),
-            json.at("deviance"),
-            square_of(json.at("covariance")),
-            json.at("pace_deviation"),
-            gaps_of(json.at("gap")),
-            gaps_of(json.at("expected")),
-            {},
-            json.at("settled"),
-            ""};
-  for (const Json& s : json.at("snapshots"))
-    fit.snapshots.push_back({s.at(0), s.at(1), s.at(2), s.at(3)});
-  return fit;
-}
-
-Json json_of(const Screening& screening) {
-  Json scores = Json::array();
-  for (const CandidateScore& s : screening.scores)
-    scores.push_back({{"effect", s.effect},
-                      {"coefficients", s.coefficients},
-                      {"score", s.score},
-                      {"null_mean", s.null_mean},
-                      {"p", s.p},
-                      {"response", s.response},
-                      {"covariance", json_of(s.covariance)},
-                      {"resolution", json_of(s.resolution)}});
-  return {{"scores", scores},
-          {"p", screening.p},
-          {"gap_p", {screening.train_gap_p, screening.heldout_gap_p, screening.gap_p}},
-          {"pace_change", screening.pace_change},
-          {"pace_deviation", screening.pace_deviation},
-          {"mesh_error", screening.mesh_error}};
-}
-Screening screening_of(const Json& json) {
-  const Json& gap_p = json.at("gap_p");
-  Screening screening{{},
-                      json.at("p"),
-                      gap_p.at(0),
-                      gap_p.at(1),
-                      gap_p.at(2),
-                      json.at("pace_change"),
-                      json.at("pace_deviation"),
-                      json.at("mesh_error")};
-  for (const Json& s : json.at("scores"))
-    screening.scores.push_back({s.at("effect"), s.at("coefficients"), s.at("score"),
-                                s.at("null_mean"), s.at("p"), s.at("response"),
-                                square_of(s.at("covariance")), number_of(s.at("resolution"))});
-  return screening;
-}
-
-Json json_of(const Round& round) {
-  Json screened = Json::array(), refits = Json::array(), failures = Json::array();
-  for (const Candidate& candidate : round.known.screened) screened.push_back(candidate.effect);
-  for (const Refit& fit : round.refits) refits.push_back(json_of(fit));
-  for (const Round::Failure& failure : round.failures)
-    failures.push_back({failure.effect, failure.why});
-  return {{"known", json_of(round.known.hypothesis)},
-          {"pace", round.known.pace},
-          {"screened", screened},
-          {"screening", json_of(round.screening)},
-          {"without", json_of(round.without)},
-          {"refits", refits},
-          {"failures", failures}};
-}
-Round round_of(const Json& json, const CahnHilliardModel& base) {
-  Round round{{base, json.at("pace"), hypothesis_of(json.at("known")), {}},
-              screening_of(json.at("screening")),
-              refit_of(json.at("without")),
-              {},
-              {}};
-  for (const std::string effect : json.at("screened"))
-    round.known.screened.push_back(candidate_of(effect));
-  for (const Json& fit : json.at("refits")) round.refits.push_back(refit_of(fit));
-  for (const Json& failure : json.at("failures"))
-    round.failures.push_back({failure.at(0), failure.at(1)});
-  return round;
-}
-
-Json json_of(const Disagreement& d) {
-  return {{"vesicle", d.vesicle},
-          {"time", d.time},
-          {"state", d.state},
-          {"direction", json_of(Vec(d.direction))},
-          {"z", d.z},
-          {"p", d.p}};
-}
-Disagreement disagreement_of(const Json& json) {
-  return {json.at("vesicle"), json.at("time"),
-          json.at("state"),   Point(vec_of(json.at("direction"))),
-          json.at("z"),       json.at("p")};
-}
-
-Json json_of(const FrameChange& change) {
-  return {change.vesicle, change.snapshot, change.turn, change.gain, change.offset};
-}
-FrameChange change_of(const Json& json) {
-  return {json.at(0), json.at(1), json.at(2), json.at(3), json.at(4)};
-}
-
-Json json_of(const DisagreementMaps& maps) {
-  Json snapshots = Json::array();
-  for (const DisagreementMap& map : maps.snapshots)
-    snapshots.push_back({{"vesicle", map.vesicle}, {"time", map.time}, {"z", json_of(map.z)}});
-  return {{"snapshots", snapshots}, {"threshold", maps.threshold}};
-}
-DisagreementMaps maps_of(const Json& json) {
-  DisagreementMaps maps{{}, json.at("threshold")};
-  for (const Json& map : json.at("snapshots"))
-    maps.snapshots.push_back({map.at("vesicle"), map.at("time"), vec_of(map.at("z"))});
-  return maps;
-}
-
-Finding finding_of(const std::string& word) {
-  for (const Finding finding : kFindings)
-    if (word_for(finding) == word) return finding;
-  throw IoError("a search cannot end with '" + word + "'");
+std::vector<double> numbers_of(const Vec& values) {
+  return {values.begin(), values.end()};
 }
 
 // Of everything that the search depends on.
@@ -208,9 +24,9 @@ std::string fingerprint_of(const ExplainSetup& setup) {
   for (const FieldSeries& series : setup.series)
     for (const FieldSnapshot& snapshot : series.snapshots) {
       Json points = Json::array();
-      for (const Point& x : snapshot.points) points.push_back(json_of(Vec(x)));
-      all["data"].push_back({series.vesicle, snapshot.time, points, json_of(snapshot.values),
-                             json_of(snapshot.deviation)});
+      for (const Point& x : snapshot.points) points.push_back(numbers_of(x));
+      all["data"].push_back({series.vesicle, snapshot.time, points, numbers_of(snapshot.values),
+                             numbers_of(snapshot.deviation)});
     }
   return sha256(all.dump());
 }
@@ -227,45 +43,13 @@ std::optional<SearchState> SearchFile::load() const {
       throw InputError("--out: " + path_.parent_path().string() +
                        " holds a search of other data, another model or other settings; choose "
                        "another folder");
-    SearchState state;
-    state.more = json.at("more");
-    state.noise = json.at("noise").get<std::vector<std::vector<double>>>();
-    Explanation& found = state.so_far;
-    found.finding = finding_of(json.at("finding"));
-    found.equivalent = json.at("equivalent").get<std::vector<std::string>>();
-    found.base = refit_of(json.at("base"));
-    found.found = refit_of(json.at("found"));
-    for (const Json& round : json.at("rounds"))
-      found.rounds.push_back(round_of(round, setup_.request.base));
-    for (const Json& d : json.at("disagreements"))
-      found.disagreements.push_back(disagreement_of(d));
-    for (const Json& change : json.at("changes")) found.changes.push_back(change_of(change));
-    found.stopped = json.at("stopped");
-    found.base_maps = maps_of(json.at("base_maps"));
-    found.found_maps = maps_of(json.at("found_maps"));
-    return std::optional(state);
+    return std::optional(search_from(json, setup_.request.base));
   });
 }
 
 void SearchFile::save(const SearchState& state) const {
-  const Explanation& found = state.so_far;
-  Json rounds = Json::array(), disagreements = Json::array(), changes = Json::array();
-  for (const Round& round : found.rounds) rounds.push_back(json_of(round));
-  for (const Disagreement& d : found.disagreements) disagreements.push_back(json_of(d));
-  for (const FrameChange& change : found.changes) changes.push_back(json_of(change));
-  const Json json = {{"fingerprint", fingerprint_},
-                     {"more", state.more},
-                     {"noise", state.noise},
-                     {"finding", word_for(found.finding)},
-                     {"equivalent", found.equivalent},
-                     {"base", json_of(found.base)},
-                     {"found", json_of(found.found)},
-                     {"rounds", rounds},
-                     {"disagreements", disagreements},
-                     {"changes", changes},
-                     {"stopped", found.stopped},
-                     {"base_maps", json_of(found.base_maps)},
-                     {"found_maps", json_of(found.found_maps)}};
+  Json json = search_json(state);
+  json["fingerprint"] = fingerprint_;
   write_durably(path_, json.dump() + "\n");
 }
 

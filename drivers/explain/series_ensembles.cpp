@@ -13,7 +13,8 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/effects/effects.hpp"
-#include "verification/explain/blind_case.hpp"
+#include "verification/explain/candidates.hpp"
+#include "verification/explain/effect_size.hpp"
 
 namespace traceraft {
 namespace {

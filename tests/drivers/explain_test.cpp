@@ -8,6 +8,7 @@
 #include "kernel/physics/units.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "verification/bench.hpp"
 #include "verification/explain/blind_case.hpp"
 
 namespace traceraft {

@@ -5,6 +5,8 @@
 
 #include "kernel/core/error.hpp"
 #include "verification/explain/blind_case.hpp"
+#include "verification/explain/candidates.hpp"
+#include "verification/explain/effect_size.hpp"
 
 namespace traceraft {
 namespace {

@@ -5,12 +5,15 @@
 #include <limits>
 
 #include "verification/bench.hpp"
+#include "verification/explain/curvature_contrast.hpp"
 
 namespace traceraft {
 namespace {
 
 // Of parameters that are lengths and are not looked for: R.
 constexpr double kLength = 1;
+// Contrast of the curvature, below which it sorts nothing.
+constexpr double kCurved = 0.05;
 
 // The strength is the only coefficient; the other parameters keep their defaults.
 Candidate by_strength(const std::string& effect, double step, bool two_sided) {
@@ -76,6 +79,21 @@ std::optional<Candidate> find_candidate(const std::string& effect) {
   for (const Candidate& candidate : candidates())
     if (candidate.effect == effect) return candidate;
   return {};
+}
+
+std::vector<Candidate> candidates_for(const CahnHilliardModel& base, const LevelSet& surface,
+                                      const std::vector<Point>& places,
+                                      const std::vector<std::string>& without) {
+  const bool curved = curvature_contrast(surface, places) > kCurved;
+  std::vector<Candidate> result;
+  for (const Candidate& candidate : candidates()) {
+    const bool left_out =
+        std::find(without.begin(), without.end(), candidate.effect) != without.end();
+    const bool fits = has_unit_wells(base) || !effects().find(candidate.effect).unit_wells;
+    if (!left_out && fits && (curved || candidate.effect != "curvature"))
+      result.push_back(candidate);
+  }
+  return result;
 }
 
 std::vector<EffectTerm> Hypothesis::terms() const {

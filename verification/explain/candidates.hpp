@@ -33,6 +33,13 @@ struct Candidate {
 std::vector<Candidate> candidates();
 std::optional<Candidate> find_candidate(const std::string& effect);
 
+// Those that a model on a surface may lack, near `places`, but for effects that are not to be
+// looked for. On a mesh even a sphere is curved differently from place to place, in a pattern that
+// resembles nothing but is not noise: where curvature hardly varies it is none of them.
+std::vector<Candidate> candidates_for(const CahnHilliardModel& base, const LevelSet& surface,
+                                      const std::vector<Point>& places,
+                                      const std::vector<std::string>& without);
+
 // Effects with coefficients: what is held to be missing in a model.
 struct Hypothesis {
   struct Part {

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "verification/explain/curvature_contrast.hpp"
+#include "verification/explain/first_pace.hpp"
 #include "verification/explain/neighbours.hpp"
+#include "verification/explain/noise_levels.hpp"
 #include "verification/explain/shortlist.hpp"
 
 namespace traceraft {
@@ -20,65 +21,14 @@ constexpr int kMostMoves = 3;
 constexpr double kMapWidth = 2;
 // Beyond that many standard deviations a snapshot is said to be turned or scaled.
 constexpr double kChanged = 3;
-// Deviations that snapshots state are believed, relative to each other, as far as that factor.
-constexpr double kBelieved = 1.25;
-// Contrast of the curvature, below which it sorts nothing.
-constexpr double kCurved = 0.05;
-
-// Of c, without the noise.
-double deviation_of(const FilterProblems& data, double noise) {
-  double sum = 0, squares = 0, count = 0;
-  for (const FilterProblem& vesicle : data)
-    for (const FieldSnapshot& snapshot : vesicle.series.snapshots) {
-      sum += snapshot.values.sum();
-      squares += snapshot.values.squaredNorm();
-      count += static_cast<double>(snapshot.values.size());
-    }
-  return std::sqrt(std::max(0.0, squares / count - sum * sum / (count * count) - noise * noise));
-}
-
-// On a mesh even a sphere is curved differently from place to place, in a pattern that resembles
-// nothing but is not noise.
-std::vector<Candidate> candidates_of(const ExplainRequest& request, const FilterProblems& data) {
-  const auto& places = data.front().space->surface.position;
-  const bool curved = curvature_contrast(*request.surface, places) > kCurved;
-  std::vector<Candidate> result;
-  for (const Candidate& candidate : candidates()) {
-    const bool left_out = std::find(request.without.begin(), request.without.end(),
-                                    candidate.effect) != request.without.end();
-    const bool fits = has_unit_wells(request.base) || !effects().find(candidate.effect).unit_wells;
-    if (!left_out && fits && (curved || candidate.effect != "curvature"))
-      result.push_back(candidate);
-  }
-  return result;
-}
-
-// From the noise of each snapshot but the first, whose own nobody knows; `train` of all count.
-std::vector<double> believed(const std::vector<double>& own, std::size_t train) {
-  const std::vector<double> counting(own.begin(),
-                                     own.begin() + static_cast<std::ptrdiff_t>(train) - 1);
-  std::vector<double> sorted = counting;
-  std::sort(sorted.begin(), sorted.end());
-  const double usual = sorted[sorted.size() / 2];
-  double squares = 0, count = 0;
-  for (const double noise : counting)
-    if (noise < kBelieved * usual && noise > usual / kBelieved) {
-      squares += noise * noise;
-      ++count;
-    }
-  const double common = std::sqrt(squares / count);
-  std::vector<double> result{common};
-  for (const double noise : own)
-    result.push_back(noise < kBelieved * usual && noise > usual / kBelieved ? common : noise);
-  return result;
-}
 
 class Search {
  public:
   Search(const std::vector<FieldSeries>& series, const ExplainRequest& request)
       : request_(request),
         data_(problems_of(series, request)),
-        candidates_(candidates_of(request, data_)),
+        candidates_(candidates_for(request.base, *request.surface,
+                                   data_.front().space->surface.position, request.without)),
         model_{request.base, 1, {}, candidates_} {}
 
   Explanation run(const std::optional<SearchState>& saved) {
@@ -88,7 +38,7 @@ class Search {
       go_on_from(*saved);
     } else {
       tell("pace of the base model");
-      fit_pace();
+      model_.pace = first_pace(data_, request_.base, request_.filter);
     }
     while (more) {
       more = look_for_one();
@@ -168,36 +118,8 @@ class Search {
         names.push_back(fit.hypothesis.name());
   }
 
-  // With nothing missing, from a filter of a few directions.
-  void fit_pace() {
-    FilterSettings rough = request_.filter;
-    rough.rank = 80;
-    rough.replicates = 0;
-    rough.tangent_steps = 2;
-    FilterModel model{request_.base, 1, {}, {}};
-    std::vector<ErrorMaps> maps;
-    for (int k = 0; k < 5; ++k) {
-      const FilterResult pass = filter_fields(data_, model, rough, maps);
-      const double step = std::clamp(screen(pass, {}, {}).pace_change, -0.7, 0.7);
-      model.pace *= std::exp(step);
-      if (std::fabs(step) < 0.02) break;
-    }
-    model_.pace = model.pace;
-  }
-
-  // The noise that the innovations have is that of the measurements: one for all of a vesicle's
-  // snapshots, in units of the deviations that they state, but for those that state them wrongly.
-  void fit_noise(const FilterResult& pass) {
-    std::vector<std::vector<double>> own(data_.size());
-    for (const Innovation& in : pass.innovations) {
-      const double squares = in.weighted_squares / static_cast<double>(in.values.size());
-      own[in.vesicle].push_back(data_[in.vesicle].noise[in.snapshot] * std::sqrt(squares));
-    }
-    for (FilterProblem& data : data_) data.noise = believed(own[data.vesicle], data.train);
-  }
-
   FilterResult first_pass() {
-    fit_noise(filter_fields(data_, model_, request_.filter, maps_));
+    fit_noise(data_, filter_fields(data_, model_, request_.filter, maps_));
     FilterResult pass = filter_fields(data_, model_, request_.filter, maps_);
     result_.disagreements = disagreements(data_, pass, request_.base.well);
     result_.disagreements.resize(significant(result_.disagreements, request_.false_alarms));
@@ -210,7 +132,7 @@ class Search {
   // With what was found last: errors of states and of the mesh are those of the model that has it.
   FilterResult next_pass() {
     maps_ = {};
-    fit_noise(filter_fields(data_, model_, request_.filter, maps_));
+    fit_noise(data_, filter_fields(data_, model_, request_.filter, maps_));
     set_found(refit(data_, model_, request_.filter, maps_));
     FilterResult pass = filter_fields(data_, model_, request_.filter, maps_);
     bootstrap(pass, model_, result_.found);
@@ -289,8 +211,7 @@ class Search {
   }
 
   bool take(const Round& round) {
-    const double usual_change =
-        kUsualChange * deviation_of(data_, noise_of(data_)) / noise_of(data_);
+    const double usual_change = kUsualChange * contrast_of(data_) / noise_of(data_);
     const Judgement judgement = judge(round, values(), request_.false_alarms, usual_change);
     if (!judgement.taken) {
       // What could not be told apart before cannot be now.
@@ -334,17 +255,6 @@ class Search {
 FilterProblems problems_of(const std::vector<FieldSeries>& series, const ExplainRequest& request) {
   return make_filter_problems(series, *request.surface, request.base, request.cells,
                               request.threads, request.hold_out, request.filter);
-}
-
-double noise_of(const FilterProblems& problems) {
-  double squares = 0, count = 0;
-  for (const FilterProblem& data : problems)
-    for (std::size_t k = 0; k < data.train; ++k) {
-      const Vec& deviation = data.snapshots[k].deviation;
-      squares += data.noise[k] * data.noise[k] * deviation.squaredNorm();
-      count += static_cast<double>(deviation.size());
-    }
-  return std::sqrt(squares / count);
 }
 
 Explanation explain_fields(const std::vector<FieldSeries>& series, const ExplainRequest& request,

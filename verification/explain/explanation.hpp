@@ -81,7 +81,6 @@ struct SearchState {
 };
 
 FilterProblems problems_of(const std::vector<FieldSeries>& series, const ExplainRequest& request);
-double noise_of(const FilterProblems& data);  // root mean square over the values that count
 
 // Vesicles of one radius and one membrane. Throws std::runtime_error if the base model cannot be
 // advanced.

@@ -83,8 +83,7 @@ FieldPrior clean(const FieldSeries& series, const DoubleWell& well, FilterProble
     dropped = 0;
     for (std::size_t k = 0; k < data.snapshots.size(); ++k) {
       const FieldEstimate here = estimate_field(*data.space, data.snapshots[k], prior, {});
-      if (k < data.train)
-        squares += here.noise * here.noise / static_cast<double>(data.train);
+      if (k < data.train) squares += here.noise * here.noise / static_cast<double>(data.train);
       if (pass < kMostPasses)
         dropped += drop_outliers(data.snapshots[k].trace * here.field,
                                  kOutlying * (well.b - well.a), data.series.snapshots[k]);

@@ -7,17 +7,9 @@
 #include <vector>
 
 #include "verification/explain/judgement.hpp"
-#include "verification/series/series_fit.hpp"
+#include "verification/series/series_gains.hpp"
 
 namespace traceraft {
-
-// Simulated vesicles that differ in their seeds, the same seeds in all ensembles.
-struct SeriesCandidate {
-  std::string effect;
-  double strength;  // of its first parameter, with its sign
-  bool two_sided;
-  std::vector<History> runs;  // in units of R²/D
-};
 
 struct SeriesRequest {
   UnitRange unit;              // R²/D of the model, and the factor within which D is known

@@ -1,0 +1,14 @@
+// The state of a search as JSON: everything that it goes on from, at full precision.
+#pragma once
+
+#include "drivers/output/json_file.hpp"
+#include "verification/explain/explanation.hpp"
+
+namespace traceraft {
+
+Json search_json(const SearchState& state);
+// Of a search with that base model. Throws IoError for unknown names, and what the JSON library
+// throws for anything else that is not a search.
+SearchState search_from(const Json& json, const CahnHilliardModel& base);
+
+}  // namespace traceraft

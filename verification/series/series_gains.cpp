@@ -1,0 +1,91 @@
+#include "verification/series/series_gains.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/core/random.hpp"
+#include "verification/measure/fit.hpp"
+
+namespace traceraft {
+namespace {
+
+// Streams of random numbers.
+enum SeriesStream : std::uint64_t { kRunOf = 1, kVesicle = 2, kLook = 3, kSample = 4, kStated = 5 };
+
+// The same looks at vesicles of the base model, one run each.
+MeasuredVesicles draw_base(const MeasuredVesicles& data, const std::vector<History>& runs,
+                           const SeriesFit& fit, std::uint64_t replicate) {
+  MeasuredVesicles drawn_data = data;
+  std::uint64_t vesicle = 0, look = 0;
+  for (const auto& [first, last] : data.vesicles()) {
+    const History& run = runs[static_cast<std::size_t>(
+        random_index(static_cast<int>(runs.size()), replicate, kRunOf, vesicle))];
+    for (std::size_t i = first; i < last; ++i)
+      for (const Quantity quantity : kQuantities) {
+        const auto q = static_cast<std::size_t>(quantity);
+        ++look;
+        if (!data.measurements[i].of(quantity)) continue;
+        const double t = data.measurements[i].time / std::exp(fit.ln_unit);
+        const double stated =
+            data.measurements[i].sigma_of(quantity) / *data.measurements[i].of(quantity);
+        const double own =
+            stated * normal_random(replicate, kStated, look) +
+            fit.scatter.vesicle[q] * normal_random(replicate, kVesicle, 3 * vesicle + q) +
+            fit.scatter.look[q] * normal_random(replicate, kLook, look);
+        const double value = std::exp(logarithm_of(quantity, run.at(quantity, t)) + own);
+        drawn_data.measurements[i].values[q] =
+            quantity == Quantity::rafts ? std::max(1.0, std::round(value)) : value;
+      }
+    ++vesicle;
+  }
+  return drawn_data;
+}
+
+}  // namespace
+
+SeriesCurves::SeriesCurves(const std::vector<History>& runs,
+                           const std::vector<SeriesCandidate>& candidates,
+                           const std::vector<int>& sample)
+    : base(runs, sample) {
+  for (const SeriesCandidate& candidate : candidates) changed.emplace_back(candidate.runs, sample);
+}
+
+SeriesGains gains_of(const MeasuredVesicles& data, const SeriesCurves& curves,
+                     const std::vector<SeriesCandidate>& candidates, const UnitRange& unit) {
+  const std::vector<SeriesBlock> blocks = blocks_of(data);
+  SeriesGains gains;
+  gains.base = fit_series(blocks, {&curves.base}, unit);
+  gains.trend = trend_left(blocks, {&curves.base}, gains.base);
+  gains.values.resize(static_cast<Eigen::Index>(candidates.size()));
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    gains.fits.push_back(fit_series(
+        blocks, {&curves.base, &curves.changed[k], candidates[k].two_sided}, unit, gains.base));
+    gains.values[static_cast<Eigen::Index>(k)] =
+        std::max(0.0, gains.base.deviance - gains.fits[k].deviance);
+  }
+  return gains;
+}
+
+// Data of the base model, fitted with curves of resampled runs, which hold a third of the runs
+// that data come from not at all and others more than once.
+SeriesNull null_of(const MeasuredVesicles& data, const std::vector<History>& runs,
+                   const std::vector<SeriesCandidate>& candidates, const SeriesFit& fit,
+                   const UnitRange& unit, int replicates) {
+  SeriesNull result;
+  const auto count = static_cast<Eigen::Index>(candidates.size());
+  Eigen::MatrixXd gained(replicates, count);
+  result.trend.resize(replicates);
+  for (int r = 0; r < replicates; ++r) {
+    const auto replicate = static_cast<std::uint64_t>(r + 1);
+    const std::vector<int> sample = resample(static_cast<int>(runs.size()), replicate, kSample);
+    const SeriesGains gains = gains_of(draw_base(data, runs, fit, replicate),
+                                       {runs, candidates, sample}, candidates, unit);
+    gained.row(r) = gains.values.transpose();
+    result.trend[r] = gains.trend;
+  }
+  result.mean = gained.colwise().mean().transpose().cwiseMax(0.5);
+  result.highest = (gained * result.mean.cwiseInverse().asDiagonal()).rowwise().maxCoeff();
+  return result;
+}
+
+}  // namespace traceraft

@@ -1,0 +1,50 @@
+// How much better each effect explains series than the model without it, and how much of that is to
+// be expected of vesicles that lack nothing.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "verification/series/series_fit.hpp"
+
+namespace traceraft {
+
+// Simulated vesicles that differ in their seeds, the same seeds in all ensembles.
+struct SeriesCandidate {
+  std::string effect;
+  double strength;  // of its first parameter, with its sign
+  bool two_sided;
+  std::vector<History> runs;  // in units of R²/D
+};
+
+// The means of all runs, or of a sample of them.
+struct SeriesCurves {
+  RunCurves base;
+  std::vector<RunCurves> changed;  // with each candidate
+
+  SeriesCurves(const std::vector<History>& runs, const std::vector<SeriesCandidate>& candidates,
+               const std::vector<int>& sample);
+};
+
+struct SeriesGains {
+  SeriesFit base;
+  std::vector<SeriesFit> fits;  // with each candidate
+  Vec values;                   // 2 ln of the likelihood ratios
+  double trend;                 // left of the base
+};
+SeriesGains gains_of(const MeasuredVesicles& data, const SeriesCurves& curves,
+                     const std::vector<SeriesCandidate>& candidates, const UnitRange& unit);
+
+// The same of data that the base model would give.
+struct SeriesNull {
+  Vec mean;     // of each candidate's gain, half a unit at least
+  Vec highest;  // of each replicate: the largest gain over its mean
+  Vec trend;    // of each replicate: what is left of the base
+};
+// `fit`: of the base model to the data.
+SeriesNull null_of(const MeasuredVesicles& data, const std::vector<History>& runs,
+                   const std::vector<SeriesCandidate>& candidates, const SeriesFit& fit,
+                   const UnitRange& unit, int replicates);
+
+}  // namespace traceraft
