@@ -137,7 +137,12 @@ TEST_F(ExplainTest, GoesOnWhereItWasKilled) {
   ASSERT_EQ(end.code, 0) << end.output;
   EXPECT_NE(end.output.find("what was found before"), std::string::npos) << end.output;
   EXPECT_EQ(end.output.find("pace of the base model"), std::string::npos) << end.output;
+  EXPECT_NE(end.output.find("once more"), std::string::npos) << end.output;
   const nlohmann::json resumed = verdict();
+  // A search that is over is only told again.
+  const auto again = testing::traceraft(command_of_few(kCells));
+  EXPECT_EQ(again.output.find("once more"), std::string::npos) << again.output;
+  EXPECT_EQ(verdict(), resumed);
   fs::remove_all(folder.path / "out");
   ASSERT_EQ(testing::traceraft(command_of_few(kCells)).code, 0);
   const nlohmann::json whole = verdict();

@@ -8,6 +8,12 @@
 #include "verification/explain/free_parameters.hpp"
 
 namespace traceraft {
+
+double share_of_noise(const Vec& replicates, double value) {
+  const auto beyond = (replicates.array() >= value).count();
+  return static_cast<double>(beyond + 1) / static_cast<double>(replicates.size() + 1);
+}
+
 namespace {
 
 using Indices = std::vector<Eigen::Index>;
@@ -106,81 +112,92 @@ double both(double p, double q) {
   return p * q * (1 - std::log(p * q));
 }
 
-}  // namespace
+// The scores of all candidates, for what was measured and for noise.
+class Scores {
+ public:
+  Scores(const FilterResult& result, const std::vector<Candidate>& screened,
+         const Hypothesis& known, const Indices& nuisances)
+      : result_(result), screened_(screened), nuisances_(nuisances) {
+    const Eigen::MatrixXd& F = result.information;
+    Eigen::Index next = kFirstParameter + known.coefficients();
+    for (const Candidate& candidate : screened) {
+      Indices indices;
+      for (int d = 0; d < candidate.directions; ++d) indices.push_back(next++);
+      own_.push_back({indices, Profile(F, nuisances, indices), seen_ones(F, nuisances, indices)});
+    }
+    const Eigen::Index replicates = result.null_scores.cols();
+    Eigen::MatrixXd null(replicates, static_cast<Eigen::Index>(screened.size()));
+    for (Eigen::Index r = 0; r < replicates; ++r)
+      for (std::size_t k = 0; k < screened.size(); ++k)
+        null(r, static_cast<Eigen::Index>(k)) = gain(k, result.null_scores.col(r)).score;
+    if (screened.empty()) return;
+    // An effect that is seen no better than noise would be must not look certain.
+    null_mean_ = null.colwise().mean().transpose().cwiseMax(0.5);
+    highest_ = (null * null_mean_.cwiseInverse().asDiagonal()).rowwise().maxCoeff();
+  }
 
-double share_of_noise(const Vec& replicates, double value) {
-  const auto beyond = (replicates.array() >= value).count();
-  return static_cast<double>(beyond + 1) / static_cast<double>(replicates.size() + 1);
-}
+  CandidateScore of(std::size_t k) const {
+    const Gain found = gain(k, result_.score);
+    const double mean = null_mean_[static_cast<Eigen::Index>(k)];
+    const Eigen::MatrixXd covariance = covariance_of(own_[k].profile.information, own_[k].seen);
+    double resolution = std::numeric_limits<double>::infinity();
+    for (const Eigen::Index d : own_[k].seen)
+      resolution = std::min(
+          resolution, response(k, std::sqrt(covariance(d, d)) * Vec::Unit(covariance.rows(), d)));
+    return {screened_[k].effect,
+            {found.coefficients.data(), found.coefficients.data() + found.coefficients.size()},
+            found.score,
+            mean,
+            share_of_noise(highest_, found.score / mean),
+            response(k, found.coefficients),
+            covariance,
+            resolution};
+  }
+
+ private:
+  Gain gain(std::size_t k, const Vec& score) const {
+    const Own& own = own_[k];
+    const Vec u = score(own.indices) - own.profile.projection * score(nuisances_);
+    return most_gain(own.profile.information, u, own.seen, screened_[k].two_sided);
+  }
+  double response(std::size_t k, const Vec& coefficients) const {
+    return root_mean_square(result_.innovations, false, [&](const Innovation& in) {
+      return (in.parameters(Eigen::all, own_[k].indices) * coefficients).squaredNorm();
+    });
+  }
+
+  const FilterResult& result_;
+  const std::vector<Candidate>& screened_;
+  const Indices& nuisances_;
+  std::vector<Own> own_;
+  Vec null_mean_;  // of each candidate
+  Vec highest_;    // of each replicate: the largest score over its candidate's mean
+};
+
+}  // namespace
 
 Screening screen(const FilterResult& result, const std::vector<Candidate>& screened,
                  const Hypothesis& known) {
-  const Eigen::MatrixXd& F = result.information;
   const Indices nuisances = free_parameters(result, known);
-  std::vector<Own> own;
-  for (Eigen::Index next = kFirstParameter + known.coefficients(), k = 0;
-       k < static_cast<Eigen::Index>(screened.size()); ++k) {
-    Indices indices;
-    for (int d = 0; d < screened[k].directions; ++d) indices.push_back(next++);
-    own.push_back({indices, Profile(F, nuisances, indices), seen_ones(F, nuisances, indices)});
-  }
-  const auto gain = [&](std::size_t k, const Vec& score) {
-    const Vec u = score(own[k].indices) - own[k].profile.projection * score(nuisances);
-    return most_gain(own[k].profile.information, u, own[k].seen, screened[k].two_sided);
-  };
-
-  const Eigen::Index replicates = result.null_scores.cols();
-  Eigen::MatrixXd null(replicates, static_cast<Eigen::Index>(screened.size()));
-  for (Eigen::Index r = 0; r < replicates; ++r)
-    for (std::size_t k = 0; k < screened.size(); ++k)
-      null(r, static_cast<Eigen::Index>(k)) = gain(k, result.null_scores.col(r)).score;
-  // An effect that is seen no better than noise would be must not look certain.
-  const Vec average = null.colwise().mean().transpose().cwiseMax(0.5);
-  const Vec highest = screened.empty()
-                          ? Vec(0)
-                          : Vec((null * average.cwiseInverse().asDiagonal()).rowwise().maxCoeff());
-
-  const auto all_values = [&](const auto& squares) {
-    return root_mean_square(result.innovations, false, squares);
-  };
-  const auto response = [&](std::size_t k, const Vec& coefficients) {
-    return all_values([&](const Innovation& in) {
-      return (in.parameters(Eigen::all, own[k].indices) * coefficients).squaredNorm();
-    });
-  };
+  const Scores scores(result, screened, known, nuisances);
   Screening screening;
   for (std::size_t k = 0; k < screened.size(); ++k) {
-    const Gain found = gain(k, result.score);
-    const double mean = average[static_cast<Eigen::Index>(k)];
-    const Eigen::MatrixXd covariance = covariance_of(own[k].profile.information, own[k].seen);
-    const double p = share_of_noise(highest, found.score / mean);
-    screening.p = std::min(screening.p, p);
-    double resolution = std::numeric_limits<double>::infinity();
-    for (const Eigen::Index d : own[k].seen)
-      resolution = std::min(
-          resolution, response(k, std::sqrt(covariance(d, d)) * Vec::Unit(covariance.rows(), d)));
-    screening.scores.push_back(
-        {screened[k].effect,
-         {found.coefficients.data(), found.coefficients.data() + found.coefficients.size()},
-         found.score,
-         mean,
-         p,
-         response(k, found.coefficients),
-         covariance,
-         resolution});
+    screening.scores.push_back(scores.of(k));
+    screening.p = std::min(screening.p, screening.scores.back().p);
   }
+  std::sort(screening.scores.begin(), screening.scores.end(),
+            [](const auto& a, const auto& b) { return a.score > b.score; });
   screening.train_gap_p = gap_probability(result, result.gap_parts, nuisances);
   screening.heldout_gap_p = gap_probability(result, result.heldout_gap_parts, nuisances);
   screening.gap_p = result.heldout_gap_parts.empty()
                         ? screening.train_gap_p
                         : both(screening.train_gap_p, screening.heldout_gap_p);
-  screening.mesh_error =
-      all_values([](const Innovation& in) { return in.parameters.col(kMeshError).squaredNorm(); });
-  const Eigen::MatrixXd inverse = F(nuisances, nuisances).inverse();
+  screening.mesh_error = root_mean_square(result.innovations, false, [](const Innovation& in) {
+    return in.parameters.col(kMeshError).squaredNorm();
+  });
+  const Eigen::MatrixXd inverse = result.information(nuisances, nuisances).inverse();
   screening.pace_change = (inverse * result.score(nuisances))[kPace];
   screening.pace_deviation = std::sqrt(inverse(kPace, kPace));
-  std::sort(screening.scores.begin(), screening.scores.end(),
-            [](const auto& a, const auto& b) { return a.score > b.score; });
   return screening;
 }
 
