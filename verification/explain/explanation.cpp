@@ -53,6 +53,14 @@ class Search {
     if (request_.progress) request_.progress(step);
   }
 
+  std::vector<Refit> refit_all(const std::vector<FilterModel>& trials) const {
+    return refit_each(data_, trials, request_.filter, maps_, [&](const Refit& fit) {
+      const double gained = result_.found.deviance - fit.deviance;
+      tell("  " + fit.hypothesis.name() +
+           (fit.failure.empty() ? " gains " + std::to_string(std::lround(gained)) : " fails"));
+    });
+  }
+
   void save(bool more) const {
     if (!request_.save) return;
     SearchState state{result_, {}, more};
@@ -86,7 +94,7 @@ class Search {
         trials.push_back(model_);
         trials.back().hypothesis = std::move(near);
       }
-      const std::vector<Refit> fits = refit_each(data_, trials, request_.filter, maps_);
+      const std::vector<Refit> fits = refit_all(trials);
       const Refit* best = move < kMostMoves ? better_one(fits) : nullptr;
       if (best == nullptr) {
         add_equivalent(fits);
@@ -184,13 +192,13 @@ class Search {
   }
 
   void refit_shortlist(Round& round) const {
-    tell("refits");
+    tell("refits: 2 ln of the likelihood ratio that an effect gains");
     std::vector<FilterModel> trials;
     for (Hypothesis::Part& part : shortlist(round.screening, request_.shortlist)) {
       trials.push_back(model_);
       trials.back().hypothesis.parts.push_back(std::move(part));
     }
-    for (Refit& fit : refit_each(data_, trials, request_.filter, maps_))
+    for (Refit& fit : refit_all(trials))
       if (fit.failure.empty())
         round.refits.push_back(std::move(fit));
       else

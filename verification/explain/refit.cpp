@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <stdexcept>
 
 #include "verification/explain/free_parameters.hpp"
@@ -227,13 +228,22 @@ Refit refit(const FilterProblems& data, const FilterModel& start, const FilterSe
 }
 
 std::vector<Refit> refit_each(const FilterProblems& data, const std::vector<FilterModel>& starts,
-                              const FilterSettings& settings, const std::vector<ErrorMaps>& maps) {
-  if (starts.size() == 1) return {refit(data, starts[0], settings, maps)};
+                              const FilterSettings& settings, const std::vector<ErrorMaps>& maps,
+                              const std::function<void(const Refit&)>& done) {
   std::vector<Refit> refits(starts.size());
+  std::mutex one_at_a_time;
+  const auto fit = [&](std::size_t k) {
+    refits[k] = refit(data, starts[k], settings, maps);
+    const std::lock_guard lock(one_at_a_time);
+    done(refits[k]);
+  };
+  if (starts.size() == 1) {
+    fit(0);  // which uses all processors itself
+    return refits;
+  }
   std::atomic<std::size_t> next{0};
   data.front().team->run([&](int) {
-    for (std::size_t k = next++; k < starts.size(); k = next++)
-      refits[k] = refit(data, starts[k], settings, maps);
+    for (std::size_t k = next++; k < starts.size(); k = next++) fit(k);
   });
   return refits;
 }

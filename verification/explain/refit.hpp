@@ -2,6 +2,7 @@
 // the model that has the effects.
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "verification/explain/field_filter.hpp"
@@ -53,9 +54,10 @@ Gaps expected_gaps(const FilterResult& pass);  // if nothing is missing
 Refit refit(const FilterProblems& data, const FilterModel& start, const FilterSettings& settings,
             const std::vector<ErrorMaps>& maps);
 
-// Of many, on all processors, in their order.
+// Of many, on all processors, in their order. `done` is called after each, one at a time.
 std::vector<Refit> refit_each(const FilterProblems& data, const std::vector<FilterModel>& starts,
-                              const FilterSettings& settings, const std::vector<ErrorMaps>& maps);
+                              const FilterSettings& settings, const std::vector<ErrorMaps>& maps,
+                              const std::function<void(const Refit&)>& done);
 
 // The covariance that the replicates of a pass with the (refitted) model have, to first order: a
 // parametric bootstrap.
