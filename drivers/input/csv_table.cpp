@@ -62,6 +62,15 @@ void refuse_row_as_remark(const std::filesystem::path& path, const Rows& rows,
                      "a row to leave out has to be deleted");
 }
 
+// As spreadsheets of many countries write tables, with commas within numbers.
+void refuse_other_separators(const std::string& where, const std::vector<std::string>& columns) {
+  if (columns.size() != 1) return;
+  for (const auto& [separator, name] : {std::pair{';', "semicolons"}, std::pair{'\t', "tabs"}})
+    if (columns.front().find(separator) != std::string::npos)
+      throw InputError(where + ": columns are separated by " + name +
+                       "; commas are needed (and points in numbers)");
+}
+
 // Line by line, so that every row knows where it stands.
 Rows parse(const std::filesystem::path& path, std::string text) {
   if (text.compare(0, 3, "\xEF\xBB\xBF") == 0) text.erase(0, 3);  // as spreadsheets begin
@@ -94,6 +103,7 @@ CsvTable CsvTable::read(const std::filesystem::path& path) {
   if (rows.rows.empty()) throw InputError(path.string() + ": the file is empty");
   table.columns_ = std::move(rows.rows.front());
   table.heading_line_ = rows.lines.front();
+  refuse_other_separators(table.heading(), table.columns_);
   for (std::size_t i = 0; i < table.columns_.size(); ++i)
     if (table.index(table.columns_[i]) != i)
       throw InputError(table.heading() + ": two columns are called '" + table.columns_[i] + "'");

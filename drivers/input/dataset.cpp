@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "backends/posix/durable_file.hpp"
+#include "drivers/input/field_dataset.hpp"
 #include "drivers/input/measured_units.hpp"
 #include "drivers/input/measurement_rows.hpp"
 #include "drivers/input/toml_table.hpp"
@@ -34,7 +35,7 @@ struct Dataset {
 };
 
 Dataset read_description(const fs::path& folder) {
-  if (fs::exists(folder / "snapshot_001.csv"))
+  if (holds_fields(folder))
     throw InputError(folder.string() + " holds measured fields, which are for --data of explain");
   const TomlTable toml =
       TomlTable::read(folder / "dataset.toml",

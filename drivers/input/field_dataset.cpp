@@ -63,8 +63,12 @@ std::string snapshot_file(std::size_t number) {
   return formatted("snapshot_%03zu.csv", number);
 }
 
+bool holds_fields(const fs::path& folder) {
+  return fs::exists(folder / snapshot_file(1));
+}
+
 FieldDataset read_field_dataset(const fs::path& folder) {
-  if (!fs::exists(folder / snapshot_file(1)) && fs::exists(folder / "measurements.csv"))
+  if (!holds_fields(folder) && fs::exists(folder / "measurements.csv"))
     throw InputError(folder.string() +
                      " holds series of vesicles, which are for --series of explain");
   const TomlTable toml = TomlTable::read(

@@ -15,6 +15,8 @@ struct FieldDataset {
   std::vector<FieldSeries> vesicles;  // times in s, places in units of the radius
 };
 
+bool holds_fields(const std::filesystem::path& folder);
+
 // Checks everything and converts units. Throws InputError with file, line and column for what is
 // missing, unknown or impossible.
 FieldDataset read_field_dataset(const std::filesystem::path& folder);

@@ -8,6 +8,7 @@
 #include "drivers/input/dataset.hpp"
 #include "drivers/input/facts_file.hpp"
 #include "drivers/run/run_folder.hpp"
+#include "drivers/vesicles/field_report.hpp"
 #include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
@@ -33,6 +34,11 @@ Window window_of(const std::string& text) {
 }
 
 int check(const DataRequest& request) {
+  if (holds_fields(request.folder)) {
+    const FieldDataset fields = read_field_dataset(request.folder);
+    if (!request.quiet) print_fields(fields);
+    return kSuccess;
+  }
   const MeasuredVesicles data = read_dataset(request.folder);
   const Window window = window_of(request.window);
   if (!request.quiet) print_dataset(data, fit_measurements(data, window), window);

@@ -62,6 +62,34 @@ TEST(DataTest, SaysWhereIntervalsOfALawAreOpen) {
   EXPECT_EQ(check([](double t) { return 10 * std::pow(t, -0.3); }).find(remark), std::string::npos);
 }
 
+// The same command for both kinds of measurements.
+TEST(DataTest, ChecksMeasuredFields) {
+  const testing::TemporaryFolder folder;
+  std::ofstream(folder.path / "dataset.toml")
+      << "name = \"half\"\nlength_unit = \"um\"\ntime_unit = \"min\"\nradius = 4\ntimes = [1, 2]\n";
+  for (const int snapshot : {1, 2}) {
+    std::ofstream table(folder.path / ("snapshot_00" + std::to_string(snapshot) + ".csv"));
+    table << "x,y,z,c\n";
+    for (int k = 0; k < 200; ++k) {  // a microscope may see no more than half of a vesicle
+      const double z = (k + 0.5) / 200, angle = 2.4 * k, r = std::sqrt(1 - z * z);
+      table << 4 * r * std::cos(angle) << "," << 4 * r * std::sin(angle) << "," << 4 * z << ","
+            << k % 2 << "\n";
+    }
+  }
+  const Outcome check = traceraft("data check " + folder.path.string());
+  ASSERT_EQ(check.code, 0) << check.output;
+  for (const char* part :
+       {"half: measured fields of 1 vesicle, R = 4 um", "120", "200", "not stated"})
+    EXPECT_NE(check.output.find(part), std::string::npos) << part << "\n" << check.output;
+  // Of the icosahedron's corners eight have z >= 0.
+  EXPECT_NE(check.output.find(" 8 "), std::string::npos) << check.output;
+  std::ofstream(folder.path / "snapshot_002.csv") << "x,y,z,c\n1,2,3,0.5\n";
+  const Outcome few = traceraft("data check " + folder.path.string());
+  EXPECT_EQ(few.code, 2);
+  EXPECT_NE(few.output.find("snapshot_002.csv: 1 points are too few"), std::string::npos)
+      << few.output;
+}
+
 TEST(DataTest, SaysWhereATableIsWrong) {
   const testing::TemporaryFolder folder;
   std::ofstream(folder.path / "dataset.toml")

@@ -43,6 +43,13 @@ TEST_F(CsvTableTest, EndsWithoutANewline) {
   EXPECT_EQ(read("t\n1\n2").numbers("t"), (std::vector<double>{1, 2}));
 }
 
+TEST_F(CsvTableTest, RefusesOtherSeparators) {
+  EXPECT_NE(complaint("a;b\n1,5;2\n").find("data.csv:1: columns are separated by semicolons"),
+            std::string::npos);
+  EXPECT_NE(complaint("a\tb\n1\t2\n").find("separated by tabs"), std::string::npos);
+  EXPECT_EQ(complaint("a,b;c\n1,2\n"), "");  // a name may hold one
+}
+
 TEST_F(CsvTableTest, SaysWhereItIsNoTable) {
   EXPECT_NE(complaint("").find("empty"), std::string::npos);
   EXPECT_NE(complaint("a,b\n1,2\n3\n").find("data.csv:3: 1 cells, but there are 2"),

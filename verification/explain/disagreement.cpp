@@ -10,7 +10,15 @@ namespace {
 constexpr int kFewestValues = 10;
 constexpr std::array<const char*, 3> kStates = {"outside rafts", "boundary", "inside rafts"};
 
-std::vector<Point> icosahedron() {
+// A quarter of the way from one well to the other counts as the boundary.
+std::size_t state_of(double forecast, const DoubleWell& well) {
+  const double share = (forecast - well.a) / (well.b - well.a);
+  return share < 0.25 ? 0 : share > 0.75 ? 2 : 1;
+}
+
+}  // namespace
+
+std::vector<Point> patch_middles() {
   const double g = (1 + std::sqrt(5.0)) / 2;
   std::vector<Point> corners;
   for (const double s : {-1.0, 1.0})
@@ -24,17 +32,16 @@ std::vector<Point> icosahedron() {
   return corners;
 }
 
-// A quarter of the way from one well to the other counts as the boundary.
-std::size_t state_of(double forecast, const DoubleWell& well) {
-  const double share = (forecast - well.a) / (well.b - well.a);
-  return share < 0.25 ? 0 : share > 0.75 ? 2 : 1;
+std::size_t nearest_patch(const std::vector<Point>& middles, const Point& x) {
+  return static_cast<std::size_t>(
+      std::max_element(middles.begin(), middles.end(),
+                       [&](const Point& a, const Point& b) { return a.dot(x) < b.dot(x); }) -
+      middles.begin());
 }
-
-}  // namespace
 
 std::vector<Disagreement> disagreements(const FilterProblems& data, const FilterResult& result,
                                         const DoubleWell& well) {
-  const std::vector<Point> corners = icosahedron();
+  const std::vector<Point> corners = patch_middles();
   std::vector<Disagreement> all;
   for (const Innovation& in : result.innovations) {
     const FieldSnapshot& snapshot = data[in.vesicle].series.snapshots[in.snapshot];
@@ -42,10 +49,8 @@ std::vector<Disagreement> disagreements(const FilterProblems& data, const Filter
     Columns member = Columns::Zero(in.values.size(), patches);
     for (Eigen::Index i = 0; i < in.values.size(); ++i) {
       const Point& x = snapshot.points[static_cast<std::size_t>(i)];
-      std::size_t nearest = 0;
-      for (std::size_t c = 1; c < corners.size(); ++c)
-        if (corners[c].dot(x) > corners[nearest].dot(x)) nearest = c;
-      const std::size_t patch = state_of(in.forecast[i], well) * corners.size() + nearest;
+      const std::size_t patch =
+          state_of(in.forecast[i], well) * corners.size() + nearest_patch(corners, x);
       member(i, static_cast<Eigen::Index>(patch)) = 1;
     }
     // eᵀ S⁻¹ ν against the same of noise.

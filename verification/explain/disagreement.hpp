@@ -10,6 +10,10 @@
 
 namespace traceraft {
 
+// Of twelve patches of a closed surface: the corners of an icosahedron, as unit vectors.
+std::vector<Point> patch_middles();
+std::size_t nearest_patch(const std::vector<Point>& middles, const Point& x);
+
 struct Disagreement {
   std::size_t vesicle;
   double time;
@@ -19,7 +23,7 @@ struct Disagreement {
   double p;           // of a |z| like that by noise, from the spread over the replicates
 };
 
-// All of 12 patches (around the corners of an icosahedron) × 3 states × snapshots, held out or not,
+// All of 12 patches × 3 states × snapshots, held out or not,
 // that hold at least 10 values, the most significant first.
 // `data`: what the result is of.
 std::vector<Disagreement> disagreements(const FilterProblems& data, const FilterResult& result,
