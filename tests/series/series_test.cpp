@@ -181,6 +181,49 @@ TEST(SeriesExplanation, SaysHowManyVesiclesItWouldTake) {
   for (const SeriesScore& score : few.scores) EXPECT_GT(score.vesicles, 3) << score.effect;
 }
 
+// An effect is seen in nine cases of ten, at the ensemble's strength, if that is four standard
+// deviations: bounds shrink with the square root of the number of vesicles.
+TEST(SeriesExplanation, CountsVesiclesByTheBoundsOfTheirEffect) {
+  const SeriesExplanation found = explained(measured({}, 15, 0.05, 1));
+  const auto drawn = candidates();
+  for (const SeriesScore& score : found.scores) {
+    const auto candidate = std::find_if(drawn.begin(), drawn.end(), [&](const auto& c) {
+      return c.effect == score.effect && c.two_sided;
+    });
+    if (candidate == drawn.end()) continue;
+    const double deviation = (score.high - score.low) / 2 / 1.96 / candidate->strength;
+    EXPECT_NEAR(score.vesicles, 15 * 16 * deviation * deviation, 0.25 * score.vesicles)
+        << score.effect;
+  }
+}
+
+// Classes that are nearly as probable as the best one are named with what would tell them apart.
+TEST(SeriesExplanation, SaysWhatWouldTellClassesApart) {
+  constexpr int kVesicles = 8, kMore = 20;
+  std::vector<SeriesCandidate> two = {candidates()[0]};                  // a drift of the fraction
+  two.push_back({"cooling", 1, true, ensemble({-1 / 3.0, 0.6, 0.05})});  // and a plateau
+  SeriesRequest request{{1, 8}};
+  request.replicates = 99;
+  const auto explain = [&](const Law& law, int vesicles) {
+    return explain_series(measured(law, vesicles, 0.1, 1), ensemble({}), two, request);
+  };
+  const SeriesExplanation found = explain({-1 / 3.0, 0.4, 0.05}, kVesicles);  // between both
+  EXPECT_EQ(found.finding, Finding::ambiguous);
+  ASSERT_EQ(found.named.size(), 2u);
+  EXPECT_EQ(found.named[0].front(), "cooling");
+  ASSERT_EQ(found.ties.size(), 1u);
+  const SeriesTie& tie = found.ties.front();
+  EXPECT_EQ(tie.effect, "cooling");
+  EXPECT_EQ(tie.other, "uptake");
+  EXPECT_NE(tie.telling, Quantity::fraction);
+  // These do not tell them apart, more of one of them do.
+  EXPECT_GT(tie.vesicles, kVesicles);
+  EXPECT_LT(tie.vesicles, kMore);
+  const SeriesExplanation told = explain({-1 / 3.0, 0.6, 0.05}, kMore);
+  EXPECT_EQ(told.finding, Finding::named);
+  EXPECT_EQ(told.named[0], std::vector<std::string>{"cooling"});
+}
+
 TEST(SeriesExplanation, RefusesTooFewVesicles) {
   EXPECT_THROW(explained(measured({}, 2, 0.05, 1)), InputError);
 }

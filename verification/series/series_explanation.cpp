@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "kernel/core/error.hpp"
 #include "verification/explain/bounds.hpp"
@@ -61,9 +62,7 @@ class SeriesSearch {
     for (const auto& members : classes_) result_.classes.push_back(names_of(members));
     judge();
     std::sort(result_.scores.begin(), result_.scores.end(),
-              [](const SeriesScore& a, const SeriesScore& b) {
-                return a.gain / a.null_mean > b.gain / b.null_mean;
-              });
+              [this](const SeriesScore& a, const SeriesScore& b) { return more_telling(a, b); });
     return std::move(result_);
   }
 
@@ -102,45 +101,65 @@ class SeriesSearch {
     return names;
   }
 
+  bool significant(double p) const { return p <= request_.false_alarms; }
+
+  // Of those that noise hardly explains the most probable one: how much noise gains in units of its
+  // own says which they are, not which of them it is.
+  bool more_telling(const SeriesScore& a, const SeriesScore& b) const {
+    if (significant(a.p) != significant(b.p)) return significant(a.p);
+    return significant(a.p) ? a.gain > b.gain : a.gain / a.null_mean > b.gain / b.null_mean;
+  }
+  // Before scores are sorted.
+  std::size_t best_of(const std::vector<std::size_t>& candidates) const {
+    return *std::min_element(candidates.begin(), candidates.end(),
+                             [this](std::size_t a, std::size_t b) {
+                               return more_telling(result_.scores[a], result_.scores[b]);
+                             });
+  }
+
   void judge() {
-    const bool significant = result_.p <= request_.false_alarms;
-    const Vec calibrated = gains_.values.cwiseQuotient(null_.mean);
-    Eigen::Index best;
-    calibrated.maxCoeff(&best);
-    const auto b = static_cast<std::size_t>(best);
-    result_.trend_p = share_of_noise(
-        null_.trend, significant ? trend_left(blocks_of(data_),
-                                              {&curves_.base, &curves_.changed[b]}, gains_.fits[b])
-                                 : gains_.trend);
+    const bool lacking = significant(result_.p);
+    std::vector<std::size_t> all(candidates_.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    const std::size_t best = best_of(all);
+    const SeriesModel model{&curves_.base, &curves_.changed[best]};
+    result_.trend_p =
+        share_of_noise(null_.trend, lacking ? trend_left(blocks_of(data_), model, gains_.fits[best])
+                                            : gains_.trend);
     if (result_.trend_p <= kTrendLevel * request_.false_alarms) {
       result_.finding = Finding::unnamed;
-      if (significant) result_.named = {{candidates_[b].effect}};
+      if (lacking) result_.named = {{candidates_[best].effect}};
       return;
     }
-    if (!significant) {
+    if (!lacking) {
       const bool blind =
           std::none_of(result_.scores.begin(), result_.scores.end(),
                        [&](const SeriesScore& s) { return s.vesicles <= result_.vesicles; });
       result_.finding = blind ? Finding::not_identifiable : Finding::none;
       return;
     }
-    for (const auto& members : classes_) {
-      const auto most = *std::max_element(
-          members.begin(), members.end(),
-          [&](std::size_t a, std::size_t b) { return calibrated[a] < calibrated[b]; });
-      const bool own = std::count(members.begin(), members.end(), best) > 0;
-      const double behind = gains_.values[best] - gains_.values[static_cast<Eigen::Index>(most)];
-      if (own) result_.named.insert(result_.named.begin(), names_of(members));
-      if (own || behind >= kTelling * std::max(1.0, null_.mean[best])) continue;
-      result_.named.push_back(names_of(members));
-      const Vec difference = gains_.fits[b].amplitude * responses_.beyond(b, most);
-      result_.ties.push_back({candidates_[b].effect, candidates_[most].effect,
-                              needed(responses_.squares(difference), null_.mean[best]),
-                              responses_.telling(difference)});
-    }
+    name_class_of(best);
     result_.finding = result_.named.size() > 1 || result_.named.front().size() > 1
                           ? Finding::ambiguous
                           : Finding::named;
+  }
+
+  // And classes that explain the data nearly as well.
+  void name_class_of(std::size_t best) {
+    const auto gain = [this](std::size_t k) { return gains_.values[static_cast<Eigen::Index>(k)]; };
+    const double noise = std::max(1.0, null_.mean[static_cast<Eigen::Index>(best)]);
+    for (const auto& members : classes_) {
+      const std::size_t other = best_of(members);
+      if (std::count(members.begin(), members.end(), best) > 0) {
+        result_.named.insert(result_.named.begin(), names_of(members));
+      } else if (gain(best) - gain(other) < kTelling * noise) {
+        result_.named.push_back(names_of(members));
+        const Vec difference = gains_.fits[best].amplitude * responses_.beyond(best, other);
+        result_.ties.push_back({candidates_[best].effect, candidates_[other].effect,
+                                needed(responses_.squares(difference), noise),
+                                responses_.telling(difference)});
+      }
+    }
   }
 
   const MeasuredVesicles& data_;
