@@ -149,7 +149,7 @@ std::string verdict_sentence(const Explanation& found) {
              in_words(found.found.hypothesis) + ".";
     }
     case Finding::below_resolution:
-      return "There is a disagreement, but the mesh of the model changes c as much: "
+      return "There is a disagreement, but the error of the model's mesh could be all of it: "
              "repeat with more --cells.";
     case Finding::not_identifiable:
       if (found.rounds.front().screening.p <= found.false_alarms)

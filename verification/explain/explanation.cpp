@@ -111,14 +111,22 @@ class Search {
     const Refit* best = &result_.found;
     for (const Refit& fit : fits)
       if (fit.failure.empty() && criterion(fit, values()) < criterion(*best, values()) &&
-          resolved(result_.rounds, fit.hypothesis))
+          all_resolved(fit))
         best = &fit;
     return best == &result_.found ? nullptr : best;
   }
 
+  bool all_resolved(const Refit& fit) const {
+    for (std::size_t k = 0; k < fit.hypothesis.parts.size(); ++k)
+      if (!resolved(fit, k, values(), mesh_error())) return false;
+    return true;
+  }
+
+  double mesh_error() const { return result_.rounds.back().screening.mesh_error; }
+
   void add_equivalent(const std::vector<Refit>& fits) {
     std::vector<std::string>& names = result_.equivalent;
-    const double limit = criterion(result_.found, values()) + kTelling;
+    const double limit = criterion(result_.found, values()) + telling(values(), mesh_error());
     for (const Refit& fit : fits)
       if (fit.failure.empty() && criterion(fit, values()) < limit &&
           fit.hypothesis.parts.size() == model_.hypothesis.parts.size() &&

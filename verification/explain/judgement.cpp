@@ -6,25 +6,6 @@
 namespace traceraft {
 namespace {
 
-// An effect has to change c by that many times what extrapolation to finer meshes does.
-constexpr double kResolved = 3;
-
-// To the coefficients of a refit, of which there may be two: those of exchange are known to first
-// order, as its term is linear in c.
-double response_to(const Hypothesis::Part& part, const CandidateScore& score) {
-  if (part.coefficients.size() > 1 || !std::isfinite(score.resolution)) return score.response;
-  const double deviation = std::sqrt(score.covariance(0, 0));
-  return std::fabs(part.coefficients[0]) / deviation * score.resolution;
-}
-
-bool resolved_in(const Round& round, const Hypothesis::Part& part) {
-  return std::any_of(round.screening.scores.begin(), round.screening.scores.end(),
-                     [&](const CandidateScore& score) {
-                       return score.effect == part.candidate.effect &&
-                              response_to(part, score) >= kResolved * round.screening.mesh_error;
-                     });
-}
-
 // Would any effect of the usual size have been seen?
 bool identifiable(const Screening& screening, double usual_change) {
   return std::any_of(
@@ -56,11 +37,17 @@ const std::string& last_effect(const Hypothesis& hypothesis) {
   return hypothesis.parts.back().candidate.effect;
 }
 
-bool resolved(const std::vector<Round>& rounds, const Hypothesis& hypothesis) {
-  return std::all_of(hypothesis.parts.begin(), hypothesis.parts.end(), [&](const auto& part) {
-    return std::any_of(rounds.begin(), rounds.end(),
-                       [&](const Round& round) { return resolved_in(round, part); });
-  });
+double mesh_doubt(double values, double mesh_error) {
+  return kMeshDoubt * mesh_error * std::sqrt(values);
+}
+
+double telling(double values, double mesh_error) {
+  const double noise_and_mesh = std::sqrt(kTelling) + mesh_doubt(values, mesh_error);
+  return noise_and_mesh * noise_and_mesh;
+}
+
+bool resolved(const Refit& fit, std::size_t effect, double values, double mesh_error) {
+  return std::sqrt(certainty(fit, effect)) >= mesh_doubt(values, mesh_error);
 }
 
 double criterion(const Refit& fit, double values) {
@@ -80,11 +67,12 @@ Judgement judge(const Round& round, double values, double false_alarms, double u
   const Refit& best = round.refits.front();
   const double least = criterion(best, values);
   if (criterion(round.without, values) < least) return {false, rest, {}};
-  if (!resolved_in(round, best.hypothesis.parts.back()))
+  if (!resolved(best, best.hypothesis.parts.size() - 1, values, round.screening.mesh_error))
     return {false, first ? Finding::below_resolution : rest, {}};
   Judgement taken{true, Finding::named, {best.hypothesis.name()}};
+  const double limit = least + telling(values, round.screening.mesh_error);
   for (std::size_t k = 1; k < round.refits.size(); ++k)
-    if (criterion(round.refits[k], values) < least + kTelling)
+    if (criterion(round.refits[k], values) < limit)
       taken.equivalent.push_back(round.refits[k].hypothesis.name());
   if (taken.equivalent.size() > 1) taken.finding = Finding::ambiguous;
   return taken;

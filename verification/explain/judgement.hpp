@@ -14,7 +14,7 @@ enum class Finding {
   none,              // no significant disagreement
   named,             // one effect, or several, that leave no significant disagreement
   ambiguous,         // like it, but another one explains the data as well
-  below_resolution,  // what would explain the data changes less than the model's own mesh does
+  below_resolution,  // what would explain the data could be the error of the model's own mesh
   not_identifiable,  // no disagreement, but effects of the usual size would not be seen either; or
                      // one that is too small to tell which effect it is
   unnamed            // a significant disagreement that no candidate explains
@@ -48,8 +48,18 @@ inline constexpr double kSeen = 4;
 // a special case of it. `values`: how many have been measured.
 double criterion(const Refit& fit, double values);
 
-// Does every effect change c by more than the mesh does, in a round that it was screened in?
-bool resolved(const std::vector<Round>& rounds, const Hypothesis& hypothesis);
+// What extrapolation to finer meshes may be wrong by, in standard deviations of everything measured
+// together: kMeshDoubt of its last part, whose root mean square is `mesh_error` in units of the
+// noise.
+double mesh_doubt(double values, double mesh_error);
+
+// Deviances further apart tell two hypotheses apart: by noise, and even if that error had the very
+// shape of what distinguishes them.
+double telling(double values, double mesh_error);
+
+// Is an effect so certain that what extrapolation to finer meshes may be wrong by could not look
+// like it, even if it had its very shape?
+bool resolved(const Refit& fit, std::size_t effect, double values, double mesh_error);
 
 const std::string& last_effect(const Hypothesis& hypothesis);
 

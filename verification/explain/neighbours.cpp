@@ -1,6 +1,5 @@
 #include "verification/explain/neighbours.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
@@ -13,16 +12,6 @@ constexpr double kNear = 0.5;
 bool has(const Hypothesis& hypothesis, const std::string& effect) {
   return std::any_of(hypothesis.parts.begin(), hypothesis.parts.end(),
                      [&](const auto& part) { return part.candidate.effect == effect; });
-}
-
-// (coefficients)ᵀ C⁻¹ (coefficients) of one effect, which is what its absence costs to first order.
-double certainty(const Refit& fit, std::size_t which) {
-  Eigen::Index first = 0;
-  for (std::size_t k = 0; k < which; ++k) first += fit.hypothesis.parts[k].candidate.directions;
-  const auto& part = fit.hypothesis.parts[which];
-  const Eigen::Index n = part.candidate.directions;
-  const Vec a = Eigen::Map<const Vec>(part.coefficients.data(), n);
-  return a.dot(fit.covariance.block(first, first, n, n).ldlt().solve(a));
 }
 
 // What was refitted in the round in which this effect was.

@@ -227,6 +227,15 @@ Refit refit(const FilterProblems& data, const FilterModel& start, const FilterSe
   return result;
 }
 
+double certainty(const Refit& fit, std::size_t effect) {
+  Eigen::Index first = 0;
+  for (std::size_t k = 0; k < effect; ++k) first += fit.hypothesis.parts[k].candidate.directions;
+  const auto& part = fit.hypothesis.parts[effect];
+  const Eigen::Index n = part.candidate.directions;
+  const Vec a = Eigen::Map<const Vec>(part.coefficients.data(), n);
+  return a.dot(fit.covariance.block(first, first, n, n).ldlt().solve(a));
+}
+
 std::vector<Refit> refit_each(const FilterProblems& data, const std::vector<FilterModel>& starts,
                               const FilterSettings& settings, const std::vector<ErrorMaps>& maps,
                               const std::function<void(const Refit&)>& done) {

@@ -43,6 +43,10 @@ struct Refit {
   std::string failure;                 // why a forecast failed, if it did: no refit then
 };
 
+// (coefficients)ᵀ C⁻¹ (coefficients) of one of its effects, with their covariance C: what its
+// absence costs in deviance, to first order, all else being free.
+double certainty(const Refit& fit, std::size_t effect);
+
 // Measured minus forecast.
 Gaps gaps_of_pass(const FilterResult& pass);
 Gaps expected_gaps(const FilterResult& pass);  // if nothing is missing
