@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "verification/explain/free_parameters.hpp"
+#include "verification/explain/refit_unknowns.hpp"
 
 namespace traceraft {
 namespace {
@@ -17,70 +18,12 @@ constexpr int kMostNewtonSteps = 6, kMostHalvings = 3;
 // D is known to that factor at least.
 constexpr double kLargestPaceStep = 0.5;
 
-double square(double x) {
-  return x * x;
-}
-
-// What is solved for: ln pace, then all coefficients; rates in units of time of the base model, as
-// what data tell of a rate then hardly depends on the pace. Factors from coefficients to these:
-Vec factors(const Hypothesis& hypothesis, double pace) {
-  Vec result(1 + hypothesis.coefficients());
-  result[0] = 1;
-  Eigen::Index next = 1;
-  for (const auto& part : hypothesis.parts)
-    for (int d = 0; d < part.candidate.directions; ++d)
-      result[next++] = part.candidate.rate ? pace : 1;
-  return result;
-}
-
-Vec unknowns(const FilterModel& model) {
-  Vec x = factors(model.hypothesis, model.pace);
-  x[0] = std::log(model.pace);
-  Eigen::Index next = 1;
-  for (const auto& part : model.hypothesis.parts)
-    for (const double a : part.coefficients) x[next++] *= a;
-  return x;
-}
-
-void set_unknowns(FilterModel& model, const Vec& x) {
-  model.pace = std::exp(x[0]);
-  const Vec factor = factors(model.hypothesis, model.pace);
-  Eigen::Index next = 1;
-  for (auto& part : model.hypothesis.parts)
-    for (double& a : part.coefficients) {
-      a = part.candidate.within_range(x[next] / factor[next]);
-      ++next;
-    }
-}
-
-// Derivatives of the unknowns by ln pace and the coefficients.
-Eigen::MatrixXd jacobian(const FilterModel& model) {
-  const Vec x = unknowns(model);
-  Eigen::MatrixXd J = factors(model.hypothesis, model.pace).asDiagonal();
-  Eigen::Index next = 1;
-  for (const auto& part : model.hypothesis.parts)
-    for (int d = 0; d < part.candidate.directions; ++d, ++next)
-      if (part.candidate.rate) J(next, 0) = x[next];
-  return J;
-}
-
 // Of a refit, from that of its unknowns.
 void set_covariance(const Eigen::MatrixXd& unknown, Refit& fit) {
   const Eigen::Index n = fit.hypothesis.coefficients();
-  const Vec inverse = factors(fit.hypothesis, fit.pace).tail(n).cwiseInverse();
+  const Vec inverse = unknown_factors(fit.hypothesis, fit.pace).tail(n).cwiseInverse();
   fit.pace_deviation = std::sqrt(std::max(0.0, unknown(0, 0)));
   fit.covariance = inverse.asDiagonal() * unknown.bottomRightCorner(n, n) * inverse.asDiagonal();
-}
-
-// Where the pace and the coefficients are among the parameters of a pass.
-std::vector<Eigen::Index> own_parameters(const Hypothesis& hypothesis) {
-  std::vector<Eigen::Index> own{kPace};
-  for (Eigen::Index k = 0; k < hypothesis.coefficients(); ++k) own.push_back(kFirstParameter + k);
-  return own;
-}
-
-double squares_of_gap(const Innovation& in) {
-  return in.noise.cwiseProduct(in.gap).squaredNorm();
 }
 
 struct Evaluation {
@@ -92,12 +35,6 @@ struct Evaluation {
   std::string failure;
 };
 
-Gaps over_snapshots(const FilterResult& pass,
-                    const std::function<double(const Innovation&)>& squares) {
-  return {root_mean_square(pass.innovations, false, squares),
-          root_mean_square(pass.innovations, true, squares)};
-}
-
 Evaluation evaluate(const FilterProblems& data, const FilterModel& model,
                     const FilterSettings& settings, std::vector<ErrorMaps>& maps) {
   Evaluation result;
@@ -108,20 +45,16 @@ Evaluation evaluate(const FilterProblems& data, const FilterModel& model,
     Vec all = Vec::Zero(pass.score.size());
     all(free) = newton_step(pass, free);
     const std::vector<Eigen::Index> own = own_parameters(model.hypothesis);
-    const Eigen::MatrixXd J = jacobian(model);
+    const Eigen::MatrixXd J = unknown_derivatives(model);
     result.step = J * all(own);
     result.covariance = J * inverse(own, own) * J.transpose();
     // At the most probable error of the mesh, which the step takes to be free as well.
-    result.deviance =
-        pass.deviance - square(pass.score[kMeshError]) / pass.information(kMeshError, kMeshError);
+    result.deviance = pass.deviance - std::pow(pass.score[kMeshError], 2) /
+                                          pass.information(kMeshError, kMeshError);
     if (!std::isfinite(result.deviance)) throw std::runtime_error("its likelihood is no number");
     result.gap = gaps_of_pass(pass);
     result.expected = expected_gaps(pass);
-    for (const Innovation& in : pass.innovations) {
-      const auto count = static_cast<double>(in.values.size());
-      result.snapshots.push_back({in.vesicle, in.snapshot, std::sqrt(squares_of_gap(in) / count),
-                                  std::sqrt(in.expected_squares / count)});
-    }
+    result.snapshots = snapshot_gaps(pass);
   } catch (const std::runtime_error& error) {
     result.failure = error.what();
   }
@@ -157,74 +90,88 @@ bool settled(const Evaluation& here, const FilterModel& model) {
   return ((unknowns(moved) - x).array().abs() <= kSmallStep * deviations(here).array()).all();
 }
 
+class NewtonSearch {
+ public:
+  NewtonSearch(const FilterProblems& data, const FilterModel& start, const FilterSettings& settings,
+               const std::vector<ErrorMaps>& maps)
+      : data_(data), settings_(settings), maps_(maps), model_(start) {
+    settings_.replicates = 0;
+    model_.screened.clear();
+  }
+
+  Refit run() {
+    begin();
+    bool at_rest = here_.failure.empty() && settled(here_, model_);
+    StepLength length;
+    for (int k = 0; k < kMostNewtonSteps && here_.failure.empty() && !at_rest; ++k) {
+      const bool better = step(length.next(here_.step.cwiseQuotient(deviations(here_))));
+      at_rest = settled(here_, model_);
+      if (!better) break;
+    }
+    return result(at_rest);
+  }
+
+ private:
+  Evaluation evaluated(const FilterModel& model) {
+    return evaluate(data_, model, settings_, maps_);
+  }
+
+  // Where the model to start from cannot be advanced, its effects are weakened until one can.
+  void begin() {
+    Vec x = unknowns(model_);
+    set_unknowns(model_, x);
+    here_ = evaluated(model_);
+    for (int half = 0; half <= kMostHalvings && !here_.failure.empty(); ++half) {
+      x.tail(x.size() - 1) *= 0.5;
+      set_unknowns(model_, x);
+      here_ = evaluated(model_);
+    }
+  }
+
+  // So many times the step, or half of that, ...: false if none is better than here.
+  bool step(double factor) {
+    Vec step = factor * here_.step;
+    step[0] = std::clamp(step[0], -kLargestPaceStep, kLargestPaceStep);
+    const Vec x = unknowns(model_);
+    const int halvings = kMostHalvings + std::ilogb(factor);
+    for (int half = 0; half <= halvings; ++half, step *= 0.5) {
+      FilterModel trial = model_;
+      set_unknowns(trial, x + step);
+      Evaluation there = evaluated(trial);
+      if (!(there.deviance < here_.deviance)) continue;
+      model_ = std::move(trial);
+      here_ = std::move(there);
+      return true;
+    }
+    return false;
+  }
+
+  Refit result(bool at_rest) const {
+    Refit result;
+    result.hypothesis = model_.hypothesis;
+    result.pace = model_.pace;
+    result.deviance = here_.deviance;
+    result.gap = here_.gap;
+    result.expected = here_.expected;
+    result.snapshots = here_.snapshots;
+    result.settled = at_rest;
+    result.failure = here_.failure;
+    if (here_.failure.empty()) set_covariance(here_.covariance, result);
+    return result;
+  }
+
+  const FilterProblems& data_;
+  FilterSettings settings_;
+  std::vector<ErrorMaps> maps_;
+  FilterModel model_;
+  Evaluation here_;
+};
+
 }  // namespace
-
-std::optional<double> share_closed(double base, double found, double floor) {
-  constexpr double kTold = 1.02;
-  if (!(floor > 0 && base > kTold * floor)) return std::nullopt;
-  return (square(base) - square(found)) / (square(base) - square(floor));
-}
-
-SharesClosed shares_closed(const Gaps& base, const Gaps& found, const Gaps& floor) {
-  return {share_closed(base.train, found.train, floor.train),
-          share_closed(base.heldout, found.heldout, floor.heldout)};
-}
-
-Gaps gaps_of_pass(const FilterResult& pass) {
-  return over_snapshots(pass, squares_of_gap);
-}
-
-Gaps expected_gaps(const FilterResult& pass) {
-  return over_snapshots(pass, [](const Innovation& in) { return in.expected_squares; });
-}
 
 Refit refit(const FilterProblems& data, const FilterModel& start, const FilterSettings& settings,
             const std::vector<ErrorMaps>& maps) {
-  std::vector<ErrorMaps> kept = maps;
-  FilterSettings alone = settings;
-  alone.replicates = 0;
-  FilterModel model = start;
-  model.screened.clear();
-  Vec first = unknowns(model);
-  set_unknowns(model, first);
-  Evaluation here = evaluate(data, model, alone, kept);
-  for (int half = 0; half <= kMostHalvings && !here.failure.empty(); ++half) {
-    first.tail(first.size() - 1) *= 0.5;
-    set_unknowns(model, first);
-    here = evaluate(data, model, alone, kept);
-  }
-  bool better = here.failure.empty();
-  bool at_rest = better && settled(here, model);
-  StepLength length;
-  for (int k = 0; k < kMostNewtonSteps && better && !at_rest; ++k) {
-    const double factor = length.next(here.step.cwiseQuotient(deviations(here)));
-    Vec step = factor * here.step;
-    step[0] = std::clamp(step[0], -kLargestPaceStep, kLargestPaceStep);
-    const Vec x = unknowns(model);
-    better = false;
-    const int halvings = kMostHalvings + std::ilogb(factor);
-    for (int half = 0; half <= halvings && !better; ++half, step *= 0.5) {
-      FilterModel trial = model;
-      set_unknowns(trial, x + step);
-      Evaluation there = evaluate(data, trial, alone, kept);
-      better = there.deviance < here.deviance;
-      if (!better) continue;
-      model = trial;
-      here = std::move(there);
-    }
-    at_rest = settled(here, model);
-  }
-  Refit result;
-  result.hypothesis = model.hypothesis;
-  result.pace = model.pace;
-  result.deviance = here.deviance;
-  result.gap = here.gap;
-  result.expected = here.expected;
-  result.snapshots = here.snapshots;
-  result.settled = at_rest;
-  result.failure = here.failure;
-  if (here.failure.empty()) set_covariance(here.covariance, result);
-  return result;
+  return NewtonSearch(data, start, settings, maps).run();
 }
 
 double certainty(const Refit& fit, std::size_t effect) {
@@ -269,7 +216,7 @@ void bootstrap(const FilterResult& pass, const FilterModel& model, Refit& fit) {
       estimates * estimates.transpose() / static_cast<double>(estimates.cols()) +
       by_mesh * by_mesh.transpose();
   const std::vector<Eigen::Index> own = own_parameters(model.hypothesis);
-  const Eigen::MatrixXd J = jacobian(model);
+  const Eigen::MatrixXd J = unknown_derivatives(model);
   set_covariance(J * covariance(own, own) * J.transpose(), fit);
 }
 

@@ -3,29 +3,10 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 
-#include "verification/explain/field_filter.hpp"
+#include "verification/explain/gaps.hpp"
 
 namespace traceraft {
-
-// Root mean squares in c: of the snapshots that count, and of those that are held out (0: none is).
-struct Gaps {
-  double train = 0, heldout = 0;
-};
-
-// The share of what the base lacks that was closed, in mean squares; nothing where the base is
-// within 2 % of the floor, which it may be by noise.
-std::optional<double> share_closed(double base, double found, double floor);
-struct SharesClosed {
-  std::optional<double> train, heldout;
-};
-SharesClosed shares_closed(const Gaps& base, const Gaps& found, const Gaps& floor);
-
-struct SnapshotGap {
-  std::size_t vesicle, snapshot;
-  double gap, expected;  // root mean squares
-};
 
 struct Refit {
   Hypothesis hypothesis;
@@ -46,10 +27,6 @@ struct Refit {
 // (coefficients)ᵀ C⁻¹ (coefficients) of one of its effects, with their covariance C: what its
 // absence costs in deviance, to first order, all else being free.
 double certainty(const Refit& fit, std::size_t effect);
-
-// Measured minus forecast.
-Gaps gaps_of_pass(const FilterResult& pass);
-Gaps expected_gaps(const FilterResult& pass);  // if nothing is missing
 
 // Gauss and Newton's method with halved steps, from the coefficients and the pace of `start`, until
 // what is left to go is a small part of the standard deviation. Unstable trial models count as
