@@ -1,5 +1,6 @@
 #include "drivers/campaign/hidden_case.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "backends/sodium/seal.hpp"
@@ -15,8 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The truth is on a mesh this much finer than the model's.
-constexpr double kFinerTruth = 2.5;
+// The truth is on a mesh this much finer than the model's, so that its own error is a sixteenth of
+// that, and strengths are found on one in between.
+constexpr double kFinerTruth = 4, kSizing = 1.75;
 
 void refuse_hiding(const Configuration& model) {
   refuse_scaled(model);
@@ -72,6 +74,9 @@ void hide(const fs::path& folder, const GivenValues& model, BlindRequest request
                      std::to_string(configuration.integer("cells")));
   const Units units = configuration.units();
   request.base = physical_model(configuration);
+  request.sizing_cells = std::min(
+      request.cells,
+      static_cast<int>(std::lround(kSizing * static_cast<double>(configuration.integer("cells")))));
   request.raft_fraction = configuration.number("raft-fraction");
   BlindCase drawn = draw_blind_case(request);
 

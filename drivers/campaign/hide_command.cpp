@@ -106,7 +106,7 @@ Action define_hide(CLI::App& app) {
       ->check(CLI::Range(0.1, 10.0))
       ->capture_default_str();
   app.add_option("--truth-cells", command->truth_cells,
-                 "of the mesh that the truth is computed on; default: 2.5 times --cells")
+                 "of the mesh that the truth is computed on; default: 4 times --cells")
       ->check(CLI::Range(8, 512));
   app.add_option("--seed", command->seed, "what chance does; default: nobody knows")
       ->check(CLI::NonNegativeNumber);

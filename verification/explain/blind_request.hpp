@@ -36,6 +36,7 @@ struct BlindRequest {
   // Of the mesh that other noise is drawn on; 0: a quarter of `cells`.
   std::int64_t noise_cells = 0;
   int cells = 34;
+  int sizing_cells = 0;  // of the mesh on which strengths are found, to a few percent; 0: 0.7 cells
   std::string integrator = "rosenbrock";
   double tolerance = 1e-4;
   std::uint64_t seed = 1;

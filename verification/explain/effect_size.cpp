@@ -35,8 +35,9 @@ class Sizing {
   Sizing(const BlindRequest& request, const LevelSet& surface, const std::vector<double>& times)
       : request_(request), times_(times) {
     constexpr double kCoarser = 0.7, kTolerance = 1e-3;
-    method_ = {serial_space(surface, static_cast<int>(kCoarser * request.cells)), "ida",
-               kTolerance};
+    const int cells = request.sizing_cells > 0 ? request.sizing_cells
+                                               : static_cast<int>(kCoarser * request.cells);
+    method_ = {serial_space(surface, cells), "ida", kTolerance};
     const BlindSimulation base(request, method_, {});
     snapshots_ = base.run(times);
     for (std::size_t k = 0; k + 1 < times.size(); ++k)
