@@ -15,6 +15,7 @@
 #include "drivers/exit_codes.hpp"
 #include "drivers/input/dataset.hpp"
 #include "drivers/input/measured_units.hpp"
+#include "drivers/input/model_of_data.hpp"
 #include "drivers/run/run_folder.hpp"
 #include "drivers/run/run_setup.hpp"
 #include "drivers/vesicles/measured_report.hpp"
@@ -82,7 +83,7 @@ class Calibrator {
     const double* step = std::begin(kSteps);
     for (int round = 0; round < kMostRounds && step != std::end(kSteps); ++round) {
       const std::vector<double> design = within_range(centre, *step);
-      if (!add_points(design_around(design, *step))) return false;
+      if (!add_points(design_around(design, *step), round + 1)) return false;
       const double seconds = model_.units().seconds_per_unit();
       result_ =
           calibrate(data_, sought(), points_, {seconds, {seconds / kFastest, seconds * kSlowest}});
@@ -118,7 +119,7 @@ class Calibrator {
     }
     return centre;
   }
-  bool add_points(const std::vector<std::vector<double>>& design) {
+  bool add_points(const std::vector<std::vector<double>>& design, int round) {
     const double t_end = end_of_runs(data_);
     for (const std::vector<double>& ln : design) {
       std::vector<double> values;
@@ -129,7 +130,9 @@ class Calibrator {
         words += " " + names_[i] + " " + format_number(values.back());
       }
       if (!request_.quiet)
-        std::printf("simulations at%s\n", words.empty() ? " the model" : words.c_str());
+        std::printf("simulations %zu of %zu%s: at%s\n", &ln - design.data() + 1, design.size(),
+                    names_.empty() ? "" : formatted(" of round %d", round).c_str(),
+                    words.empty() ? " the model" : words.c_str());
       const Configuration here = configuration_at(model_, names_, values, t_end);
       PointEnd end =
           run_point(out_ / "points" / name, here, {request_.runs, request_.jobs, request_.quiet});
@@ -211,8 +214,10 @@ int calibrate_ensemble(const CalibrateRequest& request, const MeasuredVesicles& 
   const double fastest = shortest / looks(data).end;
   if (!(fastest > 1 / kSlowest))
     throw InputError("--ensemble: its runs end long before the measurements do");
+  // Runs that end before the measurements do cover these for a smaller D only.
+  const Interval covered{seconds / fastest, seconds * kSlowest};
   const Calibration result =
-      calibrate(data, {}, {point}, {seconds, {seconds / fastest, seconds * kSlowest}});
+      calibrate(data, {}, {point}, {std::max(seconds, covered.low), covered});
   const fs::path out = request.out.empty() ? first_free_folder("calibration") : request.out;
   fs::create_directories(out);
   const FolderLock lock(out);
@@ -229,6 +234,7 @@ int run_calibration(CalibrateRequest request) {
   const MeasuredVesicles data = read_dataset(request.data);
   refuse_calibration(data);
   if (!request.ensemble.empty()) return calibrate_ensemble(request, data);
+  refuse_without_model(data, request.model, request.flags);
   const Configuration model(read_config_file(request.model, "--model"), request.flags);
   refuse_scaled(model);
   refuse_calibrating(model);

@@ -29,10 +29,11 @@ double noise_length(const Configuration& model) {
 }  // namespace
 
 const NamedList<CalibratedOption>& calibrated_options() {
-  static const NamedList<CalibratedOption> list("parameter", {{"mobility", ""},
-                                                              {"epsilon", "epsilon"},
-                                                              {"fraction", "raft-fraction"},
-                                                              {"noise-length", ""}});
+  static const NamedList<CalibratedOption> list("name in --parameters",
+                                                {{"mobility", ""},
+                                                 {"epsilon", "epsilon"},
+                                                 {"fraction", "raft-fraction"},
+                                                 {"noise-length", ""}});
   return list;
 }
 

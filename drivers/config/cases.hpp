@@ -13,6 +13,7 @@ struct CaseEntry {
   std::string name;
   std::string summary;
   std::vector<std::pair<std::string, std::string>> values;  // option, text in µm and s
+  std::string composition = {};  // of the membrane, DOPC : DPPC : mol % of cholesterol
 };
 
 const NamedList<CaseEntry>& cases();

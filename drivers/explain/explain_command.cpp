@@ -14,6 +14,7 @@
 #include "drivers/explain/search_file.hpp"
 #include "drivers/explain/series_report.hpp"
 #include "drivers/input/dataset.hpp"
+#include "drivers/input/model_of_data.hpp"
 #include "drivers/output/status_line.hpp"
 #include "drivers/run/run_folder.hpp"
 #include "kernel/core/error.hpp"
@@ -68,7 +69,9 @@ struct SeriesSetup {
 };
 
 SeriesSetup read_series_job(const ExplainCommand& command) {
-  SeriesSetup setup{read_dataset(command.series),
+  MeasuredVesicles data = read_dataset(command.series);
+  refuse_without_model(data, command.job.model, command.job.flags);
+  SeriesSetup setup{std::move(data),
                     {read_config_file(command.job.model, "--model"), command.job.flags}};
   refuse_series(setup.data, setup.model);
   return setup;

@@ -31,8 +31,10 @@ void refuse_files_of_a_run(const fs::path& path) {
         folder.table("observables.csv"), folder.table("rafts.csv")})
     if (fs::exists(ours))
       throw InputError("--out: " + path.string() + " already holds " + ours.filename().string() +
-                       "; go on with: traceraft resume " + path.string() +
-                       ", or choose another folder");
+                       (fs::exists(path / "runs")
+                            ? std::string(", of a set of runs")
+                            : "; go on with: traceraft resume " + path.string()) +
+                       "; choose another folder");
 }
 
 RunFolder shared_folder(const Communicator& ranks, const std::function<RunFolder()>& open) {
@@ -86,6 +88,11 @@ RunFolder open_run_folder(const fs::path& path) {
   if (!fs::is_directory(path)) throw InputError(path.string() + " is no folder");
   if (!fs::exists(folder.config()))
     throw InputError(path.string() + " holds no run: there is no config.toml");
+  if (fs::exists(path / "runs") || fs::exists(path / "plan.json"))
+    throw InputError(path.string() +
+                     " holds a set of runs; to go on with it, give the command that made it again, "
+                     "with --out " +
+                     path.string());
   folder.lock = std::make_unique<FolderLock>(path);
   create_sub_folders(folder);
   return folder;

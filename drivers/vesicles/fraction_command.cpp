@@ -3,6 +3,7 @@
 
 #include "drivers/commands.hpp"
 #include "drivers/exit_codes.hpp"
+#include "drivers/input/model_of_data.hpp"
 #include "kernel/core/error.hpp"
 #include "verification/vesicles/raft_fraction.hpp"
 
@@ -43,7 +44,11 @@ int estimate_fraction(const FractionRequest& request) {
   }
   std::printf("  %-22s %.1f %%  (%s)\n", "raft area fraction", 100 * estimate.area,
               estimate.how.c_str());
-  std::printf("\nto simulate it: traceraft run --raft-fraction %.3f\n", estimate.area);
+  const std::string own = case_of(request.composition);
+  std::printf(
+      "\nto simulate it: traceraft run %s --raft-fraction %.3f\n",
+      own.empty() ? "--diffusion <D of this membrane in cm^2/s>" : ("--case " + own).c_str(),
+      estimate.area);
   return kSuccess;
 }
 

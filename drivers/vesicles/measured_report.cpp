@@ -117,6 +117,10 @@ std::string expectation(std::size_t runs) {
                                          : "; the misfit of so few runs says nothing.");
 }
 
+constexpr char kDeviations[] =
+    "Deviations are those from the mean of the runs, over the scatter between runs and the "
+    "uncertainty of the measurement; of logarithms for perimeters and counts. ";
+
 std::vector<Row> agreement_rows(const std::vector<Agreement>& agreements) {
   std::vector<Row> rows = {{"quantity", "compared", "outside the runs' time", "within their range",
                             "mean deviation", "misfit"}};
@@ -248,17 +252,17 @@ int compare_with_ensemble(const MeasuredVesicles& data, const ComparisonRequest&
   Page page("Measured and simulated vesicles");
   page.paragraph(about(data) + ".");
   if (request.facts) page.paragraph(about(*request.facts));
-  page.paragraph(
-      std::to_string(runs.size()) + " runs in " + request.ensemble.string() +
-      ". Deviations are those from the mean of the runs, over the scatter between runs "
-      "and the uncertainty of the measurement; of logarithms for perimeters and counts. " +
-      expectation(runs.size()));
+  page.paragraph(std::to_string(runs.size()) + " runs in " + request.ensemble.string() + ". " +
+                 kDeviations + expectation(runs.size()));
   page.table(rows);
   const std::vector<std::string> notes = differences(data, vesicle_of(model_of(request.ensemble)));
   for (const std::string& note : notes) page.paragraph(note);
   page.paragraph(formatted("Power laws fitted from %g to %g s.", window.begin, window.end));
   page.table(laws);
-  const std::vector<std::string> remarks = remarks_on({measured, simulated});
+  std::vector<std::string> remarks = remarks_on({measured, simulated});
+  if (summary.times.back() < 0.99 * window.end)
+    remarks.push_back(formatted("The runs end at %.4g s: their law is fitted until then.",
+                                summary.times.back()));
   for (const std::string& remark : remarks) page.paragraph(remark);
   fs::create_directories(request.out);
   for (const Quantity quantity : kQuantities) {
@@ -279,8 +283,8 @@ int compare_with_ensemble(const MeasuredVesicles& data, const ComparisonRequest&
   write_durably(request.out / "comparison.html", page.html());
   if (!request.quiet) {
     print_rows(rows);
-    std::printf("%s\n\npower laws from %g to %g s\n", expectation(runs.size()).c_str(),
-                window.begin, window.end);
+    std::printf("%s%s\n\npower laws from %g to %g s\n", kDeviations,
+                expectation(runs.size()).c_str(), window.begin, window.end);
     print_rows(laws);
     for (const std::string& remark : remarks) std::printf("%s\n", remark.c_str());
     for (const std::string& note : notes) std::printf("\n%s\n", note.c_str());

@@ -38,9 +38,14 @@ std::string unknown_name_message(std::string_view kind, std::string_view name,
   for (char& ch : shown)
     if (static_cast<unsigned char>(ch) < 32) ch = '?';
   std::string message = "unknown " + std::string(kind) + " '" + shown + "'";
-  if (!valid.empty()) message += "; did you mean '" + nearest_name(shown, valid) + "'?";
-  if (valid.size() <= 12) {
-    message += " Valid:";
+  // What shares little with a name is no slip of the pen.
+  const std::string nearest = nearest_name(shown, valid);
+  const bool begun = !shown.empty() && nearest.compare(0, shown.size(), shown) == 0;
+  const bool near =
+      begun || (!valid.empty() && 2 * edit_distance(shown, nearest) <= shown.size() + 1);
+  if (near) message += "; did you mean '" + nearest + "'?";
+  if (!near || valid.size() <= 12) {
+    message += near ? " Valid:" : "; valid:";
     for (std::size_t i = 0; i < valid.size(); ++i) message += (i ? ", " : " ") + valid[i];
   }
   return message;

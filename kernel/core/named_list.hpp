@@ -14,7 +14,8 @@ namespace traceraft {
 // The candidate with the smallest edit distance to `name`; empty if there are none.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
 
-// "unknown <kind> 'name'; did you mean 'x'? Valid: a, b, c"
+// "unknown <kind> 'name'; did you mean 'x'? Valid: a, b, c", without the question where no name is
+// near, and without the list where it is long and one is.
 std::string unknown_name_message(std::string_view kind, std::string_view name,
                                  const std::vector<std::string>& valid);
 

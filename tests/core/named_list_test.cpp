@@ -21,6 +21,23 @@ TEST(NamedList, FindsByNameAndAnswersTheUnknownWithTheNearest) {
   }
 }
 
+TEST(NamedList, ProposesWhatIsNear) {
+  const auto proposes = [](const char* name, const char* valid) {
+    return unknown_name_message("unit", name, {valid}).find("did you mean") != std::string::npos;
+  };
+  EXPECT_FALSE(proposes("micron", "mm"));
+  EXPECT_FALSE(proposes("operator", "temperature"));
+  EXPECT_FALSE(proposes("D", "epsilon"));
+  EXPECT_TRUE(proposes("guv", "guv-2to1"));
+  EXPECT_TRUE(proposes("radius_um", "radius"));
+  EXPECT_EQ(unknown_name_message("unit", "micron", {"um", "nm"}),
+            "unknown unit 'micron'; valid: um, nm");
+  // However many there are, where none is near.
+  EXPECT_NE(unknown_name_message("key", "operator", std::vector<std::string>(20, "temperature"))
+                .find("valid: temperature, temperature"),
+            std::string::npos);
+}
+
 TEST(NamedList, KeepsAMessageToOneReadableLine) {
   const std::string message = unknown_name_message("key", std::string(5000, 'x') + "\n\t", {"a"});
   EXPECT_LT(message.size(), 200u);

@@ -111,6 +111,28 @@ TEST_F(CalibrateTest, FindsTheMobilityOfAnEnsemble) {
   }
 }
 
+// What the measurements show after the end of the runs they may have shown before, if D is smaller.
+TEST_F(CalibrateTest, LooksForTheMobilityWithinItsRuns) {
+  const std::string kept = TRACERAFT_ROOT "/verification/data/";
+  fs::create_directories(folder.path / "short");
+  fs::copy_file(kept + "ensembles/guv-2to1/config.toml", folder.path / "short/config.toml");
+  std::ifstream all(kept + "ensembles/guv-2to1/histories.csv");
+  std::ofstream cut(folder.path / "short/histories.csv");
+  constexpr double kEnd = 300;  // s; the last look is later
+  for (std::string line; std::getline(all, line);) {
+    const std::size_t comma = line.find(',');
+    if (line[0] == 's' || std::stod(line.substr(comma + 1)) < kEnd) cut << line << "\n";
+  }
+  cut.close();
+  const Outcome made = traceraft("calibrate --data " + kept + "synthetic/guv-2to1 --ensemble " +
+                                 out("short") + " --out " + out("c"));
+  ASSERT_EQ(made.code, 0) << made.output;
+  const auto json = nlohmann::json::parse(content(folder.path / "c/calibration.json"));
+  const auto& mobility = json["parameters"]["mobility"];
+  EXPECT_LT(mobility["value"], 2.5e-5);
+  EXPECT_EQ(mobility["determined"], false);  // it ends where the runs do
+}
+
 // At the ends of its range, too; and it says what was really run, which is whole cells of noise.
 TEST(CalibrationPoints, CanBeRun) {
   const Configuration model({}, {{"cells", {"32", "--cells"}}, {"epsilon", {"0.3", "--epsilon"}}});
@@ -135,14 +157,19 @@ TEST_F(CalibrateTest, RefusesWhatItCannotCalibrate) {
   for (const auto& [flags, complaint] :
        {std::pair<std::string, std::string>("", "--data: say which"),
         {"--data " + out("nowhere"), "dataset.toml"},
+        {"--data " + out("data"), "--case or --model: say which model"},
+        {"--data " TRACERAFT_ROOT "/verification/data/synthetic/guv-3to1", "is --case guv-3to1"},
+        {"--data " + out("data") + " --parameters D",
+         "unknown name in --parameters 'D'; valid: mobility"},
         {"--data " + out("data") + " --parameters epsilon", "mobility has to be among them"},
         {"--data " + out("data") + " --parameters mobility,epsilom", "did you mean 'epsilon'"},
         {"--data " + out("data") + " --parameters mobility,epsilon,epsilon", "there twice"},
-        {"--data " + out("data") + " --effect exchange:rate=1", "more than a unit of time"},
+        {"--data " + out("data") + " --case guv-2to1 --effect exchange:rate=1",
+         "more than a unit of time"},
         {"--data " + out("data") + " --case two-rafts", "differ in the noise"},
         {"--data " + out("data") + " --model " + out("no.toml"), "--model: "},
         {"--data " + out("one"), "three vesicles at least"},
-        {"--data " + out("data") + " --scaled", "measurements are in seconds"}}) {
+        {"--data " + out("data") + " --case guv-2to1 --scaled", "measurements are in seconds"}}) {
     const Outcome refused = traceraft("calibrate " + flags + " --out " + out("c"));
     EXPECT_EQ(refused.code, 2) << flags;
     EXPECT_NE(refused.output.find(complaint), std::string::npos) << refused.output;

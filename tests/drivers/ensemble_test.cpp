@@ -103,6 +103,19 @@ TEST_F(EnsembleTest, GoesOnAfterItWasKilled) {
   EXPECT_EQ(content(csv("cut")), content(csv("whole")));
 }
 
+// A simulation of its own among its runs would be nobody's.
+TEST_F(EnsembleTest, IsNoRunToResume) {
+  ASSERT_EQ(traceraft("ensemble --quiet " + runs + "--runs 2 --out " + out("a")).code, 0);
+  const Outcome resumed = traceraft("resume " + out("a"));
+  EXPECT_EQ(resumed.code, 2);
+  EXPECT_NE(resumed.output.find("holds a set of runs"), std::string::npos) << resumed.output;
+  EXPECT_FALSE(fs::exists(folder.path / "a/series.csv"));
+  fs::remove(folder.path / "a/plan.json");
+  const Outcome again = traceraft("ensemble --quiet " + runs + "--runs 2 --out " + out("a"));
+  EXPECT_EQ(again.code, 2);
+  EXPECT_EQ(again.output.find("traceraft resume"), std::string::npos) << again.output;
+}
+
 TEST_F(EnsembleTest, StopsWhenItIsAskedTo) {
   const pid_t child =
       testing::start_traceraft("ensemble --quiet " + runs + "--runs 4 --jobs 1 --out " + out("a"));

@@ -15,6 +15,7 @@ constexpr int kReplicates = 200;
 constexpr double kOvershoot = 0.5;  // of what was explored, beyond it
 constexpr double kParabolic = 15;   // a deviance that much above the least counts half
 constexpr double kDetermined = 2;   // factor between the ends of an interval
+constexpr double kEdge = 0.02;      // of what was looked at, which counts as its end
 
 // Mean raft fractions of vesicles, which scatter from vesicle to vesicle.
 class MeasuredFractions {
@@ -131,7 +132,7 @@ Eigen::MatrixXd covariance(const std::vector<std::vector<double>>& replicates) {
 CalibratedParameter parameter(const std::string& name, double ln,
                               const std::vector<double>& replicates, double lower, double upper) {
   const double low = quantile(replicates, 0.025), high = quantile(replicates, 0.975),
-               margin = 1e-3 * (upper - lower);
+               margin = kEdge * (upper - lower);
   return {name,
           std::exp(ln),
           {std::exp(low), std::exp(high)},
