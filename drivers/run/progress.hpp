@@ -2,6 +2,7 @@
 #pragma once
 
 #include "drivers/output/status_line.hpp"
+#include "drivers/output/time_left.hpp"
 #include "drivers/run/run_setup.hpp"
 #include "kernel/core/stopwatch.hpp"
 #include "kernel/simulation/run_loop.hpp"
@@ -10,17 +11,15 @@ namespace traceraft {
 
 class Progress final : public RunListener {
  public:
-  Progress(const RunSetup& run, bool quiet) : run_(run), line_(quiet) {}
+  Progress(const RunSetup& run, bool quiet) : run_(run), line_(quiet), left_(run.t_end) {}
   void on_step(const RunState& state) override;
   void finish() { line_.finish(); }
 
  private:
-  double estimated_seconds_left(const RunState& state);
-
   const RunSetup& run_;
   StatusLine line_;
+  TimeLeft left_;
   Stopwatch watch_;
-  long first_step_ = -1;
 };
 
 }  // namespace traceraft
