@@ -136,6 +136,39 @@ std::vector<std::string> notes_on(const MeasuredVesicles& data, const Configurat
   return notes;
 }
 
+// The measurements in the runs that fit best, at the D that fits these.
+void add_fit(Page& page, const std::filesystem::path& folder, const MeasuredVesicles& data,
+             const std::vector<CalibrationPoint>& points, const Calibration& result) {
+  const auto& fits = result.at_points;
+  const auto best =
+      std::min_element(fits.begin(), fits.end(),
+                       [](const TimeFit& a, const TimeFit& b) { return a.deviance < b.deviance; });
+  std::vector<History> runs = points[static_cast<std::size_t>(best - fits.begin())].runs;
+  for (History& run : runs)
+    for (double& t : run.time) t *= best->seconds_per_unit;
+  const EnsembleSummary summary = summarise(runs);
+  for (const Quantity quantity : {Quantity::perimeter, Quantity::rafts}) {
+    const Chart chart = comparison_chart(data, summary, quantity);
+    const std::string svg =
+        draw_chart(chart, folder / (std::string("fit-") + name_of(quantity).id));
+    if (!svg.empty()) page.figure(svg, chart.title + ", of the simulations that fit best");
+  }
+}
+
+void add_deviances(Page& page, const std::filesystem::path& folder,
+                   const std::vector<std::string>& names,
+                   const std::vector<CalibrationPoint>& points, const Calibration& result) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    Chart chart{"Deviance over " + names[i], names[i], "-2 ln likelihood", true, false, {}};
+    chart.series = {{"simulations", {}, Mark::points}};
+    for (std::size_t k = 0; k < points.size(); ++k)
+      chart.series[0].points.emplace_back(std::exp(points[k].ln_parameters[i]),
+                                          result.at_points[k].deviance);
+    const std::string svg = draw_chart(chart, folder / ("deviance-" + names[i]));
+    if (!svg.empty()) page.figure(svg, chart.title);
+  }
+}
+
 }  // namespace
 
 void write_calibration(const std::filesystem::path& folder, const MeasuredVesicles& data,
@@ -165,16 +198,9 @@ void write_calibration(const std::filesystem::path& folder, const MeasuredVesicl
   page.table(rows);
   page.paragraph(best + " " + scatter + bound);
   for (const std::string& note : notes) page.paragraph(note);
+  add_fit(page, folder, data, points, result);
   page.table(table_rows(table));
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    Chart chart{"Deviance over " + names[i], names[i], "-2 ln likelihood", true, false, {}};
-    chart.series = {{"simulations", {}, Mark::points}};
-    for (std::size_t k = 0; k < points.size(); ++k)
-      chart.series[0].points.emplace_back(std::exp(points[k].ln_parameters[i]),
-                                          result.at_points[k].deviance);
-    const std::string svg = draw_chart(chart, folder / ("deviance-" + names[i]));
-    if (!svg.empty()) page.figure(svg, chart.title);
-  }
+  add_deviances(page, folder, names, points, result);
   add_settings(page, found);
   write_durably(folder / "calibration.html", page.html());
   if (quiet) return;

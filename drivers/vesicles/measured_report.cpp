@@ -162,7 +162,8 @@ ChartSeries law_curve(const std::string& name, const PowerLaw& law, const Window
   return series;
 }
 
-// From where there is something to compare: a tenth of the first measured time.
+}  // namespace
+
 Chart comparison_chart(const MeasuredVesicles& data, const EnsembleSummary& summary,
                        Quantity quantity) {
   Chart chart = ensemble_chart(summary, quantity, true);
@@ -184,8 +185,6 @@ Chart comparison_chart(const MeasuredVesicles& data, const EnsembleSummary& summ
   chart.series.push_back(measured);
   return chart;
 }
-
-}  // namespace
 
 void print_dataset(const MeasuredVesicles& data, const std::optional<FittedLaw>& law,
                    const Window& window) {
@@ -261,8 +260,8 @@ int compare_with_ensemble(const MeasuredVesicles& data, const ComparisonRequest&
   page.table(laws);
   std::vector<std::string> remarks = remarks_on({measured, simulated});
   if (summary.times.back() < 0.99 * window.end)
-    remarks.push_back(formatted("The runs end at %.4g s: their law is fitted until then.",
-                                summary.times.back()));
+    remarks.push_back(
+        formatted("The runs end at %.4g s: their law is fitted until then.", summary.times.back()));
   for (const std::string& remark : remarks) page.paragraph(remark);
   fs::create_directories(request.out);
   for (const Quantity quantity : kQuantities) {

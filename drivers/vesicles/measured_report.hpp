@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "drivers/config/configuration.hpp"
+#include "drivers/ensemble/ensemble_report.hpp"
 #include "verification/vesicles/differences.hpp"
 #include "verification/vesicles/measurements.hpp"
 #include "verification/vesicles/power_law.hpp"
@@ -24,6 +25,11 @@ SimulatedVesicle vesicle_of(const Configuration& model);
 // The finished runs of an ensemble, in s and R, or what a folder with its config.toml and
 // histories.csv has kept of them. Throws InputError as model_of.
 std::vector<History> runs_of(const std::filesystem::path& ensemble);
+
+// Simulations, in s and R, and the measurements in them, from a tenth of the first measured time
+// on.
+Chart comparison_chart(const MeasuredVesicles& data, const EnsembleSummary& summary,
+                       Quantity quantity);
 
 struct ComparisonRequest {
   std::filesystem::path ensemble, out;

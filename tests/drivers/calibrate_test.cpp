@@ -99,6 +99,10 @@ TEST_F(CalibrateTest, FindsTheMobilityOfAnEnsemble) {
   EXPECT_EQ(json["parameters"].size(), 1u);
   EXPECT_LT(mobility["interval_95"][0], mobility["value"]);
   EXPECT_GT(mobility["interval_95"][1], mobility["value"]);
+  // What fits best is shown with the measurements in it.
+  const std::string page = content(folder.path / "c/calibration.html");
+  EXPECT_NE(page.find("of the simulations that fit best"), std::string::npos);
+  EXPECT_TRUE(fs::exists(folder.path / "c/fit-perimeter.svg"));
   // The data are drawn from a law that was fitted to what simulations with 2.5e-5 cm²/s agree with.
   EXPECT_NEAR(std::log(mobility["value"].get<double>() / 2.5e-5), 0, std::log(2));
   for (const auto& [flags, complaint] :
