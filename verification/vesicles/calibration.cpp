@@ -15,7 +15,8 @@ constexpr int kReplicates = 200;
 constexpr double kOvershoot = 0.5;  // of what was explored, beyond it
 constexpr double kParabolic = 15;   // a deviance that much above the least counts half
 constexpr double kDetermined = 2;   // factor between the ends of an interval
-constexpr double kEdge = 0.02;      // of what was looked at, which counts as its end
+// How close to the end of what was looked at counts as its end, in ln: the range of R²/D is wide.
+constexpr double kUnitEdge = 0.1, kSimulatedEdge = 1e-3;
 
 // Mean raft fractions of vesicles, which scatter from vesicle to vesicle.
 class MeasuredFractions {
@@ -130,13 +131,13 @@ Eigen::MatrixXd covariance(const std::vector<std::vector<double>>& replicates) {
 }
 
 CalibratedParameter parameter(const std::string& name, double ln,
-                              const std::vector<double>& replicates, double lower, double upper) {
-  const double low = quantile(replicates, 0.025), high = quantile(replicates, 0.975),
-               margin = kEdge * (upper - lower);
+                              const std::vector<double>& replicates, double lower, double upper,
+                              double edge) {
+  const double low = quantile(replicates, 0.025), high = quantile(replicates, 0.975);
   return {name,
           std::exp(ln),
           {std::exp(low), std::exp(high)},
-          high - low < std::log(kDetermined) && low > lower + margin && high < upper - margin};
+          high - low < std::log(kDetermined) && low > lower + edge && high < upper - edge};
 }
 
 int count_at_bound(const std::vector<TimeFit>& fits, const Interval& allowed) {
@@ -190,10 +191,11 @@ Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtPara
   for (std::size_t i = 0; i <= sought.size(); ++i) {
     std::vector<double> values;
     for (const auto& replicate : replicates) values.push_back(replicate[i]);
-    result.parameters.push_back(
-        parameter(i == 0 ? "seconds_per_unit" : sought[i - 1].name, found.ln[i], values,
-                  i == 0 ? std::log(unit.allowed.low) : simulated.lower[i - 1],
-                  i == 0 ? std::log(unit.allowed.high) : simulated.upper[i - 1]));
+    result.parameters.push_back(parameter(
+        i == 0 ? "seconds_per_unit" : sought[i - 1].name, found.ln[i], values,
+        i == 0 ? std::log(unit.allowed.low) : simulated.lower[i - 1],
+        i == 0 ? std::log(unit.allowed.high) : simulated.upper[i - 1],
+        i == 0 ? kUnitEdge : kSimulatedEdge * (simulated.upper[i - 1] - simulated.lower[i - 1])));
   }
   const Eigen::MatrixXd spread = covariance(replicates);
   const Vec deviation = spread.diagonal().cwiseSqrt().cwiseMax(1e-12);
