@@ -138,7 +138,8 @@ std::vector<std::string> notes_on(const MeasuredVesicles& data, const Configurat
 
 // The measurements in the runs that fit best, at the D that fits these.
 void add_fit(Page& page, const std::filesystem::path& folder, const MeasuredVesicles& data,
-             const std::vector<CalibrationPoint>& points, const Calibration& result) {
+             const std::vector<CalibrationPoint>& points, const Calibration& result,
+             Missing& missing) {
   const auto& fits = result.at_points;
   const auto best =
       std::min_element(fits.begin(), fits.end(),
@@ -148,24 +149,23 @@ void add_fit(Page& page, const std::filesystem::path& folder, const MeasuredVesi
     for (double& t : run.time) t *= best->seconds_per_unit;
   const EnsembleSummary summary = summarise(runs);
   for (const Quantity quantity : {Quantity::perimeter, Quantity::rafts}) {
-    const Chart chart = comparison_chart(data, summary, quantity);
-    const std::string svg =
-        draw_chart(chart, folder / (std::string("fit-") + name_of(quantity).id));
-    if (!svg.empty()) page.figure(svg, chart.title + ", of the simulations that fit best");
+    Chart chart = comparison_chart(data, summary, quantity);
+    chart.title += ", of the simulations that fit best";
+    add_chart(page, chart, folder / (std::string("fit-") + name_of(quantity).id), missing);
   }
 }
 
 void add_deviances(Page& page, const std::filesystem::path& folder,
                    const std::vector<std::string>& names,
-                   const std::vector<CalibrationPoint>& points, const Calibration& result) {
+                   const std::vector<CalibrationPoint>& points, const Calibration& result,
+                   Missing& missing) {
   for (std::size_t i = 0; i < names.size(); ++i) {
     Chart chart{"Deviance over " + names[i], names[i], "-2 ln likelihood", true, false, {}};
     chart.series = {{"simulations", {}, Mark::points}};
     for (std::size_t k = 0; k < points.size(); ++k)
       chart.series[0].points.emplace_back(std::exp(points[k].ln_parameters[i]),
                                           result.at_points[k].deviance);
-    const std::string svg = draw_chart(chart, folder / ("deviance-" + names[i]));
-    if (!svg.empty()) page.figure(svg, chart.title);
+    add_chart(page, chart, folder / ("deviance-" + names[i]), missing);
   }
 }
 
@@ -198,9 +198,10 @@ void write_calibration(const std::filesystem::path& folder, const MeasuredVesicl
   page.table(rows);
   page.paragraph(best + " " + scatter + bound);
   for (const std::string& note : notes) page.paragraph(note);
-  add_fit(page, folder, data, points, result);
+  Missing missing;
+  add_fit(page, folder, data, points, result, missing);
   page.table(table_rows(table));
-  add_deviances(page, folder, names, points, result);
+  add_deviances(page, folder, names, points, result, missing);
   add_settings(page, found);
   write_durably(folder / "calibration.html", page.html());
   if (quiet) return;
@@ -210,6 +211,7 @@ void write_calibration(const std::filesystem::path& folder, const MeasuredVesicl
   std::printf("\n%s\n%s%s\n\nrun it with: traceraft run --config %s\nopen next: %s\n", best.c_str(),
               scatter.c_str(), bound.c_str(), (folder / "calibrated.toml").c_str(),
               (folder / "calibration.html").c_str());
+  if (!missing.text().empty()) std::printf("the page lacks: %s\n", missing.text().c_str());
 }
 
 }  // namespace traceraft

@@ -99,17 +99,12 @@ std::string write_ensemble(const EnsembleFolder& folder, const EnsembleSummary& 
   const std::vector<Row> rows = ensemble_rows(summary, seconds);
   if (!quiet) print_rows(rows);
   page.table(rows);
-  std::string missing;
-  for (const Quantity quantity : kQuantities) {
-    const Chart chart = ensemble_chart(summary, quantity, seconds);
-    const std::string svg = draw_chart(chart, folder.path() / name_of(quantity).id);
-    if (svg.empty())
-      missing = kNoGnuplot;
-    else
-      page.figure(svg, chart.title);
-  }
+  Missing missing;
+  for (const Quantity quantity : kQuantities)
+    add_chart(page, ensemble_chart(summary, quantity, seconds),
+              folder.path() / name_of(quantity).id, missing);
   write_durably(folder.path() / "ensemble.html", page.html());
-  return missing;
+  return missing.text();
 }
 
 }  // namespace traceraft

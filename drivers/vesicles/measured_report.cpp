@@ -264,6 +264,7 @@ int compare_with_ensemble(const MeasuredVesicles& data, const ComparisonRequest&
         formatted("The runs end at %.4g s: their law is fitted until then.", summary.times.back()));
   for (const std::string& remark : remarks) page.paragraph(remark);
   fs::create_directories(request.out);
+  Missing missing;
   for (const Quantity quantity : kQuantities) {
     Chart chart = comparison_chart(data, summary, quantity);
     if (quantity == Quantity::perimeter && measured)
@@ -271,9 +272,8 @@ int compare_with_ensemble(const MeasuredVesicles& data, const ComparisonRequest&
     if (quantity == Quantity::perimeter && request.facts)
       chart.series.push_back(
           law_curve("published law", request.facts->perimeter, request.facts->window));
-    const std::string svg =
-        draw_chart(chart, request.out / (std::string("comparison-") + name_of(quantity).id));
-    if (!svg.empty()) page.figure(svg, chart.title);
+    add_chart(page, chart, request.out / (std::string("comparison-") + name_of(quantity).id),
+              missing);
   }
   add_provenance(page, request.ensemble, request.command);
   write_durably(request.out / "comparison.json",
@@ -288,6 +288,7 @@ int compare_with_ensemble(const MeasuredVesicles& data, const ComparisonRequest&
     for (const std::string& remark : remarks) std::printf("%s\n", remark.c_str());
     for (const std::string& note : notes) std::printf("\n%s\n", note.c_str());
     std::printf("\nopen next: %s\n", (request.out / "comparison.html").c_str());
+    if (!missing.text().empty()) std::printf("the page lacks: %s\n", missing.text().c_str());
   }
   return kSuccess;
 }
