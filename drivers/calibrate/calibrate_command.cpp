@@ -121,7 +121,8 @@ class Calibrator {
   }
   bool add_points(const std::vector<std::vector<double>>& design, int round) {
     const double t_end = end_of_runs(data_);
-    for (const std::vector<double>& ln : design) {
+    for (std::size_t k = 0; k < design.size(); ++k) {
+      const std::vector<double>& ln = design[k];
       std::vector<double> values;
       std::string name = "point", words;
       for (std::size_t i = 0; i < ln.size(); ++i) {
@@ -130,7 +131,7 @@ class Calibrator {
         words += " " + names_[i] + " " + format_number(values.back());
       }
       if (!request_.quiet)
-        std::printf("simulations %zu of %zu%s: at%s\n", &ln - design.data() + 1, design.size(),
+        std::printf("simulations %zu of %zu%s: at%s\n", k + 1, design.size(),
                     names_.empty() ? "" : formatted(" of round %d", round).c_str(),
                     words.empty() ? " the model" : words.c_str());
       const Configuration here = configuration_at(model_, names_, values, t_end);

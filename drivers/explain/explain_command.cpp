@@ -47,12 +47,16 @@ void explain_field_data(const ExplainCommand& command, ExplainSetup& setup, cons
     std::printf("the model: %s\n", flags_text(Configuration(setup.model, {})).c_str());
   const SearchFile file(out, setup);
   std::optional<SearchState> search = file.load();
-  setup.request.save = [&](const SearchState& state) { file.save(*(search = state)); };
+  setup.request.save = [&](const SearchState& state) {
+    search = state;
+    file.save(state);
+  };
   Explanation found = explain_fields(setup.series, setup.request, search);
   write_explanation(out, found, setup.model);
   if (!found.found.hypothesis.parts.empty() && !found.rerun) {
     if (!command.quiet) setup.request.progress("once more, on another mesh, by another integrator");
-    search->so_far.rerun = found.rerun = run_again(setup.series, setup.request, found);
+    found.rerun = run_again(setup.series, setup.request, found);
+    search->so_far.rerun = found.rerun;
     file.save(*search);
     write_explanation(out, found, setup.model);
   }

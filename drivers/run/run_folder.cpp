@@ -14,6 +14,11 @@ void create_sub_folders(const RunFolder& folder) {
   fs::create_directories(folder.checkpoints());
 }
 
+// Of an ensemble, say, or another set of runs with folders of their own.
+bool holds_runs(const fs::path& path) {
+  return fs::exists(path / "runs") || fs::exists(path / "plan.json");
+}
+
 }  // namespace
 
 std::string first_free_folder(const std::string& name) {
@@ -31,9 +36,8 @@ void refuse_files_of_a_run(const fs::path& path) {
         folder.table("observables.csv"), folder.table("rafts.csv")})
     if (fs::exists(ours))
       throw InputError("--out: " + path.string() + " already holds " + ours.filename().string() +
-                       (fs::exists(path / "runs")
-                            ? std::string(", of a set of runs")
-                            : "; go on with: traceraft resume " + path.string()) +
+                       (holds_runs(path) ? std::string(", of a set of runs")
+                                         : "; go on with: traceraft resume " + path.string()) +
                        "; choose another folder");
 }
 
@@ -88,7 +92,7 @@ RunFolder open_run_folder(const fs::path& path) {
   if (!fs::is_directory(path)) throw InputError(path.string() + " is no folder");
   if (!fs::exists(folder.config()))
     throw InputError(path.string() + " holds no run: there is no config.toml");
-  if (fs::exists(path / "runs") || fs::exists(path / "plan.json"))
+  if (holds_runs(path))
     throw InputError(path.string() +
                      " holds a set of runs; to go on with it, give the command that made it again, "
                      "with --out " +

@@ -7,6 +7,7 @@
 
 #include "drivers/output/text_table.hpp"
 #include "verification/explain/disagreement.hpp"
+#include "verification/vesicles/history.hpp"
 
 namespace traceraft {
 namespace {
@@ -14,10 +15,7 @@ namespace {
 // What is stated of the noise; nothing where every value counts alike.
 Cell usual_deviation(const Vec& deviation) {
   if ((deviation.array() == 1).all()) return "not stated";
-  std::vector<double> sorted(deviation.begin(), deviation.end());
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  return *middle;
+  return quantile({deviation.begin(), deviation.end()}, 0.5);
 }
 
 std::vector<Cell> row_of(const FieldSeries& vesicle, const FieldSnapshot& snapshot) {

@@ -26,18 +26,19 @@ void set_covariance(const Eigen::MatrixXd& unknown, Refit& fit) {
   fit.covariance = inverse.asDiagonal() * unknown.bottomRightCorner(n, n) * inverse.asDiagonal();
 }
 
+// Of a model as it is.
 struct Evaluation {
-  double deviance = std::numeric_limits<double>::infinity();
+  Refit fit;
   Vec step;                    // to the maximum in range, if the likelihood were Gaussian
   Eigen::MatrixXd covariance;  // of the unknowns
-  Gaps gap, expected;
-  std::vector<SnapshotGap> snapshots;
-  std::string failure;
 };
 
 Evaluation evaluate(const FilterProblems& data, const FilterModel& model,
                     const FilterSettings& settings, std::vector<ErrorMaps>& maps) {
   Evaluation result;
+  Refit& fit = result.fit;
+  fit.hypothesis = model.hypothesis;
+  fit.pace = model.pace;
   try {
     const FilterResult pass = filter_fields(data, model, settings, maps);
     const std::vector<Eigen::Index> free = free_parameters(pass, model.hypothesis);
@@ -49,14 +50,16 @@ Evaluation evaluate(const FilterProblems& data, const FilterModel& model,
     result.step = J * all(own);
     result.covariance = J * inverse(own, own) * J.transpose();
     // At the most probable error of the mesh, which the step takes to be free as well.
-    result.deviance = pass.deviance - std::pow(pass.score[kMeshError], 2) /
-                                          pass.information(kMeshError, kMeshError);
-    if (!std::isfinite(result.deviance)) throw std::runtime_error("its likelihood is no number");
-    result.gap = gaps_of_pass(pass);
-    result.expected = expected_gaps(pass);
-    result.snapshots = snapshot_gaps(pass);
+    fit.deviance = pass.deviance -
+                   std::pow(pass.score[kMeshError], 2) / pass.information(kMeshError, kMeshError);
+    if (!std::isfinite(fit.deviance)) throw std::runtime_error("its likelihood is no number");
+    fit.gap = gaps_of_pass(pass);
+    fit.expected = expected_gaps(pass);
+    fit.snapshots = snapshot_gaps(pass);
+    set_covariance(result.covariance, fit);
   } catch (const std::runtime_error& error) {
-    result.failure = error.what();
+    fit.deviance = std::numeric_limits<double>::infinity();
+    fit.failure = error.what();
   }
   return result;
 }
@@ -101,14 +104,15 @@ class NewtonSearch {
 
   Refit run() {
     begin();
-    bool at_rest = here_.failure.empty() && settled(here_, model_);
+    Refit& found = here_.fit;
+    found.settled = found.failure.empty() && settled(here_, model_);
     StepLength length;
-    for (int k = 0; k < kMostNewtonSteps && here_.failure.empty() && !at_rest; ++k) {
+    for (int k = 0; k < kMostNewtonSteps && found.failure.empty() && !found.settled; ++k) {
       const bool better = step(length.next(here_.step.cwiseQuotient(deviations(here_))));
-      at_rest = settled(here_, model_);
+      found.settled = settled(here_, model_);
       if (!better) break;
     }
-    return result(at_rest);
+    return std::move(found);
   }
 
  private:
@@ -121,7 +125,7 @@ class NewtonSearch {
     Vec x = unknowns(model_);
     set_unknowns(model_, x);
     here_ = evaluated(model_);
-    for (int half = 0; half <= kMostHalvings && !here_.failure.empty(); ++half) {
+    for (int half = 0; half <= kMostHalvings && !here_.fit.failure.empty(); ++half) {
       x.tail(x.size() - 1) *= 0.5;
       set_unknowns(model_, x);
       here_ = evaluated(model_);
@@ -138,26 +142,12 @@ class NewtonSearch {
       FilterModel trial = model_;
       set_unknowns(trial, x + step);
       Evaluation there = evaluated(trial);
-      if (!(there.deviance < here_.deviance)) continue;
+      if (!(there.fit.deviance < here_.fit.deviance)) continue;
       model_ = std::move(trial);
       here_ = std::move(there);
       return true;
     }
     return false;
-  }
-
-  Refit result(bool at_rest) const {
-    Refit result;
-    result.hypothesis = model_.hypothesis;
-    result.pace = model_.pace;
-    result.deviance = here_.deviance;
-    result.gap = here_.gap;
-    result.expected = here_.expected;
-    result.snapshots = here_.snapshots;
-    result.settled = at_rest;
-    result.failure = here_.failure;
-    if (here_.failure.empty()) set_covariance(here_.covariance, result);
-    return result;
   }
 
   const FilterProblems& data_;

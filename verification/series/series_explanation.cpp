@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "kernel/core/error.hpp"
 #include "verification/explain/bounds.hpp"
@@ -119,9 +118,11 @@ class SeriesSearch {
 
   void judge() {
     const bool lacking = significant(result_.p);
-    std::vector<std::size_t> all(candidates_.size());
-    std::iota(all.begin(), all.end(), std::size_t{0});
-    const std::size_t best = best_of(all);
+    const auto best = static_cast<std::size_t>(
+        std::min_element(
+            result_.scores.begin(), result_.scores.end(),
+            [this](const SeriesScore& a, const SeriesScore& b) { return more_telling(a, b); }) -
+        result_.scores.begin());
     const SeriesModel model{&curves_.base, &curves_.changed[best]};
     result_.trend_p =
         share_of_noise(null_.trend, lacking ? trend_left(blocks_of(data_), model, gains_.fits[best])
