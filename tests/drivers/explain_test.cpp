@@ -104,7 +104,7 @@ TEST_F(ExplainTest, NamesWhatWasHidden) {
   EXPECT_LT(verdict["bounds"]["bulk-mobility.strength"]["high"], 1);
   EXPECT_FALSE(verdict["bounds"].contains("uptake.rate"));
   const std::string page = testing::content(folder.path / "out" / "explain.html");
-  EXPECT_NE(page.find("The model lacks uptake: "), std::string::npos);
+  EXPECT_NE(page.find("The model lacks uptake: "), std::string::npos) << verdict.dump(2);
   // The model that it has written is one.
   const auto end =
       testing::traceraft("run --config " + (folder.path / "out" / "model.toml").string() +

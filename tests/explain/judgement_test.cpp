@@ -76,6 +76,25 @@ TEST(Judgement, LetsASecondCoefficientEarnItsPlace) {
       std::log(kMeasuredValues), 1e-9);
 }
 
+// Exchange that has next to nothing leave is uptake, and no other explanation.
+TEST(Judgement, CountsNoSpecialCaseTwice) {
+  Round round = first_round();
+  round.refits = {refit_with({"uptake"}, 900), refit_with({"exchange"}, 898.1)};
+  EXPECT_EQ(judged(round).finding, Finding::named);
+  round.refits[1].deviance = 897.9;
+  EXPECT_EQ(judged(round).equivalent, (std::vector<std::string>{"uptake", "exchange"}));
+  // The other way about something has been gained.
+  round.refits = {refit_with({"exchange"}, 890), refit_with({"uptake"}, 900)};
+  EXPECT_EQ(judged(round).equivalent, (std::vector<std::string>{"exchange", "uptake"}));
+  // Beside others as well.
+  round.refits = {refit_with({"gravity", "uptake"}, 900), refit_with({"gravity", "exchange"}, 899)};
+  EXPECT_EQ(judged(round).finding, Finding::named);
+  round.refits[1] = refit_with({"cooling", "exchange"}, 899);
+  EXPECT_EQ(judged(round).finding, Finding::ambiguous);
+  round.refits[1] = refit_with({"exchange"}, 899);
+  EXPECT_EQ(judged(round).finding, Finding::ambiguous);
+}
+
 // Gravity is ten standard deviations strong. What extrapolation gets wrong, half of its last part
 // in 10,000 values, is as large where that part is 0.2 of the noise.
 TEST(Judgement, TakesNothingThatTheMeshCouldBe) {

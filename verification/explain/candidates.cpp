@@ -44,7 +44,7 @@ Candidate of_mobility(const std::string& effect, double step, bool two_sided) {
   return candidate;
 }
 
-// k (c − c*) = a0 c + a1 (c − 1) with k = a0 + a1, c* = a1/k.
+// k (c − c*) = a0 c + a1 (c − 1) with k = a0 + a1, c* = a1/k; uptake where a0 = 0.
 Candidate exchange() {
   return {"exchange",
           2,
@@ -56,7 +56,9 @@ Candidate exchange() {
           true,
           false,
           0,
-          std::numeric_limits<double>::infinity()};
+          std::numeric_limits<double>::infinity(),
+          false,
+          "uptake"};
 }
 
 }  // namespace
@@ -112,6 +114,14 @@ std::string Hypothesis::name() const {
   std::string text;
   for (const Part& part : parts) text += (text.empty() ? "" : " + ") + part.candidate.effect;
   return text;
+}
+
+bool Hypothesis::contains(const Hypothesis& other) const {
+  return std::equal(parts.begin(), parts.end(), other.parts.begin(), other.parts.end(),
+                    [](const Part& own, const Part& others) {
+                      const std::string& effect = others.candidate.effect;
+                      return own.candidate.effect == effect || own.candidate.special_case == effect;
+                    });
 }
 
 CoefficientForcing::CoefficientForcing(const CahnHilliard& problem, const CahnHilliardModel& model,

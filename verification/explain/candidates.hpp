@@ -24,6 +24,7 @@ struct Candidate {
   // Does it make the mobility as a whole larger or smaller? Another D takes its place near 0, so
   // there is next to nothing to gain there, however much there is further on.
   bool like_pace = false;
+  std::string special_case = {};  // an effect that it is at the limit of its coefficients
 
   double within_range(double coefficient) const;
 };
@@ -51,6 +52,8 @@ struct Hypothesis {
   std::vector<EffectTerm> terms() const;
   Eigen::Index coefficients() const;
   std::string name() const;  // of its effects
+  // Is the other one this one at a limit of its coefficients?
+  bool contains(const Hypothesis& other) const;
 };
 
 // ∂F/∂coefficient: for all coefficients of a hypothesis, then for those of more candidates at 0.

@@ -126,9 +126,9 @@ class Search {
 
   void add_equivalent(const std::vector<Refit>& fits) {
     std::vector<std::string>& names = result_.equivalent;
-    const double limit = criterion(result_.found, values()) + telling(values(), mesh_error());
+    const double limit = telling(values(), mesh_error());
     for (const Refit& fit : fits)
-      if (fit.failure.empty() && criterion(fit, values()) < limit &&
+      if (fit.failure.empty() && explains_as_well(fit, result_.found, values(), limit) &&
           fit.hypothesis.parts.size() == model_.hypothesis.parts.size() &&
           std::find(names.begin(), names.end(), fit.hypothesis.name()) == names.end())
         names.push_back(fit.hypothesis.name());
@@ -252,7 +252,10 @@ class Search {
     for (const FilterProblem& data : data_) result_.noises.push_back(data.noise);
     result_.base_gap = result_.base.gap;
     result_.found_gap = result_.found.gap;
-    if (refits.size() > 1) result_.placebo_gap = refits[1].gap;
+    const auto placebo = std::find_if(refits.begin(), refits.end(), [&](const Refit& fit) {
+      return !is_no_other(fit, refits.front());
+    });
+    if (placebo != refits.end()) result_.placebo_gap = placebo->gap;
     result_.floor = result_.found.expected;
     screen_the_rest();
     result_.bounds = bounds_of(result_.rounds.back().screening, model_.screened);

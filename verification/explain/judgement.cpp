@@ -54,6 +54,15 @@ double criterion(const Refit& fit, double values) {
   return fit.deviance + std::log(values) * static_cast<double>(fit.hypothesis.coefficients());
 }
 
+bool is_no_other(const Refit& fit, const Refit& best) {
+  constexpr double kUseless = 2;
+  return fit.hypothesis.contains(best.hypothesis) && best.deviance - fit.deviance < kUseless;
+}
+
+bool explains_as_well(const Refit& fit, const Refit& best, double values, double limit) {
+  return !is_no_other(fit, best) && criterion(fit, values) < criterion(best, values) + limit;
+}
+
 Judgement judge(const Round& round, double values, double false_alarms, double usual_change) {
   const bool first = round.known.hypothesis.parts.empty();
   const bool quiet = round.screening.p > false_alarms;
@@ -65,14 +74,13 @@ Judgement judge(const Round& round, double values, double false_alarms, double u
                            : Finding::not_identifiable;
   if (round.refits.empty()) return {false, rest, {}};
   const Refit& best = round.refits.front();
-  const double least = criterion(best, values);
-  if (criterion(round.without, values) < least) return {false, rest, {}};
+  if (criterion(round.without, values) < criterion(best, values)) return {false, rest, {}};
   if (!resolved(best, best.hypothesis.parts.size() - 1, values, round.screening.mesh_error))
     return {false, first ? Finding::below_resolution : rest, {}};
   Judgement taken{true, Finding::named, {best.hypothesis.name()}};
-  const double limit = least + telling(values, round.screening.mesh_error);
+  const double limit = telling(values, round.screening.mesh_error);
   for (std::size_t k = 1; k < round.refits.size(); ++k)
-    if (criterion(round.refits[k], values) < limit)
+    if (explains_as_well(round.refits[k], best, values, limit))
       taken.equivalent.push_back(round.refits[k].hypothesis.name());
   if (taken.equivalent.size() > 1) taken.finding = Finding::ambiguous;
   return taken;

@@ -48,6 +48,13 @@ inline constexpr double kSeen = 4;
 // a special case of it. `values`: how many have been measured.
 double criterion(const Refit& fit, double values);
 
+// Is it the best fit with a coefficient that has no use: one of which that is a special case, and
+// which gains less than 2 (Akaike 1974)?
+bool is_no_other(const Refit& fit, const Refit& best);
+
+// Does it explain the data as well as the best fit? `limit`: what tells the two apart.
+bool explains_as_well(const Refit& fit, const Refit& best, double values, double limit);
+
 // What extrapolation to finer meshes may be wrong by, in standard deviations of everything measured
 // together: kMeshDoubt of its last part, whose root mean square is `mesh_error` in units of the
 // noise.
