@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 
 #include "drivers/config/config_file.hpp"
 #include "drivers/ensemble/ensemble_point.hpp"
@@ -24,6 +25,12 @@ namespace fs = std::filesystem;
 // Of D over that of the model: runs last as long as if it were that.
 constexpr double kFastestPace = 4;
 
+void tell(const SeriesEnsemblesRequest& request, const std::string& step) {
+  if (request.quiet) return;
+  std::printf("%s\n", step.c_str());
+  std::fflush(stdout);
+}
+
 Configuration ensemble_model(const Configuration& model, const std::string& effect, double t_end) {
   GivenValues given = settings_until(model, t_end);
   given["case"] = {model.text("case"), "--case"};
@@ -31,49 +38,58 @@ Configuration ensemble_model(const Configuration& model, const std::string& effe
   return {{}, given};
 }
 
-// The strengths of all effects, found once.
-std::vector<EffectTerm> sizes(const fs::path& folder, const Configuration& model,
-                              const SeriesEnsemblesRequest& request) {
-  const fs::path file = folder / "strengths.json";
-  const Units units = model.units();
+BlindRequest sizing_request(const Configuration& model, const SeriesEnsemblesRequest& request) {
+  const double time = model.units().time();
   BlindRequest sizing;
   sizing.base = physical_model(model);
   sizing.raft_fraction = model.number("raft-fraction");
   sizing.cells = static_cast<int>(model.integer("cells"));
   sizing.initial = model.text("initial");
   sizing.noise_cells = model.integer("noise-cells");
-  sizing.first = request.looks.begin / units.time();
-  sizing.last = request.looks.end / units.time();
+  sizing.first = request.looks.begin / time;
+  sizing.last = request.looks.end / time;
   sizing.snapshots = 5;
   sizing.threads = request.threads;
-  for (const std::string& effect : effects_to_hide())
-    if (std::count(request.without.begin(), request.without.end(), effect) == 0 &&
-        (has_unit_wells(sizing.base) || !effects().find(effect).unit_wells))
-      sizing.effects.push_back(effect);
-  if (sizing.effects.empty()) throw InputError("--without: no effect is left to look for");
+  return sizing;
+}
+
+// What was found before; empty if that is nothing.
+Json saved_strengths(const fs::path& file, const std::string& identity) {
+  if (!fs::exists(file)) return Json::object();
+  return from_json(file, [&](const Json& json) {
+    if (json.at("identity") != identity)
+      throw InputError("--out: " + file.parent_path().parent_path().string() +
+                       " holds an explanation of another model, or of looks at other times; "
+                       "choose another folder");
+    return json.at("strengths");
+  });
+}
+
+// The strengths of all effects, each found once.
+std::vector<EffectTerm> sizes(const fs::path& folder, const Configuration& model,
+                              const SeriesEnsemblesRequest& request) {
+  const fs::path file = folder / "strengths.json";
   const std::string identity = config_text(ensemble_model(model, "", request.looks.end)) +
                                format_number(request.looks.begin);
-  Json strengths = Json::object();
-  if (fs::exists(file))
-    strengths = from_json(file, [&](const Json& json) {
-      if (json.at("identity") != identity)
-        throw InputError("--out: " + folder.parent_path().string() +
-                         " holds an explanation of another model, or of looks at other times; "
-                         "choose another folder");
-      return json.at("strengths");
-    });
-  const std::vector<std::string> wanted = sizing.effects;
-  auto& missing = sizing.effects;
-  missing.erase(std::remove_if(missing.begin(), missing.end(),
-                               [&](const auto& effect) { return strengths.contains(effect); }),
-                missing.end());
-  if (!missing.empty()) {
-    if (!request.quiet) std::printf("how strong effects have to be\n");
-    for (const EffectTerm& term : size_effects(sizing)) strengths[term.effect] = term.values;
-    write_durably(file, Json{{"identity", identity}, {"strengths", strengths}}.dump(2) + "\n");
-  }
+  const BlindRequest asked = sizing_request(model, request);
+  Json strengths = saved_strengths(file, identity);
+  std::optional<EffectSizing> sizing;
   std::vector<EffectTerm> terms;
-  for (const std::string& effect : wanted) terms.push_back({effect, strengths.at(effect)});
+  const std::vector<std::string> known = effects_to_hide();
+  for (std::size_t k = 0; k < known.size(); ++k) {
+    const std::string& effect = known[k];
+    if (std::count(request.without.begin(), request.without.end(), effect) > 0 ||
+        (effects().find(effect).unit_wells && !has_unit_wells(asked.base)))
+      continue;
+    if (!strengths.contains(effect)) {
+      tell(request, "how strong " + effect + " has to be");
+      if (!sizing) sizing.emplace(asked);
+      strengths[effect] = sizing->term(effect, k).values;
+      write_durably(file, Json{{"identity", identity}, {"strengths", strengths}}.dump(2) + "\n");
+    }
+    terms.push_back({effect, strengths.at(effect)});
+  }
+  if (terms.empty()) throw InputError("--without: no effect is left to look for");
   return terms;
 }
 
@@ -105,8 +121,7 @@ SeriesEnsembles run_series_ensembles(const fs::path& folder, const Configuration
   const Units units = model.units();
   SeriesEnsembles result;
   const auto simulate = [&](const std::string& name, const std::string& effect) {
-    if (!request.quiet)
-      std::printf("simulations with %s\n", effect.empty() ? "no effect" : effect.c_str());
+    tell(request, "simulations with " + (effect.empty() ? "no effect" : effect));
     return run_point(folder / name, ensemble_model(model, effect, kFastestPace * request.looks.end),
                      {request.runs, request.jobs, request.quiet});
   };

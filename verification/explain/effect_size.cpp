@@ -5,8 +5,6 @@
 
 #include "kernel/core/named_list.hpp"
 #include "kernel/core/random.hpp"
-#include "verification/explain/blind_looks.hpp"
-#include "verification/explain/blind_simulation.hpp"
 #include "verification/explain/candidates.hpp"
 #include "verification/explain/resolved_forecast.hpp"
 
@@ -16,79 +14,67 @@ namespace {
 // Standard deviation of c below which there is nothing to see.
 constexpr double kLeastContrast = 0.01;
 
-// Coefficients in a random direction that the effect allows.
-std::vector<double> random_coefficients(const BlindRequest& request, const Candidate& candidate,
-                                        std::uint64_t number) {
+Candidate candidate_of(const std::string& effect) {
+  const auto valid = effects_to_hide(), known = effects().names();
+  if (std::find(valid.begin(), valid.end(), effect) == valid.end())
+    throw InputError(std::find(known.begin(), known.end(), effect) != known.end()
+                         ? "the effect " + effect + " is none that explain looks for on a sphere"
+                         : unknown_name_message("effect to hide", effect, valid));
+  return *find_candidate(effect);
+}
+
+}  // namespace
+
+EffectSizing::EffectSizing(const BlindRequest& request) : request_(request), looks_(request) {
+  constexpr double kCoarser = 0.7, kTolerance = 1e-3;
+  const int cells =
+      request.sizing_cells > 0 ? request.sizing_cells : static_cast<int>(kCoarser * request.cells);
+  method_ = {serial_space(looks_.surface, cells), "ida", kTolerance};
+  const BlindSimulation base(request_, method_, {});
+  snapshots_ = base.run(looks_.times);
+  for (std::size_t k = 0; k + 1 < snapshots_.size(); ++k)
+    next_.push_back(base.advance(snapshots_[k], looks_.times[k], looks_.times[k + 1]));
+  for (std::size_t k = 0; k < next_.size(); ++k)
+    if (!(spread(*method_.space, snapshots_[k]) > kLeastContrast))
+      throw InputError(
+          "the base model has no rafts at these times: c is the same everywhere; take "
+          "a larger raft fraction (smooth noise of less than 0.21 dissolves), or other times");
+}
+
+// A small one, then in proportion, twice.
+EffectTerm EffectSizing::term(const std::string& effect, std::uint64_t number) const {
+  const Candidate candidate = candidate_of(effect);
+  std::vector<double> coefficients = random_coefficients(candidate, number);
+  for (int k = 0; k < 2; ++k) {
+    const double ratio = request_.gap / gap_of(candidate.term(coefficients));
+    for (double& a : coefficients) a = candidate.within_range(ratio * a);
+  }
+  return candidate.term(coefficients);
+}
+
+std::vector<double> EffectSizing::random_coefficients(const Candidate& candidate,
+                                                      std::uint64_t number) const {
   std::vector<double> coefficients;
   for (int d = 0; d < candidate.directions; ++d) {
-    const double u = uniform_random(request.seed, blind_stream::effects, 10 * number + d);
+    const double u = uniform_random(request_.seed, blind_stream::effects, 10 * number + d);
     const double sign = candidate.two_sided && u < 0.5 ? -1 : 1;
     coefficients.push_back(sign * candidate.step * (candidate.directions > 1 ? 0.2 + u : 1));
   }
   return coefficients;
 }
 
-// How strong effects have to be is found on a mesh that is coarser than the truth's: it need not be
-// exact.
-class Sizing {
- public:
-  Sizing(const BlindRequest& request, const LevelSet& surface, const std::vector<double>& times)
-      : request_(request), times_(times) {
-    constexpr double kCoarser = 0.7, kTolerance = 1e-3;
-    const int cells = request.sizing_cells > 0 ? request.sizing_cells
-                                               : static_cast<int>(kCoarser * request.cells);
-    method_ = {serial_space(surface, cells), "ida", kTolerance};
-    const BlindSimulation base(request, method_, {});
-    snapshots_ = base.run(times);
-    for (std::size_t k = 0; k + 1 < times.size(); ++k)
-      next_.push_back(base.advance(snapshots_[k], times[k], times[k + 1]));
+double EffectSizing::gap_of(const EffectTerm& term) const {
+  const BlindSimulation changed(request_, method_, {term});
+  const SurfaceSpace& space = *method_.space;
+  double squares = 0;
+  for (std::size_t k = 0; k < next_.size(); ++k) {
+    const Vec difference =
+        changed.advance(snapshots_[k], looks_.times[k], looks_.times[k + 1]) - next_[k];
+    const double contrast = spread(space, snapshots_[k]);
+    squares += space.inner(difference, difference) / space.area / (contrast * contrast);
   }
-
-  // The effect with the strength at which it makes the gap that was asked for, or the largest one
-  // that it may have: a small one, then in proportion, twice.
-  EffectTerm term(const std::string& effect, std::uint64_t number) const {
-    const Candidate candidate = candidate_of(effect);
-    std::vector<double> coefficients = random_coefficients(request_, candidate, number);
-    for (int k = 0; k < 2; ++k) {
-      const double ratio = request_.gap / gap_of(candidate.term(coefficients));
-      for (double& a : coefficients) a = candidate.within_range(ratio * a);
-    }
-    return candidate.term(coefficients);
-  }
-
- private:
-  static Candidate candidate_of(const std::string& effect) {
-    const auto valid = effects_to_hide(), known = effects().names();
-    if (std::find(valid.begin(), valid.end(), effect) == valid.end())
-      throw InputError(std::find(known.begin(), known.end(), effect) != known.end()
-                           ? "the effect " + effect + " is none that explain looks for on a sphere"
-                           : unknown_name_message("effect to hide", effect, valid));
-    return *find_candidate(effect);
-  }
-  // What the effect makes of the base's snapshots until the next one.
-  double gap_of(const EffectTerm& term) const {
-    const BlindSimulation changed(request_, method_, {term});
-    const SurfaceSpace& space = *method_.space;
-    double squares = 0;
-    for (std::size_t k = 0; k + 1 < times_.size(); ++k) {
-      const Vec difference = changed.advance(snapshots_[k], times_[k], times_[k + 1]) - next_[k];
-      const double contrast = spread(space, snapshots_[k]);
-      if (!(contrast > kLeastContrast))
-        throw InputError(
-            "the base model has no rafts at these times: c is the same everywhere; take "
-            "a larger raft fraction (smooth noise of less than 0.21 dissolves), or other times");
-      squares += space.inner(difference, difference) / space.area / (contrast * contrast);
-    }
-    return std::sqrt(squares / static_cast<double>(times_.size() - 1));
-  }
-
-  const BlindRequest& request_;
-  const std::vector<double>& times_;
-  BlindMethod method_;
-  std::vector<Vec> snapshots_, next_;  // of the base; what becomes of each until the next time
-};
-
-}  // namespace
+  return std::sqrt(squares / static_cast<double>(next_.size()));
+}
 
 std::vector<std::string> effects_to_hide() {
   std::vector<std::string> names;
@@ -100,8 +86,7 @@ std::vector<std::string> effects_to_hide() {
 std::vector<EffectTerm> size_effects(const BlindRequest& request) {
   std::vector<EffectTerm> terms;
   if (request.effects.empty()) return terms;
-  const BlindLooks looks(request);
-  const Sizing sizing(request, looks.surface, looks.times);
+  const EffectSizing sizing(request);
   for (std::size_t k = 0; k < request.effects.size(); ++k)
     terms.push_back(sizing.term(request.effects[k], k));
   return terms;
