@@ -46,18 +46,16 @@ struct CalibrateRequest {
 
 std::vector<std::string> costly_parameters(const std::string& text) {
   std::vector<std::string> names;
-  bool mobility = false;
   for (const std::string& name : split_list(text)) {
     (void)calibrated_options().find(name);
-    if (name == "mobility")
-      mobility = true;
-    else if (std::find(names.begin(), names.end(), name) != names.end())
+    if (std::find(names.begin(), names.end(), name) != names.end())
       throw InputError("--parameters: " + name + " is there twice");
-    else
-      names.push_back(name);
+    names.push_back(name);
   }
-  if (!mobility)
+  const auto mobility = std::find(names.begin(), names.end(), "mobility");
+  if (mobility == names.end())
     throw InputError("--parameters: mobility has to be among them; it sets the unit of time");
+  names.erase(mobility);
   return names;
 }
 
@@ -80,22 +78,21 @@ class Calibrator {
   bool run() {
     std::vector<double> centre;
     for (const double value : values_of(model_, names_)) centre.push_back(std::log(value));
+    const double seconds = model_.units().seconds_per_unit();
+    const TimeUnit unit{seconds, {seconds / kFastest, seconds * kSlowest}};
     const double* step = std::begin(kSteps);
     for (int round = 0; round < kMostRounds && step != std::end(kSteps); ++round) {
       const std::vector<double> design = within_range(centre, *step);
       if (!add_points(design_around(design, *step), round + 1)) return false;
-      const double seconds = model_.units().seconds_per_unit();
-      result_ =
-          calibrate(data_, sought(), points_, {seconds, {seconds / kFastest, seconds * kSlowest}});
+      if (centre.empty()) break;
+      centre = most_probable(data_, sought(), points_, unit);
       double moved = 0;
-      for (std::size_t i = 0; i < centre.size(); ++i) {
-        centre[i] = std::log(result_.parameters[i + 1].value);
+      for (std::size_t i = 0; i < centre.size(); ++i)
         moved = std::max(moved, std::fabs(centre[i] - design[i]));
-      }
-      if (centre.empty()) return true;
       if (moved <= *step) ++step;
     }
-    if (step != std::end(kSteps)) mark_unconverged(result_);
+    result_ = calibrate(data_, sought(), points_, unit);
+    if (!centre.empty() && step != std::end(kSteps)) mark_unconverged(result_);
     return true;
   }
 
@@ -165,13 +162,20 @@ class Calibrator {
   Calibration result_;
 };
 
-// What decides the simulations: a calibration that goes on has to be the same.
-void remember(const fs::path& out, const CalibrateRequest& request, const MeasuredVesicles& data,
-              const Configuration& model) {
-  const fs::path file = out / "calibration-model.toml";
-  const std::string identity = "# parameters " + request.parameters + ", " +
-                               std::to_string(request.runs) + " runs to " +
-                               format_number(end_of_runs(data)) + " s\n" + config_text(model);
+// The folder of a calibration, which holds what decides the simulations.
+constexpr char kIdentityFile[] = "calibration-model.toml";
+
+fs::path folder_for(const CalibrateRequest& request) {
+  const fs::path out = request.out.empty() ? first_free_folder("calibration") : request.out;
+  refuse_foreign_folder(out, kIdentityFile);
+  fs::create_directories(out);
+  return out;
+}
+
+// One that goes on has to be the same.
+void remember(const fs::path& out, const std::string& what, const Configuration& model) {
+  const fs::path file = out / kIdentityFile;
+  const std::string identity = "# " + what + "\n" + config_text(model);
   if (fs::exists(file) && read_file(file, 1 << 20) != identity)
     throw InputError(
         "--out: " + out.string() +
@@ -219,10 +223,14 @@ int calibrate_ensemble(const CalibrateRequest& request, const MeasuredVesicles& 
   const Interval covered{seconds / fastest, seconds * kSlowest};
   const Calibration result =
       calibrate(data, {}, {point}, {std::max(seconds, covered.low), covered});
-  const fs::path out = request.out.empty() ? first_free_folder("calibration") : request.out;
-  fs::create_directories(out);
+  const fs::path out = folder_for(request);
   const FolderLock lock(out);
-  write_calibration(out, data, model, {}, {point}, result, request.quiet);
+  remember(out, "mobility alone, from the runs in " + request.ensemble, model);
+  const std::string bound = formatted(
+      "D is looked for between %.3g and %.3g cm^2/s: of a larger one, runs that end at %.4g s know "
+      "nothing at the times of the measurements; take an ensemble with a larger --t-end.",
+      model.units().diffusion_cm2_s / kSlowest, model.units().diffusion_cm2_s * fastest, shortest);
+  write_calibration(out, data, {model, {}, {point}, bound}, result, request.quiet);
   return kSuccess;
 }
 
@@ -239,17 +247,23 @@ int run_calibration(CalibrateRequest request) {
   const Configuration model(read_config_file(request.model, "--model"), request.flags);
   refuse_scaled(model);
   refuse_calibrating(model);
-  const fs::path out = request.out.empty() ? first_free_folder("calibration") : request.out;
-  fs::create_directories(out / "points");
+  const fs::path out = folder_for(request);
   const FolderLock lock(out);
-  remember(out, request, data, model);
+  remember(out,
+           "parameters " + request.parameters + ", " + std::to_string(request.runs) + " runs to " +
+               format_number(end_of_runs(data)) + " s",
+           model);
   Calibrator calibrator(request, data, model, out);
   if (!calibrator.run()) {
     if (!request.quiet) std::printf("to go on, give the same command with --out %s\n", out.c_str());
     return kInterrupted;
   }
-  write_calibration(out, data, model, calibrator.names(), calibrator.points(), calibrator.result(),
-                    request.quiet);
+  const double diffusion = model.units().diffusion_cm2_s;
+  const std::string bound =
+      formatted("D is looked for between %.3g and %.3g cm^2/s: begin with another --diffusion.",
+                diffusion / kSlowest, diffusion * kFastest);
+  write_calibration(out, data, {model, calibrator.names(), calibrator.points(), bound},
+                    calibrator.result(), request.quiet);
   return kSuccess;
 }
 
@@ -261,7 +275,9 @@ Action define_calibrate(CLI::App& app) {
                  "find the mobility alone, from the runs of an ensemble or what is kept of them");
   app.add_option("--parameters", request->parameters,
                  "comma-separated, of mobility, epsilon, fraction, noise-length; default: "
-                 "mobility,epsilon");
+                 "mobility,epsilon")
+      ->check(
+          [](const std::string& text) { return std::string(text.empty() ? "names none" : ""); });
   app.add_option("--runs", request->runs, "seeds that every choice of parameters is run with")
       ->check(CLI::Range(2, 1000))
       ->capture_default_str();

@@ -66,16 +66,16 @@ std::vector<Row> rows_of(const std::vector<FoundLine>& lines) {
   return rows;
 }
 
-Table points_table(const Configuration& model, const std::vector<std::string>& names,
-                   const std::vector<CalibrationPoint>& points, const Calibration& result) {
-  Table table{"calibration", names, {}};
+Table points_table(const CalibrationRuns& runs, const Calibration& result) {
+  const std::vector<CalibrationPoint>& points = runs.points;
+  Table table{"calibration", runs.names, {}};
   for (const char* column : {"mobility", "scatter", "deviance", "runs"})
     table.columns.push_back(column);
   for (std::size_t k = 0; k < points.size(); ++k) {
     std::vector<Cell> row;
     for (const double ln : points[k].ln_parameters) row.emplace_back(std::exp(ln));
     const TimeFit& fit = result.at_points[k];
-    row.emplace_back(diffusion(model, fit.seconds_per_unit));
+    row.emplace_back(diffusion(runs.model, fit.seconds_per_unit));
     row.emplace_back(fit.scatter);
     row.emplace_back(fit.deviance);
     row.emplace_back(static_cast<double>(points[k].runs.size()));
@@ -92,8 +92,9 @@ std::string json_text(const std::vector<FoundLine>& lines, const Calibration& re
                                      {"unit", line.unit},
                                      {"determined", line.determined}};
   json["best_known"] = best_known(result);
-  json["scatter_of_ln_perimeter"] = result.scatter;
+  json["scatter_of_ln_perimeter"] = result.best.scatter;
   json["points_at_bound_of_mobility"] = result.at_bound;
+  json["mobility_at_bound"] = result.unit_at_bound;
   json["converged"] = result.converged;
   for (Eigen::Index i = 0; i < result.correlation.rows(); ++i) {
     Json row = Json::array();
@@ -119,35 +120,52 @@ Configuration found_model(const Configuration& model, const std::vector<std::str
   return {{}, given};
 }
 
-// What the numbers rest on.
-std::vector<std::string> notes_on(const MeasuredVesicles& data, const Configuration& found,
-                                  const std::vector<std::string>& names,
+// The runs that fit best, at the D that fits these.
+std::vector<History> best_runs(const CalibrationRuns& all, const Calibration& result) {
+  const auto& fits = result.at_points;
+  const auto best =
+      std::min_element(fits.begin(), fits.end(),
+                       [](const TimeFit& a, const TimeFit& b) { return a.deviance < b.deviance; });
+  std::vector<History> runs = all.points[static_cast<std::size_t>(best - fits.begin())].runs;
+  for (History& run : runs)
+    for (double& t : run.time) t *= best->seconds_per_unit;
+  return runs;
+}
+
+// What is to be known before the numbers.
+std::vector<std::string> notes_on(const MeasuredVesicles& data, const CalibrationRuns& runs,
                                   const Calibration& result) {
+  const std::vector<std::string>& names = runs.names;
   std::vector<std::string> notes;
   if (!result.converged)
     notes.push_back(
         "NOT CONVERGED: the last simulations do not surround what was found; begin again from the "
         "calibrated model.");
+  if (result.unit_at_bound)
+    notes.push_back("D LIES AT THE END OF THE SEARCH, and is not known. " + runs.bound);
+  else if (result.at_bound > 0)
+    notes.push_back(formatted("At %d of %zu choices D fits best where the search for it ends. ",
+                              result.at_bound, runs.points.size()) +
+                    runs.bound);
+  if (const int nothing = looks_that_tell_nothing(data); nothing > 0)
+    notes.push_back(
+        formatted("%d of %zu measurements are of no raft, or of neither perimeter nor "
+                  "number: they are not used.",
+                  nothing, data.measurements.size()));
   if (!names.empty() && std::find(names.begin(), names.end(), "noise-length") == names.end())
     notes.push_back(
         "The intervals hold if the initial noise is as long as the model's; if it is not, the "
         "others take the blame. With noise-length among --parameters it is looked for, too.");
-  for (const std::string& note : differences(data, vesicle_of(found))) notes.push_back(note);
+  const SimulatedVesicle vesicle =
+      simulated_vesicle(runs.model.units().length(), best_runs(runs, result), data);
+  for (const std::string& note : differences(data, vesicle)) notes.push_back(note);
   return notes;
 }
 
-// The measurements in the runs that fit best, at the D that fits these.
+// The measurements in the runs that fit best.
 void add_fit(Page& page, const std::filesystem::path& folder, const MeasuredVesicles& data,
-             const std::vector<CalibrationPoint>& points, const Calibration& result,
-             Missing& missing) {
-  const auto& fits = result.at_points;
-  const auto best =
-      std::min_element(fits.begin(), fits.end(),
-                       [](const TimeFit& a, const TimeFit& b) { return a.deviance < b.deviance; });
-  std::vector<History> runs = points[static_cast<std::size_t>(best - fits.begin())].runs;
-  for (History& run : runs)
-    for (double& t : run.time) t *= best->seconds_per_unit;
-  const EnsembleSummary summary = summarise(runs);
+             const CalibrationRuns& runs, const Calibration& result, Missing& missing) {
+  const EnsembleSummary summary = summarise(best_runs(runs, result));
   for (const Quantity quantity : {Quantity::perimeter, Quantity::rafts}) {
     Chart chart = comparison_chart(data, summary, quantity);
     chart.title += ", of the simulations that fit best";
@@ -155,62 +173,73 @@ void add_fit(Page& page, const std::filesystem::path& folder, const MeasuredVesi
   }
 }
 
-void add_deviances(Page& page, const std::filesystem::path& folder,
-                   const std::vector<std::string>& names,
-                   const std::vector<CalibrationPoint>& points, const Calibration& result,
-                   Missing& missing) {
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    Chart chart{"Deviance over " + names[i], names[i], "-2 ln likelihood", true, false, {}};
-    chart.series = {{"simulations", {}, Mark::points}};
-    for (std::size_t k = 0; k < points.size(); ++k)
-      chart.series[0].points.emplace_back(std::exp(points[k].ln_parameters[i]),
-                                          result.at_points[k].deviance);
-    add_chart(page, chart, folder / ("deviance-" + names[i]), missing);
+// Within what counts of the best: what is further away only flattens the rest.
+void add_deviances(Page& page, const std::filesystem::path& folder, const CalibrationRuns& runs,
+                   const Calibration& result, Missing& missing) {
+  constexpr double kShown = 50, kExcluded = 3.84;
+  for (std::size_t i = 0; i < runs.names.size(); ++i) {
+    const CalibratedParameter& found = result.parameters[i + 1];
+    const double best = result.best.deviance;
+    Chart chart{
+        "Deviance over " + runs.names[i], runs.names[i], "-2 ln likelihood", true, false, {}};
+    chart.series = {
+        {"simulations", {}, Mark::points},
+        {"found, with its 95 % interval",
+         {{found.interval.low, best}, {found.value, best}, {found.interval.high, best}},
+         Mark::both},
+        {"3.84 above it",
+         {{found.interval.low, best + kExcluded}, {found.interval.high, best + kExcluded}},
+         Mark::line}};
+    for (std::size_t k = 0; k < runs.points.size(); ++k)
+      if (result.at_points[k].deviance < best + kShown)
+        chart.series[0].points.emplace_back(std::exp(runs.points[k].ln_parameters[i]),
+                                            result.at_points[k].deviance);
+    add_chart(page, chart, folder / ("deviance-" + runs.names[i]), missing);
   }
+}
+
+// For readers: what was found beyond the table.
+std::vector<std::string> sentences_on(const Calibration& result) {
+  std::vector<std::string> sentences;
+  if (result.converged && !result.unit_at_bound)
+    sentences.push_back("The data know best " + best_known(result) + ".");
+  sentences.push_back(
+      formatted("Perimeters scatter by %.0f %% beyond what runs do.", 100 * result.best.scatter));
+  return sentences;
 }
 
 }  // namespace
 
 void write_calibration(const std::filesystem::path& folder, const MeasuredVesicles& data,
-                       const Configuration& model, const std::vector<std::string>& names,
-                       const std::vector<CalibrationPoint>& points, const Calibration& result,
-                       bool quiet) {
-  const std::vector<FoundLine> lines = findings_of(model, result);
+                       const CalibrationRuns& runs, const Calibration& result, bool quiet) {
+  const std::vector<FoundLine> lines = findings_of(runs.model, result);
   const std::vector<Row> rows = rows_of(lines);
-  const Configuration found = found_model(model, names, lines);
-  const std::string best = "The data know best " + best_known(result) + ".";
-  const std::string scatter =
-      formatted("Perimeters scatter by %.0f %% beyond what runs do.", 100 * result.scatter);
-  const std::string bound =
-      result.at_bound == 0
-          ? ""
-          : formatted(
-                " At %d of %zu choices D fits best where the search for it ends: begin with "
-                "another --diffusion.",
-                result.at_bound, points.size());
-  const std::vector<std::string> notes = notes_on(data, found, names, result);
-  const Table table = points_table(model, names, points, result);
+  const Configuration found = found_model(runs.model, runs.names, lines);
+  const std::vector<std::string> notes = notes_on(data, runs, result);
+  const std::vector<std::string> sentences = sentences_on(result);
+  const Table table = points_table(runs, result);
   write_durably(folder / "calibration.csv", csv_text(table));
   write_durably(folder / "calibration.json", json_text(lines, result));
   write_durably(folder / "calibrated.toml", config_text(found));
   Page page("A model calibrated with measurements");
   page.paragraph(data.name + (data.synthetic ? " (SYNTHETIC, not measured)" : ""));
   page.table(rows);
-  page.paragraph(best + " " + scatter + bound);
-  for (const std::string& note : notes) page.paragraph(note);
+  for (const auto* list : {&notes, &sentences})
+    for (const std::string& sentence : *list) page.paragraph(sentence);
   Missing missing;
-  add_fit(page, folder, data, points, result, missing);
+  add_fit(page, folder, data, runs, result, missing);
   page.table(table_rows(table));
-  add_deviances(page, folder, names, points, result, missing);
+  add_deviances(page, folder, runs, result, missing);
   add_settings(page, found);
   write_durably(folder / "calibration.html", page.html());
   if (quiet) return;
   std::printf("\n");
   print_rows(rows);
-  for (const std::string& note : notes) std::printf("\n%s\n", note.c_str());
-  std::printf("\n%s\n%s%s\n\nrun it with: traceraft run --config %s\nopen next: %s\n", best.c_str(),
-              scatter.c_str(), bound.c_str(), (folder / "calibrated.toml").c_str(),
-              (folder / "calibration.html").c_str());
+  for (const auto* list : {&notes, &sentences})
+    for (const std::string& sentence : *list) std::printf("\n%s\n", sentence.c_str());
+  if (!result.unit_at_bound)
+    std::printf("\nrun it with: traceraft run --config %s\n", (folder / "calibrated.toml").c_str());
+  std::printf("open next: %s\n", (folder / "calibration.html").c_str());
   if (!missing.text().empty()) std::printf("the page lacks: %s\n", missing.text().c_str());
 }
 

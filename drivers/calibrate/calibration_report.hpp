@@ -8,10 +8,16 @@
 
 namespace traceraft {
 
-// `names` of the parameters of the points. calibrated.toml is the model with what was found.
+// What was simulated, and how.
+struct CalibrationRuns {
+  const Configuration& model;
+  std::vector<std::string> names;  // of the parameters of the points
+  std::vector<CalibrationPoint> points;
+  std::string bound;  // where the search for D ends, and what to do about it
+};
+
+// calibrated.toml is the model with what was found.
 void write_calibration(const std::filesystem::path& folder, const MeasuredVesicles& data,
-                       const Configuration& model, const std::vector<std::string>& names,
-                       const std::vector<CalibrationPoint>& points, const Calibration& result,
-                       bool quiet);
+                       const CalibrationRuns& runs, const Calibration& result, bool quiet);
 
 }  // namespace traceraft

@@ -134,9 +134,7 @@ int run_ensemble(const EnsembleRequest& request) {
     return one_member(request, EnsembleFolder(request.out), EnsembleFolder(request.out).load());
   }
   if (!goes_on && !request.out.empty()) {
-    refuse_files_of_a_run(request.out);
-    if (fs::exists(fs::path(request.out) / "dataset.toml"))
-      throw InputError("--out: " + request.out + " holds measurements; choose another folder");
+    refuse_foreign_folder(request.out, EnsembleFolder(request.out).plan_file().filename());
     EnsembleFolder(request.out).refuse_other_plan();
   }
   const Configuration configuration =
@@ -146,14 +144,13 @@ int run_ensemble(const EnsembleRequest& request) {
                                   ? first_free_folder("ensemble-" + configuration.text("case"))
                                   : request.out);
   const EnsemblePlan plan = plan_of(request, folder);
-  if (!goes_on) {
-    const RunSetup run = build_run(configuration, InitialState::build);  // or refuses it
-    if (!request.quiet) std::printf("%s\n", resolution_text(run).c_str());
-  }
-
-  fs::create_directories(folder.path() / "runs");
+  std::optional<RunSetup> run;
+  if (!goes_on) run = build_run(configuration, InitialState::build);  // or refuses it
+  fs::create_directories(folder.path());
   const FolderLock lock(folder.path());
   folder.save(plan);
+  fs::create_directories(folder.path() / "runs");
+  if (run && !request.quiet) std::printf("%s\n", resolution_text(*run).c_str());
   if (!goes_on) write_durably(folder.config(), config_text(configuration));
   if (!request.array_job) return carry_out(request, folder, plan, configuration);
   const fs::path script = folder.path() / "array-job.sh";

@@ -24,6 +24,7 @@ class EnsembleFolder {
  public:
   explicit EnsembleFolder(std::filesystem::path path) : path_(std::move(path)) {}
   const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path plan_file() const { return path_ / "plan.json"; }
   std::filesystem::path config() const { return path_ / "config.toml"; }
   bool started() const {
     return std::filesystem::exists(config()) && std::filesystem::exists(plan_file());
@@ -53,7 +54,6 @@ class EnsembleFolder {
   History history(std::uint64_t seed, double radius) const;
 
  private:
-  std::filesystem::path plan_file() const { return path_ / "plan.json"; }
   std::filesystem::path path_;
 };
 

@@ -51,18 +51,42 @@ bool has_something(const Chart& chart, const ChartSeries& series) {
   return false;
 }
 
-constexpr double kBelow = 0.85;
+struct Extent {
+  double least = HUGE_VAL, most = -HUGE_VAL;
+  void add(double value) {
+    least = std::min(least, value);
+    most = std::max(most, value);
+  }
+};
 
-double least(const Chart& chart) {
-  double value = HUGE_VAL;
+// Of what is drawn along x and along y.
+std::pair<Extent, Extent> extents(const Chart& chart) {
+  Extent x, y;
   for (const ChartSeries& series : chart.series)
-    for (std::size_t k = 0; k < series.points.size(); ++k)
-      if (drawable(chart, series, k)) {
-        value = std::min(value, series.points[k].second);
-        if (series.mark == Mark::band && series.other[k] > 0)
-          value = std::min(value, series.other[k]);
-      }
-  return value;
+    for (std::size_t k = 0; k < series.points.size(); ++k) {
+      if (!drawable(chart, series, k)) continue;
+      x.add(series.points[k].first);
+      y.add(series.points[k].second);
+      if (series.mark == Mark::band && (series.other[k] > 0 || !chart.log_y))
+        y.add(series.other[k]);
+      if (series.mark == Mark::bars) y.add(series.points[k].second + series.other[k]);
+    }
+  return {x, y};
+}
+
+// A logarithmic axis has labels at 1, 2 and 5 as well, unless decades alone fill it.
+std::string log_axis(const std::string& axis, const Extent& extent) {
+  constexpr double kManyDecades = 1e3, kPlain = 1e5;
+  std::string text = "set logscale " + axis + "\n";
+  const bool plain = extent.most < kPlain && extent.least > 1 / kPlain;
+  text += "set format " + axis + (plain ? " '%g'\n" : " '%.0e'\n");
+  if (extent.most > kManyDecades * extent.least) return text;
+  std::string tics;
+  for (double decade = std::pow(10, std::floor(std::log10(extent.least) - 1));
+       decade <= 10 * extent.most; decade *= 10)
+    for (const int digit : {1, 2, 5})
+      tics += (tics.empty() ? "" : ", ") + format_number(digit * decade);
+  return text + "set " + axis + "tics (" + tics + ")\n";
 }
 
 std::string script(const Chart& chart, const std::string& svg) {
@@ -70,10 +94,14 @@ std::string script(const Chart& chart, const std::string& svg) {
   text += "set output " + quoted(svg) + "\n";
   text += "set title " + quoted(chart.title) + "\n";
   text += "set xlabel " + quoted(chart.x_label) + "\nset ylabel " + quoted(chart.y_label) + "\n";
-  for (const auto& [axis, log] : {std::pair("x", chart.log_x), std::pair("y", chart.log_y)})
-    if (log) text += std::string("set logscale ") + axis + "\nset format " + axis + " '%.0e'\n";
-  // What is 1 all the time does not lie on the axis then.
-  if (chart.log_y) text += "set yrange [" + format_number(kBelow * least(chart)) + ":*]\n";
+  const auto [x, y] = extents(chart);
+  if (chart.log_x) text += log_axis("x", x);
+  if (chart.log_y) {
+    // What is 1 all the time does not lie on the axis then.
+    constexpr double kMargin = 1.18;
+    text += log_axis("y", y) + "set yrange [" + format_number(y.least / kMargin) + ":" +
+            format_number(y.most * kMargin) + "]\n";
+  }
   text += "set key outside below\nset grid lc rgb '#dddddd'\n";
   for (std::size_t i = 0; i < std::size(kColours); ++i)
     text += "set linetype " + std::to_string(i + 1) + " lw 2 lc rgb '" + kColours[i] + "'\n";

@@ -54,7 +54,19 @@ void write_pictures(const ReportRequest& request) {
     std::printf("later ones there are of another time\n");
 }
 
+// A slip of the pen must not write over a configuration or a table.
+void refuse_other_files(const ReportRequest& request) {
+  const auto ends_on = [](const fs::path& path, const char* extension) {
+    return path.extension() == extension;
+  };
+  if (!request.animation.empty() && !ends_on(request.animation, ".gif"))
+    throw InputError("--animation: " + request.animation + " has to end on .gif, which it will be");
+  if (!request.out.empty() && (!ends_on(request.out, ".html") || fs::is_directory(request.out)))
+    throw InputError("--out: " + request.out + " has to be a file that ends on .html");
+}
+
 int report(const ReportRequest& request) {
+  refuse_other_files(request);
   const fs::path out =
       request.out.empty() ? fs::path(request.folder) / "report.html" : fs::path(request.out);
   const std::string missing = write_report_page(
@@ -69,7 +81,8 @@ int report(const ReportRequest& request) {
 
 Action define_report(CLI::App& app) {
   const auto request = std::make_shared<ReportRequest>();
-  app.add_option("folder", request->folder, "of a run, ensemble, comparison or verification")
+  app.add_option("folder", request->folder,
+                 "of a run, ensemble, comparison, calibration, verification, ...")
       ->required();
   app.add_option("--out", request->out, "page to write; default: report.html in the folder");
   app.add_option("--frames", request->frames, "at most so many times of the fields")

@@ -41,6 +41,16 @@ void refuse_files_of_a_run(const fs::path& path) {
                        "; choose another folder");
 }
 
+void refuse_foreign_folder(const fs::path& path, const std::string& own) {
+  if (!fs::exists(path)) return;
+  if (!fs::is_directory(path)) throw InputError("--out: " + path.string() + " is no folder");
+  if (fs::exists(path / own)) return;
+  for (const auto& entry : fs::directory_iterator(path))
+    if (entry.path().filename() != ".lock")
+      throw InputError("--out: " + path.string() + " holds " + entry.path().filename().string() +
+                       ", which is nothing of this command; choose another folder");
+}
+
 RunFolder shared_folder(const Communicator& ranks, const std::function<RunFolder()>& open) {
   // What comes of it on the first rank, a path or what is wrong, after a letter for its kind.
   RunFolder folder;

@@ -29,6 +29,11 @@ std::string first_free_folder(const std::string& name);
 // Throws InputError if a folder holds what a run writes.
 void refuse_files_of_a_run(const std::filesystem::path& path);
 
+// Throws InputError if a folder that is to be written to holds anything but does not hold `own`,
+// the file by which the command knows its folders: what is there may be somebody's. Locks do not
+// count.
+void refuse_foreign_folder(const std::filesystem::path& path, const std::string& own);
+
 // On every rank the folder that the first one has made or opened, or what it has thrown.
 RunFolder shared_folder(const Communicator& ranks, const std::function<RunFolder()>& open);
 

@@ -28,7 +28,8 @@ Window window_of(const std::string& text) {
   const std::vector<std::string> ends = split_list(text);
   if (ends.size() != 2) throw InputError("--window: two times are needed, as in 100,1000");
   const Window window{parse_number("--window", ends[0]), parse_number("--window", ends[1])};
-  if (!(window.begin >= 0 && window.end > window.begin))
+  if (!(window.begin >= 0)) throw InputError("--window: times are 0 or later");
+  if (!(window.end > window.begin))
     throw InputError("--window: the second time has to be the later one");
   return window;
 }
@@ -52,6 +53,7 @@ int compare(const DataRequest& request) {
   if (out.empty())
     out = EnsembleFolder(request.ensemble).started() ? request.ensemble
                                                      : first_free_folder("comparison");
+  if (!EnsembleFolder(out).started()) refuse_foreign_folder(out, "comparison.json");
   const std::string command = "traceraft data compare " + request.folder + " --ensemble " +
                               request.ensemble + " --window " + request.window +
                               (request.facts.empty() ? "" : " --facts " + request.facts);

@@ -36,14 +36,22 @@ int estimate_fraction(const FractionRequest& request) {
     estimate.how = "the tie line given";
   }
   print_mixture("membrane", membrane);
+  std::printf("  %-22s %g C\n", "temperature", request.celsius);
   if (estimate.phases) {
     print_mixture("ordered phase (rafts)", estimate.phases->ordered);
     print_mixture("disordered phase", estimate.phases->disordered);
     const double lipids = raft_fraction(membrane, *estimate.phases, request.celsius).lipids;
     std::printf("  %-22s %.3f ordered, %.3f disordered\n", "lipids", lipids, 1 - lipids);
+    if (estimate.phases->ordered.dppc < estimate.phases->disordered.dppc)
+      std::printf(
+          "  NOTE: rafts are richer in DPPC than what is around them; are --ordered and "
+          "--disordered the right way round?\n");
   }
   std::printf("  %-22s %.1f %%  (%s)\n", "raft area fraction", 100 * estimate.area,
               estimate.how.c_str());
+  std::printf(
+      "  areas per lipid are published ones of DOPC; those of DPPC with cholesterol are "
+      "FITTED to two published raft fractions\n");
   const std::string own = case_of(request.composition);
   std::printf(
       "\nto simulate it: traceraft run %s --raft-fraction %.3f\n",
@@ -55,7 +63,8 @@ int estimate_fraction(const FractionRequest& request) {
 Action define_fraction(CLI::App& app) {
   const auto request = std::make_shared<FractionRequest>();
   app.add_option("--composition", request->composition,
-                 "parts of DOPC : DPPC : mol % of cholesterol, such as 3:1:20");
+                 "parts of DOPC : DPPC : mol % of cholesterol, such as 3:1:20; the area of DPPC is "
+                 "fitted to what is published of such membranes");
   app.add_option("--temperature", request->celsius, "in degrees Celsius")
       ->check(CLI::Range(-10.0, 60.0))
       ->capture_default_str();

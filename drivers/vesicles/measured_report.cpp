@@ -1,5 +1,6 @@
 #include "drivers/vesicles/measured_report.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -124,24 +125,47 @@ constexpr char kDeviations[] =
 std::vector<Row> agreement_rows(const std::vector<Agreement>& agreements) {
   std::vector<Row> rows = {{"quantity", "compared", "outside the runs' time", "within their range",
                             "mean deviation", "misfit"}};
-  for (const Agreement& a : agreements)
+  for (const Agreement& a : agreements) {
     rows.push_back({name_of(a.quantity).label, std::to_string(a.measurements),
-                    std::to_string(a.beyond),
-                    a.measurements == 0
-                        ? ""
-                        : formatted("%d (%.0f %%)", a.within, 100.0 * a.within / a.measurements),
-                    formatted("%+.2f", a.bias), formatted("%.2f", a.misfit)});
+                    std::to_string(a.beyond), "", "", ""});
+    if (a.measurements == 0) continue;
+    Row& row = rows.back();
+    row[3] = formatted("%d (%.0f %%)", a.within, 100.0 * a.within / a.measurements);
+    row[4] = formatted("%+.2f", a.bias);
+    row[5] = formatted("%.2f", a.misfit);
+  }
   return rows;
+}
+
+// Where there is nothing to compare, or nothing to measure deviations with.
+std::vector<std::string> doubts_of(const std::vector<Agreement>& agreements) {
+  constexpr double kSmall = 0.02;
+  std::vector<std::string> sentences;
+  if (std::all_of(agreements.begin(), agreements.end(),
+                  [](const Agreement& a) { return a.measurements == 0; }))
+    sentences.push_back("NOTHING IS COMPARED: no measurement is of a time that all runs cover.");
+  for (const Agreement& a : agreements)
+    if (a.measurements > 0 && a.scatter < kSmall)
+      sentences.push_back(
+          formatted("Runs and measurement scatter by %.2g %% only in %s: what they are "
+                    "compared in units of is next to nothing.",
+                    100 * a.scatter, name_of(a.quantity).label));
+  return sentences;
 }
 
 Table agreement_table(const std::vector<Agreement>& agreements) {
   Table table{"comparison",
               {"quantity", "compared", "beyond", "within_range", "mean_deviation", "misfit"},
               {}};
-  for (const Agreement& a : agreements)
+  for (const Agreement& a : agreements) {
     table.rows.push_back({name_of(a.quantity).id, static_cast<double>(a.measurements),
-                          static_cast<double>(a.beyond), static_cast<double>(a.within), a.bias,
-                          a.misfit});
+                          static_cast<double>(a.beyond), "", "", ""});
+    if (a.measurements == 0) continue;
+    std::vector<Cell>& row = table.rows.back();
+    row[3] = static_cast<double>(a.within);
+    row[4] = a.bias;
+    row[5] = a.misfit;
+  }
   return table;
 }
 
@@ -220,10 +244,6 @@ Configuration model_of(const fs::path& path) {
   return configuration;
 }
 
-SimulatedVesicle vesicle_of(const Configuration& model) {
-  return {model.units().length(), model.number("raft-fraction")};
-}
-
 std::vector<History> runs_of(const fs::path& path) {
   const Configuration model = model_of(path);
   const EnsembleFolder folder(path);
@@ -254,7 +274,12 @@ int compare_with_ensemble(const MeasuredVesicles& data, const ComparisonRequest&
   page.paragraph(std::to_string(runs.size()) + " runs in " + request.ensemble.string() + ". " +
                  kDeviations + expectation(runs.size()));
   page.table(rows);
-  const std::vector<std::string> notes = differences(data, vesicle_of(model_of(request.ensemble)));
+  const Configuration model = model_of(request.ensemble);
+  const double radius = model.units().length();
+  std::vector<std::string> notes = differences(data, simulated_vesicle(radius, runs, data));
+  if (model.text("surface") != "sphere")
+    notes.push_back("The simulated surface is no sphere: " + model.text("surface") + ".");
+  for (const std::string& note : doubts_of(agreements)) notes.push_back(note);
   for (const std::string& note : notes) page.paragraph(note);
   page.paragraph(formatted("Power laws fitted from %g to %g s.", window.begin, window.end));
   page.table(laws);
@@ -269,6 +294,8 @@ int compare_with_ensemble(const MeasuredVesicles& data, const ComparisonRequest&
     Chart chart = comparison_chart(data, summary, quantity);
     if (quantity == Quantity::perimeter && measured)
       chart.series.push_back(law_curve("law of the measurements", measured->law, window));
+    if (quantity == Quantity::perimeter && simulated)
+      chart.series.push_back(law_curve("law of the simulations", simulated->law, window));
     if (quantity == Quantity::perimeter && request.facts)
       chart.series.push_back(
           law_curve("published law", request.facts->perimeter, request.facts->window));

@@ -20,7 +20,6 @@ void print_dataset(const MeasuredVesicles& data, const std::optional<FittedLaw>&
 // The model of an ensemble, or of what a folder has kept of one. Throws InputError if there is
 // none, or if its times are in units of R²/D.
 Configuration model_of(const std::filesystem::path& ensemble);
-SimulatedVesicle vesicle_of(const Configuration& model);
 
 // The finished runs of an ensemble, in s and R, or what a folder with its config.toml and
 // histories.csv has kept of them. Throws InputError as model_of.

@@ -45,8 +45,9 @@ TEST_F(CalibrateTest, GoesFromFilesToFiles) {
       "calibrate --data " + out("data") + " " + model + "--runs 2 --out " + out("c");
   const Outcome made = traceraft(command);
   ASSERT_EQ(made.code, 0) << made.output;
-  EXPECT_NE(made.output.find("The data know best"), std::string::npos);
   const auto json = nlohmann::json::parse(content(folder.path / "c/calibration.json"));
+  EXPECT_EQ(made.output.find("The data know best") != std::string::npos,
+            json["converged"] && !json["mobility_at_bound"]);
   for (const char* name : {"mobility", "epsilon"}) {
     const auto& parameter = json["parameters"][name];
     EXPECT_LE(parameter["interval_95"][0], parameter["value"].get<double>() * 1.0001) << name;
@@ -108,7 +109,8 @@ TEST_F(CalibrateTest, FindsTheMobilityOfAnEnsemble) {
   for (const auto& [flags, complaint] :
        {std::pair<std::string, std::string>(" --cells 32", "the model is that of --ensemble"),
         {" --parameters mobility,epsilon", "the mobility alone"},
-        {" --model " + out("m.toml"), "the model is that of --ensemble"}}) {
+        {" --model " + out("m.toml"), "the model is that of --ensemble"},
+        {" --parameters ''", "--parameters"}}) {
     const Outcome refused = traceraft(command + flags);
     EXPECT_EQ(refused.code, 2) << flags;
     EXPECT_NE(refused.output.find(complaint), std::string::npos) << refused.output;
@@ -135,6 +137,31 @@ TEST_F(CalibrateTest, LooksForTheMobilityWithinItsRuns) {
   const auto& mobility = json["parameters"]["mobility"];
   EXPECT_LT(mobility["value"], 2.5e-5);
   EXPECT_EQ(mobility["determined"], false);  // it ends where the runs do
+  EXPECT_EQ(json["mobility_at_bound"], true);
+  EXPECT_NE(made.output.find("take an ensemble with a larger --t-end"), std::string::npos);
+  for (const char* words : {"The data know best", "run it with"})
+    EXPECT_EQ(made.output.find(words), std::string::npos) << made.output;
+  // Another calibration does not take its place, nor anything that is not one.
+  const std::string before = content(folder.path / "c/calibration.json");
+  for (const char* to : {"c", "short"}) {
+    const Outcome refused =
+        traceraft("calibrate --data " + kept + "synthetic/guv-2to1 --ensemble " + kept +
+                  "ensembles/guv-2to1 --out " + out(to));
+    EXPECT_EQ(refused.code, 2) << refused.output;
+    EXPECT_NE(refused.output.find("choose another folder"), std::string::npos) << refused.output;
+  }
+  EXPECT_EQ(content(folder.path / "c/calibration.json"), before);
+}
+
+// Looks at what has no rafts any more are not evidence, and said to be none.
+TEST_F(CalibrateTest, SaysWhatItDoesNotUse) {
+  const std::string kept = TRACERAFT_ROOT "/verification/data/ensembles/guv-2to1";
+  std::ofstream(folder.path / "data/measurements.csv", std::ios::app) << "e,300,0,0\ne,400,0,0\n";
+  const Outcome made =
+      traceraft("calibrate --data " + out("data") + " --ensemble " + kept + " --out " + out("c"));
+  EXPECT_EQ(made.code, 0) << made.output;
+  EXPECT_NE(made.output.find("2 of 7 measurements are of no raft"), std::string::npos)
+      << made.output;
 }
 
 // At the ends of its range, too; and it says what was really run, which is whole cells of noise.

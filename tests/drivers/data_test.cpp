@@ -41,6 +41,23 @@ TEST(DataTest, DrawsWhatWasPublishedAndChecksIt) {
   EXPECT_EQ(content(folder.path / "drawn/measurements.csv"), table);
 }
 
+// Measurements after the end of the runs agree with nothing, rather than perfectly.
+TEST(DataTest, ComparesNothingWithoutSayingSo) {
+  const testing::TemporaryFolder folder;
+  std::ofstream(folder.path / "dataset.toml")
+      << "name = \"late\"\nkind = \"measured\"\ntime_zero = \"start\"\nlength_unit = "
+         "\"um\"\ntime_unit = \"h\"\nradius = 5\n";
+  std::ofstream(folder.path / "measurements.csv") << "vesicle,time,rafts\na,10,1\nb,11,1\n";
+  const Outcome made =
+      traceraft("data compare " + folder.path.string() +
+                " --ensemble " TRACERAFT_ROOT "/verification/data/ensembles/guv-2to1 --out " +
+                (folder.path / "c").string());
+  EXPECT_EQ(made.code, 0) << made.output;
+  EXPECT_NE(made.output.find("NOTHING IS COMPARED"), std::string::npos) << made.output;
+  EXPECT_NE(content(folder.path / "c/comparison.csv").find("rafts,0,2,,,\n"), std::string::npos)
+      << content(folder.path / "c/comparison.csv");
+}
+
 // An exponential is a power law whose origin is infinitely early.
 TEST(DataTest, SaysWhereIntervalsOfALawAreOpen) {
   const auto check = [](const std::function<double(double)>& perimeter) {

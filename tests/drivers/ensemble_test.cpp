@@ -130,6 +130,7 @@ TEST_F(EnsembleTest, StopsWhenItIsAskedTo) {
 
 TEST_F(EnsembleTest, IsolatesARunThatFails) {
   fs::create_directories(folder.path / "a/runs");
+  std::ofstream(folder.path / "a/plan.json") << "{\"runs\": 3, \"first_seed\": 1}\n";
   std::ofstream(folder.path / "a/runs/seed-2") << "in the way";
   const Outcome made = traceraft("ensemble " + runs + "--runs 3 --out " + out("a"));
   EXPECT_EQ(made.code, 3) << made.output;
@@ -196,6 +197,15 @@ TEST_F(EnsembleTest, TakesAnyConfigurationAndNoOtherPlan) {
   EXPECT_EQ(refused.code, 2);
   EXPECT_NE(refused.output.find("no plan of an ensemble"), std::string::npos) << refused.output;
   EXPECT_EQ(content(folder.path / "c/plan.json"), "{\"groups\": []}\n");
+}
+
+TEST_F(EnsembleTest, LeavesFoldersOfOthersAlone) {
+  fs::create_directories(folder.path / "mine");
+  std::ofstream(folder.path / "mine/histories.csv") << "mine\n";
+  const Outcome refused = traceraft("ensemble " + runs + "--runs 1 --out " + out("mine"));
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.output.find("mine holds histories.csv"), std::string::npos) << refused.output;
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path / "mine"), {}), 1);
 }
 
 TEST_F(EnsembleTest, RefusesWhatMakesNoEnsemble) {

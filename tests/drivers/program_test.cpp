@@ -310,10 +310,12 @@ TEST_F(ProgramTest, HelpAndListNameEverything) {
 TEST(FractionCommand, SaysWhatToSimulate) {
   const Outcome known = traceraft("fraction --composition 2:1:20% --temperature 19.2");
   EXPECT_EQ(known.code, 0) << known.output;
-  EXPECT_NE(known.output.find("run --case guv-2to1 --raft-fraction 0.157"), std::string::npos) << known.output;
+  EXPECT_NE(known.output.find("run --case guv-2to1 --raft-fraction 0.157"), std::string::npos)
+      << known.output;
   const Outcome given = traceraft(
       "fraction --composition 3:1:20 --temperature 15 --ordered 22:43:35 --disordered 66:16:18");
-  EXPECT_NE(given.output.find("run --case guv-3to1 --raft-fraction 0.107"), std::string::npos) << given.output;
+  EXPECT_NE(given.output.find("run --case guv-3to1 --raft-fraction 0.107"), std::string::npos)
+      << given.output;
   for (const char* wrong :
        {"", "--composition 3:1", "--composition 1:1:20", "--composition 2:1:20 --temperature 99",
         "--composition 2:1:20 --ordered 22:43:35"}) {

@@ -86,6 +86,10 @@ TEST_F(ReportTest, SaysWhatItCannotShow) {
   EXPECT_EQ(made.code, 0);
   EXPECT_NE(made.output.find("has written no fields"), std::string::npos);
   EXPECT_EQ(traceraft("report --quiet " + out("a") + " --animation " + out("a.gif")).code, 2);
+  const std::string config = content(folder.path / "a/config.toml");
+  EXPECT_EQ(traceraft("report " + out("a") + " --animation " + out("a/config.toml")).code, 2);
+  EXPECT_EQ(traceraft("report " + out("a") + " --out " + out("a/config.toml")).code, 2);
+  EXPECT_EQ(content(folder.path / "a/config.toml"), config);
   run("b");
   std::ofstream(folder.path / "b/fields/field-0003.vtu") << "damaged";
   const Outcome damaged = traceraft("report " + out("b"));

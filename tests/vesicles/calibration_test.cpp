@@ -9,8 +9,8 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/random.hpp"
 #include "kernel/core/types.hpp"
+#include "verification/vesicles/local_regression.hpp"
 #include "verification/vesicles/published.hpp"
-#include "verification/vesicles/response_surface.hpp"
 
 namespace traceraft {
 namespace {
@@ -68,24 +68,30 @@ TimeUnit around(double seconds) {
   return {seconds, {seconds / 8, seconds * 8}};
 }
 
-// Around the start, then around what is found.
-Calibration calibrated(bool start, std::uint64_t seed, double epsilon_start) {
+// Around the start, then around what is found, as the program does.
+std::vector<CalibrationPoint> points_for(const MeasuredVesicles& data, bool start,
+                                         std::uint64_t seed, double epsilon_start) {
   std::vector<CalibrationPoint> points;
-  Calibration found;
-  double centre = std::log(epsilon_start);
-  for (const double step : {0.25, 0.1}) {
-    for (const auto& ln : design_around({centre}, step))
+  std::vector<double> centre{std::log(epsilon_start)};
+  for (const double step : {0.5, 0.25, 0.1}) {
+    for (const auto& ln : design_around(centre, step))
       points.push_back({ln, simulate(std::exp(ln[0]), start, 40, 500000 + 1000 * seed)});
-    found = calibrate(measured(start, seed), kSought, points, around(1.5 * kSeconds));
-    centre = std::log(found.parameters[1].value);
+    centre = most_probable(data, kSought, points, around(1.5 * kSeconds));
   }
-  return found;
+  return points;
 }
 
+Calibration calibrated(bool start, std::uint64_t seed, double epsilon_start) {
+  const MeasuredVesicles data = measured(start, seed);
+  return calibrate(data, kSought, points_for(data, start, seed, epsilon_start),
+                   around(1.5 * kSeconds));
+}
+
+// 95 % are to hold the truth; fewer than 14 of 16 do once in 23 times then, with 0.7 in 100 of 101.
 TEST(Calibration, FindsWhatTheDataDetermine) {
   int held = 0;
   std::vector<double> time_errors, epsilon_errors;
-  constexpr int kSets = 12;
+  constexpr int kSets = 16;
   for (int seed = 1; seed <= kSets; ++seed) {
     const Calibration found = calibrated(true, seed, 0.11);
     ASSERT_EQ(found.parameters.size(), 2u);
@@ -100,7 +106,7 @@ TEST(Calibration, FindsWhatTheDataDetermine) {
   // with −3 ln ε, so that an error of ε makes one of time that is six times as large.
   EXPECT_LT(quantile(epsilon_errors, 0.5), 0.05);
   EXPECT_LT(quantile(time_errors, 0.5), 0.25);
-  EXPECT_GE(held, kSets - 3);
+  EXPECT_GE(held, kSets - 2);
 }
 
 // D and ε enter as D ε² alone.
@@ -122,7 +128,7 @@ TEST(Calibration, OfTheUnitOfTimeAloneTakesOneEnsemble) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Calibration found = calibrate(measured(true, seed), {}, points, around(2 * kSeconds));
     errors.push_back(std::fabs(std::log(found.parameters[0].value / kSeconds)));
-    scatter.push_back(found.scatter);
+    scatter.push_back(found.best.scatter);
   }
   EXPECT_LT(quantile(errors, 0.5), 0.15);
   EXPECT_LT(quantile(scatter, 0.5), 0.05);  // beyond what the data say themselves
@@ -195,19 +201,56 @@ TEST(Calibration, RefusesTooLittle) {
       InputError);
 }
 
-TEST(ResponseSurface, FindsTheMinimumOfAParabola) {
-  std::vector<std::vector<double>> x = design_around({0.3, -0.2}, 0.5);
-  EXPECT_EQ(static_cast<int>(x.size()), points_of_surface(2));
-  std::vector<double> values;
-  for (const auto& at : x)
-    values.push_back(3 + std::pow(at[0] - 0.5, 2) + 2 * std::pow(at[1] + 0.1, 2) +
-                     (at[0] - 0.5) * (at[1] + 0.1));
-  const ResponseSurface surface(x, values, std::vector<double>(x.size(), 1));
-  const std::vector<double> least = surface.minimiser({-2, -2}, {2, 2});
-  EXPECT_NEAR(least[0], 0.5, 1e-4);
-  EXPECT_NEAR(least[1], -0.1, 1e-4);
-  EXPECT_NEAR(surface.at(least), 3, 1e-8);
-  EXPECT_NEAR(surface.minimiser({1, -2}, {2, 2})[0], 1, 1e-4);  // within the box
+// A simulation far away, which the data exclude, does not decide what those nearby leave open.
+TEST(Calibration, IsNotSureBecauseOfAFarPoint) {
+  std::vector<CalibrationPoint> points;
+  for (const double step : {0.25, 0.1})
+    for (const auto& ln : design_around({std::log(kEpsilon)}, step))
+      points.push_back({ln, simulate(std::exp(ln[0]), false, 40, 5)});
+  points.push_back({{std::log(2.5 * kEpsilon)}, simulate(2.5 * kEpsilon, true, 40, 5)});
+  const Calibration found = calibrate(measured(false, 1), kSought, points, around(kSeconds));
+  EXPECT_GT(found.at_points.back().deviance, found.best.deviance + 30);
+  EXPECT_FALSE(found.parameters[1].determined);
+}
+
+TEST(Calibration, CountsVesiclesThatShowSomething) {
+  MeasuredVesicles data = measured(true, 1);
+  EXPECT_EQ(looks_that_tell_nothing(data), 0);
+  const auto vesicles = data.vesicles();
+  const auto leave = [&](std::size_t count) {
+    for (std::size_t i = vesicles[count].first; i < data.measurements.size(); ++i)
+      for (const Quantity quantity : {Quantity::perimeter, Quantity::rafts})
+        data.measurements[i].values[static_cast<std::size_t>(quantity)] = 0;
+  };
+  leave(3);
+  EXPECT_NO_THROW(refuse_calibration(data));
+  EXPECT_EQ(looks_that_tell_nothing(data),
+            static_cast<int>(data.measurements.size() - vesicles[3].first));
+  leave(2);
+  EXPECT_THROW(refuse_calibration(data), InputError);
+}
+
+TEST(LocalRegression, IsExactForParabolas) {
+  const std::vector<std::vector<double>> x = design_around({0.3, -0.2}, 0.5);
+  EXPECT_EQ(static_cast<int>(x.size()), points_of_parabola(2));
+  const auto parabola = [](const std::vector<double>& at) {
+    return 3 + std::pow(at[0] - 0.5, 2) + 2 * std::pow(at[1] + 0.1, 2) +
+           (at[0] - 0.5) * (at[1] + 0.1);
+  };
+  for (const std::vector<double>& at : {std::vector<double>{0.4, 0.1}, {3, -2}, {-9, 12}}) {
+    const std::vector<double> weights = regression_weights(x, at, 0.5);
+    double value = 0;
+    for (std::size_t k = 0; k < x.size(); ++k) value += weights[k] * parabola(x[k]);
+    EXPECT_NEAR(value, parabola(at), 1e-6 * std::fabs(parabola(at)));
+  }
+  EXPECT_THROW((void)regression_weights({{0, 0}, {1, 1}}, {0, 0}, 1), std::invalid_argument);
+}
+
+TEST(LocalRegression, HardlyLooksFarAway) {
+  const std::vector<std::vector<double>> x = {{-0.2}, {0}, {0.1}, {0.2}, {3}};
+  const std::vector<double> weights = regression_weights(x, {0.05}, 0.5);
+  EXPECT_LT(std::fabs(weights.back()), 1e-3);
+  EXPECT_EQ(regression_weights({{}}, {}, 1), std::vector<double>{1});
 }
 
 }  // namespace

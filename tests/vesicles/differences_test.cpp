@@ -31,5 +31,15 @@ TEST(Differences, NameRadiiAndFractions) {
   EXPECT_NE(other[0].find("0.155 of the vesicles"), std::string::npos) << other[0];
 }
 
+// Rafts cover less than the share of raft lipids: what counts is what would be measured.
+TEST(Differences, AreThoseFromWhatRunsShow) {
+  History run;
+  run.time = {1, 9.9, 100};
+  run.of(Quantity::fraction) = {0.16, 0.12, 0.05};
+  const SimulatedVesicle found = simulated_vesicle(5, {run, run}, vesicles({5, 5}, {0.12, 0.13}));
+  EXPECT_EQ(found.radius, 5);
+  EXPECT_NEAR(found.raft_fraction, 0.12, 0.001);
+}
+
 }  // namespace
 }  // namespace traceraft

@@ -3,61 +3,24 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "kernel/core/error.hpp"
 #include "verification/measure/fit.hpp"
-#include "verification/vesicles/response_surface.hpp"
+#include "verification/vesicles/joint_fit.hpp"
+#include "verification/vesicles/local_regression.hpp"
 
 namespace traceraft {
 namespace {
 
 constexpr int kReplicates = 200;
-constexpr double kOvershoot = 0.5;  // of what was explored, beyond it
-constexpr double kParabolic = 15;   // a deviance that much above the least counts half
-constexpr double kDetermined = 2;   // factor between the ends of an interval
+constexpr std::size_t kLeastVesicles = 3;  // to know how they scatter
+constexpr double kOvershoot = 0.5;         // of what was explored, beyond it
+constexpr double kDetermined = 2;          // factor between the ends of an interval
 // How close to the end of what was looked at counts as its end, in ln: the range of R²/D is wide.
 constexpr double kUnitEdge = 0.1, kSimulatedEdge = 1e-3;
-
-// Mean raft fractions of vesicles, which scatter from vesicle to vesicle.
-class MeasuredFractions {
- public:
-  explicit MeasuredFractions(const MeasuredVesicles& data)
-      : window_(looks(data)), means_(mean_fractions(data)) {
-    std::vector<double> known;
-    for (const auto& mean : means_)
-      if (mean) known.push_back(*mean);
-    if (known.size() > 1 && window_.end > 0) variance_ = std::pow(moments(known).deviation, 2);
-  }
-
-  // −2 ln of the likelihood of those of `sample`, if runs of that unit of time tell the truth.
-  double deviance(const std::vector<int>& sample, const std::vector<History>& runs,
-                  double seconds_per_unit) const {
-    if (!(variance_ > 0)) return 0;
-    const double t = std::sqrt(window_.begin * window_.end) / seconds_per_unit;
-    double simulated = 0, sum = 0;
-    for (const History& run : runs)
-      simulated += run.at(Quantity::fraction, t) / static_cast<double>(runs.size());
-    for (const int k : sample)
-      if (means_[k]) sum += std::pow(*means_[k] - simulated, 2) / variance_;
-    return sum;
-  }
-
- private:
-  Window window_;
-  std::vector<std::optional<double>> means_;
-  double variance_ = 0;  // 0: too few to say anything
-};
-
-// What one data set says: ln of R²/D and of the parameters.
-struct Estimate {
-  std::vector<double> ln;
-  double scatter;
-  std::vector<TimeFit> fits;
-};
-
-struct Box {
-  std::vector<double> lower, upper;
-};
+// Of the points, where searches begin.
+constexpr std::size_t kStarts = 3;
 
 // Where there are points, and `overshoot` of that beyond, as far as it is allowed.
 Box explored(const std::vector<CalibrationPoint>& points,
@@ -76,49 +39,118 @@ Box explored(const std::vector<CalibrationPoint>& points,
   return box;
 }
 
-// A deviance is a parabola near its minimum only.
-std::vector<double> weights_of(const std::vector<double>& deviance) {
-  const double least = *std::min_element(deviance.begin(), deviance.end());
-  std::vector<double> weights;
-  for (const double d : deviance)
-    weights.push_back(1 / (1 + std::pow((d - least) / kParabolic, 2)));
-  return weights;
+bool tells(const Measurement& m) {
+  return m.of(Quantity::perimeter).value_or(0) > 0 || m.of(Quantity::rafts).value_or(0) > 0;
 }
 
-Estimate estimate(const MeasuredVesicles& data, const std::vector<int>& vesicles,
-                  const std::vector<CalibrationPoint>& points,
-                  const std::vector<RunStatistics>& statistics, const Box& box,
-                  const TimeUnit& unit, const MeasuredFractions* fractions,
-                  const std::vector<TimeFit>* near = nullptr) {
-  Estimate result;
-  std::vector<std::vector<double>> x;
-  std::vector<double> deviance, seconds, scatter;
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    TimeFit fit = near ? fit_time(data, vesicles, statistics[k], unit, (*near)[k])
-                       : fit_time(data, vesicles, statistics[k], unit);
-    if (fractions)
-      fit.deviance += fractions->deviance(vesicles, points[k].runs, fit.seconds_per_unit);
-    result.fits.push_back(fit);
-    x.push_back(points[k].ln_parameters);
-    deviance.push_back(fit.deviance);
-    seconds.push_back(std::log(fit.seconds_per_unit));
-    scatter.push_back(std::log(fit.scatter));
+// Vesicles of which a perimeter or a number of rafts was measured.
+std::vector<int> telling_vesicles(const MeasuredVesicles& data) {
+  std::vector<int> result;
+  const auto vesicles = data.vesicles();
+  for (std::size_t k = 0; k < vesicles.size(); ++k) {
+    const auto begin = data.measurements.begin();
+    if (std::any_of(begin + static_cast<std::ptrdiff_t>(vesicles[k].first),
+                    begin + static_cast<std::ptrdiff_t>(vesicles[k].second), tells))
+      result.push_back(static_cast<int>(k));
   }
-  if (box.lower.empty()) {  // nothing but the unit of time
-    result.ln = {seconds.front()};
-    result.scatter = std::exp(scatter.front());
-    return result;
-  }
-  const std::vector<double> weights = weights_of(deviance);
-  const auto surface = [&](const std::vector<double>& values) {
-    return ResponseSurface(x, values, weights);
-  };
-  const std::vector<double> best = surface(deviance).minimiser(box.lower, box.upper);
-  result.ln = {surface(seconds).at(best)};
-  result.ln.insert(result.ln.end(), best.begin(), best.end());
-  result.scatter = std::exp(surface(scatter).at(best));
   return result;
 }
+
+std::vector<int> enough_vesicles(const MeasuredVesicles& data) {
+  const std::vector<int> vesicles = telling_vesicles(data);
+  if (vesicles.size() < kLeastVesicles)
+    throw InputError(
+        "a calibration needs three vesicles at least, to know how they scatter, with rafts whose "
+        "perimeter or number was measured; there are " +
+        std::to_string(vesicles.size()));
+  return vesicles;
+}
+
+std::vector<int> some_of(const std::vector<int>& vesicles, std::uint64_t replicate) {
+  std::vector<int> result;
+  for (const int k : resample(static_cast<int>(vesicles.size()), replicate, 31))
+    result.push_back(vesicles[k]);
+  return result;
+}
+
+// D alone, at each of the points.
+std::vector<JointFit> fit_points(const Evidence& evidence,
+                                 const std::vector<CalibrationPoint>& points,
+                                 const RunEmulator& runs) {
+  std::vector<JointFit> fits;
+  for (std::size_t k = 0; k < points.size(); ++k)
+    fits.push_back({points[k].ln_parameters, evidence.fit(runs.at_point(k))});
+  return fits;
+}
+
+std::vector<JointFit> best_of(std::vector<JointFit> fits) {
+  std::sort(fits.begin(), fits.end(),
+            [](const JointFit& a, const JointFit& b) { return a.time.deviance < b.time.deviance; });
+  fits.resize(std::min(fits.size(), kStarts));
+  return fits;
+}
+
+// Of ln R²/D and the parameters.
+std::vector<double> estimates(const JointFit& fit) {
+  std::vector<double> ln{std::log(fit.time.seconds_per_unit)};
+  ln.insert(ln.end(), fit.ln_parameters.begin(), fit.ln_parameters.end());
+  return ln;
+}
+
+ScatterLaws scatter_of(const std::vector<CalibrationPoint>& points) {
+  std::vector<std::vector<History>> ensembles;
+  for (const CalibrationPoint& point : points) ensembles.push_back(point.runs);
+  return scatter_laws(ensembles);
+}
+
+class Fit {
+ public:
+  Fit(const MeasuredVesicles& data, const std::vector<SoughtParameter>& sought,
+      const std::vector<CalibrationPoint>& points, const TimeUnit& unit)
+      : data_(data), unit_(unit), vesicles_(enough_vesicles(data)), fractions_(data) {
+    if (static_cast<int>(points.size()) < points_of_parabola(static_cast<int>(sought.size())))
+      throw InputError("a calibration needs more points");
+    box_ = explored(points, sought, kOvershoot);
+    with_fractions_ = std::any_of(sought.begin(), sought.end(),
+                                  [](const SoughtParameter& s) { return s.name == "fraction"; });
+    count_ = static_cast<int>(points.front().runs.size());
+    runs_.emplace(points, scatter_of(points));
+    at_points_ = fit_points(evidence(vesicles_), points, *runs_);
+    found_ = fit_jointly(evidence(vesicles_), *runs_, box_, best_of(at_points_));
+  }
+
+  const std::vector<JointFit>& at_points() const { return at_points_; }
+  const JointFit& found() const { return found_; }
+
+  // Of other vesicles and other runs of the same kind.
+  std::vector<std::vector<double>> replicates() const {
+    std::vector<std::vector<double>> all;
+    for (std::uint64_t r = 1; r <= kReplicates; ++r) {
+      const std::vector<int> some = some_of(vesicles_, r);
+      const RunEmulator others = runs_->with_runs(resample(count_, r, 32));
+      // From another point each time: what is flat is not to be taken for known.
+      all.push_back(estimates(
+          fit_jointly(evidence(some), others, box_, {at_points_[r % at_points_.size()]})));
+    }
+    return all;
+  }
+
+ private:
+  Evidence evidence(const std::vector<int>& vesicles) const {
+    return {data_, vesicles, with_fractions_ ? &fractions_ : nullptr, unit_};
+  }
+
+  const MeasuredVesicles& data_;
+  const TimeUnit& unit_;
+  std::vector<int> vesicles_;
+  MeasuredFractions fractions_;
+  bool with_fractions_ = false;
+  int count_ = 0;
+  Box box_;
+  std::optional<RunEmulator> runs_;
+  std::vector<JointFit> at_points_;
+  JointFit found_;
+};
 
 Eigen::MatrixXd covariance(const std::vector<std::vector<double>>& replicates) {
   const auto rows = static_cast<Eigen::Index>(replicates.size());
@@ -140,67 +172,7 @@ CalibratedParameter parameter(const std::string& name, double ln,
           high - low < std::log(kDetermined) && low > lower + edge && high < upper - edge};
 }
 
-int count_at_bound(const std::vector<TimeFit>& fits, const Interval& allowed) {
-  return static_cast<int>(std::count_if(fits.begin(), fits.end(), [&](const TimeFit& fit) {
-    return fit.seconds_per_unit < 1.01 * allowed.low || fit.seconds_per_unit > 0.99 * allowed.high;
-  }));
-}
-
-}  // namespace
-
-void refuse_calibration(const MeasuredVesicles& data) {
-  if (data.vesicles().size() < 3)
-    throw InputError("a calibration needs three vesicles at least, to know how they scatter");
-  if (std::none_of(data.measurements.begin(), data.measurements.end(), [](const Measurement& m) {
-        return m.of(Quantity::perimeter).value_or(0) > 0 || m.of(Quantity::rafts).value_or(0) > 0;
-      }))
-    throw InputError("a calibration needs perimeters or numbers of rafts");
-}
-
-Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtParameter>& sought,
-                      const std::vector<CalibrationPoint>& points, const TimeUnit& unit) {
-  refuse_calibration(data);
-  const int vesicles = static_cast<int>(data.vesicles().size());
-  if (static_cast<int>(points.size()) < points_of_surface(static_cast<int>(sought.size())))
-    throw InputError("a calibration needs more points");
-  const Box box = explored(points, sought, kOvershoot), simulated = explored(points, sought, 0);
-  std::vector<std::vector<History>> ensembles;
-  for (const CalibrationPoint& point : points) ensembles.push_back(point.runs);
-  const ScatterLaws scatter = scatter_laws(ensembles);
-  std::vector<RunStatistics> statistics;
-  for (const CalibrationPoint& point : points)
-    statistics.emplace_back(point.runs, each_once(point.runs.size()), scatter);
-  const MeasuredFractions measured(data);
-  const bool sought_fraction = std::any_of(
-      sought.begin(), sought.end(), [](const SoughtParameter& s) { return s.name == "fraction"; });
-  const MeasuredFractions* fractions = sought_fraction ? &measured : nullptr;
-  const Estimate found = estimate(data, each_once(static_cast<std::size_t>(vesicles)), points,
-                                  statistics, box, unit, fractions);
-  std::vector<std::vector<double>> replicates;
-  for (std::uint64_t r = 1; r <= kReplicates; ++r) {
-    std::vector<RunStatistics> others;
-    // The same seeds at all points: what is common to them cancels in the comparison of points.
-    for (const CalibrationPoint& point : points)
-      others.emplace_back(point.runs, resample(static_cast<int>(point.runs.size()), r, 32),
-                          scatter);
-    replicates.push_back(
-        estimate(data, resample(vesicles, r, 31), points, others, box, unit, fractions, &found.fits)
-            .ln);
-  }
-  Calibration result;
-  for (std::size_t i = 0; i <= sought.size(); ++i) {
-    std::vector<double> values;
-    for (const auto& replicate : replicates) values.push_back(replicate[i]);
-    result.parameters.push_back(parameter(
-        i == 0 ? "seconds_per_unit" : sought[i - 1].name, found.ln[i], values,
-        i == 0 ? std::log(unit.allowed.low) : simulated.lower[i - 1],
-        i == 0 ? std::log(unit.allowed.high) : simulated.upper[i - 1],
-        i == 0 ? kUnitEdge : kSimulatedEdge * (simulated.upper[i - 1] - simulated.lower[i - 1])));
-  }
-  const Eigen::MatrixXd spread = covariance(replicates);
-  const Vec deviation = spread.diagonal().cwiseSqrt().cwiseMax(1e-12);
-  result.correlation =
-      deviation.cwiseInverse().asDiagonal() * spread * deviation.cwiseInverse().asDiagonal();
+void set_best_powers(const Eigen::MatrixXd& spread, Calibration& result) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> directions(spread);
   Vec powers = directions.eigenvectors().col(0);
   powers[0] = -powers[0];  // of D, not of R²/D
@@ -210,9 +182,58 @@ Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtPara
       std::sqrt(std::max(0.0, directions.eigenvalues()[0])) / std::fabs(powers[largest]);
   powers /= powers[largest];
   result.best_powers.assign(powers.data(), powers.data() + powers.size());
-  result.at_points = found.fits;
-  result.at_bound = count_at_bound(found.fits, unit.allowed);
-  result.scatter = found.scatter;
+}
+
+int count_at_bound(const std::vector<TimeFit>& fits, const Interval& allowed) {
+  return static_cast<int>(std::count_if(fits.begin(), fits.end(), [&](const TimeFit& fit) {
+    return fit.seconds_per_unit < 1.01 * allowed.low || fit.seconds_per_unit > 0.99 * allowed.high;
+  }));
+}
+
+}  // namespace
+
+void refuse_calibration(const MeasuredVesicles& data) {
+  (void)enough_vesicles(data);
+}
+
+int looks_that_tell_nothing(const MeasuredVesicles& data) {
+  return static_cast<int>(std::count_if(data.measurements.begin(), data.measurements.end(),
+                                        [](const Measurement& m) { return !tells(m); }));
+}
+
+std::vector<double> most_probable(const MeasuredVesicles& data,
+                                  const std::vector<SoughtParameter>& sought,
+                                  const std::vector<CalibrationPoint>& points,
+                                  const TimeUnit& unit) {
+  return Fit(data, sought, points, unit).found().ln_parameters;
+}
+
+Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtParameter>& sought,
+                      const std::vector<CalibrationPoint>& points, const TimeUnit& unit) {
+  const Fit fit(data, sought, points, unit);
+  const std::vector<std::vector<double>> replicates = fit.replicates();
+  const std::vector<double> best = estimates(fit.found());
+  const Box simulated = explored(points, sought, 0);
+  Calibration result;
+  for (std::size_t i = 0; i <= sought.size(); ++i) {
+    std::vector<double> values;
+    for (const auto& replicate : replicates) values.push_back(replicate[i]);
+    result.parameters.push_back(parameter(
+        i == 0 ? "seconds_per_unit" : sought[i - 1].name, best[i], values,
+        i == 0 ? std::log(unit.allowed.low) : simulated.lower[i - 1],
+        i == 0 ? std::log(unit.allowed.high) : simulated.upper[i - 1],
+        i == 0 ? kUnitEdge : kSimulatedEdge * (simulated.upper[i - 1] - simulated.lower[i - 1])));
+  }
+  const Eigen::MatrixXd spread = covariance(replicates);
+  const Vec deviation = spread.diagonal().cwiseSqrt().cwiseMax(1e-12);
+  result.correlation =
+      deviation.cwiseInverse().asDiagonal() * spread * deviation.cwiseInverse().asDiagonal();
+  set_best_powers(spread, result);
+  for (const JointFit& point : fit.at_points()) result.at_points.push_back(point.time);
+  result.best = fit.found().time;
+  result.at_bound = count_at_bound(result.at_points, unit.allowed);
+  result.unit_at_bound = best[0] < std::log(unit.allowed.low) + kUnitEdge ||
+                         best[0] > std::log(unit.allowed.high) - kUnitEdge;
   return result;
 }
 

@@ -7,15 +7,9 @@
 
 #include "kernel/core/types.hpp"
 #include "verification/measure/fit.hpp"
-#include "verification/vesicles/likelihood.hpp"
+#include "verification/vesicles/run_emulator.hpp"
 
 namespace traceraft {
-
-// Simulations at one choice of the parameters that cost simulations. Parameters are logarithms.
-struct CalibrationPoint {
-  std::vector<double> ln_parameters;
-  std::vector<History> runs;  // in units of R²/D
-};
 
 // What is looked for besides the unit of time, and what it may be.
 struct SoughtParameter {
@@ -33,24 +27,34 @@ struct CalibratedParameter {
 struct Calibration {
   std::vector<CalibratedParameter> parameters;  // R²/D in seconds first
   Eigen::MatrixXd correlation;                  // of the logarithms, in the same order
-  std::vector<TimeFit> at_points;
-  double scatter;  // of ln perimeter, of the measurements
+  std::vector<TimeFit> at_points;               // where each of them fits best
+  TimeFit best;
   // The best determined product of powers, of D first, the largest power being 1, and its relative
   // deviation.
   std::vector<double> best_powers;
   double best_deviation;
   int at_bound;           // points at which R²/D fits best where the search for it ends
+  bool unit_at_bound;     // does it fit best there at all?
   bool converged = true;  // do the last simulations surround what was found?
 };
 
 // Of an estimate that the simulations do not surround nothing is determined.
 void mark_unconverged(Calibration& calibration);
 
-// Throws InputError for too few vesicles, and if neither perimeters nor rafts were measured.
+// Throws InputError for too few vesicles with rafts whose perimeter or number was measured.
 void refuse_calibration(const MeasuredVesicles& data);
+// Measurements without a raft, or of neither perimeter nor number: they are not used.
+int looks_that_tell_nothing(const MeasuredVesicles& data);
 
-// Fits a parabola to the deviance of the points. Throws InputError if there are too few of them,
-// and as refuse_calibration.
+// ln of the most probable parameters but the unit of time: what calibrate finds, without saying how
+// certain it is.
+std::vector<double> most_probable(const MeasuredVesicles& data,
+                                  const std::vector<SoughtParameter>& sought,
+                                  const std::vector<CalibrationPoint>& points,
+                                  const TimeUnit& unit);
+
+// The most probable parameters, with simulations in between the points emulated from these. All
+// points have as many runs. Throws InputError if they are too few, and as refuse_calibration.
 Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtParameter>& sought,
                       const std::vector<CalibrationPoint>& points, const TimeUnit& unit);
 

@@ -51,12 +51,15 @@ Agreement agreement(const MeasuredVesicles& data, const std::vector<History>& ru
     const double of_mean = 1 + 1 / static_cast<double>(runs.size());
     const double deviation = std::hypot(runs_here.deviation * std::sqrt(of_mean), sigma);
     const double z = (measured - runs_here.mean) / std::max(deviation, 1e-6);
+    const double unit = relative(quantity) ? 1 : std::max(runs_here.mean, 1e-6);
+    result.scatter += deviation * deviation / (unit * unit);
     result.bias += z;
     result.misfit += z * z;
   }
   const double count = std::max(1, result.measurements);
   result.bias /= count;
   result.misfit = std::sqrt(result.misfit / count);
+  result.scatter = std::sqrt(result.scatter / count);
   return result;
 }
 

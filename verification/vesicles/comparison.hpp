@@ -16,6 +16,7 @@ struct Agreement {
   int within = 0;        // between the smallest and the largest of the runs
   double bias = 0;       // mean of (measured − mean of the runs) / deviation
   double misfit = 0;     // root of the mean square of the same
+  double scatter = 0;    // root mean square of the deviation, relative to what is measured
 };
 
 // deviation²: the variance between n runs, times 1 + 1/n as their mean scatters, too, and sigma² of

@@ -39,6 +39,15 @@ std::string difference_of_fractions(const MeasuredVesicles& data, double fractio
 
 }  // namespace
 
+SimulatedVesicle simulated_vesicle(double radius, const std::vector<History>& runs,
+                                   const MeasuredVesicles& data) {
+  const Window window = looks(data);
+  double sum = 0;
+  for (const History& run : runs)
+    sum += run.at(Quantity::fraction, std::sqrt(window.begin * window.end));
+  return {radius, sum / static_cast<double>(runs.size())};
+}
+
 std::vector<std::string> differences(const MeasuredVesicles& data, const SimulatedVesicle& model) {
   std::vector<std::string> sentences;
   for (const std::string& sentence : {difference_of_radii(data, model.radius),

@@ -11,8 +11,12 @@ namespace traceraft {
 
 struct SimulatedVesicle {
   double radius;         // µm
-  double raft_fraction;  // of the area
+  double raft_fraction;  // of the area, as it is measured
 };
+
+// At the middle of the times of the measurements, in ln t; times of the runs are those of the data.
+SimulatedVesicle simulated_vesicle(double radius, const std::vector<History>& runs,
+                                   const MeasuredVesicles& data);
 
 // Sentences: radii that are further from the simulated one than by a fifth, since at the same time
 // a larger vesicle has more rafts and a longer perimeter over radius; a mean raft fraction that is

@@ -9,25 +9,26 @@
 namespace traceraft {
 namespace {
 
-constexpr int kPerDecade = 20;
 constexpr double kLeastCount = 0.5;             // of rafts: there may be none for a moment
 constexpr double kRoundingVariance = 1 / 12.0;  // of a whole number
-constexpr double kFirstStep = 0.4;              // of ln R²/D
 constexpr double kLeastScatter = 0.01, kUsualScatter = 0.1, kLargestScatter = 1;
 
 double square(double x) {
   return x * x;
 }
 
+// There may be no raft.
+double logarithm(const History& run, Quantity quantity, double t) {
+  return std::log(std::max(run.at(quantity, t), kLeastCount));
+}
+
 struct MeanAndVariance {
   double mean, variance;
 };
 
-MeanAndVariance of_logarithms(const std::vector<History>& runs, const std::vector<int>& sample,
-                              Quantity quantity, double t) {
+MeanAndVariance of_logarithms(const std::vector<History>& runs, Quantity quantity, double t) {
   std::vector<double> logarithms;
-  for (const int k : sample)
-    logarithms.push_back(std::log(std::max(runs[k].at(quantity, t), kLeastCount)));
+  for (const History& run : runs) logarithms.push_back(logarithm(run, quantity, t));
   const Moments m = moments(logarithms);
   return {m.mean, m.deviation * m.deviation};
 }
@@ -54,31 +55,64 @@ ScatterLaw fitted_scatter(const Points& points) {
   return {line.intercept, line.slope};
 }
 
-// −2 ln of the likelihood.
-double deviance_of(const MeasuredVesicles& data,
-                   const std::vector<std::pair<std::size_t, std::size_t>>& vesicles,
-                   const std::vector<int>& sample, const RunStatistics& runs,
-                   double seconds_per_unit, double scatter) {
-  double sum = 0;
-  const auto add = [&](double y, double sigma2, const RunStatistics::Normal& expected) {
-    const double variance = expected.variance + sigma2;
-    sum += (y - expected.mean) * (y - expected.mean) / variance + std::log(variance);
-  };
+// A measured logarithm.
+struct Look {
+  Quantity quantity;
+  double time, value;
+  double sigma2;  // variance that is stated; of a number of rafts, absolute
+};
+
+std::vector<Look> looks_of(const MeasuredVesicles& data, const std::vector<int>& sample) {
+  const auto vesicles = data.vesicles();
+  std::vector<Look> looks;
   for (const int k : sample)
     for (std::size_t i = vesicles[k].first; i < vesicles[k].second; ++i) {
       const Measurement& m = data.measurements[i];
-      const double t = std::max(m.time, 1e-12) / seconds_per_unit;
+      const double t = std::max(m.time, 1e-12);
       if (const auto& p = m.of(Quantity::perimeter); p && *p > 0)
-        add(std::log(*p), scatter * scatter + square(m.sigma_of(Quantity::perimeter) / *p),
-            runs.at(Quantity::perimeter, t));
-      if (const auto& n = m.of(Quantity::rafts); n && *n > 0) {
-        // By the number that is expected: by the one that was counted, small ones would count less.
-        const RunStatistics::Normal expected = runs.at(Quantity::rafts, t);
-        const double error2 = std::max(kRoundingVariance, square(m.sigma_of(Quantity::rafts)));
-        add(std::log(*n), error2 * std::exp(-2 * expected.mean), expected);
-      }
+        looks.push_back(
+            {Quantity::perimeter, t, std::log(*p), square(m.sigma_of(Quantity::perimeter) / *p)});
+      if (const auto& n = m.of(Quantity::rafts); n && *n > 0)
+        looks.push_back({Quantity::rafts, t, std::log(*n),
+                         std::max(kRoundingVariance, square(m.sigma_of(Quantity::rafts)))});
     }
+  return looks;
+}
+
+// −2 ln of the likelihood.
+double deviance_of(const std::vector<Look>& looks, const RunStatistics& runs,
+                   double seconds_per_unit, double scatter) {
+  double sum = 0;
+  for (const Look& look : looks) {
+    const RunStatistics::Normal expected = runs.at(look.quantity, look.time / seconds_per_unit);
+    // Of rafts, by the number that is expected: by the one that was counted, small ones would count
+    // less.
+    const double own = look.quantity == Quantity::perimeter
+                           ? scatter * scatter + look.sigma2
+                           : look.sigma2 * std::exp(-2 * expected.mean);
+    const double variance = expected.variance + own;
+    sum += square(look.value - expected.mean) / variance + std::log(variance);
+  }
   return sum;
+}
+
+struct Steps {
+  double unit, scatter;  // the first ones, of the logarithms
+};
+
+TimeFit fit_looks(const std::vector<Look>& looks, const RunStatistics& runs, const TimeUnit& unit,
+                  const TimeFit& near, const Steps& steps) {
+  const auto deviance = [&](const std::vector<double>& x) {
+    return deviance_of(looks, runs, std::exp(x[0]), std::exp(x[1]));
+  };
+  const Minimum found = minimise({deviance,
+                                  {std::log(near.seconds_per_unit), std::log(near.scatter)},
+                                  {std::log(unit.allowed.low), std::log(kLeastScatter)},
+                                  {std::log(unit.allowed.high), std::log(kLargestScatter)},
+                                  {steps.unit, steps.scatter},
+                                  1e-4,
+                                  400});
+  return {std::exp(found.x[0]), std::exp(found.x[1]), found.value};
 }
 
 }  // namespace
@@ -90,50 +124,83 @@ double ScatterLaw::variance(double rafts) const {
 ScatterLaws scatter_laws(const std::vector<std::vector<History>>& ensembles) {
   Points perimeter, rafts;
   for (const std::vector<History>& runs : ensembles) {
-    const std::vector<int> all = each_once(runs.size());
-    for (const double t : common_times(runs, kPerDecade)) {
-      const MeanAndVariance count = of_logarithms(runs, all, Quantity::rafts, t);
+    for (const double t : common_times(runs, kCurveTimes)) {
+      const MeanAndVariance count = of_logarithms(runs, Quantity::rafts, t);
       const double x = independent_share(std::exp(count.mean));
       rafts.emplace_back(x, count.variance);
-      perimeter.emplace_back(x, of_logarithms(runs, all, Quantity::perimeter, t).variance);
+      perimeter.emplace_back(x, of_logarithms(runs, Quantity::perimeter, t).variance);
     }
   }
   return {fitted_scatter(perimeter), fitted_scatter(rafts)};
 }
 
-RunStatistics::RunStatistics(const std::vector<History>& runs, const std::vector<int>& sample,
-                             const ScatterLaws& scatter)
-    : RunStatistics(runs, sample, scatter, common_times(runs, kPerDecade)) {}
+RunCurves::RunCurves(const std::vector<History>& runs, std::vector<double> at)
+    : times(std::move(at)) {
+  const auto rows = static_cast<Eigen::Index>(times.size());
+  const auto columns = static_cast<Eigen::Index>(runs.size());
+  for (Eigen::MatrixXd* curves : {&perimeter, &rafts, &fraction}) curves->resize(rows, columns);
+  for (Eigen::Index j = 0; j < columns; ++j)
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const History& run = runs[static_cast<std::size_t>(j)];
+      const double t = times[static_cast<std::size_t>(i)];
+      perimeter(i, j) = logarithm(run, Quantity::perimeter, t);
+      rafts(i, j) = logarithm(run, Quantity::rafts, t);
+      fraction(i, j) = run.at(Quantity::fraction, t);
+    }
+}
 
-RunStatistics::RunStatistics(const std::vector<History>& runs, const std::vector<int>& sample,
-                             const ScatterLaws& scatter, const std::vector<double>& times)
-    : grid_(times) {
-  const double more = 1 + 1 / static_cast<double>(sample.size());
-  for (const double t : times) {
-    const double rafts = of_logarithms(runs, sample, Quantity::rafts, t).mean;
-    const double count = std::exp(rafts);
-    rafts_.mean.push_back(rafts);
-    rafts_.variance.push_back(more * scatter.rafts.variance(count));
-    perimeter_.mean.push_back(of_logarithms(runs, sample, Quantity::perimeter, t).mean);
-    perimeter_.variance.push_back(more * scatter.perimeter.variance(count));
-  }
+RunStatistics::RunStatistics(const RunCurves& runs, const std::vector<int>& sample,
+                             const ScatterLaws& scatter)
+    : grid_(runs.times), scatter_(scatter), of_mean_(1 + 1 / static_cast<double>(sample.size())) {
+  const auto mean = [&](const Eigen::MatrixXd& curves) {
+    const Vec values = curves(Eigen::all, sample).rowwise().mean();
+    return std::vector<double>(values.data(), values.data() + values.size());
+  };
+  mean_ = {mean(runs.perimeter), mean(runs.rafts), mean(runs.fraction)};
+}
+
+RunStatistics RunStatistics::combined(const std::vector<RunStatistics>& all,
+                                      const std::vector<double>& weights) {
+  RunStatistics result = all.front();
+  const auto combine = [&](std::vector<double> Means::*curve) {
+    std::vector<double>& values = result.mean_.*curve;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      values[i] = 0;
+      for (std::size_t k = 0; k < all.size(); ++k)
+        values[i] += weights[k] * (all[k].mean_.*curve)[i];
+    }
+  };
+  combine(&Means::perimeter);
+  combine(&Means::rafts);
+  combine(&Means::fraction);
+  return result;
 }
 
 RunStatistics::Normal RunStatistics::at(Quantity quantity, double t) const {
-  const Curve& curve = quantity == Quantity::perimeter ? perimeter_ : rafts_;
-  const double ln_t = std::log(t);
-  return {grid_.at(curve.mean, ln_t), grid_.at(curve.variance, ln_t)};
+  const double ln_t = std::log(t), ln_rafts = grid_.at(mean_.rafts, ln_t);
+  const double variance_of_rafts = variance(scatter_.rafts, ln_rafts);
+  if (quantity == Quantity::rafts) return {ln_rafts, variance_of_rafts};
+  return {grid_.at(mean_.perimeter, ln_t), variance(scatter_.perimeter, ln_rafts)};
+}
+
+double RunStatistics::variance(const ScatterLaw& law, double ln_rafts) const {
+  return of_mean_ * law.variance(std::exp(ln_rafts));
+}
+
+double RunStatistics::fraction(double t) const {
+  return grid_.at(mean_.fraction, std::log(t));
 }
 
 TimeFit fit_time(const MeasuredVesicles& data, const std::vector<int>& sample,
                  const RunStatistics& runs, const TimeUnit& unit) {
   const double low = std::log(unit.allowed.low), high = std::log(unit.allowed.high),
                start = std::log(unit.start);
+  const std::vector<Look> looks = looks_of(data, sample);
   TimeFit best{unit.start, kUsualScatter, HUGE_VAL};
   // Several starts: where a plateau is reached, time makes no difference.
   for (const double first : {0.5 * (low + start), start, 0.5 * (start + high)}) {
     const TimeFit found =
-        fit_time(data, sample, runs, unit, {std::exp(first), kUsualScatter, HUGE_VAL});
+        fit_looks(looks, runs, unit, {std::exp(first), kUsualScatter, HUGE_VAL}, {0.4, 0.5});
     if (found.deviance < best.deviance) best = found;
   }
   return best;
@@ -141,18 +208,7 @@ TimeFit fit_time(const MeasuredVesicles& data, const std::vector<int>& sample,
 
 TimeFit fit_time(const MeasuredVesicles& data, const std::vector<int>& sample,
                  const RunStatistics& runs, const TimeUnit& unit, const TimeFit& near) {
-  const auto vesicles = data.vesicles();
-  const auto deviance = [&](const std::vector<double>& x) {
-    return deviance_of(data, vesicles, sample, runs, std::exp(x[0]), std::exp(x[1]));
-  };
-  const Minimum found = minimise({deviance,
-                                  {std::log(near.seconds_per_unit), std::log(near.scatter)},
-                                  {std::log(unit.allowed.low), std::log(kLeastScatter)},
-                                  {std::log(unit.allowed.high), std::log(kLargestScatter)},
-                                  {kFirstStep, 0.5},
-                                  1e-4,
-                                  400});
-  return {std::exp(found.x[0]), std::exp(found.x[1]), found.value};
+  return fit_looks(looks_of(data, sample), runs, unit, near, {0.1, 0.1});
 }
 
 }  // namespace traceraft

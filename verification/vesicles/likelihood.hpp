@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "kernel/core/types.hpp"
 #include "verification/measure/fit.hpp"
 #include "verification/vesicles/history.hpp"
 #include "verification/vesicles/measurements.hpp"
@@ -22,27 +23,44 @@ struct ScatterLaws {
 // From the runs at all choices of parameters together: a few runs alone know it badly.
 ScatterLaws scatter_laws(const std::vector<std::vector<History>>& ensembles);
 
-// Mean over runs of the logarithms of perimeter and number of rafts, on a grid of ln t.
+// Times per decade at which curves are known.
+inline constexpr int kCurveTimes = 20;
+
+// Runs at times evenly spaced in ln t, in any unit: the logarithms of perimeter and number of
+// rafts, and the raft fraction; a row for each of the times, a column for each run.
+struct RunCurves {
+  std::vector<double> times;
+  Eigen::MatrixXd perimeter, rafts, fraction;
+
+  RunCurves(const std::vector<History>& runs, std::vector<double> times);
+};
+
+// Means of them over runs.
 class RunStatistics {
  public:
-  // At least two runs, with times > 0 in any unit. `sample`: which runs, with repetition.
-  RunStatistics(const std::vector<History>& runs, const std::vector<int>& sample,
-                const ScatterLaws& scatter);
-  RunStatistics(const std::vector<History>& runs, const std::vector<int>& sample,
-                const ScatterLaws& scatter, const std::vector<double>& times);
+  // At least two runs. `sample`: which ones, with repetition.
+  RunStatistics(const RunCurves& runs, const std::vector<int>& sample, const ScatterLaws& scatter);
+  // Σ weights[k] × means of the k-th, all of as many runs at the same times.
+  static RunStatistics combined(const std::vector<RunStatistics>& all,
+                                const std::vector<double>& weights);
 
   struct Normal {
     double mean, variance;  // variance: of one vesicle, and of the mean itself
   };
   // Constant beyond the ends. Perimeter or rafts only.
   Normal at(Quantity quantity, double t) const;
+  double fraction(double t) const;
 
  private:
-  struct Curve {
-    std::vector<double> mean, variance;
+  struct Means {
+    std::vector<double> perimeter, rafts, fraction;
   };
+  double variance(const ScatterLaw& law, double ln_rafts) const;
+
   LogTimes grid_;
-  Curve perimeter_, rafts_;
+  ScatterLaws scatter_;
+  double of_mean_;  // variance of one vesicle and of the mean over that of one vesicle
+  Means mean_;
 };
 
 // The simulations do not know D: it only sets the unit of time, R²/D. Nor do they know the scatter

@@ -132,9 +132,9 @@ RaftFractionEstimate estimated_raft_fraction(const LipidMixture& membrane, doubl
   const double share = (celsius - known.celsius) / (known.other_celsius - known.celsius);
   return {here + share * (known.other_area - here),
           {},
-          formatted("%s between %.1f %% at %.4g C (tie line) and %.1f %% at %.4g C (published)",
-                    share >= 0 && share <= 1 ? "interpolated" : "extrapolated", 100 * here,
-                    known.celsius, 100 * known.other_area, known.other_celsius)};
+          formatted("%s %.1f %% at %.4g C (tie line) and %.1f %% at %.4g C (published)",
+                    share >= 0 && share <= 1 ? "interpolated between" : "EXTRAPOLATED from",
+                    100 * here, known.celsius, 100 * known.other_area, known.other_celsius)};
 }
 
 }  // namespace traceraft

@@ -1,0 +1,71 @@
+#include "verification/vesicles/joint_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "backends/nlopt/minimise.hpp"
+#include "verification/measure/fit.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr double kStep = 0.1;  // of the logarithms, at first
+constexpr double kTolerance = 1e-3;
+constexpr int kMostEvaluations = 300;
+
+}  // namespace
+
+MeasuredFractions::MeasuredFractions(const MeasuredVesicles& data)
+    : window_(looks(data)), means_(mean_fractions(data)) {
+  std::vector<double> known;
+  for (const auto& mean : means_)
+    if (mean) known.push_back(*mean);
+  if (known.size() > 1 && window_.end > 0) variance_ = std::pow(moments(known).deviation, 2);
+}
+
+double MeasuredFractions::deviance(const std::vector<int>& sample, const RunStatistics& runs,
+                                   double seconds_per_unit) const {
+  if (!(variance_ > 0)) return 0;
+  const double t = std::sqrt(window_.begin * window_.end) / seconds_per_unit;
+  const double simulated = runs.fraction(t);
+  double sum = 0;
+  for (const int k : sample)
+    if (means_[k]) sum += std::pow(*means_[k] - simulated, 2) / variance_;
+  return sum;
+}
+
+TimeFit Evidence::fit(const RunStatistics& runs) const {
+  return fit(runs, fit_time(data, sample, runs, unit));
+}
+
+TimeFit Evidence::fit(const RunStatistics& runs, const TimeFit& near) const {
+  TimeFit fit = fit_time(data, sample, runs, unit, near);
+  if (fractions) fit.deviance += fractions->deviance(sample, runs, fit.seconds_per_unit);
+  return fit;
+}
+
+JointFit fit_jointly(const Evidence& evidence, const RunEmulator& runs, const Box& box,
+                     const std::vector<JointFit>& starts) {
+  JointFit best;
+  best.time.deviance = HUGE_VAL;
+  for (const JointFit& start : starts) {
+    TimeFit near = start.time;
+    const auto profile = [&](const std::vector<double>& ln) {
+      const TimeFit here = evidence.fit(runs.at(ln), near);
+      near = here;
+      if (here.deviance < best.time.deviance) best = {ln, here};
+      return here.deviance;
+    };
+    std::vector<double> first = start.ln_parameters;
+    for (std::size_t i = 0; i < first.size(); ++i)
+      first[i] = std::clamp(first[i], box.lower[i], box.upper[i]);
+    if (first.empty())
+      (void)profile(first);
+    else
+      (void)minimise({profile, first, box.lower, box.upper,
+                      std::vector<double>(first.size(), kStep), kTolerance, kMostEvaluations});
+  }
+  return best;
+}
+
+}  // namespace traceraft

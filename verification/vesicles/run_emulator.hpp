@@ -1,0 +1,37 @@
+// Simulations at a few choices of the parameters, and what they would have been at others.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "verification/vesicles/likelihood.hpp"
+
+namespace traceraft {
+
+// Simulations at one choice of the parameters that cost simulations. Parameters are logarithms.
+struct CalibrationPoint {
+  std::vector<double> ln_parameters;
+  std::vector<History> runs;  // in units of R²/D
+};
+
+// The mean curves are local parabolas of the parameters: they are smooth where deviances, which
+// compare them with data, are flat in one place and steep in another.
+class RunEmulator {
+ public:
+  // As many points as regression_weights wants, all with as many runs.
+  RunEmulator(const std::vector<CalibrationPoint>& points, const ScatterLaws& scatter);
+  // With some of the runs of each point, with repetition: what is common to the seeds cancels in
+  // the comparison of points.
+  RunEmulator with_runs(const std::vector<int>& sample) const;
+
+  const RunStatistics& at_point(std::size_t point) const { return at_points_[point]; }
+  RunStatistics at(const std::vector<double>& ln_parameters) const;
+
+ private:
+  ScatterLaws scatter_;
+  std::vector<std::vector<double>> ln_parameters_;
+  std::shared_ptr<std::vector<RunCurves>> curves_;
+  std::vector<RunStatistics> at_points_;
+};
+
+}  // namespace traceraft
