@@ -11,6 +11,7 @@
 #include "backends/suitesparse/blas.hpp"
 #include "drivers/commands.hpp"
 #include "drivers/exit_codes.hpp"
+#include "drivers/numerical_failure.hpp"
 #include "drivers/version.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/named_list.hpp"
@@ -126,6 +127,8 @@ int guarded(int argc, char** argv) {
     return complain(error.what(), kInputOutput);
   } catch (const std::filesystem::filesystem_error& error) {
     return complain(error.what(), kInputOutput);
+  } catch (const NumericalFailure& error) {
+    return complain(error.what(), kNumericalFailure);
   } catch (const LockedError& error) {
     return complain(error.what(), kLocked);
   } catch (const std::bad_alloc&) {

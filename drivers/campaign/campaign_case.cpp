@@ -93,7 +93,9 @@ void carry_out_case(const CampaignFolder& folder, const CampaignPlan& plan, cons
   ExplainSetup setup = read_explain_job(job);
   if (!fs::exists(path / "explain" / "verdict.json")) {
     fs::create_directories(path / "explain");
-    write_explanation(path / "explain", explain_fields(setup.series, setup.request), setup.model);
+    Explanation found = explain_fields(setup.series, setup.request);
+    run_again(setup.series, setup.request, found);
+    write_explanation(path / "explain", found, setup.model);
   }
   write_score(folder, group, id, setup, watch.seconds());
 }

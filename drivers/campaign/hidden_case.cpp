@@ -7,6 +7,7 @@
 #include "drivers/config/config_file.hpp"
 #include "drivers/input/field_dataset.hpp"
 #include "drivers/input/measured_units.hpp"
+#include "drivers/numerical_failure.hpp"
 #include "drivers/output/json_file.hpp"
 #include "drivers/run/run_setup.hpp"
 #include "kernel/effects/effects.hpp"
@@ -78,7 +79,7 @@ void hide(const fs::path& folder, const GivenValues& model, BlindRequest request
       request.cells,
       static_cast<int>(std::lround(kSizing * static_cast<double>(configuration.integer("cells")))));
   request.raft_fraction = configuration.number("raft-fraction");
-  BlindCase drawn = draw_blind_case(request);
+  BlindCase drawn = numerically([&] { return draw_blind_case(request); });
 
   fs::create_directories(folder / "data");
   const std::string truth = truth_json(drawn, request, units).dump(2) + "\n";

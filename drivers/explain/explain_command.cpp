@@ -15,6 +15,7 @@
 #include "drivers/explain/series_report.hpp"
 #include "drivers/input/dataset.hpp"
 #include "drivers/input/model_of_data.hpp"
+#include "drivers/numerical_failure.hpp"
 #include "drivers/output/status_line.hpp"
 #include "drivers/run/run_folder.hpp"
 #include "kernel/core/error.hpp"
@@ -51,15 +52,16 @@ void explain_field_data(const ExplainCommand& command, ExplainSetup& setup, cons
     search = state;
     file.save(state);
   };
-  Explanation found = explain_fields(setup.series, setup.request, search);
-  write_explanation(out, found, setup.model);
+  Explanation found =
+      numerically([&] { return explain_fields(setup.series, setup.request, search); });
   if (!found.found.hypothesis.parts.empty() && !found.rerun) {
     if (!command.quiet) setup.request.progress("once more, on another mesh, by another integrator");
-    found.rerun = run_again(setup.series, setup.request, found);
+    run_again(setup.series, setup.request, found);
+    search->so_far.finding = found.finding;
     search->so_far.rerun = found.rerun;
     file.save(*search);
-    write_explanation(out, found, setup.model);
   }
+  write_explanation(out, found, setup.model);
   const std::string missing = write_explain_page(out, found, setup);
   if (command.quiet) return;
   print_explanation(found, setup.model);

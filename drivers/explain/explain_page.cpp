@@ -35,7 +35,7 @@ class ExplainPage {
   std::string write() {
     page_.paragraph(verdict_sentence(found_));
     page_.table(parameter_rows(found_, units_));
-    for (const std::string& remark : remarks(found_)) page_.paragraph(remark);
+    for (const std::string& remark : remarks(found_, units_)) page_.paragraph(remark);
     add_gaps();
     add_where();
     add_what();

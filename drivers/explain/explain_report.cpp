@@ -47,7 +47,7 @@ void print_explanation(const Explanation& found, const GivenValues& model) {
   print_rows(parameter_rows(found, units));
   std::printf("\n");
   print_rows(gap_rows(found));
-  for (const std::string& remark : remarks(found)) std::printf("\n%s\n", remark.c_str());
+  for (const std::string& remark : remarks(found, units)) std::printf("\n%s\n", remark.c_str());
   std::printf(
       "\nnoise of the measurements %.4f; patches that disagree significantly with the base model: "
       "%zu\n",

@@ -45,6 +45,26 @@ void refuse_far_values(const std::vector<FieldSeries>& vesicles, const DoubleWel
     }
 }
 
+// Most likely the radius or the unit of length is not what it is said to be.
+void refuse_wide_boundaries(const Configuration& model, const CahnHilliardModel& base) {
+  constexpr double kWidest = 0.5;
+  if (base.epsilon > kWidest)
+    throw InputError(model.where("epsilon") + ": " + model.text("epsilon") +
+                     " um is more than half of the radius, " +
+                     format_number(model.units().radius_um) + " um by dataset.toml");
+}
+
+// Nothing moves in what is the same everywhere.
+void refuse_uniform_values(const std::vector<FieldSeries>& vesicles, const DoubleWell& well,
+                           const std::string& folder) {
+  constexpr double kLeast = 1e-6;
+  for (const FieldSeries& vesicle : vesicles)
+    for (const FieldSnapshot& snapshot : vesicle.snapshots)
+      if (snapshot.values.maxCoeff() - snapshot.values.minCoeff() > kLeast * (well.b - well.a))
+        return;
+  throw InputError(folder + ": c is the same everywhere; there is nothing to explain");
+}
+
 // With too few replicates a gap that nothing explains could never be told from noise.
 void refuse_replicates(const ExplainRequest& request, const std::vector<FieldSeries>& vesicles) {
   const bool held_out = std::any_of(vesicles.begin(), vesicles.end(),
@@ -93,7 +113,9 @@ ExplainSetup read_explain_job(const ExplainJob& job) {
   request.most_effects = job.effects;
   request.without = job.without;
   request.filter.replicates = job.replicates;
+  refuse_wide_boundaries(model, request.base);
   refuse_far_values(setup.series, request.base.well, job.data);
+  refuse_uniform_values(setup.series, request.base.well, job.data);
   refuse_replicates(request, setup.series);
   refuse_leaving_out_all(request);
   return setup;

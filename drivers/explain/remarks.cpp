@@ -28,20 +28,34 @@ void add_failures(const Explanation& found, std::vector<std::string>& all) {
                   found.stopped);
 }
 
+// Of what was found, parameters that were not looked for.
+void add_assumptions(const Explanation& found, const Units& base, std::vector<std::string>& all) {
+  for (const FoundParameter& p : found_parameters(found, base))
+    if (!p.sigma)
+      all.push_back(p.effect + " is looked for with a " + p.name + formatted(" of %.4g", p.value) +
+                    (p.unit.empty() ? "" : " " + p.unit) +
+                    " alone; of another one, its strength is another one, and what has another one "
+                    "may be taken for another effect.");
+}
+
 void add_rerun(const Explanation& found, std::vector<std::string>& all) {
   if (!found.rerun) return;
   if (!found.rerun->failure.empty())
     all.push_back("On another mesh and by another integrator it could not be repeated: " +
                   found.rerun->failure);
+  else if (found.rerun->refutes())
+    all.push_back("On another mesh and by another integrator " + found.found.hypothesis.name() +
+                  " foretells the measurements worse than the base model, beyond what noise does: "
+                  "it is no explanation of them, though it came closest in the search.");
   else if (!found.rerun->confirms())
     all.push_back(
-        "On another mesh and by another integrator what was found is no better than the base "
-        "model: do not rely on it; repeat with more --cells.");
+        "On another mesh and by another integrator what was found foretells the measurements no "
+        "better than the base model, within noise: repeat with more --cells or more snapshots.");
 }
 
 }  // namespace
 
-std::vector<std::string> remarks(const Explanation& found) {
+std::vector<std::string> remarks(const Explanation& found, const Units& base) {
   std::vector<std::string> all;
   if (found.outliers > 0)
     all.push_back(std::to_string(found.outliers) +
@@ -51,8 +65,11 @@ std::vector<std::string> remarks(const Explanation& found) {
   if (!found.found.settled)
     all.push_back("The parameters were not quite at rest when their refit ended.");
   const Round& last = found.rounds.back();
-  if (is_named(found) && last.refits.empty() && last.screening.p <= found.false_alarms)
-    all.push_back("Something is still lacking; more --effects would look for it.");
+  if (is_named(found) && last.screening.p <= found.false_alarms)
+    all.push_back(last.refits.empty()
+                      ? "Something is still lacking; more --effects would look for it."
+                      : "Something may still be lacking, too little of it to say what.");
+  add_assumptions(found, base, all);
   add_rerun(found, all);
   return all;
 }

@@ -9,6 +9,6 @@
 namespace traceraft {
 
 // One sentence each; none if there is nothing to say.
-std::vector<std::string> remarks(const Explanation& found);
+std::vector<std::string> remarks(const Explanation& found, const Units& base);
 
 }  // namespace traceraft

@@ -189,14 +189,20 @@ DisagreementMaps maps_of(const Json& json) {
 
 Json json_of(const std::optional<Rerun>& rerun) {
   if (!rerun) return {};
-  return {{"cells", rerun->cells},          {"integrator", rerun->integrator},
-          {"base", json_of(rerun->base)},   {"found", json_of(rerun->found)},
-          {"floor", json_of(rerun->floor)}, {"failure", rerun->failure}};
+  return {{"cells", rerun->cells},
+          {"integrator", rerun->integrator},
+          {"base", json_of(rerun->base)},
+          {"found", json_of(rerun->found)},
+          {"floor", json_of(rerun->floor)},
+          {"failure", rerun->failure},
+          {"gain", rerun->gain},
+          {"shortfall", rerun->shortfall}};
 }
 std::optional<Rerun> rerun_of(const Json& json) {
   if (json.is_null()) return {};
   return Rerun{json.at("cells"),          json.at("integrator"),     gaps_of(json.at("base")),
-               gaps_of(json.at("found")), gaps_of(json.at("floor")), json.at("failure")};
+               gaps_of(json.at("found")), gaps_of(json.at("floor")), json.at("failure"),
+               json.at("gain"),           json.at("shortfall")};
 }
 
 Finding finding_of(const std::string& word) {

@@ -11,6 +11,7 @@
 #include "drivers/version.hpp"
 #include "kernel/core/text.hpp"
 #include "kernel/effects/effects.hpp"
+#include "verification/vesicles/differences.hpp"
 #include "verification/vesicles/power_law.hpp"
 
 namespace traceraft {
@@ -197,6 +198,8 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
   words.push_back(formatted("D is %.3g cm^2/s if nothing is missing.",
                             found_units(model, found).diffusion_cm2_s));
   words.insert(words.end(), ensembles.notes.begin(), ensembles.notes.end());
+  const SimulatedVesicle vesicle = simulated_vesicle(model.units().length(), ensembles.base, data);
+  for (const std::string& note : differences(data, vesicle)) words.push_back(note);
   for (const auto& members : found.classes)
     if (members.size() > 1) words.push_back("Alike in series: " + listed(members, ", ") + ".");
   const std::vector<Row> scores = score_rows(model, found), exponent = exponent_rows(laws);

@@ -73,9 +73,14 @@ Json rounds_json(const Explanation& found) {
 
 Json rerun_json(const Rerun& rerun) {
   if (!rerun.failure.empty()) return {{"confirms", false}, {"failure", rerun.failure}};
-  return {{"confirms", rerun.confirms()},   {"cells", rerun.cells},
-          {"integrator", rerun.integrator}, {"base", gap_json(rerun.base)},
-          {"named", gap_json(rerun.found)}, {"floor", gap_json(rerun.floor)}};
+  return {{"confirms", rerun.confirms()},
+          {"refutes", rerun.refutes()},
+          {"gain", rerun.gain},
+          {"cells", rerun.cells},
+          {"integrator", rerun.integrator},
+          {"base", gap_json(rerun.base)},
+          {"named", gap_json(rerun.found)},
+          {"floor", gap_json(rerun.floor)}};
 }
 
 }  // namespace
@@ -118,7 +123,7 @@ Json verdict_json(const Explanation& found, const Units& base) {
             {"p", found.rounds.front().screening.p},
             {"rounds", rounds_json(found)}}},
           {"noise", found.noise},
-          {"remarks", remarks(found)}};
+          {"remarks", remarks(found, base)}};
 }
 
 namespace {

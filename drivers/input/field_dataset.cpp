@@ -19,6 +19,8 @@ namespace fs = std::filesystem;
 
 // Fewer points cannot show a field.
 constexpr std::size_t kFewestPoints = 100;
+// Ratio of standard deviations within a snapshot.
+constexpr double kMostUnlike = 1e6;
 
 std::vector<double> numbers_of(const TomlTable& toml, const std::string& key) {
   if (!toml.has(key)) throw InputError(toml.where(key) + ": it is missing");
@@ -54,6 +56,12 @@ FieldSnapshot read_snapshot(const fs::path& path, double time, double to_radius)
     if (!(snapshot.deviation[i] > 0))
       throw InputError(table.where(row, "sigma") + ": a standard deviation has to be positive");
   }
+  // What is a million times as certain as the rest decides alone.
+  if (snapshot.deviation.maxCoeff() > kMostUnlike * snapshot.deviation.minCoeff())
+    throw InputError(path.string() +
+                     ", column sigma: the largest is more than a million times the "
+                     "smallest, " +
+                     format_number(snapshot.deviation.minCoeff()));
   return snapshot;
 }
 

@@ -95,17 +95,18 @@ TEST(Judgement, CountsNoSpecialCaseTwice) {
   EXPECT_EQ(judged(round).finding, Finding::ambiguous);
 }
 
-// Gravity is ten standard deviations strong. What extrapolation gets wrong, half of its last part
-// in 10,000 values, is as large where that part is 0.2 of the noise.
-TEST(Judgement, TakesNothingThatTheMeshCouldBe) {
+// Gravity is ten standard deviations strong: as much as noise (the root of 6) and what
+// extrapolation gets wrong, half of its last part in 10,000 values, can make where that part is
+// 0.151 of the noise.
+TEST(Judgement, TakesNothingThatNoiseAndTheMeshCouldBe) {
   Round round = first_round();
-  round.screening.mesh_error = 0.21;
+  round.screening.mesh_error = 0.152;
   EXPECT_FALSE(judged(round).taken);
   EXPECT_EQ(judged(round).finding, Finding::below_resolution);
-  round.screening.mesh_error = 0.19;
+  round.screening.mesh_error = 0.150;
   EXPECT_TRUE(judged(round).taken);
   // Beside an effect that was found it is none, and nothing more is said.
-  round.screening.mesh_error = 0.21;
+  round.screening.mesh_error = 0.152;
   round.screening.gap_p = 0.3;
   round.known.hypothesis = refit_with({"cooling"}, 0).hypothesis;
   for (Refit& fit : round.refits) fit = refit_with({"cooling", "gravity"}, fit.deviance);
@@ -116,16 +117,16 @@ TEST(Judgement, TakesNothingThatTheMeshCouldBe) {
 // What counts is how strong the effect is that was refitted, and how certain.
 TEST(Judgement, HoldsRefittedStrengthsAgainstTheMesh) {
   Refit fit = refit_with({"exchange", "gravity"}, 900);
-  EXPECT_TRUE(resolved(fit, 1, kMeasuredValues, 0.19));
-  EXPECT_FALSE(resolved(fit, 1, kMeasuredValues, 0.21));
+  EXPECT_TRUE(resolved(fit, 1, kMeasuredValues, 0.150));
+  EXPECT_FALSE(resolved(fit, 1, kMeasuredValues, 0.152));
   fit.hypothesis.parts[1].coefficients[0] *= 1.2;
-  EXPECT_TRUE(resolved(fit, 1, kMeasuredValues, 0.21));
+  EXPECT_TRUE(resolved(fit, 1, kMeasuredValues, 0.152));
   fit.covariance(2, 2) *= 1.5;
-  EXPECT_FALSE(resolved(fit, 1, kMeasuredValues, 0.21));
+  EXPECT_FALSE(resolved(fit, 1, kMeasuredValues, 0.152));
   // Both coefficients of exchange together.
-  EXPECT_TRUE(resolved(fit, 0, kMeasuredValues, 0.28));
-  EXPECT_FALSE(resolved(fit, 0, kMeasuredValues, 0.29));
-  EXPECT_TRUE(resolved(fit, 0, kMeasuredValues / 2, 0.29));
+  EXPECT_TRUE(resolved(fit, 0, kMeasuredValues, 0.233));
+  EXPECT_FALSE(resolved(fit, 0, kMeasuredValues, 0.235));
+  EXPECT_TRUE(resolved(fit, 0, kMeasuredValues / 2, 0.235));
 }
 
 TEST(Judgement, AdmitsAGapThatNothingExplains) {

@@ -82,6 +82,34 @@ TEST_F(RefitTest, FindsTheMostProbableRate) {
   EXPECT_GT(base.gap.train, best.gap.train);
 }
 
+// Nothing depends on the unit of c: with phases at 0 and 100 the same is as far from the data, in
+// units of the noise, and as probable.
+TEST(FieldFilter, KnowsNoUnitOfC) {
+  constexpr double kUnit = 100;
+  BlindRequest asked = request();
+  asked.base.mobility = make_mobility("constant:value=0.25");
+  asked.effects.clear();
+  std::vector<FieldSeries> vesicles = draw_blind_case(asked).vesicles;
+  FilterModel model{asked.base, 1, {}, {}};
+  const auto pass_of = [&] {
+    const FilterProblems data = make_filter_problems(vesicles, *make_surface("sphere"), model.base,
+                                                     kCells, 2, true, settings());
+    std::vector<ErrorMaps> maps;
+    return filter_fields(data, model, settings(), maps);
+  };
+  const FilterResult one = pass_of();
+  for (FieldSeries& vesicle : vesicles)
+    for (FieldSnapshot& snapshot : vesicle.snapshots) snapshot.values *= kUnit;
+  model.base.well = {0.25 / (kUnit * kUnit), 0, kUnit};
+  const FilterResult other = pass_of();
+  ASSERT_EQ(one.innovations.size(), other.innovations.size());
+  for (std::size_t k = 0; k < one.innovations.size(); ++k) {
+    EXPECT_NEAR(other.innovations[k].weighted_squares, one.innovations[k].weighted_squares,
+                0.01 * one.innovations[k].weighted_squares);
+    EXPECT_EQ(other.innovations[k].model_error, one.innovations[k].model_error);
+  }
+}
+
 // A rate that no forecast survives, however often it is halved.
 TEST_F(RefitTest, SaysWhyThereIsNone) {
   const FilterProblems data = problems(drawn().vesicles);

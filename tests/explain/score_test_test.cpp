@@ -136,24 +136,45 @@ TEST(ScoreTest, LeavesOutCoefficientsThatAreAlike) {
   EXPECT_EQ(exchange.covariance(1, 1), 0);
 }
 
-// Patterns in gaps: of the replicates, 19 of 400 leave a larger one, of those held out 99.
+// 25 patterns of normal size each in the replicates: their squares add up to chi squared, whose
+// tail beyond 37.65 is 0.05, and beyond 73.1, further than any of 400 goes, 1.4e-6.
 TEST(ScoreTest, JoinsGapsThatCountAndThatAreHeldOut) {
+  constexpr int kPatterns = 25;
   FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
-  const auto parts = [](double gap) {
-    Columns row = Columns::Zero(1, 1 + kParameters + kDraws);
-    row(0, 0) = gap;
-    for (int r = 0; r < kDraws; ++r) row(0, 1 + kParameters + r) = (r % 2 ? 1 : -1) * (r + 0.5);
-    return row;
+  const auto parts = [](double squares, std::uint64_t seed) {
+    Columns all = Columns::Zero(kPatterns, 1 + kParameters + kDraws);
+    all.col(0).setConstant(std::sqrt(squares / kPatterns));
+    for (Eigen::Index r = 0; r < kDraws; ++r)
+      for (Eigen::Index i = 0; i < kPatterns; ++i)
+        all(i, 1 + kParameters + r) =
+            normal_random(seed, static_cast<std::uint64_t>(r), static_cast<std::uint64_t>(i));
+    return all;
   };
-  pass.gap_parts = {parts(-(kDraws - 19))};
+  pass.gap_parts = {parts(37.65, 5)};
   const Screening alone = screen(pass, {}, {});
-  const double p = 20.0 / (kDraws + 1), q = 100.0 / (kDraws + 1);
-  EXPECT_NEAR(alone.train_gap_p, p, 1e-12);
+  EXPECT_NEAR(alone.train_gap_p, 0.05, 0.015);
   EXPECT_EQ(alone.gap_p, alone.train_gap_p);
-  pass.heldout_gap_parts = {parts(kDraws - 99)};
+  pass.heldout_gap_parts = {parts(37.65, 6)};
   const Screening both = screen(pass, {}, {});
-  EXPECT_NEAR(both.heldout_gap_p, q, 1e-12);
-  EXPECT_NEAR(both.gap_p, p * q * (1 - std::log(p * q)), 1e-12);
+  EXPECT_NEAR(both.heldout_gap_p, 0.05, 0.015);
+  EXPECT_NEAR(both.gap_p, 0.05 * 0.05 * (1 - std::log(0.05 * 0.05)), 0.006);
+  // The same twice is no better evidence than once.
+  pass.heldout_gap_parts = pass.gap_parts;
+  EXPECT_NEAR(screen(pass, {}, {}).gap_p, alone.gap_p, 0.01);
+  pass.heldout_gap_parts.clear();
+  pass.gap_parts = {parts(73.1, 5)};
+  const double p = screen(pass, {}, {}).gap_p;
+  EXPECT_LT(p, 1e-5);
+  EXPECT_GT(p, 1e-7);
+}
+
+TEST(ScoreTest, KnowsTheTailsOfSumsOfSquares) {
+  EXPECT_EQ(gamma_tail(Vec::Constant(9, 2), 2), 1);
+  EXPECT_EQ(gamma_tail(Vec::Constant(9, 2), 3), 0);
+  // An exponential has e^−x, which a mean and a variance of 1 make.
+  Vec two(2);
+  two << 1 - std::sqrt(0.5), 1 + std::sqrt(0.5);
+  EXPECT_NEAR(gamma_tail(two, 3), std::exp(-3), 1e-12);
 }
 
 // What nuisances explain is no gap; the replicates are freed of it as well.
@@ -167,7 +188,7 @@ TEST(ScoreTest, FreesGapsOfNuisances) {
   pass.score[kPace] = 5;  // the pace explains all of it
   EXPECT_EQ(screen(pass, {}, {}).train_gap_p, 1);
   pass.score[kPace] = 4;
-  EXPECT_NEAR(screen(pass, {}, {}).train_gap_p, 1.0 / (kDraws + 1), 1e-12);
+  EXPECT_LT(screen(pass, {}, {}).train_gap_p, 1e-12);
 }
 
 TEST(ScoreTest, MayHaveNothingToLookFor) {

@@ -23,22 +23,32 @@ std::vector<std::string> names(const std::vector<Hypothesis::Part>& parts) {
 }
 
 using Names = std::vector<std::string>;
+constexpr double kLimit = 6;  // what tells two of them apart
 
 TEST(Shortlist, HoldsWhatGainsAQuarterOfTheBest) {
   Screening screening;
   screening.scores = {score("gravity", 100), score("uptake", 30), score("exchange", 26),
                       score("allen-cahn", 24)};
-  EXPECT_EQ(names(shortlist(screening, 5)), (Names{"gravity", "uptake", "exchange"}));
-  EXPECT_EQ(names(shortlist(screening, 2)), (Names{"gravity", "uptake"}));
-  EXPECT_EQ(shortlist(screening, 5)[0].coefficients, std::vector<double>{0.1});
+  EXPECT_EQ(names(shortlist(screening, 5, kLimit)), (Names{"gravity", "uptake", "exchange"}));
+  EXPECT_EQ(names(shortlist(screening, 2, kLimit)), (Names{"gravity", "uptake"}));
+  EXPECT_EQ(shortlist(screening, 5, kLimit)[0].coefficients, std::vector<double>{0.1});
 }
 
 TEST(Shortlist, HoldsASecondOneToCompareWith) {
   Screening screening;
   screening.scores = {score("gravity", 7), score("uptake", 1), score("exchange", 0.5)};
-  EXPECT_EQ(names(shortlist(screening, 5)), (Names{"gravity", "uptake"}));
+  EXPECT_EQ(names(shortlist(screening, 5, kLimit)), (Names{"gravity", "uptake"}));
   screening.scores = {};
-  EXPECT_TRUE(shortlist(screening, 5).empty());
+  EXPECT_TRUE(shortlist(screening, 5, kLimit).empty());
+}
+
+// Where the mesh is coarse, little tells effects apart, and more of them have to be tried.
+TEST(Shortlist, HoldsWhatCouldBeTheBestOne) {
+  Screening screening;
+  screening.scores = {score("gravity", 100), score("uptake", 30), score("exchange", 16),
+                      score("allen-cahn", 14)};
+  EXPECT_EQ(names(shortlist(screening, 5, 85)), (Names{"gravity", "uptake", "exchange"}));
+  EXPECT_EQ(names(shortlist(screening, 2, 85)), (Names{"gravity", "uptake"}));
 }
 
 // Another D takes the place of a little bulk mobility, not of much.
@@ -46,7 +56,7 @@ TEST(Shortlist, HoldsWhatResemblesAnotherPaceHoweverLittleItGains) {
   Screening screening;
   screening.scores = {score("gravity", 100), score("uptake", 30), score("exchange", 26),
                       score("mobility-exponent", 2), score("bulk-mobility", 0)};
-  const auto parts = shortlist(screening, 2);
+  const auto parts = shortlist(screening, 2, kLimit);
   EXPECT_EQ(names(parts), (Names{"gravity", "uptake", "mobility-exponent", "bulk-mobility"}));
   EXPECT_EQ(parts[2].coefficients, std::vector<double>{0.1});
   EXPECT_NEAR(parts[3].coefficients[0], 0.2, 1e-12);

@@ -161,8 +161,9 @@ class Search {
     for (const Innovation& in : pass.innovations) {
       if (in.frame.cwiseAbs().maxCoeff() < kChanged) continue;
       const double turn = known.turn * in.frame.head(3).norm();
+      const double offset = known.offset * (request_.base.well.b - request_.base.well.a);
       result_.changes.push_back(
-          {in.vesicle, in.snapshot, turn, known.gain * in.frame[3], known.offset * in.frame[4]});
+          {in.vesicle, in.snapshot, turn, known.gain * in.frame[3], offset * in.frame[4]});
     }
   }
 
@@ -202,7 +203,8 @@ class Search {
   void refit_shortlist(Round& round) const {
     tell("refits: 2 ln of the likelihood ratio that an effect gains");
     std::vector<FilterModel> trials;
-    for (Hypothesis::Part& part : shortlist(round.screening, request_.shortlist)) {
+    const double limit = telling(values(), round.screening.mesh_error);
+    for (Hypothesis::Part& part : shortlist(round.screening, request_.shortlist, limit)) {
       trials.push_back(model_);
       trials.back().hypothesis.parts.push_back(std::move(part));
     }

@@ -45,9 +45,12 @@ struct Rerun {
   std::string integrator;
   Gaps base, found, floor;  // in units of c
   std::string failure;      // why there is none, if it failed
+  // Of what is held out, if anything is: 2 ln of the likelihood ratio of found and base, and by how
+  // many standard deviations it is smaller than if the found model were the truth.
+  double gain = 0, shortfall = 0;
 
-  // Is the found model better than the base there, too? By what is held out, if anything is.
-  bool confirms() const;
+  bool confirms() const { return failure.empty() && gain > 0; }
+  bool refutes() const;
 };
 
 struct Explanation {
@@ -66,7 +69,7 @@ struct Explanation {
   std::size_t outliers = 0;                 // values that were left out
   std::vector<FrameChange> changes;         // of the found model
   std::string stopped;                      // why the search could not go on, if it had to stop
-  std::optional<Rerun> rerun;               // by run_again, if it was asked for
+  std::optional<Rerun> rerun;               // by run_again
   std::vector<Bound> bounds;                // of effects that were not found
   std::vector<Disagreement> disagreements;  // with the base, the significant ones
   SurfaceMesh map_mesh;                     // Γ_h of the model's mesh

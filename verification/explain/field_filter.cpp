@@ -29,7 +29,7 @@ Columns turns(const CahnHilliard& problem, const Vec& c) {
   return result;
 }
 
-// Of c, in forecasts that lack something: what a gap is looked for as.
+// In forecasts that lack something, of the distance of the phases: what a gap is looked for as.
 constexpr double kUsualGap = 0.02;
 
 // The state of the filter between two snapshots.
@@ -142,7 +142,9 @@ class Filter {
     const auto seen = [&](const Columns& X) {
       return Columns(scale.asDiagonal() * (measured.trace * X));
     };
-    const Columns patterns = data_.patterns->at(problem_.model().well, belief_.c);
+    const DoubleWell& well = problem_.model().well;
+    const double distance = well.b - well.a;
+    const Columns patterns = distance * data_.patterns->at(well, belief_.c);
     const Columns turned = settings_.turn * turns(problem_, belief_.c);
 
     Innovation in{};
@@ -154,7 +156,7 @@ class Filter {
     in.forecast = measured.trace * (belief_.c - mesh.field) + mesh.values;
     in.values = scale.cwiseProduct(measured.values - in.forecast);
     Columns frame(scale.size(), 2);
-    frame << settings_.gain * seen(belief_.c), settings_.offset * scale;
+    frame << settings_.gain * seen(belief_.c), settings_.offset * distance * scale;
     const Columns errors = side_by_side(belief_.errors, turned), error_values = seen(errors);
     const Columns state = side_by_side(error_values, frame);
     in.directions = side_by_side(state, seen(patterns));

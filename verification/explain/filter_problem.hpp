@@ -17,9 +17,9 @@ struct FilterSettings {
   int tangent_steps = 3;  // between two snapshots, for derivatives by parameters
   int error_steps = 2;    // the same for errors of the state
   double gain = 0.1;      // standard deviations of the scale and of the zero of each snapshot's
-  double offset = 0.1;    // values, as far as they are unknown
-  double turn = 0.05;     // of the angle by which a vesicle may have turned between two snapshots
-  int gap_degree = 6;     // of the polynomials that gaps are sought as
+  double offset = 0.1;  // values, as far as they are unknown; the latter of the distance of phases
+  double turn = 0.05;   // of the angle by which a vesicle may have turned between two snapshots
+  int gap_degree = 6;   // of the polynomials that gaps are sought as
   std::string integrator = "ida";  // of forecasts
 };
 

@@ -26,7 +26,8 @@ struct Innovation {
   // Most probable turns about the three axes, scale and zero of the values, in their standard
   // deviations; `gap`: the values without what these make of them.
   Vec frame, gap;
-  double model_error;  // size of the state's error that is no noise, per step, in units of c
+  double model_error;  // size of the state's error that is no noise, per step, of the distance of
+                       // the phases
 };
 
 // S = 1 + G D² Gᵀ by Woodbury's formula, D being 1 for the state and `gap_size` for gaps. The

@@ -47,7 +47,7 @@ double telling(double values, double mesh_error) {
 }
 
 bool resolved(const Refit& fit, std::size_t effect, double values, double mesh_error) {
-  return std::sqrt(certainty(fit, effect)) >= mesh_doubt(values, mesh_error);
+  return certainty(fit, effect) >= telling(values, mesh_error);
 }
 
 double criterion(const Refit& fit, double values) {
@@ -61,6 +61,10 @@ bool is_no_other(const Refit& fit, const Refit& best) {
 
 bool explains_as_well(const Refit& fit, const Refit& best, double values, double limit) {
   return !is_no_other(fit, best) && criterion(fit, values) < criterion(best, values) + limit;
+}
+
+Finding without_name(const Screening& screening, double false_alarms) {
+  return screening.gap_p <= kGapLevel * false_alarms ? Finding::unnamed : Finding::not_identifiable;
 }
 
 Judgement judge(const Round& round, double values, double false_alarms, double usual_change) {

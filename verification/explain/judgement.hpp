@@ -64,8 +64,8 @@ double mesh_doubt(double values, double mesh_error);
 // shape of what distinguishes them.
 double telling(double values, double mesh_error);
 
-// Is an effect so certain that what extrapolation to finer meshes may be wrong by could not look
-// like it, even if it had its very shape?
+// Is an effect so certain that noise and what extrapolation to finer meshes may be wrong by could
+// not look like it, even if that had its very shape?
 bool resolved(const Refit& fit, std::size_t effect, double values, double mesh_error);
 
 const std::string& last_effect(const Hypothesis& hypothesis);
@@ -73,6 +73,9 @@ const std::string& last_effect(const Hypothesis& hypothesis);
 // A gap of any shape has to be that much less probable than the best candidate: what is left of
 // the errors of the mesh and of linear responses looks like one, and it names nothing.
 inline constexpr double kGapLevel = 0.25;
+
+// Of something that is missing and has no name.
+Finding without_name(const Screening& screening, double false_alarms);
 
 struct Judgement {
   bool taken;                           // the best refit's effect belongs to the model

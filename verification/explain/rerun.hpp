@@ -5,8 +5,13 @@
 
 namespace traceraft {
 
-Rerun run_again(const std::vector<FieldSeries>& series, const ExplainRequest& request,
-                const Explanation& found);
+// Nothing is left of a finding that this refutes: it is a gap that nothing explains then, or, where
+// that is not significant, too little to say what.
+void run_again(const std::vector<FieldSeries>& series, const ExplainRequest& request,
+               Explanation& found);
+
+// How two models foretell the same measurements: Rerun's gain and shortfall, and the gaps.
+Rerun compare_forecasts(const FilterResult& base, const FilterResult& found);
 
 // The gaps of a model that has these effects already, and what is to be expected of them with this
 // noise of each vesicle's snapshots, in units of their deviations (none: as single fields tell it).

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <unsupported/Eigen/SpecialFunctions>
 
 #include "verification/explain/free_parameters.hpp"
 
@@ -12,6 +13,15 @@ namespace traceraft {
 double share_of_noise(const Vec& replicates, double value) {
   const auto beyond = (replicates.array() >= value).count();
   return static_cast<double>(beyond + 1) / static_cast<double>(replicates.size() + 1);
+}
+
+double gamma_tail(const Vec& replicates, double value) {
+  const double mean = replicates.mean();
+  const double variance =
+      (replicates.array() - mean).square().sum() / static_cast<double>(replicates.size() - 1);
+  if (!(variance > 0)) return value <= mean ? 1 : 0;
+  const double shape = mean * mean / variance, scale = variance / mean;
+  return Eigen::numext::igammac(shape, std::max(value, 0.0) / scale);
 }
 
 namespace {
@@ -88,28 +98,44 @@ Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& information, const Indices&
   return result;
 }
 
-// Of gaps of any shape in some snapshots, after what the nuisances explain.
-double gap_probability(const FilterResult& result, const std::vector<Columns>& gap_parts,
+// Σ over snapshots of the squares of what the nuisances leave of gaps: measured, and of noise
+// alone.
+struct GapSquares {
+  double measured = 0;
+  Vec null;
+};
+
+GapSquares gap_squares(const FilterResult& result, const std::vector<Columns>& gap_parts,
                        const Indices& nuisances) {
-  if (gap_parts.empty()) return 1;
   const auto factors = Eigen::MatrixXd(result.information(nuisances, nuisances)).ldlt();
   const Vec best = factors.solve(Vec(result.score(nuisances)));
   const Columns null_best = factors.solve(Columns(result.null_scores(nuisances, Eigen::all)));
   const Eigen::Index parameters = result.score.size(), replicates = null_best.cols();
-  double gap = 0;
-  Vec null_gaps = Vec::Zero(replicates);
+  GapSquares squares{0, Vec::Zero(replicates)};
   for (const Columns& parts : gap_parts) {
     const Columns known = parts.middleCols(1, parameters)(Eigen::all, nuisances);
-    gap += (parts.col(0) - known * best).squaredNorm();
-    null_gaps +=
+    squares.measured += (parts.col(0) - known * best).squaredNorm();
+    squares.null +=
         (parts.rightCols(replicates) - known * null_best).colwise().squaredNorm().transpose();
   }
-  return share_of_noise(null_gaps, gap);
+  return squares;
 }
 
-// That two independent values are as small as they are (Fisher 1932).
-double both(double p, double q) {
-  return p * q * (1 - std::log(p * q));
+// p of a gap of any shape: in the snapshots that count, in those that are held out, and in both,
+// whose logarithms add up (Fisher 1932). That the two are not quite independent, as they share the
+// nuisances' estimates, is in the replicates.
+void set_gap_p(const FilterResult& result, const Indices& nuisances, Screening& screening) {
+  const GapSquares train = gap_squares(result, result.gap_parts, nuisances);
+  screening.gap_p = screening.train_gap_p = gamma_tail(train.null, train.measured);
+  if (result.heldout_gap_parts.empty()) return;
+  const GapSquares heldout = gap_squares(result, result.heldout_gap_parts, nuisances);
+  screening.heldout_gap_p = gamma_tail(heldout.null, heldout.measured);
+  const auto both = [](double p, double q) { return -std::log(p) - std::log(q); };
+  Vec null(train.null.size());
+  for (Eigen::Index r = 0; r < null.size(); ++r)
+    null[r] =
+        both(gamma_tail(train.null, train.null[r]), gamma_tail(heldout.null, heldout.null[r]));
+  screening.gap_p = gamma_tail(null, both(screening.train_gap_p, screening.heldout_gap_p));
 }
 
 // The scores of all candidates, for what was measured and for noise.
@@ -187,11 +213,7 @@ Screening screen(const FilterResult& result, const std::vector<Candidate>& scree
   }
   std::sort(screening.scores.begin(), screening.scores.end(),
             [](const auto& a, const auto& b) { return a.score > b.score; });
-  screening.train_gap_p = gap_probability(result, result.gap_parts, nuisances);
-  screening.heldout_gap_p = gap_probability(result, result.heldout_gap_parts, nuisances);
-  screening.gap_p = result.heldout_gap_parts.empty()
-                        ? screening.train_gap_p
-                        : both(screening.train_gap_p, screening.heldout_gap_p);
+  if (result.null_scores.cols() > 1) set_gap_p(result, nuisances, screening);
   screening.mesh_error = root_mean_square(result.innovations, false, [](const Innovation& in) {
     return in.parameters.col(kMeshError).squaredNorm();
   });

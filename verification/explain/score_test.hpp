@@ -9,6 +9,10 @@ namespace traceraft {
 // p = (1 + the number of replicates that reach it) / (1 + their number).
 double share_of_noise(const Vec& replicates, double value);
 
+// The same beyond what so few replicates can count, for sums of many squares: p of the gamma
+// distribution with their mean and variance (Satterthwaite 1946).
+double gamma_tail(const Vec& replicates, double value);
+
 struct CandidateScore {
   std::string effect;
   std::vector<double> coefficients;  // most probable ones, to first order, within their signs

@@ -13,10 +13,12 @@ constexpr std::size_t kAlways = 2;  // the best one, and one to compare it with
 
 }  // namespace
 
-std::vector<Hypothesis::Part> shortlist(const Screening& screening, std::size_t size) {
+std::vector<Hypothesis::Part> shortlist(const Screening& screening, std::size_t size,
+                                        double limit) {
   std::vector<Hypothesis::Part> result;
   const double most = screening.scores.empty() ? 0 : screening.scores.front().score;
-  const double least = std::max(kTelling, kWorthRefitting * most);
+  // What might explain the data as well, and more, as first orders underestimate.
+  const double least = std::min(std::max(kTelling, kWorthRefitting * most), most - limit);
   std::size_t gaining = 0;
   for (const CandidateScore& score : screening.scores) {
     const Candidate candidate = find_candidate(score.effect).value();
