@@ -92,6 +92,7 @@ void hide(const fs::path& folder, const GivenValues& model, BlindRequest request
   data.synthetic = true;
   data.origin = "drawn by traceraft hide; truth sealed by the hash in seal.txt";
   data.radius_um = units.length();
+  data.blur_um = request.blur * units.length();
   data.vesicles = std::move(drawn.vesicles);
   write_field_dataset(folder / "data", data, "synthetic measurements");
   write_durably(folder / "model.toml", config_text(configuration));

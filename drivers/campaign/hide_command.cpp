@@ -24,6 +24,7 @@ struct HideCommand {
   std::string model, out, effects = "random";
   std::int64_t seed = -1;
   BlindRequest request;
+  double blur_um = 0;
   double first_s = 0, last_s = 0;
   int truth_cells = 0;
 };
@@ -53,6 +54,7 @@ int hide_effects(const HideCommand& command) {
   request.cells = command.truth_cells > 0 ? command.truth_cells : truth_cells(model);
   request.seed = command.seed >= 0 ? static_cast<std::uint64_t>(command.seed) : random_seed();
   request.effects = effects_of(command.effects, request.seed);
+  request.blur = command.blur_um / units.length();
   if (command.first_s > 0) request.first = command.first_s / units.time();
   if (command.last_s > 0) request.last = command.last_s / units.time();
   if (!(request.first < request.last)) throw InputError("--first: it has to be before --last");
@@ -88,6 +90,10 @@ Action define_hide(CLI::App& app) {
                  "noise; 0: no "
                  "such column")
       ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  app.add_option("--blur", command->blur_um,
+                 "of the images, standard deviation of the point spread function in um")
+      ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   app.add_option("--vesicles", request.vesicles, "how many, of one membrane and one radius")
       ->check(CLI::Range(1, 100))

@@ -113,6 +113,8 @@ ExplainSetup read_explain_job(const ExplainJob& job) {
   request.most_effects = job.effects;
   request.without = job.without;
   request.filter.replicates = job.replicates;
+  request.filter.blur = data.blur_um.value_or(0) / data.radius_um;
+  request.blur_stated = data.blur_um.has_value();
   refuse_wide_boundaries(model, request.base);
   refuse_far_values(setup.series, request.base.well, job.data);
   refuse_uniform_values(setup.series, request.base.well, job.data);

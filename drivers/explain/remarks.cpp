@@ -60,6 +60,10 @@ std::vector<std::string> remarks(const Explanation& found, const Units& base) {
   if (found.outliers > 0)
     all.push_back(std::to_string(found.outliers) +
                   " values that are far from all around them were left out.");
+  if (!found.blur_stated)
+    all.push_back(
+        "dataset.toml does not say how blurred the images are (blur, 0 if they are not): "
+        "boundaries that a microscope widens are taken for physics.");
   for (const FrameChange& change : found.changes) all.push_back(text_of(change));
   add_failures(found, all);
   if (!found.found.settled)

@@ -19,6 +19,8 @@ namespace fs = std::filesystem;
 
 // Fewer points cannot show a field.
 constexpr std::size_t kFewestPoints = 100;
+// Of the radius: beyond it there is nothing to be seen.
+constexpr double kWidestBlur = 0.2;
 // Ratio of standard deviations within a snapshot.
 constexpr double kMostUnlike = 1e6;
 
@@ -81,7 +83,7 @@ FieldDataset read_field_dataset(const fs::path& folder) {
                      " holds series of vesicles, which are for --series of explain");
   const TomlTable toml = TomlTable::read(
       folder / "dataset.toml", {"name", "kind", "origin", "composition", "temperature", "time_zero",
-                                "length_unit", "time_unit", "radius", "times", "vesicles"});
+                                "length_unit", "time_unit", "radius", "blur", "times", "vesicles"});
   FieldDataset data;
   data.name = toml.text("name");
   data.origin = toml.text_or("origin", "");
@@ -90,6 +92,14 @@ FieldDataset read_field_dataset(const fs::path& folder) {
   const double length = length_factor(toml, "length_unit"), second = time_factor(toml, "time_unit");
   data.radius_um = toml.number("radius") * length;
   if (!(data.radius_um > 0)) throw InputError(toml.where("radius") + ": it has to be positive");
+  if (toml.has("blur")) {
+    data.blur_um = toml.number("blur") * length;
+    if (!(*data.blur_um >= 0 && *data.blur_um < kWidestBlur * data.radius_um))
+      throw InputError(toml.where("blur") +
+                       formatted(": it has to be from 0 to %.2g of the radius, "
+                                 "a standard deviation",
+                                 kWidestBlur));
+  }
   const std::vector<double> times = numbers_of(toml, "times");
   const std::vector<double> vesicles =
       toml.has("vesicles") ? numbers_of(toml, "vesicles") : std::vector<double>(times.size(), 1.0);
@@ -149,7 +159,8 @@ void write_field_dataset(const fs::path& folder, const FieldDataset& data,
           "\nkind = " + (data.synthetic ? "\"synthetic\"" : "\"measured\"") +
           "\norigin = " + quoted(data.origin) + "\ntime_zero = " + quoted(data.time_zero) +
           "\nlength_unit = \"um\"\ntime_unit = \"s\"\nradius = " + format_number(data.radius_um) +
-          "\ntimes = [" + times + "]\nvesicles = [" + vesicles + "]\n");
+          (data.blur_um ? "\nblur = " + format_number(*data.blur_um) : "") + "\ntimes = [" + times +
+          "]\nvesicles = [" + vesicles + "]\n");
 }
 
 }  // namespace traceraft

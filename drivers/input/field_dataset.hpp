@@ -12,6 +12,7 @@ struct FieldDataset {
   std::string name, origin, time_zero;
   bool synthetic = false;
   double radius_um = 0;
+  std::optional<double> blur_um;      // standard deviation of the point spread function
   std::vector<FieldSeries> vesicles;  // times in s, places in units of the radius
 };
 

@@ -58,6 +58,10 @@ void print_fields(const FieldDataset& data) {
               data.synthetic ? " (SYNTHETIC)" : "", data.vesicles.size(),
               data.vesicles.size() == 1 ? "" : "s", data.radius_um, data.origin.empty() ? "" : "; ",
               data.origin.c_str());
+  if (data.blur_um)
+    std::printf("images blurred by %g um\n", *data.blur_um);
+  else
+    std::printf("NOTE: how blurred the images are is not said (blur, 0 if they are not)\n");
   Table table{"fields",
               {"vesicle", "time (s)", "points", "patches of 12", "|x|/R from", "to", "mean of c",
                "deviation of c", "least", "largest", "sigma"},

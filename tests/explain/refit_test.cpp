@@ -82,6 +82,33 @@ TEST_F(RefitTest, FindsTheMostProbableRate) {
   EXPECT_GT(base.gap.train, best.gap.train);
 }
 
+// What is known to be blurred by the microscope is as far from the forecasts as noise is; what is
+// not known to be, further.
+TEST(FieldFilter, AllowsForBlurThatIsStated) {
+  BlindRequest asked = request();
+  asked.effects.clear();
+  asked.blur = 0.15;
+  const std::vector<FieldSeries> vesicles = draw_blind_case(asked).vesicles;
+  const auto squares = [&](double stated) {
+    FilterSettings how = settings();
+    how.blur = stated;
+    const FilterProblems data = problems(vesicles, how);
+    std::vector<ErrorMaps> maps;
+    const FilterResult pass = filter_fields(data, {asked.base, 1, {}, {}}, how, maps);
+    double sum = 0, error = 0;
+    for (const Innovation& in : pass.innovations) {
+      sum += in.gap.squaredNorm() / static_cast<double>(in.gap.size());
+      error = std::max(error, in.model_error);
+    }
+    return std::pair(sum / static_cast<double>(pass.innovations.size()), error);
+  };
+  const auto [known, no_error] = squares(asked.blur);
+  const auto [unknown, error] = squares(0);
+  EXPECT_LT(known, 1.15);
+  EXPECT_GT(unknown, known + 0.1);
+  EXPECT_LT(no_error, error);
+}
+
 // Nothing depends on the unit of c: with phases at 0 and 100 the same is as far from the data, in
 // units of the noise, and as probable.
 TEST(FieldFilter, KnowsNoUnitOfC) {

@@ -5,6 +5,7 @@
 #include "kernel/core/random.hpp"
 #include "verification/explain/blind_looks.hpp"
 #include "verification/explain/blind_simulation.hpp"
+#include "verification/explain/blur.hpp"
 #include "verification/explain/effect_size.hpp"
 #include "verification/explain/point_trace.hpp"
 
@@ -33,9 +34,13 @@ class Vesicle {
   }
 
   std::vector<FieldSnapshot> measure(const std::vector<Vec>& states, double noise) const {
+    const Blur blur(*space_, request_.blur);
     std::vector<FieldSnapshot> snapshots;
-    for (std::size_t k = 0; k < states.size(); ++k)
-      snapshots.push_back(measure(states[k], static_cast<int>(k), noise));
+    for (std::size_t k = 0; k < states.size(); ++k) {
+      const Vec& c = states[k];
+      snapshots.push_back(
+          measure(request_.blur > 0 ? blur.blurred(c) : c, static_cast<int>(k), noise));
+    }
     return snapshots;
   }
 

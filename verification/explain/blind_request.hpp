@@ -22,6 +22,7 @@ struct BlindRequest {
                       // in units of the standard deviation of c, in the first vesicle
   double pace = 1;    // D of the truth over that of the model
   double noise = 0.1;  // standard deviation, in units of that of c
+  double blur = 0;     // standard deviation of the microscope's point spread function, in R
   int vesicles = 1;
   int snapshots = 8;             // of each
   int points = 4000;             // per snapshot

@@ -250,6 +250,7 @@ class Search {
     result_.map_mesh = {surface.position, surface.triangles};
     result_.replicates = request_.filter.replicates;
     result_.false_alarms = request_.false_alarms;
+    result_.blur_stated = request_.blur_stated;
     const auto& refits = result_.rounds.front().refits;
     for (const FilterProblem& data : data_) result_.noises.push_back(data.noise);
     result_.base_gap = result_.base.gap;

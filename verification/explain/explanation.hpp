@@ -24,6 +24,7 @@ struct ExplainRequest {
   int most_effects = 3;
   std::vector<std::string> without;  // effects that are not looked for
   std::size_t shortlist = 5;
+  bool blur_stated = true;     // is it known whether the images are blurred (filter.blur)?
   bool hold_out = true;        // the last snapshot of vesicles that have four or more
   double false_alarms = 0.02;  // with nothing missing, the share of data sets that seem to lack
                                // something
@@ -66,6 +67,7 @@ struct Explanation {
   // what is to be expected of the found model if nothing else is missing.
   Gaps base_gap, found_gap, floor;
   std::optional<Gaps> placebo_gap;
+  bool blur_stated = true;                  // as requested
   std::size_t outliers = 0;                 // values that were left out
   std::vector<FrameChange> changes;         // of the found model
   std::string stopped;                      // why the search could not go on, if it had to stop

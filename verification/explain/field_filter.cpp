@@ -157,6 +157,8 @@ class Filter {
     in.values = scale.cwiseProduct(measured.values - in.forecast);
     Columns frame(scale.size(), 2);
     frame << settings_.gain * seen(belief_.c), settings_.offset * distance * scale;
+    // The model's boundaries are as wide as ever: it is the images that are blurred, each of them.
+    if (data_.blur) frame = side_by_side(frame, seen(data_.blur->blurred(belief_.c) - belief_.c));
     const Columns errors = side_by_side(belief_.errors, turned), error_values = seen(errors);
     const Columns state = side_by_side(error_values, frame);
     in.directions = side_by_side(state, seen(patterns));

@@ -50,6 +50,7 @@ FilterProblem on_meshes(const LevelSet& surface, int cells, int threads,
   data.finer = std::make_shared<const FinerMeshes>(finer_meshes(surface, data.space, cells));
   data.mass = as_eigen(*data.space, data.space->stabilised_mass);
   data.patterns = std::make_shared<const GapPatterns>(*data.space, settings.gap_degree);
+  if (settings.blur > 0) data.blur = std::make_shared<const Blur>(*data.space, settings.blur);
   data.tangent_solver = choose_linear_solver("direct", *data.space).primary;
   data.make_integrator = [name = settings.integrator](const DaeProblem& problem,
                                                       const SurfaceSpace& space) {

@@ -6,6 +6,7 @@
 
 #include "kernel/linear/linear_solver.hpp"
 #include "kernel/problem/cahn_hilliard.hpp"
+#include "verification/explain/blur.hpp"
 #include "verification/explain/gap_patterns.hpp"
 #include "verification/explain/resolved_forecast.hpp"
 
@@ -18,6 +19,7 @@ struct FilterSettings {
   int error_steps = 2;    // the same for errors of the state
   double gain = 0.1;      // standard deviations of the scale and of the zero of each snapshot's
   double offset = 0.1;  // values, as far as they are unknown; the latter of the distance of phases
+  double blur = 0;      // of the point spread function of the images, in R: they have it, or none
   double turn = 0.05;   // of the angle by which a vesicle may have turned between two snapshots
   int gap_degree = 6;   // of the polynomials that gaps are sought as
   std::string integrator = "ida";  // of forecasts
@@ -39,6 +41,7 @@ struct FilterProblem {
   Vec first_resolved;         // its field on the finest mesh
   std::vector<double> noise;  // of each snapshot, in units of its deviations
   std::shared_ptr<const GapPatterns> patterns;
+  std::shared_ptr<const Blur> blur;  // if the images have one
   LinearSolverFactory tangent_solver;
   MakeForecaster make_integrator;
 

@@ -23,8 +23,9 @@ struct Innovation {
   Columns replicates;           // values of noise alone
   double weighted_squares = 0;  // νᵀ S⁻¹ ν, one per value on average
   double expected_squares = 0;  // of the gap in c, by noise and what it leaves unknown of c
-  // Most probable turns about the three axes, scale and zero of the values, in their standard
-  // deviations; `gap`: the values without what these make of them.
+  // Most probable turns about the three axes, scale and zero of the values, and their blur if
+  // images have one, in their standard deviations; `gap`: the values without what these make of
+  // them.
   Vec frame, gap;
   double model_error;  // size of the state's error that is no noise, per step, of the distance of
                        // the phases
