@@ -75,8 +75,8 @@ Table cases_table(const Scores& scores) {
 
 Table summary_of(const Scores& scores) {
   Table table{"summary",
-              {"group", "cases", "right", "in class", "missed", "wrong", "median error", "coverage",
-               "held-out gap / floor", "closed", "s per case"},
+              {"group", "cases", "right", "in class", "missed", "wrong", "wrong names",
+               "median error", "coverage", "held-out gap / floor", "closed", "s per case"},
               {}};
   for (const CampaignGroup& group : campaign_groups()) {
     const Scores own = by_group(scores)[group.name];
@@ -89,6 +89,11 @@ Table summary_of(const Scores& scores) {
     table.rows.push_back(
         {group.name, static_cast<double>(own.size()), count(CaseOutcome::right),
          count(CaseOutcome::in_class), count(CaseOutcome::missed), count(CaseOutcome::wrong),
+         static_cast<double>(std::count_if(own.begin(), own.end(),
+                                           [](const CaseScore& s) {
+                                             return s.outcome == CaseOutcome::wrong &&
+                                                    !s.effect.empty();
+                                           })),
          cell(median_of(own, [](const CaseScore& s) { return s.error; })), coverage(own),
          cell(median_of(own, [](const CaseScore& s) { return s.named / s.floor; })),
          names ? cell(median_of(own, closed)) : Cell(""),
@@ -126,8 +131,13 @@ void write_campaign(const CampaignFolder& campaign, const Scores& scores) {
   write_durably(campaign.cases(), csv_text(cases_table(scores)));
   write_durably(folder / "summary.csv", csv_text(summary));
   write_durably(folder / "confusion.csv", csv_text(confusion));
-  write_durably(folder / "campaign.md",
-                markdown_table(table_rows(summary)) + "\n" + markdown_table(table_rows(confusion)));
+  std::string text =
+      markdown_table(table_rows(summary)) + "\n" + markdown_table(table_rows(confusion));
+  for (const auto& [group, own] : by_group(scores))
+    if (const Table alone = confusion_of(own); !alone.rows.empty())
+      text += "\n" + group + ": " + campaign_groups().find(group).summary + "\n\n" +
+              markdown_table(table_rows(alone));
+  write_durably(folder / "campaign.md", text);
 }
 
 Scores read_cases(const std::filesystem::path& csv) {

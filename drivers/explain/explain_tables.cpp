@@ -12,9 +12,15 @@ constexpr double kInterval = 1.96;
 
 std::vector<Row> parameter_rows(const Explanation& found, const Units& base) {
   std::vector<Row> rows{{"parameter", "value", "95 % +-", "unit"}};
-  for (const FoundParameter& p : found_parameters(found, base))
-    rows.push_back({p.effect + (p.effect.empty() ? "" : " ") + p.name, formatted("%.4g", p.value),
-                    p.sigma ? formatted("%.2g", kInterval * *p.sigma) : "assumed", p.unit});
+  const auto add = [&](const Refit& fit, const std::string& before) {
+    for (const FoundParameter& p : found_parameters(fit, base))
+      rows.push_back({before + p.effect + (p.effect.empty() ? "" : " ") + p.name,
+                      formatted("%.4g", p.value),
+                      p.sigma ? formatted("%.2g", kInterval * *p.sigma) : "assumed", p.unit});
+  };
+  add(found.found, "");
+  if (found.finding == Finding::ambiguous)
+    for (const Refit& fit : found.rivals) add(fit, "or: ");
   return rows;
 }
 

@@ -30,8 +30,7 @@ double variance_of(const Hypothesis::Part& part, std::size_t parameter,
 
 }  // namespace
 
-std::vector<FoundParameter> found_parameters(const Explanation& found, const Units& base) {
-  const Refit& fit = found.found;
+std::vector<FoundParameter> found_parameters(const Refit& fit, const Units& base) {
   const Units units = found_units(base, fit);
   std::vector<FoundParameter> result;
   Eigen::Index first = 0;

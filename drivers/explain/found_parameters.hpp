@@ -16,8 +16,8 @@ struct FoundParameter {
   std::optional<double> sigma;  // none: it was assumed, not found
 };
 
-// Parameters of the found effects, then D (effect "").
-std::vector<FoundParameter> found_parameters(const Explanation& found, const Units& base);
+// Parameters of a model's effects, then D (effect "").
+std::vector<FoundParameter> found_parameters(const Refit& fit, const Units& base);
 
 // Of the first parameter of an effect that was not found, with 95 % confidence.
 struct FoundBound {

@@ -30,7 +30,7 @@ void add_failures(const Explanation& found, std::vector<std::string>& all) {
 
 // Of what was found, parameters that were not looked for.
 void add_assumptions(const Explanation& found, const Units& base, std::vector<std::string>& all) {
-  for (const FoundParameter& p : found_parameters(found, base))
+  for (const FoundParameter& p : found_parameters(found.found, base))
     if (!p.sigma)
       all.push_back(p.effect + " is looked for with a " + p.name + formatted(" of %.4g", p.value) +
                     (p.unit.empty() ? "" : " " + p.unit) +

@@ -215,14 +215,17 @@ Finding finding_of(const std::string& word) {
 
 Json search_json(const SearchState& state) {
   const Explanation& found = state.so_far;
-  Json rounds = Json::array(), disagreements = Json::array(), changes = Json::array();
+  Json rounds = Json::array(), rivals = Json::array(), disagreements = Json::array(),
+       changes = Json::array();
   for (const Round& round : found.rounds) rounds.push_back(json_of(round));
+  for (const Refit& fit : found.rivals) rivals.push_back(json_of(fit));
   for (const Disagreement& d : found.disagreements) disagreements.push_back(json_of(d));
   for (const FrameChange& change : found.changes) changes.push_back(json_of(change));
   return {{"more", state.more},
           {"noise", state.noise},
           {"finding", word_for(found.finding)},
           {"equivalent", found.equivalent},
+          {"rivals", rivals},
           {"base", json_of(found.base)},
           {"found", json_of(found.found)},
           {"rounds", rounds},
@@ -241,6 +244,7 @@ SearchState search_from(const Json& json, const CahnHilliardModel& base) {
   Explanation& found = state.so_far;
   found.finding = finding_of(json.at("finding"));
   found.equivalent = json.at("equivalent").get<std::vector<std::string>>();
+  for (const Json& fit : json.at("rivals")) found.rivals.push_back(refit_of(fit));
   found.base = refit_of(json.at("base"));
   found.found = refit_of(json.at("found"));
   for (const Json& round : json.at("rounds")) found.rounds.push_back(round_of(round, base));

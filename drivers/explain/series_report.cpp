@@ -50,6 +50,21 @@ std::string sentence(const SeriesExplanation& found) {
   }
 }
 
+std::vector<Row> offset_rows(const SeriesExplanation& found) {
+  std::vector<Row> rows{{"measured beside the model", "on average", "deviations",
+                         "per e-fold of time", "deviations"}};
+  for (const SeriesOffset& o : found.offsets) {
+    const bool relative = o.quantity != Quantity::fraction;
+    const auto text = [&](double value) {
+      return relative ? formatted("%+.1f %%", 100 * std::expm1(value)) : formatted("%+.4f", value);
+    };
+    rows.push_back({name_of(o.quantity).label, text(o.level),
+                    formatted("%+.1f", o.level_deviations), text(o.slope),
+                    formatted("%+.1f", o.slope_deviations)});
+  }
+  return rows;
+}
+
 std::string advice(const SeriesTie& tie) {
   return vesicles_text(tie.vesicles) + " vesicles like these would tell " + tie.effect + " from " +
          tie.other + ", above all by their " + name_of(tie.telling).label +
@@ -206,6 +221,7 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
 
   Page page("What series of vesicles say of the model");
   for (const std::string& line : words) page.paragraph(line);
+  page.table(offset_rows(found));
   page.table(scores);
   page.heading("Exponents");
   page.table(exponent);
@@ -221,6 +237,8 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
   if (quiet) return;
   std::printf("\n");
   for (const std::string& line : words) std::printf("%s\n", line.c_str());
+  std::printf("\n");
+  print_rows(offset_rows(found));
   std::printf("\n");
   print_rows(scores);
   std::printf("\n");

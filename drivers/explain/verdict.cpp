@@ -8,12 +8,22 @@
 namespace traceraft {
 namespace {
 
-Json parameters_json(const Explanation& found, const Units& base) {
+Json parameters_json(const Refit& fit, const Units& base) {
   Json parameters = Json::object();
-  for (const FoundParameter& p : found_parameters(found, base))
+  for (const FoundParameter& p : found_parameters(fit, base))
     parameters[(p.effect.empty() ? "" : p.effect + ".") + p.name] = {
         {"value", p.value}, {"sigma", p.sigma ? Json(*p.sigma) : Json()}, {"unit", p.unit}};
   return parameters;
+}
+
+// Of each other member of the class, as it fits best.
+Json rivals_json(const Explanation& found, const Units& base) {
+  Json rivals = Json::array();
+  if (!is_named(found)) return rivals;
+  for (const Refit& fit : found.rivals)
+    rivals.push_back(
+        {{"effect", fit.hypothesis.name()}, {"parameters", parameters_json(fit, base)}});
+  return rivals;
 }
 
 Json bounds_json(const Explanation& found, const Units& base) {
@@ -105,7 +115,8 @@ Json verdict_json(const Explanation& found, const Units& base) {
           {"effect", is_named(found) ? Json(name) : Json()},
           {"class", is_named(found) ? Json(found.equivalent) : Json::array()},
           {"closest", found.finding == Finding::unnamed && !name.empty() ? Json(name) : Json()},
-          {"parameters", parameters_json(found, base)},
+          {"parameters", parameters_json(found.found, base)},
+          {"rivals", rivals_json(found, base)},
           {"bounds", bounds_json(found, base)},
           {"not_looked_for", not_looked_for(found)},
           {"alternatives", alternatives_json(found.rounds.front())},

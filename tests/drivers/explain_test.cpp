@@ -43,6 +43,7 @@ class ExplainTest : public ::testing::Test {
     data.name = "drawn";
     data.synthetic = true;
     data.radius_um = 5;
+    data.blur_um = 0;
     data.vesicles = std::move(vesicles);
     for (FieldSeries& vesicle : data.vesicles)
       for (FieldSnapshot& snapshot : vesicle.snapshots) snapshot.time *= Units().time();

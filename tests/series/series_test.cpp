@@ -173,6 +173,20 @@ TEST(SeriesExplanation, AdmitsATrendThatNothingExplains) {
   const SeriesExplanation found = explained(measured({-0.6, 0, 0}, 15, 0.05, 1));
   EXPECT_EQ(found.finding, Finding::unnamed);
   EXPECT_LE(found.trend_p, 0.02);
+  // What it is: perimeters that fall faster than t^(-1/3); of rafts one is left soon.
+  ASSERT_EQ(found.offsets.size(), 3u);
+  EXPECT_EQ(found.offsets[0].quantity, Quantity::perimeter);
+  EXPECT_NEAR(found.offsets[0].slope, -0.6 + 1 / 3.0, 0.03);
+  EXPECT_LT(found.offsets[0].slope_deviations, -5);
+  EXPECT_LT(std::fabs(found.offsets[2].slope_deviations), 3);
+}
+
+TEST(SeriesFit, SaysHowFarMeasurementsLieBesideIt) {
+  const SeriesExplanation found = explained(measured({}, 15, 0.02, 1));
+  for (const SeriesOffset& offset : found.offsets) {
+    EXPECT_LT(std::fabs(offset.level), 0.1);
+    EXPECT_LT(std::fabs(offset.slope), 0.02);
+  }
 }
 
 TEST(SeriesExplanation, SaysHowManyVesiclesItWouldTake) {

@@ -102,6 +102,7 @@ class Search {
       }
       set_found(*best);
       result_.equivalent = {best->hypothesis.name()};
+      result_.rivals.clear();
     }
     result_.finding = result_.equivalent.size() > 1 ? Finding::ambiguous : Finding::named;
     screen_the_rest();
@@ -130,8 +131,10 @@ class Search {
     for (const Refit& fit : fits)
       if (fit.failure.empty() && explains_as_well(fit, result_.found, values(), limit) &&
           fit.hypothesis.parts.size() == model_.hypothesis.parts.size() &&
-          std::find(names.begin(), names.end(), fit.hypothesis.name()) == names.end())
+          std::find(names.begin(), names.end(), fit.hypothesis.name()) == names.end()) {
         names.push_back(fit.hypothesis.name());
+        result_.rivals.push_back(fit);
+      }
   }
 
   FilterResult first_pass() {
@@ -238,6 +241,11 @@ class Search {
     }
     result_.finding = judgement.finding;
     result_.equivalent = judgement.equivalent;
+    result_.rivals.clear();
+    for (std::size_t k = 1; k < judgement.equivalent.size(); ++k)
+      result_.rivals.push_back(*std::find_if(
+          round.refits.begin(), round.refits.end(),
+          [&](const Refit& fit) { return fit.hypothesis.name() == judgement.equivalent[k]; }));
     set_found(round.refits.front());
     improve();
     return true;
@@ -255,8 +263,12 @@ class Search {
     for (const FilterProblem& data : data_) result_.noises.push_back(data.noise);
     result_.base_gap = result_.base.gap;
     result_.found_gap = result_.found.gap;
+    const auto& parts = result_.found.hypothesis.parts;
     const auto placebo = std::find_if(refits.begin(), refits.end(), [&](const Refit& fit) {
-      return !is_no_other(fit, refits.front());
+      return !is_no_other(fit, refits.front()) &&
+             std::none_of(parts.begin(), parts.end(), [&](const auto& part) {
+               return part.candidate.effect == last_effect(fit.hypothesis);
+             });
     });
     if (placebo != refits.end()) result_.placebo_gap = placebo->gap;
     result_.floor = result_.found.expected;

@@ -62,8 +62,9 @@ struct Explanation {
   std::vector<std::vector<double>> noises;  // of each vesicle's snapshots, in units of deviations
   Refit base, found;                        // with the pace refitted; found: the base if none was
   std::vector<std::string> equivalent;      // hypotheses that explain the data as well, found first
+  std::vector<Refit> rivals;                // the others of them
   std::vector<Round> rounds;
-  // Measured minus forecast. Placebo: the second best of the first round, if there was one. Floor:
+  // Measured minus forecast. Placebo: the best of the first round that was not found. Floor:
   // what is to be expected of the found model if nothing else is missing.
   Gaps base_gap, found_gap, floor;
   std::optional<Gaps> placebo_gap;

@@ -56,6 +56,7 @@ class SeriesSearch {
     result_.vesicles = static_cast<int>(data_.vesicles().size());
     result_.looks = static_cast<int>(data_.measurements.size());
     result_.base = gains_.base;
+    result_.offsets = offsets(blocks_of(data_), {&curves_.base}, gains_.base);
     result_.p = 1;
     for (std::size_t k = 0; k < candidates_.size(); ++k) result_.scores.push_back(score_of(k));
     for (const auto& members : classes_) result_.classes.push_back(names_of(members));

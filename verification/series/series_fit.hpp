@@ -86,6 +86,16 @@ Vec residual(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
 double trend_left(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
                   const SeriesFit& fit);
 
+// How the measurements of a quantity lie beside a fit: on average, and per e-fold of time. Of the
+// logarithm, but for the raft fraction; and in standard deviations.
+struct SeriesOffset {
+  Quantity quantity;
+  double level, level_deviations, slope, slope_deviations;
+};
+// Of those that were measured.
+std::vector<SeriesOffset> offsets(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
+                                  const SeriesFit& fit);
+
 // With an entry per look: changed − mean, or the derivative of the mean by ln of the unit of time.
 Vec response(const std::vector<SeriesBlock>& blocks, const RunCurves& base,
              const RunCurves& changed, double ln_unit);
