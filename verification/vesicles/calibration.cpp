@@ -162,12 +162,13 @@ Eigen::MatrixXd covariance(const std::vector<std::vector<double>>& replicates) {
   return centred.transpose() * centred / static_cast<double>(rows - 1);
 }
 
-CalibratedParameter parameter(const std::string& name, double ln,
-                              const std::vector<double>& replicates, double lower, double upper,
-                              double edge) {
+// The median of the replicates is a better estimate than the fit to what was measured where that is
+// flat, and takes its minimum from the noise of the runs (bagging: Breiman 1996).
+CalibratedParameter parameter(const std::string& name, const std::vector<double>& replicates,
+                              double lower, double upper, double edge) {
   const double low = quantile(replicates, 0.025), high = quantile(replicates, 0.975);
   return {name,
-          std::exp(ln),
+          std::exp(quantile(replicates, 0.5)),
           {std::exp(low), std::exp(high)},
           high - low < std::log(kDetermined) && low > lower + edge && high < upper - edge};
 }
@@ -212,14 +213,13 @@ Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtPara
                       const std::vector<CalibrationPoint>& points, const TimeUnit& unit) {
   const Fit fit(data, sought, points, unit);
   const std::vector<std::vector<double>> replicates = fit.replicates();
-  const std::vector<double> best = estimates(fit.found());
   const Box simulated = explored(points, sought, 0);
   Calibration result;
   for (std::size_t i = 0; i <= sought.size(); ++i) {
     std::vector<double> values;
     for (const auto& replicate : replicates) values.push_back(replicate[i]);
     result.parameters.push_back(parameter(
-        i == 0 ? "seconds_per_unit" : sought[i - 1].name, best[i], values,
+        i == 0 ? "seconds_per_unit" : sought[i - 1].name, values,
         i == 0 ? std::log(unit.allowed.low) : simulated.lower[i - 1],
         i == 0 ? std::log(unit.allowed.high) : simulated.upper[i - 1],
         i == 0 ? kUnitEdge : kSimulatedEdge * (simulated.upper[i - 1] - simulated.lower[i - 1])));
@@ -232,8 +232,9 @@ Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtPara
   for (const JointFit& point : fit.at_points()) result.at_points.push_back(point.time);
   result.best = fit.found().time;
   result.at_bound = count_at_bound(result.at_points, unit.allowed);
-  result.unit_at_bound = best[0] < std::log(unit.allowed.low) + kUnitEdge ||
-                         best[0] > std::log(unit.allowed.high) - kUnitEdge;
+  const double ln_unit = std::log(result.parameters[0].value);
+  result.unit_at_bound = ln_unit < std::log(unit.allowed.low) + kUnitEdge ||
+                         ln_unit > std::log(unit.allowed.high) - kUnitEdge;
   return result;
 }
 

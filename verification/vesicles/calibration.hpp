@@ -20,7 +20,7 @@ struct SoughtParameter {
 struct CalibratedParameter {
   std::string name;
   double value;
-  Interval interval;  // 95 %, by the bootstrap over vesicles and over runs
+  Interval interval;  // 95 %, by the bootstrap over vesicles and over runs; value: its median
   bool determined;    // the interval is narrower than a factor of 2 and within what was explored
 };
 
@@ -28,7 +28,7 @@ struct Calibration {
   std::vector<CalibratedParameter> parameters;  // R²/D in seconds first
   Eigen::MatrixXd correlation;                  // of the logarithms, in the same order
   std::vector<TimeFit> at_points;               // where each of them fits best
-  TimeFit best;
+  TimeFit best;                                 // the most probable fit
   // The best determined product of powers, of D first, the largest power being 1, and its relative
   // deviation.
   std::vector<double> best_powers;
@@ -46,15 +46,15 @@ void refuse_calibration(const MeasuredVesicles& data);
 // Measurements without a raft, or of neither perimeter nor number: they are not used.
 int looks_that_tell_nothing(const MeasuredVesicles& data);
 
-// ln of the most probable parameters but the unit of time: what calibrate finds, without saying how
-// certain it is.
+// ln of the most probable parameters but the unit of time: near what calibrate finds, without
+// saying how certain it is.
 std::vector<double> most_probable(const MeasuredVesicles& data,
                                   const std::vector<SoughtParameter>& sought,
                                   const std::vector<CalibrationPoint>& points,
                                   const TimeUnit& unit);
 
-// The most probable parameters, with simulations in between the points emulated from these. All
-// points have as many runs. Throws InputError if they are too few, and as refuse_calibration.
+// The parameters of the measurements, with simulations in between the points emulated from these.
+// All points have as many runs. Throws InputError if they are too few, and as refuse_calibration.
 Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtParameter>& sought,
                       const std::vector<CalibrationPoint>& points, const TimeUnit& unit);
 
