@@ -7,8 +7,8 @@
 #include "backends/posix/durable_file.hpp"
 #include "backends/posix/folder_lock.hpp"
 #include "backends/posix/process.hpp"
-#include "drivers/calibrate/calibration_points.hpp"
 #include "drivers/calibrate/calibration_report.hpp"
+#include "drivers/calibrate/calibrator.hpp"
 #include "drivers/commands.hpp"
 #include "drivers/config/config_file.hpp"
 #include "drivers/config/option_flags.hpp"
@@ -23,19 +23,12 @@
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
 #include "kernel/effects/effects.hpp"
+#include "verification/vesicles/calibration_data.hpp"
 
 namespace traceraft {
 namespace {
 
 namespace fs = std::filesystem;
-
-// D is looked for up to this multiple of the model's, and runs go on as long; how small it may be
-// costs nothing.
-constexpr double kFastest = 4, kSlowest = 100;
-// Steps in ln of the designs, each around what the one before finds: a smaller one follows where
-// that lies within the design, the same size again where it does not.
-constexpr double kSteps[] = {0.5, 0.25, 0.1};
-constexpr int kMostRounds = 6;
 
 struct CalibrateRequest {
   GivenValues flags;
@@ -58,109 +51,6 @@ std::vector<std::string> costly_parameters(const std::string& text) {
   names.erase(mobility);
   return names;
 }
-
-// Up to the latest measurement if D were as large as it may be.
-double end_of_runs(const MeasuredVesicles& data) {
-  return kFastest * looks(data).end;
-}
-
-class Calibrator {
- public:
-  Calibrator(const CalibrateRequest& request, const MeasuredVesicles& data,
-             const Configuration& model, fs::path out)
-      : request_(request),
-        data_(data),
-        model_(model),
-        out_(std::move(out)),
-        names_(costly_parameters(request.parameters)) {}
-
-  // Rounds of simulations and a fit after each. False if it was stopped.
-  bool run() {
-    std::vector<double> centre;
-    for (const double value : values_of(model_, names_)) centre.push_back(std::log(value));
-    const double seconds = model_.units().seconds_per_unit();
-    const TimeUnit unit{seconds, {seconds / kFastest, seconds * kSlowest}};
-    const double* step = std::begin(kSteps);
-    for (int round = 0; round < kMostRounds && step != std::end(kSteps); ++round) {
-      const std::vector<double> design = within_range(centre, *step);
-      if (!add_points(design_around(design, *step), round + 1)) return false;
-      if (centre.empty()) break;
-      centre = most_probable(data_, sought(), points_, unit);
-      double moved = 0;
-      for (std::size_t i = 0; i < centre.size(); ++i)
-        moved = std::max(moved, std::fabs(centre[i] - design[i]));
-      if (moved <= *step) ++step;
-    }
-    result_ = calibrate(data_, sought(), points_, unit);
-    if (!centre.empty() && step != std::end(kSteps)) mark_unconverged(result_);
-    return true;
-  }
-
-  const Calibration& result() const { return result_; }
-  const std::vector<CalibrationPoint>& points() const { return points_; }
-  const std::vector<std::string>& names() const { return names_; }
-
- private:
-  std::vector<SoughtParameter> sought() const {
-    std::vector<SoughtParameter> all;
-    for (const std::string& name : names_) all.push_back({name, range_of(model_, name)});
-    return all;
-  }
-  // Moved so that all of the design can be run.
-  std::vector<double> within_range(std::vector<double> centre, double step) const {
-    for (std::size_t i = 0; i < centre.size(); ++i) {
-      const Interval range = range_of(model_, names_[i]);
-      const double low = std::log(range.low), high = std::log(range.high);
-      centre[i] =
-          high - low > 2 * step ? std::clamp(centre[i], low + step, high - step) : (low + high) / 2;
-    }
-    return centre;
-  }
-  bool add_points(const std::vector<std::vector<double>>& design, int round) {
-    const double t_end = end_of_runs(data_);
-    for (std::size_t k = 0; k < design.size(); ++k) {
-      const std::vector<double>& ln = design[k];
-      std::vector<double> values;
-      std::string name = "point", words;
-      for (std::size_t i = 0; i < ln.size(); ++i) {
-        values.push_back(std::strtod(formatted("%.4g", std::exp(ln[i])).c_str(), nullptr));
-        name += "-" + format_number(values.back());
-        words += " " + names_[i] + " " + format_number(values.back());
-      }
-      if (!request_.quiet)
-        std::printf("simulations %zu of %zu%s: at%s\n", k + 1, design.size(),
-                    names_.empty() ? "" : formatted(" of round %d", round).c_str(),
-                    words.empty() ? " the model" : words.c_str());
-      const Configuration here = configuration_at(model_, names_, values, t_end);
-      PointEnd end =
-          run_point(out_ / "points" / name, here, {request_.runs, request_.jobs, request_.quiet});
-      if (end.stopped) return false;
-      for (const MemberFailure& failure : end.failures)
-        std::fprintf(stderr, "traceraft: the run of seed %llu at%s failed: %s\n",
-                     static_cast<unsigned long long>(failure.seed), words.c_str(),
-                     failure.why.c_str());
-      ends_.push_back(std::move(end));
-      points_.emplace_back();
-      for (const double value : values_of(here, names_))
-        points_.back().ln_parameters.push_back(std::log(value));
-    }
-    // Differences between points are known better if they are of the same seeds.
-    keep_common_seeds(ends_);
-    if (ends_.front().runs.size() < 2)
-      throw InputError("fewer than two seeds have finished at all points");
-    for (std::size_t k = 0; k < points_.size(); ++k) points_[k].runs = ends_[k].runs;
-    return true;
-  }
-
-  const CalibrateRequest& request_;
-  const MeasuredVesicles& data_;
-  const Configuration& model_;
-  fs::path out_;
-  std::vector<std::string> names_;
-  std::vector<PointEnd> ends_;
-  std::vector<CalibrationPoint> points_;  // of them
-  Calibration result_;
-};
 
 // The folder of a calibration, which holds what decides the simulations.
 constexpr char kIdentityFile[] = "calibration-model.toml";
@@ -241,7 +131,7 @@ int run_calibration(CalibrateRequest request) {
     request.parameters = request.ensemble.empty() ? "mobility,epsilon" : "mobility";
   (void)costly_parameters(request.parameters);
   const MeasuredVesicles data = read_dataset(request.data);
-  refuse_calibration(data);
+  (void)telling_vesicles(data);  // or refuses them
   if (!request.ensemble.empty()) return calibrate_ensemble(request, data);
   refuse_without_model(data, request.model, request.flags);
   const Configuration model(read_config_file(request.model, "--model"), request.flags);
@@ -253,7 +143,9 @@ int run_calibration(CalibrateRequest request) {
            "parameters " + request.parameters + ", " + std::to_string(request.runs) + " runs to " +
                format_number(end_of_runs(data)) + " s",
            model);
-  Calibrator calibrator(request, data, model, out);
+  const CalibratorRequest simulations{out, costly_parameters(request.parameters), request.runs,
+                                      request.jobs, request.quiet};
+  Calibrator calibrator(simulations, data, model);
   if (!calibrator.run()) {
     if (!request.quiet) std::printf("to go on, give the same command with --out %s\n", out.c_str());
     return kInterrupted;
@@ -262,7 +154,7 @@ int run_calibration(CalibrateRequest request) {
   const std::string bound =
       formatted("D is looked for between %.3g and %.3g cm^2/s: begin with another --diffusion.",
                 diffusion / kSlowest, diffusion * kFastest);
-  write_calibration(out, data, {model, calibrator.names(), calibrator.points(), bound},
+  write_calibration(out, data, {model, simulations.names, calibrator.points(), bound},
                     calibrator.result(), request.quiet);
   return kSuccess;
 }

@@ -14,6 +14,8 @@
 #include "drivers/output/text_table.hpp"
 #include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/text.hpp"
+#include "verification/vesicles/calibration_data.hpp"
+#include "verification/vesicles/differences.hpp"
 
 namespace traceraft {
 namespace {

@@ -155,7 +155,7 @@ int run_ensemble(const EnsembleRequest& request) {
   if (!request.array_job) return carry_out(request, folder, plan, configuration);
   const fs::path script = folder.path() / "array-job.sh";
   write_durably(script, array_job_script(folder, plan));
-  std::printf("submit it with: sbatch %s\n", script.c_str());
+  std::printf("submit it with: sbatch '%s'\n", script.c_str());
   return kSuccess;
 }
 

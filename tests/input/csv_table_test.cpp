@@ -27,6 +27,11 @@ class CsvTableTest : public ::testing::Test {
   }
 };
 
+TEST_F(CsvTableTest, SaysThatItReadsNoUtf16) {
+  using namespace std::string_literals;
+  EXPECT_NE(complaint("\xFF\xFEt\0,\0c\0\n\0"s).find("UTF-16"), std::string::npos);
+}
+
 TEST_F(CsvTableTest, ReadsWhatSpreadsheetsWrite) {
   const CsvTable table =
       read("\xEF\xBB\xBFtime, name\r\n1.5,\"a, \"\"b\"\"\"\r\n\r\n# a remark\r\n-2e3,\r\n");

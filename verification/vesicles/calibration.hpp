@@ -41,11 +41,6 @@ struct Calibration {
 // Of an estimate that the simulations do not surround nothing is determined.
 void mark_unconverged(Calibration& calibration);
 
-// Throws InputError for too few vesicles with rafts whose perimeter or number was measured.
-void refuse_calibration(const MeasuredVesicles& data);
-// Measurements without a raft, or of neither perimeter nor number: they are not used.
-int looks_that_tell_nothing(const MeasuredVesicles& data);
-
 // ln of the most probable parameters but the unit of time: near what calibrate finds, without
 // saying how certain it is.
 std::vector<double> most_probable(const MeasuredVesicles& data,
@@ -54,7 +49,7 @@ std::vector<double> most_probable(const MeasuredVesicles& data,
                                   const TimeUnit& unit);
 
 // The parameters of the measurements, with simulations in between the points emulated from these.
-// All points have as many runs. Throws InputError if they are too few, and as refuse_calibration.
+// All points have as many runs. Throws InputError if they are too few, and as telling_vesicles.
 Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtParameter>& sought,
                       const std::vector<CalibrationPoint>& points, const TimeUnit& unit);
 

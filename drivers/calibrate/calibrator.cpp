@@ -1,0 +1,100 @@
+#include "drivers/calibrate/calibrator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "kernel/core/error.hpp"
+#include "kernel/core/parameters.hpp"
+#include "kernel/core/text.hpp"
+
+namespace traceraft {
+namespace {
+
+// Steps in ln of the designs, each around what the one before finds: a smaller one follows where
+// that lies within the design, the same size again where it does not.
+constexpr double kSteps[] = {0.5, 0.25, 0.1};
+constexpr int kMostRounds = 6;
+
+}  // namespace
+
+double end_of_runs(const MeasuredVesicles& data) {
+  return kFastest * looks(data).end;
+}
+
+bool Calibrator::run() {
+  std::vector<double> centre;
+  for (const double value : values_of(model_, request_.names)) centre.push_back(std::log(value));
+  const double seconds = model_.units().seconds_per_unit();
+  const TimeUnit unit{seconds, {seconds / kFastest, seconds * kSlowest}};
+  const double* step = std::begin(kSteps);
+  for (int round = 0; round < kMostRounds && step != std::end(kSteps); ++round) {
+    const std::vector<double> design = within_range(centre, *step);
+    if (!add_points(design_around(design, *step), round + 1)) return false;
+    if (centre.empty()) break;
+    centre = most_probable(data_, sought(), points_, unit);
+    double moved = 0;
+    for (std::size_t i = 0; i < centre.size(); ++i)
+      moved = std::max(moved, std::fabs(centre[i] - design[i]));
+    if (moved <= *step) ++step;
+  }
+  result_ = calibrate(data_, sought(), points_, unit);
+  if (!centre.empty() && step != std::end(kSteps)) mark_unconverged(result_);
+  return true;
+}
+
+std::vector<SoughtParameter> Calibrator::sought() const {
+  std::vector<SoughtParameter> all;
+  for (const std::string& name : request_.names) all.push_back({name, range_of(model_, name)});
+  return all;
+}
+
+// Moved so that all of the design can be run.
+std::vector<double> Calibrator::within_range(std::vector<double> centre, double step) const {
+  for (std::size_t i = 0; i < centre.size(); ++i) {
+    const Interval range = range_of(model_, request_.names[i]);
+    const double low = std::log(range.low), high = std::log(range.high);
+    centre[i] =
+        high - low > 2 * step ? std::clamp(centre[i], low + step, high - step) : (low + high) / 2;
+  }
+  return centre;
+}
+
+bool Calibrator::add_points(const std::vector<std::vector<double>>& design, int round) {
+  const std::string of = request_.names.empty() ? "" : formatted(" of round %d", round);
+  for (std::size_t k = 0; k < design.size(); ++k)
+    if (!add_point(design[k], formatted("%zu of %zu", k + 1, design.size()) + of)) return false;
+  // Differences between points are known better if they are of the same seeds.
+  keep_common_seeds(ends_);
+  if (ends_.front().runs.size() < 2)
+    throw InputError("fewer than two seeds have finished at all points");
+  for (std::size_t k = 0; k < points_.size(); ++k) points_[k].runs = ends_[k].runs;
+  return true;
+}
+
+bool Calibrator::add_point(const std::vector<double>& ln, const std::string& number) {
+  std::vector<double> values;
+  std::string name = "point", words;
+  for (std::size_t i = 0; i < ln.size(); ++i) {
+    values.push_back(std::strtod(formatted("%.4g", std::exp(ln[i])).c_str(), nullptr));
+    name += "-" + format_number(values.back());
+    words += " " + request_.names[i] + " " + format_number(values.back());
+  }
+  if (!request_.quiet)
+    std::printf("simulations %s: at%s\n", number.c_str(),
+                words.empty() ? " the model" : words.c_str());
+  const Configuration here = configuration_at(model_, request_.names, values, end_of_runs(data_));
+  PointEnd end = run_point(request_.out / "points" / name, here,
+                           {request_.runs, request_.jobs, request_.quiet});
+  if (end.stopped) return false;
+  for (const MemberFailure& failure : end.failures)
+    std::fprintf(stderr, "traceraft: the run of seed %llu at%s failed: %s\n",
+                 static_cast<unsigned long long>(failure.seed), words.c_str(), failure.why.c_str());
+  ends_.push_back(std::move(end));
+  points_.emplace_back();
+  for (const double value : values_of(here, request_.names))
+    points_.back().ln_parameters.push_back(std::log(value));
+  return true;
+}
+
+}  // namespace traceraft

@@ -1,0 +1,53 @@
+// Rounds of simulations, each where the fit to those before asks for them.
+#pragma once
+
+#include <filesystem>
+
+#include "drivers/calibrate/calibration_points.hpp"
+#include "verification/vesicles/calibration.hpp"
+
+namespace traceraft {
+
+// D is looked for up to this multiple of the model's, and runs go on as long; how small it may be
+// costs nothing.
+inline constexpr double kFastest = 4, kSlowest = 100;
+
+// Of the simulations: up to the latest measurement if D were as large as it may be (s).
+double end_of_runs(const MeasuredVesicles& data);
+
+struct CalibratorRequest {
+  std::filesystem::path out;
+  std::vector<std::string> names;  // of the parameters that cost simulations
+  int runs, jobs;                  // of each choice; at a time
+  bool quiet;
+};
+
+class Calibrator {
+ public:
+  // What it is given must outlive it.
+  Calibrator(const CalibratorRequest& request, const MeasuredVesicles& data,
+             const Configuration& model)
+      : request_(request), data_(data), model_(model) {}
+
+  // Rounds of simulations and a fit after each. False if it was stopped. Throws InputError if too
+  // few runs have finished.
+  bool run();
+
+  const Calibration& result() const { return result_; }
+  const std::vector<CalibrationPoint>& points() const { return points_; }
+
+ private:
+  std::vector<SoughtParameter> sought() const;
+  std::vector<double> within_range(std::vector<double> centre, double step) const;
+  bool add_points(const std::vector<std::vector<double>>& design, int round);
+  bool add_point(const std::vector<double>& ln, const std::string& number);
+
+  const CalibratorRequest& request_;
+  const MeasuredVesicles& data_;
+  const Configuration& model_;
+  std::vector<PointEnd> ends_;
+  std::vector<CalibrationPoint> points_;  // of them
+  Calibration result_;
+};
+
+}  // namespace traceraft

@@ -1,0 +1,41 @@
+#include "verification/vesicles/calibration_data.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "kernel/core/error.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr std::size_t kLeastVesicles = 3;  // to know how they scatter
+
+bool tells(const Measurement& m) {
+  return m.of(Quantity::perimeter).value_or(0) > 0 || m.of(Quantity::rafts).value_or(0) > 0;
+}
+
+}  // namespace
+
+std::vector<int> telling_vesicles(const MeasuredVesicles& data) {
+  std::vector<int> result;
+  const auto vesicles = data.vesicles();
+  for (std::size_t k = 0; k < vesicles.size(); ++k) {
+    const auto begin = data.measurements.begin();
+    if (std::any_of(begin + static_cast<std::ptrdiff_t>(vesicles[k].first),
+                    begin + static_cast<std::ptrdiff_t>(vesicles[k].second), tells))
+      result.push_back(static_cast<int>(k));
+  }
+  if (result.size() < kLeastVesicles)
+    throw InputError(
+        "a calibration needs three vesicles at least, to know how they scatter, with rafts whose "
+        "perimeter or number was measured; there are " +
+        std::to_string(result.size()));
+  return result;
+}
+
+int looks_that_tell_nothing(const MeasuredVesicles& data) {
+  return static_cast<int>(std::count_if(data.measurements.begin(), data.measurements.end(),
+                                        [](const Measurement& m) { return !tells(m); }));
+}
+
+}  // namespace traceraft

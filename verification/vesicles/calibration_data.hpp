@@ -1,0 +1,16 @@
+// What of the measurements a calibration can use.
+#pragma once
+
+#include <vector>
+
+#include "verification/vesicles/measurements.hpp"
+
+namespace traceraft {
+
+// Numbers of the vesicles that show rafts whose perimeter or number was measured. Throws InputError
+// if they are fewer than three.
+std::vector<int> telling_vesicles(const MeasuredVesicles& data);
+// Measurements without a raft, or of neither perimeter nor number: they are not used.
+int looks_that_tell_nothing(const MeasuredVesicles& data);
+
+}  // namespace traceraft

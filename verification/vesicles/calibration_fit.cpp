@@ -1,0 +1,107 @@
+#include "verification/vesicles/calibration_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/core/error.hpp"
+#include "verification/measure/fit.hpp"
+#include "verification/vesicles/calibration_data.hpp"
+#include "verification/vesicles/local_regression.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr int kReplicates = 200;
+constexpr double kOvershoot = 0.5;  // of what was explored, beyond it
+// Of the points, where searches begin.
+constexpr std::size_t kStarts = 3;
+
+const std::vector<CalibrationPoint>& enough(const std::vector<CalibrationPoint>& points,
+                                            const std::vector<SoughtParameter>& sought) {
+  if (static_cast<int>(points.size()) < points_of_parabola(static_cast<int>(sought.size())))
+    throw InputError("a calibration needs more points");
+  return points;
+}
+
+std::vector<int> some_of(const std::vector<int>& vesicles, std::uint64_t replicate) {
+  std::vector<int> result;
+  for (const int k : resample(static_cast<int>(vesicles.size()), replicate, 31))
+    result.push_back(vesicles[k]);
+  return result;
+}
+
+// D alone, at each of the points.
+std::vector<JointFit> fit_points(const Evidence& evidence,
+                                 const std::vector<CalibrationPoint>& points,
+                                 const RunEmulator& runs) {
+  std::vector<JointFit> fits;
+  for (std::size_t k = 0; k < points.size(); ++k)
+    fits.push_back({points[k].ln_parameters, evidence.fit(runs.at_point(k))});
+  return fits;
+}
+
+std::vector<JointFit> best_of(std::vector<JointFit> fits) {
+  std::sort(fits.begin(), fits.end(),
+            [](const JointFit& a, const JointFit& b) { return a.time.deviance < b.time.deviance; });
+  fits.resize(std::min(fits.size(), kStarts));
+  return fits;
+}
+
+ScatterLaws scatter_of(const std::vector<CalibrationPoint>& points) {
+  std::vector<std::vector<History>> ensembles;
+  for (const CalibrationPoint& point : points) ensembles.push_back(point.runs);
+  return scatter_laws(ensembles);
+}
+
+}  // namespace
+
+Box explored(const std::vector<CalibrationPoint>& points,
+             const std::vector<SoughtParameter>& sought, double overshoot) {
+  Box box{points.front().ln_parameters, points.front().ln_parameters};
+  for (const CalibrationPoint& point : points)
+    for (std::size_t i = 0; i < box.lower.size(); ++i) {
+      box.lower[i] = std::min(box.lower[i], point.ln_parameters[i]);
+      box.upper[i] = std::max(box.upper[i], point.ln_parameters[i]);
+    }
+  for (std::size_t i = 0; i < box.lower.size(); ++i) {
+    const double more = overshoot * (box.upper[i] - box.lower[i]);
+    box.lower[i] = std::max(box.lower[i] - more, std::log(sought[i].allowed.low));
+    box.upper[i] = std::min(box.upper[i] + more, std::log(sought[i].allowed.high));
+  }
+  return box;
+}
+
+std::vector<double> estimates(const JointFit& fit) {
+  std::vector<double> ln{std::log(fit.time.seconds_per_unit)};
+  ln.insert(ln.end(), fit.ln_parameters.begin(), fit.ln_parameters.end());
+  return ln;
+}
+
+CalibrationFit::CalibrationFit(const MeasuredVesicles& data,
+                               const std::vector<SoughtParameter>& sought,
+                               const std::vector<CalibrationPoint>& points, const TimeUnit& unit)
+    : data_(data),
+      unit_(unit),
+      vesicles_(telling_vesicles(data)),
+      fractions_(data),
+      with_fractions_(std::any_of(sought.begin(), sought.end(),
+                                  [](const SoughtParameter& s) { return s.name == "fraction"; })),
+      count_(static_cast<int>(enough(points, sought).front().runs.size())),
+      box_(explored(points, sought, kOvershoot)),
+      runs_(points, scatter_of(points)),
+      at_points_(fit_points(evidence(vesicles_), points, runs_)),
+      found_(fit_jointly(evidence(vesicles_), runs_, box_, best_of(at_points_))) {}
+
+std::vector<std::vector<double>> CalibrationFit::replicates() const {
+  std::vector<std::vector<double>> all;
+  for (std::uint64_t r = 1; r <= kReplicates; ++r) {
+    const std::vector<int> some = some_of(vesicles_, r);
+    const RunEmulator others = runs_.with_runs(resample(count_, r, 32));
+    // From another point each time: what is flat is not to be taken for known.
+    all.push_back(
+        estimates(fit_jointly(evidence(some), others, box_, {at_points_[r % at_points_.size()]})));
+  }
+  return all;
+}
+
+}  // namespace traceraft

@@ -1,0 +1,44 @@
+// The parameters that fit measurements best, and how they would scatter if these were made again.
+#pragma once
+
+#include "verification/vesicles/calibration.hpp"
+#include "verification/vesicles/joint_fit.hpp"
+
+namespace traceraft {
+
+// Where there are points, and `overshoot` of that beyond, as far as it is allowed.
+Box explored(const std::vector<CalibrationPoint>& points,
+             const std::vector<SoughtParameter>& sought, double overshoot);
+
+// Of ln R²/D and the parameters.
+std::vector<double> estimates(const JointFit& fit);
+
+class CalibrationFit {
+ public:
+  // The data and the unit must outlive it. Throws InputError as calibrate.
+  CalibrationFit(const MeasuredVesicles& data, const std::vector<SoughtParameter>& sought,
+                 const std::vector<CalibrationPoint>& points, const TimeUnit& unit);
+
+  const std::vector<JointFit>& at_points() const { return at_points_; }
+  const JointFit& found() const { return found_; }
+  // Estimates of other vesicles and other runs of the same kind.
+  std::vector<std::vector<double>> replicates() const;
+
+ private:
+  Evidence evidence(const std::vector<int>& vesicles) const {
+    return {data_, vesicles, with_fractions_ ? &fractions_ : nullptr, unit_};
+  }
+
+  const MeasuredVesicles& data_;
+  const TimeUnit& unit_;
+  std::vector<int> vesicles_;
+  MeasuredFractions fractions_;
+  bool with_fractions_;
+  int count_;  // of the runs of each point
+  Box box_;
+  RunEmulator runs_;
+  std::vector<JointFit> at_points_;
+  JointFit found_;
+};
+
+}  // namespace traceraft
