@@ -6,6 +6,8 @@
 
 namespace traceraft {
 
+inline constexpr char kLockFile[] = ".lock";
+
 struct LockedError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -136,7 +136,7 @@ std::vector<History> best_runs(const CalibrationRuns& all, const Calibration& re
 
 // What is to be known before the numbers.
 std::vector<std::string> notes_on(const MeasuredVesicles& data, const CalibrationRuns& runs,
-                                  const Calibration& result) {
+                                  const std::vector<History>& best, const Calibration& result) {
   const std::vector<std::string>& names = runs.names;
   std::vector<std::string> notes;
   if (!result.converged)
@@ -158,16 +158,15 @@ std::vector<std::string> notes_on(const MeasuredVesicles& data, const Calibratio
     notes.push_back(
         "The intervals hold if the initial noise is as long as the model's; if it is not, the "
         "others take the blame. With noise-length among --parameters it is looked for, too.");
-  const SimulatedVesicle vesicle =
-      simulated_vesicle(runs.model.units().length(), best_runs(runs, result), data);
+  const SimulatedVesicle vesicle = simulated_vesicle(runs.model.units().length(), best, data);
   for (const std::string& note : differences(data, vesicle)) notes.push_back(note);
   return notes;
 }
 
 // The measurements in the runs that fit best.
 void add_fit(Page& page, const std::filesystem::path& folder, const MeasuredVesicles& data,
-             const CalibrationRuns& runs, const Calibration& result, Missing& missing) {
-  const EnsembleSummary summary = summarise(best_runs(runs, result));
+             const std::vector<History>& best, Missing& missing) {
+  const EnsembleSummary summary = summarise(best);
   for (const Quantity quantity : {Quantity::perimeter, Quantity::rafts}) {
     Chart chart = comparison_chart(data, summary, quantity);
     chart.title += ", of the simulations that fit best";
@@ -217,7 +216,8 @@ void write_calibration(const std::filesystem::path& folder, const MeasuredVesicl
   const std::vector<FoundLine> lines = findings_of(runs.model, result);
   const std::vector<Row> rows = rows_of(lines);
   const Configuration found = found_model(runs.model, runs.names, lines);
-  const std::vector<std::string> notes = notes_on(data, runs, result);
+  const std::vector<History> best = best_runs(runs, result);
+  const std::vector<std::string> notes = notes_on(data, runs, best, result);
   const std::vector<std::string> sentences = sentences_on(result);
   const Table table = points_table(runs, result);
   write_durably(folder / "calibration.csv", csv_text(table));
@@ -229,7 +229,7 @@ void write_calibration(const std::filesystem::path& folder, const MeasuredVesicl
   for (const auto* list : {&notes, &sentences})
     for (const std::string& sentence : *list) page.paragraph(sentence);
   Missing missing;
-  add_fit(page, folder, data, runs, result, missing);
+  add_fit(page, folder, data, best, missing);
   page.table(table_rows(table));
   add_deviances(page, folder, runs, result, missing);
   add_settings(page, found);

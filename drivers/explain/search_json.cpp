@@ -224,7 +224,6 @@ Json search_json(const SearchState& state) {
   return {{"more", state.more},
           {"noise", state.noise},
           {"finding", word_for(found.finding)},
-          {"equivalent", found.equivalent},
           {"rivals", rivals},
           {"base", json_of(found.base)},
           {"found", json_of(found.found)},
@@ -243,7 +242,6 @@ SearchState search_from(const Json& json, const CahnHilliardModel& base) {
   state.noise = json.at("noise").get<std::vector<std::vector<double>>>();
   Explanation& found = state.so_far;
   found.finding = finding_of(json.at("finding"));
-  found.equivalent = json.at("equivalent").get<std::vector<std::string>>();
   for (const Json& fit : json.at("rivals")) found.rivals.push_back(refit_of(fit));
   found.base = refit_of(json.at("base"));
   found.found = refit_of(json.at("found"));

@@ -217,11 +217,12 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
   for (const std::string& note : differences(data, vesicle)) words.push_back(note);
   for (const auto& members : found.classes)
     if (members.size() > 1) words.push_back("Alike in series: " + listed(members, ", ") + ".");
-  const std::vector<Row> scores = score_rows(model, found), exponent = exponent_rows(laws);
+  const std::vector<Row> offset = offset_rows(found), scores = score_rows(model, found),
+                         exponent = exponent_rows(laws);
 
   Page page("What series of vesicles say of the model");
   for (const std::string& line : words) page.paragraph(line);
-  page.table(offset_rows(found));
+  page.table(offset);
   page.table(scores);
   page.heading("Exponents");
   page.table(exponent);
@@ -238,7 +239,7 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
   std::printf("\n");
   for (const std::string& line : words) std::printf("%s\n", line.c_str());
   std::printf("\n");
-  print_rows(offset_rows(found));
+  print_rows(offset);
   std::printf("\n");
   print_rows(scores);
   std::printf("\n");

@@ -105,15 +105,11 @@ std::vector<std::string> not_looked_for(const Explanation& found) {
   return names;
 }
 
-bool is_named(const Explanation& found) {
-  return found.finding == Finding::named || found.finding == Finding::ambiguous;
-}
-
 Json verdict_json(const Explanation& found, const Units& base) {
   const std::string name = found.found.hypothesis.name();
   return {{"verdict", word_for(found.finding)},
           {"effect", is_named(found) ? Json(name) : Json()},
-          {"class", is_named(found) ? Json(found.equivalent) : Json::array()},
+          {"class", class_of(found)},
           {"closest", found.finding == Finding::unnamed && !name.empty() ? Json(name) : Json()},
           {"parameters", parameters_json(found.found, base)},
           {"rivals", rivals_json(found, base)},
@@ -158,8 +154,7 @@ std::string verdict_sentence(const Explanation& found) {
       return "The model lacks " + name + ": " + in_words(found.found.hypothesis) + ".";
     case Finding::ambiguous: {
       std::string others;
-      for (std::size_t k = 1; k < found.equivalent.size(); ++k)
-        others += ", or " + found.equivalent[k];
+      for (const Refit& fit : found.rivals) others += ", or " + fit.hypothesis.name();
       return "The model lacks " + name + others +
              ": these data do not tell them apart. The first of them explains most: " +
              in_words(found.found.hypothesis) + ".";

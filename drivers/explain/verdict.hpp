@@ -6,9 +6,6 @@
 
 namespace traceraft {
 
-// Did the search find effects that belong to the model?
-bool is_named(const Explanation& found);
-
 // Effects of the kernel that were no candidates: left out, or not to be seen in such data.
 std::vector<std::string> not_looked_for(const Explanation& found);
 

@@ -97,11 +97,11 @@ Rows parse(const std::filesystem::path& path, std::string text) {
 }  // namespace
 
 CsvTable CsvTable::read(const std::filesystem::path& path) {
-  const std::string text = read_file(path, kLargestTable);
+  std::string text = read_file(path, kLargestTable);
   if (text.find('\0') != std::string::npos)
     throw InputError(path.string() +
                      " is no plain text, or in UTF-16; save the table as CSV in UTF-8");
-  Rows rows = parse(path, text);
+  Rows rows = parse(path, std::move(text));
   CsvTable table;
   table.path_ = path;
   if (rows.rows.empty()) throw InputError(path.string() + ": the file is empty");

@@ -46,7 +46,7 @@ void refuse_foreign_folder(const fs::path& path, const std::string& own) {
   if (!fs::is_directory(path)) throw InputError("--out: " + path.string() + " is no folder");
   if (fs::exists(path / own)) return;
   for (const auto& entry : fs::directory_iterator(path))
-    if (entry.path().filename() != ".lock")
+    if (entry.path().filename() != kLockFile)
       throw InputError("--out: " + path.string() + " holds " + entry.path().filename().string() +
                        ", which is nothing of this command; choose another folder");
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <functional>
 #include <set>
 
 #include "drivers/output/text_table.hpp"
@@ -43,11 +42,11 @@ std::vector<Cell> row_of(const FieldSeries& vesicle, const FieldSnapshot& snapsh
           usual_deviation(snapshot.deviation)};
 }
 
-bool any_point(const FieldDataset& data, const std::function<bool(double radius)>& what) {
+bool has_far_points(const FieldDataset& data) {
   for (const FieldSeries& vesicle : data.vesicles)
     for (const FieldSnapshot& snapshot : vesicle.snapshots)
       for (const Point& x : snapshot.points)
-        if (what(x.norm())) return true;
+        if (x.norm() < 0.5 || x.norm() > 2) return true;
   return false;
 }
 
@@ -70,7 +69,7 @@ void print_fields(const FieldDataset& data) {
     for (const FieldSnapshot& snapshot : vesicle.snapshots)
       table.rows.push_back(row_of(vesicle, snapshot));
   print_rows(table_rows(table));
-  if (any_point(data, [](double r) { return r < 0.5 || r > 2; }))
+  if (has_far_points(data))
     std::printf(
         "NOTE: some points are far from a sphere of that radius: is the unit of length "
         "right, and the centre at 0?\n");

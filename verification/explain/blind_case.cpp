@@ -1,6 +1,6 @@
 #include "verification/explain/blind_case.hpp"
 
-#include <cmath>
+#include <optional>
 
 #include "kernel/core/random.hpp"
 #include "verification/explain/blind_looks.hpp"
@@ -34,13 +34,12 @@ class Vesicle {
   }
 
   std::vector<FieldSnapshot> measure(const std::vector<Vec>& states, double noise) const {
-    const Blur blur(*space_, request_.blur);
+    std::optional<Blur> blur;
+    if (request_.blur > 0) blur.emplace(*space_, request_.blur);
     std::vector<FieldSnapshot> snapshots;
-    for (std::size_t k = 0; k < states.size(); ++k) {
-      const Vec& c = states[k];
+    for (std::size_t k = 0; k < states.size(); ++k)
       snapshots.push_back(
-          measure(request_.blur > 0 ? blur.blurred(c) : c, static_cast<int>(k), noise));
-    }
+          measure(blur ? blur->blurred(states[k]) : states[k], static_cast<int>(k), noise));
     return snapshots;
   }
 

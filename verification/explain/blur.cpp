@@ -21,9 +21,8 @@ struct Blur::Step {
 Blur::Blur(const SurfaceSpace& space, double width) {
   auto step = std::make_unique<Step>();
   step->mass = as_eigen(space, space.stabilised_mass);
-  const EigenMatrix stiffness =
-      as_eigen(space, combine(1, space.stiffness, 1 / space.h(), space.normal));
-  step->implicit.compute(EigenMatrix(step->mass + width * width / (2 * kSteps) * stiffness));
+  step->implicit.compute(
+      EigenMatrix(step->mass + width * width / (2 * kSteps) * stiffness_along_normals(space)));
   if (step->implicit.info() != Eigen::Success)
     throw std::runtime_error("a field cannot be blurred that much");
   step_ = std::move(step);

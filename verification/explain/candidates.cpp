@@ -116,6 +116,11 @@ std::string Hypothesis::name() const {
   return text;
 }
 
+bool Hypothesis::has(const std::string& effect) const {
+  return std::any_of(parts.begin(), parts.end(),
+                     [&](const Part& part) { return part.candidate.effect == effect; });
+}
+
 bool Hypothesis::contains(const Hypothesis& other) const {
   return std::equal(parts.begin(), parts.end(), other.parts.begin(), other.parts.end(),
                     [](const Part& own, const Part& others) {

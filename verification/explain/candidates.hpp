@@ -52,6 +52,7 @@ struct Hypothesis {
   std::vector<EffectTerm> terms() const;
   Eigen::Index coefficients() const;
   std::string name() const;  // of its effects
+  bool has(const std::string& effect) const;
   // Is the other one this one at a limit of its coefficients?
   bool contains(const Hypothesis& other) const;
 };

@@ -97,14 +97,13 @@ class Search {
       const std::vector<Refit> fits = refit_all(trials);
       const Refit* best = move < kMostMoves ? better_one(fits) : nullptr;
       if (best == nullptr) {
-        add_equivalent(fits);
+        add_rivals(fits);
         break;
       }
       set_found(*best);
-      result_.equivalent = {best->hypothesis.name()};
       result_.rivals.clear();
     }
-    result_.finding = result_.equivalent.size() > 1 ? Finding::ambiguous : Finding::named;
+    result_.finding = result_.rivals.empty() ? Finding::named : Finding::ambiguous;
     screen_the_rest();
   }
 
@@ -125,16 +124,17 @@ class Search {
 
   double mesh_error() const { return result_.rounds.back().screening.mesh_error; }
 
-  void add_equivalent(const std::vector<Refit>& fits) {
-    std::vector<std::string>& names = result_.equivalent;
+  void add_rivals(const std::vector<Refit>& fits) {
     const double limit = telling(values(), mesh_error());
     for (const Refit& fit : fits)
       if (fit.failure.empty() && explains_as_well(fit, result_.found, values(), limit) &&
           fit.hypothesis.parts.size() == model_.hypothesis.parts.size() &&
-          std::find(names.begin(), names.end(), fit.hypothesis.name()) == names.end()) {
-        names.push_back(fit.hypothesis.name());
+          !is_among(class_of(result_), fit))
         result_.rivals.push_back(fit);
-      }
+  }
+
+  static bool is_among(const std::vector<std::string>& names, const Refit& fit) {
+    return std::find(names.begin(), names.end(), fit.hypothesis.name()) != names.end();
   }
 
   FilterResult first_pass() {
@@ -240,12 +240,10 @@ class Search {
       return false;
     }
     result_.finding = judgement.finding;
-    result_.equivalent = judgement.equivalent;
     result_.rivals.clear();
-    for (std::size_t k = 1; k < judgement.equivalent.size(); ++k)
-      result_.rivals.push_back(*std::find_if(
-          round.refits.begin(), round.refits.end(),
-          [&](const Refit& fit) { return fit.hypothesis.name() == judgement.equivalent[k]; }));
+    for (std::size_t k = 1; k < round.refits.size(); ++k)
+      if (is_among(judgement.equivalent, round.refits[k]))
+        result_.rivals.push_back(round.refits[k]);
     set_found(round.refits.front());
     improve();
     return true;
@@ -263,12 +261,9 @@ class Search {
     for (const FilterProblem& data : data_) result_.noises.push_back(data.noise);
     result_.base_gap = result_.base.gap;
     result_.found_gap = result_.found.gap;
-    const auto& parts = result_.found.hypothesis.parts;
     const auto placebo = std::find_if(refits.begin(), refits.end(), [&](const Refit& fit) {
       return !is_no_other(fit, refits.front()) &&
-             std::none_of(parts.begin(), parts.end(), [&](const auto& part) {
-               return part.candidate.effect == last_effect(fit.hypothesis);
-             });
+             !result_.found.hypothesis.has(last_effect(fit.hypothesis));
     });
     if (placebo != refits.end()) result_.placebo_gap = placebo->gap;
     result_.floor = result_.found.expected;
@@ -285,6 +280,17 @@ class Search {
 };
 
 }  // namespace
+
+bool is_named(const Explanation& found) {
+  return found.finding == Finding::named || found.finding == Finding::ambiguous;
+}
+
+std::vector<std::string> class_of(const Explanation& found) {
+  if (!is_named(found)) return {};
+  std::vector<std::string> names{found.found.hypothesis.name()};
+  for (const Refit& fit : found.rivals) names.push_back(fit.hypothesis.name());
+  return names;
+}
 
 FilterProblems problems_of(const std::vector<FieldSeries>& series, const ExplainRequest& request) {
   return make_filter_problems(series, *request.surface, request.base, request.cells,

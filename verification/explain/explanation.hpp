@@ -61,8 +61,7 @@ struct Explanation {
   double noise = 0;                         // standard deviation of the values that count
   std::vector<std::vector<double>> noises;  // of each vesicle's snapshots, in units of deviations
   Refit base, found;                        // with the pace refitted; found: the base if none was
-  std::vector<std::string> equivalent;      // hypotheses that explain the data as well, found first
-  std::vector<Refit> rivals;                // the others of them
+  std::vector<Refit> rivals;                // other hypotheses that explain the data as well
   std::vector<Round> rounds;
   // Measured minus forecast. Placebo: the best of the first round that was not found. Floor:
   // what is to be expected of the found model if nothing else is missing.
@@ -78,6 +77,12 @@ struct Explanation {
   SurfaceMesh map_mesh;                     // Γ_h of the model's mesh
   DisagreementMaps base_maps, found_maps;   // at its points
 };
+
+// Did the search find effects that belong to the model?
+bool is_named(const Explanation& found);
+// Names of the hypotheses that explain the data as well as each other, the found one first; none if
+// nothing is named.
+std::vector<std::string> class_of(const Explanation& found);
 
 // Between two rounds: all that the search goes on from.
 struct SearchState {

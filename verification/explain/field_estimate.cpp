@@ -24,9 +24,7 @@ class FieldRegression {
   FieldRegression(const SurfaceSpace& space, const NoisyValues& measured)
       : mass_(as_eigen(space, space.stabilised_mass)),
         trace_mass_(as_eigen(space, space.mass)),
-        // The largest weight of S that keeps the order: fields that are constant along normals,
-        // since nothing is measured off the surface.
-        stiffness_(as_eigen(space, combine(1, space.stiffness, 1 / space.h(), space.normal))),
+        stiffness_(stiffness_along_normals(space)),
         count_(measured.values.size()) {
     const Vec weight = measured.deviation.cwiseAbs2().cwiseInverse();
     mean_ = measured.values.dot(weight) / weight.sum();

@@ -13,6 +13,10 @@ bool identifiable(const Screening& screening, double usual_change) {
       [&](const CandidateScore& score) { return kSeen * score.resolution <= usual_change; });
 }
 
+bool has_gap(const Screening& screening, double false_alarms) {
+  return screening.gap_p <= kGapLevel * false_alarms;
+}
+
 }  // namespace
 
 std::string word_for(Finding finding) {
@@ -64,15 +68,15 @@ bool explains_as_well(const Refit& fit, const Refit& best, double values, double
 }
 
 Finding without_name(const Screening& screening, double false_alarms) {
-  return screening.gap_p <= kGapLevel * false_alarms ? Finding::unnamed : Finding::not_identifiable;
+  return has_gap(screening, false_alarms) ? Finding::unnamed : Finding::not_identifiable;
 }
 
 Judgement judge(const Round& round, double values, double false_alarms, double usual_change) {
   const bool first = round.known.hypothesis.parts.empty();
   const bool quiet = round.screening.p > false_alarms;
   // What follows if nothing is added.
-  const Finding rest = round.screening.gap_p <= kGapLevel * false_alarms ? Finding::unnamed
-                       : !first                                          ? Finding::named
+  const Finding rest = has_gap(round.screening, false_alarms) ? Finding::unnamed
+                       : !first                               ? Finding::named
                        : quiet && identifiable(round.screening, usual_change)
                            ? Finding::none
                            : Finding::not_identifiable;

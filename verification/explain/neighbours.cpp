@@ -9,11 +9,6 @@ namespace {
 // Of the deviance that an effect gained when it was taken, what one that came near it gained.
 constexpr double kNear = 0.5;
 
-bool has(const Hypothesis& hypothesis, const std::string& effect) {
-  return std::any_of(hypothesis.parts.begin(), hypothesis.parts.end(),
-                     [&](const auto& part) { return part.candidate.effect == effect; });
-}
-
 // What was refitted in the round in which this effect was.
 std::vector<Hypothesis::Part> rivals(const std::string& effect, const std::vector<Round>& rounds) {
   std::vector<Hypothesis::Part> result;
@@ -39,9 +34,8 @@ std::vector<Hypothesis> neighbours(const Refit& fit, const std::vector<Round>& r
   std::vector<Hypothesis> result;
   const Hypothesis& here = fit.hypothesis;
   const auto may_be_taken = [&](const std::string& effect) {
-    return !has(here, effect) &&
-           std::any_of(allowed.begin(), allowed.end(),
-                       [&](const Candidate& c) { return c.effect == effect; });
+    return !here.has(effect) && std::any_of(allowed.begin(), allowed.end(),
+                                            [&](const Candidate& c) { return c.effect == effect; });
   };
   for (std::size_t k = 0; k < here.parts.size(); ++k) {
     const Candidate& own = here.parts[k].candidate;

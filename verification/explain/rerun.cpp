@@ -76,8 +76,7 @@ void run_again(const std::vector<FieldSeries>& series, const ExplainRequest& req
   }
   result.cells = other.cells;
   result.integrator = kOtherIntegrator;
-  const bool named = found.finding == Finding::named || found.finding == Finding::ambiguous;
-  if (named && result.refutes())
+  if (is_named(found) && result.refutes())
     found.finding = without_name(found.rounds.front().screening, found.false_alarms);
   found.rerun = result;
 }

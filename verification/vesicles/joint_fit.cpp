@@ -13,6 +13,12 @@ constexpr double kStep = 0.1;  // of the logarithms, at first
 constexpr double kTolerance = 1e-3;
 constexpr int kMostEvaluations = 300;
 
+TimeFit with_fractions(const Evidence& all, const RunStatistics& runs, TimeFit fit) {
+  if (all.fractions)
+    fit.deviance += all.fractions->deviance(all.sample, runs, fit.seconds_per_unit);
+  return fit;
+}
+
 }  // namespace
 
 MeasuredFractions::MeasuredFractions(const MeasuredVesicles& data)
@@ -35,13 +41,11 @@ double MeasuredFractions::deviance(const std::vector<int>& sample, const RunStat
 }
 
 TimeFit Evidence::fit(const RunStatistics& runs) const {
-  return fit(runs, fit_time(data, sample, runs, unit));
+  return with_fractions(*this, runs, fit_time(data, sample, runs, unit));
 }
 
 TimeFit Evidence::fit(const RunStatistics& runs, const TimeFit& near) const {
-  TimeFit fit = fit_time(data, sample, runs, unit, near);
-  if (fractions) fit.deviance += fractions->deviance(sample, runs, fit.seconds_per_unit);
-  return fit;
+  return with_fractions(*this, runs, fit_time(data, sample, runs, unit, near));
 }
 
 JointFit fit_jointly(const Evidence& evidence, const RunEmulator& runs, const Box& box,

@@ -134,7 +134,7 @@ ScatterLaws scatter_laws(const std::vector<std::vector<History>>& ensembles) {
   return {fitted_scatter(perimeter), fitted_scatter(rafts)};
 }
 
-RunCurves::RunCurves(const std::vector<History>& runs, std::vector<double> at)
+SampledRuns::SampledRuns(const std::vector<History>& runs, std::vector<double> at)
     : times(std::move(at)) {
   const auto rows = static_cast<Eigen::Index>(times.size());
   const auto columns = static_cast<Eigen::Index>(runs.size());
@@ -149,7 +149,7 @@ RunCurves::RunCurves(const std::vector<History>& runs, std::vector<double> at)
     }
 }
 
-RunStatistics::RunStatistics(const RunCurves& runs, const std::vector<int>& sample,
+RunStatistics::RunStatistics(const SampledRuns& runs, const std::vector<int>& sample,
                              const ScatterLaws& scatter)
     : grid_(runs.times), scatter_(scatter), of_mean_(1 + 1 / static_cast<double>(sample.size())) {
   const auto mean = [&](const Eigen::MatrixXd& curves) {

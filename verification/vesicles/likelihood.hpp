@@ -28,18 +28,19 @@ inline constexpr int kCurveTimes = 20;
 
 // Runs at times evenly spaced in ln t, in any unit: the logarithms of perimeter and number of
 // rafts, and the raft fraction; a row for each of the times, a column for each run.
-struct RunCurves {
+struct SampledRuns {
   std::vector<double> times;
   Eigen::MatrixXd perimeter, rafts, fraction;
 
-  RunCurves(const std::vector<History>& runs, std::vector<double> times);
+  SampledRuns(const std::vector<History>& runs, std::vector<double> times);
 };
 
 // Means of them over runs.
 class RunStatistics {
  public:
   // At least two runs. `sample`: which ones, with repetition.
-  RunStatistics(const RunCurves& runs, const std::vector<int>& sample, const ScatterLaws& scatter);
+  RunStatistics(const SampledRuns& runs, const std::vector<int>& sample,
+                const ScatterLaws& scatter);
   // Σ weights[k] × means of the k-th, all of as many runs at the same times.
   static RunStatistics combined(const std::vector<RunStatistics>& all,
                                 const std::vector<double>& weights);

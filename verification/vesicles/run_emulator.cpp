@@ -11,7 +11,7 @@ constexpr double kWidth = 0.5;
 }  // namespace
 
 RunEmulator::RunEmulator(const std::vector<CalibrationPoint>& points, const ScatterLaws& scatter)
-    : scatter_(scatter), curves_(std::make_shared<std::vector<RunCurves>>()) {
+    : scatter_(scatter), curves_(std::make_shared<std::vector<SampledRuns>>()) {
   std::vector<History> all;
   for (const CalibrationPoint& point : points)
     all.insert(all.end(), point.runs.begin(), point.runs.end());
@@ -26,7 +26,8 @@ RunEmulator::RunEmulator(const std::vector<CalibrationPoint>& points, const Scat
 RunEmulator RunEmulator::with_runs(const std::vector<int>& sample) const {
   RunEmulator result = *this;
   result.at_points_.clear();
-  for (const RunCurves& curves : *curves_) result.at_points_.emplace_back(curves, sample, scatter_);
+  for (const SampledRuns& curves : *curves_)
+    result.at_points_.emplace_back(curves, sample, scatter_);
   return result;
 }
 

@@ -30,7 +30,7 @@ class RunEmulator {
  private:
   ScatterLaws scatter_;
   std::vector<std::vector<double>> ln_parameters_;
-  std::shared_ptr<std::vector<RunCurves>> curves_;
+  std::shared_ptr<std::vector<SampledRuns>> curves_;
   std::vector<RunStatistics> at_points_;
 };
 
