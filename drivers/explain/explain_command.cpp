@@ -13,7 +13,9 @@
 #include "drivers/explain/explain_run.hpp"
 #include "drivers/explain/search_file.hpp"
 #include "drivers/explain/series_report.hpp"
+#include "drivers/explain/series_verdict.hpp"
 #include "drivers/input/dataset.hpp"
+#include "drivers/input/measured_folder.hpp"
 #include "drivers/input/model_of_data.hpp"
 #include "drivers/numerical_failure.hpp"
 #include "drivers/output/status_line.hpp"
@@ -71,14 +73,16 @@ void explain_field_data(const ExplainCommand& command, ExplainSetup& setup, cons
 
 struct SeriesSetup {
   MeasuredVesicles data;
+  GivenValues given;  // the model, as its file and the flags say
   Configuration model;
 };
 
 SeriesSetup read_series_job(const ExplainCommand& command) {
   MeasuredVesicles data = read_dataset(command.series);
   refuse_without_model(data, command.job.model, command.job.flags);
-  SeriesSetup setup{std::move(data),
-                    {read_config_file(command.job.model, "--model"), command.job.flags}};
+  GivenValues given = command.job.flags;
+  given.merge(read_config_file(command.job.model, "--model"));
+  SeriesSetup setup{std::move(data), given, {given, {}}};
   refuse_series(setup.data, setup.model);
   return setup;
 }
@@ -86,7 +90,7 @@ SeriesSetup read_series_job(const ExplainCommand& command) {
 // False if it was stopped.
 bool explain_series_data(const ExplainCommand& command, const SeriesSetup& setup,
                          const fs::path& out) {
-  const auto& [data, model] = setup;
+  const auto& [data, given, model] = setup;
   const SeriesEnsemblesRequest request{looks(data),         command.runs,
                                        command.jobs,        command.job.processors(),
                                        command.job.without, command.quiet};
@@ -96,13 +100,26 @@ bool explain_series_data(const ExplainCommand& command, const SeriesSetup& setup
   search.replicates = command.job.replicates;
   const SeriesExplanation found =
       explain_series(data, ensembles.base, ensembles.candidates, search);
+  // Fields say more: the verdict is theirs if there are any.
+  if (command.job.data.empty()) write_series_verdict(out, given, ensembles, found, search);
   write_series_explanation(out, data, model, ensembles, found, command.quiet);
   return true;
 }
 
-int explain(const ExplainCommand& command) {
+// A folder for --data may hold fields, series or both.
+void find_series(ExplainCommand& command) {
+  const std::string folder = command.job.data;
+  if (folder.empty() || !holds_series(folder)) return;
+  if (!command.series.empty())
+    throw InputError("--series: " + folder + " of --data holds series as well; give one of them");
+  command.series = folder;
+  if (!holds_fields(folder)) command.job.data.clear();
+}
+
+int explain(ExplainCommand command) {
   if (command.job.data.empty() && command.series.empty())
     throw InputError("--data or --series: say which measurements to explain");
+  find_series(command);
   for (const std::string& effect : command.job.without) (void)effects().find(effect);
   std::optional<ExplainSetup> fields;
   std::optional<SeriesSetup> series;
@@ -129,9 +146,11 @@ int explain(const ExplainCommand& command) {
 Action define_explain(CLI::App& app) {
   const auto command = std::make_shared<ExplainCommand>();
   app.add_option("--data", command->job.data,
-                 "folder of measured fields (dataset.toml, snapshot_001.csv, ...)");
+                 "folder of measurements: dataset.toml with fields (snapshot_001.csv, ...), series "
+                 "(measurements.csv) or both");
   app.add_option("--series", command->series,
-                 "folder of series of vesicles (dataset.toml, measurements.csv)");
+                 "folder of series of vesicles, if it is another one (dataset.toml, "
+                 "measurements.csv)");
   app.add_option("--runs", command->runs, "for --series: seeds of the model, and of each effect")
       ->check(CLI::Range(3, 1000))
       ->capture_default_str();

@@ -111,7 +111,7 @@ void refuse_series(const MeasuredVesicles& data, const Configuration& model) {
   refuse_without_noise(model);
   refuse_vesicles(data);
   if (const Window window = looks(data); !(window.begin < window.end))
-    throw InputError("--series: looks at two times at least are needed");
+    throw InputError("series: looks at two times at least are needed");
 }
 
 SeriesEnsembles run_series_ensembles(const fs::path& folder, const Configuration& model,
@@ -136,13 +136,15 @@ SeriesEnsembles run_series_ensembles(const fs::path& folder, const Configuration
     if (result.stopped) return result;
     PointEnd end = simulate(term.effect, effect_text({term}, units));
     result.stopped = end.stopped;
-    if (!end.failures.empty())
+    if (!end.failures.empty()) {
       result.notes.push_back(term.effect + " was left out, as the run of seed " +
                              std::to_string(end.failures.front().seed) +
                              " failed: " + end.failures.front().why);
-    else
-      result.candidates.push_back({term.effect, term.values.front(),
-                                   find_candidate(term.effect)->two_sided, std::move(end.runs)});
+      continue;
+    }
+    result.candidates.push_back({term.effect, term.values.front(),
+                                 find_candidate(term.effect)->two_sided, std::move(end.runs)});
+    result.terms.push_back(term);
   }
   return result;
 }

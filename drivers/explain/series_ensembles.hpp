@@ -22,6 +22,7 @@ struct SeriesEnsembles {
   bool stopped = false;  // there is more to do
   std::vector<History> base;
   std::vector<SeriesCandidate> candidates;
+  std::vector<EffectTerm> terms;   // of the candidates
   std::vector<std::string> notes;  // effects whose runs failed
 };
 

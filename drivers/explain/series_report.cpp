@@ -4,15 +4,13 @@
 #include <cmath>
 #include <cstdio>
 
+#include "drivers/explain/series_verdict.hpp"
 #include "drivers/output/chart.hpp"
-#include "drivers/output/json_file.hpp"
 #include "drivers/output/page.hpp"
 #include "drivers/output/text_table.hpp"
 #include "drivers/version.hpp"
 #include "kernel/core/text.hpp"
-#include "kernel/effects/effects.hpp"
 #include "verification/vesicles/differences.hpp"
-#include "verification/vesicles/power_law.hpp"
 
 namespace traceraft {
 namespace {
@@ -71,27 +69,11 @@ std::string advice(const SeriesTie& tie) {
          "; one vesicle with fields at 8 times tells more (traceraft explain --data).";
 }
 
-// With the D that the series say.
-Units found_units(const Configuration& model, const SeriesExplanation& found) {
-  return model.units().with_seconds_per_unit(std::exp(found.base.ln_unit));
-}
-
-// Of strengths, in units of R and R²/D as the series found it.
-struct Scale {
-  std::string parameter, unit;
-  double factor;
-};
-Scale scale_of(const std::string& effect, const Configuration& model,
-               const SeriesExplanation& found) {
-  const ParameterSpec& spec = effects().find(effect).parameters.front();
-  return {spec.name, spec.unit, 1 / to_model_units(spec.unit, found_units(model, found))};
-}
-
 std::vector<Row> score_rows(const Configuration& model, const SeriesExplanation& found) {
   std::vector<Row> rows{{"effect", "2 ln likelihood ratio", "of noise alone", "p", "parameter",
                          "at least", "at most", "unit", "vesicles needed", "shown by"}};
   for (const SeriesScore& s : found.scores) {
-    const Scale scale = scale_of(s.effect, model, found);
+    const StrengthScale scale = scale_of(s, model);
     rows.push_back({s.effect, formatted("%.1f", s.gain), formatted("%.1f", s.null_mean),
                     formatted("%.3f", s.p), scale.parameter,
                     s.bounded ? formatted("%.3g", scale.factor * s.low) : "",
@@ -110,11 +92,6 @@ SeriesEnsembles in_seconds(SeriesEnsembles ensembles, double seconds_per_unit) {
   for (SeriesCandidate& candidate : ensembles.candidates) convert(candidate.runs);
   return ensembles;
 }
-
-struct Exponent {
-  std::string model;
-  FittedLaw law;
-};
 
 // Of the perimeter, over the times that were looked at.
 std::vector<Exponent> exponents(const MeasuredVesicles& data, const SeriesEnsembles& ensembles) {
@@ -137,43 +114,6 @@ std::vector<Row> exponent_rows(const std::vector<Exponent>& laws) {
     rows.push_back({e.model, formatted("%.3f", e.law.law.b),
                     formatted("%.3f to %.3f", e.law.b.low, e.law.b.high)});
   return rows;
-}
-
-Json series_json(const Configuration& model, const SeriesExplanation& found,
-                 const std::vector<Exponent>& laws) {
-  Json scores = Json::array(), ties = Json::array(), exponents = Json::array();
-  for (const SeriesScore& s : found.scores) {
-    const Scale scale = scale_of(s.effect, model, found);
-    scores.push_back({{"effect", s.effect},
-                      {"score", s.gain},
-                      {"null_mean", s.null_mean},
-                      {"p", s.p},
-                      {"parameter", scale.parameter},
-                      {"low", s.bounded ? Json(scale.factor * s.low) : Json()},
-                      {"high", s.bounded ? Json(scale.factor * s.high) : Json()},
-                      {"unit", scale.unit},
-                      {"vesicles_needed", s.vesicles},
-                      {"shown_by", name_of(s.telling).id}});
-  }
-  for (const SeriesTie& tie : found.ties)
-    ties.push_back({{"effect", tie.effect},
-                    {"other", tie.other},
-                    {"vesicles_needed", tie.vesicles},
-                    {"shown_by", name_of(tie.telling).id}});
-  for (const Exponent& e : laws)
-    exponents.push_back(
-        {{"model", e.model}, {"b", e.law.law.b}, {"interval_95", {e.law.b.low, e.law.b.high}}});
-  return {{"verdict", word_for(found.finding)},
-          {"class", found.named},
-          {"p", found.p},
-          {"trend_p", found.trend_p},
-          {"vesicles", found.vesicles},
-          {"looks", found.looks},
-          {"diffusion", {{"value", found_units(model, found).diffusion_cm2_s}, {"unit", "cm^2/s"}}},
-          {"scores", scores},
-          {"classes", found.classes},
-          {"ties", ties},
-          {"exponents", exponents}};
 }
 
 Chart curve_chart(Quantity quantity, const MeasuredVesicles& data, const SeriesEnsembles& ensembles,

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "backends/posix/durable_file.hpp"
-#include "drivers/input/field_dataset.hpp"
+#include "drivers/input/measured_folder.hpp"
 #include "drivers/input/measured_units.hpp"
 #include "drivers/input/measurement_rows.hpp"
 #include "drivers/input/toml_table.hpp"
@@ -35,12 +35,9 @@ struct Dataset {
 };
 
 Dataset read_description(const fs::path& folder) {
-  if (holds_fields(folder))
-    throw InputError(folder.string() + " holds measured fields, which are for --data of explain");
-  const TomlTable toml =
-      TomlTable::read(folder / "dataset.toml",
-                      {"name", "kind", "origin", "composition", "temperature", "time_zero",
-                       "time_offset", "length_unit", "time_unit", "radius", "sigma", "table"});
+  if (holds_fields(folder) && !holds_series(folder))
+    throw InputError(folder.string() + " holds measured fields, not series of vesicles");
+  const TomlTable toml = read_series_description(folder);
   Dataset d;
   d.data.name = toml.text("name");
   d.data.synthetic = is_synthetic(toml);
@@ -52,9 +49,7 @@ Dataset read_description(const fs::path& folder) {
   if (toml.has("temperature")) d.data.celsius = celsius_of(toml);
   d.units.length = length_factor(toml, "length_unit");
   d.units.time = time_factor(toml, "time_unit");
-  d.units.time_offset = toml.number_or("time_offset", 0);
-  if (!std::isfinite(d.units.time_offset))
-    throw InputError(toml.where("time_offset") + ": a finite number is needed here");
+  d.units.time_offset = time_offset(toml);
   if (toml.has("radius"))
     d.units.radius = checked_radius(toml.number("radius") * d.units.length, toml.where("radius"));
   const std::string sigma = toml.text_or("sigma", "standard deviation");

@@ -69,27 +69,17 @@ FieldSnapshot read_snapshot(const fs::path& path, double time, double to_radius)
 
 }  // namespace
 
-std::string snapshot_file(std::size_t number) {
-  return formatted("snapshot_%03zu.csv", number);
-}
-
-bool holds_fields(const fs::path& folder) {
-  return fs::exists(folder / snapshot_file(1));
-}
-
 FieldDataset read_field_dataset(const fs::path& folder) {
-  if (!holds_fields(folder) && fs::exists(folder / "measurements.csv"))
-    throw InputError(folder.string() +
-                     " holds series of vesicles, which are for --series of explain");
-  const TomlTable toml = TomlTable::read(
-      folder / "dataset.toml", {"name", "kind", "origin", "composition", "temperature", "time_zero",
-                                "length_unit", "time_unit", "radius", "blur", "times", "vesicles"});
+  if (!holds_fields(folder) && holds_series(folder))
+    throw InputError(folder.string() + " holds series of vesicles, not fields");
+  const TomlTable toml = read_field_description(folder);
   FieldDataset data;
   data.name = toml.text("name");
   data.origin = toml.text_or("origin", "");
   data.time_zero = toml.text_or("time_zero", "");
   data.synthetic = toml.has("kind") && is_synthetic(toml);
-  const double length = length_factor(toml, "length_unit"), second = time_factor(toml, "time_unit");
+  const double length = length_factor(toml, "length_unit"), second = time_factor(toml, "time_unit"),
+               offset = time_offset(toml);
   data.radius_um = toml.number("radius") * length;
   if (!(data.radius_um > 0)) throw InputError(toml.where("radius") + ": it has to be positive");
   if (toml.has("blur")) {
@@ -116,7 +106,7 @@ FieldDataset read_field_dataset(const fs::path& folder) {
       data.vesicles.push_back({vesicle, {}});
     }
     auto& snapshots = data.vesicles.back().snapshots;
-    const double time = times[k] * second;
+    const double time = (times[k] + offset) * second;
     if (!(time >= 0) || (!snapshots.empty() && !(time > snapshots.back().time)))
       throw InputError(toml.where("times") + ": times of a vesicle have to ascend from 0 on");
     snapshots.push_back(

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "drivers/input/measured_folder.hpp"
 #include "verification/explain/field_series.hpp"
 
 namespace traceraft {
@@ -16,14 +17,9 @@ struct FieldDataset {
   std::vector<FieldSeries> vesicles;  // times in s, places in units of the radius
 };
 
-bool holds_fields(const std::filesystem::path& folder);
-
 // Checks everything and converts units. Throws InputError with file, line and column for what is
 // missing, unknown or impossible.
 FieldDataset read_field_dataset(const std::filesystem::path& folder);
-
-// Of a data set, counted over all its vesicles from 1 on.
-std::string snapshot_file(std::size_t number);
 
 // Writes such a folder, the tables first. Throws IoError.
 void write_field_dataset(const std::filesystem::path& folder, const FieldDataset& data,

@@ -1,5 +1,7 @@
 #include "drivers/input/measured_units.hpp"
 
+#include <cmath>
+
 #include "kernel/core/error.hpp"
 #include "kernel/core/named_list.hpp"
 
@@ -43,6 +45,13 @@ double time_factor(const TomlTable& toml, const std::string& key) {
   static const NamedList<Unit> units("unit of time",
                                      {{"s", 1}, {"ms", 1e-3}, {"min", 60}, {"h", 3600}});
   return factor(units, toml, key);
+}
+
+double time_offset(const TomlTable& toml) {
+  const double offset = toml.number_or("time_offset", 0);
+  if (!std::isfinite(offset))
+    throw InputError(toml.where("time_offset") + ": a finite number is needed here");
+  return offset;
 }
 
 void refuse_scaled(const Configuration& model) {

@@ -38,7 +38,7 @@ int check(const DataRequest& request) {
   if (holds_fields(request.folder)) {
     const FieldDataset fields = read_field_dataset(request.folder);
     if (!request.quiet) print_fields(fields);
-    return kSuccess;
+    if (!holds_series(request.folder)) return kSuccess;
   }
   const MeasuredVesicles data = read_dataset(request.folder);
   const Window window = window_of(request.window);

@@ -235,7 +235,7 @@ TEST(ExplainSeriesTest, SimulatesOnceAndSaysWhatSeriesTell) {
   const fs::path model = folder.path / "model.toml", out = folder.path / "out";
   write_durably(model, "epsilon = 0.8\ncells = 16\nraft-fraction = 0.3\n");
   const std::string command =
-      "explain --series " TRACERAFT_ROOT
+      "explain --data " TRACERAFT_ROOT
       "/verification/data/synthetic/guv-3to1 --runs 3 "
       "--replicates 49 --without allen-cahn,asymmetry,bulk-mobility,cooling,exchange,gravity,"
       "line-tension,mobility-contrast,mobility-exponent --out " +
@@ -250,6 +250,10 @@ TEST(ExplainSeriesTest, SimulatesOnceAndSaysWhatSeriesTell) {
   for (const auto& score : series["scores"]) EXPECT_GT(score["vesicles_needed"], 0);
   EXPECT_EQ(series["exponents"][0]["model"], "measured");
   EXPECT_NEAR(series["exponents"][0]["b"], -0.37, 0.1);  // as published
+  const auto verdict = nlohmann::json::parse(testing::content(out / "verdict.json"));
+  EXPECT_EQ(verdict["verdict"], "unnamed");
+  EXPECT_EQ(verdict["alternatives"].size(), 2u);
+  EXPECT_FALSE(fs::exists(out / "model.toml"));
   EXPECT_NE(testing::content(out / "series.html").find("SYNTHETIC"), std::string::npos);
 
   const fs::file_time_type before = fs::last_write_time(out / "ensembles/base/runs/seed-1");

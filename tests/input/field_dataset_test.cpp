@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "drivers/input/dataset.hpp"
 #include "kernel/core/error.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -79,7 +80,23 @@ TEST_F(FieldDatasetTest, ReadsWhatItHasWritten) {
 TEST_F(FieldDatasetTest, KnowsSeriesFromFields) {
   std::filesystem::remove(folder.path / "snapshot_001.csv");
   replace("measurements.csv", "vesicle,time\n");
-  expect_refusal("--series");
+  expect_refusal("not fields");
+}
+
+// One description for both; what is added to times is added to all of them.
+TEST_F(FieldDatasetTest, ReadsAFolderOfBothKinds) {
+  EXPECT_FALSE(holds_series(folder.path));
+  replace("dataset.toml",
+          "name = \"a\"\nkind = \"synthetic\"\ntime_zero = \"t\"\nlength_unit = \"um\"\n"
+          "time_unit = \"min\"\nradius = 5\ntime_offset = 0.5\ntimes = [1, 2, 3]\n"
+          "table = \"sheet.csv\"\nblur = 0.1\n");
+  replace("sheet.csv", "vesicle,time,rafts\na,1,2\n");
+  EXPECT_TRUE(holds_series(folder.path));
+  EXPECT_TRUE(holds_fields(folder.path));
+  EXPECT_EQ(read_field_dataset(folder.path).vesicles[0].snapshots[1].time, 150);
+  const Measurement look = read_dataset(folder.path).measurements.at(0);
+  EXPECT_EQ(look.time, 90);
+  EXPECT_EQ(look.radius, 5);
 }
 
 TEST_F(FieldDatasetTest, ConvertsUnits) {

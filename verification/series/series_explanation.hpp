@@ -22,7 +22,9 @@ struct SeriesScore {
   double gain;       // 2 ln of the likelihood ratio, the effect's strength being free
   double null_mean;  // the same of data of the base model, on average
   double p;          // share of these in which any effect gains as much, over its own average
-  double low, high;  // 95 % bounds of the strength, in units of the parameter of the ensemble
+  double ln_unit;       // of R²/D in seconds, with the effect
+  double value, sigma;  // of the strength, in units of the parameter of the ensemble
+  double low, high;     // its 95 % bounds
   bool bounded;      // they are within what has been simulated
   double vesicles;   // so many as these would show the effect at the ensemble's strength
   Quantity telling;  // what shows it best

@@ -1,0 +1,162 @@
+#include "drivers/explain/series_verdict.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "drivers/config/config_file.hpp"
+#include "drivers/explain/found_parameters.hpp"
+#include "kernel/core/parameters.hpp"
+#include "kernel/effects/effects.hpp"
+
+namespace traceraft {
+namespace {
+
+Units units_of(const Configuration& model, double ln_unit) {
+  return model.units().with_seconds_per_unit(std::exp(ln_unit));
+}
+
+bool is_named(const SeriesExplanation& found) {
+  return found.finding == Finding::named || found.finding == Finding::ambiguous;
+}
+
+Json scores_json(const Configuration& model, const SeriesExplanation& found) {
+  Json scores = Json::array();
+  for (const SeriesScore& s : found.scores) {
+    const StrengthScale scale = scale_of(s, model);
+    scores.push_back({{"effect", s.effect},
+                      {"score", s.gain},
+                      {"null_mean", s.null_mean},
+                      {"p", s.p},
+                      {"parameter", scale.parameter},
+                      {"value", scale.factor * s.value},
+                      {"sigma", scale.factor * s.sigma},
+                      {"low", s.bounded ? Json(scale.factor * s.low) : Json()},
+                      {"high", s.bounded ? Json(scale.factor * s.high) : Json()},
+                      {"unit", scale.unit},
+                      {"vesicles_needed", s.vesicles},
+                      {"shown_by", name_of(s.telling).id}});
+  }
+  return scores;
+}
+
+Json offsets_json(const SeriesExplanation& found) {
+  Json offsets = Json::array();
+  for (const SeriesOffset& o : found.offsets)
+    offsets.push_back({{"quantity", name_of(o.quantity).id},
+                       {"of", o.quantity == Quantity::fraction ? "value" : "ln"},
+                       {"level", o.level},
+                       {"level_deviations", o.level_deviations},
+                       {"slope", o.slope},
+                       {"slope_deviations", o.slope_deviations}});
+  return offsets;
+}
+
+Json diffusion_json(double cm2_s) {
+  return {{"value", cm2_s}, {"sigma", Json()}, {"unit", "cm^2/s"}};
+}
+
+// Of the effect that explains most.
+Json parameters_json(const Configuration& model, const SeriesExplanation& found) {
+  if (!is_named(found))
+    return {{"diffusion", diffusion_json(found_units(model, found).diffusion_cm2_s)}};
+  const SeriesScore& best = found.scores.front();
+  const StrengthScale scale = scale_of(best, model);
+  return {{best.effect + "." + scale.parameter,
+           {{"value", scale.factor * best.value},
+            {"sigma", scale.factor * best.sigma},
+            {"unit", scale.unit}}},
+          {"diffusion", diffusion_json(units_of(model, best.ln_unit).diffusion_cm2_s)}};
+}
+
+// `effect` first.
+std::vector<std::string> class_of(const SeriesExplanation& found) {
+  std::vector<std::string> members;
+  if (!is_named(found)) return members;
+  const std::string& best = found.scores.front().effect;
+  members.push_back(best);
+  for (const auto& some : found.named)
+    for (const std::string& effect : some)
+      if (effect != best) members.push_back(effect);
+  return members;
+}
+
+Configuration named_model(GivenValues model, const SeriesEnsembles& ensembles,
+                          const SeriesExplanation& found) {
+  const SeriesScore& best = found.scores.front();
+  EffectTerm term = *std::find_if(ensembles.terms.begin(), ensembles.terms.end(),
+                                  [&](const EffectTerm& t) { return t.effect == best.effect; });
+  term.values.front() = best.value;
+  const Units units = units_of(Configuration(model, {}), best.ln_unit);
+  model["diffusion"] = {format_number(units.diffusion_cm2_s), "--diffusion"};
+  model["effect"] = {effect_text({term}, units), "--effect"};
+  return {model, {}};
+}
+
+}  // namespace
+
+Units found_units(const Configuration& model, const SeriesExplanation& found) {
+  return units_of(model, found.base.ln_unit);
+}
+
+StrengthScale scale_of(const SeriesScore& score, const Configuration& model) {
+  const ParameterSpec& spec = effects().find(score.effect).parameters.front();
+  return {spec.name, spec.unit, 1 / to_model_units(spec.unit, units_of(model, score.ln_unit))};
+}
+
+Json series_json(const Configuration& model, const SeriesExplanation& found,
+                 const std::vector<Exponent>& laws) {
+  Json ties = Json::array(), exponents = Json::array();
+  for (const SeriesTie& tie : found.ties)
+    ties.push_back({{"effect", tie.effect},
+                    {"other", tie.other},
+                    {"vesicles_needed", tie.vesicles},
+                    {"shown_by", name_of(tie.telling).id}});
+  for (const Exponent& e : laws)
+    exponents.push_back(
+        {{"model", e.model}, {"b", e.law.law.b}, {"interval_95", {e.law.b.low, e.law.b.high}}});
+  return {{"verdict", word_for(found.finding)},
+          {"class", found.named},
+          {"p", found.p},
+          {"trend_p", found.trend_p},
+          {"vesicles", found.vesicles},
+          {"looks", found.looks},
+          {"diffusion", {{"value", found_units(model, found).diffusion_cm2_s}, {"unit", "cm^2/s"}}},
+          {"offsets", offsets_json(found)},
+          {"scores", scores_json(model, found)},
+          {"classes", found.classes},
+          {"ties", ties},
+          {"exponents", exponents}};
+}
+
+Json series_verdict_json(const Configuration& model, const SeriesExplanation& found,
+                         const SeriesRequest& request) {
+  Json alternatives = Json::array();
+  for (const SeriesScore& s : found.scores)
+    alternatives.push_back({{"effect", s.effect}, {"score", s.gain}});
+  const Json no_gap{{"train", Json()}, {"heldout", Json()}};
+  const bool closest = found.finding == Finding::unnamed && !found.named.empty();
+  return {{"verdict", word_for(found.finding)},
+          {"effect", is_named(found) ? Json(found.scores.front().effect) : Json()},
+          {"class", class_of(found)},
+          {"closest", closest ? Json(found.named.front().front()) : Json()},
+          {"parameters", parameters_json(model, found)},
+          {"alternatives", alternatives},
+          {"gap", {{"base", no_gap}, {"named", no_gap}, {"placebo", no_gap}, {"floor", no_gap}}},
+          {"where", Json()},
+          {"null",
+           {{"replicates", request.replicates},
+            {"false_alarm_level", request.false_alarms},
+            {"p", found.p},
+            {"trend_p", found.trend_p}}}};
+}
+
+void write_series_verdict(const std::filesystem::path& folder, const GivenValues& model,
+                          const SeriesEnsembles& ensembles, const SeriesExplanation& found,
+                          const SeriesRequest& request) {
+  const Configuration base(model, {});
+  if (is_named(found))
+    write_durably(folder / "model.toml", config_text(named_model(model, ensembles, found)));
+  write_durably(folder / "verdict.json", series_verdict_json(base, found, request).dump(2) + "\n");
+}
+
+}  // namespace traceraft

@@ -1,0 +1,42 @@
+// What series say in the units of their user: series.json, verdict.json and model.toml.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "drivers/explain/series_ensembles.hpp"
+#include "drivers/output/json_file.hpp"
+#include "verification/vesicles/power_law.hpp"
+
+namespace traceraft {
+
+// With the D that the series say if nothing is missing.
+Units found_units(const Configuration& model, const SeriesExplanation& found);
+
+// The parameter that was looked for, and its unit over that of the model with the D of this fit.
+struct StrengthScale {
+  std::string parameter, unit;
+  double factor;
+};
+StrengthScale scale_of(const SeriesScore& score, const Configuration& model);
+
+// Of the perimeter: measured, or simulated with this model.
+struct Exponent {
+  std::string model;
+  FittedLaw law;
+};
+
+Json series_json(const Configuration& model, const SeriesExplanation& found,
+                 const std::vector<Exponent>& exponents);
+
+// The keys that measured fields have; what series do not tell is null.
+Json series_verdict_json(const Configuration& model, const SeriesExplanation& found,
+                         const SeriesRequest& request);
+// verdict.json, and model.toml if something was named: the model, here as its user gave it, with
+// the effect that explains most and D. Throws IoError.
+void write_series_verdict(const std::filesystem::path& folder, const GivenValues& model,
+                          const SeriesEnsembles& ensembles, const SeriesExplanation& found,
+                          const SeriesRequest& request);
+
+}  // namespace traceraft

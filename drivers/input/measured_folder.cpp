@@ -1,0 +1,55 @@
+#include "drivers/input/measured_folder.hpp"
+
+#include "kernel/core/text.hpp"
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+using Keys = std::vector<std::string>;
+
+const Keys& common_keys() {
+  static const Keys keys{"name",      "kind",        "origin",      "composition", "temperature",
+                         "time_zero", "time_offset", "length_unit", "time_unit",   "radius"};
+  return keys;
+}
+const Keys& field_keys() {
+  static const Keys keys{"blur", "times", "vesicles"};
+  return keys;
+}
+const Keys& series_keys() {
+  static const Keys keys{"sigma", "table"};
+  return keys;
+}
+
+TomlTable read_description(const fs::path& folder, bool fields, bool series) {
+  Keys keys = common_keys();
+  if (fields) keys.insert(keys.end(), field_keys().begin(), field_keys().end());
+  if (series) keys.insert(keys.end(), series_keys().begin(), series_keys().end());
+  return TomlTable::read(folder / "dataset.toml", keys);
+}
+
+}  // namespace
+
+bool holds_fields(const fs::path& folder) {
+  return fs::exists(folder / snapshot_file(1));
+}
+
+bool holds_series(const fs::path& folder) {
+  if (fs::exists(folder / "measurements.csv")) return true;
+  return fs::exists(folder / "dataset.toml") && read_description(folder, true, true).has("table");
+}
+
+TomlTable read_field_description(const fs::path& folder) {
+  return read_description(folder, true, holds_series(folder));
+}
+
+TomlTable read_series_description(const fs::path& folder) {
+  return read_description(folder, holds_fields(folder), true);
+}
+
+std::string snapshot_file(std::size_t number) {
+  return formatted("snapshot_%03zu.csv", number);
+}
+
+}  // namespace traceraft

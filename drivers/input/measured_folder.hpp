@@ -1,0 +1,22 @@
+// Which measurements a folder holds, and its description, dataset.toml (docs/formats.md).
+#pragma once
+
+#include <filesystem>
+
+#include "drivers/input/toml_table.hpp"
+
+namespace traceraft {
+
+// snapshot_001.csv, ...
+bool holds_fields(const std::filesystem::path& folder);
+// measurements.csv, or another table that dataset.toml names.
+bool holds_series(const std::filesystem::path& folder);
+
+// Of a folder that holds both, one file describes both. Throw InputError.
+TomlTable read_field_description(const std::filesystem::path& folder);
+TomlTable read_series_description(const std::filesystem::path& folder);
+
+// Of a folder of fields, counted over all its vesicles from 1 on.
+std::string snapshot_file(std::size_t number);
+
+}  // namespace traceraft

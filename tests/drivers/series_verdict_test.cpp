@@ -1,0 +1,94 @@
+// What series say, in files that other programs read.
+#include "drivers/explain/series_verdict.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "drivers/config/config_file.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "verification/explain/candidates.hpp"
+
+namespace traceraft {
+namespace {
+
+// R = 10 µm and D = 1e-5 cm²/s: R²/D is 0.1 s. The series say that it is half of that, with uptake
+// a third.
+class SeriesVerdictTest : public ::testing::Test {
+ protected:
+  SeriesVerdictTest() {
+    model["radius"] = {"10", "--radius"};
+    model["diffusion"] = {"1e-5", "--diffusion"};
+    const auto score = [](const std::string& effect, double gain, double value) {
+      SeriesScore s{};
+      s.effect = effect;
+      s.gain = gain;
+      s.null_mean = 1;
+      s.ln_unit = std::log(0.1 / 3);
+      s.value = value;
+      s.sigma = 0.1 * value;
+      s.telling = Quantity::fraction;
+      return s;
+    };
+    found.finding = Finding::ambiguous;
+    found.base.ln_unit = std::log(0.05);
+    found.scores = {score("uptake", 30, 2e-3), score("cooling", 29, 1e-3),
+                    score("gravity", 1, 1e-3)};
+    found.named = {{"cooling", "uptake"}};
+    found.offsets = {{Quantity::fraction, 0.02, 4, 0.001, 1}};
+    ensembles.terms = {find_candidate("cooling")->term({5e-4}),
+                       find_candidate("uptake")->term({1e-3})};
+  }
+  Json json(const std::string& file) const {
+    return from_json(folder.path / file, [](const Json& content) { return content; });
+  }
+
+  const testing::TemporaryFolder folder;
+  GivenValues model;
+  SeriesExplanation found{};
+  SeriesEnsembles ensembles;
+};
+
+TEST_F(SeriesVerdictTest, NamesWhatExplainsMostInPhysicalUnits) {
+  write_series_verdict(folder.path, model, ensembles, found, {{0.1, 8}});
+  const Json verdict = json("verdict.json");
+  EXPECT_EQ(verdict["verdict"], "ambiguous");
+  EXPECT_EQ(verdict["effect"], "uptake");
+  EXPECT_EQ(verdict["class"], Json({"uptake", "cooling"}));
+  EXPECT_NEAR(verdict["parameters"]["uptake.rate"]["value"].get<double>(), 2e-3 * 30, 1e-6);
+  EXPECT_NEAR(verdict["parameters"]["uptake.rate"]["sigma"].get<double>(), 2e-4 * 30, 1e-6);
+  EXPECT_EQ(verdict["parameters"]["uptake.rate"]["unit"], "1/s");
+  EXPECT_NEAR(verdict["parameters"]["diffusion"]["value"].get<double>(), 3e-5, 1e-10);
+  for (const char* gap : {"base", "named", "placebo", "floor"})
+    EXPECT_TRUE(verdict["gap"][gap]["heldout"].is_null()) << gap;
+  EXPECT_EQ(verdict["alternatives"][1], Json({{"effect", "cooling"}, {"score", 29.0}}));
+  EXPECT_EQ(verdict["null"]["replicates"], 199);
+
+  const Configuration named(read_config_file(folder.path / "model.toml"), {});
+  EXPECT_NEAR(named.number("diffusion"), 3e-5, 1e-10);
+  const std::string effect = named.text("effect"), name = "uptake:rate=";
+  ASSERT_EQ(effect.substr(0, name.size()), name);
+  EXPECT_NEAR(std::stod(effect.substr(name.size())), 0.06, 1e-6);
+}
+
+TEST_F(SeriesVerdictTest, ATrendNamesNothing) {
+  found.finding = Finding::unnamed;
+  found.named = {{"uptake"}};
+  write_series_verdict(folder.path, model, ensembles, found, {{0.1, 8}});
+  const Json verdict = json("verdict.json");
+  EXPECT_TRUE(verdict["effect"].is_null());
+  EXPECT_EQ(verdict["closest"], "uptake");
+  EXPECT_TRUE(verdict["class"].empty());
+  EXPECT_NEAR(verdict["parameters"]["diffusion"]["value"].get<double>(), 2e-5, 1e-10);
+  EXPECT_FALSE(std::filesystem::exists(folder.path / "model.toml"));
+}
+
+TEST_F(SeriesVerdictTest, SaysHowMeasurementsLieBesideTheModel) {
+  const Json series = series_json({model, {}}, found, {});
+  EXPECT_EQ(series["offsets"][0]["quantity"], "fraction");
+  EXPECT_EQ(series["offsets"][0]["of"], "value");
+  EXPECT_EQ(series["offsets"][0]["level_deviations"], 4);
+}
+
+}  // namespace
+}  // namespace traceraft
