@@ -35,6 +35,7 @@ void draw(const fs::path& folder, const CampaignPlan& plan, const CaseSettings& 
   request.noise = settings.noise;
   request.stated = settings.stated;
   request.snapshots = settings.snapshots;
+  request.sizing_snapshots = CaseSettings().snapshots;
   request.points = plan.points;
   request.pace = std::exp(0.4 * (uniform_random(seed, 2, 0) - 0.5));
   request.cells = truth_cells(plan.model);

@@ -36,7 +36,7 @@ const NamedList<CampaignGroup>& campaign_groups() {
       {{"naming", "one effect, 10 % noise, 8 snapshots", Aim::name, {}, 1},
        {"naming-noisy", "one effect, 20 % noise", Aim::name,
         with([](CaseSettings& s) { s.noise = 0.2; }), 1},
-       {"naming-short", "one effect, 3 snapshots", Aim::name,
+       {"naming-short", "one effect, as strong as with 8 snapshots, 3 of them", Aim::name,
         with([](CaseSettings& s) { s.snapshots = 3; }), 1},
        {"two", "two effects at once", Aim::name, {}, 2},
        {"left-out", "one effect; it and those like it are not looked for", Aim::unnamed, {}, 1},

@@ -255,6 +255,19 @@ TEST(BlindCase, HidesNoMoreThanTheRangeOfAnEffect) {
   EXPECT_LT(std::fabs(size_effects(asked).front().values.front()), 0.2);
 }
 
+// Between three looks within the same time there is more time for an effect of the same gap.
+TEST(BlindCase, MayBeAsStrongAsBetweenMoreLooks) {
+  BlindRequest asked = request();
+  asked.effects = {"allen-cahn"};
+  asked.snapshots = 6;
+  const auto strength = [&] { return size_effects(asked).front().values.front(); };
+  const double between_six = strength();
+  asked.snapshots = 3;
+  EXPECT_LT(strength(), 0.7 * between_six);
+  asked.sizing_snapshots = 6;
+  EXPECT_EQ(strength(), between_six);
+}
+
 // Smooth noise dissolves where the mixture is stable, as vesicles of few rafts are.
 TEST(BlindCase, StartsFromWhatTheModelDoes) {
   BlindRequest asked = request();

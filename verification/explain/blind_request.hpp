@@ -25,6 +25,7 @@ struct BlindRequest {
   double blur = 0;     // standard deviation of the microscope's point spread function, in R
   int vesicles = 1;
   int snapshots = 8;             // of each
+  int sizing_snapshots = 0;      // that effects make the gap between; 0: so many as there are
   int points = 4000;             // per snapshot
   double first = 20, last = 90;  // times of snapshots, in units of R²/D of the model
   // The standard deviations that the data state for every second snapshot, over the true ones,

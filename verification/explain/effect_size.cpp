@@ -23,9 +23,15 @@ Candidate candidate_of(const std::string& effect) {
   return *find_candidate(effect);
 }
 
+BlindLooks sizing_looks(BlindRequest request) {
+  if (request.sizing_snapshots > 0) request.snapshots = request.sizing_snapshots;
+  return BlindLooks(request);
+}
+
 }  // namespace
 
-EffectSizing::EffectSizing(const BlindRequest& request) : request_(request), looks_(request) {
+EffectSizing::EffectSizing(const BlindRequest& request)
+    : request_(request), looks_(sizing_looks(request)) {
   constexpr double kCoarser = 0.7, kTolerance = 1e-3;
   const int cells =
       request.sizing_cells > 0 ? request.sizing_cells : static_cast<int>(kCoarser * request.cells);
