@@ -48,11 +48,16 @@ CampaignPlan new_plan(const CampaignRequest& request) {
 
 // What it began with, more cases aside.
 CampaignPlan grown_plan(const CampaignRequest& request, const CampaignFolder& folder) {
-  for (const CLI::Option* option : request.planned)
-    if (option->count() > 0)
-      throw InputError(option->get_name() + ": the campaign in " + folder.path().string() +
-                       " has begun without it; it can change --cases alone");
   CampaignPlan plan = folder.load();
+  const bool asked = std::any_of(request.planned.begin(), request.planned.end(),
+                                 [](const CLI::Option* option) { return option->count() > 0; });
+  if (asked) {
+    const CampaignPlan wanted = new_plan(request);
+    if (wanted.groups != plan.groups || !same_but_for_cases(wanted, plan))
+      throw InputError("--out: " + folder.path().string() +
+                       " holds a campaign of another plan; choose another folder, or give only "
+                       "--out to go on with it, and --cases for more of them");
+  }
   plan.cases = std::max(plan.cases, request.cases);
   return plan;
 }

@@ -79,10 +79,11 @@ TEST_F(HideTest, RefusesWhatCannotBeHidden) {
 TEST(CampaignTest, CountsWhatWasFoundAndGoesOn) {
   const testing::TemporaryFolder folder;
   const fs::path out = folder.path / "campaign";
-  const auto begin = testing::traceraft(
+  const std::string command =
       "campaign --groups naming,null --cases 1 --epsilon 1 --cells 12 "
       "--points 500 --replicates 49 --effects 1 --out " +
-      out.string());
+      out.string();
+  const auto begin = testing::traceraft(command);
   ASSERT_EQ(begin.code, 0) << begin.output;
   const std::string first = testing::content(out / "cases" / "null-000" / "score.json");
   const nlohmann::json score = nlohmann::json::parse(first);
@@ -94,9 +95,13 @@ TEST(CampaignTest, CountsWhatWasFoundAndGoesOn) {
   EXPECT_NE(summary.find("null,1,"), std::string::npos) << summary;
 
   fs::remove(out / "cases" / "naming-000" / "score.json");
-  const auto again = testing::traceraft("campaign --out " + out.string());
+  const auto again = testing::traceraft(command);
   ASSERT_EQ(again.code, 0) << again.output;
   EXPECT_TRUE(fs::exists(out / "cases" / "naming-000" / "score.json"));
+  const auto changed = testing::traceraft(command + " --seed 2");
+  EXPECT_EQ(changed.code, 2);
+  EXPECT_NE(changed.output.find("a campaign of another plan"), std::string::npos) << changed.output;
+  EXPECT_EQ(testing::traceraft("campaign --out " + out.string()).code, 0);
   EXPECT_EQ(testing::content(out / "cases" / "null-000" / "score.json"), first);
 
   // Elsewhere these two need not be repeated.
@@ -113,14 +118,6 @@ TEST(CampaignTest, CountsWhatWasFoundAndGoesOn) {
   const auto refused = testing::traceraft(there);
   EXPECT_EQ(refused.code, 2);
   EXPECT_NE(refused.output.find("has another plan"), std::string::npos) << refused.output;
-}
-
-TEST(CampaignTest, KeepsThePlanItBeganWith) {
-  const testing::TemporaryFolder folder;
-  write_durably(folder.path / "plan.json", "{}");
-  const auto end = testing::traceraft("campaign --seed 2 --out " + folder.path.string());
-  EXPECT_EQ(end.code, 2);
-  EXPECT_NE(end.output.find("--seed: the campaign in"), std::string::npos) << end.output;
 }
 
 TEST(CampaignTest, RefusesUnknownGroups) {
