@@ -93,15 +93,14 @@ std::vector<EffectTerm> sizes(const fs::path& folder, const Configuration& model
   return terms;
 }
 
-// As strong as the effect may be, if it would have to be stronger.
+}  // namespace
+
 EffectTerm within_range(EffectTerm term, const Units& units) {
   const ParameterSpec& spec = effects().find(term.effect).parameters.front();
   const double factor = to_model_units(spec.unit, units);
   term.values.front() = std::clamp(term.values.front(), factor * spec.min, factor * spec.max);
   return term;
 }
-
-}  // namespace
 
 void refuse_series(const MeasuredVesicles& data, const Configuration& model) {
   refuse_scaled(model);

@@ -26,6 +26,9 @@ struct SeriesEnsembles {
   std::vector<std::string> notes;  // effects whose runs failed
 };
 
+// As strong as the effect may be, if it would have to be stronger.
+EffectTerm within_range(EffectTerm term, const Units& units);
+
 // Throws InputError for data and models that cannot be used.
 void refuse_series(const MeasuredVesicles& data, const Configuration& model);
 

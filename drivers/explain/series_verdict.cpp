@@ -88,7 +88,7 @@ Configuration named_model(GivenValues model, const SeriesEnsembles& ensembles,
   term.values.front() = best.value;
   const Units units = units_of(Configuration(model, {}), best.ln_unit);
   model["diffusion"] = {format_number(units.diffusion_cm2_s), "--diffusion"};
-  model["effect"] = {effect_text({term}, units), "--effect"};
+  model["effect"] = {effect_text({within_range(term, units)}, units), "--effect"};
   return {model, {}};
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "drivers/config/config_file.hpp"
+#include "drivers/run/run_setup.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "verification/explain/candidates.hpp"
 
@@ -69,6 +70,16 @@ TEST_F(SeriesVerdictTest, NamesWhatExplainsMostInPhysicalUnits) {
   const std::string effect = named.text("effect"), name = "uptake:rate=";
   ASSERT_EQ(effect.substr(0, name.size()), name);
   EXPECT_NEAR(std::stod(effect.substr(name.size())), 0.06, 1e-6);
+}
+
+// What is fitted may lie beyond what is possible.
+TEST_F(SeriesVerdictTest, WritesAModelThatCanBeRun) {
+  ensembles.terms = {find_candidate("asymmetry")->term({0.5})};
+  found.scores.front().effect = "asymmetry";
+  found.scores.front().value = 1e3;
+  write_series_verdict(folder.path, model, ensembles, found, {{0.1, 8}});
+  const Configuration named(read_config_file(folder.path / "model.toml"), {});
+  EXPECT_EQ(physical_model(named).effects.size(), 1u);
 }
 
 TEST_F(SeriesVerdictTest, ATrendNamesNothing) {
