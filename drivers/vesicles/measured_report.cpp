@@ -38,6 +38,10 @@ std::vector<double> values_of(const MeasuredVesicles& data, Quantity quantity) {
   return values;
 }
 
+std::string origin_of(const MeasuredVesicles& data) {
+  return data.synthetic ? "synthetic measurements" : "measured";
+}
+
 std::string about(const MeasuredVesicles& data) {
   return data.name + (data.synthetic ? " (SYNTHETIC, not measured)" : "") + ": " +
          std::to_string(data.vesicles().size()) + " vesicles, " +
@@ -200,7 +204,7 @@ Chart comparison_chart(const MeasuredVesicles& data, const EnsembleSummary& summ
     if (!series.other.empty())
       series.other.erase(series.other.begin(), series.other.begin() + early);
   }
-  ChartSeries measured{data.synthetic ? "synthetic measurements" : "measured", {}, Mark::bars};
+  ChartSeries measured{origin_of(data), {}, Mark::bars};
   for (const Measurement& m : data.measurements) {
     if (!m.of(quantity)) continue;
     measured.points.emplace_back(m.time, *m.of(quantity));
@@ -229,7 +233,7 @@ void print_dataset(const MeasuredVesicles& data, const std::optional<FittedLaw>&
     std::printf("  %-22s %s\n", "estimated fraction",
                 estimated_fraction(data.composition, *data.celsius).c_str());
   std::printf("\npower law from %g to %g s\n", window.begin, window.end);
-  print_rows({kLawHeading, law_row("measured", law)});
+  print_rows({kLawHeading, law_row(origin_of(data), law)});
   for (const std::string& remark : remarks_on({law})) std::printf("%s\n", remark.c_str());
 }
 
@@ -265,7 +269,7 @@ int compare_with_ensemble(const MeasuredVesicles& data, const ComparisonRequest&
   const auto measured = fit_measurements(data, window),
              simulated = fit_runs(runs, summary.times, window);
   const std::vector<Row> rows = agreement_rows(agreements);
-  std::vector<Row> laws = {kLawHeading, law_row("measured", measured),
+  std::vector<Row> laws = {kLawHeading, law_row(origin_of(data), measured),
                            law_row("simulated", simulated)};
   if (request.facts) laws.push_back(law_row(*request.facts));
   Page page("Measured and simulated vesicles");
@@ -302,12 +306,14 @@ int compare_with_ensemble(const MeasuredVesicles& data, const ComparisonRequest&
     add_chart(page, chart, request.out / (std::string("comparison-") + name_of(quantity).id),
               missing);
   }
+  add_settings(page, model);
   add_provenance(page, request.ensemble, request.command);
   write_durably(request.out / "comparison.json",
                 Json{{"runs", runs.size()}, {"data", data.name}}.dump(2) + "\n");
   write_durably(request.out / "comparison.csv", csv_text(agreement_table(agreements)));
   write_durably(request.out / "comparison.html", page.html());
   if (!request.quiet) {
+    std::printf("%s\n\n", about(data).c_str());
     print_rows(rows);
     std::printf("%s%s\n\npower laws from %g to %g s\n", kDeviations,
                 expectation(runs.size()).c_str(), window.begin, window.end);

@@ -145,6 +145,19 @@ TEST(Calibration, SaysWhereItsSearchEnds) {
   EXPECT_FALSE(found.parameters[0].determined);
 }
 
+// ε goes with D: if that is not found, neither is ε, however narrow its interval.
+TEST(Calibration, DeterminesNothingBesideAUnitAtItsEnd) {
+  std::vector<CalibrationPoint> points;
+  for (const auto& ln : design_around({std::log(kEpsilon)}, 0.25))
+    points.push_back({ln, simulate(std::exp(ln[0]), true, 40, 5)});
+  const TimeUnit fast{kSeconds / 4, {kSeconds / 16, kSeconds / 2}};
+  const Calibration found = calibrate(measured(true, 1), kSought, points, fast);
+  EXPECT_TRUE(found.unit_at_bound);
+  const CalibratedParameter& epsilon = found.parameters[1];
+  EXPECT_LT(epsilon.interval.high, 2 * epsilon.interval.low);
+  EXPECT_FALSE(epsilon.determined);
+}
+
 // What is allowed of a parameter is all that an estimate may be.
 TEST(Calibration, StaysWithinWhatIsAllowed) {
   std::vector<CalibrationPoint> points;

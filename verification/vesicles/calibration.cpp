@@ -52,6 +52,11 @@ int count_at_bound(const std::vector<TimeFit>& fits, const Interval& allowed) {
   }));
 }
 
+// What was found beside it goes with the unit of time, and that was not found.
+void mark_undetermined(Calibration& calibration) {
+  for (CalibratedParameter& parameter : calibration.parameters) parameter.determined = false;
+}
+
 }  // namespace
 
 std::vector<double> most_probable(const MeasuredVesicles& data,
@@ -87,12 +92,13 @@ Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtPara
   const double ln_unit = std::log(result.parameters[0].value);
   result.unit_at_bound = ln_unit < std::log(unit.allowed.low) + kUnitEdge ||
                          ln_unit > std::log(unit.allowed.high) - kUnitEdge;
+  if (result.unit_at_bound) mark_undetermined(result);
   return result;
 }
 
 void mark_unconverged(Calibration& calibration) {
   calibration.converged = false;
-  for (CalibratedParameter& parameter : calibration.parameters) parameter.determined = false;
+  mark_undetermined(calibration);
 }
 
 std::vector<std::vector<double>> design_around(const std::vector<double>& centre, double step) {
