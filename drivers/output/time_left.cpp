@@ -4,6 +4,13 @@
 #include <cmath>
 
 namespace traceraft {
+namespace {
+
+// Of ln t per step. Faster than that grow the first steps, for as long as an integrator feels its
+// way.
+constexpr double kSettled = 0.1;
+
+}  // namespace
 
 void TimeLeft::note(double t, double seconds) {
   marks_.push_back({t, seconds});
@@ -17,10 +24,13 @@ void TimeLeft::note(double t, double seconds) {
 double TimeLeft::seconds() const {
   if (marks_.size() < 2) return 0;
   const Mark& now = marks_.back();
-  const Mark& then = marks_[std::min(2 * marks_.size() / 3, marks_.size() - 2)];
+  const std::size_t before = std::min(2 * marks_.size() / 3, marks_.size() - 2);
+  const Mark& then = marks_[before];
   const double passed = now.seconds - then.seconds;
   if (!(now.t > then.t) || !(now.t < end_)) return 0;
   const double steady = (end_ - now.t) / (now.t - then.t);
+  const auto steps = static_cast<double>(marks_.size() - 1 - before);
+  if (then.t > 0 && std::log(now.t / then.t) > kSettled * steps) return 0;
   const double growing = then.t > 0 ? std::log(end_ / now.t) / std::log(now.t / then.t) : steady;
   return passed * std::min(steady, growing);
 }

@@ -1,6 +1,6 @@
 #include "drivers/run/progress.hpp"
 
-#include <cstdio>
+#include "kernel/core/text.hpp"
 
 namespace traceraft {
 
@@ -10,13 +10,13 @@ void Progress::on_step(const RunState& state) {
   left_.note(integrator.time(), elapsed);
   if (!line_.due() && integrator.time() < run_.t_end) return;
   const char* unit = run_.units.scaled ? "" : " s";
-  char text[256];
-  std::snprintf(text, sizeof text,
-                "t %.4g%s  step %ld  dt %.2g%s  mass drift %.0e  rafts %d  %s elapsed  ~%s left",
-                integrator.time() * run_.units.time(), unit, integrator.statistics().steps,
-                integrator.step() * run_.units.time(), unit, state.monitor.mass_drift(),
-                state.row.rafts, clock_text(elapsed).c_str(), clock_text(left_.seconds()).c_str());
-  line_.show(left_.share(), text);
+  const double left = left_.seconds();
+  line_.show(left_.share(),
+             formatted("t %.4g%s  step %ld  dt %.2g%s  mass drift %.0e  rafts %d  %s elapsed",
+                       integrator.time() * run_.units.time(), unit, integrator.statistics().steps,
+                       integrator.step() * run_.units.time(), unit, state.monitor.mass_drift(),
+                       state.row.rafts, clock_text(elapsed).c_str()) +
+                 (left > 0 ? "  ~" + clock_text(left) + " left" : ""));
 }
 
 }  // namespace traceraft

@@ -38,6 +38,14 @@ TEST(TimeLeft, IsNotWhatAFewShortStepsSay) {
   EXPECT_EQ(left.seconds(), 0);
 }
 
+// An integrator that begins with a tiny step would be at the end soon if it went on so.
+TEST(TimeLeft, IsUnknownWhileAnIntegratorFeelsItsWay) {
+  TimeLeft left(200);
+  for (int k = 0; k <= 40; ++k) left.note(1e-12 * std::pow(1.7, k), k);
+  EXPECT_EQ(left.seconds(), 0);
+  EXPECT_EQ(left.share(), 0);
+}
+
 TEST(TimeLeft, IsUnknownAtFirst) {
   TimeLeft left(10);
   left.note(0, 0);
