@@ -224,8 +224,7 @@ void write_calibration(const std::filesystem::path& folder, const MeasuredVesicl
   write_durably(folder / "calibration.json", json_text(lines, result));
   write_durably(folder / "calibrated.toml", config_text(found));
   Page page("A model calibrated with measurements");
-  const std::string source = data.name + (data.synthetic ? " (SYNTHETIC, not measured)" : "");
-  page.paragraph(source);
+  page.paragraph(title_of(data));
   page.table(rows);
   for (const auto* list : {&notes, &sentences})
     for (const std::string& sentence : *list) page.paragraph(sentence);
@@ -236,7 +235,7 @@ void write_calibration(const std::filesystem::path& folder, const MeasuredVesicl
   add_settings(page, found);
   write_durably(folder / "calibration.html", page.html());
   if (quiet) return;
-  std::printf("\n%s\n\n", source.c_str());
+  std::printf("\n%s\n\n", title_of(data).c_str());
   print_rows(rows);
   for (const auto* list : {&notes, &sentences})
     for (const std::string& sentence : *list) std::printf("\n%s\n", sentence.c_str());

@@ -9,6 +9,7 @@
 #include "drivers/output/page.hpp"
 #include "drivers/output/text_table.hpp"
 #include "drivers/version.hpp"
+#include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/text.hpp"
 #include "verification/vesicles/differences.hpp"
 
@@ -145,10 +146,9 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
                               const SeriesExplanation& found, bool quiet) {
   const SeriesEnsembles ensembles = in_seconds(simulated, std::exp(found.base.ln_unit));
   const std::vector<Exponent> laws = exponents(data, ensembles);
-  std::vector<std::string> words{
-      data.name + (data.synthetic ? " (SYNTHETIC, not measured): " : ": ") +
-          std::to_string(found.vesicles) + " vesicles, " + std::to_string(found.looks) + " looks.",
-      sentence(found)};
+  std::vector<std::string> words{title_of(data) + ": " + std::to_string(found.vesicles) +
+                                     " vesicles, " + std::to_string(found.looks) + " looks.",
+                                 sentence(found)};
   for (const SeriesTie& tie : found.ties) words.push_back(advice(tie));
   words.push_back(formatted("D is %.3g cm^2/s if nothing is missing.",
                             found_units(model, found).diffusion_cm2_s));

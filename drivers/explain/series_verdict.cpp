@@ -5,6 +5,7 @@
 
 #include "drivers/config/config_file.hpp"
 #include "drivers/explain/found_parameters.hpp"
+#include "drivers/explain/verdict.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/effects/effects.hpp"
 
@@ -51,21 +52,19 @@ Json offsets_json(const SeriesExplanation& found) {
   return offsets;
 }
 
-Json diffusion_json(double cm2_s) {
-  return {{"value", cm2_s}, {"sigma", Json()}, {"unit", "cm^2/s"}};
-}
-
-// Of the effect that explains most.
-Json parameters_json(const Configuration& model, const SeriesExplanation& found) {
-  if (!is_named(found))
-    return {{"diffusion", diffusion_json(found_units(model, found).diffusion_cm2_s)}};
+// Of the effect that explains most, if something was named, and D.
+std::vector<FoundParameter> found_parameters(const Configuration& model,
+                                             const SeriesExplanation& found) {
   const SeriesScore& best = found.scores.front();
   const StrengthScale scale = scale_of(best, model);
-  return {{best.effect + "." + scale.parameter,
-           {{"value", scale.factor * best.value},
-            {"sigma", scale.factor * best.sigma},
-            {"unit", scale.unit}}},
-          {"diffusion", diffusion_json(units_of(model, best.ln_unit).diffusion_cm2_s)}};
+  const double ln_unit = is_named(found) ? best.ln_unit : found.base.ln_unit;
+  std::vector<FoundParameter> result;
+  if (is_named(found))
+    result.push_back({best.effect, scale.parameter, scale.unit, scale.factor * best.value,
+                      scale.factor * best.sigma});
+  result.push_back(
+      {"", "diffusion", "cm^2/s", units_of(model, ln_unit).diffusion_cm2_s, std::nullopt});
+  return result;
 }
 
 // `effect` first.
@@ -139,7 +138,7 @@ Json series_verdict_json(const Configuration& model, const SeriesExplanation& fo
           {"effect", is_named(found) ? Json(found.scores.front().effect) : Json()},
           {"class", class_of(found)},
           {"closest", closest ? Json(found.named.front().front()) : Json()},
-          {"parameters", parameters_json(model, found)},
+          {"parameters", parameters_json(found_parameters(model, found))},
           {"alternatives", alternatives},
           {"gap", {{"base", no_gap}, {"named", no_gap}, {"placebo", no_gap}, {"floor", no_gap}}},
           {"where", Json()},

@@ -8,21 +8,13 @@
 namespace traceraft {
 namespace {
 
-Json parameters_json(const Refit& fit, const Units& base) {
-  Json parameters = Json::object();
-  for (const FoundParameter& p : found_parameters(fit, base))
-    parameters[(p.effect.empty() ? "" : p.effect + ".") + p.name] = {
-        {"value", p.value}, {"sigma", p.sigma ? Json(*p.sigma) : Json()}, {"unit", p.unit}};
-  return parameters;
-}
-
 // Of each other member of the class, as it fits best.
 Json rivals_json(const Explanation& found, const Units& base) {
   Json rivals = Json::array();
   if (!is_named(found)) return rivals;
   for (const Refit& fit : found.rivals)
-    rivals.push_back(
-        {{"effect", fit.hypothesis.name()}, {"parameters", parameters_json(fit, base)}});
+    rivals.push_back({{"effect", fit.hypothesis.name()},
+                      {"parameters", parameters_json(found_parameters(fit, base))}});
   return rivals;
 }
 
@@ -105,13 +97,21 @@ std::vector<std::string> not_looked_for(const Explanation& found) {
   return names;
 }
 
+Json parameters_json(const std::vector<FoundParameter>& found) {
+  Json parameters = Json::object();
+  for (const FoundParameter& p : found)
+    parameters[(p.effect.empty() ? "" : p.effect + ".") + p.name] = {
+        {"value", p.value}, {"sigma", p.sigma ? Json(*p.sigma) : Json()}, {"unit", p.unit}};
+  return parameters;
+}
+
 Json verdict_json(const Explanation& found, const Units& base) {
   const std::string name = found.found.hypothesis.name();
   return {{"verdict", word_for(found.finding)},
           {"effect", is_named(found) ? Json(name) : Json()},
           {"class", class_of(found)},
           {"closest", found.finding == Finding::unnamed && !name.empty() ? Json(name) : Json()},
-          {"parameters", parameters_json(found.found, base)},
+          {"parameters", parameters_json(found_parameters(found.found, base))},
           {"rivals", rivals_json(found, base)},
           {"bounds", bounds_json(found, base)},
           {"not_looked_for", not_looked_for(found)},

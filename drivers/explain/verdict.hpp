@@ -9,6 +9,9 @@ namespace traceraft {
 // Effects of the kernel that were no candidates: left out, or not to be seen in such data.
 std::vector<std::string> not_looked_for(const Explanation& found);
 
+// {effect.parameter: {value, sigma, unit}}, D without an effect.
+Json parameters_json(const std::vector<FoundParameter>& found);
+
 // verdict.json (docs/formats.md). `base`: units of the model that was given.
 Json verdict_json(const Explanation& found, const Units& base);
 

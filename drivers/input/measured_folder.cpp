@@ -6,26 +6,13 @@ namespace traceraft {
 namespace {
 
 namespace fs = std::filesystem;
-using Keys = std::vector<std::string>;
-
-const Keys& common_keys() {
-  static const Keys keys{"name",      "kind",        "origin",      "composition", "temperature",
-                         "time_zero", "time_offset", "length_unit", "time_unit",   "radius"};
-  return keys;
-}
-const Keys& field_keys() {
-  static const Keys keys{"blur", "times", "vesicles"};
-  return keys;
-}
-const Keys& series_keys() {
-  static const Keys keys{"sigma", "table"};
-  return keys;
-}
 
 TomlTable read_description(const fs::path& folder, bool fields, bool series) {
-  Keys keys = common_keys();
-  if (fields) keys.insert(keys.end(), field_keys().begin(), field_keys().end());
-  if (series) keys.insert(keys.end(), series_keys().begin(), series_keys().end());
+  std::vector<std::string> keys{"name",        "kind",      "origin",      "composition",
+                                "temperature", "time_zero", "time_offset", "length_unit",
+                                "time_unit",   "radius"};
+  if (fields) keys.insert(keys.end(), {"blur", "times", "vesicles"});
+  if (series) keys.insert(keys.end(), {"sigma", "table"});
   return TomlTable::read(folder / "dataset.toml", keys);
 }
 

@@ -29,10 +29,10 @@ double TimeLeft::seconds() const {
   const double passed = now.seconds - then.seconds;
   if (!(now.t > then.t) || !(now.t < end_)) return 0;
   const double steady = (end_ - now.t) / (now.t - then.t);
-  const auto steps = static_cast<double>(marks_.size() - 1 - before);
-  if (then.t > 0 && std::log(now.t / then.t) > kSettled * steps) return 0;
-  const double growing = then.t > 0 ? std::log(end_ / now.t) / std::log(now.t / then.t) : steady;
-  return passed * std::min(steady, growing);
+  if (!(then.t > 0)) return passed * steady;
+  const double grown = std::log(now.t / then.t);
+  if (grown > kSettled * static_cast<double>(marks_.size() - 1 - before)) return 0;
+  return passed * std::min(steady, std::log(end_ / now.t) / grown);
 }
 
 }  // namespace traceraft

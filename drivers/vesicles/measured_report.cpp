@@ -43,8 +43,7 @@ std::string origin_of(const MeasuredVesicles& data) {
 }
 
 std::string about(const MeasuredVesicles& data) {
-  return data.name + (data.synthetic ? " (SYNTHETIC, not measured)" : "") + ": " +
-         std::to_string(data.vesicles().size()) + " vesicles, " +
+  return title_of(data) + ": " + std::to_string(data.vesicles().size()) + " vesicles, " +
          std::to_string(data.measurements.size()) + " measurements" +
          (data.origin.empty() ? "" : "; " + data.origin);
 }
@@ -212,6 +211,10 @@ Chart comparison_chart(const MeasuredVesicles& data, const EnsembleSummary& summ
   }
   chart.series.push_back(measured);
   return chart;
+}
+
+std::string title_of(const MeasuredVesicles& data) {
+  return data.name + (data.synthetic ? " (SYNTHETIC, not measured)" : "");
 }
 
 void print_dataset(const MeasuredVesicles& data, const std::optional<FittedLaw>& law,

@@ -13,6 +13,9 @@
 
 namespace traceraft {
 
+// Its name, and whether it was drawn rather than measured.
+std::string title_of(const MeasuredVesicles& data);
+
 // `law`: fitted within the window.
 void print_dataset(const MeasuredVesicles& data, const std::optional<FittedLaw>& law,
                    const Window& window);
