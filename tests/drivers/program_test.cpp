@@ -314,7 +314,7 @@ TEST(FractionCommand, SaysWhatToSimulate) {
       << known.output;
   const Outcome given = traceraft(
       "fraction --composition 3:1:20 --temperature 15 --ordered 22:43:35 --disordered 66:16:18");
-  EXPECT_NE(given.output.find("run --case guv-3to1 --raft-fraction 0.107"), std::string::npos)
+  EXPECT_NE(given.output.find("run --case guv-3to1 --raft-fraction 0.108"), std::string::npos)
       << given.output;
   for (const char* wrong :
        {"", "--composition 3:1", "--composition 1:1:20", "--composition 2:1:20 --temperature 99",
