@@ -32,6 +32,7 @@ struct Dataset {
   MeasuredVesicles data;
   fs::path table;
   TableUnits units;
+  std::string where_radius;  // it says one for all vesicles
 };
 
 Dataset read_description(const fs::path& folder) {
@@ -50,6 +51,7 @@ Dataset read_description(const fs::path& folder) {
   d.units.length = length_factor(toml, "length_unit");
   d.units.time = time_factor(toml, "time_unit");
   d.units.time_offset = time_offset(toml);
+  d.where_radius = toml.where("radius");
   if (toml.has("radius"))
     d.units.radius = checked_radius(toml.number("radius") * d.units.length, toml.where("radius"));
   const std::string sigma = toml.text_or("sigma", "standard deviation");
@@ -68,7 +70,12 @@ MeasuredVesicles read_dataset(const fs::path& folder) {
   Dataset d = read_description(folder);
   if (!std::filesystem::exists(d.table))
     throw InputError(d.table.string() + ": there is no such table of measurements");
-  d.data.measurements = read_measurements(d.units, CsvTable::read(d.table));
+  const CsvTable table = CsvTable::read(d.table);
+  // Fields in the same folder are of one radius, which says nothing of the vesicles of a table.
+  if (d.units.radius && table.has("radius") && !holds_fields(folder))
+    throw InputError(d.where_radius + ": " + d.table.string() +
+                     " has a column 'radius'; leave one of the two out");
+  d.data.measurements = read_measurements(d.units, table);
   if (d.data.measurements.empty()) throw InputError(d.table.string() + ": nothing was measured");
   return d.data;
 }

@@ -180,7 +180,8 @@ std::vector<Measurement> read_caps(const TableUnits& units, const CsvTable& tabl
     }
     set_caps(m, caps);
     if (*m.of(Quantity::fraction) > 1)
-      throw InputError(table.where(first) + ": these caps cover more than the whole vesicle");
+      throw InputError(table.where(first, "cap_radius") +
+                       ": the caps of this look cover more than the whole vesicle");
     looks.push_back(m);
   }
   return looks;

@@ -18,6 +18,7 @@
 #include "kernel/core/text.hpp"
 #include "verification/vesicles/comparison.hpp"
 #include "verification/vesicles/raft_fraction.hpp"
+#include "verification/vesicles/resolvable.hpp"
 
 namespace traceraft {
 namespace {
@@ -235,6 +236,8 @@ void print_dataset(const MeasuredVesicles& data, const std::optional<FittedLaw>&
   if (!data.composition.empty() && data.celsius)
     std::printf("  %-22s %s\n", "estimated fraction",
                 estimated_fraction(data.composition, *data.celsius).c_str());
+  if (const std::string doubt = too_long_boundaries(data); !doubt.empty())
+    std::printf("\nNOTE: %s\n", doubt.c_str());
   std::printf("\npower law from %g to %g s\n", window.begin, window.end);
   print_rows({kLawHeading, law_row(origin_of(data), law)});
   for (const std::string& remark : remarks_on({law})) std::printf("%s\n", remark.c_str());
@@ -286,6 +289,7 @@ int compare_with_ensemble(const MeasuredVesicles& data, const ComparisonRequest&
   std::vector<std::string> notes = differences(data, simulated_vesicle(radius, runs, data));
   if (model.text("surface") != "sphere")
     notes.push_back("The simulated surface is no sphere: " + model.text("surface") + ".");
+  if (const std::string doubt = too_long_boundaries(data); !doubt.empty()) notes.push_back(doubt);
   for (const std::string& note : doubts_of(agreements)) notes.push_back(note);
   for (const std::string& note : notes) page.paragraph(note);
   page.paragraph(formatted("Power laws fitted from %g to %g s.", window.begin, window.end));

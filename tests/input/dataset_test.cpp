@@ -122,7 +122,11 @@ TEST_F(DatasetTest, NamesFileLineAndColumn) {
   expect_complaint("vesicle,time,radius,cap_radius\na,1,5000,5001\n",
                    "column 'cap_radius': 5001 is impossible");
   expect_complaint("vesicle,time,radius,cap_radius\na,1,5000,5000\na,1,5000,5000\na,1,5000,1\n",
-                   "more than the whole vesicle");
+                   ":2: column 'cap_radius': the caps of this look cover more");
+  expect_complaint(heading + "a,1,5000,20000,1,0.1\n",
+                   "dataset.toml:6: radius: ", "radius = 5000\n");
+  expect_complaint(heading + "a,1,5000,20000,1,0.1\n",
+                   "has a column 'radius'; leave one of the two out", "radius = 5000\n");
   expect_complaint("vesicle,time,rafts\na,1,1\n", "unknown key 'radiu'", "radiu = 3\n");
   expect_complaint("vesicle,time,rafts\na,1,1\n", "dataset.toml:6: sigma", "sigma = \"?\"\n");
 }

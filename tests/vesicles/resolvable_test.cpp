@@ -1,0 +1,43 @@
+#include "verification/vesicles/resolvable.hpp"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+namespace traceraft {
+namespace {
+
+MeasuredVesicles look(double perimeter, std::optional<double> fraction) {
+  Measurement m{"a", 30, 5, {}, {}};
+  m.values[static_cast<std::size_t>(Quantity::perimeter)] = perimeter;
+  m.values[static_cast<std::size_t>(Quantity::fraction)] = fraction;
+  MeasuredVesicles data;
+  data.measurements = {m};
+  return data;
+}
+
+// N small rafts of radius a have P = 2π N a/R and cover N π a² of 4π R².
+TEST(Resolvable, NamesRaftsThatLightDoesNotShow) {
+  const auto rafts = [](double radius) {
+    constexpr int kRafts = 100;
+    return look(2 * 3.14159265 * kRafts * radius / 5, kRafts * radius * radius / (4 * 25));
+  };
+  EXPECT_EQ(too_long_boundaries(rafts(0.21)), "");
+  const std::string doubt = too_long_boundaries(rafts(0.15));
+  EXPECT_NE(doubt.find("Of 1 of 1 looks"), std::string::npos) << doubt;
+  EXPECT_NE(doubt.find("'a' at 30 s would have rafts of 0.15 um"), std::string::npos) << doubt;
+}
+
+// As much raft as possible, half of the surface, has the widest strips.
+TEST(Resolvable, DoubtsNothingThatMayBe) {
+  EXPECT_EQ(too_long_boundaries(look(300, std::nullopt)), "");
+  EXPECT_NE(too_long_boundaries(look(320, std::nullopt)), "");
+  // What is not raft may be narrow as well.
+  EXPECT_NE(too_long_boundaries(look(100, 0.95)), "");
+  MeasuredVesicles nothing;
+  nothing.measurements = {Measurement{"a", 30, 5, {}, {}}};
+  EXPECT_EQ(too_long_boundaries(nothing), "");
+}
+
+}  // namespace
+}  // namespace traceraft
