@@ -12,6 +12,7 @@
 #include "drivers/commands.hpp"
 #include "drivers/config/config_file.hpp"
 #include "drivers/config/option_flags.hpp"
+#include "drivers/config/options.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/input/dataset.hpp"
 #include "drivers/input/measured_units.hpp"
@@ -33,7 +34,7 @@ namespace fs = std::filesystem;
 struct CalibrateRequest {
   GivenValues flags;
   std::string data, model, ensemble, out, parameters;
-  int runs = 8, jobs = 0;
+  int runs = 8, jobs = 0, most_cells = 0;  // 0: as many as processors; see most_cells_of
   bool quiet = false;
 };
 
@@ -120,8 +121,20 @@ int calibrate_ensemble(const CalibrateRequest& request, const MeasuredVesicles& 
       "D is looked for between %.3g and %.3g cm^2/s: of a larger one, runs that end at %.4g s know "
       "nothing at the times of the measurements; take an ensemble with a larger --t-end.",
       model.units().diffusion_cm2_s / kSlowest, model.units().diffusion_cm2_s * fastest, shortest);
-  write_calibration(out, data, {model, {}, {point}, bound}, result, request.quiet);
+  const std::string command = "traceraft calibrate --data " + request.data + " --ensemble " +
+                              request.ensemble + " --parameters mobility";
+  write_calibration(out, data, {model, {}, {point}, 0, command, bound}, result, request.quiet);
   return kSuccess;
+}
+
+// Fewer cells than the model's would make its own ε too small.
+int most_cells_of(const CalibrateRequest& request, const Configuration& model) {
+  constexpr long long kUsual = 128;
+  const long long own = model.integer("cells");
+  if (request.most_cells == 0) return static_cast<int>(std::max(kUsual, own + own / 2));
+  if (request.most_cells >= own) return request.most_cells;
+  throw InputError("--most-cells: " + std::to_string(request.most_cells) +
+                   " is less than the model's own " + std::to_string(own));
 }
 
 int run_calibration(CalibrateRequest request) {
@@ -137,13 +150,15 @@ int run_calibration(CalibrateRequest request) {
   const Configuration model(read_config_file(request.model, "--model"), request.flags);
   refuse_scaled(model);
   refuse_calibrating(model);
+  const int most_cells = most_cells_of(request, model);
   const fs::path out = folder_for(request);
   const FolderLock lock(out);
   remember(out,
            "parameters " + request.parameters + ", " + std::to_string(request.runs) + " runs to " +
                format_number(end_of_runs(data)) + " s",
            model);
-  const CalibratorRequest simulations{out, costly_parameters(request.parameters), request.runs,
+  const CalibratorRequest simulations{out,          costly_parameters(request.parameters),
+                                      most_cells,   request.runs,
                                       request.jobs, request.quiet};
   Calibrator calibrator(simulations, data, model);
   if (!calibrator.run()) {
@@ -154,7 +169,11 @@ int run_calibration(CalibrateRequest request) {
   const std::string bound =
       formatted("D is looked for between %.3g and %.3g cm^2/s: begin with another --diffusion.",
                 diffusion / kSlowest, diffusion * kFastest);
-  write_calibration(out, data, {model, simulations.names, calibrator.points(), bound},
+  const std::string command = "traceraft calibrate --data " + request.data + " --model " +
+                              (out / kIdentityFile).string() + " --parameters " +
+                              request.parameters + " --runs " + std::to_string(request.runs);
+  write_calibration(out, data,
+                    {model, simulations.names, calibrator.points(), most_cells, command, bound},
                     calibrator.result(), request.quiet);
   return kSuccess;
 }
@@ -173,6 +192,10 @@ Action define_calibrate(CLI::App& app) {
   app.add_option("--runs", request->runs, "seeds that every choice of parameters is run with")
       ->check(CLI::Range(2, 1000))
       ->capture_default_str();
+  app.add_option("--most-cells", request->most_cells,
+                 "cells that meshes of a smaller epsilon may have, and so how small it may be; "
+                 "default: half more than the model's, 128 at least")
+      ->check(CLI::Range(4.0, run_option("cells").max));
   app.add_option("--jobs", request->jobs, "runs at a time; default: one for each processor")
       ->check(CLI::Range(1, 1024));
   app.add_option("--out", request->out,

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "drivers/config/options.hpp"
 #include "drivers/ensemble/ensemble_point.hpp"
 #include "kernel/core/parameters.hpp"
 
@@ -37,12 +36,11 @@ const NamedList<CalibratedOption>& calibrated_options() {
   return list;
 }
 
-Interval range_of(const Configuration& model, const std::string& parameter) {
+Interval range_of(const Configuration& model, const std::string& parameter, int most_cells) {
   const double box = kBoxWidth * model.units().length(), cells = model.number("cells");
   if (parameter == "noise-length") return {box / cells, box / kFewestNoiseCells};
   if (parameter == "fraction") return kFractions;
-  const double finest = run_option("cells").max;
-  return {model.number("epsilon") * cells / finest, 0.5 * model.units().length()};
+  return {model.number("epsilon") * cells / most_cells, 0.5 * model.units().length()};
 }
 
 std::vector<double> values_of(const Configuration& model,

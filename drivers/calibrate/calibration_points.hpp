@@ -28,8 +28,8 @@ Configuration configuration_at(const Configuration& model,
                                const std::vector<double>& values, double t_end);
 
 // What a parameter may be in simulations of the model: rafts and something between them, noise that
-// its meshes can hold. Both ends are > 0.
-Interval range_of(const Configuration& model, const std::string& parameter);
+// its meshes can hold, ε that so many cells resolve as well as the model's do. Both ends are > 0.
+Interval range_of(const Configuration& model, const std::string& parameter, int most_cells);
 
 // Where the parameters of the model are; of noise lengths, what its meshes make of them.
 std::vector<double> values_of(const Configuration& model,

@@ -12,6 +12,7 @@
 #include "drivers/output/page.hpp"
 #include "drivers/output/provenance.hpp"
 #include "drivers/output/text_table.hpp"
+#include "drivers/vesicles/agreement_report.hpp"
 #include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/text.hpp"
 #include "verification/vesicles/calibration_data.hpp"
@@ -19,6 +20,8 @@
 
 namespace traceraft {
 namespace {
+
+constexpr double kAtEnd = 1.01;  // of a range
 
 // D in cm²/s from R²/D in seconds.
 double diffusion(const Configuration& model, double seconds_per_unit) {
@@ -134,6 +137,15 @@ std::vector<History> best_runs(const CalibrationRuns& all, const Calibration& re
   return runs;
 }
 
+double smallest_epsilon(const CalibrationRuns& runs) {
+  const auto at = static_cast<std::size_t>(
+      std::find(runs.names.begin(), runs.names.end(), "epsilon") - runs.names.begin());
+  double smallest = HUGE_VAL;
+  for (const CalibrationPoint& point : runs.points)
+    smallest = std::min(smallest, std::exp(point.ln_parameters[at]));
+  return smallest;
+}
+
 // What is to be known before the numbers.
 std::vector<std::string> notes_on(const MeasuredVesicles& data, const CalibrationRuns& runs,
                                   const std::vector<History>& best, const Calibration& result) {
@@ -154,6 +166,12 @@ std::vector<std::string> notes_on(const MeasuredVesicles& data, const Calibratio
         formatted("%d of %zu measurements are of no raft, or of neither perimeter nor "
                   "number: they are not used.",
                   nothing, data.measurements.size()));
+  if (std::find(names.begin(), names.end(), "epsilon") != names.end() &&
+      smallest_epsilon(runs) < kAtEnd * range_of(runs.model, "epsilon", runs.most_cells).low)
+    notes.push_back(formatted(
+        "Simulations went down to the smallest epsilon that %d cells allow; for a smaller one take "
+        "more: --most-cells.",
+        runs.most_cells));
   if (!names.empty() && std::find(names.begin(), names.end(), "noise-length") == names.end())
     notes.push_back(
         "The intervals hold if the initial noise is as long as the model's; if it is not, the "
@@ -229,16 +247,24 @@ void write_calibration(const std::filesystem::path& folder, const MeasuredVesicl
   for (const auto* list : {&notes, &sentences})
     for (const std::string& sentence : *list) page.paragraph(sentence);
   Missing missing;
+  page.heading("How well it fits");
+  const std::vector<Row> agreement = agreement_rows(compare_with_runs(data, best));
+  page.table(agreement);
+  page.paragraph(about_agreement(best.size()));
   add_fit(page, folder, data, best, missing);
   page.table(table_rows(table));
   add_deviances(page, folder, runs, result, missing);
   add_settings(page, found);
+  add_provenance(page, folder, runs.command);
   write_durably(folder / "calibration.html", page.html());
   if (quiet) return;
   std::printf("\n%s\n\n", title_of(data).c_str());
   print_rows(rows);
   for (const auto* list : {&notes, &sentences})
     for (const std::string& sentence : *list) std::printf("\n%s\n", sentence.c_str());
+  std::printf("\nin the simulations that fit best:\n");
+  print_rows(agreement);
+  std::printf("%s\n", about_agreement(best.size()).c_str());
   if (!result.unit_at_bound)
     std::printf("\nrun it with: traceraft run --config %s\n", (folder / "calibrated.toml").c_str());
   std::printf("open next: %s\n", (folder / "calibration.html").c_str());

@@ -13,7 +13,9 @@ struct CalibrationRuns {
   const Configuration& model;
   std::vector<std::string> names;  // of the parameters of the points
   std::vector<CalibrationPoint> points;
-  std::string bound;  // where the search for D ends, and what to do about it
+  int most_cells;       // that simulations might have
+  std::string command;  // that asks for it
+  std::string bound;    // where the search for D ends, and what to do about it
 };
 
 // calibrated.toml is the model with what was found.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "drivers/output/status_line.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
@@ -16,6 +17,12 @@ namespace {
 constexpr double kSteps[] = {0.5, 0.25, 0.1};
 constexpr int kMostRounds = 6;
 
+// But for a factor: they grow as the surface's triangles.
+double nodes(const Configuration& configuration) {
+  const double cells = configuration.number("cells");
+  return cells * cells;
+}
+
 }  // namespace
 
 double end_of_runs(const MeasuredVesicles& data) {
@@ -23,6 +30,10 @@ double end_of_runs(const MeasuredVesicles& data) {
 }
 
 bool Calibrator::run() {
+  if (!request_.quiet && !request_.names.empty())
+    std::printf("%zu to %d rounds of simulations, %zu choices in each, %d runs of each\n",
+                std::size(kSteps), kMostRounds,
+                design_around(std::vector<double>(request_.names.size()), 0).size(), request_.runs);
   std::vector<double> centre;
   for (const double value : values_of(model_, request_.names)) centre.push_back(std::log(value));
   const double seconds = model_.units().seconds_per_unit();
@@ -45,14 +56,15 @@ bool Calibrator::run() {
 
 std::vector<SoughtParameter> Calibrator::sought() const {
   std::vector<SoughtParameter> all;
-  for (const std::string& name : request_.names) all.push_back({name, range_of(model_, name)});
+  for (const std::string& name : request_.names)
+    all.push_back({name, range_of(model_, name, request_.most_cells)});
   return all;
 }
 
 // Moved so that all of the design can be run.
 std::vector<double> Calibrator::within_range(std::vector<double> centre, double step) const {
   for (std::size_t i = 0; i < centre.size(); ++i) {
-    const Interval range = range_of(model_, request_.names[i]);
+    const Interval range = range_of(model_, request_.names[i], request_.most_cells);
     const double low = std::log(range.low), high = std::log(range.high);
     centre[i] =
         high - low > 2 * step ? std::clamp(centre[i], low + step, high - step) : (low + high) / 2;
@@ -72,6 +84,12 @@ bool Calibrator::add_points(const std::vector<std::vector<double>>& design, int 
   return true;
 }
 
+// As long per node as the choice before took.
+std::string Calibrator::expected_time(const Configuration& here) const {
+  if (seconds_per_node_ == 0) return "";
+  return ", about " + clock_text(seconds_per_node_ * nodes(here));
+}
+
 bool Calibrator::add_point(const std::vector<double>& ln, const std::string& number) {
   std::vector<double> values;
   std::string name = "point", words;
@@ -80,13 +98,17 @@ bool Calibrator::add_point(const std::vector<double>& ln, const std::string& num
     name += "-" + format_number(values.back());
     words += " " + request_.names[i] + " " + format_number(values.back());
   }
-  if (!request_.quiet)
-    std::printf("simulations %s: at%s\n", number.c_str(),
-                words.empty() ? " the model" : words.c_str());
   const Configuration here = configuration_at(model_, request_.names, values, end_of_runs(data_));
-  PointEnd end = run_point(request_.out / "points" / name, here,
-                           {request_.runs, request_.jobs, request_.quiet});
+  if (!request_.quiet)
+    std::printf("simulations %s: at%s, %s cells%s\n", number.c_str(),
+                words.empty() ? " the model" : words.c_str(), here.text("cells").c_str(),
+                expected_time(here).c_str());
+  const std::filesystem::path folder = request_.out / "points" / name;
+  const bool fresh = !std::filesystem::exists(folder);
+  const Stopwatch watch;
+  PointEnd end = run_point(folder, here, {request_.runs, request_.jobs, request_.quiet});
   if (end.stopped) return false;
+  if (fresh) seconds_per_node_ = watch.seconds() / nodes(here);
   for (const MemberFailure& failure : end.failures)
     std::fprintf(stderr, "traceraft: the run of seed %llu at%s failed: %s\n",
                  static_cast<unsigned long long>(failure.seed), words.c_str(), failure.why.c_str());

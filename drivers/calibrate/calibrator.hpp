@@ -18,6 +18,7 @@ double end_of_runs(const MeasuredVesicles& data);
 struct CalibratorRequest {
   std::filesystem::path out;
   std::vector<std::string> names;  // of the parameters that cost simulations
+  int most_cells;                  // of the mesh
   int runs, jobs;                  // of each choice; at a time
   bool quiet;
 };
@@ -41,12 +42,14 @@ class Calibrator {
   std::vector<double> within_range(std::vector<double> centre, double step) const;
   bool add_points(const std::vector<std::vector<double>>& design, int round);
   bool add_point(const std::vector<double>& ln, const std::string& number);
+  std::string expected_time(const Configuration& here) const;  // for people; "" if unknown
 
   const CalibratorRequest& request_;
   const MeasuredVesicles& data_;
   const Configuration& model_;
   std::vector<PointEnd> ends_;
   std::vector<CalibrationPoint> points_;  // of them
+  double seconds_per_node_ = 0;           // of the last choice that was run as a whole
   Calibration result_;
 };
 

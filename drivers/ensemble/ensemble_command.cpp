@@ -82,16 +82,6 @@ int one_member(const EnsembleRequest& request, const EnsembleFolder& folder,
   return run_member(folder, seed, std::max(1, request.threads));
 }
 
-std::string sentence(const Configuration& configuration, std::size_t finished,
-                     const EnsemblePlan& plan) {
-  return std::to_string(finished) + " of " + std::to_string(plan.runs) + " runs of the case " +
-         configuration.text("case") + ", seeds " + std::to_string(plan.first_seed) + " to " +
-         std::to_string(plan.last_seed()) + ": raft fraction " +
-         configuration.text("raft-fraction") + ", epsilon " + configuration.text("epsilon") + ", " +
-         configuration.text("cells") +
-         " cells. Perimeters are diffuse ones, divided by the radius.";
-}
-
 int carry_out(const EnsembleRequest& request, const EnsembleFolder& folder,
               const EnsemblePlan& plan, const Configuration& configuration) {
   const Jobs jobs = jobs_of(request.jobs, request.threads);
@@ -115,9 +105,7 @@ int carry_out(const EnsembleRequest& request, const EnsembleFolder& folder,
   if (runs.empty()) return kNumericalFailure;
   const EnsembleSummary summary = summarise(runs);
   write_histories(folder.path() / kHistoriesFile, finished.seeds, runs, summary.times);
-  const std::string missing =
-      write_ensemble(folder, summary, end, sentence(configuration, runs.size(), plan),
-                     !units.scaled, request.quiet);
+  const std::string missing = write_ensemble(folder, configuration, summary, end, request.quiet);
   if (!request.quiet) {
     if (!missing.empty()) std::printf("\ncharts are missing: %s\n", missing.c_str());
     std::printf("\nopen next: %s\n", (folder.path() / "ensemble.html").c_str());

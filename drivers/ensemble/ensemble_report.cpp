@@ -2,8 +2,8 @@
 
 #include "backends/posix/durable_file.hpp"
 #include "drivers/output/chart.hpp"
-#include "drivers/output/page.hpp"
-#include "drivers/output/text_table.hpp"
+#include "drivers/output/provenance.hpp"
+#include "kernel/core/text.hpp"
 
 namespace traceraft {
 namespace {
@@ -34,6 +34,16 @@ ChartSeries band(const EnsembleSummary& summary, Quantity quantity, const char* 
     series.other.push_back(at[i].*high);
   }
   return series;
+}
+
+std::string sentence_on(const Configuration& configuration, const EnsemblePlan& plan,
+                        std::size_t failed) {
+  return std::to_string(static_cast<std::size_t>(plan.runs) - failed) + " of " +
+         std::to_string(plan.runs) + " runs of the case " + configuration.text("case") +
+         ", seeds " + std::to_string(plan.first_seed) + " to " + std::to_string(plan.last_seed()) +
+         ": raft fraction " + configuration.text("raft-fraction") + ", epsilon " +
+         configuration.text("epsilon") + ", " + configuration.text("cells") +
+         " cells. Perimeters are diffuse ones, divided by the radius.";
 }
 
 }  // namespace
@@ -88,12 +98,22 @@ Chart ensemble_chart(const EnsembleSummary& summary, Quantity quantity, bool sec
   return chart;
 }
 
-std::string write_ensemble(const EnsembleFolder& folder, const EnsembleSummary& summary,
-                           const EnsembleEnd& end, const std::string& about, bool seconds,
-                           bool quiet) {
+void add_ensemble_origin(Page& page, const EnsembleFolder& folder,
+                         const Configuration& configuration) {
+  const EnsemblePlan plan = folder.load();
+  add_settings(page, configuration);
+  add_provenance(page, folder.path(),
+                 command_for(formatted("traceraft ensemble --runs %d --first-seed ", plan.runs) +
+                                 std::to_string(plan.first_seed),
+                             configuration));
+}
+
+std::string write_ensemble(const EnsembleFolder& folder, const Configuration& configuration,
+                           const EnsembleSummary& summary, const EnsembleEnd& end, bool quiet) {
+  const bool seconds = !configuration.units().scaled;
   write_durably(folder.path() / "ensemble.csv", csv_text(ensemble_table(summary)));
   Page page("An ensemble of vesicles");
-  page.paragraph(about);
+  page.paragraph(sentence_on(configuration, folder.load(), end.failures.size()));
   for (const MemberFailure& failure : end.failures)
     page.paragraph("The run of seed " + std::to_string(failure.seed) + " failed: " + failure.why);
   const std::vector<Row> rows = ensemble_rows(summary, seconds);
@@ -103,6 +123,7 @@ std::string write_ensemble(const EnsembleFolder& folder, const EnsembleSummary& 
   for (const Quantity quantity : kQuantities)
     add_chart(page, ensemble_chart(summary, quantity, seconds),
               folder.path() / name_of(quantity).id, missing);
+  add_ensemble_origin(page, folder, configuration);
   write_durably(folder.path() / "ensemble.html", page.html());
   return missing.text();
 }

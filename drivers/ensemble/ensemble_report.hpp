@@ -3,8 +3,10 @@
 
 #include <vector>
 
+#include "drivers/config/configuration.hpp"
 #include "drivers/ensemble/ensemble_folder.hpp"
 #include "drivers/ensemble/ensemble_runs.hpp"
+#include "drivers/output/page.hpp"
 #include "drivers/output/text_table.hpp"
 #include "verification/study.hpp"
 #include "verification/vesicles/history.hpp"
@@ -25,10 +27,13 @@ std::vector<Row> ensemble_rows(const EnsembleSummary& summary, bool seconds);
 // Range, quartiles and median of a quantity over time. `seconds`: are times in seconds?
 Chart ensemble_chart(const EnsembleSummary& summary, Quantity quantity, bool seconds);
 
+// All settings of the runs, and the command that makes them again.
+void add_ensemble_origin(Page& page, const EnsembleFolder& folder,
+                         const Configuration& configuration);
+
 // Writes both files into the folder and prints a table unless `quiet`. Returns what is missing of
 // the charts, "" if nothing.
-std::string write_ensemble(const EnsembleFolder& folder, const EnsembleSummary& summary,
-                           const EnsembleEnd& end, const std::string& about, bool seconds,
-                           bool quiet);
+std::string write_ensemble(const EnsembleFolder& folder, const Configuration& configuration,
+                           const EnsembleSummary& summary, const EnsembleEnd& end, bool quiet);
 
 }  // namespace traceraft

@@ -1,5 +1,6 @@
 #include "drivers/output/provenance.hpp"
 
+#include "drivers/config/config_file.hpp"
 #include "drivers/version.hpp"
 
 namespace traceraft {
@@ -10,6 +11,11 @@ void add_settings(Page& page, const Configuration& configuration) {
     rows.push_back({spec.name, configuration.text(spec.name), spec.help});
   page.heading("Settings");
   page.table(rows);
+}
+
+std::string command_for(const std::string& command, const Configuration& configuration) {
+  const std::string flags = flags_text(configuration);
+  return command + (flags.empty() ? "" : " ") + flags;
 }
 
 void add_provenance(Page& page, const std::filesystem::path& folder, const std::string& command) {

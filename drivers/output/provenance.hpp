@@ -12,6 +12,9 @@ namespace traceraft {
 // All settings of a run, with what they mean.
 void add_settings(Page& page, const Configuration& configuration);
 
+// A command with the flags that make the configuration from the defaults.
+std::string command_for(const std::string& command, const Configuration& configuration);
+
 // The version, the folder, and the command that makes it again.
 void add_provenance(Page& page, const std::filesystem::path& folder, const std::string& command);
 

@@ -85,11 +85,6 @@ void add_summary(Page& page, const fs::path& run) {
   page.table(rows);
 }
 
-std::string with_flags(const std::string& command, const Configuration& configuration) {
-  const std::string flags = flags_text(configuration);
-  return command + (flags.empty() ? "" : " ") + flags;
-}
-
 void fill_run(Page& page, const fs::path& folder, const PageRequest& request, Missing& missing) {
   const Configuration configuration(read_config_file(folder / "config.toml"), {});
   const std::string unit = configuration.units().scaled ? "R^2/D" : "s";
@@ -102,7 +97,7 @@ void fill_run(Page& page, const fs::path& folder, const PageRequest& request, Mi
     add_chart(page, series_chart(series, curve, unit), request.charts / curve.column, missing);
   add_summary(page, folder);
   add_settings(page, configuration);
-  add_provenance(page, folder, with_flags("traceraft run", configuration));
+  add_provenance(page, folder, command_for("traceraft run", configuration));
 }
 
 // What `data compare` has left, as it is, and whether it is of the same runs.
@@ -142,11 +137,7 @@ void fill_ensemble(Page& page, const fs::path& path, const PageRequest& request,
   page.heading("Numbers");
   page.table(ensemble_rows(summary, !units.scaled));
   add_comparison(page, path, runs.size());
-  add_settings(page, configuration);
-  add_provenance(page, path,
-                 with_flags(formatted("traceraft ensemble --runs %d --first-seed ", plan.runs) +
-                                std::to_string(plan.first_seed),
-                            configuration));
+  add_ensemble_origin(page, folder, configuration);
 }
 
 }  // namespace

@@ -14,9 +14,9 @@
 #include "drivers/output/page.hpp"
 #include "drivers/output/provenance.hpp"
 #include "drivers/output/text_table.hpp"
+#include "drivers/vesicles/agreement_report.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/text.hpp"
-#include "verification/vesicles/comparison.hpp"
 #include "verification/vesicles/raft_fraction.hpp"
 #include "verification/vesicles/resolvable.hpp"
 
@@ -109,68 +109,6 @@ std::string about(const PublishedFacts& facts) {
         "simulations.",
         facts.outliers);
   return text;
-}
-
-// What the numbers of a comparison would be if nothing were wrong.
-std::string expectation(std::size_t runs) {
-  const SameKind expected = same_kind(runs);
-  return formatted(
-             "Of vesicles of the same kind as %zu runs, and measured without error, %.0f %% lie "
-             "within the range of the runs",
-             runs, 100 * expected.within) +
-         (std::isfinite(expected.misfit) ? formatted(", and the misfit is %.2f.", expected.misfit)
-                                         : "; the misfit of so few runs says nothing.");
-}
-
-constexpr char kDeviations[] =
-    "Deviations are those from the mean of the runs, over the scatter between runs and the "
-    "uncertainty of the measurement; of logarithms for perimeters and counts. ";
-
-std::vector<Row> agreement_rows(const std::vector<Agreement>& agreements) {
-  std::vector<Row> rows = {{"quantity", "compared", "outside the runs' time", "within their range",
-                            "mean deviation", "misfit"}};
-  for (const Agreement& a : agreements) {
-    rows.push_back({name_of(a.quantity).label, std::to_string(a.measurements),
-                    std::to_string(a.beyond), "", "", ""});
-    if (a.measurements == 0) continue;
-    Row& row = rows.back();
-    row[3] = formatted("%d (%.0f %%)", a.within, 100.0 * a.within / a.measurements);
-    row[4] = formatted("%+.2f", a.bias);
-    row[5] = formatted("%.2f", a.misfit);
-  }
-  return rows;
-}
-
-// Where there is nothing to compare, or nothing to measure deviations with.
-std::vector<std::string> doubts_of(const std::vector<Agreement>& agreements) {
-  constexpr double kSmall = 0.02;
-  std::vector<std::string> sentences;
-  if (std::all_of(agreements.begin(), agreements.end(),
-                  [](const Agreement& a) { return a.measurements == 0; }))
-    sentences.push_back("NOTHING IS COMPARED: no measurement is of a time that all runs cover.");
-  for (const Agreement& a : agreements)
-    if (a.measurements > 0 && a.scatter < kSmall)
-      sentences.push_back(
-          formatted("Runs and measurement scatter by %.2g %% only in %s: what they are "
-                    "compared in units of is next to nothing.",
-                    100 * a.scatter, name_of(a.quantity).label));
-  return sentences;
-}
-
-Table agreement_table(const std::vector<Agreement>& agreements) {
-  Table table{"comparison",
-              {"quantity", "compared", "beyond", "within_range", "mean_deviation", "misfit"},
-              {}};
-  for (const Agreement& a : agreements) {
-    table.rows.push_back({name_of(a.quantity).id, static_cast<double>(a.measurements),
-                          static_cast<double>(a.beyond), "", "", ""});
-    if (a.measurements == 0) continue;
-    std::vector<Cell>& row = table.rows.back();
-    row[3] = static_cast<double>(a.within);
-    row[4] = a.bias;
-    row[5] = a.misfit;
-  }
-  return table;
 }
 
 void refuse_other_membrane(const MeasuredVesicles& data, const PublishedFacts& facts) {
@@ -282,7 +220,7 @@ int compare_with_ensemble(const MeasuredVesicles& data, const ComparisonRequest&
   page.paragraph(about(data) + ".");
   if (request.facts) page.paragraph(about(*request.facts));
   page.paragraph(std::to_string(runs.size()) + " runs in " + request.ensemble.string() + ". " +
-                 kDeviations + expectation(runs.size()));
+                 about_agreement(runs.size()));
   page.table(rows);
   const Configuration model = model_of(request.ensemble);
   const double radius = model.units().length();
@@ -322,8 +260,8 @@ int compare_with_ensemble(const MeasuredVesicles& data, const ComparisonRequest&
   if (!request.quiet) {
     std::printf("%s\n\n", about(data).c_str());
     print_rows(rows);
-    std::printf("%s%s\n\npower laws from %g to %g s\n", kDeviations,
-                expectation(runs.size()).c_str(), window.begin, window.end);
+    std::printf("%s\n\npower laws from %g to %g s\n", about_agreement(runs.size()).c_str(),
+                window.begin, window.end);
     print_rows(laws);
     for (const std::string& remark : remarks) std::printf("%s\n", remark.c_str());
     for (const std::string& note : notes) std::printf("\n%s\n", note.c_str());

@@ -64,9 +64,22 @@ TEST_F(CalibrateTest, GoesFromFilesToFiles) {
   // The model that was found can be run.
   const Outcome valid = traceraft("run --validate --config " + out("c/calibrated.toml"));
   EXPECT_EQ(valid.code, 0) << valid.output;
+  EXPECT_NE(made.output.find("3 to 6 rounds of simulations, 3 choices in each, 2 runs of each"),
+            std::string::npos);
+  EXPECT_NE(made.output.find("cells, about 0:0"), std::string::npos);  // from the second on
+  const std::string page = content(folder.path / "c/calibration.html");
+  for (const char* words : {"How well it fits", "within their range", "Where this comes from"})
+    EXPECT_NE(page.find(words), std::string::npos) << words;
   // Given again, nothing is simulated again, and the same comes out.
   const std::string before = content(folder.path / "c/calibration.json");
   EXPECT_EQ(traceraft(command + " --quiet").code, 0);
+  EXPECT_EQ(content(folder.path / "c/calibration.json"), before);
+  // As the page says it is repeated.
+  const std::string repeat = "calibrate --data " + out("data") + " --model " +
+                             out("c/calibration-model.toml") +
+                             " --parameters mobility,epsilon --runs 2";
+  EXPECT_NE(page.find(repeat), std::string::npos);
+  EXPECT_EQ(traceraft(repeat + " --quiet --out " + out("c")).code, 0);
   EXPECT_EQ(content(folder.path / "c/calibration.json"), before);
   const Outcome other = traceraft(command + " --runs 4");
   EXPECT_NE(other.code, 0);
@@ -168,7 +181,7 @@ TEST_F(CalibrateTest, SaysWhatItDoesNotUse) {
 TEST(CalibrationPoints, CanBeRun) {
   const Configuration model({}, {{"cells", {"32", "--cells"}}, {"epsilon", {"0.3", "--epsilon"}}});
   for (const char* name : {"epsilon", "fraction", "noise-length"}) {
-    const Interval range = range_of(model, name);
+    const Interval range = range_of(model, name, 48);
     EXPECT_LE(range.low, values_of(model, {name})[0]) << name;
     EXPECT_GE(range.high, values_of(model, {name})[0]) << name;
     for (const double value : {range.low, range.high}) {
@@ -177,6 +190,7 @@ TEST(CalibrationPoints, CanBeRun) {
     }
   }
   const Configuration there = configuration_at(model, {"noise-length"}, {0.7}, 1);
+  EXPECT_DOUBLE_EQ(range_of(model, "epsilon", 48).low, 0.2);
   EXPECT_EQ(there.integer("noise-cells"), 24);
   EXPECT_NEAR(values_of(there, {"noise-length"})[0], 5 * 10.0 / 3 / 24, 1e-9);
 }
@@ -199,6 +213,7 @@ TEST_F(CalibrateTest, RefusesWhatItCannotCalibrate) {
          "more than a unit of time"},
         {"--data " + out("data") + " --case two-rafts", "differ in the noise"},
         {"--data " + out("data") + " --model " + out("no.toml"), "--model: "},
+        {"--data " + out("data") + " --case guv-2to1 --most-cells 64", "the model's own 128"},
         {"--data " + out("one"), "three vesicles at least"},
         {"--data " + out("data") + " --case guv-2to1 --scaled", "measurements are in seconds"}}) {
     const Outcome refused = traceraft("calibrate " + flags + " --out " + out("c"));

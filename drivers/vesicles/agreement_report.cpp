@@ -1,0 +1,74 @@
+#include "drivers/vesicles/agreement_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/core/text.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr char kDeviations[] =
+    "Deviations are those from the mean of the runs, over the scatter between runs and the "
+    "uncertainty of the measurement; of logarithms for perimeters and counts. ";
+
+}  // namespace
+
+std::string about_agreement(std::size_t runs) {
+  const SameKind expected = same_kind(runs);
+  return kDeviations +
+         formatted(
+             "Of vesicles of the same kind as %zu runs, and measured without error, %.0f %% lie "
+             "within the range of the runs",
+             runs, 100 * expected.within) +
+         (std::isfinite(expected.misfit) ? formatted(", and the misfit is %.2f.", expected.misfit)
+                                         : "; the misfit of so few runs says nothing.");
+}
+
+std::vector<Row> agreement_rows(const std::vector<Agreement>& agreements) {
+  std::vector<Row> rows = {{"quantity", "compared", "outside the runs' time", "within their range",
+                            "mean deviation", "misfit"}};
+  for (const Agreement& a : agreements) {
+    rows.push_back({name_of(a.quantity).label, std::to_string(a.measurements),
+                    std::to_string(a.beyond), "", "", ""});
+    if (a.measurements == 0) continue;
+    Row& row = rows.back();
+    row[3] = formatted("%d (%.0f %%)", a.within, 100.0 * a.within / a.measurements);
+    row[4] = formatted("%+.2f", a.bias);
+    row[5] = formatted("%.2f", a.misfit);
+  }
+  return rows;
+}
+
+std::vector<std::string> doubts_of(const std::vector<Agreement>& agreements) {
+  constexpr double kSmall = 0.02;
+  std::vector<std::string> sentences;
+  if (std::all_of(agreements.begin(), agreements.end(),
+                  [](const Agreement& a) { return a.measurements == 0; }))
+    sentences.push_back("NOTHING IS COMPARED: no measurement is of a time that all runs cover.");
+  for (const Agreement& a : agreements)
+    if (a.measurements > 0 && a.scatter < kSmall)
+      sentences.push_back(
+          formatted("Runs and measurement scatter by %.2g %% only in %s: what they are "
+                    "compared in units of is next to nothing.",
+                    100 * a.scatter, name_of(a.quantity).label));
+  return sentences;
+}
+
+Table agreement_table(const std::vector<Agreement>& agreements) {
+  Table table{"comparison",
+              {"quantity", "compared", "beyond", "within_range", "mean_deviation", "misfit"},
+              {}};
+  for (const Agreement& a : agreements) {
+    table.rows.push_back({name_of(a.quantity).id, static_cast<double>(a.measurements),
+                          static_cast<double>(a.beyond), "", "", ""});
+    if (a.measurements == 0) continue;
+    std::vector<Cell>& row = table.rows.back();
+    row[3] = static_cast<double>(a.within);
+    row[4] = a.bias;
+    row[5] = a.misfit;
+  }
+  return table;
+}
+
+}  // namespace traceraft
