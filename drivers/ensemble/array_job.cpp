@@ -1,5 +1,8 @@
 #include "drivers/ensemble/array_job.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "backends/posix/child.hpp"
 
 namespace traceraft {
@@ -14,7 +17,16 @@ std::string shell_word(const std::string& text) {
 
 }  // namespace
 
-std::string array_job_script(const EnsembleFolder& folder, const EnsemblePlan& plan) {
+ArrayTask array_task(const Configuration& configuration) {
+  constexpr double kCells = 128, kGigabytes = 0.45, kHours = 0.25;  // docs/results.md
+  constexpr double kSpare = 4;
+  const double finer = configuration.number("cells") / kCells;
+  return {static_cast<int>(std::ceil(kSpare * kGigabytes * std::max(1.0, finer * finer))),
+          static_cast<int>(std::ceil(kSpare * kHours * std::max(1.0, finer * finer * finer)))};
+}
+
+std::string array_job_script(const EnsembleFolder& folder, const EnsemblePlan& plan,
+                             const ArrayTask& task) {
   const std::string path = std::filesystem::absolute(folder.path()).lexically_normal().string();
   const std::string program = shell_word(own_path()) + " ensemble --out " + shell_word(path);
   return "#!/bin/sh\n"
@@ -24,8 +36,12 @@ std::string array_job_script(const EnsembleFolder& folder, const EnsemblePlan& p
          std::to_string(plan.runs - 1) +
          "\n"
          "#SBATCH --cpus-per-task=2\n"
-         "#SBATCH --mem=4G\n"
-         "#SBATCH --time=04:00:00\n"
+         "#SBATCH --mem=" +
+         std::to_string(task.gigabytes) +
+         "G\n"
+         "#SBATCH --time=" +
+         std::to_string(task.hours) +
+         ":00:00\n"
          "#SBATCH --signal=B:TERM@60\n"
          "# A task that is stopped or killed goes on where it was when it is submitted again.\n"
          "# When all are done: " +

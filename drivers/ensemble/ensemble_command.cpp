@@ -79,7 +79,7 @@ int one_member(const EnsembleRequest& request, const EnsembleFolder& folder,
     throw InputError("--member: " + std::to_string(seed) +
                      " is not in this ensemble (allowed: " + std::to_string(plan.first_seed) +
                      " to " + std::to_string(plan.last_seed()) + ")");
-  return run_member(folder, seed, std::max(1, request.threads));
+  return run_member(folder, seed, std::max(1, request.threads), request.quiet);
 }
 
 int carry_out(const EnsembleRequest& request, const EnsembleFolder& folder,
@@ -142,8 +142,13 @@ int run_ensemble(const EnsembleRequest& request) {
   if (!goes_on) write_durably(folder.config(), config_text(configuration));
   if (!request.array_job) return carry_out(request, folder, plan, configuration);
   const fs::path script = folder.path() / "array-job.sh";
-  write_durably(script, array_job_script(folder, plan));
-  std::printf("submit it with: sbatch '%s'\n", script.c_str());
+  const ArrayTask task = array_task(configuration);
+  write_durably(script, array_job_script(folder, plan, task));
+  if (!request.quiet)
+    std::printf(
+        "%d tasks of 2 processors, %d GB and at most %d h each: see its #SBATCH lines\n"
+        "submit it with: sbatch '%s'\n",
+        plan.runs, task.gigabytes, task.hours, script.c_str());
   return kSuccess;
 }
 

@@ -121,9 +121,22 @@ EnsembleEnd work_off(const EnsemblePlan& plan, const EnsembleFolder& folder, con
   return {!all, ledger.failures()};
 }
 
-int run_member(const EnsembleFolder& folder, std::uint64_t seed, int threads) {
-  if (folder.member(seed).end == MemberEnd::finished) return kSuccess;
+int run_member(const EnsembleFolder& folder, std::uint64_t seed, int threads, bool quiet) {
+  const auto say = [seed, quiet](const std::string& what) {
+    if (quiet) return;
+    std::printf("seed %llu: %s\n", static_cast<unsigned long long>(seed), what.c_str());
+    std::fflush(stdout);  // the log of a job is read while it runs
+  };
+  const MemberEnd before = folder.member(seed).end;
+  if (before == MemberEnd::finished) {
+    say("finished before");
+    return kSuccess;
+  }
+  say(std::string(before == MemberEnd::missing ? "begins" : "goes on") +
+      ", threads: " + std::to_string(threads));
+  const Stopwatch watch;
   const ProgramEnd end = run_or_resume(folder, seed, threads);
+  if (end.exit_code == kSuccess) say("finished after " + clock_text(watch.seconds()));
   if (end.exit_code != kSuccess)
     std::fprintf(stderr, "traceraft: seed %llu: %s\n", static_cast<unsigned long long>(seed),
                  end.reason().c_str());

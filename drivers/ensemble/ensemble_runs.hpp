@@ -26,6 +26,6 @@ EnsembleEnd work_off(const EnsemblePlan& plan, const EnsembleFolder& folder, con
                      double t_end, bool quiet);
 
 // One member alone, for the tasks of an array job. Returns the exit code of its run.
-int run_member(const EnsembleFolder& folder, std::uint64_t seed, int threads);
+int run_member(const EnsembleFolder& folder, std::uint64_t seed, int threads, bool quiet);
 
 }  // namespace traceraft

@@ -169,9 +169,15 @@ TEST_F(EnsembleTest, IsAnArrayJobToo) {
   ASSERT_EQ(script.code, 0) << script.output;
   const fs::path job = folder.path / "there it is/array-job.sh";
   EXPECT_NE(content(job).find("#SBATCH --array=0-1\n"), std::string::npos);
-  for (const char* task : {"0", "1"})
-    ASSERT_EQ(shell("SLURM_ARRAY_TASK_ID=" + std::string(task) + " sh '" + job.string() + "'").code,
-              0);
+  for (const char* line : {"#SBATCH --mem=2G\n", "#SBATCH --time=1:00:00\n"})
+    EXPECT_NE(content(job).find(line), std::string::npos) << line;
+  for (const char* task : {"0", "1"}) {
+    const Outcome done =
+        shell("SLURM_ARRAY_TASK_ID=" + std::string(task) + " sh '" + job.string() + "'");
+    ASSERT_EQ(done.code, 0);
+    const std::string seed = task == std::string("0") ? "seed 7: " : "seed 8: ";
+    EXPECT_NE(done.output.find(seed + "finished after "), std::string::npos) << done.output;
+  }
   ASSERT_EQ(traceraft("ensemble --quiet --out '" + out("there it is") + "'").code, 0);
   EXPECT_EQ(content(csv("there it is")), content(csv("here")));
 }
