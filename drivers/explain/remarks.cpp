@@ -47,6 +47,12 @@ void add_rerun(const Explanation& found, std::vector<std::string>& all) {
     all.push_back("On another mesh and by another integrator " + found.found.hypothesis.name() +
                   " foretells the measurements worse than the base model, beyond what noise does: "
                   "it is no explanation of them, though it came closest in the search.");
+  else if (found.rerun->gap_p && is_named(found))
+    all.push_back(
+        "On the model's own mesh a gap remains; on another mesh and by another "
+        "integrator there is none (p = " +
+        formatted("%.2g", *found.rerun->gap_p) +
+        "), so that it is that of the mesh: repeat with more --cells.");
   else if (!found.rerun->confirms())
     all.push_back(
         "On another mesh and by another integrator what was found foretells the measurements no "

@@ -196,13 +196,16 @@ Json json_of(const std::optional<Rerun>& rerun) {
           {"floor", json_of(rerun->floor)},
           {"failure", rerun->failure},
           {"gain", rerun->gain},
-          {"shortfall", rerun->shortfall}};
+          {"shortfall", rerun->shortfall},
+          {"gap_p", rerun->gap_p ? Json(*rerun->gap_p) : Json()}};
 }
 std::optional<Rerun> rerun_of(const Json& json) {
   if (json.is_null()) return {};
-  return Rerun{json.at("cells"),          json.at("integrator"),     gaps_of(json.at("base")),
-               gaps_of(json.at("found")), gaps_of(json.at("floor")), json.at("failure"),
-               json.at("gain"),           json.at("shortfall")};
+  Rerun rerun{json.at("cells"),          json.at("integrator"),     gaps_of(json.at("base")),
+              gaps_of(json.at("found")), gaps_of(json.at("floor")), json.at("failure"),
+              json.at("gain"),           json.at("shortfall")};
+  if (const Json& p = json.at("gap_p"); !p.is_null()) rerun.gap_p = p.get<double>();
+  return rerun;
 }
 
 Finding finding_of(const std::string& word) {

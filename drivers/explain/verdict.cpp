@@ -78,6 +78,7 @@ Json rerun_json(const Rerun& rerun) {
   return {{"confirms", rerun.confirms()},
           {"refutes", rerun.refutes()},
           {"gain", rerun.gain},
+          {"gap_p", rerun.gap_p ? Json(*rerun.gap_p) : Json()},
           {"cells", rerun.cells},
           {"integrator", rerun.integrator},
           {"base", gap_json(rerun.base)},

@@ -35,6 +35,7 @@ class Search {
     bool more = true;
     if (saved) {
       more = saved->more;
+      tell("what was found before");
       go_on_from(*saved);
     } else {
       tell("pace of the base model");
@@ -61,15 +62,17 @@ class Search {
     });
   }
 
+  SearchState state(bool more) const {
+    SearchState now{result_, {}, more};
+    for (const FilterProblem& data : data_) now.noise.push_back(data.noise);
+    return now;
+  }
+
   void save(bool more) const {
-    if (!request_.save) return;
-    SearchState state{result_, {}, more};
-    for (const FilterProblem& data : data_) state.noise.push_back(data.noise);
-    request_.save(state);
+    if (request_.save) request_.save(state(more));
   }
 
   void go_on_from(const SearchState& state) {
-    tell("what was found before");
     result_ = state.so_far;
     for (FilterProblem& data : data_) data.noise = state.noise[data.vesicle];
     model_.hypothesis = result_.found.hypothesis;
@@ -235,6 +238,7 @@ class Search {
     const double usual_change = kUsualChange * contrast_of(data_) / noise_of(data_);
     const Judgement judgement = judge(round, values(), request_.false_alarms, usual_change);
     if (!judgement.taken) {
+      if (judgement.finding == Finding::unnamed && leave_to_rivals()) return true;
       // What could not be told apart before cannot be now.
       if (judgement.finding != Finding::named) result_.finding = judgement.finding;
       return false;
@@ -246,6 +250,31 @@ class Search {
         result_.rivals.push_back(round.refits[k]);
     set_found(round.refits.front());
     improve();
+    return true;
+  }
+
+  // Of hypotheses that explain what counts as well as each other some may foretell what is held out
+  // worse: the class is left to those that leave no gap. False if there is none.
+  bool leave_to_rivals() {
+    const SearchState before = state(true);
+    std::vector<Refit> without_gap;
+    for (const Refit& rival : before.so_far.rivals) {
+      tell("instead " + rival.hypothesis.name());
+      set_found(rival);
+      screen_the_rest();
+      try {
+        const Screening left = screen(next_pass(), model_.screened, model_.hypothesis);
+        if (!has_gap(left, request_.false_alarms)) without_gap.push_back(result_.found);
+      } catch (const std::runtime_error& error) {
+        tell("  fails: " + std::string(error.what()));
+      }
+    }
+    go_on_from(before);
+    if (without_gap.empty()) return false;
+    set_found(without_gap.front());
+    screen_the_rest();
+    result_.rivals.assign(without_gap.begin() + 1, without_gap.end());
+    result_.finding = result_.rivals.empty() ? Finding::named : Finding::ambiguous;
     return true;
   }
 

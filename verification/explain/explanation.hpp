@@ -49,6 +49,8 @@ struct Rerun {
   // Of what is held out, if anything is: 2 ln of the likelihood ratio of found and base, and by how
   // many standard deviations it is smaller than if the found model were the truth.
   double gain = 0, shortfall = 0;
+  // That what is left of a gap which nothing explains is noise; looked at if there is one.
+  std::optional<double> gap_p = {};
 
   bool confirms() const { return failure.empty() && gain > 0; }
   bool refutes() const;

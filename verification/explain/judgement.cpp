@@ -13,11 +13,11 @@ bool identifiable(const Screening& screening, double usual_change) {
       [&](const CandidateScore& score) { return kSeen * score.resolution <= usual_change; });
 }
 
+}  // namespace
+
 bool has_gap(const Screening& screening, double false_alarms) {
   return screening.gap_p <= kGapLevel * false_alarms;
 }
-
-}  // namespace
 
 std::string word_for(Finding finding) {
   switch (finding) {

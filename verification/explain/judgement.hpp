@@ -74,6 +74,9 @@ const std::string& last_effect(const Hypothesis& hypothesis);
 // the errors of the mesh and of linear responses looks like one, and it names nothing.
 inline constexpr double kGapLevel = 0.25;
 
+// Is there a gap of any shape?
+bool has_gap(const Screening& screening, double false_alarms);
+
 // Of something that is missing and has no name.
 Finding without_name(const Screening& screening, double false_alarms);
 

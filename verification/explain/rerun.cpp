@@ -13,17 +13,29 @@ constexpr char kOtherIntegrator[] = "rosenbrock";
 // Standard deviations, beyond which one in a hundred truths falls short.
 constexpr double kRefuted = 2.33;
 
+FilterResult pass_of(const std::vector<FieldSeries>& series, const ExplainRequest& request,
+                     const FilterModel& model, const std::vector<std::vector<double>>& noises) {
+  FilterProblems data = problems_of(series, request);
+  if (!noises.empty())
+    for (FilterProblem& vesicle : data) vesicle.noise = noises[vesicle.vesicle];
+  std::vector<ErrorMaps> maps;
+  return filter_fields(data, model, request.filter, maps);
+}
+
 FilterResult pass_of_model(const std::vector<FieldSeries>& series, const ExplainRequest& request,
                            double pace, const std::vector<EffectTerm>& effects,
                            const std::vector<std::vector<double>>& noises) {
   ExplainRequest alone = request;
   alone.filter.replicates = 0;
-  FilterProblems data = problems_of(series, alone);
-  if (!noises.empty())
-    for (FilterProblem& vesicle : data) vesicle.noise = noises[vesicle.vesicle];
-  std::vector<ErrorMaps> maps;
-  return filter_fields(data, {with_effects(request.base, effects), pace, {}, {}}, alone.filter,
-                       maps);
+  return pass_of(series, alone, {with_effects(request.base, effects), pace, {}, {}}, noises);
+}
+
+// As the search asks it, of the model that it ended with.
+Screening what_is_left(const std::vector<FieldSeries>& series, const ExplainRequest& request,
+                       const Explanation& found) {
+  const Refit& end = found.found;
+  const FilterModel model{request.base, end.pace, end.hypothesis, {}};
+  return screen(pass_of(series, request, model, found.noises), {}, end.hypothesis);
 }
 
 }  // namespace
@@ -71,6 +83,13 @@ void run_again(const std::vector<FieldSeries>& series, const ExplainRequest& req
                                            found.found.hypothesis.terms(), found.noises);
     });
     result = compare_forecasts(passes[0], passes[1]);
+    if (found.finding == Finding::unnamed) {
+      other.threads = request.threads;
+      const Screening left = what_is_left(series, other, found);
+      result.gap_p = left.gap_p;
+      if (!has_gap(left, found.false_alarms))
+        found.finding = found.rivals.empty() ? Finding::named : Finding::ambiguous;
+    }
   } catch (const std::runtime_error& error) {
     result.failure = error.what();
   }

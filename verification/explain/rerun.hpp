@@ -6,7 +6,9 @@
 namespace traceraft {
 
 // Nothing is left of a finding that this refutes: it is a gap that nothing explains then, or, where
-// that is not significant, too little to say what.
+// that is not significant, too little to say what. A gap that the search could not explain beside
+// what it found, and that is not there on the other mesh, is one of the mesh: what was found
+// stands.
 void run_again(const std::vector<FieldSeries>& series, const ExplainRequest& request,
                Explanation& found);
 
