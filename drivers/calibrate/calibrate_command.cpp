@@ -53,7 +53,7 @@ std::vector<std::string> costly_parameters(const std::string& text) {
   return names;
 }
 
-// The folder of a calibration, which holds what decides the simulations.
+// The folder of a calibration, which holds what decides the simulations, and where the data are.
 constexpr char kIdentityFile[] = "calibration-model.toml";
 
 fs::path folder_for(const CalibrateRequest& request) {
@@ -64,19 +64,20 @@ fs::path folder_for(const CalibrateRequest& request) {
 }
 
 // One that goes on has to be the same.
-void remember(const fs::path& out, const std::string& what, const Configuration& model) {
+void remember(const fs::path& out, const std::string& what, const std::string& data,
+              const Configuration& model) {
   const fs::path file = out / kIdentityFile;
-  const std::string identity = "# " + what + "\n" + config_text(model);
+  const std::string identity = "# " + what + "\n# of the measurements in " +
+                               fs::absolute(data).lexically_normal().string() + "\n" +
+                               config_text(model);
   if (fs::exists(file) && read_file(file, 1 << 20) != identity)
-    throw InputError(
-        "--out: " + out.string() +
-        " holds a calibration of another model, or of measurements until another time; "
-        "choose another folder");
+    throw InputError("--out: " + out.string() +
+                     " holds a calibration of another model, or with other measurements; "
+                     "choose another folder");
   write_durably(file, identity);
 }
 
-// D shifts the axis of time only if nothing else in the model has a unit of time, and seeds only
-// differ if there is noise.
+// D shifts the axis of time only if nothing else in the model has a unit of time.
 void refuse_calibrating(const Configuration& model) {
   const std::string effect = model.text("effect");
   for (const EffectEntry& entry : effects())
@@ -86,8 +87,6 @@ void refuse_calibrating(const Configuration& model) {
         throw InputError(model.where("effect") + ": " + entry.name +
                          " has a time of its own, so that D is more than a unit of time; it cannot "
                          "be calibrated");
-  refuse_without_noise(model);
-  (void)build_run(model, InitialState::build);
 }
 
 // D alone, from runs that there are: it only shifts their time.
@@ -116,23 +115,23 @@ int calibrate_ensemble(const CalibrateRequest& request, const MeasuredVesicles& 
       calibrate(data, {}, {point}, {std::max(seconds, covered.low), covered});
   const fs::path out = folder_for(request);
   const FolderLock lock(out);
-  remember(out, "mobility alone, from the runs in " + request.ensemble, model);
+  remember(out, "mobility alone, from the runs in " + request.ensemble, request.data, model);
   const std::string bound = formatted(
       "D is looked for between %.3g and %.3g cm^2/s: of a larger one, runs that end at %.4g s know "
       "nothing at the times of the measurements; take an ensemble with a larger --t-end.",
       model.units().diffusion_cm2_s / kSlowest, model.units().diffusion_cm2_s * fastest, shortest);
-  const std::string command = "traceraft calibrate --data " + request.data + " --ensemble " +
-                              request.ensemble + " --parameters mobility";
+  const std::string command = "traceraft calibrate --data " + in_shell(request.data) +
+                              " --ensemble " + in_shell(request.ensemble) +
+                              " --parameters mobility";
   write_calibration(out, data, {model, {}, {point}, 0, command, bound}, result, request.quiet);
   return kSuccess;
 }
 
 // Fewer cells than the model's would make its own ε too small.
 int most_cells_of(const CalibrateRequest& request, const Configuration& model) {
-  constexpr long long kUsual = 128;
-  const long long own = model.integer("cells");
-  if (request.most_cells == 0) return static_cast<int>(std::max(kUsual, own + own / 2));
-  if (request.most_cells >= own) return request.most_cells;
+  const auto own = static_cast<int>(model.integer("cells"));
+  if (request.most_cells == 0) return usual_most_cells(model);
+  if (request.most_cells >= own) return std::max((own + 3) / 4, request.most_cells / 4) * 4;
   throw InputError("--most-cells: " + std::to_string(request.most_cells) +
                    " is less than the model's own " + std::to_string(own));
 }
@@ -150,13 +149,15 @@ int run_calibration(CalibrateRequest request) {
   const Configuration model(read_config_file(request.model, "--model"), request.flags);
   refuse_scaled(model);
   refuse_calibrating(model);
+  refuse_without_noise(model);
+  (void)build_run(model, InitialState::build);
   const int most_cells = most_cells_of(request, model);
   const fs::path out = folder_for(request);
   const FolderLock lock(out);
   remember(out,
            "parameters " + request.parameters + ", " + std::to_string(request.runs) + " runs to " +
                format_number(end_of_runs(data)) + " s",
-           model);
+           request.data, model);
   const CalibratorRequest simulations{out,          costly_parameters(request.parameters),
                                       most_cells,   request.runs,
                                       request.jobs, request.quiet};
@@ -169,9 +170,10 @@ int run_calibration(CalibrateRequest request) {
   const std::string bound =
       formatted("D is looked for between %.3g and %.3g cm^2/s: begin with another --diffusion.",
                 diffusion / kSlowest, diffusion * kFastest);
-  const std::string command = "traceraft calibrate --data " + request.data + " --model " +
-                              (out / kIdentityFile).string() + " --parameters " +
-                              request.parameters + " --runs " + std::to_string(request.runs);
+  const std::string command = "traceraft calibrate --data " + in_shell(request.data) + " --model " +
+                              in_shell((out / kIdentityFile).string()) + " --parameters " +
+                              request.parameters + " --runs " + std::to_string(request.runs) +
+                              " --most-cells " + std::to_string(most_cells);
   write_calibration(out, data,
                     {model, simulations.names, calibrator.points(), most_cells, command, bound},
                     calibrator.result(), request.quiet);
@@ -182,8 +184,9 @@ Action define_calibrate(CLI::App& app) {
   const auto request = std::make_shared<CalibrateRequest>();
   app.add_option("--data", request->data, "folder of the measurements (dataset.toml)");
   app.add_option("--model", request->model, "TOML file with the flags' names as keys");
-  app.add_option("--ensemble", request->ensemble,
-                 "find the mobility alone, from the runs of an ensemble or what is kept of them");
+  CLI::Option* const ensemble = app.add_option(
+      "--ensemble", request->ensemble,
+      "find the mobility alone, from the runs of an ensemble or what is kept of them");
   app.add_option("--parameters", request->parameters,
                  "comma-separated, of mobility, epsilon, fraction, noise-length; default: "
                  "mobility,epsilon")
@@ -191,12 +194,15 @@ Action define_calibrate(CLI::App& app) {
           [](const std::string& text) { return std::string(text.empty() ? "names none" : ""); });
   app.add_option("--runs", request->runs, "seeds that every choice of parameters is run with")
       ->check(CLI::Range(2, 1000))
+      ->excludes(ensemble)
       ->capture_default_str();
   app.add_option("--most-cells", request->most_cells,
                  "cells that meshes of a smaller epsilon may have, and so how small it may be; "
-                 "default: half more than the model's, 128 at least")
+                 "default: 1.65 times the model's, 128 at least")
+      ->excludes(ensemble)
       ->check(CLI::Range(4.0, run_option("cells").max));
   app.add_option("--jobs", request->jobs, "runs at a time; default: one for each processor")
+      ->excludes(ensemble)
       ->check(CLI::Range(1, 1024));
   app.add_option("--out", request->out,
                  "folder, new or to go on with; default: runs/calibration-N");

@@ -10,13 +10,14 @@ namespace {
 
 constexpr double kBoxWidth = 10.0 / 3;  // of the mesh, in R
 constexpr double kFewestNoiseCells = 4;
+constexpr double kRounding = 5e-4;  // of values that are written with four digits
 constexpr Interval kFractions = {0.02, 0.9};
 
 // As many cells that the mesh is no coarser against ε than the model's, a multiple of 4.
 int cells_for(const Configuration& model, double epsilon) {
   const double cells = static_cast<double>(model.integer("cells"));
   const double needed = cells * std::max(1.0, model.number("epsilon") / epsilon);
-  return 4 * static_cast<int>(std::ceil(needed / 4 - 1e-9));
+  return 4 * static_cast<int>(std::ceil(needed / 4 * (1 - kRounding)));
 }
 
 double noise_length(const Configuration& model) {

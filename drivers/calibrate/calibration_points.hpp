@@ -20,9 +20,9 @@ struct CalibratedOption {
 const NamedList<CalibratedOption>& calibrated_options();
 
 // The configuration of a run with these values (not logarithms) of the options. Where `epsilon` is
-// smaller than in the model there are as many more cells, so that h/ε is not larger; the noise
-// stays on its mesh unless it is calibrated itself. Throws InputError for values that cannot be
-// run.
+// smaller than in the model there are as many more cells, a multiple of 4, so that h/ε is not
+// larger; the noise stays on its mesh unless it is calibrated itself. Throws InputError for values
+// that cannot be run.
 Configuration configuration_at(const Configuration& model,
                                const std::vector<std::string>& parameters,
                                const std::vector<double>& values, double t_end);

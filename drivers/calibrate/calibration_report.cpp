@@ -17,6 +17,7 @@
 #include "kernel/core/text.hpp"
 #include "verification/vesicles/calibration_data.hpp"
 #include "verification/vesicles/differences.hpp"
+#include "verification/vesicles/resolvable.hpp"
 
 namespace traceraft {
 namespace {
@@ -137,15 +138,6 @@ std::vector<History> best_runs(const CalibrationRuns& all, const Calibration& re
   return runs;
 }
 
-double smallest_epsilon(const CalibrationRuns& runs) {
-  const auto at = static_cast<std::size_t>(
-      std::find(runs.names.begin(), runs.names.end(), "epsilon") - runs.names.begin());
-  double smallest = HUGE_VAL;
-  for (const CalibrationPoint& point : runs.points)
-    smallest = std::min(smallest, std::exp(point.ln_parameters[at]));
-  return smallest;
-}
-
 // What is to be known before the numbers.
 std::vector<std::string> notes_on(const MeasuredVesicles& data, const CalibrationRuns& runs,
                                   const std::vector<History>& best, const Calibration& result) {
@@ -166,18 +158,21 @@ std::vector<std::string> notes_on(const MeasuredVesicles& data, const Calibratio
         formatted("%d of %zu measurements are of no raft, or of neither perimeter nor "
                   "number: they are not used.",
                   nothing, data.measurements.size()));
-  if (std::find(names.begin(), names.end(), "epsilon") != names.end() &&
-      smallest_epsilon(runs) < kAtEnd * range_of(runs.model, "epsilon", runs.most_cells).low)
-    notes.push_back(formatted(
-        "Simulations went down to the smallest epsilon that %d cells allow; for a smaller one take "
-        "more: --most-cells.",
-        runs.most_cells));
+  for (const CalibratedParameter& p : result.parameters)
+    if (p.name == "epsilon" &&
+        p.interval.low < kAtEnd * range_of(runs.model, p.name, runs.most_cells).low)
+      notes.push_back(
+          formatted("Epsilon may be smaller than what %d cells resolve, %.3g um, below which it is "
+                    "not looked for; take more --most-cells.",
+                    runs.most_cells, range_of(runs.model, p.name, runs.most_cells).low));
   if (!names.empty() && std::find(names.begin(), names.end(), "noise-length") == names.end())
     notes.push_back(
         "The intervals hold if the initial noise is as long as the model's; if it is not, the "
         "others take the blame. With noise-length among --parameters it is looked for, too.");
   const SimulatedVesicle vesicle = simulated_vesicle(runs.model.units().length(), best, data);
   for (const std::string& note : differences(data, vesicle)) notes.push_back(note);
+  if (const std::string doubt = too_long_boundaries(data); !doubt.empty()) notes.push_back(doubt);
+  for (const std::string& doubt : doubts_of(compare_with_runs(data, best))) notes.push_back(doubt);
   return notes;
 }
 

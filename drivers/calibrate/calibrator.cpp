@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "drivers/config/options.hpp"
+#include "drivers/ensemble/run_cost.hpp"
 #include "drivers/output/status_line.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
@@ -16,14 +18,16 @@ namespace {
 // that lies within the design, the same size again where it does not.
 constexpr double kSteps[] = {0.5, 0.25, 0.1};
 constexpr int kMostRounds = 6;
-
-// But for a factor: they grow as the surface's triangles.
-double nodes(const Configuration& configuration) {
-  const double cells = configuration.number("cells");
-  return cells * cells;
-}
+constexpr double kRoundoff = 1e-9;
 
 }  // namespace
+
+int usual_most_cells(const Configuration& model) {
+  constexpr int kUsual = 128;
+  const double needed = std::exp(kSteps[0]) * model.number("cells");
+  const double most = std::min(run_option("cells").max, 4 * std::ceil(needed / 4));
+  return std::max(kUsual, static_cast<int>(most));
+}
 
 double end_of_runs(const MeasuredVesicles& data) {
   return kFastest * looks(data).end;
@@ -47,7 +51,7 @@ bool Calibrator::run() {
     double moved = 0;
     for (std::size_t i = 0; i < centre.size(); ++i)
       moved = std::max(moved, std::fabs(centre[i] - design[i]));
-    if (moved <= *step) ++step;
+    if (moved <= (1 + kRoundoff) * *step) ++step;
   }
   result_ = calibrate(data_, sought(), points_, unit);
   if (!centre.empty() && step != std::end(kSteps)) mark_unconverged(result_);
@@ -84,10 +88,10 @@ bool Calibrator::add_points(const std::vector<std::vector<double>>& design, int 
   return true;
 }
 
-// As long per node as the choice before took.
+// In proportion to the last one.
 std::string Calibrator::expected_time(const Configuration& here) const {
-  if (seconds_per_node_ == 0) return "";
-  return ", about " + clock_text(seconds_per_node_ * nodes(here));
+  if (seconds_per_work_ == 0) return "";
+  return ", about " + clock_text(seconds_per_work_ * relative_work(here));
 }
 
 bool Calibrator::add_point(const std::vector<double>& ln, const std::string& number) {
@@ -108,7 +112,7 @@ bool Calibrator::add_point(const std::vector<double>& ln, const std::string& num
   const Stopwatch watch;
   PointEnd end = run_point(folder, here, {request_.runs, request_.jobs, request_.quiet});
   if (end.stopped) return false;
-  if (fresh) seconds_per_node_ = watch.seconds() / nodes(here);
+  if (fresh) seconds_per_work_ = watch.seconds() / relative_work(here);
   for (const MemberFailure& failure : end.failures)
     std::fprintf(stderr, "traceraft: the run of seed %llu at%s failed: %s\n",
                  static_cast<unsigned long long>(failure.seed), words.c_str(), failure.why.c_str());

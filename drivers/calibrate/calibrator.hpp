@@ -15,10 +15,14 @@ inline constexpr double kFastest = 4, kSlowest = 100;
 // Of the simulations: up to the latest measurement if D were as large as it may be (s).
 double end_of_runs(const MeasuredVesicles& data);
 
+// Cells that a mesh may need with which the first choices around the model can be run, 128 at
+// least.
+int usual_most_cells(const Configuration& model);
+
 struct CalibratorRequest {
   std::filesystem::path out;
   std::vector<std::string> names;  // of the parameters that cost simulations
-  int most_cells;                  // of the mesh
+  int most_cells;                  // of the mesh, a multiple of 4
   int runs, jobs;                  // of each choice; at a time
   bool quiet;
 };
@@ -49,7 +53,7 @@ class Calibrator {
   const Configuration& model_;
   std::vector<PointEnd> ends_;
   std::vector<CalibrationPoint> points_;  // of them
-  double seconds_per_node_ = 0;           // of the last choice that was run as a whole
+  double seconds_per_work_ = 0;           // of the last choice that was run as a whole
   Calibration result_;
 };
 

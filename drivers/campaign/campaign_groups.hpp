@@ -13,8 +13,8 @@ struct CaseSettings {
   std::vector<std::string> without;  // left out of those that are looked for
   double noise = 0.1;                // standard deviation, in units of that of c
   double stated = 0;                 // what the data state of it, over what it is; 0: nothing
-  int snapshots = 8;  // effects are as strong as between eight
-  double coarser = 1;  // cells of the model's mesh, over what its interface needs
+  int snapshots = 8;                 // effects are as strong as between eight
+  double coarser = 1;                // cells of the model's mesh, over what its interface needs
 };
 
 // What the verdict of a case has to be.

@@ -58,7 +58,8 @@ std::string toml_value(const OptionSpec& spec, const Configuration& configuratio
   }
 }
 
-// Quoted where a shell would make something else of it.
+}  // namespace
+
 std::string in_shell(const std::string& text) {
   const char* plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_=.,:/+";
   if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) return text;
@@ -66,8 +67,6 @@ std::string in_shell(const std::string& text) {
   for (const char ch : text) quoted += ch == '\'' ? std::string("'\\''") : std::string(1, ch);
   return quoted + "'";
 }
-
-}  // namespace
 
 GivenValues read_config_file(const std::filesystem::path& path, const std::string& flag) {
   if (path.empty()) return {};

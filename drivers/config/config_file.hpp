@@ -16,6 +16,9 @@ GivenValues read_config_file(const std::filesystem::path& path,
 // All options with their resolved values, each with its meaning: reads back as the same run.
 std::string config_text(const Configuration& configuration);
 
+// A word of a command, quoted where a shell would make something else of it.
+std::string in_shell(const std::string& text);
+
 // The flags that give the same numbers, as one would type them: those that are no defaults, without
 // the leading space.
 std::string flags_text(const Configuration& configuration);

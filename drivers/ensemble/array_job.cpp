@@ -4,31 +4,24 @@
 #include <cmath>
 
 #include "backends/posix/child.hpp"
+#include "drivers/config/config_file.hpp"
+#include "drivers/ensemble/run_cost.hpp"
 
 namespace traceraft {
-namespace {
-
-// One word for the shell, whatever is in it.
-std::string shell_word(const std::string& text) {
-  std::string word = "'";
-  for (const char ch : text) word += ch == '\'' ? "'\\''" : std::string(1, ch);
-  return word + "'";
-}
-
-}  // namespace
 
 ArrayTask array_task(const Configuration& configuration) {
-  constexpr double kCells = 128, kGigabytes = 0.45, kHours = 0.25;  // docs/results.md
-  constexpr double kSpare = 4;
-  const double finer = configuration.number("cells") / kCells;
-  return {static_cast<int>(std::ceil(kSpare * kGigabytes * std::max(1.0, finer * finer))),
-          static_cast<int>(std::ceil(kSpare * kHours * std::max(1.0, finer * finer * finer)))};
+  // Of guv-2to1, 128 cells, on one processor: docs/results.md.
+  constexpr double kGigabytes = 0.45, kHours = 0.25, kSpare = 4;
+  return {
+      static_cast<int>(
+          std::ceil(kSpare * kGigabytes * std::max(1.0, relative_memory(configuration)))),
+      static_cast<int>(std::ceil(kSpare * kHours * std::max(1.0, relative_work(configuration))))};
 }
 
 std::string array_job_script(const EnsembleFolder& folder, const EnsemblePlan& plan,
                              const ArrayTask& task) {
   const std::string path = std::filesystem::absolute(folder.path()).lexically_normal().string();
-  const std::string program = shell_word(own_path()) + " ensemble --out " + shell_word(path);
+  const std::string program = in_shell(own_path()) + " ensemble --out " + in_shell(path);
   return "#!/bin/sh\n"
          "#SBATCH --job-name=traceraft\n"
          // Clusters limit the index, seeds may be anything.

@@ -8,8 +8,8 @@
 
 namespace traceraft {
 
-// What a task asks for: four times what the runs of 128 cells in docs/results.md took, and more for
-// finer meshes, as their number of nodes and the work of a run grow.
+// What a task asks for: four times what the runs of the paper's cases took, and more for finer
+// meshes; what else makes a run long, such as --t-end, is not known here.
 struct ArrayTask {
   int gigabytes, hours;
 };

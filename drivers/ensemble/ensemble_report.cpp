@@ -37,12 +37,12 @@ ChartSeries band(const EnsembleSummary& summary, Quantity quantity, const char* 
 }
 
 std::string sentence_on(const Configuration& configuration, const EnsemblePlan& plan,
-                        std::size_t failed) {
-  return std::to_string(static_cast<std::size_t>(plan.runs) - failed) + " of " +
-         std::to_string(plan.runs) + " runs of the case " + configuration.text("case") +
-         ", seeds " + std::to_string(plan.first_seed) + " to " + std::to_string(plan.last_seed()) +
-         ": raft fraction " + configuration.text("raft-fraction") + ", epsilon " +
-         configuration.text("epsilon") + ", " + configuration.text("cells") +
+                        std::size_t finished) {
+  return std::to_string(finished) + " of " + std::to_string(plan.runs) + " runs of the case " +
+         configuration.text("case") + ", seeds " + std::to_string(plan.first_seed) + " to " +
+         std::to_string(plan.last_seed()) + ": raft fraction " +
+         configuration.text("raft-fraction") + ", epsilon " + configuration.text("epsilon") + ", " +
+         configuration.text("cells") +
          " cells. Perimeters are diffuse ones, divided by the radius.";
 }
 
@@ -66,6 +66,7 @@ std::vector<Row> ensemble_rows(const EnsembleSummary& summary, bool seconds) {
 EnsembleSummary summarise(const std::vector<History>& runs) {
   EnsembleSummary summary;
   summary.times = common_times(runs, kPerDecade);
+  if (summary.times.empty()) throw InputError("the runs of an ensemble have no times in common");
   for (const Quantity quantity : kQuantities)
     summary.at[index_of(quantity)] = distributions(runs, quantity, summary.times);
   return summary;
@@ -109,11 +110,12 @@ void add_ensemble_origin(Page& page, const EnsembleFolder& folder,
 }
 
 std::string write_ensemble(const EnsembleFolder& folder, const Configuration& configuration,
-                           const EnsembleSummary& summary, const EnsembleEnd& end, bool quiet) {
+                           const std::vector<History>& runs, const EnsembleEnd& end, bool quiet) {
+  const EnsembleSummary summary = summarise(runs);
   const bool seconds = !configuration.units().scaled;
   write_durably(folder.path() / "ensemble.csv", csv_text(ensemble_table(summary)));
   Page page("An ensemble of vesicles");
-  page.paragraph(sentence_on(configuration, folder.load(), end.failures.size()));
+  page.paragraph(sentence_on(configuration, folder.load(), runs.size()));
   for (const MemberFailure& failure : end.failures)
     page.paragraph("The run of seed " + std::to_string(failure.seed) + " failed: " + failure.why);
   const std::vector<Row> rows = ensemble_rows(summary, seconds);

@@ -18,6 +18,7 @@ struct EnsembleSummary {
   std::vector<double> times;
   std::array<std::vector<Distribution>, 3> at;  // in the order of kQuantities
 };
+// Throws InputError if they have no times in common.
 EnsembleSummary summarise(const std::vector<History>& runs);
 
 // A row per time: t, and for every quantity its mean, deviation, extrema and quantiles.
@@ -34,6 +35,6 @@ void add_ensemble_origin(Page& page, const EnsembleFolder& folder,
 // Writes both files into the folder and prints a table unless `quiet`. Returns what is missing of
 // the charts, "" if nothing.
 std::string write_ensemble(const EnsembleFolder& folder, const Configuration& configuration,
-                           const EnsembleSummary& summary, const EnsembleEnd& end, bool quiet);
+                           const std::vector<History>& runs, const EnsembleEnd& end, bool quiet);
 
 }  // namespace traceraft

@@ -11,22 +11,11 @@
 #include "drivers/output/csv.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
-#include "verification/vesicles/raft_fraction.hpp"
 
 namespace traceraft {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kColdest = -20, kHottest = 100;  // °C
-
-double celsius_of(const TomlTable& toml) {
-  const double celsius = toml.number("temperature");
-  if (celsius >= kColdest && celsius <= kHottest) return celsius;
-  throw InputError(toml.where("temperature") + ": " + format_number(celsius) +
-                   " degrees Celsius is impossible here (allowed: " + format_number(kColdest) +
-                   " to " + format_number(kHottest) + ")");
-}
 
 struct Dataset {
   MeasuredVesicles data;
@@ -43,11 +32,9 @@ Dataset read_description(const fs::path& folder) {
   d.data.name = toml.text("name");
   d.data.synthetic = is_synthetic(toml);
   d.data.origin = toml.text_or("origin", "");
-  d.data.composition = toml.text_or("composition", "");
-  if (!d.data.composition.empty())
-    (void)membrane_mixture(toml.where("composition"), d.data.composition);
+  d.data.composition = composition_of(toml);
   d.data.time_zero = toml.text("time_zero");
-  if (toml.has("temperature")) d.data.celsius = celsius_of(toml);
+  d.data.celsius = celsius_of(toml);
   d.units.length = length_factor(toml, "length_unit");
   d.units.time = time_factor(toml, "time_unit");
   d.units.time_offset = time_offset(toml);

@@ -80,8 +80,9 @@ FieldDataset read_field_dataset(const fs::path& folder) {
   data.synthetic = toml.has("kind") && is_synthetic(toml);
   const double length = length_factor(toml, "length_unit"), second = time_factor(toml, "time_unit"),
                offset = time_offset(toml);
-  data.radius_um = toml.number("radius") * length;
-  if (!(data.radius_um > 0)) throw InputError(toml.where("radius") + ": it has to be positive");
+  (void)composition_of(toml);
+  (void)celsius_of(toml);
+  data.radius_um = checked_radius(toml.number("radius") * length, toml.where("radius"));
   if (toml.has("blur")) {
     data.blur_um = toml.number("blur") * length;
     if (!(*data.blur_um >= 0 && *data.blur_um < kWidestBlur * data.radius_um))
@@ -106,9 +107,9 @@ FieldDataset read_field_dataset(const fs::path& folder) {
       data.vesicles.push_back({vesicle, {}});
     }
     auto& snapshots = data.vesicles.back().snapshots;
-    const double time = (times[k] + offset) * second;
-    if (!(time >= 0) || (!snapshots.empty() && !(time > snapshots.back().time)))
-      throw InputError(toml.where("times") + ": times of a vesicle have to ascend from 0 on");
+    const double time = checked_time((times[k] + offset) * second, toml.where("times"));
+    if (!snapshots.empty() && !(time > snapshots.back().time))
+      throw InputError(toml.where("times") + ": times of a vesicle have to ascend");
     snapshots.push_back(
         read_snapshot(folder / snapshot_file(k + 1), time, length / data.radius_um));
   }

@@ -4,6 +4,8 @@
 
 #include "kernel/core/error.hpp"
 #include "kernel/core/named_list.hpp"
+#include "kernel/core/parameters.hpp"
+#include "verification/vesicles/raft_fraction.hpp"
 
 namespace traceraft {
 namespace {
@@ -52,6 +54,39 @@ double time_offset(const TomlTable& toml) {
   if (!std::isfinite(offset))
     throw InputError(toml.where("time_offset") + ": a finite number is needed here");
   return offset;
+}
+
+std::string composition_of(const TomlTable& toml) {
+  const std::string composition = toml.text_or("composition", "");
+  if (!composition.empty()) (void)membrane_mixture(toml.where("composition"), composition);
+  return composition;
+}
+
+std::optional<double> celsius_of(const TomlTable& toml) {
+  constexpr double kColdest = -20, kHottest = 100;
+  if (!toml.has("temperature")) return std::nullopt;
+  const double celsius = toml.number("temperature");
+  if (celsius >= kColdest && celsius <= kHottest) return celsius;
+  throw InputError(toml.where("temperature") + ": " + format_number(celsius) +
+                   " degrees Celsius is impossible here (allowed: " + format_number(kColdest) +
+                   " to " + format_number(kHottest) + ")");
+}
+
+double checked_time(double time, const std::string& where) {
+  constexpr double kLatest = 1e9;
+  if (!(time >= 0)) throw InputError(where + ": a time before time zero is impossible");
+  if (time <= kLatest) return time;
+  throw InputError(where + ": " + format_number(time) + " s is impossible (allowed: to " +
+                   format_number(kLatest) + " s); is time_unit right?");
+}
+
+double checked_radius(double radius, const std::string& where) {
+  // Vesicles that a light microscope shows; what is outside is in other units than it says.
+  constexpr double kSmallestRadius = 0.05, kLargestRadius = 1000;
+  if (radius >= kSmallestRadius && radius <= kLargestRadius) return radius;
+  throw InputError(where + ": a vesicle of radius " + format_number(radius) +
+                   " um is impossible here (allowed: " + format_number(kSmallestRadius) + " to " +
+                   format_number(kLargestRadius) + "); is length_unit right?");
 }
 
 void refuse_scaled(const Configuration& model) {

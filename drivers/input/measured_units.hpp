@@ -1,6 +1,7 @@
-// The units that data sets may be in.
+// The units that data sets may be in, and what numbers in them are possible.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "drivers/config/configuration.hpp"
@@ -15,6 +16,15 @@ bool is_synthetic(const TomlTable& toml);
 double time_factor(const TomlTable& toml, const std::string& key);
 // What has to be added to all times, in the unit of the data. Throws InputError.
 double time_offset(const TomlTable& toml);
+
+// What it says of the membrane, "" and nothing if it says nothing. Throw InputError.
+std::string composition_of(const TomlTable& toml);
+std::optional<double> celsius_of(const TomlTable& toml);
+
+// In s after time zero, or in µm. Throw InputError, which begins with `where`, for what no vesicle
+// has been looked at or measured to be.
+double checked_time(double time, const std::string& where);
+double checked_radius(double radius, const std::string& where);
 
 // Throws InputError if the model that measurements are held against is in units of R and R²/D.
 void refuse_scaled(const Configuration& model);

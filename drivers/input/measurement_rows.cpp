@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "drivers/input/measured_units.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/named_list.hpp"
 #include "kernel/core/parameters.hpp"
@@ -12,11 +13,8 @@
 namespace traceraft {
 namespace {
 
-// Vesicles that a light microscope shows; what is outside is in other units than it says.
-constexpr double kSmallestRadius = 0.05, kLargestRadius = 1000;  // µm
-constexpr double kLargestPerimeter = 1000;                       // over the radius
+constexpr double kLargestPerimeter = 1000;  // over the radius
 constexpr double kMostRafts = 1e6;
-constexpr double kLatest = 1e9;  // s
 // Of one vesicle between looks; and by how much a perimeter may be shorter than the shortest one
 // of its area: both are read off images.
 constexpr double kSameRadius = 1.2, kTooShort = 0.5;
@@ -44,13 +42,8 @@ Measurement begin_measurement(const TableUnits& units, const CsvTable& table, st
                               std::set<std::string>& finished) {
   Measurement m{table.text(row, "vesicle"), 0, radius_of(units, table, row), {}, {}};
   if (m.vesicle.empty()) throw InputError(table.where(row, "vesicle") + ": a name is needed here");
-  m.time = table.number(row, "time") * units.time + units.time_offset * units.time;
-  if (!(m.time >= 0))
-    throw InputError(table.where(row, "time") + ": a time before time zero is impossible");
-  if (m.time > kLatest)
-    throw InputError(table.where(row, "time") + ": " + format_number(m.time) +
-                     " s is impossible (allowed: to " + format_number(kLatest) +
-                     " s); is time_unit right?");
+  m.time = checked_time((table.number(row, "time") + units.time_offset) * units.time,
+                        table.where(row, "time"));
   if (before.empty()) return m;
   if (before.back().vesicle != m.vesicle) finished.insert(before.back().vesicle);
   if (finished.count(m.vesicle))
@@ -78,6 +71,8 @@ void refuse_contradictions(const CsvTable& table, std::size_t row, const Measure
                        (*rafts > 0 ? "rafts have a boundary and an area"
                                    : "without rafts there is no boundary and no area"));
   if (!perimeter || !fraction) return;
+  if (*perimeter > 0 && *fraction == 0)
+    throw InputError(table.where(row, "fraction") + ": rafts have a boundary and an area");
   // The isoperimetric inequality on a sphere of radius 1: P² ≥ A (4π − A), with equality for caps.
   const double shortest = 4 * kPi * std::sqrt(*fraction * (1 - *fraction));
   if (*perimeter < kTooShort * shortest)
@@ -188,13 +183,6 @@ std::vector<Measurement> read_caps(const TableUnits& units, const CsvTable& tabl
 }
 
 }  // namespace
-
-double checked_radius(double radius, const std::string& where) {
-  if (radius >= kSmallestRadius && radius <= kLargestRadius) return radius;
-  throw InputError(where + ": a vesicle of radius " + format_number(radius) +
-                   " um is impossible here (allowed: " + format_number(kSmallestRadius) + " to " +
-                   format_number(kLargestRadius) + "); is length_unit right?");
-}
 
 std::vector<Measurement> read_measurements(const TableUnits& units, const CsvTable& table) {
   return table.has("cap_radius") ? read_caps(units, table) : read_totals(units, table);

@@ -17,9 +17,6 @@ struct TableUnits {
   double sigmas = 1;             // standard deviations in what the table calls sigma
 };
 
-// In µm. Throws InputError, which begins with `where`, if it is no radius of a vesicle.
-double checked_radius(double radius, const std::string& where);
-
 // Of all looks, in the order of the rows. Throws InputError with file, line and column for what is
 // missing, unknown, impossible or contradicts itself.
 std::vector<Measurement> read_measurements(const TableUnits& units, const CsvTable& table);

@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "drivers/commands.hpp"
+#include "drivers/config/config_file.hpp"
 #include "drivers/config/configuration.hpp"
 #include "drivers/ensemble/ensemble_folder.hpp"
 #include "drivers/exit_codes.hpp"
@@ -54,9 +55,10 @@ int compare(const DataRequest& request) {
     out = EnsembleFolder(request.ensemble).started() ? request.ensemble
                                                      : first_free_folder("comparison");
   if (!EnsembleFolder(out).started()) refuse_foreign_folder(out, "comparison.json");
-  const std::string command = "traceraft data compare " + request.folder + " --ensemble " +
-                              request.ensemble + " --window " + request.window +
-                              (request.facts.empty() ? "" : " --facts " + request.facts);
+  const std::string command = "traceraft data compare " + in_shell(request.folder) +
+                              " --ensemble " + in_shell(request.ensemble) + " --window " +
+                              request.window +
+                              (request.facts.empty() ? "" : " --facts " + in_shell(request.facts));
   ComparisonRequest comparison{request.ensemble,          out,          command,
                                window_of(request.window), std::nullopt, request.quiet};
   if (!request.facts.empty()) comparison.facts = read_facts(request.facts);

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "drivers/calibrate/calibration_points.hpp"
+#include "drivers/calibrate/calibrator.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -66,7 +67,7 @@ TEST_F(CalibrateTest, GoesFromFilesToFiles) {
   EXPECT_EQ(valid.code, 0) << valid.output;
   EXPECT_NE(made.output.find("3 to 6 rounds of simulations, 3 choices in each, 2 runs of each"),
             std::string::npos);
-  EXPECT_NE(made.output.find("cells, about 0:0"), std::string::npos);  // from the second on
+  EXPECT_NE(made.output.find("cells, about "), std::string::npos);  // from the second on
   const std::string page = content(folder.path / "c/calibration.html");
   for (const char* words : {"How well it fits", "within their range", "Where this comes from"})
     EXPECT_NE(page.find(words), std::string::npos) << words;
@@ -77,7 +78,7 @@ TEST_F(CalibrateTest, GoesFromFilesToFiles) {
   // As the page says it is repeated.
   const std::string repeat = "calibrate --data " + out("data") + " --model " +
                              out("c/calibration-model.toml") +
-                             " --parameters mobility,epsilon --runs 2";
+                             " --parameters mobility,epsilon --runs 2 --most-cells 128";
   EXPECT_NE(page.find(repeat), std::string::npos);
   EXPECT_EQ(traceraft(repeat + " --quiet --out " + out("c")).code, 0);
   EXPECT_EQ(content(folder.path / "c/calibration.json"), before);
@@ -121,6 +122,7 @@ TEST_F(CalibrateTest, FindsTheMobilityOfAnEnsemble) {
   EXPECT_NEAR(std::log(mobility["value"].get<double>() / 2.5e-5), 0, std::log(2));
   for (const auto& [flags, complaint] :
        {std::pair<std::string, std::string>(" --cells 32", "the model is that of --ensemble"),
+        {" --most-cells 64", "--ensemble"},
         {" --parameters mobility,epsilon", "the mobility alone"},
         {" --model " + out("m.toml"), "the model is that of --ensemble"},
         {" --parameters ''", "--parameters"}}) {
@@ -156,10 +158,14 @@ TEST_F(CalibrateTest, LooksForTheMobilityWithinItsRuns) {
     EXPECT_EQ(made.output.find(words), std::string::npos) << made.output;
   // Another calibration does not take its place, nor anything that is not one.
   const std::string before = content(folder.path / "c/calibration.json");
-  for (const char* to : {"c", "short"}) {
+  for (const auto& [with, to] :
+       {std::pair<std::string, std::string>(kept + "ensembles/guv-2to1", "c"),
+        {kept + "ensembles/guv-2to1", "short"},
+        {out("short"), "c"}}) {
+    // The last: of the same runs, but with other data.
+    const std::string data = with == out("short") ? out("data") : kept + "synthetic/guv-2to1";
     const Outcome refused =
-        traceraft("calibrate --data " + kept + "synthetic/guv-2to1 --ensemble " + kept +
-                  "ensembles/guv-2to1 --out " + out(to));
+        traceraft("calibrate --data " + data + " --ensemble " + with + " --out " + out(to));
     EXPECT_EQ(refused.code, 2) << refused.output;
     EXPECT_NE(refused.output.find("choose another folder"), std::string::npos) << refused.output;
   }
@@ -191,6 +197,11 @@ TEST(CalibrationPoints, CanBeRun) {
   }
   const Configuration there = configuration_at(model, {"noise-length"}, {0.7}, 1);
   EXPECT_DOUBLE_EQ(range_of(model, "epsilon", 48).low, 0.2);
+  // No finer than allowed, though values are rounded: 0.05 * 128/212 = 0.030189 to 0.03019.
+  const Configuration paper({}, {{"case", {"guv-3to1", "--case"}}});
+  EXPECT_EQ(usual_most_cells(paper), 212);
+  EXPECT_EQ(configuration_at(paper, {"epsilon"}, {0.03019}, 1).integer("cells"), 212);
+  EXPECT_EQ(configuration_at(paper, {"epsilon"}, {0.03333}, 1).integer("cells"), 192);
   EXPECT_EQ(there.integer("noise-cells"), 24);
   EXPECT_NEAR(values_of(there, {"noise-length"})[0], 5 * 10.0 / 3 / 24, 1e-9);
 }

@@ -56,6 +56,17 @@ TEST(DataTest, ComparesNothingWithoutSayingSo) {
   EXPECT_NE(made.output.find("NOTHING IS COMPARED"), std::string::npos) << made.output;
   EXPECT_NE(content(folder.path / "c/comparison.csv").find("rafts,0,2,,,\n"), std::string::npos)
       << content(folder.path / "c/comparison.csv");
+  // Nor do runs that end before others begin.
+  fs::create_directories(folder.path / "kept");
+  fs::copy_file(TRACERAFT_ROOT "/verification/data/ensembles/guv-2to1/config.toml",
+                folder.path / "kept/config.toml");
+  std::ofstream(folder.path / "kept/histories.csv")
+      << "seed,t,perimeter,rafts,fraction\n1,1,5,1,0.1\n1,2,5,1,0.1\n2,3,5,1,0.1\n2,4,5,1,0.1\n";
+  const Outcome apart =
+      traceraft("data compare " + folder.path.string() + " --ensemble " +
+                (folder.path / "kept").string() + " --out " + (folder.path / "d").string());
+  EXPECT_EQ(apart.code, 2);
+  EXPECT_NE(apart.output.find("no times in common"), std::string::npos) << apart.output;
 }
 
 // An exponential is a power law whose origin is infinitely early.

@@ -147,12 +147,12 @@ TEST_F(EnsembleTest, GathersTheOthersOfADamagedRun) {
   std::string series = content(first);
   series.resize(series.rfind('\n', series.size() / 2) + 1);
   std::ofstream(first) << series;
-  std::ofstream(folder.path / "a/runs/seed-2/series.csv") << "t,";
+  std::ofstream(folder.path / "a/runs/seed-2/series.csv") << "step,t,mass\n1,2,3\n";
   std::ofstream(folder.path / "a/runs/seed-3/summary.json") << "{";
   const Outcome made = traceraft("ensemble --out " + out("a"));
   EXPECT_EQ(made.code, 3) << made.output;
-  for (const char* words :
-       {"seed 1 failed: its series.csv ends at t = ", "seed 2 failed", "seed 3 failed"})
+  for (const char* words : {"seed 1 failed: its series.csv ends at t = ",
+                            "there is no column 'perimeter'", "seed 3 failed"})
     EXPECT_NE(made.output.find(words), std::string::npos) << made.output;
   EXPECT_NE(content(folder.path / "a/ensemble.html").find("1 of 4 runs"), std::string::npos);
   // Time goes on to the end of the run that is whole.
@@ -169,6 +169,10 @@ TEST_F(EnsembleTest, IsAnArrayJobToo) {
   ASSERT_EQ(script.code, 0) << script.output;
   const fs::path job = folder.path / "there it is/array-job.sh";
   EXPECT_NE(content(job).find("#SBATCH --array=0-1\n"), std::string::npos);
+  const Outcome finer =
+      traceraft("ensemble --case guv-2to1 --cells 256 --runs 1 --array-job --out " + out("finer"));
+  EXPECT_NE(finer.output.find("2 processors, 8 GB and at most 8 h"), std::string::npos)
+      << finer.output;
   for (const char* line : {"#SBATCH --mem=2G\n", "#SBATCH --time=1:00:00\n"})
     EXPECT_NE(content(job).find(line), std::string::npos) << line;
   for (const char* task : {"0", "1"}) {

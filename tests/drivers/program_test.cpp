@@ -310,7 +310,7 @@ TEST_F(ProgramTest, HelpAndListNameEverything) {
 TEST(FractionCommand, SaysWhatToSimulate) {
   const Outcome known = traceraft("fraction --composition 2:1:20% --temperature 19.2");
   EXPECT_EQ(known.code, 0) << known.output;
-  EXPECT_NE(known.output.find("run --case guv-2to1 --raft-fraction 0.157"), std::string::npos)
+  EXPECT_NE(known.output.find("run --case guv-2to1 --raft-fraction 0.156"), std::string::npos)
       << known.output;
   const Outcome given = traceraft(
       "fraction --composition 3:1:20 --temperature 15 --ordered 22:43:35 --disordered 66:16:18");

@@ -134,6 +134,7 @@ TEST_F(DatasetTest, NamesFileLineAndColumn) {
 TEST_F(DatasetTest, RefusesWhatContradictsItself) {
   const std::string heading = "vesicle,time,radius,perimeter,rafts,fraction\n";
   expect_complaint(heading + "a,1,5000,20000,0,\n", "column 'perimeter': without rafts");
+  expect_complaint(heading + "a,1,5000,20000,,0\n", "column 'fraction': rafts have a boundary");
   expect_complaint(heading + "a,1,5000,,3,0\n", "column 'fraction': rafts have a boundary");
   // The shortest boundary of half of a sphere of 5 um is a great circle of 31.4 um.
   expect_complaint(heading + "a,1,5000,15000,1,0.5\n",
@@ -189,6 +190,25 @@ TEST_F(DatasetTest, WhatIsDrawnFromFactsReadsBack) {
                   1e-12);
     }
   }
+}
+
+// Vesicles that have lost their rafts show none, and no area of them.
+TEST_F(DatasetTest, WhatIsDrawnFromRunsReadsBack) {
+  const PublishedFacts facts =
+      read_facts(std::string(TRACERAFT_ROOT) + "/verification/data/published/guv-3to1.toml");
+  const double later = 0.5 * facts.window.end;
+  History run;
+  run.time = {1, later, facts.window.end};
+  run.of(Quantity::perimeter) = {10, 10, 10};
+  run.of(Quantity::rafts) = {3, 0, 0};
+  run.of(Quantity::fraction) = {0.1, 0.1, 0.1};
+  write_dataset(folder.path / "drawn", draw_from_runs(facts, {run, run, run}, 5), "a test");
+  int empty = 0;
+  for (const Measurement& m : read_dataset(folder.path / "drawn").measurements) {
+    empty += *m.of(Quantity::rafts) == 0;
+    EXPECT_EQ(*m.of(Quantity::fraction) == 0, m.time >= later);
+  }
+  EXPECT_GT(empty, 0);
 }
 
 // The sets that are kept are those that the program draws, and say what they are.

@@ -100,17 +100,32 @@ TEST_F(FieldDatasetTest, ReadsAFolderOfBothKinds) {
 }
 
 TEST_F(FieldDatasetTest, ConvertsUnits) {
+  FieldDataset large = small_dataset();
+  large.radius_um = 500;
+  write_field_dataset(folder.path, large, "of a test");
   replace("dataset.toml",
-          "name = \"a\"\nlength_unit = \"nm\"\ntime_unit = \"min\"\nradius = 5\n"
+          "name = \"a\"\nlength_unit = \"nm\"\ntime_unit = \"min\"\nradius = 500\n"
           "times = [1, 2, 3]\n");
   const FieldDataset data = read_field_dataset(folder.path);
-  EXPECT_DOUBLE_EQ(data.radius_um, 0.005);
+  EXPECT_DOUBLE_EQ(data.radius_um, 0.5);
   EXPECT_DOUBLE_EQ(data.vesicles[0].snapshots[1].time, 120);
 }
 
 TEST_F(FieldDatasetTest, RefusesWhatIsWrongWithItsPlace) {
   replace("dataset.toml", description("[10, 5]"));
   expect_refusal("dataset.toml:5: times");
+  for (const auto& [line, complaint] :
+       {std::pair("temperature = 288", "dataset.toml:6: temperature: 288 degrees"),
+        std::pair("composition = \"banana\"", "'banana' is not parts of DOPC")}) {
+    replace("dataset.toml", description("[1, 2, 3]") + line + "\n");
+    expect_refusal(complaint);
+  }
+  replace("dataset.toml", description("[1, inf]"));
+  expect_refusal("dataset.toml:5: times: inf s is impossible");
+  replace("dataset.toml",
+          "name = \"a\"\nlength_unit = \"um\"\ntime_unit = \"s\"\nradius = inf\n"
+          "times = [1, 2, 3]\n");
+  expect_refusal("dataset.toml:4: radius: a vesicle of radius inf um is impossible");
   replace("dataset.toml", description("[10]"));
   expect_refusal("two snapshots or more");
   replace("dataset.toml", description("[1, 2]"));

@@ -22,18 +22,18 @@ TEST(Resolvable, NamesRaftsThatLightDoesNotShow) {
     constexpr int kRafts = 100;
     return look(2 * 3.14159265 * kRafts * radius / 5, kRafts * radius * radius / (4 * 25));
   };
-  EXPECT_EQ(too_long_boundaries(rafts(0.21)), "");
-  const std::string doubt = too_long_boundaries(rafts(0.15));
+  EXPECT_EQ(too_long_boundaries(rafts(0.11)), "");
+  const std::string doubt = too_long_boundaries(rafts(0.08));
   EXPECT_NE(doubt.find("Of 1 of 1 looks"), std::string::npos) << doubt;
-  EXPECT_NE(doubt.find("'a' at 30 s would have rafts of 0.15 um"), std::string::npos) << doubt;
+  EXPECT_NE(doubt.find("of vesicle 'a' at 30 s 0.16 um"), std::string::npos) << doubt;
 }
 
-// As much raft as possible, half of the surface, has the widest strips.
+// As much raft as possible, half of the surface, has the largest discs.
 TEST(Resolvable, DoubtsNothingThatMayBe) {
-  EXPECT_EQ(too_long_boundaries(look(300, std::nullopt)), "");
-  EXPECT_NE(too_long_boundaries(look(320, std::nullopt)), "");
+  EXPECT_EQ(too_long_boundaries(look(620, std::nullopt)), "");
+  EXPECT_NE(too_long_boundaries(look(640, std::nullopt)), "");
   // What is not raft may be narrow as well.
-  EXPECT_NE(too_long_boundaries(look(100, 0.95)), "");
+  EXPECT_NE(too_long_boundaries(look(200, 0.95)), "");
   MeasuredVesicles nothing;
   nothing.measurements = {Measurement{"a", 30, 5, {}, {}}};
   EXPECT_EQ(too_long_boundaries(nothing), "");

@@ -30,6 +30,7 @@ std::vector<int> telling_vesicles(const MeasuredVesicles& data) {
         "a calibration needs three vesicles at least, to know how they scatter, with rafts whose "
         "perimeter or number was measured; there are " +
         std::to_string(result.size()));
+  if (!(looks(data).end > 0)) throw InputError("a calibration needs looks after time zero");
   return result;
 }
 

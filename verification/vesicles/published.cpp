@@ -56,6 +56,7 @@ std::string vesicle_name(int index) {
   return "v" + std::to_string(index + 1);
 }
 
+constexpr double kLeastRaft = 0.001;
 const double kShare = std::sqrt(0.5);  // of a deviation, when half of the variance is common
 
 }  // namespace
@@ -105,15 +106,18 @@ MeasuredVesicles draw_from_runs(const PublishedFacts& facts, const std::vector<H
     const double radius = draw_radius(draw, facts);
     for (const double t :
          draw_times(draw, looks_at(k, vesicles, facts.measurements), facts.window)) {
-      const double perimeter =
+      const double rafts = run.at(Quantity::rafts, t);
+      double perimeter =
           run.at(Quantity::perimeter, t) * std::exp(facts.perimeter.scatter * draw.normal());
-      const double fraction = std::max(
-          0.001, run.at(Quantity::fraction, t) + facts.fraction_sd * kShare * draw.normal());
+      double fraction =
+          std::clamp(run.at(Quantity::fraction, t) + facts.fraction_sd * kShare * draw.normal(),
+                     kLeastRaft, 1 - kLeastRaft);
+      if (rafts == 0) perimeter = fraction = 0;  // nothing to be seen
       data.measurements.push_back(
           {vesicle_name(k),
            t,
            radius,
-           {perimeter, run.at(Quantity::rafts, t), fraction},
+           {perimeter, rafts, fraction},
            {perimeter * facts.perimeter.scatter, std::nullopt, facts.fraction_sd * kShare}});
     }
   }

@@ -82,6 +82,7 @@ LipidMixture phase_mixture(const std::string& context, const std::string& text) 
   const auto [dopc, dppc, cholesterol] =
       three_numbers(context, text, "mol % of DOPC : DPPC : cholesterol, such as 22:43:35");
   const double sum = dopc + dppc + cholesterol;
+  if (!(dopc + dppc > 0)) throw InputError(context + ": '" + text + "' has no phospholipid");
   // Read off a diagram, percents do not add up to the last digit.
   if (std::fabs(sum - 100) > 1.5)
     throw InputError(context + ": '" + text + "' adds up to " + format_number(sum) + ", not 100");

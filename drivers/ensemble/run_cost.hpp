@@ -1,0 +1,19 @@
+// What a run costs beside another one that differs in its mesh.
+#pragma once
+
+#include "drivers/config/configuration.hpp"
+
+namespace traceraft {
+
+// Over those of a run of 128 cells. Nodes grow as cells², and the work as cells³: phase boundaries
+// that are narrower with the mesh take more steps. Other times, tolerances and methods do not
+// enter.
+inline double relative_memory(const Configuration& configuration) {
+  const double finer = configuration.number("cells") / 128;
+  return finer * finer;
+}
+inline double relative_work(const Configuration& configuration) {
+  return relative_memory(configuration) * configuration.number("cells") / 128;
+}
+
+}  // namespace traceraft
