@@ -67,6 +67,51 @@ FieldSnapshot read_snapshot(const fs::path& path, double time, double to_radius)
   return snapshot;
 }
 
+void read_blur(const TomlTable& toml, double length, FieldDataset& data) {
+  if (!toml.has("blur")) return;
+  data.blur_um = toml.number("blur") * length;
+  if (!(*data.blur_um >= 0 && *data.blur_um < kWidestBlur * data.radius_um))
+    throw InputError(toml.where("blur") + formatted(": it has to be from 0 to %.2g of the radius, "
+                                                    "a standard deviation",
+                                                    kWidestBlur));
+}
+
+// Whose each snapshot is.
+std::vector<std::string> vesicles_of(const TomlTable& toml, std::size_t snapshots) {
+  const std::vector<double> numbers =
+      toml.has("vesicles") ? numbers_of(toml, "vesicles") : std::vector<double>(snapshots, 1.0);
+  if (numbers.size() != snapshots)
+    throw InputError(toml.where("vesicles") + ": " + std::to_string(numbers.size()) +
+                     " vesicles for " + std::to_string(snapshots) + " times");
+  std::vector<std::string> names;
+  for (const double number : numbers) names.push_back(format_number(number));
+  return names;
+}
+
+// The series of a vesicle whose snapshots follow each other.
+FieldSeries& series_of(const TomlTable& toml, const std::string& vesicle, FieldDataset& data) {
+  auto& all = data.vesicles;
+  if (!all.empty() && all.back().vesicle == vesicle) return all.back();
+  for (const FieldSeries& before : all)
+    if (before.vesicle == vesicle)
+      throw InputError(toml.where("vesicles") + ": snapshots of vesicle " + vesicle +
+                       " have to follow each other");
+  all.push_back({vesicle, {}});
+  return all.back();
+}
+
+void refuse_incomplete(const fs::path& folder, const TomlTable& toml, std::size_t snapshots,
+                       const FieldDataset& data) {
+  for (const FieldSeries& series : data.vesicles)
+    if (series.snapshots.size() < 2)
+      throw InputError(toml.where("times") + ": vesicle " + series.vesicle +
+                       " needs two snapshots or more");
+  if (const fs::path more = folder / snapshot_file(snapshots + 1); fs::exists(more))
+    throw InputError(toml.where("times") + ": " + std::to_string(snapshots) +
+                     " times, but there is " + more.filename().string());
+  if (data.vesicles.empty()) throw InputError(toml.where("times") + ": there is no snapshot");
+}
+
 }  // namespace
 
 FieldDataset read_field_dataset(const fs::path& folder) {
@@ -78,49 +123,23 @@ FieldDataset read_field_dataset(const fs::path& folder) {
   data.origin = toml.text_or("origin", "");
   data.time_zero = toml.text_or("time_zero", "");
   data.synthetic = toml.has("kind") && is_synthetic(toml);
-  const double length = length_factor(toml, "length_unit"), second = time_factor(toml, "time_unit"),
-               offset = time_offset(toml);
   (void)composition_of(toml);
   (void)celsius_of(toml);
+  const double length = length_factor(toml, "length_unit"), second = time_factor(toml, "time_unit"),
+               offset = time_offset(toml);
   data.radius_um = checked_radius(toml.number("radius") * length, toml.where("radius"));
-  if (toml.has("blur")) {
-    data.blur_um = toml.number("blur") * length;
-    if (!(*data.blur_um >= 0 && *data.blur_um < kWidestBlur * data.radius_um))
-      throw InputError(toml.where("blur") +
-                       formatted(": it has to be from 0 to %.2g of the radius, "
-                                 "a standard deviation",
-                                 kWidestBlur));
-  }
+  read_blur(toml, length, data);
   const std::vector<double> times = numbers_of(toml, "times");
-  const std::vector<double> vesicles =
-      toml.has("vesicles") ? numbers_of(toml, "vesicles") : std::vector<double>(times.size(), 1.0);
-  if (vesicles.size() != times.size())
-    throw InputError(toml.where("vesicles") + ": " + std::to_string(vesicles.size()) +
-                     " vesicles for " + std::to_string(times.size()) + " times");
+  const std::vector<std::string> vesicles = vesicles_of(toml, times.size());
   for (std::size_t k = 0; k < times.size(); ++k) {
-    const std::string vesicle = format_number(vesicles[k]);
-    if (data.vesicles.empty() || data.vesicles.back().vesicle != vesicle) {
-      for (const FieldSeries& before : data.vesicles)
-        if (before.vesicle == vesicle)
-          throw InputError(toml.where("vesicles") + ": snapshots of vesicle " + vesicle +
-                           " have to follow each other");
-      data.vesicles.push_back({vesicle, {}});
-    }
-    auto& snapshots = data.vesicles.back().snapshots;
+    auto& snapshots = series_of(toml, vesicles[k], data).snapshots;
     const double time = checked_time((times[k] + offset) * second, toml.where("times"));
     if (!snapshots.empty() && !(time > snapshots.back().time))
       throw InputError(toml.where("times") + ": times of a vesicle have to ascend");
     snapshots.push_back(
         read_snapshot(folder / snapshot_file(k + 1), time, length / data.radius_um));
   }
-  for (const FieldSeries& series : data.vesicles)
-    if (series.snapshots.size() < 2)
-      throw InputError(toml.where("times") + ": vesicle " + series.vesicle +
-                       " needs two snapshots or more");
-  if (const fs::path more = folder / snapshot_file(times.size() + 1); fs::exists(more))
-    throw InputError(toml.where("times") + ": " + std::to_string(times.size()) +
-                     " times, but there is " + more.filename().string());
-  if (data.vesicles.empty()) throw InputError(toml.where("times") + ": there is no snapshot");
+  refuse_incomplete(folder, toml, times.size(), data);
   return data;
 }
 

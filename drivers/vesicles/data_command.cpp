@@ -9,6 +9,7 @@
 #include "drivers/input/dataset.hpp"
 #include "drivers/input/facts_file.hpp"
 #include "drivers/run/run_folder.hpp"
+#include "drivers/vesicles/comparison_report.hpp"
 #include "drivers/vesicles/field_report.hpp"
 #include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/error.hpp"

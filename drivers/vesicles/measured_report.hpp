@@ -1,4 +1,4 @@
-// What measurements say, alone and beside an ensemble: tables, comparison.csv, comparison.html.
+// What measurements say, and the ensembles they are held against.
 #pragma once
 
 #include <filesystem>
@@ -6,15 +6,15 @@
 
 #include "drivers/config/configuration.hpp"
 #include "drivers/ensemble/ensemble_report.hpp"
-#include "verification/vesicles/differences.hpp"
 #include "verification/vesicles/measurements.hpp"
 #include "verification/vesicles/power_law.hpp"
-#include "verification/vesicles/published.hpp"
 
 namespace traceraft {
 
 // Its name, and whether it was drawn rather than measured.
 std::string title_of(const MeasuredVesicles& data);
+std::string origin_of(const MeasuredVesicles& data);   // "measured", or that it was not
+std::string about_data(const MeasuredVesicles& data);  // a sentence: title, how many, from where
 
 // `law`: fitted within the window.
 void print_dataset(const MeasuredVesicles& data, const std::optional<FittedLaw>& law,
@@ -32,16 +32,5 @@ std::vector<History> runs_of(const std::filesystem::path& ensemble);
 // on.
 Chart comparison_chart(const MeasuredVesicles& data, const EnsembleSummary& summary,
                        Quantity quantity);
-
-struct ComparisonRequest {
-  std::filesystem::path ensemble, out;
-  std::string command;  // that asks for it
-  Window window;
-  std::optional<PublishedFacts> facts;  // shown beside both
-  bool quiet;
-};
-// Writes into the folder `out`. Returns an exit code; throws InputError as runs_of, and if fewer
-// than two runs have finished.
-int compare_with_ensemble(const MeasuredVesicles& data, const ComparisonRequest& request);
 
 }  // namespace traceraft

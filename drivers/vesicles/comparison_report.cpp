@@ -1,0 +1,156 @@
+#include "drivers/vesicles/comparison_report.hpp"
+
+#include <cstdio>
+
+#include "backends/posix/durable_file.hpp"
+#include "drivers/exit_codes.hpp"
+#include "drivers/output/json_file.hpp"
+#include "drivers/output/provenance.hpp"
+#include "drivers/vesicles/agreement_report.hpp"
+#include "drivers/vesicles/law_report.hpp"
+#include "drivers/vesicles/measured_report.hpp"
+#include "kernel/core/error.hpp"
+#include "kernel/core/text.hpp"
+#include "verification/vesicles/differences.hpp"
+#include "verification/vesicles/raft_fraction.hpp"
+#include "verification/vesicles/resolvable.hpp"
+
+namespace traceraft {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string about(const PublishedFacts& facts) {
+  std::string text =
+      "Published (" + facts.origin +
+      formatted("): raft fraction %.3g +- %.2g, %d measurements of %d vesicles.", facts.fraction,
+                facts.fraction_sd, facts.measurements, facts.vesicles);
+  if (facts.outliers >= 0)
+    text += formatted(
+        " Of their numbers of rafts, %d lie outside the range of the published "
+        "simulations.",
+        facts.outliers);
+  return text;
+}
+
+void refuse_other_membrane(const MeasuredVesicles& data, const PublishedFacts& facts) {
+  if (data.composition.empty() || same_membrane(data.composition, facts.composition)) return;
+  throw InputError("--facts: they are of " + facts.composition + ", the measurements of " +
+                   data.composition);
+}
+
+class ComparisonReport {
+ public:
+  ComparisonReport(const MeasuredVesicles& data, const ComparisonRequest& request)
+      : data_(data),
+        request_(request),
+        model_(model_of(request.ensemble)),
+        runs_(runs_of(request.ensemble)),
+        agreements_(compare_with_runs(data, runs_)),
+        summary_(summarise(runs_)),
+        measured_(fit_measurements(data, request.window)),
+        simulated_(fit_runs(runs_, summary_.times, request.window)) {}
+
+  void write() {
+    fs::create_directories(request_.out);
+    write_durably(request_.out / "comparison.json",
+                  Json{{"runs", runs_.size()}, {"data", data_.name}}.dump(2) + "\n");
+    write_durably(request_.out / "comparison.csv", csv_text(agreement_table(agreements_)));
+    write_durably(request_.out / "comparison.html", page().html());
+  }
+
+  void print() const {
+    std::printf("%s\n\n", about_data(data_).c_str());
+    print_rows(agreement_rows(agreements_));
+    std::printf("%s\n\npower laws from %g to %g s\n", about_agreement(runs_.size()).c_str(),
+                request_.window.begin, request_.window.end);
+    print_rows(laws());
+    for (const std::string& remark : remarks()) std::printf("%s\n", remark.c_str());
+    for (const std::string& note : notes()) std::printf("\n%s\n", note.c_str());
+    std::printf("\nopen next: %s\n", (request_.out / "comparison.html").c_str());
+    if (!missing_.text().empty()) std::printf("the page lacks: %s\n", missing_.text().c_str());
+  }
+
+ private:
+  Page page() {
+    Page page("Measured and simulated vesicles");
+    page.paragraph(about_data(data_) + ".");
+    if (request_.facts) page.paragraph(about(*request_.facts));
+    page.paragraph(std::to_string(runs_.size()) + " runs in " + request_.ensemble.string() + ". " +
+                   about_agreement(runs_.size()));
+    page.table(agreement_rows(agreements_));
+    for (const std::string& note : notes()) page.paragraph(note);
+    page.paragraph(formatted("Power laws fitted from %g to %g s.", request_.window.begin,
+                             request_.window.end));
+    page.table(laws());
+    for (const std::string& remark : remarks()) page.paragraph(remark);
+    for (const Quantity quantity : kQuantities)
+      add_chart(page, chart_of(quantity),
+                request_.out / (std::string("comparison-") + name_of(quantity).id), missing_);
+    add_settings(page, model_);
+    add_provenance(page, request_.ensemble, request_.command);
+    return page;
+  }
+
+  std::vector<Row> laws() const {
+    std::vector<Row> rows = {law_heading(), law_row(origin_of(data_), measured_),
+                             law_row("simulated", simulated_)};
+    if (request_.facts) rows.push_back(law_row(*request_.facts));
+    return rows;
+  }
+
+  // Why the two may differ although the model is right, or cannot be compared.
+  std::vector<std::string> notes() const {
+    std::vector<std::string> notes =
+        differences(data_, simulated_vesicle(model_.units().length(), runs_, data_));
+    if (model_.text("surface") != "sphere")
+      notes.push_back("The simulated surface is no sphere: " + model_.text("surface") + ".");
+    if (const std::string doubt = too_long_boundaries(data_); !doubt.empty())
+      notes.push_back(doubt);
+    for (const std::string& note : doubts_of(agreements_)) notes.push_back(note);
+    return notes;
+  }
+
+  std::vector<std::string> remarks() const {
+    std::vector<std::string> remarks = remarks_on({measured_, simulated_});
+    if (summary_.times.back() < 0.99 * request_.window.end)
+      remarks.push_back(formatted("The runs end at %.4g s: their law is fitted until then.",
+                                  summary_.times.back()));
+    return remarks;
+  }
+
+  Chart chart_of(Quantity quantity) const {
+    const Window& window = request_.window;
+    Chart chart = comparison_chart(data_, summary_, quantity);
+    if (quantity != Quantity::perimeter) return chart;
+    if (measured_)
+      chart.series.push_back(law_curve("law of the measurements", measured_->law, window));
+    if (simulated_)
+      chart.series.push_back(law_curve("law of the simulations", simulated_->law, window));
+    if (request_.facts)
+      chart.series.push_back(
+          law_curve("published law", request_.facts->perimeter, request_.facts->window));
+    return chart;
+  }
+
+  const MeasuredVesicles& data_;
+  const ComparisonRequest& request_;
+  Configuration model_;
+  std::vector<History> runs_;
+  std::vector<Agreement> agreements_;
+  EnsembleSummary summary_;
+  std::optional<FittedLaw> measured_, simulated_;
+  Missing missing_;  // of the charts
+};
+
+}  // namespace
+
+int compare_with_ensemble(const MeasuredVesicles& data, const ComparisonRequest& request) {
+  if (request.facts) refuse_other_membrane(data, *request.facts);
+  ComparisonReport report(data, request);
+  report.write();
+  if (!request.quiet) report.print();
+  return kSuccess;
+}
+
+}  // namespace traceraft
