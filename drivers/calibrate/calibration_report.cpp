@@ -16,8 +16,6 @@
 #include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/text.hpp"
 #include "verification/vesicles/calibration_data.hpp"
-#include "verification/vesicles/differences.hpp"
-#include "verification/vesicles/resolvable.hpp"
 
 namespace traceraft {
 namespace {
@@ -140,7 +138,9 @@ std::vector<History> best_runs(const CalibrationRuns& all, const Calibration& re
 
 // What is to be known before the numbers.
 std::vector<std::string> notes_on(const MeasuredVesicles& data, const CalibrationRuns& runs,
-                                  const std::vector<History>& best, const Calibration& result) {
+                                  const std::vector<History>& best,
+                                  const std::vector<Agreement>& agreements,
+                                  const Calibration& result) {
   const std::vector<std::string>& names = runs.names;
   std::vector<std::string> notes;
   if (!result.converged)
@@ -158,21 +158,21 @@ std::vector<std::string> notes_on(const MeasuredVesicles& data, const Calibratio
         formatted("%d of %zu measurements are of no raft, or of neither perimeter nor "
                   "number: they are not used.",
                   nothing, data.measurements.size()));
-  for (const CalibratedParameter& p : result.parameters)
-    if (p.name == "epsilon" &&
-        p.interval.low < kAtEnd * range_of(runs.model, p.name, runs.most_cells).low)
+  for (const CalibratedParameter& p : result.parameters) {
+    if (p.name != "epsilon") continue;
+    const double smallest = range_of(runs.model, p.name, runs.most_cells).low;
+    if (p.interval.low < kAtEnd * smallest)
       notes.push_back(
           formatted("Epsilon may be smaller than what %d cells resolve, %.3g um, below which it is "
                     "not looked for; take more --most-cells.",
-                    runs.most_cells, range_of(runs.model, p.name, runs.most_cells).low));
+                    runs.most_cells, smallest));
+  }
   if (!names.empty() && std::find(names.begin(), names.end(), "noise-length") == names.end())
     notes.push_back(
         "The intervals hold if the initial noise is as long as the model's; if it is not, the "
         "others take the blame. With noise-length among --parameters it is looked for, too.");
-  const SimulatedVesicle vesicle = simulated_vesicle(runs.model.units().length(), best, data);
-  for (const std::string& note : differences(data, vesicle)) notes.push_back(note);
-  if (const std::string doubt = too_long_boundaries(data); !doubt.empty()) notes.push_back(doubt);
-  for (const std::string& doubt : doubts_of(compare_with_runs(data, best))) notes.push_back(doubt);
+  const double radius = runs.model.units().length();
+  for (const std::string& note : cautions(data, radius, best, agreements)) notes.push_back(note);
   return notes;
 }
 
@@ -230,8 +230,10 @@ void write_calibration(const std::filesystem::path& folder, const MeasuredVesicl
   const std::vector<Row> rows = rows_of(lines);
   const Configuration found = found_model(runs.model, runs.names, lines);
   const std::vector<History> best = best_runs(runs, result);
-  const std::vector<std::string> notes = notes_on(data, runs, best, result);
-  const std::vector<std::string> sentences = sentences_on(result);
+  const std::vector<Agreement> agreements = compare_with_runs(data, best);
+  const std::vector<Row> agreement = agreement_rows(agreements);
+  std::vector<std::string> sentences = notes_on(data, runs, best, agreements, result);
+  for (const std::string& sentence : sentences_on(result)) sentences.push_back(sentence);
   const Table table = points_table(runs, result);
   write_durably(folder / "calibration.csv", csv_text(table));
   write_durably(folder / "calibration.json", json_text(lines, result));
@@ -239,11 +241,9 @@ void write_calibration(const std::filesystem::path& folder, const MeasuredVesicl
   Page page("A model calibrated with measurements");
   page.paragraph(title_of(data));
   page.table(rows);
-  for (const auto* list : {&notes, &sentences})
-    for (const std::string& sentence : *list) page.paragraph(sentence);
+  for (const std::string& sentence : sentences) page.paragraph(sentence);
   Missing missing;
   page.heading("How well it fits");
-  const std::vector<Row> agreement = agreement_rows(compare_with_runs(data, best));
   page.table(agreement);
   page.paragraph(about_agreement(best.size()));
   add_fit(page, folder, data, best, missing);
@@ -255,8 +255,7 @@ void write_calibration(const std::filesystem::path& folder, const MeasuredVesicl
   if (quiet) return;
   std::printf("\n%s\n\n", title_of(data).c_str());
   print_rows(rows);
-  for (const auto* list : {&notes, &sentences})
-    for (const std::string& sentence : *list) std::printf("\n%s\n", sentence.c_str());
+  for (const std::string& sentence : sentences) std::printf("\n%s\n", sentence.c_str());
   std::printf("\nin the simulations that fit best:\n");
   print_rows(agreement);
   std::printf("%s\n", about_agreement(best.size()).c_str());

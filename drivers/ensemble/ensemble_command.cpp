@@ -103,8 +103,9 @@ int carry_out(const EnsembleRequest& request, const EnsembleFolder& folder,
   }
   const std::vector<History>& runs = finished.histories;
   if (runs.empty()) return kNumericalFailure;
-  write_histories(folder.path() / kHistoriesFile, finished.seeds, runs, summarise(runs).times);
-  const std::string missing = write_ensemble(folder, configuration, runs, end, request.quiet);
+  const EnsembleSummary summary = summarise(runs);
+  write_histories(folder.path() / kHistoriesFile, finished.seeds, runs, summary.times);
+  const std::string missing = write_ensemble(folder, configuration, summary, end, request.quiet);
   if (!request.quiet) {
     if (!missing.empty()) std::printf("\ncharts are missing: %s\n", missing.c_str());
     std::printf("\nopen next: %s\n", (folder.path() / "ensemble.html").c_str());

@@ -79,7 +79,6 @@ double EnsembleFolder::reached(std::uint64_t seed) const {
 
 History EnsembleFolder::history(std::uint64_t seed, double radius) const {
   const CsvTable series = CsvTable::read(run_of(seed) / "series.csv");
-  for (const char* column : {"t", "perimeter", "rafts", "raft_fraction"}) series.require(column);
   History history;
   history.time = series.numbers("t");
   history.of(Quantity::perimeter) = series.numbers("perimeter");

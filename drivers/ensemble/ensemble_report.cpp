@@ -64,7 +64,7 @@ std::vector<Row> ensemble_rows(const EnsembleSummary& summary, bool seconds) {
 }
 
 EnsembleSummary summarise(const std::vector<History>& runs) {
-  EnsembleSummary summary;
+  EnsembleSummary summary{runs.size(), {}, {}};
   summary.times = common_times(runs, kPerDecade);
   if (summary.times.empty()) throw InputError("the runs of an ensemble have no times in common");
   for (const Quantity quantity : kQuantities)
@@ -110,12 +110,11 @@ void add_ensemble_origin(Page& page, const EnsembleFolder& folder,
 }
 
 std::string write_ensemble(const EnsembleFolder& folder, const Configuration& configuration,
-                           const std::vector<History>& runs, const EnsembleEnd& end, bool quiet) {
-  const EnsembleSummary summary = summarise(runs);
+                           const EnsembleSummary& summary, const EnsembleEnd& end, bool quiet) {
   const bool seconds = !configuration.units().scaled;
   write_durably(folder.path() / "ensemble.csv", csv_text(ensemble_table(summary)));
   Page page("An ensemble of vesicles");
-  page.paragraph(sentence_on(configuration, folder.load(), runs.size()));
+  page.paragraph(sentence_on(configuration, folder.load(), summary.runs));
   for (const MemberFailure& failure : end.failures)
     page.paragraph("The run of seed " + std::to_string(failure.seed) + " failed: " + failure.why);
   const std::vector<Row> rows = ensemble_rows(summary, seconds);

@@ -15,6 +15,7 @@ namespace traceraft {
 
 // Per quantity its distribution over the runs, at common times.
 struct EnsembleSummary {
+  std::size_t runs;
   std::vector<double> times;
   std::array<std::vector<Distribution>, 3> at;  // in the order of kQuantities
 };
@@ -35,6 +36,6 @@ void add_ensemble_origin(Page& page, const EnsembleFolder& folder,
 // Writes both files into the folder and prints a table unless `quiet`. Returns what is missing of
 // the charts, "" if nothing.
 std::string write_ensemble(const EnsembleFolder& folder, const Configuration& configuration,
-                           const std::vector<History>& runs, const EnsembleEnd& end, bool quiet);
+                           const EnsembleSummary& summary, const EnsembleEnd& end, bool quiet);
 
 }  // namespace traceraft

@@ -138,7 +138,9 @@ void CsvTable::require(const std::string& column) const {
 }
 
 const std::string& CsvTable::text(std::size_t row, const std::string& column) const {
-  return cells_[row][index(column).value()];
+  const auto at = index(column);
+  if (!at) require(column);  // which throws
+  return cells_[row][*at];
 }
 
 double CsvTable::number(std::size_t row, const std::string& column) const {
@@ -146,6 +148,7 @@ double CsvTable::number(std::size_t row, const std::string& column) const {
 }
 
 std::vector<double> CsvTable::numbers(const std::string& column) const {
+  require(column);  // of a table without rows, too
   std::vector<double> values;
   for (std::size_t row = 0; row < rows(); ++row) values.push_back(number(row, column));
   return values;

@@ -23,7 +23,7 @@ class CsvTable {
   // Throws InputError if there is no such column.
   void require(const std::string& column) const;
 
-  // Of a column that is there. `number` throws InputError unless the cell holds a finite number.
+  // Throw InputError as require; `number` also unless the cell holds a finite number.
   const std::string& text(std::size_t row, const std::string& column) const;
   double number(std::size_t row, const std::string& column) const;
   std::vector<double> numbers(const std::string& column) const;

@@ -55,12 +55,9 @@ constexpr Curve kCurves[] = {{"perimeter", "perimeter", true},
 Chart series_chart(const CsvTable& series, const Curve& curve, const std::string& time_unit) {
   Chart chart{curve.title, "time (" + time_unit + ")", curve.title, true, curve.log_y, {}};
   chart.series = {{curve.column, {}, Mark::line}};
-  series.require("t");
-  series.require(curve.column);
-  for (std::size_t row = 0; row < series.rows(); ++row) {
-    const double t = series.number(row, "t"), y = series.number(row, curve.column);
-    if (t > 0 && (y > 0 || !curve.log_y)) chart.series[0].points.emplace_back(t, y);
-  }
+  const std::vector<double> t = series.numbers("t"), y = series.numbers(curve.column);
+  for (std::size_t i = 0; i < t.size(); ++i)
+    if (t[i] > 0 && (y[i] > 0 || !curve.log_y)) chart.series[0].points.emplace_back(t[i], y[i]);
   return chart;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "kernel/core/text.hpp"
+#include "verification/vesicles/differences.hpp"
+#include "verification/vesicles/resolvable.hpp"
 
 namespace traceraft {
 namespace {
@@ -11,6 +13,22 @@ namespace {
 constexpr char kDeviations[] =
     "Deviations are those from the mean of the runs, over the scatter between runs and the "
     "uncertainty of the measurement; of logarithms for perimeters and counts. ";
+
+// Where there is nothing to compare, or nothing to measure deviations with.
+std::vector<std::string> doubts_of(const std::vector<Agreement>& agreements) {
+  constexpr double kSmall = 0.02;
+  std::vector<std::string> sentences;
+  if (std::all_of(agreements.begin(), agreements.end(),
+                  [](const Agreement& a) { return a.measurements == 0; }))
+    sentences.push_back("NOTHING IS COMPARED: no measurement is of a time that all runs cover.");
+  for (const Agreement& a : agreements)
+    if (a.measurements > 0 && a.scatter < kSmall)
+      sentences.push_back(
+          formatted("Runs and measurement scatter by %.2g %% only in %s: what they are "
+                    "compared in units of is next to nothing.",
+                    100 * a.scatter, name_of(a.quantity).label));
+  return sentences;
+}
 
 }  // namespace
 
@@ -40,21 +58,6 @@ std::vector<Row> agreement_rows(const std::vector<Agreement>& agreements) {
   return rows;
 }
 
-std::vector<std::string> doubts_of(const std::vector<Agreement>& agreements) {
-  constexpr double kSmall = 0.02;
-  std::vector<std::string> sentences;
-  if (std::all_of(agreements.begin(), agreements.end(),
-                  [](const Agreement& a) { return a.measurements == 0; }))
-    sentences.push_back("NOTHING IS COMPARED: no measurement is of a time that all runs cover.");
-  for (const Agreement& a : agreements)
-    if (a.measurements > 0 && a.scatter < kSmall)
-      sentences.push_back(
-          formatted("Runs and measurement scatter by %.2g %% only in %s: what they are "
-                    "compared in units of is next to nothing.",
-                    100 * a.scatter, name_of(a.quantity).label));
-  return sentences;
-}
-
 Table agreement_table(const std::vector<Agreement>& agreements) {
   Table table{"comparison",
               {"quantity", "compared", "beyond", "within_range", "mean_deviation", "misfit"},
@@ -69,6 +72,15 @@ Table agreement_table(const std::vector<Agreement>& agreements) {
     row[5] = a.misfit;
   }
   return table;
+}
+
+std::vector<std::string> cautions(const MeasuredVesicles& data, double radius,
+                                  const std::vector<History>& runs,
+                                  const std::vector<Agreement>& agreements) {
+  std::vector<std::string> all = differences(data, simulated_vesicle(radius, runs, data));
+  if (const std::string doubt = too_long_boundaries(data); !doubt.empty()) all.push_back(doubt);
+  for (const std::string& doubt : doubts_of(agreements)) all.push_back(doubt);
+  return all;
 }
 
 }  // namespace traceraft

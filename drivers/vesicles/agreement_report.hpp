@@ -17,7 +17,11 @@ std::string about_agreement(std::size_t runs);
 std::vector<Row> agreement_rows(const std::vector<Agreement>& agreements);
 Table agreement_table(const std::vector<Agreement>& agreements);
 
-// Where there is nothing to compare, or nothing to measure deviations with.
-std::vector<std::string> doubts_of(const std::vector<Agreement>& agreements);
+// Why the two may differ although the model is right, or cannot be compared: vesicles of another
+// size or raft fraction than the simulated one (`radius`, µm), perimeters that light does not show,
+// nothing to compare or to measure deviations with.
+std::vector<std::string> cautions(const MeasuredVesicles& data, double radius,
+                                  const std::vector<History>& runs,
+                                  const std::vector<Agreement>& agreements);
 
 }  // namespace traceraft

@@ -11,9 +11,7 @@
 #include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/text.hpp"
-#include "verification/vesicles/differences.hpp"
 #include "verification/vesicles/raft_fraction.hpp"
-#include "verification/vesicles/resolvable.hpp"
 
 namespace traceraft {
 namespace {
@@ -99,15 +97,10 @@ class ComparisonReport {
     return rows;
   }
 
-  // Why the two may differ although the model is right, or cannot be compared.
   std::vector<std::string> notes() const {
-    std::vector<std::string> notes =
-        differences(data_, simulated_vesicle(model_.units().length(), runs_, data_));
+    std::vector<std::string> notes = cautions(data_, model_.units().length(), runs_, agreements_);
     if (model_.text("surface") != "sphere")
       notes.push_back("The simulated surface is no sphere: " + model_.text("surface") + ".");
-    if (const std::string doubt = too_long_boundaries(data_); !doubt.empty())
-      notes.push_back(doubt);
-    for (const std::string& note : doubts_of(agreements_)) notes.push_back(note);
     return notes;
   }
 

@@ -33,8 +33,7 @@ std::string too_long_boundaries(const MeasuredVesicles& data) {
       [](const Measurement& a, const Measurement& b) { return diameter_of(a) < diameter_of(b); });
   return formatted(
       "Of %td of %zu looks the perimeter is so long that even round rafts would be less than the "
-      "%.1f "
-      "um across that light resolves: of vesicle '%s' at %.4g s %.2g um. Are the units right?",
+      "%.1f um across that light resolves: of vesicle '%s' at %.4g s %.2g um. Are the units right?",
       narrow, all.size(), kDiffraction, worst.vesicle.c_str(), worst.time, diameter_of(worst));
 }
 
