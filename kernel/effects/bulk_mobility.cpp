@@ -1,23 +1,40 @@
 #include "kernel/effects/effects.hpp"
-#include "kernel/effects/mobility_flux.hpp"
 
 namespace traceraft {
+namespace {
 
-// Lipids that move within the phases, too, not along boundaries alone: M(c) + m0.
+// M(c) + m0.
+class BulkMobility final : public Mobility {
+ public:
+  BulkMobility(MobilityPtr base, double m0) : base_(std::move(base)), m0_(m0) {}
+  void evaluate(const double* c, int count, double* value, double* derivative) const override {
+    base_->evaluate(c, count, value, derivative);
+    for (int i = 0; i < count; ++i) value[i] += m0_;
+  }
+  double scale() const override { return base_->scale(); }
+  bool constant() const override { return base_->constant(); }
+
+ private:
+  MobilityPtr base_;
+  double m0_;
+};
+
+}  // namespace
+
+// Lipids that move within the phases, too, not along boundaries alone.
 EffectEntry bulk_mobility_effect() {
-  return {
-      "bulk-mobility",
-      "lipids that diffuse through the phases: a mobility everywhere",
-      {{"strength", "", 0, 0, 10, "m0, in units of D"}},
-      MassClass::conserves,
-      EnergyClass::dissipates,
-      "coarsening like t^(1/3) instead of t^(1/4)",
-      {"mobility-exponent"},
-      [](const Parameters& p, CahnHilliardModel& model) {
-        const double m0 = p["strength"];
-        model.effects.push_back(mobility_flux(
-            "bulk-mobility", make_mobility("constant:value=1"), [m0](double) { return m0; }, true));
-      }};
+  return {"bulk-mobility",
+          "lipids that diffuse through the phases: a mobility everywhere",
+          {{"strength", "", 0, 0, 10, "m0, in units of D"}},
+          MassClass::conserves,
+          EnergyClass::dissipates,
+          "coarsening like t^(1/3) instead of t^(1/4)",
+          {"mobility-exponent"},
+          [](const Parameters& p, CahnHilliardModel& model) {
+            model.mobility = std::make_shared<BulkMobility>(model.mobility, p["strength"]);
+          },
+          false,
+          3};
 }
 
 }  // namespace traceraft

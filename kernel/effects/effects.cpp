@@ -1,6 +1,7 @@
 #include "kernel/effects/effects.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace traceraft {
 namespace {
@@ -69,9 +70,12 @@ bool has_unit_wells(const CahnHilliardModel& model) {
 
 CahnHilliardModel with_effects(CahnHilliardModel model, const std::vector<EffectTerm>& terms) {
   std::vector<EffectTerm> ordered = terms;
-  std::stable_partition(ordered.begin(), ordered.end(), [](const EffectTerm& term) {
-    return effects().find(term.effect).changes_mobility;
-  });
+  const auto stage = [](const EffectTerm& term) {
+    const int mobility = effects().find(term.effect).mobility_stage;
+    return mobility > 0 ? mobility : std::numeric_limits<int>::max();
+  };
+  std::stable_sort(ordered.begin(), ordered.end(),
+                   [&](const EffectTerm& a, const EffectTerm& b) { return stage(a) < stage(b); });
   for (const EffectTerm& term : ordered) add(term, model);
   return model;
 }

@@ -28,8 +28,10 @@ struct EffectEntry {
   std::vector<std::string> confused_with;  // names of effects
   // Adds it to a model. Parameters are in units of R and R²/D.
   std::function<void(const Parameters&, CahnHilliardModel&)> add;
-  bool unit_wells = false;        // it takes the phases to be at c = 0 and 1
-  bool changes_mobility = false;  // of which others make something: it is added before them
+  bool unit_wells = false;  // it takes the phases to be at c = 0 and 1
+  // Effects that change the mobility do so in this order, before those that make something of it
+  // (which have 0).
+  int mobility_stage = 0;
 };
 
 EffectEntry allen_cahn_effect();

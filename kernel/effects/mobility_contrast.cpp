@@ -38,7 +38,7 @@ EffectEntry mobility_contrast_effect() {
             model.mobility = std::make_shared<ContrastMobility>(model.mobility, p["strength"]);
           },
           true,
-          true};
+          1};
 }
 
 }  // namespace traceraft

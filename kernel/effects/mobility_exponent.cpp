@@ -45,7 +45,7 @@ EffectEntry mobility_exponent_effect() {
             model.mobility = std::make_shared<ExponentMobility>(model.mobility, p["excess"]);
           },
           true,
-          true};
+          2};
 }
 
 }  // namespace traceraft

@@ -56,6 +56,25 @@ TEST_P(EffectContract, IsSeenInTheResidual) {
   EXPECT_GT((with - without).norm(), 1e-4 * without.norm());
 }
 
+// A model is what it has, not the order in which that was said.
+TEST_P(EffectContract, CommutesWithTheOthers) {
+  const Vec y = random_state(*problem, 1), still = Vec::Zero(problem->size());
+  const std::string one = GetParam() + ":" + kStrong.at(GetParam());
+  const auto residual_of = [&](const std::string& specification) {
+    CahnHilliardModel model = make_model();
+    add_effects(specification, kScaled, model);
+    Vec r(problem->size());
+    EXPECT_TRUE(CahnHilliard(space, model).residual(kTime, y, still, r).ok());
+    return r;
+  };
+  for (const auto& [name, parameters] : kStrong) {
+    if (name == GetParam()) continue;
+    const std::string other = name + ":" + parameters;
+    const Vec r = residual_of(one + ";" + other);
+    EXPECT_LT((residual_of(other + ";" + one) - r).norm(), 1e-12 * r.norm()) << name;
+  }
+}
+
 TEST_P(EffectContract, TangentIsTheDerivativeOfTheResidual) {
   const double shift = 2.1, step = 1e-6;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {

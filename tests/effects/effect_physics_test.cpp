@@ -153,6 +153,17 @@ TEST_F(EffectPhysics, MobilitiesAreTheLawsTheySay) {
   add_effects("mobility-exponent:excess=0.5", kUnits, model);
   model.mobility->evaluate(c, 3, value, derivative);
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(value[i], 2 * std::pow(c[i] * (1 - c[i]), 1.5), 1e-14);
+  // More than one of them: each of the law that those before it leave.
+  model = make_model();
+  add_effects(
+      "bulk-mobility:strength=0.3;mobility-exponent:excess=0.5;"
+      "mobility-contrast:strength=0.4",
+      kUnits, model);
+  model.mobility->evaluate(c, 3, value, derivative);
+  for (int i = 0; i < 3; ++i) {
+    const double s = c[i] * (1 - c[i]);
+    EXPECT_NEAR(value[i], 2 * std::sqrt(s) * s * (1 + 0.4 * (2 * c[i] - 1)) + 0.3, 1e-14);
+  }
   // A constant added to a constant law is that of a larger one.
   CahnHilliardModel sum = make_model("constant:value=0.2"),
                     whole = make_model("constant:value=0.5");
@@ -166,6 +177,23 @@ TEST_F(EffectPhysics, MobilitiesAreTheLawsTheySay) {
   space->normal.multiply_add((whole.mobility->scale() - sum.mobility->scale()) * space->h(), mu,
                              stabilisation, *space->team);
   EXPECT_LT((s.head(n) - r.head(n) - stabilisation).norm(), 1e-12 * s.norm());
+}
+
+// A falling temperature slows all diffusion down.
+TEST_F(EffectPhysics, CoolingSlowsDownWhateverTheMobilityIs) {
+  const std::string slower = "cooling:rate=2,out=0,in=0,activation=0.3";
+  const double t = 0.7, factor = std::exp(-0.3 * 2 * t);
+  const auto flux = [&](const std::string& effects) {
+    CahnHilliardModel model = make_model();
+    model.stabilisation = 0;
+    add_effects(effects, kUnits, model);
+    Vec r(2 * n);
+    EXPECT_TRUE(CahnHilliard(space, model).residual(t, y, Vec::Zero(2 * n), r).ok());
+    return Vec(r.head(n));
+  };
+  const Vec still = flux("bulk-mobility:strength=0.3");
+  EXPECT_LT((flux("bulk-mobility:strength=0.3;" + slower) - factor * still).norm(),
+            1e-10 * still.norm());
 }
 
 TEST_F(EffectPhysics, LineTensionIsThatOfALargerEpsilon) {
