@@ -53,6 +53,15 @@ BlindRequest sizing_request(const Configuration& model, const SeriesEnsemblesReq
   return sizing;
 }
 
+// Series are held against one mixture of the coefficients of an effect that has two. That is
+// exchange, with the target that keeps the mean where it is: what moves the mean is uptake.
+EffectTerm sized_term(const EffectSizing& sizing, const std::string& effect, std::uint64_t number,
+                      double mean) {
+  const Candidate candidate = *find_candidate(effect);
+  if (candidate.directions == 1) return sizing.term(effect, number);
+  return sizing.term(effect, {candidate.step * (1 - mean), candidate.step * mean});
+}
+
 // What was found before; empty if that is nothing.
 Json saved_strengths(const fs::path& file, const std::string& identity) {
   if (!fs::exists(file)) return Json::object();
@@ -84,7 +93,7 @@ std::vector<EffectTerm> sizes(const fs::path& folder, const Configuration& model
     if (!strengths.contains(effect)) {
       tell(request, "how strong " + effect + " has to be");
       if (!sizing) sizing.emplace(asked);
-      strengths[effect] = sizing->term(effect, k).values;
+      strengths[effect] = sized_term(*sizing, effect, k, asked.raft_fraction).values;
       write_durably(file, Json{{"identity", identity}, {"strengths", strengths}}.dump(2) + "\n");
     }
     terms.push_back({effect, strengths.at(effect)});

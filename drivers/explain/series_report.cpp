@@ -84,6 +84,19 @@ std::vector<Row> score_rows(const Configuration& model, const SeriesExplanation&
   return rows;
 }
 
+// "exchange with target 0.16, ..."
+std::string assumed_text(const SeriesEnsembles& ensembles, const Units& units) {
+  std::string text;
+  for (const EffectTerm& term : ensembles.terms) {
+    std::string own;
+    for (const FoundParameter& p : assumed_parameters(term, units))
+      own += (own.empty() ? "" : ", ") + p.name + formatted(" %.3g", p.value) +
+             (p.unit.empty() ? "" : " " + p.unit);
+    if (!own.empty()) text += (text.empty() ? "" : "; ") + term.effect + " with " + own;
+  }
+  return text;
+}
+
 SeriesEnsembles in_seconds(SeriesEnsembles ensembles, double seconds_per_unit) {
   const auto convert = [=](std::vector<History>& runs) {
     for (History& run : runs)
@@ -98,7 +111,8 @@ SeriesEnsembles in_seconds(SeriesEnsembles ensembles, double seconds_per_unit) {
 std::vector<Exponent> exponents(const MeasuredVesicles& data, const SeriesEnsembles& ensembles) {
   const Window window = looks(data);
   std::vector<Exponent> result;
-  if (const auto law = fit_measurements(data, window)) result.push_back({"measured", *law});
+  if (const auto law = fit_measurements(data, window))
+    result.push_back({data.synthetic ? "synthetic data" : "measured", *law});
   const auto add = [&](const std::string& name, const std::vector<History>& runs) {
     if (const auto law = fit_runs(runs, common_times(runs, kOfCharts), window))
       result.push_back({name, *law});
@@ -155,6 +169,9 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
   words.insert(words.end(), ensembles.notes.begin(), ensembles.notes.end());
   const SimulatedVesicle vesicle = simulated_vesicle(model.units().length(), ensembles.base, data);
   for (const std::string& note : differences(data, vesicle)) words.push_back(note);
+  if (const std::string text = assumed_text(simulated, found_units(model, found)); !text.empty())
+    words.push_back("Of effects with more than one parameter, one each was simulated: " + text +
+                    ".");
   for (const auto& members : found.classes)
     if (members.size() > 1) words.push_back("Alike in series: " + listed(members, ", ") + ".");
   const std::vector<Row> offset = offset_rows(found), scores = score_rows(model, found),
@@ -174,7 +191,7 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
   }
   page.paragraph("traceraft " + std::string(kVersion) + ".");
   write_durably(folder / "series.html", page.html());
-  write_durably(folder / "series.json", series_json(model, found, laws).dump(2) + "\n");
+  write_durably(folder / "series.json", series_json(model, simulated, found, laws).dump(2) + "\n");
   if (quiet) return;
   std::printf("\n");
   for (const std::string& line : words) std::printf("%s\n", line.c_str());

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "drivers/config/config_file.hpp"
-#include "drivers/explain/found_parameters.hpp"
 #include "drivers/explain/verdict.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/effects/effects.hpp"
@@ -20,10 +19,28 @@ bool is_named(const SeriesExplanation& found) {
   return found.finding == Finding::named || found.finding == Finding::ambiguous;
 }
 
-Json scores_json(const Configuration& model, const SeriesExplanation& found) {
+// As it was simulated; null if it was not.
+const EffectTerm* term_of(const SeriesEnsembles& ensembles, const std::string& effect) {
+  for (const EffectTerm& term : ensembles.terms)
+    if (term.effect == effect) return &term;
+  return nullptr;
+}
+
+std::vector<FoundParameter> assumed_of(const Configuration& model, const SeriesEnsembles& ensembles,
+                                       const SeriesScore& score) {
+  const EffectTerm* term = term_of(ensembles, score.effect);
+  return term ? assumed_parameters(*term, units_of(model, score.ln_unit))
+              : std::vector<FoundParameter>();
+}
+
+Json scores_json(const Configuration& model, const SeriesEnsembles& ensembles,
+                 const SeriesExplanation& found) {
   Json scores = Json::array();
   for (const SeriesScore& s : found.scores) {
     const StrengthScale scale = scale_of(s, model);
+    Json assumed = Json::object();
+    for (const FoundParameter& p : assumed_of(model, ensembles, s))
+      assumed[p.name] = {{"value", p.value}, {"unit", p.unit}};
     scores.push_back({{"effect", s.effect},
                       {"score", s.gain},
                       {"null_mean", s.null_mean},
@@ -34,6 +51,7 @@ Json scores_json(const Configuration& model, const SeriesExplanation& found) {
                       {"low", s.bounded ? Json(scale.factor * s.low) : Json()},
                       {"high", s.bounded ? Json(scale.factor * s.high) : Json()},
                       {"unit", scale.unit},
+                      {"assumed", assumed},
                       {"vesicles_needed", s.vesicles},
                       {"shown_by", name_of(s.telling).id}});
   }
@@ -54,14 +72,17 @@ Json offsets_json(const SeriesExplanation& found) {
 
 // Of the effect that explains most, if something was named, and D.
 std::vector<FoundParameter> found_parameters(const Configuration& model,
+                                             const SeriesEnsembles& ensembles,
                                              const SeriesExplanation& found) {
   const SeriesScore& best = found.scores.front();
   const StrengthScale scale = scale_of(best, model);
   const double ln_unit = is_named(found) ? best.ln_unit : found.base.ln_unit;
   std::vector<FoundParameter> result;
-  if (is_named(found))
+  if (is_named(found)) {
     result.push_back({best.effect, scale.parameter, scale.unit, scale.factor * best.value,
                       scale.factor * best.sigma});
+    for (FoundParameter& p : assumed_of(model, ensembles, best)) result.push_back(std::move(p));
+  }
   result.push_back(
       {"", "diffusion", "cm^2/s", units_of(model, ln_unit).diffusion_cm2_s, std::nullopt});
   return result;
@@ -82,8 +103,7 @@ std::vector<std::string> class_of(const SeriesExplanation& found) {
 Configuration named_model(GivenValues model, const SeriesEnsembles& ensembles,
                           const SeriesExplanation& found) {
   const SeriesScore& best = found.scores.front();
-  EffectTerm term = *std::find_if(ensembles.terms.begin(), ensembles.terms.end(),
-                                  [&](const EffectTerm& t) { return t.effect == best.effect; });
+  EffectTerm term = *term_of(ensembles, best.effect);
   term.values.front() = best.value;
   const Units units = units_of(Configuration(model, {}), best.ln_unit);
   model["diffusion"] = {format_number(units.diffusion_cm2_s), "--diffusion"};
@@ -102,8 +122,17 @@ StrengthScale scale_of(const SeriesScore& score, const Configuration& model) {
   return {spec.name, spec.unit, 1 / to_model_units(spec.unit, units_of(model, score.ln_unit))};
 }
 
-Json series_json(const Configuration& model, const SeriesExplanation& found,
-                 const std::vector<Exponent>& laws) {
+std::vector<FoundParameter> assumed_parameters(const EffectTerm& term, const Units& units) {
+  const auto& specs = effects().find(term.effect).parameters;
+  std::vector<FoundParameter> result;
+  for (std::size_t k = 1; k < specs.size(); ++k)
+    result.push_back({term.effect, specs[k].name, specs[k].unit,
+                      term.values[k] / to_model_units(specs[k].unit, units), std::nullopt});
+  return result;
+}
+
+Json series_json(const Configuration& model, const SeriesEnsembles& ensembles,
+                 const SeriesExplanation& found, const std::vector<Exponent>& laws) {
   Json ties = Json::array(), exponents = Json::array();
   for (const SeriesTie& tie : found.ties)
     ties.push_back({{"effect", tie.effect},
@@ -121,14 +150,14 @@ Json series_json(const Configuration& model, const SeriesExplanation& found,
           {"looks", found.looks},
           {"diffusion", {{"value", found_units(model, found).diffusion_cm2_s}, {"unit", "cm^2/s"}}},
           {"offsets", offsets_json(found)},
-          {"scores", scores_json(model, found)},
+          {"scores", scores_json(model, ensembles, found)},
           {"classes", found.classes},
           {"ties", ties},
           {"exponents", exponents}};
 }
 
-Json series_verdict_json(const Configuration& model, const SeriesExplanation& found,
-                         const SeriesRequest& request) {
+Json series_verdict_json(const Configuration& model, const SeriesEnsembles& ensembles,
+                         const SeriesExplanation& found, const SeriesRequest& request) {
   Json alternatives = Json::array();
   for (const SeriesScore& s : found.scores)
     alternatives.push_back({{"effect", s.effect}, {"score", s.gain}});
@@ -138,7 +167,7 @@ Json series_verdict_json(const Configuration& model, const SeriesExplanation& fo
           {"effect", is_named(found) ? Json(found.scores.front().effect) : Json()},
           {"class", class_of(found)},
           {"closest", closest ? Json(found.named.front().front()) : Json()},
-          {"parameters", parameters_json(found_parameters(model, found))},
+          {"parameters", parameters_json(found_parameters(model, ensembles, found))},
           {"alternatives", alternatives},
           {"gap", {{"base", no_gap}, {"named", no_gap}, {"placebo", no_gap}, {"floor", no_gap}}},
           {"where", Json()},
@@ -155,7 +184,8 @@ void write_series_verdict(const std::filesystem::path& folder, const GivenValues
   const Configuration base(model, {});
   if (is_named(found))
     write_durably(folder / "model.toml", config_text(named_model(model, ensembles, found)));
-  write_durably(folder / "verdict.json", series_verdict_json(base, found, request).dump(2) + "\n");
+  write_durably(folder / "verdict.json",
+                series_verdict_json(base, ensembles, found, request).dump(2) + "\n");
 }
 
 }  // namespace traceraft

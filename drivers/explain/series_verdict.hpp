@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "drivers/explain/found_parameters.hpp"
 #include "drivers/explain/series_ensembles.hpp"
 #include "drivers/output/json_file.hpp"
 #include "verification/vesicles/power_law.hpp"
@@ -21,18 +22,21 @@ struct StrengthScale {
 };
 StrengthScale scale_of(const SeriesScore& score, const Configuration& model);
 
+// Of an effect, the parameters that were not looked for, as they were simulated.
+std::vector<FoundParameter> assumed_parameters(const EffectTerm& term, const Units& units);
+
 // Of the perimeter: measured, or simulated with this model.
 struct Exponent {
   std::string model;
   FittedLaw law;
 };
 
-Json series_json(const Configuration& model, const SeriesExplanation& found,
-                 const std::vector<Exponent>& exponents);
+Json series_json(const Configuration& model, const SeriesEnsembles& ensembles,
+                 const SeriesExplanation& found, const std::vector<Exponent>& exponents);
 
 // The keys that measured fields have; what series do not tell is null.
-Json series_verdict_json(const Configuration& model, const SeriesExplanation& found,
-                         const SeriesRequest& request);
+Json series_verdict_json(const Configuration& model, const SeriesEnsembles& ensembles,
+                         const SeriesExplanation& found, const SeriesRequest& request);
 // verdict.json, and model.toml if something was named: the model, here as its user gave it, with
 // the effect that explains most and D. Throws IoError.
 void write_series_verdict(const std::filesystem::path& folder, const GivenValues& model,

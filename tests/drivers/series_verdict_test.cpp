@@ -94,8 +94,21 @@ TEST_F(SeriesVerdictTest, ATrendNamesNothing) {
   EXPECT_FALSE(std::filesystem::exists(folder.path / "model.toml"));
 }
 
+// What was not looked for is said.
+TEST_F(SeriesVerdictTest, SaysWhatWasAssumed) {
+  ensembles.terms = {find_candidate("exchange")->term({3e-3, 1e-3})};
+  found.scores.front().effect = "exchange";
+  write_series_verdict(folder.path, model, ensembles, found, {{0.1, 8}});
+  const Json parameters = json("verdict.json")["parameters"];
+  EXPECT_NEAR(parameters["exchange.target"]["value"].get<double>(), 0.25, 1e-12);
+  EXPECT_TRUE(parameters["exchange.target"]["sigma"].is_null());
+  const Json series = series_json({model, {}}, ensembles, found, {});
+  EXPECT_NEAR(series["scores"][0]["assumed"]["target"]["value"].get<double>(), 0.25, 1e-12);
+  EXPECT_TRUE(series["scores"][1]["assumed"].empty());
+}
+
 TEST_F(SeriesVerdictTest, SaysHowMeasurementsLieBesideTheModel) {
-  const Json series = series_json({model, {}}, found, {});
+  const Json series = series_json({model, {}}, ensembles, found, {});
   EXPECT_EQ(series["offsets"][0]["quantity"], "fraction");
   EXPECT_EQ(series["offsets"][0]["of"], "value");
   EXPECT_EQ(series["offsets"][0]["level_deviations"], 4);

@@ -153,6 +153,20 @@ TEST(SeriesExplanation, KnowsErrorsThatAreStated) {
   EXPECT_LE(alarms, 2);
 }
 
+// What is zero has no logarithm, and those who state an error of it have said nothing more.
+TEST(SeriesExplanation, LooksWithoutRaftsSayNothing) {
+  MeasuredVesicles data = measured({}, 10, 0.05, 1);
+  const auto rafts = static_cast<std::size_t>(Quantity::rafts);
+  data.measurements.back().values[rafts].reset();
+  const SeriesExplanation without = explained(data);
+  data.measurements.back().values[rafts] = 0;
+  data.measurements.back().sigma[rafts] = 0.5;
+  const SeriesExplanation none = explained(data);
+  EXPECT_EQ(none.p, without.p);
+  EXPECT_EQ(none.trend_p, without.trend_p);
+  EXPECT_EQ(none.base.deviance, without.base.deviance);
+}
+
 // Beyond the end of the runs nothing is known of them.
 TEST(SeriesExplanation, StaysWithinTheRuns) {
   const SeriesExplanation found = explained(measured({}, 15, 0.05, 0.2));

@@ -47,10 +47,13 @@ EffectSizing::EffectSizing(const BlindRequest& request)
           "a larger raft fraction (smooth noise of less than 0.21 dissolves), or other times");
 }
 
-// A small one, then in proportion, twice.
 EffectTerm EffectSizing::term(const std::string& effect, std::uint64_t number) const {
+  return term(effect, random_coefficients(candidate_of(effect), number));
+}
+
+// A small one, then in proportion, twice.
+EffectTerm EffectSizing::term(const std::string& effect, std::vector<double> coefficients) const {
   const Candidate candidate = candidate_of(effect);
-  std::vector<double> coefficients = random_coefficients(candidate, number);
   for (int k = 0; k < 2; ++k) {
     const double ratio = request_.gap / gap_of(candidate.term(coefficients));
     for (double& a : coefficients) a = candidate.within_range(ratio * a);

@@ -25,6 +25,8 @@ class EffectSizing {
   // may have. `number`: of the random numbers that decide upon signs and mixtures. Throws
   // std::runtime_error if a simulation fails, InputError for an effect that cannot be hidden.
   EffectTerm term(const std::string& effect, std::uint64_t number) const;
+  // Its coefficients in these proportions.
+  EffectTerm term(const std::string& effect, std::vector<double> coefficients) const;
 
  private:
   // Coefficients in a random direction that the effect allows.

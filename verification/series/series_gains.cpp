@@ -24,10 +24,10 @@ MeasuredVesicles draw_base(const MeasuredVesicles& data, const std::vector<Histo
       for (const Quantity quantity : kQuantities) {
         const auto q = static_cast<std::size_t>(quantity);
         ++look;
-        if (!data.measurements[i].of(quantity)) continue;
+        const double measured = data.measurements[i].of(quantity).value_or(0);
+        if (!(measured > 0)) continue;  // it says nothing
         const double t = data.measurements[i].time / std::exp(fit.ln_unit);
-        const double stated =
-            data.measurements[i].sigma_of(quantity) / *data.measurements[i].of(quantity);
+        const double stated = data.measurements[i].sigma_of(quantity) / measured;
         const double own =
             stated * normal_random(replicate, kStated, look) +
             fit.scatter.vesicle[q] * normal_random(replicate, kVesicle, 3 * vesicle + q) +
