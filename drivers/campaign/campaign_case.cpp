@@ -1,7 +1,9 @@
 #include "drivers/campaign/campaign_case.hpp"
 
 #include <cmath>
+#include <cstdio>
 #include <limits>
+#include <stdexcept>
 
 #include "drivers/campaign/hidden_case.hpp"
 #include "drivers/explain/explain_report.hpp"
@@ -47,10 +49,28 @@ void draw(const fs::path& folder, const CampaignPlan& plan, const CaseSettings& 
   hide(folder, given, request);
 }
 
+// Of the model that knows the truth; none if it cannot be advanced on the model's mesh.
+Gaps floor_of(const ExplainSetup& setup, const HiddenTruth& truth) {
+  try {
+    return gaps_of_model(setup.series, setup.request, truth.pace, truth.effects).gap;
+  } catch (const std::runtime_error& error) {
+    std::fprintf(stderr, "no floor: %s\n", error.what());
+    return {};
+  }
+}
+
+// What the search took, beside its verdict: a case may be scored by another process.
+fs::path time_file(const fs::path& explained) {
+  return explained / "time.json";
+}
+double seconds_of(const fs::path& explained) {
+  return from_json(time_file(explained), [](const Json& json) { return json.at("seconds"); });
+}
+
 void write_score(const CampaignFolder& folder, const CampaignGroup& group, const CaseId& id,
-                 const ExplainSetup& setup, double seconds) {
+                 const ExplainSetup& setup) {
   const HiddenTruth truth = open_truth(folder.of(id));
-  const Gaps floor = gaps_of_model(setup.series, setup.request, truth.pace, truth.effects).gap;
+  const Gaps floor = floor_of(setup, truth);
   const Json score = from_json(folder.of(id) / "explain" / "verdict.json", [&](const Json& v) {
     const auto heldout = [&](const char* which) { return v.at("gap").at(which).at("heldout"); };
     Json json = {{"hidden", names_of(truth.effects)},
@@ -65,7 +85,7 @@ void write_score(const CampaignFolder& folder, const CampaignGroup& group, const
                    {"named", heldout("named")},
                    {"placebo", heldout("placebo")},
                    {"floor", floor.heldout > 0 ? Json(floor.heldout) : Json()}}},
-                 {"seconds", seconds}};
+                 {"seconds", seconds_of(folder.of(id) / "explain")}};
     const auto strength = strength_error(truth, Configuration(setup.model, {}).units(), v);
     json["error"] = strength ? Json(strength->relative) : Json();
     json["deviations"] = strength ? Json(strength->deviations) : Json();
@@ -83,7 +103,6 @@ void carry_out_case(const CampaignFolder& folder, const CampaignPlan& plan, cons
   const CaseSettings settings = settings_of(group, id.number, seed);
   if (!fs::exists(path / "model.toml")) draw(path, plan, settings, seed);
 
-  const Stopwatch watch;
   ExplainJob job;
   job.data = path / "data";
   job.model = path / "model.toml";
@@ -94,11 +113,13 @@ void carry_out_case(const CampaignFolder& folder, const CampaignPlan& plan, cons
   ExplainSetup setup = read_explain_job(job);
   if (!fs::exists(path / "explain" / "verdict.json")) {
     fs::create_directories(path / "explain");
+    const Stopwatch watch;
     Explanation found = explain_fields(setup.series, setup.request);
     run_again(setup.series, setup.request, found);
+    write_durably(time_file(path / "explain"), Json{{"seconds", watch.seconds()}}.dump() + "\n");
     write_explanation(path / "explain", found, setup.model);
   }
-  write_score(folder, group, id, setup, watch.seconds());
+  write_score(folder, group, id, setup);
 }
 
 CaseScore read_score(const CampaignFolder& folder, const CaseId& id) {

@@ -89,8 +89,8 @@ int one_case(const CampaignFolder& folder, const std::string& name) {
   throw InputError("--case: this campaign has no case '" + name + "'");
 }
 
-// Returns the reasons of cases that failed; nothing if there is more to do.
-std::optional<std::vector<std::string>> work_off(const CampaignFolder& folder,
+// Returns the cases that failed; nothing if there is more to do.
+std::optional<std::vector<CaseFailure>> work_off(const CampaignFolder& folder,
                                                  const std::vector<CaseId>& cases, int jobs,
                                                  bool quiet) {
   std::vector<CaseId> left;
@@ -98,7 +98,7 @@ std::optional<std::vector<std::string>> work_off(const CampaignFolder& folder,
     if (!fs::exists(folder.score_of(id))) left.push_back(id);
   const std::size_t before = cases.size() - left.size();
   std::mutex mutex;
-  std::vector<std::string> failures;
+  std::vector<CaseFailure> failures;
   if (left.empty()) return failures;
   JobPool pool(left.size(), [&](std::size_t k) {
     fs::create_directories(folder.of(left[k]));
@@ -109,7 +109,7 @@ std::optional<std::vector<std::string>> work_off(const CampaignFolder& folder,
     if (end.was_stopped()) return false;
     if (!end.telling()) throw IoError(left[k].name() + ": " + end.reason());
     const std::lock_guard lock(mutex);
-    failures.push_back(left[k].name() + ": " + end.reason());
+    failures.push_back({left[k], end.reason()});
     return true;
   });
   StatusLine line(quiet);
@@ -132,13 +132,14 @@ std::optional<std::vector<std::string>> work_off(const CampaignFolder& folder,
   return failures;
 }
 
-void report(const CampaignFolder& folder, std::vector<CaseScore> scores, bool quiet) {
-  if (scores.empty()) return;
+void report(const CampaignFolder& folder, std::vector<CaseScore> scores,
+            const std::vector<CaseFailure>& failures, bool quiet) {
+  if (scores.empty() && failures.empty()) return;
   std::sort(scores.begin(), scores.end(),
             [](const CaseScore& a, const CaseScore& b) { return a.id.name() < b.id.name(); });
-  write_campaign(folder, scores);
+  write_campaign(folder, scores, failures);
   if (quiet) return;
-  print_rows(table_rows(summary_of(scores)));
+  print_rows(table_rows(summary_of(scores, failures)));
   std::printf("\n");
   print_rows(table_rows(confusion_of(scores)));
   std::printf("\nwritten: %s\n", (folder.path() / "campaign.md").c_str());
@@ -168,14 +169,14 @@ int run_campaign(const CampaignRequest& request) {
   const auto failures = work_off(folder, cases, jobs_of(request.jobs, 1).at_a_time, request.quiet);
   for (const CaseId& id : cases)
     if (fs::exists(folder.score_of(id))) scores.push_back(read_score(folder, id));
-  report(folder, scores, request.quiet);
+  report(folder, scores, failures.value_or(std::vector<CaseFailure>{}), request.quiet);
   if (!failures) {
     if (!request.quiet)
       std::printf("go on with: traceraft campaign --out %s\n", folder.path().c_str());
     return kInterrupted;
   }
-  for (const std::string& failure : *failures)
-    std::fprintf(stderr, "traceraft: %s\n", failure.c_str());
+  for (const CaseFailure& failure : *failures)
+    std::fprintf(stderr, "traceraft: %s: %s\n", failure.id.name().c_str(), failure.why.c_str());
   return failures->empty() ? kSuccess : kNumericalFailure;
 }
 

@@ -73,22 +73,26 @@ Table cases_table(const Scores& scores) {
 
 }  // namespace
 
-Table summary_of(const Scores& scores) {
+Table summary_of(const Scores& scores, const std::vector<CaseFailure>& failures) {
   Table table{"summary",
-              {"group", "cases", "right", "in class", "missed", "wrong", "wrong names",
+              {"group", "cases", "right", "in class", "missed", "wrong", "failed", "wrong names",
                "median error", "coverage", "held-out gap / floor", "closed", "s per case"},
               {}};
   for (const CampaignGroup& group : campaign_groups()) {
     const Scores own = by_group(scores)[group.name];
-    if (own.empty()) continue;
+    const auto failed = static_cast<double>(
+        std::count_if(failures.begin(), failures.end(),
+                      [&](const CaseFailure& f) { return f.id.group == group.name; }));
+    if (own.empty() && failed == 0) continue;
     const auto count = [&](CaseOutcome outcome) {
       return static_cast<double>(std::count_if(
           own.begin(), own.end(), [&](const CaseScore& s) { return s.outcome == outcome; }));
     };
     const bool names = group.aim == Aim::name;
     table.rows.push_back(
-        {group.name, static_cast<double>(own.size()), count(CaseOutcome::right),
+        {group.name, static_cast<double>(own.size()) + failed, count(CaseOutcome::right),
          count(CaseOutcome::in_class), count(CaseOutcome::missed), count(CaseOutcome::wrong),
+         failed,
          static_cast<double>(std::count_if(own.begin(), own.end(),
                                            [](const CaseScore& s) {
                                              return s.outcome == CaseOutcome::wrong &&
@@ -125,9 +129,10 @@ Table confusion_of(const Scores& scores) {
   return table;
 }
 
-void write_campaign(const CampaignFolder& campaign, const Scores& scores) {
+void write_campaign(const CampaignFolder& campaign, const Scores& scores,
+                    const std::vector<CaseFailure>& failures) {
   const std::filesystem::path& folder = campaign.path();
-  const Table summary = summary_of(scores), confusion = confusion_of(scores);
+  const Table summary = summary_of(scores, failures), confusion = confusion_of(scores);
   write_durably(campaign.cases(), csv_text(cases_table(scores)));
   write_durably(folder / "summary.csv", csv_text(summary));
   write_durably(folder / "confusion.csv", csv_text(confusion));
@@ -137,6 +142,9 @@ void write_campaign(const CampaignFolder& campaign, const Scores& scores) {
     if (const Table alone = confusion_of(own); !alone.rows.empty())
       text += "\n" + group + ": " + campaign_groups().find(group).summary + "\n\n" +
               markdown_table(table_rows(alone));
+  if (!failures.empty()) text += "\nNo verdict:\n\n";
+  for (const CaseFailure& failure : failures)
+    text += "- " + failure.id.name() + ": " + failure.why + "\n";
   write_durably(folder / "campaign.md", text);
 }
 

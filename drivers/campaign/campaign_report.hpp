@@ -9,13 +9,21 @@
 
 namespace traceraft {
 
+// A case that came to no verdict.
+struct CaseFailure {
+  CaseId id;
+  std::string why;
+};
+
 // A row per group: how many were right, and how well parameters and gaps came out.
-Table summary_of(const std::vector<CaseScore>& scores);
+Table summary_of(const std::vector<CaseScore>& scores,
+                 const std::vector<CaseFailure>& failures = {});
 // Hidden against found, over all groups in which something is hidden and looked for.
 Table confusion_of(const std::vector<CaseScore>& scores);
 
 // cases.csv, summary.csv, confusion.csv and campaign.md. Throws IoError.
-void write_campaign(const CampaignFolder& folder, const std::vector<CaseScore>& scores);
+void write_campaign(const CampaignFolder& folder, const std::vector<CaseScore>& scores,
+                    const std::vector<CaseFailure>& failures = {});
 
 // Of cases.csv. Throws InputError naming the line of what cannot be read.
 std::vector<CaseScore> read_cases(const std::filesystem::path& csv);

@@ -9,8 +9,10 @@
 #include "drivers/config/config_file.hpp"
 #include "drivers/config/option_flags.hpp"
 #include "drivers/exit_codes.hpp"
+#include "drivers/input/field_dataset.hpp"
 #include "drivers/run/run_folder.hpp"
 #include "kernel/core/error.hpp"
+#include "kernel/core/parameters.hpp"
 #include "kernel/core/random.hpp"
 #include "verification/explain/effect_size.hpp"
 
@@ -55,6 +57,9 @@ int hide_effects(const HideCommand& command) {
   request.seed = command.seed >= 0 ? static_cast<std::uint64_t>(command.seed) : random_seed();
   request.effects = effects_of(command.effects, request.seed);
   request.blur = command.blur_um / units.length();
+  if (!(request.blur < kWidestBlur))
+    throw InputError("--blur: " + format_number(command.blur_um) + " um is not less than " +
+                     format_number(kWidestBlur * units.length()) + ", a fifth of the radius");
   if (command.first_s > 0) request.first = command.first_s / units.time();
   if (command.last_s > 0) request.last = command.last_s / units.time();
   if (!(request.first < request.last)) throw InputError("--first: it has to be before --last");

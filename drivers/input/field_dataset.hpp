@@ -9,6 +9,9 @@
 
 namespace traceraft {
 
+// Of the radius: images that are blurred more show nothing.
+inline constexpr double kWidestBlur = 0.2;
+
 struct FieldDataset {
   std::string name, origin, time_zero;
   bool synthetic = false;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "drivers/output/text_table.hpp"
@@ -44,6 +45,21 @@ TEST(CampaignReport, SumsUpGroups) {
   EXPECT_NEAR(std::stod(of("held-out gap / floor")), 4 / 3.0, 1e-3);
   EXPECT_NEAR(std::stod(of("closed")), 9 / 16.0, 1e-4);
   EXPECT_NEAR(std::stod(of("s per case")), 25, 1e-9);
+}
+
+// A case that came to no verdict is one of its group, not one that never was.
+TEST(CampaignReport, CountsWhatFailed) {
+  const auto rows = table_rows(
+      summary_of(scores(), {{{"naming", 4}, "no forecast"}, {{"two", 1}, "no forecast"}}));
+  ASSERT_EQ(rows.size(), 3u);
+  const auto column = [&](const std::string& name) {
+    return std::find(rows[0].begin(), rows[0].end(), name) - rows[0].begin();
+  };
+  for (const auto& [row, cases] : {std::pair(1, 5), std::pair(2, 1)}) {
+    EXPECT_EQ(std::stod(rows[row][column("cases")]), cases);
+    EXPECT_EQ(std::stod(rows[row][column("failed")]), 1);
+  }
+  EXPECT_EQ(rows[2][0], "two");
 }
 
 TEST(CampaignReport, TellsClassesFromConfusion) {
