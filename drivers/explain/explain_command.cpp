@@ -48,6 +48,7 @@ void explain_field_data(const ExplainCommand& command, ExplainSetup& setup, cons
     };
   if (!command.quiet)
     std::printf("the model: %s\n", flags_text(Configuration(setup.model, {})).c_str());
+  if (!command.quiet && !setup.note.empty()) std::printf("%s\n", setup.note.c_str());
   const SearchFile file(out, setup);
   std::optional<SearchState> search = file.load();
   setup.request.save = [&](const SearchState& state) {
@@ -56,7 +57,8 @@ void explain_field_data(const ExplainCommand& command, ExplainSetup& setup, cons
   };
   Explanation found =
       numerically([&] { return explain_fields(setup.series, setup.request, search); });
-  if (!found.found.hypothesis.parts.empty() && !found.rerun) {
+  if (is_to_run_again(found) && !found.rerun) {
+    write_explanation(out, found, setup.model);
     if (!command.quiet) setup.request.progress("once more, on another mesh, by another integrator");
     run_again(setup.series, setup.request, found);
     search->so_far.finding = found.finding;
@@ -98,8 +100,8 @@ bool explain_series_data(const ExplainCommand& command, const SeriesSetup& setup
   if (ensembles.stopped) return false;
   SeriesRequest search{{model.units().seconds_per_unit(), kTimeRange}};
   search.replicates = command.job.replicates;
-  const SeriesExplanation found =
-      explain_series(data, ensembles.base, ensembles.candidates, search);
+  const SeriesExplanation found = numerically(
+      [&] { return explain_series(data, ensembles.base, ensembles.candidates, search); });
   // Fields say more: the verdict is theirs if there are any.
   if (command.job.data.empty()) write_series_verdict(out, given, ensembles, found, search);
   write_series_explanation(out, data, model, ensembles, found, command.quiet);
@@ -162,10 +164,8 @@ Action define_explain(CLI::App& app) {
   app.add_option("--effects", command->job.effects, "most effects to look for, one after the other")
       ->check(CLI::Range(1, 5))
       ->capture_default_str();
-  app.add_option(
-         "--replicates", command->job.replicates,
-         "of noise alone, that what is found is judged by; 199 at least where no vesicle has "
-         "four snapshots")
+  app.add_option("--replicates", command->job.replicates,
+                 "of noise alone, that what is found is judged by")
       ->check(CLI::Range(49, 9999))
       ->capture_default_str();
   app.add_option("--threads", command->job.threads, "default: one for each processor")

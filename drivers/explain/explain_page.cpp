@@ -63,7 +63,8 @@ class ExplainPage {
     page_.heading("How the gap shrinks");
     page_.paragraph(
         "Every snapshot is forecast from those before it. The last one of a vesicle with four or "
-        "more is held out: no parameter was fitted to it.");
+        "more is held out: no parameter was fitted to it, though it decides between effects "
+        "that explain the others as well as each other.");
     page_.table(gap_rows(found_));
     Chart chart{"measured minus forecast", "time (s)", "root mean square, in c", false, false, {}};
     chart.series = {gap_series("base model", found_.base, false)};

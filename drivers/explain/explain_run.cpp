@@ -65,21 +65,10 @@ void refuse_uniform_values(const std::vector<FieldSeries>& vesicles, const Doubl
   throw InputError(folder + ": c is the same everywhere; there is nothing to explain");
 }
 
-// With too few replicates a gap that nothing explains could never be told from noise.
-void refuse_replicates(const ExplainRequest& request, const std::vector<FieldSeries>& vesicles) {
-  const bool held_out = std::any_of(vesicles.begin(), vesicles.end(),
-                                    [](const FieldSeries& v) { return v.snapshots.size() >= 4; });
-  const int fewest = static_cast<int>(std::ceil(1 / (kGapLevel * request.false_alarms))) - 1;
-  if (!held_out && request.filter.replicates < fewest)
-    throw InputError("--replicates: vesicles of fewer than four snapshots need " +
-                     std::to_string(fewest) + " or more");
-}
-
-void refuse_leaving_out_all(const ExplainRequest& request) {
-  const std::vector<Candidate> all = candidates();
-  if (std::all_of(all.begin(), all.end(), [&](const Candidate& c) {
-        return std::count(request.without.begin(), request.without.end(), c.effect) > 0;
-      }))
+void refuse_leaving_out_all(const ExplainRequest& request,
+                            const std::vector<FieldSeries>& vesicles) {
+  const std::vector<Point>& places = vesicles.front().snapshots.front().points;
+  if (candidates_for(request.base, *request.surface, places, request.without).empty())
     throw InputError("--without: no effect is left to look for");
 }
 
@@ -105,6 +94,12 @@ ExplainSetup read_explain_job(const ExplainJob& job) {
   for (FieldSeries& vesicle : setup.series)
     for (FieldSnapshot& snapshot : vesicle.snapshots) snapshot.time /= model.units().time();
 
+  if (const auto own = read_config_file(job.model, "--model"); own.count("radius") > 0) {
+    const double radius = Configuration({own}, {}).number("radius");
+    if (std::fabs(radius - data.radius_um) > 1e-6 * data.radius_um)
+      setup.note = "the radius is that of dataset.toml, " + format_number(data.radius_um) +
+                   " um, not that of the model, " + format_number(radius);
+  }
   ExplainRequest& request = setup.request;
   request.base = physical_model(model);
   request.surface = surface_of(model);
@@ -118,8 +113,7 @@ ExplainSetup read_explain_job(const ExplainJob& job) {
   refuse_wide_boundaries(model, request.base);
   refuse_far_values(setup.series, request.base.well, job.data);
   refuse_uniform_values(setup.series, request.base.well, job.data);
-  refuse_replicates(request, setup.series);
-  refuse_leaving_out_all(request);
+  refuse_leaving_out_all(request, setup.series);
   return setup;
 }
 

@@ -23,6 +23,7 @@ struct ExplainSetup {
   GivenValues model;  // with the radius of the vesicle
   std::vector<FieldSeries> series;
   ExplainRequest request;
+  std::string note = {};  // what of the model was not taken as it was given, "" if nothing
 };
 
 // Throws InputError: the search finds effects itself.

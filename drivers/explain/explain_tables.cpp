@@ -1,5 +1,7 @@
 #include "drivers/explain/explain_tables.hpp"
 
+#include <cmath>
+
 #include "kernel/core/text.hpp"
 
 namespace traceraft {
@@ -8,6 +10,16 @@ namespace {
 // Two-sided 95 % of a normal distribution.
 constexpr double kInterval = 1.96;
 
+// D is known by its logarithm: far from certain, it is so within a factor.
+std::string interval_of(const FoundParameter& p) {
+  constexpr double kLinear = 0.3, kHopeless = 1000;
+  if (!p.sigma) return "assumed";
+  const double relative = kInterval * *p.sigma / std::fabs(p.value);
+  if (!p.effect.empty() || relative < kLinear) return formatted("%.2g", kInterval * *p.sigma);
+  const double factor = std::exp(relative);
+  return factor < kHopeless ? formatted("a factor of %.2g", factor) : "not determined";
+}
+
 }  // namespace
 
 std::vector<Row> parameter_rows(const Explanation& found, const Units& base) {
@@ -15,8 +27,7 @@ std::vector<Row> parameter_rows(const Explanation& found, const Units& base) {
   const auto add = [&](const Refit& fit, const std::string& before) {
     for (const FoundParameter& p : found_parameters(fit, base))
       rows.push_back({before + p.effect + (p.effect.empty() ? "" : " ") + p.name,
-                      formatted("%.4g", p.value),
-                      p.sigma ? formatted("%.2g", kInterval * *p.sigma) : "assumed", p.unit});
+                      formatted("%.4g", p.value), interval_of(p), p.unit});
   };
   add(found.found, "");
   if (found.finding == Finding::ambiguous)

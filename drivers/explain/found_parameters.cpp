@@ -1,5 +1,6 @@
 #include "drivers/explain/found_parameters.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "kernel/core/parameters.hpp"
@@ -14,13 +15,20 @@ Units found_units(Units units, const Refit& fit) {
   return units;
 }
 
-// Errors of the coefficients, carried on to the parameters by differences.
+// Errors of the coefficients, carried on to the parameters by differences. That of the strength,
+// beside coefficients that are held at the end of their range.
 double variance_of(const Hypothesis::Part& part, std::size_t parameter,
                    const Eigen::MatrixXd& covariance) {
   const double value = part.candidate.term(part.coefficients).values[parameter];
   Vec slope(part.candidate.directions);
+  const auto held = [&](double a) { return a <= part.candidate.least || a >= part.candidate.most; };
+  const bool all_held = std::all_of(part.coefficients.begin(), part.coefficients.end(), held);
   for (int d = 0; d < part.candidate.directions; ++d) {
     std::vector<double> moved = part.coefficients;
+    if (parameter == 0 && held(moved[d]) && !all_held) {
+      slope[d] = 0;
+      continue;
+    }
     const double step = 1e-4 * std::max(part.candidate.step, std::fabs(moved[d]));
     moved[d] += step;
     slope[d] = (part.candidate.term(moved).values[parameter] - value) / step;

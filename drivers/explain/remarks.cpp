@@ -47,16 +47,21 @@ void add_rerun(const Explanation& found, std::vector<std::string>& all) {
     all.push_back("On another mesh and by another integrator " + found.found.hypothesis.name() +
                   " foretells the measurements worse than the base model, beyond what noise does: "
                   "it is no explanation of them, though it came closest in the search.");
-  else if (found.rerun->gap_p && is_named(found))
-    all.push_back(
-        "On the model's own mesh a gap remains; on another mesh and by another "
-        "integrator there is none (p = " +
-        formatted("%.2g", *found.rerun->gap_p) +
-        "), so that it is that of the mesh: repeat with more --cells.");
-  else if (!found.rerun->confirms())
+  else if (is_named(found) && !found.rerun->confirms())
     all.push_back(
         "On another mesh and by another integrator what was found foretells the measurements no "
         "better than the base model, within noise: repeat with more --cells or more snapshots.");
+  if (found.rerun->gap_p && found.finding != Finding::unnamed)
+    all.push_back(
+        "On the model's own mesh there is a gap that nothing explains; on another mesh and by "
+        "another integrator it is within noise (p = " +
+        formatted("%.2g", *found.rerun->gap_p) +
+        "), so that it is that of the mesh: repeat with more --cells.");
+  if (!found.rerun->gap_failure.empty())
+    all.push_back(
+        "Whether the gap that nothing explains is there on another mesh, too, is not "
+        "known: " +
+        found.rerun->gap_failure);
 }
 
 }  // namespace
@@ -75,8 +80,8 @@ std::vector<std::string> remarks(const Explanation& found, const Units& base) {
   if (!found.found.settled)
     all.push_back("The parameters were not quite at rest when their refit ended.");
   const Round& last = found.rounds.back();
-  if (is_named(found) && last.screening.p <= found.false_alarms)
-    all.push_back(last.refits.empty()
+  if (is_named(found) && found.stopped.empty() && last.screening.p <= found.false_alarms)
+    all.push_back(last.refits.empty() && last.failures.empty()
                       ? "Something is still lacking; more --effects would look for it."
                       : "Something may still be lacking, too little of it to say what.");
   add_assumptions(found, base, all);

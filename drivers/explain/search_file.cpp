@@ -13,14 +13,21 @@ std::vector<double> numbers_of(const Vec& values) {
   return {values.begin(), values.end()};
 }
 
+// Of the file: another one is read by another build.
+constexpr int kFormat = 2;
+// Maps of many snapshots.
+constexpr std::uint64_t kMaxBytes = 1 << 30;
+
 // Of everything that the search depends on.
 std::string fingerprint_of(const ExplainSetup& setup) {
   const ExplainRequest& request = setup.request;
   Json all = {{"version", kVersion},
+              {"format", kFormat},
               {"model", config_text(Configuration(setup.model, {}))},
               {"without", request.without},
               {"effects", request.most_effects},
-              {"replicates", request.filter.replicates}};
+              {"replicates", request.filter.replicates},
+              {"blur", request.blur_stated ? Json(request.filter.blur) : Json()}};
   for (const FieldSeries& series : setup.series)
     for (const FieldSnapshot& snapshot : series.snapshots) {
       Json points = Json::array();
@@ -38,13 +45,16 @@ SearchFile::SearchFile(const std::filesystem::path& folder, const ExplainSetup& 
 
 std::optional<SearchState> SearchFile::load() const {
   if (!std::filesystem::exists(path_)) return {};
-  return from_json(path_, [this](const Json& json) {
-    if (json.at("fingerprint") != fingerprint_)
-      throw InputError("--out: " + path_.parent_path().string() +
-                       " holds a search of other data, another model or other settings; choose "
-                       "another folder");
-    return std::optional(search_from(json, setup_.request.base));
-  });
+  return from_json(
+      path_,
+      [this](const Json& json) {
+        if (json.at("fingerprint") != fingerprint_)
+          throw InputError("--out: " + path_.parent_path().string() +
+                           " holds a search of other data, another model or other settings, or by "
+                           "another version; choose another folder");
+        return std::optional(search_from(json, setup_.request.base));
+      },
+      kMaxBytes);
 }
 
 void SearchFile::save(const SearchState& state) const {

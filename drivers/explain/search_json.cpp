@@ -197,7 +197,8 @@ Json json_of(const std::optional<Rerun>& rerun) {
           {"failure", rerun->failure},
           {"gain", rerun->gain},
           {"shortfall", rerun->shortfall},
-          {"gap_p", rerun->gap_p ? Json(*rerun->gap_p) : Json()}};
+          {"gap_p", rerun->gap_p ? Json(*rerun->gap_p) : Json()},
+          {"gap_failure", rerun->gap_failure}};
 }
 std::optional<Rerun> rerun_of(const Json& json) {
   if (json.is_null()) return {};
@@ -205,6 +206,7 @@ std::optional<Rerun> rerun_of(const Json& json) {
               gaps_of(json.at("found")), gaps_of(json.at("floor")), json.at("failure"),
               json.at("gain"),           json.at("shortfall")};
   if (const Json& p = json.at("gap_p"); !p.is_null()) rerun.gap_p = p.get<double>();
+  rerun.gap_failure = json.at("gap_failure");
   return rerun;
 }
 
@@ -227,6 +229,7 @@ Json search_json(const SearchState& state) {
   return {{"more", state.more},
           {"noise", state.noise},
           {"finding", word_for(found.finding)},
+          {"without_gap", word_for(found.without_gap)},
           {"rivals", rivals},
           {"base", json_of(found.base)},
           {"found", json_of(found.found)},
@@ -245,6 +248,7 @@ SearchState search_from(const Json& json, const CahnHilliardModel& base) {
   state.noise = json.at("noise").get<std::vector<std::vector<double>>>();
   Explanation& found = state.so_far;
   found.finding = finding_of(json.at("finding"));
+  found.without_gap = finding_of(json.at("without_gap"));
   for (const Json& fit : json.at("rivals")) found.rivals.push_back(refit_of(fit));
   found.base = refit_of(json.at("base"));
   found.found = refit_of(json.at("found"));

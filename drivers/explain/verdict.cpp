@@ -73,12 +73,17 @@ Json rounds_json(const Explanation& found) {
   return rounds;
 }
 
-Json rerun_json(const Rerun& rerun) {
-  if (!rerun.failure.empty()) return {{"confirms", false}, {"failure", rerun.failure}};
-  return {{"confirms", rerun.confirms()},
-          {"refutes", rerun.refutes()},
-          {"gain", rerun.gain},
+Json rerun_json(const Explanation& found) {
+  if (!found.rerun) return {};
+  const Rerun& rerun = *found.rerun;
+  const bool compared = !found.found.hypothesis.parts.empty();
+  const auto text = [](const std::string& why) { return why.empty() ? Json() : Json(why); };
+  return {{"confirms", compared ? Json(rerun.confirms()) : Json()},
+          {"refutes", compared ? Json(rerun.refutes()) : Json()},
+          {"failure", text(rerun.failure)},
+          {"gain", compared && rerun.failure.empty() ? Json(rerun.gain) : Json()},
           {"gap_p", rerun.gap_p ? Json(*rerun.gap_p) : Json()},
+          {"gap_failure", text(rerun.gap_failure)},
           {"cells", rerun.cells},
           {"integrator", rerun.integrator},
           {"base", gap_json(rerun.base)},
@@ -123,7 +128,7 @@ Json verdict_json(const Explanation& found, const Units& base) {
             {"placebo", gap_json(found.placebo_gap.value_or(Gaps{}))},
             {"floor", gap_json(found.floor)}}},
           {"closed", closed_json(found)},
-          {"rerun", found.rerun ? rerun_json(*found.rerun) : Json()},
+          {"rerun", rerun_json(found)},
           {"where", where_json(found, base)},
           {"null",
            {{"replicates", found.replicates},

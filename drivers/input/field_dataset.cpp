@@ -19,8 +19,6 @@ namespace fs = std::filesystem;
 
 // Fewer points cannot show a field.
 constexpr std::size_t kFewestPoints = 100;
-// Of the radius: beyond it there is nothing to be seen.
-constexpr double kWidestBlur = 0.2;
 // Ratio of standard deviations within a snapshot.
 constexpr double kMostUnlike = 1e6;
 
@@ -43,8 +41,7 @@ void check_columns(const CsvTable& table) {
                      ")");
 }
 
-FieldSnapshot read_snapshot(const fs::path& path, double time, double to_radius) {
-  const CsvTable table = CsvTable::read(path);
+FieldSnapshot read_snapshot(const CsvTable& table, double time, double to_radius) {
   check_columns(table);
   const auto rows = static_cast<Eigen::Index>(table.rows());
   FieldSnapshot snapshot{time, {}, Vec(rows), Vec::Ones(rows)};
@@ -60,7 +57,7 @@ FieldSnapshot read_snapshot(const fs::path& path, double time, double to_radius)
   }
   // What is a million times as certain as the rest decides alone.
   if (snapshot.deviation.maxCoeff() > kMostUnlike * snapshot.deviation.minCoeff())
-    throw InputError(path.string() +
+    throw InputError(table.path().string() +
                      ", column sigma: the largest is more than a million times the "
                      "smallest, " +
                      format_number(snapshot.deviation.minCoeff()));
@@ -131,13 +128,19 @@ FieldDataset read_field_dataset(const fs::path& folder) {
   read_blur(toml, length, data);
   const std::vector<double> times = numbers_of(toml, "times");
   const std::vector<std::string> vesicles = vesicles_of(toml, times.size());
+  bool with_sigma = false;
   for (std::size_t k = 0; k < times.size(); ++k) {
     auto& snapshots = series_of(toml, vesicles[k], data).snapshots;
     const double time = checked_time((times[k] + offset) * second, toml.where("times"));
     if (!snapshots.empty() && !(time > snapshots.back().time))
       throw InputError(toml.where("times") + ": times of a vesicle have to ascend");
-    snapshots.push_back(
-        read_snapshot(folder / snapshot_file(k + 1), time, length / data.radius_um));
+    const CsvTable table = CsvTable::read(folder / snapshot_file(k + 1));
+    if (k == 0) with_sigma = table.has("sigma");
+    if (table.has("sigma") != with_sigma)
+      throw InputError(table.path().string() +
+                       ": the column sigma is in some snapshots only, so "
+                       "that nobody knows the noise of the others");
+    snapshots.push_back(read_snapshot(table, time, length / data.radius_um));
   }
   refuse_incomplete(folder, toml, times.size(), data);
   return data;

@@ -11,12 +11,13 @@ namespace traceraft {
 
 using Json = nlohmann::ordered_json;
 
-// use(content). Throws IoError if the file is not there, is no JSON, or lacks what is looked for.
+// use(content). Throws IoError if the file is not there, is too large or no JSON, or lacks what is
+// looked for.
 template <class Use>
-auto from_json(const std::filesystem::path& path, const Use& use) {
-  constexpr std::uint64_t kMaxBytes = 1 << 24;
+auto from_json(const std::filesystem::path& path, const Use& use,
+               std::uint64_t max_bytes = 1 << 24) {
   try {
-    return use(Json::parse(read_file(path, kMaxBytes)));
+    return use(Json::parse(read_file(path, max_bytes)));
   } catch (const nlohmann::json::exception& error) {
     throw IoError(path.string() + " is damaged: " + error.what());
   }

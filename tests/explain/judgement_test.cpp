@@ -138,8 +138,10 @@ TEST(Judgement, AdmitsAGapThatNothingExplains) {
   EXPECT_FALSE(judged(round).taken);
   EXPECT_EQ(judged(round).finding, Finding::unnamed);
   // Beside an effect that was found, too.
+  EXPECT_EQ(judged(round).without_gap, Finding::not_identifiable);
   round.known.hypothesis = refit_with({"cooling"}, 0).hypothesis;
   EXPECT_EQ(judged(round).finding, Finding::unnamed);
+  EXPECT_EQ(judged(round).without_gap, Finding::named);
   round.screening.gap_p = 0.3;
   EXPECT_EQ(judged(round).finding, Finding::named);
 }

@@ -239,6 +239,8 @@ class Search {
     const Judgement judgement = judge(round, values(), request_.false_alarms, usual_change);
     if (!judgement.taken) {
       if (judgement.finding == Finding::unnamed && leave_to_rivals()) return true;
+      result_.without_gap =
+          judgement.without_gap == Finding::named ? result_.finding : judgement.without_gap;
       // What could not be told apart before cannot be now.
       if (judgement.finding != Finding::named) result_.finding = judgement.finding;
       return false;
@@ -254,12 +256,13 @@ class Search {
   }
 
   // Of hypotheses that explain what counts as well as each other some may foretell what is held out
-  // worse: the class is left to those that leave no gap. False if there is none.
+  // worse: the class is left to those that leave no gap, in their order. False if there is none.
   bool leave_to_rivals() {
     const SearchState before = state(true);
     std::vector<Refit> without_gap;
     for (const Refit& rival : before.so_far.rivals) {
       tell("instead " + rival.hypothesis.name());
+      go_on_from(before);
       set_found(rival);
       screen_the_rest();
       try {
@@ -297,7 +300,9 @@ class Search {
     if (placebo != refits.end()) result_.placebo_gap = placebo->gap;
     result_.floor = result_.found.expected;
     screen_the_rest();
-    result_.bounds = bounds_of(result_.rounds.back().screening, model_.screened);
+    // Beside what was found; where the search had to stop nothing was looked for beside it.
+    if (result_.stopped.empty())
+      result_.bounds = bounds_of(result_.rounds.back().screening, model_.screened);
   }
 
   const ExplainRequest& request_;

@@ -46,11 +46,14 @@ struct Rerun {
   std::string integrator;
   Gaps base, found, floor;  // in units of c
   std::string failure;      // why there is none, if it failed
-  // Of what is held out, if anything is: 2 ln of the likelihood ratio of found and base, and by how
-  // many standard deviations it is smaller than if the found model were the truth.
+  // Of what is held out, if anything is: 2 ln of the likelihood ratio of found and base, with the
+  // covariance that innovations have if the found model is the truth; and by how many standard
+  // deviations it is smaller than it would be then.
   double gain = 0, shortfall = 0;
-  // That what is left of a gap which nothing explains is noise; looked at if there is one.
+  // That what is left of a gap which nothing explains is noise; looked at if there is one, and why
+  // not, if that failed.
   std::optional<double> gap_p = {};
+  std::string gap_failure = {};
 
   bool confirms() const { return failure.empty() && gain > 0; }
   bool refutes() const;
@@ -58,6 +61,7 @@ struct Rerun {
 
 struct Explanation {
   Finding finding = Finding::none;
+  Finding without_gap = Finding::none;      // if it is `unnamed`: what it is if that gap is none
   int replicates = 0;                       // of noise that verdicts are judged by
   double false_alarms = 0;                  // as requested
   double noise = 0;                         // standard deviation of the values that count

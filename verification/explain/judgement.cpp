@@ -75,22 +75,24 @@ Judgement judge(const Round& round, double values, double false_alarms, double u
   const bool first = round.known.hypothesis.parts.empty();
   const bool quiet = round.screening.p > false_alarms;
   // What follows if nothing is added.
-  const Finding rest = has_gap(round.screening, false_alarms) ? Finding::unnamed
-                       : !first                               ? Finding::named
-                       : quiet && identifiable(round.screening, usual_change)
-                           ? Finding::none
-                           : Finding::not_identifiable;
-  if (round.refits.empty()) return {false, rest, {}};
+  const Finding no_gap = !first ? Finding::named
+                         : quiet && identifiable(round.screening, usual_change)
+                             ? Finding::none
+                             : Finding::not_identifiable;
+  const Judgement rest{
+      false, has_gap(round.screening, false_alarms) ? Finding::unnamed : no_gap, no_gap, {}};
+  if (round.refits.empty()) return rest;
   const Refit& best = round.refits.front();
-  if (criterion(round.without, values) < criterion(best, values)) return {false, rest, {}};
+  if (criterion(round.without, values) < criterion(best, values)) return rest;
   if (!resolved(best, best.hypothesis.parts.size() - 1, values, round.screening.mesh_error))
-    return {false, first ? Finding::below_resolution : rest, {}};
-  Judgement taken{true, Finding::named, {best.hypothesis.name()}};
+    return first ? Judgement{false, Finding::below_resolution, Finding::below_resolution, {}}
+                 : rest;
+  Judgement taken{true, Finding::named, Finding::named, {best.hypothesis.name()}};
   const double limit = telling(values, round.screening.mesh_error);
   for (std::size_t k = 1; k < round.refits.size(); ++k)
     if (explains_as_well(round.refits[k], best, values, limit))
       taken.equivalent.push_back(round.refits[k].hypothesis.name());
-  if (taken.equivalent.size() > 1) taken.finding = Finding::ambiguous;
+  if (taken.equivalent.size() > 1) taken.finding = taken.without_gap = Finding::ambiguous;
   return taken;
 }
 

@@ -34,7 +34,7 @@ std::vector<double> believed(const std::vector<double>& own, std::size_t train) 
 double noise_of(const FilterProblems& problems) {
   double squares = 0, count = 0;
   for (const FilterProblem& data : problems)
-    for (std::size_t k = 0; k < data.train; ++k) {
+    for (std::size_t k = 1; k < data.train; ++k) {  // nobody knows that of the first
       const Vec& deviation = data.snapshots[k].deviation;
       squares += data.noise[k] * data.noise[k] * deviation.squaredNorm();
       count += static_cast<double>(deviation.size());

@@ -5,7 +5,8 @@
 
 namespace traceraft {
 
-// Standard deviation of the values that count, in c: their root mean square.
+// Standard deviation of the values that count, in c: their root mean square. Without the first
+// snapshots, of whose own noise nothing is known.
 double noise_of(const FilterProblems& data);
 
 // Standard deviation of c over all measured values, without the noise.

@@ -5,10 +5,12 @@
 
 namespace traceraft {
 
+// Is there anything to look at again: effects that were found, or a gap that nothing explains?
+bool is_to_run_again(const Explanation& found);
+
 // Nothing is left of a finding that this refutes: it is a gap that nothing explains then, or, where
-// that is not significant, too little to say what. A gap that the search could not explain beside
-// what it found, and that is not there on the other mesh, is one of the mesh: what was found
-// stands.
+// that is not significant, too little to say what. A gap that the search could not explain, and
+// that is not there on the other mesh, is one of the mesh: what was found without it stands.
 void run_again(const std::vector<FieldSeries>& series, const ExplainRequest& request,
                Explanation& found);
 

@@ -1,0 +1,125 @@
+// The search where it has to choose between what it found and its rivals.
+#include "verification/explain/explanation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "verification/explain/blind_case.hpp"
+#include "verification/explain/candidates.hpp"
+#include "verification/explain/rerun.hpp"
+
+namespace traceraft {
+namespace {
+
+// A small vesicle with an uptake, measured with little noise; the last of four looks is held out.
+class RivalsTest : public ::testing::Test {
+ protected:
+  static const std::vector<FieldSeries>& measured() {
+    static const std::vector<FieldSeries> vesicles = [] {
+      BlindRequest asked;
+      asked.base = bench_model("degenerate", 0.2);
+      asked.cells = 22;
+      asked.first = 10;
+      asked.last = 60;
+      asked.snapshots = 4;
+      asked.points = 1000;
+      asked.gap = 0.2;
+      asked.effects = {"uptake"};
+      asked.noise = 0.05;
+      asked.seed = 3;
+      return draw_blind_case(asked).vesicles;
+    }();
+    return vesicles;
+  }
+
+  RivalsTest() {
+    request_.base = bench_model("degenerate", 0.2);
+    request_.surface = make_surface("sphere");
+    request_.cells = 16;
+    request_.filter.rank = 80;
+    request_.filter.replicates = 49;
+    request_.most_effects = 1;  // what was found, or its rivals
+  }
+
+  // Each once.
+  Refit fit_of(const std::string& effect) const {
+    static std::map<std::string, Refit> known;
+    if (const auto before = known.find(effect); before != known.end()) return before->second;
+    FilterModel model{request_.base, 1, {}, {}};
+    model.hypothesis.parts = {{find_candidate(effect).value(), {0.0}}};
+    const FilterProblems data = problems_of(measured(), request_);
+    std::vector<ErrorMaps> maps;
+    (void)filter_fields(data, model, request_.filter, maps);
+    return known[effect] = refit(data, model, request_.filter, maps);
+  }
+
+  // As if a first round had found the one, and that the others explain the data as well.
+  Explanation explained(const Refit& found, const std::vector<Refit>& rivals) const {
+    SearchState state;
+    state.so_far.found = state.so_far.base = found;
+    state.so_far.rivals = rivals;
+    state.so_far.finding = rivals.empty() ? Finding::named : Finding::ambiguous;
+    for (const FilterProblem& data : problems_of(measured(), request_))
+      state.noise.push_back(data.noise);
+    return explain_fields(measured(), request_, state);
+  }
+
+  Explanation explained_by_gravity() const {
+    static const Explanation known = explained(fit_of("gravity"), {});
+    return known;
+  }
+
+  ExplainRequest request_;
+};
+
+TEST_F(RivalsTest, AreTakenIfTheyLeaveNoGap) {
+  const Explanation alone = explained_by_gravity();
+  EXPECT_EQ(alone.finding, Finding::unnamed);
+  const Explanation left = explained(fit_of("gravity"), {fit_of("uptake")});
+  EXPECT_EQ(left.finding, Finding::named);
+  EXPECT_EQ(class_of(left), std::vector<std::string>{"uptake"});
+  EXPECT_LT(left.found_gap.heldout, alone.found_gap.heldout);
+}
+
+// A gap that nothing explains has to be there on another mesh, too.
+TEST_F(RivalsTest, ARunOnAnotherMeshDecidesWhetherAGapIsThere) {
+  Explanation right = explained(fit_of("uptake"), {});
+  EXPECT_EQ(right.finding, Finding::named);
+  right.without_gap = right.finding;
+  right.finding = Finding::unnamed;  // as if the mesh had left a gap
+  run_again(measured(), request_, right);
+  EXPECT_EQ(right.finding, Finding::named);
+  EXPECT_GT(right.rerun->gap_p.value(), 0.005);
+  EXPECT_TRUE(right.rerun->confirms());
+
+  Explanation wrong = explained_by_gravity();
+  EXPECT_EQ(wrong.without_gap, Finding::named);
+  run_again(measured(), request_, wrong);
+  EXPECT_EQ(wrong.finding, Finding::unnamed);
+  EXPECT_LT(wrong.rerun->gap_p.value(), 0.005);
+}
+
+// Where nothing was found, too.
+TEST_F(RivalsTest, AGapIsLookedForWhereNothingWasFound) {
+  Explanation found;
+  found.false_alarms = request_.false_alarms;
+  found.finding = Finding::unnamed;
+  found.without_gap = Finding::none;
+  found.found.pace = 1;
+  for (const FilterProblem& data : problems_of(measured(), request_))
+    found.noises.push_back(data.noise);
+  run_again(measured(), request_, found);
+  EXPECT_EQ(found.finding, Finding::unnamed);  // of the uptake
+  EXPECT_LT(found.rerun->gap_p.value(), 0.005);
+  EXPECT_GT(found.rerun->found.heldout, 1.1 * found.rerun->floor.heldout);
+}
+
+TEST_F(RivalsTest, AreNotIfTheyLeaveOneToo) {
+  const Explanation left = explained(fit_of("gravity"), {fit_of("line-tension")});
+  EXPECT_EQ(left.finding, Finding::unnamed);
+  EXPECT_EQ(left.found.hypothesis.name(), "gravity");
+}
+
+}  // namespace
+}  // namespace traceraft
