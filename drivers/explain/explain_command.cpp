@@ -118,6 +118,19 @@ void find_series(ExplainCommand& command) {
   if (!holds_fields(folder)) command.job.data.clear();
 }
 
+void refuse_to_overwrite(const ExplainCommand& command, const fs::path& out) {
+  const auto holds = [](const fs::path& file, const fs::path& given) {
+    return fs::exists(file) && !given.empty() && fs::exists(given) && fs::equivalent(file, given);
+  };
+  for (const std::string& data : {command.job.data, command.series})
+    if (holds(out, data))
+      throw InputError("--out: " + out.string() + " holds the measurements; choose another folder");
+  if (holds(out / "model.toml", command.job.model))
+    throw InputError("--out: " + out.string() +
+                     " holds the model, whose place the one with what was found would take; "
+                     "choose another folder");
+}
+
 int explain(ExplainCommand command) {
   if (command.job.data.empty() && command.series.empty())
     throw InputError("--data or --series: say which measurements to explain");
@@ -128,9 +141,7 @@ int explain(ExplainCommand command) {
   if (!command.series.empty()) series = read_series_job(command);
   if (!command.job.data.empty()) fields = read_explain_job(command.job);
   const fs::path out = command.out.empty() ? first_free_folder("explain") : command.out;
-  for (const std::string& data : {command.job.data, command.series})
-    if (!data.empty() && fs::exists(out) && fs::equivalent(data, out))
-      throw InputError("--out: " + out.string() + " holds the measurements; choose another folder");
+  refuse_to_overwrite(command, out);
   fs::create_directories(out);
   const FolderLock lock(out);
   // The search is on disk after every round.

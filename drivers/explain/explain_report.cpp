@@ -37,7 +37,9 @@ void write_explanation(const std::filesystem::path& folder, const Explanation& f
   const Units units = Configuration(model, {}).units();
   write_durably(folder / "scores.csv", csv_text(scores_table(found)));
   write_durably(folder / "disagreements.csv", csv_text(disagreements_table(found, units)));
-  if (is_named(found)) write_durably(folder / "model.toml", config_text(found_model(found, model)));
+  // The second run may yet refute it.
+  if (is_named(found) && found.rerun)
+    write_durably(folder / "model.toml", config_text(found_model(found, model)));
   write_durably(folder / "verdict.json", verdict_json(found, units).dump(2) + "\n");
 }
 

@@ -8,8 +8,8 @@
 
 namespace traceraft {
 
-// verdict.json, scores.csv, disagreements.csv and, if something was named, model.toml. `model`:
-// with the radius of the vesicle. Throws IoError.
+// verdict.json, scores.csv, disagreements.csv and, if something was named that a second run did not
+// refute, model.toml. `model`: with the radius of the vesicle. Throws IoError.
 void write_explanation(const std::filesystem::path& folder, const Explanation& found,
                        const GivenValues& model);
 

@@ -215,6 +215,14 @@ TEST_F(ExplainTest, RefusesWhatItCannotUse) {
   asked.points = 150;
   std::vector<FieldSeries> vesicles = draw_blind_case(asked).vesicles;
   write(vesicles);
+  // What was found would take the place of the model that it was given.
+  fs::create_directories(folder.path / "out");
+  write_durably(folder.path / "out" / "model.toml", "epsilon = 0.75\ncells = 13\n");
+  const std::string own = (folder.path / "out" / "model.toml").string();
+  EXPECT_NE(
+      refusal("explain" + data + " --model " + own + " --out " + (folder.path / "out").string())
+          .find("holds the model"),
+      std::string::npos);
   // On a sphere there is no other one than curvature.
   std::string text = refusal(command(13) +
                              " --without allen-cahn,asymmetry,bulk-mobility,cooling,"
