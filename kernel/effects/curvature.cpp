@@ -1,5 +1,7 @@
+#include <map>
 #include <mutex>
 #include <stdexcept>
+#include <tuple>
 
 #include "kernel/effects/effects.hpp"
 #include "kernel/effects/nodal_potential.hpp"
@@ -48,22 +50,20 @@ Vec mean_curvature(const SurfaceSpace& space) {
   return curvature.cwiseQuotient(squares.cwiseSqrt().cwiseMax(0.1));
 }
 
-// Computed once, for the space that it is first asked for.
+// Computed once for each space. A later one may have the address of one that is gone, but hardly
+// its nodes and its area.
 class Curvature {
  public:
   Vec operator()(const SurfaceSpace& space, ConstVec) {
     const std::lock_guard lock(mutex_);
-    if (space_ != &space) {
-      value_ = mean_curvature(space);
-      space_ = &space;
-    }
-    return value_;
+    Vec& value = values_[{&space, space.nodes(), space.area}];
+    if (value.size() == 0) value = mean_curvature(space);
+    return value;
   }
 
  private:
   std::mutex mutex_;
-  const SurfaceSpace* space_ = nullptr;
-  Vec value_;
+  std::map<std::tuple<const SurfaceSpace*, int, double>, Vec> values_;
 };
 
 }  // namespace
