@@ -18,11 +18,19 @@ namespace {
 // In distances of the wells.
 constexpr double kFarFromWells = 5;
 
-GivenValues given_model(const ExplainJob& job, double radius_um) {
-  GivenValues given = read_config_file(job.model, "--model");
+GivenValues given_model(GivenValues given, const ExplainJob& job, double radius_um) {
   for (const auto& [name, value] : job.flags) given[name] = value;
   given["radius"] = {format_number(radius_um), "dataset.toml: radius"};
   return given;
+}
+
+// Of a model that says another radius than the data; "" if it does not.
+std::string note_on_radius(const GivenValues& model, double radius_um) {
+  if (model.count("radius") == 0) return "";
+  const double own = Configuration(GivenValues(model), {}).number("radius");
+  if (std::fabs(own - radius_um) <= 1e-6 * radius_um) return "";
+  return "the radius is that of dataset.toml, " + format_number(radius_um) +
+         " um, not that of the model, " + format_number(own);
 }
 
 // Missing values that somebody has coded as numbers, and c on another scale.
@@ -87,19 +95,17 @@ void refuse_effects(const Configuration& model) {
 
 ExplainSetup read_explain_job(const ExplainJob& job) {
   FieldDataset data = read_field_dataset(job.data);
-  ExplainSetup setup{given_model(job, data.radius_um), std::move(data.vesicles), {}};
+  const GivenValues own = read_config_file(job.model, "--model");
+  ExplainSetup setup{given_model(own, job, data.radius_um),
+                     std::move(data.vesicles),
+                     {},
+                     note_on_radius(own, data.radius_um)};
   const Configuration model(setup.model, {});
   refuse_scaled(model);
   refuse_effects(model);
   for (FieldSeries& vesicle : setup.series)
     for (FieldSnapshot& snapshot : vesicle.snapshots) snapshot.time /= model.units().time();
 
-  if (const auto own = read_config_file(job.model, "--model"); own.count("radius") > 0) {
-    const double radius = Configuration({own}, {}).number("radius");
-    if (std::fabs(radius - data.radius_um) > 1e-6 * data.radius_um)
-      setup.note = "the radius is that of dataset.toml, " + format_number(data.radius_um) +
-                   " um, not that of the model, " + format_number(radius);
-  }
   ExplainRequest& request = setup.request;
   request.base = physical_model(model);
   request.surface = surface_of(model);

@@ -38,23 +38,26 @@ double variance_of(const Hypothesis::Part& part, std::size_t parameter,
 
 }  // namespace
 
+std::vector<FoundParameter> parameters_of(const EffectTerm& term, const Units& units) {
+  const auto& specs = effects().find(term.effect).parameters;
+  std::vector<FoundParameter> result;
+  for (std::size_t k = 0; k < specs.size(); ++k)
+    result.push_back({term.effect, specs[k].name, specs[k].unit,
+                      term.values[k] / to_model_units(specs[k].unit, units), std::nullopt});
+  return result;
+}
+
 std::vector<FoundParameter> found_parameters(const Refit& fit, const Units& base) {
   const Units units = found_units(base, fit);
   std::vector<FoundParameter> result;
   Eigen::Index first = 0;
   for (const auto& part : fit.hypothesis.parts) {
     const int n = part.candidate.directions;
-    const EffectTerm term = part.candidate.term(part.coefficients);
-    const auto& specs = effects().find(part.candidate.effect).parameters;
-    for (std::size_t k = 0; k < specs.size(); ++k) {
-      const double factor = 1 / to_model_units(specs[k].unit, units);
-      FoundParameter parameter{part.candidate.effect, specs[k].name, specs[k].unit,
-                               factor * term.values[k], std::nullopt};
-      if (k < static_cast<std::size_t>(n))
-        parameter.sigma =
-            factor * std::sqrt(variance_of(part, k, fit.covariance.block(first, first, n, n)));
-      result.push_back(std::move(parameter));
-    }
+    std::vector<FoundParameter> own = parameters_of(part.candidate.term(part.coefficients), units);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(n); ++k)
+      own[k].sigma = std::sqrt(variance_of(part, k, fit.covariance.block(first, first, n, n))) /
+                     to_model_units(own[k].unit, units);
+    result.insert(result.end(), own.begin(), own.end());
     first += n;
   }
   const double D = units.diffusion_cm2_s;
@@ -86,11 +89,12 @@ Configuration found_model(const Explanation& found, GivenValues model) {
 std::string effect_text(const std::vector<EffectTerm>& terms, const Units& units) {
   std::string text;
   for (const EffectTerm& term : terms) {
-    const auto& specs = effects().find(term.effect).parameters;
     text += (text.empty() ? "" : "; ") + term.effect;
-    for (std::size_t k = 0; k < specs.size(); ++k)
-      text += (k ? "," : ":") + specs[k].name + "=" +
-              format_number(term.values[k] / to_model_units(specs[k].unit, units));
+    const char* before = ":";
+    for (const FoundParameter& p : parameters_of(term, units)) {
+      text += before + p.name + "=" + format_number(p.value);
+      before = ",";
+    }
   }
   return text;
 }

@@ -16,6 +16,9 @@ struct FoundParameter {
   std::optional<double> sigma;  // none: it was assumed, not found
 };
 
+// All parameters of an effect, in their own units and without sigma.
+std::vector<FoundParameter> parameters_of(const EffectTerm& term, const Units& units);
+
 // Parameters of a model's effects, then D (effect "").
 std::vector<FoundParameter> found_parameters(const Refit& fit, const Units& base);
 

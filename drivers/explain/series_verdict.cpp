@@ -123,12 +123,9 @@ StrengthScale scale_of(const SeriesScore& score, const Configuration& model) {
 }
 
 std::vector<FoundParameter> assumed_parameters(const EffectTerm& term, const Units& units) {
-  const auto& specs = effects().find(term.effect).parameters;
-  std::vector<FoundParameter> result;
-  for (std::size_t k = 1; k < specs.size(); ++k)
-    result.push_back({term.effect, specs[k].name, specs[k].unit,
-                      term.values[k] / to_model_units(specs[k].unit, units), std::nullopt});
-  return result;
+  std::vector<FoundParameter> all = parameters_of(term, units);
+  all.erase(all.begin());
+  return all;
 }
 
 Json series_json(const Configuration& model, const SeriesEnsembles& ensembles,

@@ -5,7 +5,7 @@
 
 #include <map>
 
-#include "verification/explain/blind_case.hpp"
+#include "tests/support/small_vesicle.hpp"
 #include "verification/explain/candidates.hpp"
 #include "verification/explain/rerun.hpp"
 
@@ -16,25 +16,13 @@ namespace {
 class RivalsTest : public ::testing::Test {
  protected:
   static const std::vector<FieldSeries>& measured() {
-    static const std::vector<FieldSeries> vesicles = [] {
-      BlindRequest asked;
-      asked.base = bench_model("degenerate", 0.2);
-      asked.cells = 22;
-      asked.first = 10;
-      asked.last = 60;
-      asked.snapshots = 4;
-      asked.points = 1000;
-      asked.gap = 0.2;
-      asked.effects = {"uptake"};
-      asked.noise = 0.05;
-      asked.seed = 3;
-      return draw_blind_case(asked).vesicles;
-    }();
+    static const std::vector<FieldSeries> vesicles =
+        draw_blind_case(testing::small_vesicle(4)).vesicles;
     return vesicles;
   }
 
   RivalsTest() {
-    request_.base = bench_model("degenerate", 0.2);
+    request_.base = testing::small_vesicle(4).base;
     request_.surface = make_surface("sphere");
     request_.cells = 16;
     request_.filter.rank = 80;

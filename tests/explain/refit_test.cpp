@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "kernel/core/error.hpp"
-#include "verification/explain/blind_case.hpp"
+#include "tests/support/small_vesicle.hpp"
 #include "verification/explain/candidates.hpp"
 #include "verification/explain/effect_size.hpp"
 
@@ -14,18 +14,7 @@ namespace {
 constexpr int kCells = 16;
 
 BlindRequest request() {
-  BlindRequest asked;
-  asked.base = bench_model("degenerate", 0.2);
-  asked.cells = 22;
-  asked.first = 10;
-  asked.last = 60;
-  asked.snapshots = 3;
-  asked.points = 1000;
-  asked.gap = 0.2;
-  asked.effects = {"uptake"};
-  asked.noise = 0.05;
-  asked.seed = 3;
-  return asked;
+  return testing::small_vesicle(3);
 }
 
 FilterSettings settings() {

@@ -1,0 +1,24 @@
+// A blind case that takes seconds: a small vesicle, measured with little noise.
+#pragma once
+
+#include "verification/bench.hpp"
+#include "verification/explain/blind_case.hpp"
+
+namespace traceraft::testing {
+
+inline BlindRequest small_vesicle(int snapshots) {
+  BlindRequest asked;
+  asked.base = bench_model("degenerate", 0.2);
+  asked.cells = 22;
+  asked.first = 10;
+  asked.last = 60;
+  asked.snapshots = snapshots;
+  asked.points = 1000;
+  asked.gap = 0.2;
+  asked.effects = {"uptake"};
+  asked.noise = 0.05;
+  asked.seed = 3;
+  return asked;
+}
+
+}  // namespace traceraft::testing
