@@ -4,34 +4,66 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
+#include <mutex>
+#include <thread>
 
 namespace traceraft {
 namespace {
 
-volatile std::sig_atomic_t stop_flag = 0;
+std::atomic<bool> stop_flag = false;
 const auto process_start = std::chrono::steady_clock::now();
 
-int code_at_end = 0;
-std::string line_at_end;
+// What ends the process at once. Never freed: a signal may come at any time.
+struct End {
+  int code;
+  std::string line;
+};
+std::atomic<const End*> end_at_once = nullptr;
 
-void on_end(int) {
-  // Nothing can be done about an error here.
-  [[maybe_unused]] const ssize_t written =
-      write(STDERR_FILENO, line_at_end.data(), line_at_end.size());
-  _exit(code_at_end);
+sigset_t stop_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int signal : kStopSignals) sigaddset(&set, signal);
+  return set;
 }
 
+// May interrupt anything: calls nothing but what POSIX allows there.
 void on_stop(int signal) {
-  if (stop_flag) {
-    std::signal(signal, SIG_DFL);
-    std::raise(signal);
+  if (const End* end = end_at_once) {
+    // Nothing can be done about an error here.
+    [[maybe_unused]] const ssize_t written =
+        write(STDERR_FILENO, end->line.data(), end->line.size());
+    _exit(end->code);
   }
-  stop_flag = 1;
+  const bool second = stop_flag.exchange(true);
+  if (!second || signal == kParentDied) return;
+  std::signal(signal, SIG_DFL);
+  const sigset_t set = stop_signals();
+  pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+  std::raise(signal);
+}
+
+// A thread of its own waits for the signals, which this one and all that it starts block: METIS
+// puts a handler of its own for SIGTERM, and one that jumps to where only its own thread has been.
+void watch_stop_signals() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    struct sigaction action {};  // for threads that are older than this
+    action.sa_handler = on_stop;
+    action.sa_flags = SA_RESTART;
+    sigemptyset(&action.sa_mask);
+    for (const int signal : kStopSignals) sigaction(signal, &action, nullptr);
+    const sigset_t set = stop_signals();
+    pthread_sigmask(SIG_BLOCK, &set, nullptr);
+    std::thread([set] {
+      for (int signal = 0; sigwait(&set, &signal) == 0;) on_stop(signal);
+    }).detach();
+  });
 }
 
 }  // namespace
@@ -66,27 +98,17 @@ int terminal_columns() {
 }
 
 void catch_stop_signals() {
-  struct sigaction action {};
-  action.sa_handler = on_stop;
-  action.sa_flags = SA_RESTART;
-  sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-  action.sa_handler = [](int) { stop_flag = 1; };
-  sigaction(kParentDied, &action, nullptr);
+  end_at_once = nullptr;
+  watch_stop_signals();
 }
 
 void end_on_stop_signals(int exit_code, const std::string& line) {
-  code_at_end = exit_code;
-  line_at_end = line + "\n";
-  struct sigaction action {};
-  action.sa_handler = on_end;
-  sigemptyset(&action.sa_mask);
-  for (const int signal : {SIGINT, SIGTERM, kParentDied}) sigaction(signal, &action, nullptr);
+  end_at_once = new End{exit_code, line + "\n"};
+  watch_stop_signals();
 }
 
 bool stop_requested() {
-  return stop_flag != 0;
+  return stop_flag;
 }
 
 void ignore_file_size_signal() {

@@ -17,6 +17,7 @@ int terminal_columns();  // 80 if unknown
 
 // What a child gets when the process that started it dies (child.hpp), perhaps several times.
 inline constexpr int kParentDied = SIGUSR1;
+inline constexpr int kStopSignals[] = {SIGINT, SIGTERM, kParentDied};
 
 // From now on SIGINT, SIGTERM and kParentDied only set a flag; a second SIGINT or SIGTERM ends the
 // process at once.
