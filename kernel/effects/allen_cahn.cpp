@@ -7,6 +7,7 @@ namespace traceraft {
 EffectEntry allen_cahn_effect() {
   return {"allen-cahn",
           "lipids converted into each other, as the chemical potential tells them",
+          "",
           {{"rate", "1/s", 0, 0, 1e12, "L"}},
           MassClass::drifts,
           EnergyClass::dissipates,

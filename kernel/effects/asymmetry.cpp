@@ -7,6 +7,7 @@ namespace traceraft {
 EffectEntry asymmetry_effect() {
   return {"asymmetry",
           "a free energy that is steeper on the side of the rafts",
+          "a free energy that is steeper on the side of their surroundings",
           // f0 + a g = c² (1−c)² (1/4 + a (2c−1)): below 1/4 both wells stay minima.
           {{"strength", "", 0, -0.2, 0.2, "a of a c^2 (1-c)^2 (2c-1)"}},
           MassClass::conserves,

@@ -25,6 +25,7 @@ class BulkMobility final : public Mobility {
 EffectEntry bulk_mobility_effect() {
   return {"bulk-mobility",
           "lipids that diffuse through the phases: a mobility everywhere",
+          "",
           {{"strength", "", 0, 0, 10, "m0, in units of D"}},
           MassClass::conserves,
           EnergyClass::dissipates,

@@ -14,6 +14,7 @@ namespace traceraft {
 EffectEntry cooling_effect() {
   return {"cooling",
           "a temperature that falls: phases that part further, diffusion that slows down",
+          "a temperature that rises: phases that become more alike, diffusion that speeds up",
           {{"rate", "1/s", 0, -1e9, 1e9, "kelvins per time"},
            {"out", "", 0.02, 0, 1, "gain of c outside rafts per K"},
            {"in", "", 0.005, 0, 1, "loss of c in rafts per K"},

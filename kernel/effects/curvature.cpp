@@ -71,7 +71,8 @@ class Curvature {
 // Rafts that prefer to be curved: μ = … − Λ H. On a sphere it changes nothing.
 EffectEntry curvature_effect() {
   return {"curvature",
-          "rafts that prefer curved places; nothing on a sphere",
+          "rafts that prefer strongly curved places; nothing on a sphere",
+          "rafts that avoid strongly curved places; nothing on a sphere",
           {{"strength", "", 0, -10, 10, "Lambda of Lambda H R"}},
           MassClass::conserves,
           EnergyClass::dissipates,

@@ -48,6 +48,11 @@ void add(const EffectTerm& term, CahnHilliardModel& model) {
 
 }  // namespace
 
+const std::string& physics_of(const EffectTerm& term) {
+  const EffectEntry& entry = effects().find(term.effect);
+  return term.values.front() < 0 && !entry.reversed.empty() ? entry.reversed : entry.summary;
+}
+
 double to_model_units(const std::string& unit, const Units& units) {
   if (unit == "1/s") return units.time();
   if (unit == "s") return 1 / units.time();

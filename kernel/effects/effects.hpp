@@ -18,7 +18,8 @@ enum class EnergyClass { dissipates, neutral, active };
 
 struct EffectEntry {
   std::string name;
-  std::string summary;  // the physics
+  std::string summary;   // the physics
+  std::string reversed;  // and with a negative strength; "" if it has none
   // The strength first, whose default, 0, is the base model. Units: "" for a pure number, "1/s",
   // "s", "um".
   std::vector<ParameterSpec> parameters;
@@ -57,6 +58,9 @@ struct EffectTerm {
   std::string effect;
   std::vector<double> values;
 };
+
+// Its physics in words, by the sign of its strength.
+const std::string& physics_of(const EffectTerm& term);
 
 bool has_unit_wells(const CahnHilliardModel& model);
 

@@ -8,6 +8,7 @@ namespace traceraft {
 EffectEntry exchange_effect() {
   return {"exchange",
           "lipids exchanged with a reservoir: c relaxes to a target",
+          "",
           {{"rate", "1/s", 0, 0, 1e12, "k"}, {"target", "", 0.5, 0, 1, "c of the reservoir"}},
           MassClass::drifts,
           EnergyClass::active,

@@ -6,7 +6,8 @@ namespace traceraft {
 // Rafts that are heavier than what they float in: μ = … + λ z.
 EffectEntry gravity_effect() {
   return {"gravity",
-          "rafts heavier than their surroundings: a potential that grows with height",
+          "rafts that sink: a potential that grows with height",
+          "rafts that rise: a potential that falls with height",
           {{"strength", "", 0, -10, 10, "lambda of lambda z/R"}},
           MassClass::conserves,
           EnergyClass::dissipates,

@@ -8,6 +8,7 @@ namespace traceraft {
 EffectEntry line_tension_effect() {
   return {"line-tension",
           "boundaries that cost more than the model says",
+          "boundaries that cost less than the model says",
           {{"excess", "", 0, -0.9, 10, "d of epsilon^2 (1 + d)"}},
           MassClass::conserves,
           EnergyClass::dissipates,

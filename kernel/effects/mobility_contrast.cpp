@@ -28,7 +28,8 @@ class ContrastMobility final : public Mobility {
 
 EffectEntry mobility_contrast_effect() {
   return {"mobility-contrast",
-          "lipids that move faster on one side of a boundary",
+          "lipids that move faster on the side of the rafts",
+          "lipids that move more slowly on the side of the rafts",
           {{"strength", "", 0, -1, 1, "b of b c (1-c) (2c-1), in units of D"}},
           MassClass::conserves,
           EnergyClass::dissipates,

@@ -35,7 +35,8 @@ class ExponentMobility final : public Mobility {
 
 EffectEntry mobility_exponent_effect() {
   return {"mobility-exponent",
-          "a mobility that vanishes faster, or slower, in the phases",
+          "a mobility that vanishes faster in the phases",
+          "a mobility that vanishes more slowly in the phases",
           {{"excess", "", 0, -0.9, 5, "delta of (c (1-c))^(1 + delta)"}},
           MassClass::conserves,
           EnergyClass::dissipates,

@@ -26,6 +26,7 @@ EffectEntry ohta_kawasaki_effect() {
   return {
       "ohta-kawasaki",
       "rafts that repel each other over a distance",
+      "",
       {{"strength", "", 0, 0, 1e6, "a"},
        {"range", "um", 5, 1e-3, 1e6, "1/kappa, the screening length"}},
       MassClass::conserves,

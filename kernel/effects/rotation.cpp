@@ -7,6 +7,7 @@ namespace traceraft {
 EffectEntry rotation_effect() {
   return {"rotation",
           "a vesicle that turns",
+          "a vesicle that turns, the other way round",
           {{"rate", "1/s", 0, -1e9, 1e9, "angular velocity"},
            {"x", "", 0, -1, 1, "of the axis"},
            {"y", "", 0, -1, 1, "of the axis"},

@@ -99,6 +99,7 @@ class ThermalNoise final : public Effect {
 EffectEntry thermal_effect() {
   return {"thermal",
           "thermal fluctuations of the flux (Cook's noise)",
+          "",
           {{"strength", "", 0, 0, 1, "kT, in units of the energy density times R^2"},
            {"time", "s", 1e-3, 1e-12, 1e9, "between draws; steps have to be shorter"},
            {"seed", "", 1, 0, 1e9, "of the draws", true}},

@@ -7,6 +7,7 @@ namespace traceraft {
 EffectEntry uptake_effect() {
   return {"uptake",
           "raft lipids taken up outside rafts",
+          "raft lipids lost outside rafts",
           {{"rate", "1/s", 0, -1e12, 1e12, "s; negative: lost there"}},
           MassClass::drifts,
           EnergyClass::active,

@@ -56,6 +56,17 @@ TEST_P(EffectContract, IsSeenInTheResidual) {
   EXPECT_GT((with - without).norm(), 1e-4 * without.norm());
 }
 
+// What may be negative has words for that.
+TEST_P(EffectContract, SaysWhatANegativeStrengthMeans) {
+  EXPECT_EQ(entry().parameters.front().min < 0, !entry().reversed.empty());
+  std::vector<double> values(entry().parameters.size());
+  values.front() = 1;
+  EXPECT_EQ(physics_of({GetParam(), values}), entry().summary);
+  values.front() = -1;
+  EXPECT_EQ(physics_of({GetParam(), values}),
+            entry().reversed.empty() ? entry().summary : entry().reversed);
+}
+
 // A model is what it has, not the order in which that was said.
 TEST_P(EffectContract, CommutesWithTheOthers) {
   const Vec y = random_state(*problem, 1), still = Vec::Zero(problem->size());
