@@ -129,6 +129,21 @@ TEST(Judgement, HoldsRefittedStrengthsAgainstTheMesh) {
   EXPECT_TRUE(resolved(fit, 0, kMeasuredValues / 2, 0.235));
 }
 
+// A refit that went astray says no less than that without its effect.
+TEST(Refit, IsNoWorseThanWithoutItsEffect) {
+  const Refit without = refit_with({"uptake"}, 900),
+              astray = refit_with({"uptake", "exchange"}, 968);
+  const Refit better = refit_with({"uptake", "exchange"}, 890);
+  EXPECT_EQ(no_worse(better, without).deviance, 890);
+  const Refit fit = no_worse(astray, without);
+  EXPECT_EQ(fit.deviance, 900);
+  EXPECT_EQ(fit.hypothesis.name(), "uptake + exchange");
+  EXPECT_EQ(fit.hypothesis.parts[0].coefficients, std::vector<double>{0.1});
+  EXPECT_EQ(fit.hypothesis.parts[1].coefficients, (std::vector<double>{0, 0}));
+  ASSERT_EQ(fit.covariance.rows(), 3);
+  EXPECT_EQ(fit.covariance(0, 0), without.covariance(0, 0));
+}
+
 TEST(Judgement, AdmitsAGapThatNothingExplains) {
   Round round = first_round();
   round.refits.clear();

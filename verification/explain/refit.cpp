@@ -173,6 +173,18 @@ double certainty(const Refit& fit, std::size_t effect) {
   return a.dot(fit.covariance.block(first, first, n, n).ldlt().solve(a));
 }
 
+Refit no_worse(const Refit& fit, const Refit& without) {
+  if (fit.deviance <= without.deviance) return fit;
+  Refit result = without;
+  result.hypothesis.parts.push_back(fit.hypothesis.parts.back());
+  std::vector<double>& coefficients = result.hypothesis.parts.back().coefficients;
+  coefficients.assign(coefficients.size(), 0);
+  const Eigen::Index known = without.covariance.rows(), all = result.hypothesis.coefficients();
+  result.covariance = Eigen::MatrixXd::Zero(all, all);  // of what is nothing nothing is known
+  result.covariance.topLeftCorner(known, known) = without.covariance;
+  return result;
+}
+
 std::vector<Refit> refit_each(const FilterProblems& data, const std::vector<FilterModel>& starts,
                               const FilterSettings& settings, const std::vector<ErrorMaps>& maps,
                               const std::function<void(const Refit&)>& done) {

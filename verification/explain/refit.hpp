@@ -28,6 +28,10 @@ struct Refit {
 // absence costs in deviance, to first order, all else being free.
 double certainty(const Refit& fit, std::size_t effect);
 
+// The better one of a refit and the one without its last effect, which is a refit of the same
+// hypothesis, too: with an effect of strength 0.
+Refit no_worse(const Refit& fit, const Refit& without);
+
 // Gauss and Newton's method with halved steps, from the coefficients and the pace of `start`, until
 // what is left to go is a small part of the standard deviation. Unstable trial models count as
 // improbable; where even `start` is, its coefficients are halved until it is none. Coefficients
