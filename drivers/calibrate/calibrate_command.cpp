@@ -58,7 +58,7 @@ constexpr char kIdentityFile[] = "calibration-model.toml";
 
 fs::path folder_for(const CalibrateRequest& request) {
   const fs::path out = request.out.empty() ? first_free_folder("calibration") : request.out;
-  refuse_foreign_folder(out, kIdentityFile);
+  refuse_foreign_folder(out, {kIdentityFile});
   fs::create_directories(out);
   return out;
 }
@@ -145,7 +145,7 @@ int run_calibration(CalibrateRequest request) {
   const MeasuredVesicles data = read_dataset(request.data);
   (void)telling_vesicles(data);  // or refuses them
   if (!request.ensemble.empty()) return calibrate_ensemble(request, data);
-  refuse_without_model(data, request.model, request.flags);
+  refuse_without_model(data.composition, request.model, request.flags);
   const Configuration model(read_config_file(request.model, "--model"), request.flags);
   refuse_scaled(model);
   refuse_calibrating(model);

@@ -117,7 +117,7 @@ void carry_out_case(const CampaignFolder& folder, const CampaignPlan& plan, cons
     Explanation found = explain_fields(setup.series, setup.request);
     run_again(setup.series, setup.request, found);
     write_durably(time_file(path / "explain"), Json{{"seconds", watch.seconds()}}.dump() + "\n");
-    write_explanation(path / "explain", found, setup.model);
+    write_explanation(path / "explain", found, setup);
   }
   write_score(folder, group, id, setup);
 }

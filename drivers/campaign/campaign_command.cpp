@@ -158,6 +158,7 @@ int run_campaign(const CampaignRequest& request) {
                                 ? new_plan(request)
                                 : grown_plan(request, CampaignFolder(request.elsewhere[0]));
   std::vector<CaseScore> scores = scores_of(request.elsewhere, plan);
+  if (!goes_on) refuse_foreign_folder(folder.path(), {});
   fs::create_directories(folder.path() / "cases");
   const FolderLock lock(folder.path());
   folder.save(plan);

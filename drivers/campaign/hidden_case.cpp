@@ -21,14 +21,6 @@ namespace fs = std::filesystem;
 // that, and strengths are found on one in between.
 constexpr double kFinerTruth = 4, kSizing = 1.75;
 
-void refuse_hiding(const Configuration& model) {
-  refuse_scaled(model);
-  if (model.text("surface") != "sphere")
-    throw InputError(model.where("surface") + ": measurements are drawn on spheres only");
-  if (!model.text("effect").empty())
-    throw InputError(model.where("effect") + ": effects are hidden with --effects");
-}
-
 Json truth_json(const BlindCase& drawn, const BlindRequest& request, const Units& units) {
   Units own = units;
   own.diffusion_cm2_s *= request.pace;
@@ -66,13 +58,21 @@ int truth_cells(const GivenValues& model) {
   return static_cast<int>(std::lround(kFinerTruth * cells));
 }
 
-void hide(const fs::path& folder, const GivenValues& model, BlindRequest request) {
-  const Configuration configuration(model, {});
-  refuse_hiding(configuration);
-  if (request.cells <= configuration.integer("cells"))
+void refuse_hiding(const Configuration& model, const BlindRequest& request) {
+  refuse_scaled(model);
+  if (model.text("surface") != "sphere")
+    throw InputError(model.where("surface") + ": measurements are drawn on spheres only");
+  if (!model.text("effect").empty())
+    throw InputError(model.where("effect") + ": effects are hidden with --effects");
+  if (request.cells <= model.integer("cells"))
     throw InputError("--truth-cells: " + std::to_string(request.cells) +
                      " has to be more than the model's cells, " +
-                     std::to_string(configuration.integer("cells")));
+                     std::to_string(model.integer("cells")));
+}
+
+void hide(const fs::path& folder, const GivenValues& model, BlindRequest request) {
+  const Configuration configuration(model, {});
+  refuse_hiding(configuration, request);
   const Units units = configuration.units();
   request.base = physical_model(configuration);
   request.sizing_cells = std::min(

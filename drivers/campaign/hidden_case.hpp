@@ -21,13 +21,16 @@ void add_small_vesicle(GivenValues& model, const std::string& source);
 // Of a truth for this model, unless asked for others.
 int truth_cells(const GivenValues& model);
 
+// Throws InputError for a model that nothing can be hidden in, and for a truth that is no finer.
+void refuse_hiding(const Configuration& model, const BlindRequest& request);
+
 // Draws a case and writes into the folder, in this order:
 //   truth.json         what is hidden, with a random salt; nothing but the score opens it
 //   data/seal.txt      the SHA-256 of truth.json
 //   data/              the measurements, as `explain --data` takes them
 //   model.toml         the model without what is hidden
 // `request`: all but the base model and the raft fraction, which are those of `model`. Throws
-// InputError for a model that cannot be used, std::runtime_error if a simulation fails, IoError.
+// InputError as refuse_hiding does, std::runtime_error if a simulation fails, IoError.
 void hide(const std::filesystem::path& folder, const GivenValues& model, BlindRequest request);
 
 // Throws IoError if the truth is not what was sealed.

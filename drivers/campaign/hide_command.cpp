@@ -64,10 +64,12 @@ int hide_effects(const HideCommand& command) {
   if (command.last_s > 0) request.last = command.last_s / units.time();
   if (!(request.first < request.last)) throw InputError("--first: it has to be before --last");
   const fs::path out = command.out.empty() ? first_free_folder("hidden") : command.out;
-  fs::create_directories(out);
-  const FolderLock lock(out);
   if (fs::exists(out / "truth.json"))
     throw InputError("--out: " + out.string() + " holds a hidden truth already");
+  refuse_foreign_folder(out, {});
+  refuse_hiding(Configuration(model, {}), request);
+  fs::create_directories(out);
+  const FolderLock lock(out);
   hide(out, model, request);
   std::printf("find it with: traceraft explain --data %s --model %s\n", (out / "data").c_str(),
               (out / "model.toml").c_str());

@@ -122,7 +122,7 @@ int run_ensemble(const EnsembleRequest& request) {
     return one_member(request, EnsembleFolder(request.out), EnsembleFolder(request.out).load());
   }
   if (!goes_on && !request.out.empty()) {
-    refuse_foreign_folder(request.out, EnsembleFolder(request.out).plan_file().filename());
+    refuse_foreign_folder(request.out, {EnsembleFolder(request.out).plan_file().filename()});
     EnsembleFolder(request.out).refuse_other_plan();
   }
   const Configuration configuration =

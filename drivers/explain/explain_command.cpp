@@ -46,9 +46,11 @@ void explain_field_data(const ExplainCommand& command, ExplainSetup& setup, cons
       std::printf("%s  %s\n", clock_text(watch.seconds()).c_str(), step.c_str());
       std::fflush(stdout);
     };
-  if (!command.quiet)
+  if (!command.quiet) {
+    std::printf("%s\n", data_text(setup).c_str());
     std::printf("the model: %s\n", flags_text(Configuration(setup.model, {})).c_str());
-  if (!command.quiet && !setup.note.empty()) std::printf("%s\n", setup.note.c_str());
+    if (!setup.note.empty()) std::printf("%s\n", setup.note.c_str());
+  }
   const SearchFile file(out, setup);
   std::optional<SearchState> search = file.load();
   setup.request.save = [&](const SearchState& state) {
@@ -58,17 +60,19 @@ void explain_field_data(const ExplainCommand& command, ExplainSetup& setup, cons
   Explanation found =
       numerically([&] { return explain_fields(setup.series, setup.request, search); });
   if (is_to_run_again(found) && !found.rerun) {
-    write_explanation(out, found, setup.model);
+    write_explanation(out, found, setup);
     if (!command.quiet) setup.request.progress("once more, on another mesh, by another integrator");
     run_again(setup.series, setup.request, found);
     search->so_far.finding = found.finding;
     search->so_far.rerun = found.rerun;
     file.save(*search);
   }
-  write_explanation(out, found, setup.model);
+  write_explanation(out, found, setup);
   const std::string missing = write_explain_page(out, found, setup);
   if (command.quiet) return;
-  print_explanation(found, setup.model);
+  print_explanation(found, setup);
+  const std::string run = command_for_found(out, found, setup);
+  if (!run.empty()) std::printf("\nrun it with: %s\n", run.c_str());
   std::printf("\nwritten: %s\n", (out / "explain.html").c_str());
   if (!missing.empty()) std::printf("the page lacks: %s\n", missing.c_str());
 }
@@ -81,7 +85,7 @@ struct SeriesSetup {
 
 SeriesSetup read_series_job(const ExplainCommand& command) {
   MeasuredVesicles data = read_dataset(command.series);
-  refuse_without_model(data, command.job.model, command.job.flags);
+  refuse_without_model(data.composition, command.job.model, command.job.flags);
   GivenValues given = command.job.flags;
   given.merge(read_config_file(command.job.model, "--model"));
   SeriesSetup setup{std::move(data), given, {given, {}}};
@@ -142,6 +146,7 @@ int explain(ExplainCommand command) {
   if (!command.job.data.empty()) fields = read_explain_job(command.job);
   const fs::path out = command.out.empty() ? first_free_folder("explain") : command.out;
   refuse_to_overwrite(command, out);
+  refuse_foreign_folder(out, {"search.json", "ensembles"});
   fs::create_directories(out);
   const FolderLock lock(out);
   // The search is on disk after every round.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "drivers/config/config_file.hpp"
+#include "drivers/explain/explain_report.hpp"
 #include "drivers/explain/explain_tables.hpp"
 #include "drivers/explain/remarks.hpp"
 #include "drivers/explain/verdict.hpp"
@@ -33,6 +34,7 @@ class ExplainPage {
         page_("What the model is missing") {}
 
   std::string write() {
+    page_.paragraph(data_text(setup_));
     page_.paragraph(verdict_sentence(found_));
     page_.table(parameter_rows(found_, units_));
     for (const std::string& remark : remarks(found_, units_)) page_.paragraph(remark);
@@ -52,8 +54,15 @@ class ExplainPage {
                     "curvature sorts nothing where it is the same everywhere; others were left out "
                     "on request.");
     page_.heading("Where this comes from");
-    page_.paragraph("traceraft " + std::string(kVersion) + ". " + data_text() + " The model:");
+    page_.paragraph("traceraft " + std::string(kVersion) + ". Noise " +
+                    formatted("%.4f of c, ", found_.noise) + std::to_string(found_.replicates) +
+                    " replicates of noise alone, " +
+                    formatted("h/epsilon = %.2f.", found_.h_over_epsilon) + " The model:");
     page_.code(flags_text(Configuration(setup_.model, {})));
+    if (const std::string run = command_for_found(folder_, found_, setup_); !run.empty()) {
+      page_.paragraph("The model with what was found runs with:");
+      page_.code(run);
+    }
     write_durably(folder_ / "explain.html", page_.html());
     return missing_.text();
   }
@@ -149,16 +158,6 @@ class ExplainPage {
 
   static std::string share(double p) {
     return p < 1e-3 ? "less than 0.1 %" : formatted("%.1f %%", 100 * p);
-  }
-
-  std::string data_text() const {
-    std::size_t snapshots = 0;
-    for (const FieldSeries& series : setup_.series) snapshots += series.snapshots.size();
-    const std::size_t vesicles = setup_.series.size();
-    return std::to_string(vesicles) + (vesicles == 1 ? " vesicle, " : " vesicles, ") +
-           std::to_string(snapshots) + " snapshots, noise " +
-           formatted("%.4f of c, ", found_.noise) + std::to_string(found_.replicates) +
-           " replicates of noise alone.";
   }
 
   const fs::path folder_;

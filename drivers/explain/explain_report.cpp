@@ -7,6 +7,7 @@
 #include "drivers/explain/remarks.hpp"
 #include "drivers/explain/verdict.hpp"
 #include "drivers/output/text_table.hpp"
+#include "kernel/core/parameters.hpp"
 #include "verification/study.hpp"
 
 namespace traceraft {
@@ -30,22 +31,33 @@ Table disagreements_table(const Explanation& found, const Units& units) {
   return table;
 }
 
+// The second run may yet refute it.
+bool has_model(const Explanation& found) {
+  return is_named(found) && found.rerun;
+}
+
 }  // namespace
 
 void write_explanation(const std::filesystem::path& folder, const Explanation& found,
-                       const GivenValues& model) {
-  const Units units = Configuration(model, {}).units();
+                       const ExplainSetup& setup) {
+  const Units units = Configuration(GivenValues(setup.model), {}).units();
   write_durably(folder / "scores.csv", csv_text(scores_table(found)));
   write_durably(folder / "disagreements.csv", csv_text(disagreements_table(found, units)));
-  // The second run may yet refute it.
-  if (is_named(found) && found.rerun)
-    write_durably(folder / "model.toml", config_text(found_model(found, model)));
-  write_durably(folder / "verdict.json", verdict_json(found, units).dump(2) + "\n");
+  if (has_model(found))
+    write_durably(folder / "model.toml", config_text(found_model(found, setup.model)));
+  write_durably(folder / "verdict.json", verdict_json(found, setup).dump(2) + "\n");
 }
 
-void print_explanation(const Explanation& found, const GivenValues& model) {
-  const Units units = Configuration(model, {}).units();
-  std::printf("\n%s\n\n", verdict_sentence(found).c_str());
+std::string command_for_found(const std::filesystem::path& folder, const Explanation& found,
+                              const ExplainSetup& setup) {
+  if (!has_model(found)) return "";
+  return "traceraft run --config " + in_shell((folder / "model.toml").string()) + " --t-end " +
+         format_number(setup.last_s());
+}
+
+void print_explanation(const Explanation& found, const ExplainSetup& setup) {
+  const Units units = Configuration(GivenValues(setup.model), {}).units();
+  std::printf("\n%s\n%s\n\n", data_text(setup).c_str(), verdict_sentence(found).c_str());
   print_rows(parameter_rows(found, units));
   std::printf("\n");
   print_rows(gap_rows(found));

@@ -3,16 +3,19 @@
 
 #include <filesystem>
 
-#include "drivers/config/configuration.hpp"
-#include "verification/explain/explanation.hpp"
+#include "drivers/explain/explain_run.hpp"
 
 namespace traceraft {
 
 // verdict.json, scores.csv, disagreements.csv and, if something was named that a second run did not
-// refute, model.toml. `model`: with the radius of the vesicle. Throws IoError.
+// refute, model.toml. Throws IoError.
 void write_explanation(const std::filesystem::path& folder, const Explanation& found,
-                       const GivenValues& model);
+                       const ExplainSetup& setup);
 
-void print_explanation(const Explanation& found, const GivenValues& model);
+void print_explanation(const Explanation& found, const ExplainSetup& setup);
+
+// What runs the model with what was found, over the time that was measured; "" if there is none.
+std::string command_for_found(const std::filesystem::path& folder, const Explanation& found,
+                              const ExplainSetup& setup);
 
 }  // namespace traceraft

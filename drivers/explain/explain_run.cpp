@@ -7,16 +7,15 @@
 #include "drivers/config/config_file.hpp"
 #include "drivers/input/field_dataset.hpp"
 #include "drivers/input/measured_units.hpp"
+#include "drivers/input/model_of_data.hpp"
 #include "drivers/run/run_setup.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
+#include "kernel/core/text.hpp"
 #include "kernel/effects/effects.hpp"
 
 namespace traceraft {
 namespace {
-
-// In distances of the wells.
-constexpr double kFarFromWells = 5;
 
 GivenValues given_model(GivenValues given, const ExplainJob& job, double radius_um) {
   for (const auto& [name, value] : job.flags) given[name] = value;
@@ -93,13 +92,37 @@ void refuse_effects(const Configuration& model) {
                      ": the search starts from a model without effects; it finds them itself");
 }
 
+double ExplainSetup::last_s() const {
+  double last = 0;
+  for (const FieldSeries& vesicle : series) last = std::max(last, vesicle.snapshots.back().time);
+  return last * Configuration(GivenValues(model), {}).units().time();
+}
+
+std::string data_text(const ExplainSetup& setup) {
+  std::size_t snapshots = 0;
+  for (const FieldSeries& vesicle : setup.series) snapshots += vesicle.snapshots.size();
+  const std::size_t vesicles = setup.series.size();
+  const double radius = Configuration(GivenValues(setup.model), {}).units().length();
+  const double blur = setup.request.filter.blur * radius;
+  return setup.name + (setup.synthetic ? " (SYNTHETIC): " : ": ") + std::to_string(vesicles) +
+         (vesicles == 1 ? " vesicle, " : " vesicles, ") + std::to_string(snapshots) +
+         formatted(" snapshots, R = %g um, ", radius) +
+         (!setup.request.blur_stated ? "blur not stated"
+          : blur > 0                 ? formatted("blurred by %g um", blur)
+                                     : "not blurred");
+}
+
 ExplainSetup read_explain_job(const ExplainJob& job) {
   FieldDataset data = read_field_dataset(job.data);
+  // A width of the boundaries says that a model is meant; other values may be those of any.
+  if (job.flags.count("epsilon") == 0) refuse_without_model(data.composition, job.model, job.flags);
   const GivenValues own = read_config_file(job.model, "--model");
   ExplainSetup setup{given_model(own, job, data.radius_um),
                      std::move(data.vesicles),
                      {},
-                     note_on_radius(own, data.radius_um)};
+                     note_on_radius(own, data.radius_um),
+                     data.name,
+                     data.synthetic};
   const Configuration model(setup.model, {});
   refuse_scaled(model);
   refuse_effects(model);

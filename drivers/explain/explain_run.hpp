@@ -24,7 +24,14 @@ struct ExplainSetup {
   std::vector<FieldSeries> series;
   ExplainRequest request;
   std::string note = {};  // what of the model was not taken as it was given, "" if nothing
+  std::string name = {};  // of the data
+  bool synthetic = false;
+
+  double last_s() const;  // the time of the last snapshot
 };
+
+// "my vesicle (SYNTHETIC): 1 vesicle, 8 snapshots, R = 5 um, blurred by 0.1 um"
+std::string data_text(const ExplainSetup& setup);
 
 // Throws InputError: the search finds effects itself.
 void refuse_effects(const Configuration& model);

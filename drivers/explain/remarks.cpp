@@ -38,6 +38,26 @@ void add_assumptions(const Explanation& found, const Units& base, std::vector<st
                     "may be taken for another effect.");
 }
 
+// A mistake in the unit of time looks like another D.
+void add_pace(const Explanation& found, const Units& base, std::vector<std::string>& all) {
+  constexpr double kFar = 10, kSure = 3;
+  const double log_pace = std::fabs(std::log(found.found.pace));
+  if (log_pace < std::log(kFar) || log_pace < kSure * found.found.pace_deviation) return;
+  const double D = base.diffusion_cm2_s * found.found.pace;
+  all.push_back(formatted(
+      "The measurements ask for a D of %.2g cm^2/s, %.3g times %s than the "
+      "model's, %.2g: are time_unit and the model's --diffusion right?",
+      D, std::exp(log_pace), found.found.pace < 1 ? "smaller" : "larger", base.diffusion_cm2_s));
+}
+
+void add_mesh(const Explanation& found, std::vector<std::string>& all) {
+  if (found.h_over_epsilon > kCoarse)
+    all.push_back(
+        formatted("The mesh is coarse for these phase boundaries, h/epsilon = %.2g; with "
+                  "more --cells the verdict would be surer.",
+                  found.h_over_epsilon));
+}
+
 void add_rerun(const Explanation& found, std::vector<std::string>& all) {
   if (!found.rerun) return;
   if (!found.rerun->failure.empty())
@@ -75,6 +95,8 @@ std::vector<std::string> remarks(const Explanation& found, const Units& base) {
     all.push_back(
         "dataset.toml does not say how blurred the images are (blur, 0 if they are not): "
         "boundaries that a microscope widens are taken for physics.");
+  add_pace(found, base, all);
+  add_mesh(found, all);
   for (const FrameChange& change : found.changes) all.push_back(text_of(change));
   add_failures(found, all);
   if (!found.found.settled)

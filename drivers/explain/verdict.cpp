@@ -91,6 +91,18 @@ Json rerun_json(const Explanation& found) {
           {"floor", gap_json(rerun.floor)}};
 }
 
+Json data_json(const ExplainSetup& setup) {
+  const double radius = Configuration(GivenValues(setup.model), {}).units().length();
+  const ExplainRequest& request = setup.request;
+  Json snapshots = Json::array();
+  for (const FieldSeries& vesicle : setup.series) snapshots.push_back(vesicle.snapshots.size());
+  return {{"name", setup.name},
+          {"kind", setup.synthetic ? "synthetic" : "measured"},
+          {"radius_um", radius},
+          {"blur_um", request.blur_stated ? Json(request.filter.blur * radius) : Json()},
+          {"snapshots", snapshots}};
+}
+
 }  // namespace
 
 std::vector<std::string> not_looked_for(const Explanation& found) {
@@ -111,8 +123,10 @@ Json parameters_json(const std::vector<FoundParameter>& found) {
   return parameters;
 }
 
-Json verdict_json(const Explanation& found, const Units& base) {
+Json verdict_json(const Explanation& found, const ExplainSetup& setup) {
   const std::string name = found.found.hypothesis.name();
+  const Configuration model(GivenValues(setup.model), {});
+  const Units base = model.units();
   return {{"verdict", word_for(found.finding)},
           {"effect", is_named(found) ? Json(name) : Json()},
           {"class", class_of(found)},
@@ -136,6 +150,12 @@ Json verdict_json(const Explanation& found, const Units& base) {
             {"p", found.rounds.front().screening.p},
             {"rounds", rounds_json(found)}}},
           {"noise", found.noise},
+          {"data", data_json(setup)},
+          {"model",
+           {{"epsilon_um", model.number("epsilon")},
+            {"diffusion_cm2_s", base.diffusion_cm2_s},
+            {"cells", setup.request.cells},
+            {"h_over_epsilon", found.h_over_epsilon}}},
           {"remarks", remarks(found, base)}};
 }
 
@@ -144,8 +164,8 @@ namespace {
 // "rafts that repel each other over a distance; ..."
 std::string in_words(const Hypothesis& hypothesis) {
   std::string words;
-  for (const auto& part : hypothesis.parts)
-    words += (words.empty() ? "" : "; ") + effects().find(part.candidate.effect).summary;
+  for (const EffectTerm& term : hypothesis.terms())
+    words += (words.empty() ? "" : "; ") + physics_of(term);
   return words;
 }
 

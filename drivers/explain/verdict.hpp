@@ -1,6 +1,7 @@
 // What a search has found, for programs and in words.
 #pragma once
 
+#include "drivers/explain/explain_run.hpp"
 #include "drivers/explain/found_parameters.hpp"
 #include "drivers/output/json_file.hpp"
 
@@ -12,8 +13,8 @@ std::vector<std::string> not_looked_for(const Explanation& found);
 // {effect.parameter: {value, sigma, unit}}, D without an effect.
 Json parameters_json(const std::vector<FoundParameter>& found);
 
-// verdict.json (docs/formats.md). `base`: units of the model that was given.
-Json verdict_json(const Explanation& found, const Units& base);
+// verdict.json (docs/formats.md).
+Json verdict_json(const Explanation& found, const ExplainSetup& setup);
 
 // For people.
 std::string verdict_sentence(const Explanation& found);

@@ -120,7 +120,7 @@ FieldDataset read_field_dataset(const fs::path& folder) {
   data.origin = toml.text_or("origin", "");
   data.time_zero = toml.text_or("time_zero", "");
   data.synthetic = toml.has("kind") && is_synthetic(toml);
-  (void)composition_of(toml);
+  data.composition = composition_of(toml);
   (void)celsius_of(toml);
   const double length = length_factor(toml, "length_unit"), second = time_factor(toml, "time_unit"),
                offset = time_offset(toml);
@@ -134,7 +134,11 @@ FieldDataset read_field_dataset(const fs::path& folder) {
     const double time = checked_time((times[k] + offset) * second, toml.where("times"));
     if (!snapshots.empty() && !(time > snapshots.back().time))
       throw InputError(toml.where("times") + ": times of a vesicle have to ascend");
-    const CsvTable table = CsvTable::read(folder / snapshot_file(k + 1));
+    const fs::path file = folder / snapshot_file(k + 1);
+    if (!fs::exists(file))
+      throw InputError(toml.where("times") + ": " + std::to_string(times.size()) +
+                       " times, but there is no " + file.filename().string());
+    const CsvTable table = CsvTable::read(file);
     if (k == 0) with_sigma = table.has("sigma");
     if (table.has("sigma") != with_sigma)
       throw InputError(table.path().string() +

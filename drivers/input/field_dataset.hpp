@@ -11,9 +11,11 @@ namespace traceraft {
 
 // Of the radius: images that are blurred more show nothing.
 inline constexpr double kWidestBlur = 0.2;
+// In distances of the wells: values that are further from both are none of a membrane.
+inline constexpr double kFarFromWells = 5;
 
 struct FieldDataset {
-  std::string name, origin, time_zero;
+  std::string name, origin, time_zero, composition;
   bool synthetic = false;
   double radius_um = 0;
   std::optional<double> blur_um;      // standard deviation of the point spread function

@@ -14,13 +14,13 @@ std::string case_of(const std::string& composition) {
   return "";
 }
 
-void refuse_without_model(const MeasuredVesicles& data, const std::string& model,
+void refuse_without_model(const std::string& composition, const std::string& model,
                           const GivenValues& flags) {
   if (!model.empty() || flags.count("case") > 0) return;
-  const std::string own = case_of(data.composition);
+  const std::string own = case_of(composition);
   throw InputError(
       "--case or --model: say which model to hold the measurements against" +
-      (own.empty() ? std::string() : "; theirs, " + data.composition + ", is --case " + own));
+      (own.empty() ? std::string() : "; theirs, " + composition + ", is --case " + own));
 }
 
 }  // namespace traceraft

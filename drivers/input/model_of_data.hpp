@@ -4,7 +4,6 @@
 #include <string>
 
 #include "drivers/config/configuration.hpp"
-#include "verification/vesicles/measurements.hpp"
 
 namespace traceraft {
 
@@ -12,8 +11,9 @@ namespace traceraft {
 std::string case_of(const std::string& composition);
 
 // Measurements are of one membrane, so that no case may be taken unasked. Throws InputError if
-// neither a file of `--model` nor a case among the flags says which model is meant.
-void refuse_without_model(const MeasuredVesicles& data, const std::string& model,
+// neither a file of `--model` nor a case among the flags says which model is meant. `composition`:
+// of the measurements, "" if it is not known.
+void refuse_without_model(const std::string& composition, const std::string& model,
                           const GivenValues& flags);
 
 }  // namespace traceraft

@@ -1,5 +1,7 @@
 #include "drivers/run/run_folder.hpp"
 
+#include <algorithm>
+
 #include "backends/posix/durable_file.hpp"
 #include "drivers/config/config_file.hpp"
 #include "kernel/core/error.hpp"
@@ -39,12 +41,20 @@ void refuse_files_of_a_run(const fs::path& path) {
                        (holds_runs(path) ? std::string(", of a set of runs")
                                          : "; go on with: traceraft resume " + path.string()) +
                        "; choose another folder");
+  for (const char* others : {"dataset.toml", "measurements.csv", "truth.json", "search.json",
+                             "series.json", "verdict.json", "calibration-model.toml",
+                             "comparison.json", "campaign.md", "plan.json", "runs"})
+    if (fs::exists(path / others))
+      throw InputError("--out: " + path.string() + " holds " + others +
+                       ", of another command; choose another folder");
 }
 
-void refuse_foreign_folder(const fs::path& path, const std::string& own) {
+void refuse_foreign_folder(const fs::path& path, const std::vector<std::string>& own) {
   if (!fs::exists(path)) return;
   if (!fs::is_directory(path)) throw InputError("--out: " + path.string() + " is no folder");
-  if (fs::exists(path / own)) return;
+  if (std::any_of(own.begin(), own.end(),
+                  [&](const std::string& name) { return fs::exists(path / name); }))
+    return;
   for (const auto& entry : fs::directory_iterator(path))
     if (entry.path().filename() != kLockFile)
       throw InputError("--out: " + path.string() + " holds " + entry.path().filename().string() +

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "backends/posix/folder_lock.hpp"
 #include "drivers/config/configuration.hpp"
@@ -26,13 +27,13 @@ struct RunFolder {
 // runs/<name>-<first free number>.
 std::string first_free_folder(const std::string& name);
 
-// Throws InputError if a folder holds what a run writes.
+// Throws InputError if a folder holds what a run writes, or what other commands write or read.
 void refuse_files_of_a_run(const std::filesystem::path& path);
 
-// Throws InputError if a folder that is to be written to holds anything but does not hold `own`,
-// the file by which the command knows its folders: what is there may be somebody's. Locks do not
+// Throws InputError if a folder that is to be written to holds anything but none of `own`, the
+// files by which the command knows its folders: what is there may be somebody's. Locks do not
 // count.
-void refuse_foreign_folder(const std::filesystem::path& path, const std::string& own);
+void refuse_foreign_folder(const std::filesystem::path& path, const std::vector<std::string>& own);
 
 // On every rank the folder that the first one has made or opened, or what it has thrown.
 RunFolder shared_folder(const Communicator& ranks, const std::function<RunFolder()>& open);

@@ -60,6 +60,7 @@ std::string summary_json(const Configuration& configuration, const RunSetup& run
   if (!result.why.empty()) json["why"] = result.why;
   json["version"] = kVersion;
   json["case"] = configuration.text("case");
+  json["effects"] = configuration.text("effect");
   json["seed"] = configuration.integer("seed");
   json["integrator"] = configuration.text("integrator");
   json["linear_solver"] = configuration.text("linear-solver");
@@ -138,6 +139,7 @@ void print_setup(const Configuration& configuration, const RunSetup& run) {
   line("phase boundary", resolution_text(run));
   line("mobility", formatted("%s, D = %g cm^2/s", configuration.text("mobility").c_str(),
                              units.diffusion_cm2_s));
+  if (!configuration.text("effect").empty()) line("effects", configuration.text("effect"));
   line("units", formatted("length R = %g um, time R^2/D = %g s; the run ends at %g s = %g R^2/D",
                           units.radius_um, units.seconds_per_unit(),
                           run.t_end * units.seconds_per_unit(), run.t_end));

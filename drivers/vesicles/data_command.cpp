@@ -55,7 +55,7 @@ int compare(const DataRequest& request) {
   if (out.empty())
     out = EnsembleFolder(request.ensemble).started() ? request.ensemble
                                                      : first_free_folder("comparison");
-  if (!EnsembleFolder(out).started()) refuse_foreign_folder(out, "comparison.json");
+  if (!EnsembleFolder(out).started()) refuse_foreign_folder(out, {"comparison.json"});
   const std::string command = "traceraft data compare " + in_shell(request.folder) +
                               " --ensemble " + in_shell(request.ensemble) + " --window " +
                               request.window +

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "drivers/output/text_table.hpp"
+#include "kernel/core/text.hpp"
 #include "verification/explain/disagreement.hpp"
 #include "verification/vesicles/history.hpp"
 
@@ -42,12 +43,37 @@ std::vector<Cell> row_of(const FieldSeries& vesicle, const FieldSnapshot& snapsh
           usual_deviation(snapshot.deviation)};
 }
 
-bool has_far_points(const FieldDataset& data) {
+// What `explain` would refuse, with a sphere and the usual wells: of each kind the first.
+std::vector<std::string> notes_on(const FieldDataset& data) {
+  std::string off_sphere, off_scale;
+  std::size_t number = 0;
   for (const FieldSeries& vesicle : data.vesicles)
-    for (const FieldSnapshot& snapshot : vesicle.snapshots)
-      for (const Point& x : snapshot.points)
-        if (x.norm() < 0.5 || x.norm() > 2) return true;
-  return false;
+    for (const FieldSnapshot& snapshot : vesicle.snapshots) {
+      const std::string file = snapshot_file(++number);
+      const auto distance = [](const Point& x) { return std::fabs(x.norm() - 1); };
+      const auto far = std::max_element(
+          snapshot.points.begin(), snapshot.points.end(),
+          [&](const Point& a, const Point& b) { return distance(a) < distance(b); });
+      if (off_sphere.empty() && distance(*far) > kOffSurface)
+        off_sphere = file + formatted(
+                                ": a point is %.2g R off the sphere of that radius, and "
+                                "explain refuses more than %g R from the model's surface: "
+                                "are radius and length_unit right, and the centre at 0?",
+                                distance(*far), kOffSurface);
+      const double least = snapshot.values.minCoeff(), most = snapshot.values.maxCoeff();
+      if (off_scale.empty() && (least < -kFarFromWells || most > 1 + kFarFromWells))
+        off_scale = file + formatted(
+                               ": c is from %g to %g; explain takes it to be about 0 outside "
+                               "rafts and 1 inside (but for another --well): leave out what "
+                               "is missing, and put c on that scale",
+                               least, most);
+    }
+  std::vector<std::string> notes;
+  for (std::string* note : {&off_sphere, &off_scale})
+    if (!note->empty()) notes.push_back(std::move(*note));
+  if (!data.blur_um)
+    notes.push_back("how blurred the images are is not said (blur, 0 if they are not)");
+  return notes;
 }
 
 }  // namespace
@@ -57,10 +83,7 @@ void print_fields(const FieldDataset& data) {
               data.synthetic ? " (SYNTHETIC)" : "", data.vesicles.size(),
               data.vesicles.size() == 1 ? "" : "s", data.radius_um, data.origin.empty() ? "" : "; ",
               data.origin.c_str());
-  if (data.blur_um)
-    std::printf("images blurred by %g um\n", *data.blur_um);
-  else
-    std::printf("NOTE: how blurred the images are is not said (blur, 0 if they are not)\n");
+  if (data.blur_um) std::printf("images blurred by %g um\n", *data.blur_um);
   Table table{"fields",
               {"vesicle", "time (s)", "points", "patches of 12", "|x|/R from", "to", "mean of c",
                "deviation of c", "least", "largest", "sigma"},
@@ -69,10 +92,7 @@ void print_fields(const FieldDataset& data) {
     for (const FieldSnapshot& snapshot : vesicle.snapshots)
       table.rows.push_back(row_of(vesicle, snapshot));
   print_rows(table_rows(table));
-  if (has_far_points(data))
-    std::printf(
-        "NOTE: some points are far from a sphere of that radius: is the unit of length "
-        "right, and the centre at 0?\n");
+  for (const std::string& note : notes_on(data)) std::printf("NOTE: %s\n", note.c_str());
 }
 
 }  // namespace traceraft

@@ -209,12 +209,19 @@ TEST_F(ExplainTest, RefusesWhatItCannotUse) {
   };
   refusal("explain");
   EXPECT_NE(refusal("explain" + data).find("dataset.toml"), std::string::npos);
+  fs::create_directories(folder.path / "mine");
+  write_durably(folder.path / "mine" / "notes.txt", "mine");
 
   BlindRequest asked = request();
   asked.snapshots = 3;
   asked.points = 150;
   std::vector<FieldSeries> vesicles = draw_blind_case(asked).vesicles;
   write(vesicles);
+  EXPECT_NE(refusal("explain" + data).find("--case or --model"), std::string::npos);
+  EXPECT_NE(refusal("explain" + data + " --epsilon 0.75 --cells 13 --out " +
+                    (folder.path / "mine").string())
+                .find("holds notes.txt"),
+            std::string::npos);
   // What was found would take the place of the model that it was given.
   fs::create_directories(folder.path / "out");
   write_durably(folder.path / "out" / "model.toml", "epsilon = 0.75\ncells = 13\n");
@@ -223,20 +230,34 @@ TEST_F(ExplainTest, RefusesWhatItCannotUse) {
       refusal("explain" + data + " --model " + own + " --out " + (folder.path / "out").string())
           .find("holds the model"),
       std::string::npos);
+  fs::remove(own);
   // On a sphere there is no other one than curvature.
   std::string text = refusal(command(13) +
                              " --without allen-cahn,asymmetry,bulk-mobility,cooling,"
                              "exchange,gravity,line-tension,mobility-contrast,mobility-exponent,"
                              "ohta-kawasaki,uptake");
   EXPECT_NE(text.find("--without: no effect is left to look for"), std::string::npos) << text;
+  const auto checked = [&] {
+    const auto end = testing::traceraft("data check " + (folder.path / "data").string());
+    EXPECT_EQ(end.code, 0) << end.output;
+    return end.output;
+  };
+  EXPECT_EQ(checked().find("NOTE"), std::string::npos);
   vesicles[0].snapshots[1].points[7] *= 1.3;
   write(vesicles);
+  text = checked();
+  EXPECT_NE(text.find("NOTE: snapshot_002.csv: a point is 0.3 R off"), std::string::npos) << text;
   text = refusal(command(13));
   EXPECT_NE(text.find("vesicle 1, snapshot 2: point 8"), std::string::npos) << text;
   vesicles[0].snapshots[1].values[7] = -9999;
   write(vesicles);
   text = refusal(command(13));
   EXPECT_NE(text.find("snapshot_002.csv, value 8, column c: -9999"), std::string::npos) << text;
+  text = checked();
+  EXPECT_NE(text.find("NOTE: snapshot_002.csv: c is from -9999"), std::string::npos) << text;
+  fs::remove(folder.path / "data" / "snapshot_003.csv");
+  text = refusal(command(13));
+  EXPECT_NE(text.find("3 times, but there is no snapshot_003.csv"), std::string::npos) << text;
 }
 
 // Coarse, and with a raft that is one from the start, which no measured vesicle is.

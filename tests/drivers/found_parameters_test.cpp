@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "drivers/explain/remarks.hpp"
+#include "drivers/explain/verdict.hpp"
 #include "verification/explain/candidates.hpp"
 
 namespace traceraft {
@@ -35,6 +37,35 @@ TEST(FoundParameters, WhatIsHeldDoesNotBlurTheRate) {
   EXPECT_NEAR(found[0].sigma.value(), 1e-3 / 0.025, 1e-4);
   EXPECT_EQ(found[1].value, 1);
   EXPECT_GT(found[1].sigma.value(), 1);  // of a target nothing is known
+}
+
+// Minutes that are said to be seconds look like a D that is 60 times smaller.
+TEST(Remarks, AskWhetherTheUnitOfTimeIsRight) {
+  Explanation found;
+  found.rounds.resize(1);
+  found.false_alarms = 0.02;
+  found.found.pace_deviation = 0.1;
+  for (const double pace : {1.0 / 9, 1.0, 9.0}) {
+    found.found.pace = pace;
+    EXPECT_TRUE(remarks(found, kCell).empty()) << pace;
+  }
+  found.found.pace = 1.0 / 60;
+  ASSERT_EQ(remarks(found, kCell).size(), 1u);
+  const std::string text = remarks(found, kCell).front();
+  EXPECT_NE(text.find("60 times smaller"), std::string::npos) << text;
+  EXPECT_NE(text.find("time_unit"), std::string::npos) << text;
+  found.found.pace_deviation = 2;  // nothing is known of D
+  EXPECT_TRUE(remarks(found, kCell).empty());
+}
+
+// A sign is not a matter of words alone.
+TEST(Verdict, SaysWhatAnEffectOfThisSignDoes) {
+  Explanation found;
+  found.finding = Finding::named;
+  found.found.hypothesis.parts = {{find_candidate("gravity").value(), {0.01}}};
+  EXPECT_NE(verdict_sentence(found).find("rafts that sink"), std::string::npos);
+  found.found.hypothesis.parts[0].coefficients[0] = -0.01;
+  EXPECT_NE(verdict_sentence(found).find("rafts that rise"), std::string::npos);
 }
 
 }  // namespace

@@ -185,6 +185,14 @@ TEST_F(ProgramTest, LeavesForeignFilesAlone) {
   write_durably(folder.path / "mine/view.png", "mine");
   EXPECT_EQ(traceraft("run --quiet " + quick + "--out " + out("mine")).code, 2);
   EXPECT_EQ(content(folder.path / "mine/view.png"), "mine");
+  // Folders of other commands are no place for a run.
+  fs::create_directories(folder.path / "measured");
+  write_durably(folder.path / "measured/dataset.toml", "mine");
+  const Outcome beside = traceraft("run --quiet " + quick + "--out " + out("measured"));
+  EXPECT_EQ(beside.code, 2);
+  EXPECT_NE(beside.output.find("holds dataset.toml, of another command"), std::string::npos)
+      << beside.output;
+  EXPECT_FALSE(fs::exists(folder.path / "measured/config.toml"));
   ASSERT_EQ(traceraft("run --quiet " + quick + "--out " + out("a")).code, 0);
   EXPECT_EQ(content(folder.path / "a/notes.txt"), "mine");
   EXPECT_TRUE(fs::exists(folder.path / "a/checkpoints-of-mine"));

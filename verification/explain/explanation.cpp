@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "kernel/core/text.hpp"
 #include "verification/explain/first_pace.hpp"
 #include "verification/explain/neighbours.hpp"
 #include "verification/explain/noise_levels.hpp"
@@ -33,6 +34,8 @@ class Search {
 
   Explanation run(const std::optional<SearchState>& saved) {
     bool more = true;
+    tell(formatted("%d cells, h/epsilon = %.2f%s", request_.cells, h_over_epsilon(),
+                   h_over_epsilon() > kCoarse ? ": COARSE, more --cells would say more" : ""));
     if (saved) {
       more = saved->more;
       tell("what was found before");
@@ -50,13 +53,17 @@ class Search {
   }
 
  private:
+  double h_over_epsilon() const { return data_.front().space->h() / request_.base.epsilon; }
+
   void tell(const std::string& step) const {
     if (request_.progress) request_.progress(step);
   }
 
   std::vector<Refit> refit_all(const std::vector<FilterModel>& trials) const {
     return refit_each(data_, trials, request_.filter, maps_, [&](const Refit& fit) {
-      const double gained = result_.found.deviance - fit.deviance;
+      const bool more = fit.hypothesis.parts.size() > result_.found.hypothesis.parts.size();
+      const Refit& best = more ? no_worse(fit, result_.found) : fit;
+      const double gained = result_.found.deviance - best.deviance;
       tell("  " + fit.hypothesis.name() +
            (fit.failure.empty() ? " gains " + std::to_string(std::lround(gained)) : " fails"));
     });
@@ -214,9 +221,9 @@ class Search {
       trials.push_back(model_);
       trials.back().hypothesis.parts.push_back(std::move(part));
     }
-    for (Refit& fit : refit_all(trials))
+    for (const Refit& fit : refit_all(trials))
       if (fit.failure.empty())
-        round.refits.push_back(std::move(fit));
+        round.refits.push_back(no_worse(fit, round.without));
       else
         round.failures.push_back({last_effect(fit.hypothesis), fit.failure});
     std::sort(round.refits.begin(), round.refits.end(),
@@ -289,6 +296,7 @@ class Search {
     result_.replicates = request_.filter.replicates;
     result_.false_alarms = request_.false_alarms;
     result_.blur_stated = request_.blur_stated;
+    result_.h_over_epsilon = h_over_epsilon();
     const auto& refits = result_.rounds.front().refits;
     for (const FilterProblem& data : data_) result_.noises.push_back(data.noise);
     result_.base_gap = result_.base.gap;
