@@ -140,8 +140,10 @@ void report(const CampaignFolder& folder, std::vector<CaseScore> scores,
   write_campaign(folder, scores, failures);
   if (quiet) return;
   print_rows(table_rows(summary_of(scores, failures)));
-  std::printf("\n");
-  print_rows(table_rows(confusion_of(scores)));
+  if (const Table confusion = confusion_of(scores); !confusion.rows.empty()) {
+    std::printf("\n");
+    print_rows(table_rows(confusion));
+  }
   std::printf("\nwritten: %s\n", (folder.path() / "campaign.md").c_str());
 }
 
@@ -205,7 +207,7 @@ Action define_campaign(CLI::App& app) {
   app.add_option("--replicates", request->plan.replicates, "of noise alone, in each search")
       ->check(CLI::Range(49, 9999))
       ->capture_default_str();
-  app.add_option("--effects", request->plan.effects, "how many a search may name")
+  app.add_option("--most-effects", request->plan.effects, "how many a search may name")
       ->check(CLI::Range(1, 5))
       ->capture_default_str();
   add_options(app, request->plan.model, [](const OptionSpec& spec) {

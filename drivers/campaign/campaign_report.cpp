@@ -136,8 +136,8 @@ void write_campaign(const CampaignFolder& campaign, const Scores& scores,
   write_durably(campaign.cases(), csv_text(cases_table(scores)));
   write_durably(folder / "summary.csv", csv_text(summary));
   write_durably(folder / "confusion.csv", csv_text(confusion));
-  std::string text =
-      markdown_table(table_rows(summary)) + "\n" + markdown_table(table_rows(confusion));
+  std::string text = markdown_table(table_rows(summary));
+  if (!confusion.rows.empty()) text += "\n" + markdown_table(table_rows(confusion));
   for (const auto& [group, own] : by_group(scores))
     if (const Table alone = confusion_of(own); !alone.rows.empty())
       text += "\n" + group + ": " + campaign_groups().find(group).summary + "\n\n" +

@@ -70,6 +70,8 @@ int hide_effects(const HideCommand& command) {
   refuse_hiding(Configuration(model, {}), request);
   fs::create_directories(out);
   const FolderLock lock(out);
+  std::printf("computing the truth on %d cells\n", request.cells);
+  std::fflush(stdout);
   hide(out, model, request);
   std::printf("find it with: traceraft explain --data %s --model %s\n", (out / "data").c_str(),
               (out / "model.toml").c_str());

@@ -177,7 +177,7 @@ Action define_explain(CLI::App& app) {
       ->check(CLI::Range(1, 1024));
   app.add_option("--model", command->job.model, "TOML file with the flags' names as keys");
   app.add_option("--out", command->out, "folder for the verdict; default: runs/explain-N");
-  app.add_option("--effects", command->job.effects, "most effects to look for, one after the other")
+  app.add_option("--most-effects", command->job.effects, "to look for, one after the other")
       ->check(CLI::Range(1, 5))
       ->capture_default_str();
   app.add_option("--replicates", command->job.replicates,

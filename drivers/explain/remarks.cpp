@@ -104,7 +104,7 @@ std::vector<std::string> remarks(const Explanation& found, const Units& base) {
   const Round& last = found.rounds.back();
   if (is_named(found) && found.stopped.empty() && last.screening.p <= found.false_alarms)
     all.push_back(last.refits.empty() && last.failures.empty()
-                      ? "Something is still lacking; more --effects would look for it."
+                      ? "Something is still lacking; more --most-effects would look for it."
                       : "Something may still be lacking, too little of it to say what.");
   add_assumptions(found, base, all);
   add_rerun(found, all);

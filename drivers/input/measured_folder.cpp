@@ -1,5 +1,6 @@
 #include "drivers/input/measured_folder.hpp"
 
+#include "kernel/core/error.hpp"
 #include "kernel/core/text.hpp"
 
 namespace traceraft {
@@ -13,6 +14,8 @@ TomlTable read_description(const fs::path& folder, bool fields, bool series) {
                                 "time_unit",   "radius"};
   if (fields) keys.insert(keys.end(), {"blur", "times", "vesicles"});
   if (series) keys.insert(keys.end(), {"sigma", "table"});
+  if (fs::exists(folder) && !fs::is_directory(folder))
+    throw InputError(folder.string() + " is a file; the folder that holds dataset.toml is needed");
   return TomlTable::read(folder / "dataset.toml", keys);
 }
 

@@ -43,17 +43,21 @@ std::string finished_page(const fs::path& folder) {
 }
 
 struct Curve {
-  const char *column, *title;
+  std::string column, title, unit;  // unit: "" for a number
   bool log_y;
 };
-constexpr Curve kCurves[] = {{"perimeter", "perimeter", true},
-                             {"rafts", "number of rafts", true},
-                             {"raft_fraction", "raft area fraction", false},
-                             {"energy", "energy", false},
-                             {"dt", "step size", true}};
+
+std::vector<Curve> curves(const std::string& length_unit, const std::string& time_unit) {
+  return {{"perimeter", "perimeter", length_unit, true},
+          {"rafts", "number of rafts", "", true},
+          {"raft_fraction", "raft area fraction", "", false},
+          {"energy", "energy", length_unit + "^2, in units of the energy density", false},
+          {"dt", "step size", time_unit, true}};
+}
 
 Chart series_chart(const CsvTable& series, const Curve& curve, const std::string& time_unit) {
-  Chart chart{curve.title, "time (" + time_unit + ")", curve.title, true, curve.log_y, {}};
+  const std::string label = curve.title + (curve.unit.empty() ? "" : " (" + curve.unit + ")");
+  Chart chart{curve.title, "time (" + time_unit + ")", label, true, curve.log_y, {}};
   chart.series = {{curve.column, {}, Mark::line}};
   const std::vector<double> t = series.numbers("t"), y = series.numbers(curve.column);
   for (std::size_t i = 0; i < t.size(); ++i)
@@ -86,13 +90,14 @@ void add_summary(Page& page, const fs::path& run) {
 
 void fill_run(Page& page, const fs::path& folder, const PageRequest& request, Missing& missing) {
   const Configuration configuration(read_config_file(folder / "config.toml"), {});
-  const std::string unit = configuration.units().scaled ? "R^2/D" : "s";
+  const bool scaled = configuration.units().scaled;
+  const std::string unit = scaled ? "R^2/D" : "s";
   page.paragraph("A run of the case " + configuration.text("case") + ", seed " +
                  configuration.text("seed") + ".");
   add_surface(page, folder, request, unit, missing);
   page.heading("In time");
   const CsvTable series = CsvTable::read(folder / "series.csv");
-  for (const Curve& curve : kCurves)
+  for (const Curve& curve : curves(scaled ? "R" : "um", unit))
     add_chart(page, series_chart(series, curve, unit), request.charts / curve.column, missing);
   add_summary(page, folder);
   add_settings(page, configuration);

@@ -5,6 +5,7 @@
 
 #include "backends/posix/process.hpp"
 #include "backends/suitesparse/blas.hpp"
+#include "drivers/config/config_file.hpp"
 #include "drivers/run/progress.hpp"
 #include "drivers/version.hpp"
 #include "kernel/core/text.hpp"
@@ -196,6 +197,7 @@ void print_summary(const Configuration& configuration, const RunSetup& run, cons
     line("open next",
          (folder.path / "view.png").string() + " (front and back at the latest output time)");
     line("or", "paraview " + (folder.path / "fields.pvd").string());
+    line("or", "traceraft report " + in_shell(folder.path.string()) + " (a page with charts)");
   }
 }
 

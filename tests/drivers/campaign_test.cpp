@@ -81,7 +81,7 @@ TEST(CampaignTest, CountsWhatWasFoundAndGoesOn) {
   const fs::path out = folder.path / "campaign";
   const std::string command =
       "campaign --groups naming,null --cases 1 --epsilon 1 --cells 12 "
-      "--points 500 --replicates 49 --effects 1 --out " +
+      "--points 500 --replicates 49 --most-effects 1 --out " +
       out.string();
   const auto begin = testing::traceraft(command);
   ASSERT_EQ(begin.code, 0) << begin.output;

@@ -51,7 +51,7 @@ class ExplainTest : public ::testing::Test {
   }
   std::string command(int cells = 16, int replicates = 49) const {
     return "explain --data " + (folder.path / "data").string() + " --epsilon 0.75 --cells " +
-           std::to_string(cells) + " --effects 1 --threads " + std::to_string(threads) +
+           std::to_string(cells) + " --most-effects 1 --threads " + std::to_string(threads) +
            " --replicates " + std::to_string(replicates) + " --out " +
            (folder.path / "out").string();
   }

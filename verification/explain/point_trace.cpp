@@ -7,6 +7,7 @@
 
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
+#include "kernel/core/text.hpp"
 
 namespace traceraft {
 namespace {
@@ -132,7 +133,7 @@ class TriangleFinder {
 };
 
 std::string text_of(const Point& x) {
-  return "(" + format_number(x[0]) + ", " + format_number(x[1]) + ", " + format_number(x[2]) + ")";
+  return formatted("(%.4g, %.4g, %.4g)", x[0], x[1], x[2]);
 }
 
 }  // namespace
