@@ -124,10 +124,14 @@ std::vector<Exponent> exponents(const MeasuredVesicles& data, const SeriesEnsemb
 }
 
 std::vector<Row> exponent_rows(const std::vector<Exponent>& laws) {
-  std::vector<Row> rows{{"perimeter over radius as c (t - t0)^b", "b", "95 % interval"}};
-  for (const Exponent& e : laws)
+  constexpr double kWide = 1;  // of an exponent
+  std::vector<Row> rows{{"perimeter over radius as c (t - t0)^b", "b", "95 % interval", ""}};
+  for (const Exponent& e : laws) {
+    const bool determined = !e.law.t0_open && e.law.b.high - e.law.b.low < kWide;
     rows.push_back({e.model, formatted("%.3f", e.law.law.b),
-                    formatted("%.3f to %.3f", e.law.b.low, e.law.b.high)});
+                    formatted("%.3f to %.3f", e.law.b.low, e.law.b.high),
+                    determined ? "" : "not determined: hardly a power law at these times"});
+  }
   return rows;
 }
 
