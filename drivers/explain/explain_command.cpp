@@ -72,7 +72,10 @@ void explain_field_data(const ExplainCommand& command, ExplainSetup& setup, cons
   if (command.quiet) return;
   print_explanation(found, setup);
   const std::string run = command_for_found(out, found, setup);
-  if (!run.empty()) std::printf("\nrun it with: %s\n", run.c_str());
+  if (!run.empty())
+    std::printf("\nrun it with: %s\n", run.c_str());
+  else if (fs::exists(out / "model.toml"))
+    std::printf("\n%s is that of an earlier explanation\n", (out / "model.toml").c_str());
   std::printf("\nwritten: %s\n", (out / "explain.html").c_str());
   if (!missing.empty()) std::printf("the page lacks: %s\n", missing.c_str());
 }
