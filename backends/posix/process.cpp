@@ -103,7 +103,7 @@ void catch_stop_signals() {
 }
 
 void end_on_stop_signals(int exit_code, const std::string& line) {
-  end_at_once = new End{exit_code, line + "\n"};
+  end_at_once = new End{exit_code, line.empty() ? "" : line + "\n"};
   watch_stop_signals();
 }
 

@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "backends/posix/folder_lock.hpp"
+#include "backends/posix/process.hpp"
 #include "backends/sodium/seal.hpp"
 #include "drivers/campaign/hidden_case.hpp"
 #include "drivers/commands.hpp"
@@ -70,6 +71,7 @@ int hide_effects(const HideCommand& command) {
   refuse_hiding(Configuration(model, {}), request);
   fs::create_directories(out);
   const FolderLock lock(out);
+  end_on_stop_signals(kInterrupted, "nothing was hidden; give the same command again");
   std::printf("computing the truth on %d cells\n", request.cells);
   std::fflush(stdout);
   hide(out, model, request);

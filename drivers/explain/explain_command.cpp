@@ -49,7 +49,7 @@ void explain_field_data(const ExplainCommand& command, ExplainSetup& setup, cons
   if (!command.quiet) {
     std::printf("%s\n", data_text(setup).c_str());
     std::printf("the model: %s\n", flags_text(Configuration(setup.model, {})).c_str());
-    if (!setup.note.empty()) std::printf("%s\n", setup.note.c_str());
+    for (const std::string& note : setup.notes) std::printf("%s\n", note.c_str());
   }
   const SearchFile file(out, setup);
   std::optional<SearchState> search = file.load();
@@ -98,13 +98,14 @@ SeriesSetup read_series_job(const ExplainCommand& command) {
 
 // False if it was stopped.
 bool explain_series_data(const ExplainCommand& command, const SeriesSetup& setup,
-                         const fs::path& out) {
+                         const fs::path& out, const std::string& go_on) {
   const auto& [data, given, model] = setup;
   const SeriesEnsemblesRequest request{looks(data),         command.runs,
                                        command.jobs,        command.job.processors(),
                                        command.job.without, command.quiet};
   const SeriesEnsembles ensembles = run_series_ensembles(out / "ensembles", model, request);
   if (ensembles.stopped) return false;
+  end_on_stop_signals(kInterrupted, go_on);
   SeriesRequest search{{model.units().seconds_per_unit(), kTimeRange}};
   search.replicates = command.job.replicates;
   const SeriesExplanation found = numerically(
@@ -153,11 +154,11 @@ int explain(ExplainCommand command) {
   fs::create_directories(out);
   const FolderLock lock(out);
   // The search is on disk after every round.
-  const std::string go_on = "to go on, give the same command with --out " + out.string();
-  end_on_stop_signals(kInterrupted, command.quiet ? "" : go_on);
+  const std::string go_on =
+      command.quiet ? "" : "to go on, give the same command with --out " + out.string();
+  end_on_stop_signals(kInterrupted, go_on);
   if (fields) explain_field_data(command, *fields, out);
-  catch_stop_signals();
-  if (series && !explain_series_data(command, *series, out)) {
+  if (series && !explain_series_data(command, *series, out, go_on)) {
     if (!command.quiet) std::printf("%s\n", go_on.c_str());
     return kInterrupted;
   }

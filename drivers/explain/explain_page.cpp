@@ -37,7 +37,7 @@ class ExplainPage {
     page_.paragraph(data_text(setup_));
     page_.paragraph(verdict_sentence(found_));
     page_.table(parameter_rows(found_, units_));
-    for (const std::string& remark : remarks(found_, units_)) page_.paragraph(remark);
+    for (const std::string& remark : remarks_on(found_, setup_)) page_.paragraph(remark);
     add_gaps();
     add_where();
     add_what();
@@ -51,8 +51,8 @@ class ExplainPage {
       others += (others.empty() ? "" : ", ") + name;
     page_.paragraph("Not looked for: " + others +
                     ". Turns are allowed for between snapshots, thermal noise makes no forecast, "
-                    "curvature sorts nothing where it is the same everywhere; others were left out "
-                    "on request.");
+                    "curvature sorts nothing where it is the same everywhere" +
+                    (setup_.request.without.empty() ? "." : "; others were left out on request."));
     page_.heading("Where this comes from");
     page_.paragraph("traceraft " + std::string(kVersion) + ". Noise " +
                     formatted("%.4f of c, ", found_.noise) + std::to_string(found_.replicates) +

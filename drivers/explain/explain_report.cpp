@@ -61,7 +61,7 @@ void print_explanation(const Explanation& found, const ExplainSetup& setup) {
   print_rows(parameter_rows(found, units));
   std::printf("\n");
   print_rows(gap_rows(found));
-  for (const std::string& remark : remarks(found, units)) std::printf("\n%s\n", remark.c_str());
+  for (const std::string& remark : remarks_on(found, setup)) std::printf("\n%s\n", remark.c_str());
   std::printf(
       "\nnoise of the measurements %.4f; patches that disagree significantly with the base model: "
       "%zu\n",

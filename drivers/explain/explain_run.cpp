@@ -23,13 +23,19 @@ GivenValues given_model(GivenValues given, const ExplainJob& job, double radius_
   return given;
 }
 
-// Of a model that says another radius than the data; "" if it does not.
-std::string note_on_radius(const GivenValues& model, double radius_um) {
-  if (model.count("radius") == 0) return "";
-  const double own = Configuration(GivenValues(model), {}).number("radius");
-  if (std::fabs(own - radius_um) <= 1e-6 * radius_um) return "";
-  return "the radius is that of dataset.toml, " + format_number(radius_um) +
-         " um, not that of the model, " + format_number(own);
+// Of a model that says another radius than the data, and of data that are not where they say.
+std::vector<std::string> notes_on(const GivenValues& model, const FieldDataset& data) {
+  std::vector<std::string> notes;
+  if (model.count("radius") > 0) {
+    const double own = Configuration(GivenValues(model), {}).number("radius");
+    if (std::fabs(own - data.radius_um) > 1e-6 * data.radius_um)
+      notes.push_back("The radius is that of dataset.toml, " + format_number(data.radius_um) +
+                      " um, not that of the model, " + format_number(own) + ".");
+  }
+  if (const std::string note = note_on_distance(data);
+      !note.empty() && Configuration(GivenValues(model), {}).text("surface") == "sphere")
+    notes.push_back(note);
+  return notes;
 }
 
 // Missing values that somebody has coded as numbers, and c on another scale.
@@ -44,7 +50,7 @@ void refuse_far_values(const std::vector<FieldSeries>& vesicles, const DoubleWel
         const double c = snapshot.values[i];
         if (c >= well.a - kFarFromWells * width && c <= well.b + kFarFromWells * width) continue;
         throw InputError(folder + "/" + snapshot_file(number) + ", value " + std::to_string(i + 1) +
-                         ", column c: " + format_number(c) +
+                         ", column c: " + formatted("%.6g", c) +
                          " is far from the phases of the model, " + format_number(well.a) +
                          " and " + format_number(well.b) +
                          "; leave out what is missing, and put c on their scale");
@@ -117,12 +123,12 @@ ExplainSetup read_explain_job(const ExplainJob& job) {
   // A width of the boundaries says that a model is meant; other values may be those of any.
   if (job.flags.count("epsilon") == 0) refuse_without_model(data.composition, job.model, job.flags);
   const GivenValues own = read_config_file(job.model, "--model");
-  ExplainSetup setup{given_model(own, job, data.radius_um),
-                     std::move(data.vesicles),
-                     {},
-                     note_on_radius(own, data.radius_um),
-                     data.name,
-                     data.synthetic};
+  ExplainSetup setup;
+  setup.model = given_model(own, job, data.radius_um);
+  setup.notes = notes_on(own, data);
+  setup.name = data.name;
+  setup.synthetic = data.synthetic;
+  setup.series = std::move(data.vesicles);
   const Configuration model(setup.model, {});
   refuse_scaled(model);
   refuse_effects(model);

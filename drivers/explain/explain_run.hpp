@@ -23,8 +23,8 @@ struct ExplainSetup {
   GivenValues model;  // with the radius of the vesicle
   std::vector<FieldSeries> series;
   ExplainRequest request;
-  std::string note = {};  // what of the model was not taken as it was given, "" if nothing
-  std::string name = {};  // of the data
+  std::vector<std::string> notes = {};  // what is odd about data and model, and what was made of it
+  std::string name = {};                // of the data
   bool synthetic = false;
 
   double last_s() const;  // the time of the last snapshot

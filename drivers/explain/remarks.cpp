@@ -40,9 +40,9 @@ void add_assumptions(const Explanation& found, const Units& base, std::vector<st
 
 // A mistake in the unit of time looks like another D.
 void add_pace(const Explanation& found, const Units& base, std::vector<std::string>& all) {
-  constexpr double kFar = 10, kSure = 3;
+  constexpr double kSure = 3;
   const double log_pace = std::fabs(std::log(found.found.pace));
-  if (log_pace < std::log(kFar) || log_pace < kSure * found.found.pace_deviation) return;
+  if (log_pace < std::log(kFarPace) || log_pace < kSure * found.found.pace_deviation) return;
   const double D = base.diffusion_cm2_s * found.found.pace;
   all.push_back(formatted(
       "The measurements ask for a D of %.2g cm^2/s, %.3g times %s than the "
@@ -108,6 +108,13 @@ std::vector<std::string> remarks(const Explanation& found, const Units& base) {
                       : "Something may still be lacking, too little of it to say what.");
   add_assumptions(found, base, all);
   add_rerun(found, all);
+  return all;
+}
+
+std::vector<std::string> remarks_on(const Explanation& found, const ExplainSetup& setup) {
+  std::vector<std::string> all = setup.notes;
+  for (std::string& remark : remarks(found, Configuration(GivenValues(setup.model), {}).units()))
+    all.push_back(std::move(remark));
   return all;
 }
 

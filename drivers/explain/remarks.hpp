@@ -4,11 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "verification/explain/explanation.hpp"
+#include "drivers/explain/explain_run.hpp"
 
 namespace traceraft {
 
-// One sentence each; none if there is nothing to say.
+// One sentence each; none if there is nothing to say. `base`: of the model that was given.
 std::vector<std::string> remarks(const Explanation& found, const Units& base);
+// The same, after what is odd about data and model (ExplainSetup::notes).
+std::vector<std::string> remarks_on(const Explanation& found, const ExplainSetup& setup);
 
 }  // namespace traceraft

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "backends/posix/process.hpp"
 #include "drivers/config/config_file.hpp"
 #include "drivers/ensemble/ensemble_point.hpp"
 #include "drivers/explain/explain_run.hpp"
@@ -126,6 +127,7 @@ SeriesEnsembles run_series_ensembles(const fs::path& folder, const Configuration
                                      const SeriesEnsemblesRequest& request) {
   fs::create_directories(folder);
   const std::vector<EffectTerm> terms = sizes(folder, model, request);
+  catch_stop_signals();
   const Units units = model.units();
   SeriesEnsembles result;
   const auto simulate = [&](const std::string& name, const std::string& effect) {

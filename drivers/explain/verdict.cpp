@@ -156,7 +156,7 @@ Json verdict_json(const Explanation& found, const ExplainSetup& setup) {
             {"diffusion_cm2_s", base.diffusion_cm2_s},
             {"cells", setup.request.cells},
             {"h_over_epsilon", found.h_over_epsilon}}},
-          {"remarks", remarks(found, base)}};
+          {"remarks", remarks_on(found, setup)}};
 }
 
 namespace {

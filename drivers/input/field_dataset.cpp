@@ -1,5 +1,6 @@
 #include "drivers/input/field_dataset.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -148,6 +149,21 @@ FieldDataset read_field_dataset(const fs::path& folder) {
   }
   refuse_incomplete(folder, toml, times.size(), data);
   return data;
+}
+
+std::string note_on_distance(const FieldDataset& data) {
+  constexpr double kFar = 0.02;
+  std::vector<double> distances;
+  for (const FieldSeries& vesicle : data.vesicles)
+    for (const FieldSnapshot& snapshot : vesicle.snapshots)
+      for (const Point& x : snapshot.points) distances.push_back(x.norm());
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  if (std::fabs(*middle - 1) <= kFar) return "";
+  return formatted(
+      "Half of the points are further than %.4g um from the centre, half are nearer, "
+      "and the radius is said to be %.4g um: is it?",
+      *middle * data.radius_um, data.radius_um);
 }
 
 void write_field_dataset(const fs::path& folder, const FieldDataset& data,

@@ -26,6 +26,10 @@ struct FieldDataset {
 // missing, unknown or impossible.
 FieldDataset read_field_dataset(const std::filesystem::path& folder);
 
+// If half of the points are further from the sphere of that radius, on the same side, than any
+// measurement is off by chance: a sentence, else "".
+std::string note_on_distance(const FieldDataset& data);
+
 // Writes such a folder, the tables first. Throws IoError.
 void write_field_dataset(const std::filesystem::path& folder, const FieldDataset& data,
                          const std::string& remark);

@@ -41,6 +41,10 @@ void refuse_files_of_a_run(const fs::path& path) {
                        (holds_runs(path) ? std::string(", of a set of runs")
                                          : "; go on with: traceraft resume " + path.string()) +
                        "; choose another folder");
+  refuse_folder_of_others(path);
+}
+
+void refuse_folder_of_others(const fs::path& path) {
   for (const char* others : {"dataset.toml", "measurements.csv", "truth.json", "search.json",
                              "series.json", "verdict.json", "calibration-model.toml",
                              "comparison.json", "campaign.md", "plan.json", "runs"})

@@ -27,7 +27,10 @@ struct RunFolder {
 // runs/<name>-<first free number>.
 std::string first_free_folder(const std::string& name);
 
-// Throws InputError if a folder holds what a run writes, or what other commands write or read.
+// Throws InputError if a folder holds what explain, ensembles and the like write, or measurements.
+void refuse_folder_of_others(const std::filesystem::path& path);
+
+// The same, and if it holds what a run writes.
 void refuse_files_of_a_run(const std::filesystem::path& path);
 
 // Throws InputError if a folder that is to be written to holds anything but none of `own`, the

@@ -143,6 +143,7 @@ int verify(const VerifyRequest& request) {
   BenchRequest bench{request.quick, request.integrator, request.linear_solver, jobs.threads};
   (void)Bench(bench);  // refuses unknown names before anything is written
   const fs::path folder = request.out.empty() ? first_free_folder("verify") : request.out;
+  refuse_folder_of_others(folder);
   fs::create_directories(folder);
   const FolderLock lock(folder);
   bench.run_program = program_runner(folder / "ranks");
@@ -151,11 +152,13 @@ int verify(const VerifyRequest& request) {
   const std::vector<StudyEntry> left = not_measured(chosen, folder, context.measured_with);
   const StudyJobs side_by_side{sharing(left), flags_of(request, jobs.threads),
                                context.measured_with, jobs.at_a_time, request.quiet};
+  const std::string go_on =
+      request.quiet ? "" : "to go on, give the same command with --out " + folder.string();
   if (jobs.at_a_time > 1 && !carry_out_side_by_side(side_by_side, folder)) {
-    if (!request.quiet)
-      std::printf("to go on, give the same command with --out %s\n", folder.c_str());
+    if (!request.quiet) std::printf("%s\n", go_on.c_str());
     return kInterrupted;
   }
+  end_on_stop_signals(kInterrupted, go_on);  // studies are on disk as soon as they are done
   StatusLine line(request.quiet);
   std::vector<StudyResult> results;
   bool all = true;

@@ -71,6 +71,7 @@ std::vector<std::string> notes_on(const FieldDataset& data) {
   std::vector<std::string> notes;
   for (std::string* note : {&off_sphere, &off_scale})
     if (!note->empty()) notes.push_back(std::move(*note));
+  if (const std::string note = note_on_distance(data); !note.empty()) notes.push_back(note);
   if (!data.blur_um)
     notes.push_back("how blurred the images are is not said (blur, 0 if they are not)");
   return notes;

@@ -71,6 +71,31 @@ TEST_F(RefitTest, FindsTheMostProbableRate) {
   EXPECT_GT(base.gap.train, best.gap.train);
 }
 
+// Another D makes up for most of what a bulk mobility does: the way to the best fit is a curved
+// valley, and what first orders say of it lies far beside. Whichever way it starts, it is no worse
+// than without the effect, and finds the truth within its error.
+TEST(BulkMobility, IsRefittedAlongTheValleyOfThePace) {
+  BlindRequest asked = request();
+  asked.effects = {"bulk-mobility"};
+  asked.gap = 0.12;
+  const BlindCase drawn = draw_blind_case(asked);
+  const FilterProblems data = problems(drawn.vesicles);
+  std::vector<ErrorMaps> maps;
+  FilterModel model{asked.base, 1, {}, {}};
+  (void)filter_fields(data, model, settings(), maps);
+  const Refit base = refit(data, model, settings(), maps);
+  model.pace = base.pace;
+  const double truth = drawn.truth[0].values[0];
+  for (const double start : {0.1, 3 * truth}) {
+    model.hypothesis.parts = {{find_candidate("bulk-mobility").value(), {start}}};
+    const Refit fit = refit(data, model, settings(), maps);
+    ASSERT_EQ(fit.failure, "");
+    EXPECT_LT(fit.deviance, base.deviance) << start;
+    EXPECT_NEAR(fit.hypothesis.parts[0].coefficients[0], truth, 3 * std::sqrt(fit.covariance(0, 0)))
+        << start;
+  }
+}
+
 // What is known to be blurred by the microscope is as far from the forecasts as noise is; what is
 // not known to be, further.
 TEST(FieldFilter, AllowsForBlurThatIsStated) {

@@ -42,7 +42,8 @@ std::vector<Vec> BlindSimulation::run(const std::vector<double>& times) const {
 }
 
 Vec BlindSimulation::advance(ConstVec c, double begin, double end) const {
-  return forecast(problem_, make_integrator_, c, begin, end).end;
+  constexpr int kMostSteps = 100000;  // from noise to a few rafts takes thousands
+  return forecast(problem_, make_integrator_, c, begin, end, {}, kMostSteps).end;
 }
 
 double spread(const SurfaceSpace& space, ConstVec c) {

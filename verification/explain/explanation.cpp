@@ -43,6 +43,9 @@ class Search {
     } else {
       tell("pace of the base model");
       model_.pace = first_pace(data_, request_.base, request_.filter);
+      const bool far = std::fabs(std::log(model_.pace)) > std::log(kFarPace);
+      tell(formatted("  D is about %.2g times the model's%s", model_.pace,
+                     far ? ": are time_unit and the model's --diffusion right?" : ""));
     }
     while (more) {
       more = look_for_one();
@@ -213,6 +216,28 @@ class Search {
     return take(result_.rounds.back());
   }
 
+  // First orders of an effect that another D makes up for may lie beyond a ridge, from where the
+  // way does not lead back: where such refits end worse than without the effect, they begin once
+  // more with nothing of it.
+  std::vector<Refit> refit_again(const std::vector<FilterModel>& trials,
+                                 std::vector<Refit> fits) const {
+    std::vector<FilterModel> again;
+    std::vector<std::size_t> which;
+    for (std::size_t k = 0; k < fits.size(); ++k) {
+      if (fits[k].failure.empty() && fits[k].deviance <= result_.found.deviance) continue;
+      again.push_back(trials[k]);
+      std::vector<double>& coefficients = again.back().hypothesis.parts.back().coefficients;
+      coefficients.assign(coefficients.size(), 0);
+      which.push_back(k);
+    }
+    if (again.empty()) return fits;
+    tell("  from where they do nothing");
+    std::vector<Refit> better = refit_all(again);
+    for (std::size_t k = 0; k < which.size(); ++k)
+      if (better[k].failure.empty()) fits[which[k]] = std::move(better[k]);
+    return fits;
+  }
+
   void refit_shortlist(Round& round) const {
     tell("refits: 2 ln of the likelihood ratio that an effect gains");
     std::vector<FilterModel> trials;
@@ -221,7 +246,7 @@ class Search {
       trials.push_back(model_);
       trials.back().hypothesis.parts.push_back(std::move(part));
     }
-    for (const Refit& fit : refit_all(trials))
+    for (const Refit& fit : refit_again(trials, refit_all(trials)))
       if (fit.failure.empty())
         round.refits.push_back(no_worse(fit, round.without));
       else

@@ -85,6 +85,9 @@ struct Explanation {
   DisagreementMaps base_maps, found_maps;   // at its points
 };
 
+// A D that is further from the model's than by this factor is most likely a wrong unit of time.
+inline constexpr double kFarPace = 10;
+
 // Beyond that h/epsilon verdicts become doubtful: at 1.7 one of eleven campaign cases with nothing
 // missing was `not-identifiable` (docs/explain.md).
 inline constexpr double kCoarse = 1.5;

@@ -8,7 +8,7 @@
 namespace traceraft {
 namespace {
 
-constexpr int kRank = 80, kTangentSteps = 2, kMostSteps = 5;
+constexpr int kRank = 80, kTangentSteps = 2, kMostSteps = 12;
 // Of ln D: at most in one pass, and what is left to other searches.
 constexpr double kLargestStep = 0.7, kGoodEnough = 0.02;
 

@@ -7,13 +7,6 @@
 #include "verification/explain/tangent_flow.hpp"
 
 namespace traceraft {
-namespace {
-
-// From one snapshot to the next: some hundred are usual. Models that need so many are trials with
-// an effect far too strong.
-constexpr int kMostTimeSteps = 1000;
-
-}  // namespace
 
 TangentGrid TangentGrid::graded(double begin, double end, int steps) {
   TangentGrid grid;
@@ -31,7 +24,7 @@ TangentGrid TangentGrid::graded(double begin, double end, int steps) {
 }
 
 Forecast forecast(const CahnHilliard& problem, const MakeIntegrator& make_integrator, ConstVec c,
-                  double begin, double end, const std::vector<int>& tangent_steps) {
+                  double begin, double end, const std::vector<int>& tangent_steps, int most_steps) {
   Vec y = Vec::Zero(problem.size()), ydot = Vec::Zero(problem.size());
   y.head(problem.block_size()) = c;
   require(problem.consistent_initial_state(begin, y, ydot));
@@ -41,7 +34,7 @@ Forecast forecast(const CahnHilliard& problem, const MakeIntegrator& make_integr
   for (const int steps : tangent_steps)
     result.paths.push_back({TangentGrid::graded(begin, end, steps), {}});
   for (int step = 0; integrator->time() < end; ++step) {
-    if (step == kMostTimeSteps) throw std::runtime_error("a forecast takes too many steps");
+    if (step == most_steps) throw std::runtime_error("a forecast takes too many steps");
     require(integrator->advance());
     for (TangentPath& path : result.paths) {
       const auto& times = path.grid.stage_times;

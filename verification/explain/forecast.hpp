@@ -33,9 +33,14 @@ struct Forecast {
 
 using MakeIntegrator = std::function<IntegratorPtr(const DaeProblem&)>;
 
+// From one snapshot to the next some hundred steps are usual. Models that need so many are trials
+// with an effect far too strong.
+inline constexpr int kMostTrialSteps = 1000;
+
 // Advances the nodal field c from `begin` to `end`, with a path for each number of tangent steps.
-// Throws std::runtime_error if that fails.
+// Throws std::runtime_error if that fails, or takes more steps.
 Forecast forecast(const CahnHilliard& problem, const MakeIntegrator& make_integrator, ConstVec c,
-                  double begin, double end, const std::vector<int>& tangent_steps = {});
+                  double begin, double end, const std::vector<int>& tangent_steps = {},
+                  int most_steps = kMostTrialSteps);
 
 }  // namespace traceraft

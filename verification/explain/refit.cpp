@@ -14,7 +14,7 @@ namespace traceraft {
 namespace {
 
 constexpr double kSmallStep = 0.1;  // in standard deviations
-constexpr int kMostNewtonSteps = 6, kMostHalvings = 3;
+constexpr int kMostNewtonSteps = 8, kMostHalvings = 3;
 // D is known to that factor at least.
 constexpr double kLargestPaceStep = 0.5;
 
@@ -30,6 +30,7 @@ void set_covariance(const Eigen::MatrixXd& unknown, Refit& fit) {
 struct Evaluation {
   Refit fit;
   Vec step;                    // to the maximum in range, if the likelihood were Gaussian
+  double pace_step = 0;        // of the first unknown, likewise, if the others stay
   Eigen::MatrixXd covariance;  // of the unknowns
 };
 
@@ -49,6 +50,7 @@ Evaluation evaluate(const FilterProblems& data, const FilterModel& model,
     const Eigen::MatrixXd J = unknown_derivatives(model);
     result.step = J * all(own);
     result.covariance = J * inverse(own, own) * J.transpose();
+    result.pace_step = newton_step(pass, {kPace, kMeshError})[0];
     // At the most probable error of the mesh, which the step takes to be free as well.
     fit.deviance = pass.deviance -
                    std::pow(pass.score[kMeshError], 2) / pass.information(kMeshError, kMeshError);
@@ -132,22 +134,34 @@ class NewtonSearch {
     }
   }
 
-  // So many times the step, or half of that, ...: false if none is better than here.
+  // So many times the step, or half of that, ...: false if none is better than here. Where D makes
+  // up for an effect the way is a curved valley: beside its bottom, the pace leads back to it.
   bool step(double factor) {
     Vec step = factor * here_.step;
     step[0] = std::clamp(step[0], -kLargestPaceStep, kLargestPaceStep);
     const Vec x = unknowns(model_);
+    const double before = here_.fit.deviance;
     const int halvings = kMostHalvings + std::ilogb(factor);
     for (int half = 0; half <= halvings; ++half, step *= 0.5) {
-      FilterModel trial = model_;
-      set_unknowns(trial, x + step);
-      Evaluation there = evaluated(trial);
-      if (!(there.fit.deviance < here_.fit.deviance)) continue;
-      model_ = std::move(trial);
-      here_ = std::move(there);
-      return true;
+      Vec to = x + step;
+      const double pace_step = go_if_better(to);
+      to[0] += std::clamp(pace_step, -kLargestPaceStep, kLargestPaceStep);
+      if (pace_step != 0) go_if_better(to);
+      if (here_.fit.deviance < before) return true;
     }
     return false;
+  }
+
+  // Returns by what the pace would have to change there if it is no better; 0 if it cannot be
+  // evaluated.
+  double go_if_better(const Vec& x) {
+    FilterModel trial = model_;
+    set_unknowns(trial, x);
+    Evaluation there = evaluated(trial);
+    if (!(there.fit.deviance < here_.fit.deviance)) return there.pace_step;
+    model_ = std::move(trial);
+    here_ = std::move(there);
+    return 0;
   }
 
   const FilterProblems& data_;
