@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <type_traits>
 
 #include "backends/list.hpp"
 #include "drivers/commands.hpp"
@@ -20,22 +21,14 @@ void print_list(const char* title, const NamedList<Entry>& list) {
   std::printf("\n");
 }
 
-// What else an entry may stand for: effects of negative strength do.
-template <class Entry>
-std::string reversed(const Entry&) {
-  return "";
-}
-std::string reversed(const EffectEntry& entry) {
-  return entry.reversed;
-}
-
 template <class Entry>
 void print_list_with_parameters(const char* title, const NamedList<Entry>& list) {
   std::printf("%s\n", title);
   for (const Entry& entry : list) {
     std::printf("  %-14s %s\n", entry.name.c_str(), entry.summary.c_str());
-    if (!reversed(entry).empty())
-      std::printf("  %-14s (negative: %s)\n", "", reversed(entry).c_str());
+    if constexpr (std::is_same_v<Entry, EffectEntry>)
+      if (!entry.reversed.empty())
+        std::printf("  %-14s (negative: %s)\n", "", entry.reversed.c_str());
     for (const ParameterSpec& p : entry.parameters)
       std::printf("  %-14s   :%s=%s  %s [%s], %s to %s\n", "", p.name.c_str(),
                   format_number(p.default_value).c_str(), p.meaning.c_str(),

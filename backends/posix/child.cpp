@@ -25,13 +25,7 @@ constexpr useconds_t kPause = 50000;  // microseconds between looks
                          pid_t parent, int report) {
   prctl(PR_SET_PDEATHSIG, kParentDied);
   if (getppid() != parent) _exit(1);  // it died before that
-  sigset_t signals;  // which the parent blocks
-  sigemptyset(&signals);
-  for (const int signal : kStopSignals) {
-    std::signal(signal, SIG_DFL);
-    sigaddset(&signals, signal);
-  }
-  sigprocmask(SIG_UNBLOCK, &signals, nullptr);
+  default_stop_signals();
   setpgid(0, 0);  // Ctrl-C reaches the parent, which asks once; twice would be "at once"
   const int input = open("/dev/null", O_RDONLY);
   const int output = open(log, O_WRONLY | O_CREAT | O_TRUNC, 0644);

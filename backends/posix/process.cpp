@@ -15,6 +15,8 @@
 namespace traceraft {
 namespace {
 
+constexpr int kStopSignals[] = {SIGINT, SIGTERM, kParentDied};
+
 std::atomic<bool> stop_flag = false;
 const auto process_start = std::chrono::steady_clock::now();
 
@@ -42,9 +44,7 @@ void on_stop(int signal) {
   }
   const bool second = stop_flag.exchange(true);
   if (!second || signal == kParentDied) return;
-  std::signal(signal, SIG_DFL);
-  const sigset_t set = stop_signals();
-  pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+  default_stop_signals();
   std::raise(signal);
 }
 
@@ -105,6 +105,12 @@ void catch_stop_signals() {
 void end_on_stop_signals(int exit_code, const std::string& line) {
   end_at_once = new End{exit_code, line.empty() ? "" : line + "\n"};
   watch_stop_signals();
+}
+
+void default_stop_signals() {
+  for (const int signal : kStopSignals) std::signal(signal, SIG_DFL);
+  const sigset_t set = stop_signals();
+  pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
 }
 
 bool stop_requested() {

@@ -17,7 +17,6 @@ int terminal_columns();  // 80 if unknown
 
 // What a child gets when the process that started it dies (child.hpp), perhaps several times.
 inline constexpr int kParentDied = SIGUSR1;
-inline constexpr int kStopSignals[] = {SIGINT, SIGTERM, kParentDied};
 
 // From now on SIGINT, SIGTERM and kParentDied only set a flag; a second SIGINT or SIGTERM ends the
 // process at once.
@@ -26,6 +25,9 @@ bool stop_requested();
 // From now on they end the process at once, with this exit code and a line on stderr: for work
 // whose results are safe at any moment. Until catch_stop_signals is called.
 void end_on_stop_signals(int exit_code, const std::string& line);
+// In a child, before it becomes another program: they do again what they do by default. Safe after
+// a fork.
+void default_stop_signals();
 // Writing beyond a file size limit becomes an error of the write instead of a signal.
 void ignore_file_size_signal();
 

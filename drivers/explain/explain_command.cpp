@@ -48,7 +48,7 @@ void explain_field_data(const ExplainCommand& command, ExplainSetup& setup, cons
     };
   if (!command.quiet) {
     std::printf("%s\n", data_text(setup).c_str());
-    std::printf("the model: %s\n", flags_text(Configuration(setup.model, {})).c_str());
+    std::printf("the model: %s\n", flags_text(setup.configuration()).c_str());
     for (const std::string& note : setup.notes) std::printf("%s\n", note.c_str());
   }
   const SearchFile file(out, setup);

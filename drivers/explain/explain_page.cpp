@@ -30,7 +30,7 @@ class ExplainPage {
       : folder_(folder),
         found_(found),
         setup_(setup),
-        units_(Configuration(setup.model, {}).units()),
+        units_(setup.configuration().units()),
         page_("What the model is missing") {}
 
   std::string write() {
@@ -58,7 +58,7 @@ class ExplainPage {
                     formatted("%.4f of c, ", found_.noise) + std::to_string(found_.replicates) +
                     " replicates of noise alone, " +
                     formatted("h/epsilon = %.2f.", found_.h_over_epsilon) + " The model:");
-    page_.code(flags_text(Configuration(setup_.model, {})));
+    page_.code(flags_text(setup_.configuration()));
     if (const std::string run = command_for_found(folder_, found_, setup_); !run.empty()) {
       page_.paragraph("The model with what was found runs with:");
       page_.code(run);

@@ -40,7 +40,7 @@ bool has_model(const Explanation& found) {
 
 void write_explanation(const std::filesystem::path& folder, const Explanation& found,
                        const ExplainSetup& setup) {
-  const Units units = Configuration(GivenValues(setup.model), {}).units();
+  const Units units = setup.configuration().units();
   write_durably(folder / "scores.csv", csv_text(scores_table(found)));
   write_durably(folder / "disagreements.csv", csv_text(disagreements_table(found, units)));
   if (has_model(found))
@@ -56,7 +56,7 @@ std::string command_for_found(const std::filesystem::path& folder, const Explana
 }
 
 void print_explanation(const Explanation& found, const ExplainSetup& setup) {
-  const Units units = Configuration(GivenValues(setup.model), {}).units();
+  const Units units = setup.configuration().units();
   std::printf("\n%s\n%s\n\n", data_text(setup).c_str(), verdict_sentence(found).c_str());
   print_rows(parameter_rows(found, units));
   std::printf("\n");

@@ -26,14 +26,15 @@ GivenValues given_model(GivenValues given, const ExplainJob& job, double radius_
 // Of a model that says another radius than the data, and of data that are not where they say.
 std::vector<std::string> notes_on(const GivenValues& model, const FieldDataset& data) {
   std::vector<std::string> notes;
+  const Configuration configuration(model, {});
   if (model.count("radius") > 0) {
-    const double own = Configuration(GivenValues(model), {}).number("radius");
+    const double own = configuration.number("radius");
     if (std::fabs(own - data.radius_um) > 1e-6 * data.radius_um)
       notes.push_back("The radius is that of dataset.toml, " + format_number(data.radius_um) +
                       " um, not that of the model, " + format_number(own) + ".");
   }
   if (const std::string note = note_on_distance(data);
-      !note.empty() && Configuration(GivenValues(model), {}).text("surface") == "sphere")
+      !note.empty() && configuration.text("surface") == "sphere")
     notes.push_back(note);
   return notes;
 }
@@ -98,17 +99,21 @@ void refuse_effects(const Configuration& model) {
                      ": the search starts from a model without effects; it finds them itself");
 }
 
+Configuration ExplainSetup::configuration() const {
+  return {model, {}};
+}
+
 double ExplainSetup::last_s() const {
   double last = 0;
   for (const FieldSeries& vesicle : series) last = std::max(last, vesicle.snapshots.back().time);
-  return last * Configuration(GivenValues(model), {}).units().time();
+  return last * configuration().units().time();
 }
 
 std::string data_text(const ExplainSetup& setup) {
   std::size_t snapshots = 0;
   for (const FieldSeries& vesicle : setup.series) snapshots += vesicle.snapshots.size();
   const std::size_t vesicles = setup.series.size();
-  const double radius = Configuration(GivenValues(setup.model), {}).units().length();
+  const double radius = setup.configuration().units().length();
   const double blur = setup.request.filter.blur * radius;
   return setup.name + (setup.synthetic ? " (SYNTHETIC): " : ": ") + std::to_string(vesicles) +
          (vesicles == 1 ? " vesicle, " : " vesicles, ") + std::to_string(snapshots) +
@@ -129,7 +134,7 @@ ExplainSetup read_explain_job(const ExplainJob& job) {
   setup.name = data.name;
   setup.synthetic = data.synthetic;
   setup.series = std::move(data.vesicles);
-  const Configuration model(setup.model, {});
+  const Configuration model = setup.configuration();
   refuse_scaled(model);
   refuse_effects(model);
   for (FieldSeries& vesicle : setup.series)

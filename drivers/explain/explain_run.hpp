@@ -27,7 +27,8 @@ struct ExplainSetup {
   std::string name = {};                // of the data
   bool synthetic = false;
 
-  double last_s() const;  // the time of the last snapshot
+  Configuration configuration() const;  // of the model
+  double last_s() const;                // the time of the last snapshot
 };
 
 // "my vesicle (SYNTHETIC): 1 vesicle, 8 snapshots, R = 5 um, blurred by 0.1 um"

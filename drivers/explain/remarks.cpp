@@ -113,7 +113,7 @@ std::vector<std::string> remarks(const Explanation& found, const Units& base) {
 
 std::vector<std::string> remarks_on(const Explanation& found, const ExplainSetup& setup) {
   std::vector<std::string> all = setup.notes;
-  for (std::string& remark : remarks(found, Configuration(GivenValues(setup.model), {}).units()))
+  for (std::string& remark : remarks(found, setup.configuration().units()))
     all.push_back(std::move(remark));
   return all;
 }

@@ -92,7 +92,7 @@ Json rerun_json(const Explanation& found) {
 }
 
 Json data_json(const ExplainSetup& setup) {
-  const double radius = Configuration(GivenValues(setup.model), {}).units().length();
+  const double radius = setup.configuration().units().length();
   const ExplainRequest& request = setup.request;
   Json snapshots = Json::array();
   for (const FieldSeries& vesicle : setup.series) snapshots.push_back(vesicle.snapshots.size());
@@ -125,7 +125,7 @@ Json parameters_json(const std::vector<FoundParameter>& found) {
 
 Json verdict_json(const Explanation& found, const ExplainSetup& setup) {
   const std::string name = found.found.hypothesis.name();
-  const Configuration model(GivenValues(setup.model), {});
+  const Configuration model = setup.configuration();
   const Units base = model.units();
   return {{"verdict", word_for(found.finding)},
           {"effect", is_named(found) ? Json(name) : Json()},

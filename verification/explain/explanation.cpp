@@ -64,9 +64,10 @@ class Search {
 
   std::vector<Refit> refit_all(const std::vector<FilterModel>& trials) const {
     return refit_each(data_, trials, request_.filter, maps_, [&](const Refit& fit) {
+      // With one effect more there is nothing to lose.
       const bool more = fit.hypothesis.parts.size() > result_.found.hypothesis.parts.size();
-      const Refit& best = more ? no_worse(fit, result_.found) : fit;
-      const double gained = result_.found.deviance - best.deviance;
+      const double difference = result_.found.deviance - fit.deviance;
+      const double gained = more ? std::max(0.0, difference) : difference;
       tell("  " + fit.hypothesis.name() +
            (fit.failure.empty() ? " gains " + std::to_string(std::lround(gained)) : " fails"));
     });
