@@ -202,7 +202,8 @@ Action define_verify(CLI::App& app) {
                  "Markdown file for the results; its figures go beside it");
   app.add_flag("--quiet", request->quiet, "print nothing but errors");
   app.footer(
-      "Exit codes: 0 every claim holds, 1 one fails, 2 bad input, 4 input/output.\n"
+      "Exit codes: 0 every claim holds, 1 one fails, 2 bad input, 4 input/output,\n"
+      "5 stopped; the same command with the same --out goes on.\n"
       "Example: traceraft verify mass energy --quick");
   return [request] {
     if (request->studies.empty()) request->studies = {"all"};

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -133,6 +134,24 @@ TEST_F(ProgramTest, StopsCleanlyWhenAskedToAndContinues) {
               "stopped");
     ASSERT_EQ(traceraft("resume --quiet " + out(name)).code, 0);
     expect_same_results("whole", name);
+  }
+}
+
+// They write nothing before they are done, and do not finish a step of theirs first.
+TEST_F(ProgramTest, StopsStudiesAndGeneratorsAtOnceWhenAskedTo) {
+  for (const std::string& command :
+       {"verify coarsening --threads 1 --out " + out("studies"),
+        "hide --effects uptake --epsilon 0.5 --out " + out("hidden")}) {
+    const pid_t child = testing::start_traceraft(command + " > /dev/null");
+    sleep(2);
+    EXPECT_EQ(waitpid(child, nullptr, WNOHANG), 0) << command;
+    const auto asked = std::chrono::steady_clock::now();
+    kill(child, SIGTERM);
+    int status = 0;
+    waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFEXITED(status)) << command;
+    EXPECT_EQ(WEXITSTATUS(status), 5) << command;
+    EXPECT_LT(std::chrono::steady_clock::now() - asked, std::chrono::seconds(20)) << command;
   }
 }
 

@@ -77,6 +77,18 @@ TEST_F(FieldDatasetTest, ReadsWhatItHasWritten) {
   EXPECT_LT((after.deviation - before.deviation).norm(), 1e-4);
 }
 
+TEST_F(FieldDatasetTest, AsksAboutARadiusThatThePointsContradict) {
+  FieldDataset data = small_dataset();
+  EXPECT_EQ(note_on_distance(data), "");
+  data.vesicles[0].snapshots[0].points[3] *= 1.5;  // one that is off is another matter
+  EXPECT_EQ(note_on_distance(data), "");
+  for (FieldSnapshot& snapshot : data.vesicles[0].snapshots)
+    for (Point& x : snapshot.points) x *= 0.9;
+  const std::string note = note_on_distance(data);
+  EXPECT_NE(note.find("further than 4.5 um"), std::string::npos) << note;
+  EXPECT_NE(note.find("said to be 5 um"), std::string::npos) << note;
+}
+
 TEST_F(FieldDatasetTest, KnowsSeriesFromFields) {
   std::filesystem::remove(folder.path / "snapshot_001.csv");
   replace("measurements.csv", "vesicle,time\n");

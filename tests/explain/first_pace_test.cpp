@@ -1,0 +1,29 @@
+#include "verification/explain/first_pace.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/small_vesicle.hpp"
+
+namespace traceraft {
+namespace {
+
+// Whoever mistakes minutes for seconds is off by a factor of sixty.
+TEST(FirstPace, IsFoundFromFarAway) {
+  BlindRequest asked = testing::small_vesicle(4);
+  asked.effects.clear();
+  CahnHilliardModel base = asked.base;
+  const BlindCase drawn = draw_blind_case(asked);
+  FilterSettings few;
+  few.rank = 80;
+  few.replicates = 0;
+  for (const double factor : {1.0 / 60, 20.0}) {
+    std::vector<FieldSeries> vesicles = drawn.vesicles;
+    for (FieldSnapshot& snapshot : vesicles[0].snapshots) snapshot.time *= factor;
+    const FilterProblems data =
+        make_filter_problems(vesicles, *make_surface("sphere"), base, 14, 2, true, few);
+    EXPECT_NEAR(std::log(first_pace(data, base, few) * factor), 0, 0.2) << factor;
+  }
+}
+
+}  // namespace
+}  // namespace traceraft
