@@ -29,6 +29,13 @@ std::uint64_t seed_of(const CampaignPlan& plan, const CaseId& id) {
   return hash >> 11;
 }
 
+// D of the truth over that of the model.
+double pace_of(const CaseSettings& settings, std::uint64_t seed) {
+  if (settings.diffusion_error > 0)
+    return std::exp(settings.diffusion_error * normal_random(seed, 2, 1));
+  return std::exp(0.4 * (uniform_random(seed, 2, 0) - 0.5));
+}
+
 void draw(const fs::path& folder, const CampaignPlan& plan, const CaseSettings& settings,
           std::uint64_t seed) {
   const Configuration model(plan.model, {});
@@ -39,7 +46,7 @@ void draw(const fs::path& folder, const CampaignPlan& plan, const CaseSettings& 
   request.snapshots = settings.snapshots;
   request.sizing_snapshots = CaseSettings().snapshots;
   request.points = plan.points;
-  request.pace = std::exp(0.4 * (uniform_random(seed, 2, 0) - 0.5));
+  request.pace = pace_of(settings, seed);
   request.cells = truth_cells(plan.model);
   request.seed = seed;
   request.threads = 1;
@@ -109,6 +116,7 @@ void carry_out_case(const CampaignFolder& folder, const CampaignPlan& plan, cons
   job.threads = 1;
   job.replicates = plan.replicates;
   job.effects = plan.effects;
+  job.diffusion_error = settings.diffusion_error;
   job.without = settings.without;
   ExplainSetup setup = read_explain_job(job);
   if (!fs::exists(path / "explain" / "verdict.json")) {

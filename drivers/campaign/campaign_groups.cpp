@@ -38,6 +38,8 @@ const NamedList<CampaignGroup>& campaign_groups() {
         with([](CaseSettings& s) { s.noise = 0.2; }), 1},
        {"naming-short", "one effect, as strong as with 8 snapshots, 3 of them", Aim::name,
         with([](CaseSettings& s) { s.snapshots = 3; }), 1},
+       {"measured-d", "one effect, and the model's D is known to 5 %", Aim::name,
+        with([](CaseSettings& s) { s.diffusion_error = 0.05; }), 1},
        {"two", "two effects at once", Aim::name, {}, 2},
        {"left-out", "one effect; it and those like it are not looked for", Aim::unnamed, {}, 1},
        {"stated-half", "one effect; every second snapshot states half of its noise", Aim::name,

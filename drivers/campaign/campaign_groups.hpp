@@ -14,6 +14,7 @@ struct CaseSettings {
   double noise = 0.1;                // standard deviation, in units of that of c
   double stated = 0;                 // what the data state of it, over what it is; 0: nothing
   int snapshots = 8;                 // effects are as strong as between eight
+  double diffusion_error = 0;        // of the model's D, that the search is told; 0: nothing
   double coarser = 1;                // cells of the model's mesh, over what its interface needs
 };
 

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
 #include <optional>
 
@@ -29,8 +30,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Series are explained with D within this factor of the model's.
+// Series are explained with D within this factor of the model's, if nothing else is known of it.
 constexpr double kTimeRange = 8;
+
+double time_range(double diffusion_error) {
+  constexpr double k95 = 2;
+  return diffusion_error > 0 ? std::exp(k95 * diffusion_error) : kTimeRange;
+}
 
 struct ExplainCommand {
   ExplainJob job;
@@ -106,7 +112,7 @@ bool explain_series_data(const ExplainCommand& command, const SeriesSetup& setup
   const SeriesEnsembles ensembles = run_series_ensembles(out / "ensembles", model, request);
   if (ensembles.stopped) return false;
   end_on_stop_signals(kInterrupted, go_on);
-  SeriesRequest search{{model.units().seconds_per_unit(), kTimeRange}};
+  SeriesRequest search{{model.units().seconds_per_unit(), time_range(command.job.diffusion_error)}};
   search.replicates = command.job.replicates;
   const SeriesExplanation found = numerically(
       [&] { return explain_series(data, ensembles.base, ensembles.candidates, search); });
@@ -188,6 +194,10 @@ Action define_explain(CLI::App& app) {
                  "of noise alone, that what is found is judged by")
       ->check(CLI::Range(49, 9999))
       ->capture_default_str();
+  app.add_option("--diffusion-error", command->job.diffusion_error,
+                 "relative standard error of the model's D, if it was measured; default: D is not "
+                 "known, and fitted freely")
+      ->check(CLI::Range(0.001, 1.0));
   app.add_option("--threads", command->job.threads, "default: one for each processor")
       ->check(CLI::Range(1, 256));
   app.add_option("--without", command->job.without, "effects that are not looked for")

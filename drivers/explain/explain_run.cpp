@@ -148,6 +148,7 @@ ExplainSetup read_explain_job(const ExplainJob& job) {
   request.most_effects = job.effects;
   request.without = job.without;
   request.filter.replicates = job.replicates;
+  if (job.diffusion_error > 0) request.filter.pace_doubt = job.diffusion_error;
   request.filter.blur = data.blur_um.value_or(0) / data.radius_um;
   request.blur_stated = data.blur_um.has_value();
   refuse_wide_boundaries(model, request.base);

@@ -14,6 +14,7 @@ struct ExplainJob {
   GivenValues flags;        // of the model, before what its file says
   int threads = 0;          // 0: one for each processor
   int effects = 3, replicates = 199;
+  double diffusion_error = 0;  // relative standard error of the model's D; 0: it is not known
   std::vector<std::string> without;
 
   int processors() const;  // threads, with 0 resolved

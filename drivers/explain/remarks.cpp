@@ -1,5 +1,6 @@
 #include "drivers/explain/remarks.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "drivers/explain/verdict.hpp"
@@ -38,16 +39,41 @@ void add_assumptions(const Explanation& found, const Units& base, std::vector<st
                     "may be taken for another effect.");
 }
 
+// In standard deviations.
+constexpr double kSure = 3;
+
 // A mistake in the unit of time looks like another D.
 void add_pace(const Explanation& found, const Units& base, std::vector<std::string>& all) {
-  constexpr double kSure = 3;
   const double log_pace = std::fabs(std::log(found.found.pace));
-  if (log_pace < std::log(kFarPace) || log_pace < kSure * found.found.pace_deviation) return;
   const double D = base.diffusion_cm2_s * found.found.pace;
+  if (log_pace > kSure * found.pace_doubt)
+    all.push_back(
+        formatted("The measurements ask for a D of %.3g cm^2/s, although the model's, %.3g, is "
+                  "said to be known to %.2g %%: is it?",
+                  D, base.diffusion_cm2_s, 100 * found.pace_doubt));
+  if (log_pace < std::log(kFarPace) || log_pace < kSure * found.found.pace_deviation) return;
   all.push_back(formatted(
       "The measurements ask for a D of %.2g cm^2/s, %.3g times %s than the "
       "model's, %.2g: are time_unit and the model's --diffusion right?",
       D, std::exp(log_pace), found.found.pace < 1 ? "smaller" : "larger", base.diffusion_cm2_s));
+}
+
+// Members of a class that would have different D: what a measurement of D would decide.
+void add_class(const Explanation& found, const Units& base, std::vector<std::string>& all) {
+  if (found.finding != Finding::ambiguous) return;
+  const auto D = [&](const Refit& fit) { return base.diffusion_cm2_s * fit.pace; };
+  const auto differ = [](const Refit& a, const Refit& b) {
+    return std::fabs(std::log(a.pace / b.pace)) >
+           kSure * std::hypot(a.pace_deviation, b.pace_deviation);
+  };
+  if (std::none_of(found.rivals.begin(), found.rivals.end(),
+                   [&](const Refit& rival) { return differ(found.found, rival); }))
+    return;
+  std::string text = "They ask for different D, " + found.found.hypothesis.name() +
+                     formatted(" for %.3g cm^2/s", D(found.found));
+  for (const Refit& rival : found.rivals)
+    text += ", " + rival.hypothesis.name() + formatted(" for %.3g", D(rival));
+  all.push_back(text + ": if D was measured, --diffusion and --diffusion-error may decide.");
 }
 
 void add_mesh(const Explanation& found, std::vector<std::string>& all) {
@@ -96,6 +122,7 @@ std::vector<std::string> remarks(const Explanation& found, const Units& base) {
         "dataset.toml does not say how blurred the images are (blur, 0 if they are not): "
         "boundaries that a microscope widens are taken for physics.");
   add_pace(found, base, all);
+  add_class(found, base, all);
   add_mesh(found, all);
   for (const FrameChange& change : found.changes) all.push_back(text_of(change));
   add_failures(found, all);

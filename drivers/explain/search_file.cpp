@@ -27,6 +27,7 @@ std::string fingerprint_of(const ExplainSetup& setup) {
               {"without", request.without},
               {"effects", request.most_effects},
               {"replicates", request.filter.replicates},
+              {"pace_doubt", request.filter.pace_doubt},
               {"blur", request.blur_stated ? Json(request.filter.blur) : Json()}};
   for (const FieldSeries& series : setup.series)
     for (const FieldSnapshot& snapshot : series.snapshots) {

@@ -154,6 +154,7 @@ Json verdict_json(const Explanation& found, const ExplainSetup& setup) {
           {"model",
            {{"epsilon_um", model.number("epsilon")},
             {"diffusion_cm2_s", base.diffusion_cm2_s},
+            {"diffusion_error", found.pace_doubt},
             {"cells", setup.request.cells},
             {"h_over_epsilon", found.h_over_epsilon}}},
           {"remarks", remarks_on(found, setup)}};

@@ -155,7 +155,8 @@ TEST_F(ExplainTest, GoesOnWhereItWasKilled) {
   EXPECT_EQ(resumed.dump(2), whole.dump(2));
   // Another search does not take its place.
   for (const std::string& changed :
-       {command_of_few(kCells, ",gravity"), command_of_few(kCells, "", 59)}) {
+       {command_of_few(kCells, ",gravity"), command_of_few(kCells, "", 59),
+        command_of_few(kCells) + " --diffusion-error 0.1"}) {
     const auto other = testing::traceraft(changed);
     EXPECT_EQ(other.code, 2) << changed;
     EXPECT_NE(other.output.find("holds a search of other data"), std::string::npos) << other.output;

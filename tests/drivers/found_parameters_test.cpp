@@ -58,6 +58,39 @@ TEST(Remarks, AskWhetherTheUnitOfTimeIsRight) {
   EXPECT_TRUE(remarks(found, kCell).empty());
 }
 
+TEST(Remarks, DoubtADThatMeasurementsContradict) {
+  Explanation found;
+  found.rounds.resize(1);
+  found.found.pace = 1.3;
+  EXPECT_TRUE(remarks(found, kCell).empty());  // nothing else is known of it
+  found.pace_doubt = 0.1;
+  EXPECT_TRUE(remarks(found, kCell).empty());
+  found.pace_doubt = 0.05;
+  ASSERT_EQ(remarks(found, kCell).size(), 1u);
+  const std::string text = remarks(found, kCell).front();
+  EXPECT_NE(
+      text.find("a D of 1.3e-05 cm^2/s, although the model's, 1e-05, is said to be known to 5"),
+      std::string::npos)
+      << text;
+}
+
+TEST(Remarks, SayWhetherAMeasuredDWouldDecide) {
+  Explanation found;
+  found.rounds.resize(1);
+  found.finding = Finding::ambiguous;
+  found.found = exchange(0.03, 0.01);
+  found.found.pace = 1.2;
+  found.found.pace_deviation = 0.05;
+  found.rivals = {found.found, found.found};
+  EXPECT_TRUE(remarks(found, kCell).empty());
+  found.rivals[1].pace = 2;
+  ASSERT_EQ(remarks(found, kCell).size(), 1u);
+  const std::string text = remarks(found, kCell).front();
+  EXPECT_NE(text.find("exchange for 1.2e-05 cm^2/s, exchange for 1.2e-05, exchange for 2e-05"),
+            std::string::npos)
+      << text;
+}
+
 // A sign is not a matter of words alone.
 TEST(Verdict, SaysWhatAnEffectOfThisSignDoes) {
   Explanation found;

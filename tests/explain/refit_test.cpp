@@ -96,6 +96,37 @@ TEST(BulkMobility, IsRefittedAlongTheValleyOfThePace) {
   }
 }
 
+// Of D nothing is known, or as much as these data know, or that it is the model's.
+TEST(FieldFilter, TakesDAsFarAsItIsKnown) {
+  BlindRequest asked = testing::small_vesicle(4);
+  asked.first = 2;
+  asked.effects.clear();
+  asked.pace = 1.15;
+  FilterSettings how = settings();
+  how.replicates = 99;
+  const FilterProblems data = problems(draw_blind_case(asked).vesicles, how);
+  const auto found = [&](double doubt) {
+    how.pace_doubt = doubt;
+    std::vector<ErrorMaps> maps;
+    FilterModel model{asked.base, 1, {}, {}};
+    Refit fit = refit(data, model, how, maps);
+    model.pace = fit.pace;
+    bootstrap(filter_fields(data, model, how, maps), model, fit);
+    return fit;
+  };
+  const Refit free = found(std::numeric_limits<double>::infinity());
+  const double doubt = free.pace_deviation, pace = std::log(free.pace);
+  EXPECT_NEAR(pace, std::log(asked.pace), 4 * doubt);
+  const Refit half = found(doubt);
+  EXPECT_NEAR(std::log(half.pace), pace / 2, 0.1 * pace);
+  EXPECT_NEAR(half.pace_deviation, doubt / std::sqrt(2), 0.2 * doubt);
+  EXPECT_NEAR(half.deviance - free.deviance, std::pow(pace / doubt, 2) / 2,
+              0.1 * std::pow(pace / doubt, 2));
+  const Refit fixed = found(1e-5);
+  EXPECT_NEAR(fixed.pace, 1, 1e-4);
+  EXPECT_NEAR(fixed.pace_deviation, 1e-5, 3e-6);
+}
+
 // What is known to be blurred by the microscope is as far from the forecasts as noise is; what is
 // not known to be, further.
 TEST(FieldFilter, AllowsForBlurThatIsStated) {

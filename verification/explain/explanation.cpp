@@ -322,6 +322,7 @@ class Search {
     result_.replicates = request_.filter.replicates;
     result_.false_alarms = request_.false_alarms;
     result_.blur_stated = request_.blur_stated;
+    result_.pace_doubt = request_.filter.pace_doubt;
     result_.h_over_epsilon = h_over_epsilon();
     const auto& refits = result_.rounds.front().refits;
     for (const FilterProblem& data : data_) result_.noises.push_back(data.noise);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -73,10 +74,11 @@ struct Explanation {
   // what is to be expected of the found model if nothing else is missing.
   Gaps base_gap, found_gap, floor;
   std::optional<Gaps> placebo_gap;
-  bool blur_stated = true;                  // as requested
-  double h_over_epsilon = 0;                // of the model's mesh
-  std::size_t outliers = 0;                 // values that were left out
-  std::vector<FrameChange> changes;         // of the found model
+  bool blur_stated = true;                                      // as requested
+  double pace_doubt = std::numeric_limits<double>::infinity();  // as requested
+  double h_over_epsilon = 0;                                    // of the model's mesh
+  std::size_t outliers = 0;                                     // values that were left out
+  std::vector<FrameChange> changes;                             // of the found model
   std::string stopped;                      // why the search could not go on, if it had to stop
   std::optional<Rerun> rerun;               // by run_again
   std::vector<Bound> bounds;                // of effects that were not found

@@ -1,5 +1,6 @@
 #include "verification/explain/field_filter.hpp"
 
+#include <cmath>
 #include <future>
 #include <optional>
 
@@ -254,6 +255,15 @@ void add(FilterResult& all, FilterResult&& one) {
             std::back_inserter(all.heldout_gap_parts));
 }
 
+// What is known of D from elsewhere is one measurement more, and one of each replicate.
+void add_known_pace(double ln_pace, double doubt, FilterResult& all) {
+  all.information(kPace, kPace) += 1 / (doubt * doubt);
+  all.score[kPace] -= ln_pace / (doubt * doubt);
+  all.deviance += ln_pace * ln_pace / (doubt * doubt);
+  for (Eigen::Index r = 0; r < all.null_scores.cols(); ++r)
+    all.null_scores(kPace, r) += normal_random(9, static_cast<std::uint64_t>(r), 0) / doubt;
+}
+
 }  // namespace
 
 FilterResult filter_fields(const FilterProblems& data, const FilterModel& model,
@@ -263,6 +273,7 @@ FilterResult filter_fields(const FilterProblems& data, const FilterModel& model,
   for (std::size_t v = 1; v < data.size(); ++v)
     add(all, Filter(data[v], model, settings, maps[v]).run());
   all.information(kMeshError, kMeshError) += 1 / (kMeshDoubt * kMeshDoubt);
+  add_known_pace(std::log(model.pace), settings.pace_doubt, all);
   return all;
 }
 

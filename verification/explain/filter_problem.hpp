@@ -1,6 +1,7 @@
 // What a model is held against: a series of measured fields, on the mesh of the model.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -22,6 +23,8 @@ struct FilterSettings {
   double blur = 0;      // of the point spread function of the images, in R: they have it, or none
   double turn = 0.05;   // of the angle by which a vesicle may have turned between two snapshots
   int gap_degree = 6;   // of the polynomials that gaps are sought as
+  // Standard deviation of ln D of the base model, as far as D is known from elsewhere.
+  double pace_doubt = std::numeric_limits<double>::infinity();
   std::string integrator = "ida";  // of forecasts
 };
 
