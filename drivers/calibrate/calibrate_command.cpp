@@ -89,6 +89,13 @@ void refuse_calibrating(const Configuration& model) {
                          "be calibrated");
 }
 
+void refuse_other_membrane(const std::string& flag, const MeasuredVesicles& data,
+                           const Configuration& model) {
+  if (const std::string other = other_membrane(data.composition, model); !other.empty())
+    throw InputError(flag + ": the simulations are of " + other +
+                     "; D of one membrane is not that of another");
+}
+
 // D alone, from runs that there are: it only shifts their time.
 int calibrate_ensemble(const CalibrateRequest& request, const MeasuredVesicles& data) {
   if (request.parameters != "mobility")
@@ -97,6 +104,7 @@ int calibrate_ensemble(const CalibrateRequest& request, const MeasuredVesicles& 
     throw InputError(value.where + ": the model is that of --ensemble");
   if (!request.model.empty()) throw InputError("--model: the model is that of --ensemble");
   const Configuration model = model_of(request.ensemble);
+  refuse_other_membrane("--ensemble", data, model);
   refuse_calibrating(model);
   const double seconds = model.units().seconds_per_unit();
   CalibrationPoint point{{}, runs_of(request.ensemble)};
@@ -147,6 +155,7 @@ int run_calibration(CalibrateRequest request) {
   if (!request.ensemble.empty()) return calibrate_ensemble(request, data);
   refuse_without_model(data.composition, request.model, request.flags);
   const Configuration model(read_config_file(request.model, "--model"), request.flags);
+  refuse_other_membrane(model.where("case"), data, model);
   refuse_scaled(model);
   refuse_calibrating(model);
   refuse_without_noise(model);

@@ -16,6 +16,7 @@
 #include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/text.hpp"
 #include "verification/vesicles/calibration_data.hpp"
+#include "verification/vesicles/differences.hpp"
 
 namespace traceraft {
 namespace {
@@ -33,13 +34,21 @@ struct FoundLine {
   bool determined;
 };
 
-std::vector<FoundLine> findings_of(const Configuration& model, const Calibration& result) {
+// D is known no better than the size of what is measured is that of what is simulated.
+bool size_is_told(const MeasuredVesicles& data, const Configuration& model, double low,
+                  double high) {
+  return std::fabs(std::log(factor_of_size(data, model.units().length()))) <
+         0.5 * std::log(high / low);
+}
+
+std::vector<FoundLine> findings_of(const MeasuredVesicles& data, const Configuration& model,
+                                   const Calibration& result) {
   std::vector<FoundLine> lines;
   for (const CalibratedParameter& p : result.parameters) {
     if (p.name == "seconds_per_unit")
       lines.push_back({"mobility", "cm^2/s", diffusion(model, p.value),
                        diffusion(model, p.interval.high), diffusion(model, p.interval.low),
-                       p.determined});
+                       p.determined && size_is_told(data, model, p.interval.low, p.interval.high)});
     else
       lines.push_back({p.name, p.name == "fraction" ? "1" : "um", p.value, p.interval.low,
                        p.interval.high, p.determined});
@@ -217,8 +226,10 @@ std::vector<std::string> sentences_on(const Calibration& result) {
   std::vector<std::string> sentences;
   if (result.converged && !result.unit_at_bound)
     sentences.push_back("The data know best " + best_known(result) + ".");
-  sentences.push_back(
-      formatted("Perimeters scatter by %.0f %% beyond what runs do.", 100 * result.best.scatter));
+  sentences.push_back(result.best.scatter > kAtEnd * kLeastScatter
+                          ? formatted("Perimeters scatter by %.0f %% beyond what runs do.",
+                                      100 * result.best.scatter)
+                          : "Perimeters scatter no more than runs do.");
   return sentences;
 }
 
@@ -226,7 +237,7 @@ std::vector<std::string> sentences_on(const Calibration& result) {
 
 void write_calibration(const std::filesystem::path& folder, const MeasuredVesicles& data,
                        const CalibrationRuns& runs, const Calibration& result, bool quiet) {
-  const std::vector<FoundLine> lines = findings_of(runs.model, result);
+  const std::vector<FoundLine> lines = findings_of(data, runs.model, result);
   const std::vector<Row> rows = rows_of(lines);
   const Configuration found = found_model(runs.model, runs.names, lines);
   const std::vector<History> best = best_runs(runs, result);

@@ -103,6 +103,12 @@ bool Calibrator::add_point(const std::vector<double>& ln, const std::string& num
     words += " " + request_.names[i] + " " + format_number(values.back());
   }
   const Configuration here = configuration_at(model_, request_.names, values, end_of_runs(data_));
+  CalibrationPoint point;
+  for (const double value : values_of(here, request_.names))
+    point.ln_parameters.push_back(std::log(value));
+  // Designs that end where meshes do may share points, which count once.
+  for (const CalibrationPoint& before : points_)
+    if (before.ln_parameters == point.ln_parameters) return true;
   if (!request_.quiet)
     std::printf("simulations %s: at%s, %s cells%s\n", number.c_str(),
                 words.empty() ? " the model" : words.c_str(), here.text("cells").c_str(),
@@ -117,9 +123,7 @@ bool Calibrator::add_point(const std::vector<double>& ln, const std::string& num
     std::fprintf(stderr, "traceraft: the run of seed %llu at%s failed: %s\n",
                  static_cast<unsigned long long>(failure.seed), words.c_str(), failure.why.c_str());
   ends_.push_back(std::move(end));
-  points_.emplace_back();
-  for (const double value : values_of(here, request_.names))
-    points_.back().ln_parameters.push_back(std::log(value));
+  points_.push_back(std::move(point));
   return true;
 }
 

@@ -98,6 +98,8 @@ SeriesSetup read_series_job(const ExplainCommand& command) {
   GivenValues given = command.job.flags;
   given.merge(read_config_file(command.job.model, "--model"));
   SeriesSetup setup{std::move(data), given, {given, {}}};
+  if (const std::string other = other_membrane(setup.data.composition, setup.model); !other.empty())
+    throw InputError(setup.model.where("case") + ": the model is of " + other);
   refuse_series(setup.data, setup.model);
   return setup;
 }

@@ -1,5 +1,7 @@
 #include "drivers/input/model_of_data.hpp"
 
+#include <cstdlib>
+
 #include "drivers/config/cases.hpp"
 #include "kernel/core/error.hpp"
 #include "verification/vesicles/raft_fraction.hpp"
@@ -21,6 +23,16 @@ void refuse_without_model(const std::string& composition, const std::string& mod
   throw InputError(
       "--case or --model: say which model to hold the measurements against" +
       (own.empty() ? std::string() : "; theirs, " + composition + ", is --case " + own));
+}
+
+std::string other_membrane(const std::string& composition, const Configuration& model) {
+  if (composition.empty() || model.text("case").empty()) return "";
+  const CaseEntry& entry = cases().find(model.text("case"));
+  if (entry.composition.empty() || same_membrane(composition, entry.composition)) return "";
+  for (const auto& [option, value] : entry.values)
+    if (option == "raft-fraction" && model.number(option) != std::strtod(value.c_str(), nullptr))
+      return "";
+  return entry.composition + " (case " + entry.name + "), the measurements of " + composition;
 }
 
 }  // namespace traceraft

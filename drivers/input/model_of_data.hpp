@@ -16,4 +16,8 @@ std::string case_of(const std::string& composition);
 void refuse_without_model(const std::string& composition, const std::string& model,
                           const GivenValues& flags);
 
+// "3:1:20 (case guv-3to1), the measurements of 2:1:20", if the model is a case's, with its raft
+// fraction, and its membrane another one than that of the measurements; "" otherwise.
+std::string other_membrane(const std::string& composition, const Configuration& model);
+
 }  // namespace traceraft

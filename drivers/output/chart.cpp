@@ -74,19 +74,42 @@ std::pair<Extent, Extent> extents(const Chart& chart) {
   return {x, y};
 }
 
-// A logarithmic axis has labels at 1, 2 and 5 as well, unless decades alone fill it.
+// The largest of 1, 2 and 5 times a power of ten that is no larger.
+double nice_step(double largest) {
+  const double decade = std::pow(10, std::floor(std::log10(largest)));
+  return decade * (5 * decade <= largest ? 5 : 2 * decade <= largest ? 2 : 1);
+}
+
+// Labelled tics of a logarithmic axis that decades alone do not fill: a few, evenly spaced, on a
+// short one; at every digit; at 1, 2 and 5 of a decade, with short tics at the others.
+std::string log_tics(const Extent& extent) {
+  constexpr double kShort = 2.5, kDecade = 10;
+  const double ratio = extent.most / extent.least;
+  std::string tics;
+  const auto add = [&](double at, bool labelled) {
+    tics += (tics.empty() ? "" : ", ") + std::string(labelled ? "" : "'' ") + format_number(at) +
+            (labelled ? "" : " 1");
+  };
+  if (ratio < kShort) {
+    const double step = nice_step((extent.most - extent.least) / 4);
+    const double first = std::max(1.0, std::floor(extent.least / step));
+    for (double k = first; k <= std::ceil(extent.most / step); ++k) add(k * step, true);
+    return tics;
+  }
+  for (double decade = std::pow(10, std::floor(std::log10(extent.least) - 1));
+       decade <= 10 * extent.most; decade *= 10)
+    for (int digit = 1; digit <= 9; ++digit)
+      add(digit * decade, ratio < kDecade || digit == 1 || digit == 2 || digit == 5);
+  return tics;
+}
+
 std::string log_axis(const std::string& axis, const Extent& extent) {
   constexpr double kManyDecades = 1e3, kPlain = 1e5;
   std::string text = "set logscale " + axis + "\n";
   const bool plain = extent.most < kPlain && extent.least > 1 / kPlain;
   text += "set format " + axis + (plain ? " '%g'\n" : " '%.0e'\n");
   if (extent.most > kManyDecades * extent.least) return text;
-  std::string tics;
-  for (double decade = std::pow(10, std::floor(std::log10(extent.least) - 1));
-       decade <= 10 * extent.most; decade *= 10)
-    for (const int digit : {1, 2, 5})
-      tics += (tics.empty() ? "" : ", ") + format_number(digit * decade);
-  return text + "set " + axis + "tics (" + tics + ")\n";
+  return text + "set " + axis + "tics (" + log_tics(extent) + ")\n";
 }
 
 std::string script(const Chart& chart, const std::string& svg) {

@@ -1,6 +1,7 @@
 #include "drivers/run/program_run.hpp"
 
 #include <csignal>
+#include <cstring>
 #include <stdexcept>
 
 #include "backends/posix/child.hpp"
@@ -27,8 +28,19 @@ std::vector<std::string> program_on(int ranks) {
 
 }  // namespace
 
+// As shells tell it; 0 if it ended by itself.
+int ProgramEnd::signal() const {
+  return exit_code > 128 ? exit_code - 128 : 0;
+}
+
 std::string ProgramEnd::reason() const {
   if (exit_code == 127) return "mpirun is not there; install the Debian package openmpi-bin";
+  if (signal() == SIGKILL) return "it was killed; was there too little memory?";
+  if (signal() > 0)
+    return std::string("it crashed: ") + strsignal(signal()) +
+           (last_line.empty() ? "" : "; it had said: " + last_line);
+  const std::string prefix = "traceraft: ";
+  if (last_line.rfind(prefix, 0) == 0) return last_line.substr(prefix.size());
   return last_line.empty() ? "exit code " + std::to_string(exit_code) : last_line;
 }
 
@@ -43,12 +55,9 @@ bool ProgramEnd::telling() const {
     case kBadInput:
     case kNumericalFailure:
     case kInternalError:
-    case 128 + SIGKILL:
-    case 128 + SIGSEGV:
-    case 128 + SIGABRT:
       return true;
     default:
-      return false;
+      return signal() > 0 && signal() != SIGTERM && signal() != SIGINT;
   }
 }
 

@@ -15,6 +15,7 @@ struct ProgramEnd {
   bool out_of_time = false;
   std::string last_line;  // of what it printed
 
+  int signal() const;          // that ended it, or 0
   std::string reason() const;  // of a failure, in a line
   bool was_stopped() const;    // it, or this process, was asked to
   // Does its end say something of what it was given to do? Bad input (a solver that refuses the

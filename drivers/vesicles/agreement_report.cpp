@@ -27,6 +27,13 @@ std::vector<std::string> doubts_of(const std::vector<Agreement>& agreements) {
           formatted("Runs and measurement scatter by %.2g %% only in %s: what they are "
                     "compared in units of is next to nothing.",
                     100 * a.scatter, name_of(a.quantity).label));
+  for (const Agreement& a : agreements)
+    if (a.has_trend())
+      sentences.push_back(
+          formatted("THE SIMULATIONS CHANGE OTHERWISE: deviations of the %s have a trend of %+.2g "
+                    "+- %.1g per e-fold of time, so that a good mean says little. traceraft "
+                    "explain looks for what is missing.",
+                    name_of(a.quantity).label, a.trend, a.trend_error));
   return sentences;
 }
 
@@ -45,31 +52,35 @@ std::string about_agreement(std::size_t runs) {
 
 std::vector<Row> agreement_rows(const std::vector<Agreement>& agreements) {
   std::vector<Row> rows = {{"quantity", "compared", "outside the runs' time", "within their range",
-                            "mean deviation", "misfit"}};
+                            "mean deviation", "misfit", "trend per e-fold of time"}};
   for (const Agreement& a : agreements) {
     rows.push_back({name_of(a.quantity).label, std::to_string(a.measurements),
-                    std::to_string(a.beyond), "", "", ""});
+                    std::to_string(a.beyond), "", "", "", ""});
     if (a.measurements == 0) continue;
     Row& row = rows.back();
     row[3] = formatted("%d (%.0f %%)", a.within, 100.0 * a.within / a.measurements);
     row[4] = formatted("%+.2f", a.bias);
     row[5] = formatted("%.2f", a.misfit);
+    if (a.trend_error > 0) row[6] = formatted("%+.2f +- %.2f", a.trend, a.trend_error);
   }
   return rows;
 }
 
 Table agreement_table(const std::vector<Agreement>& agreements) {
   Table table{"comparison",
-              {"quantity", "compared", "beyond", "within_range", "mean_deviation", "misfit"},
+              {"quantity", "compared", "beyond", "within_range", "mean_deviation", "misfit",
+               "trend", "trend_error"},
               {}};
   for (const Agreement& a : agreements) {
     table.rows.push_back({name_of(a.quantity).id, static_cast<double>(a.measurements),
-                          static_cast<double>(a.beyond), "", "", ""});
+                          static_cast<double>(a.beyond), "", "", "", "", ""});
     if (a.measurements == 0) continue;
     std::vector<Cell>& row = table.rows.back();
     row[3] = static_cast<double>(a.within);
     row[4] = a.bias;
     row[5] = a.misfit;
+    row[6] = a.trend;
+    row[7] = a.trend_error;
   }
   return table;
 }
@@ -78,7 +89,8 @@ std::vector<std::string> cautions(const MeasuredVesicles& data, double radius,
                                   const std::vector<History>& runs,
                                   const std::vector<Agreement>& agreements) {
   std::vector<std::string> all = differences(data, simulated_vesicle(radius, runs, data));
-  if (const std::string doubt = too_long_boundaries(data); !doubt.empty()) all.push_back(doubt);
+  for (const std::string& doubt : {too_long_boundaries(data), too_short_boundaries(data)})
+    if (!doubt.empty()) all.push_back(doubt);
   for (const std::string& doubt : doubts_of(agreements)) all.push_back(doubt);
   return all;
 }

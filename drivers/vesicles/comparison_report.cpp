@@ -4,6 +4,7 @@
 
 #include "backends/posix/durable_file.hpp"
 #include "drivers/exit_codes.hpp"
+#include "drivers/input/model_of_data.hpp"
 #include "drivers/output/json_file.hpp"
 #include "drivers/output/provenance.hpp"
 #include "drivers/vesicles/agreement_report.hpp"
@@ -98,7 +99,11 @@ class ComparisonReport {
   }
 
   std::vector<std::string> notes() const {
-    std::vector<std::string> notes = cautions(data_, model_.units().length(), runs_, agreements_);
+    std::vector<std::string> notes;
+    if (const std::string other = other_membrane(data_.composition, model_); !other.empty())
+      notes.push_back("ANOTHER MEMBRANE: the simulations are of " + other + ".");
+    for (const std::string& note : cautions(data_, model_.units().length(), runs_, agreements_))
+      notes.push_back(note);
     if (model_.text("surface") != "sphere")
       notes.push_back("The simulated surface is no sphere: " + model_.text("surface") + ".");
     return notes;

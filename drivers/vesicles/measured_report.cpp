@@ -103,8 +103,8 @@ void print_dataset(const MeasuredVesicles& data, const std::optional<FittedLaw>&
   if (!data.composition.empty() && data.celsius)
     std::printf("  %-22s %s\n", "estimated fraction",
                 estimated_fraction(data.composition, *data.celsius).c_str());
-  if (const std::string doubt = too_long_boundaries(data); !doubt.empty())
-    std::printf("\nNOTE: %s\n", doubt.c_str());
+  for (const std::string& doubt : {too_long_boundaries(data), too_short_boundaries(data)})
+    if (!doubt.empty()) std::printf("\nNOTE: %s\n", doubt.c_str());
   std::printf("\npower law from %g to %g s\n", window.begin, window.end);
   print_rows({law_heading(), law_row(origin_of(data), law)});
   for (const std::string& remark : remarks_on({law})) std::printf("%s\n", remark.c_str());

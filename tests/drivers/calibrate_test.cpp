@@ -132,6 +132,33 @@ TEST_F(CalibrateTest, FindsTheMobilityOfAnEnsemble) {
   }
 }
 
+// Vesicles that are larger than the simulated one, and another membrane.
+TEST_F(CalibrateTest, DoesNotTakeOneVesicleForAnother) {
+  const std::string kept = TRACERAFT_ROOT "/verification/data/";
+  const std::string of_runs = " --ensemble " + kept + "ensembles/guv-2to1 --out ";
+  const Outcome made =
+      traceraft("calibrate --data " + kept + "synthetic/guv-2to1" + of_runs + out("c"));
+  ASSERT_EQ(made.code, 0) << made.output;
+  const auto json = nlohmann::json::parse(content(folder.path / "c/calibration.json"));
+  const auto& mobility = json["parameters"]["mobility"];
+  EXPECT_LT(mobility["interval_95"][1], 2 * mobility["interval_95"][0].get<double>());
+  EXPECT_EQ(mobility["determined"], false);
+  EXPECT_NE(made.output.find("would ask for 2.8 times the D"), std::string::npos) << made.output;
+
+  const std::string other = "calibrate --data " + kept + "synthetic/guv-3to1";
+  for (const std::string& model : {of_runs + out("d"), " --case guv-2to1 --out " + out("d")}) {
+    const Outcome refused = traceraft(other + model);
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_NE(refused.output.find("2:1:20 (case guv-2to1), the measurements of 3:1:20"),
+              std::string::npos)
+        << refused.output;
+  }
+  const Outcome compared =
+      traceraft("data compare " + kept + "synthetic/guv-3to1" + of_runs + out("e"));
+  EXPECT_EQ(compared.code, 0);
+  EXPECT_NE(compared.output.find("ANOTHER MEMBRANE"), std::string::npos) << compared.output;
+}
+
 // What the measurements show after the end of the runs they may have shown before, if D is smaller.
 TEST_F(CalibrateTest, LooksForTheMobilityWithinItsRuns) {
   const std::string kept = TRACERAFT_ROOT "/verification/data/";

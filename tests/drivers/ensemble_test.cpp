@@ -128,6 +128,36 @@ TEST_F(EnsembleTest, StopsWhenItIsAskedTo) {
   EXPECT_FALSE(fs::exists(folder.path / "a/runs/seed-2"));
 }
 
+// The children of a process.
+std::vector<pid_t> children_of(pid_t parent) {
+  std::vector<pid_t> children;
+  for (const auto& entry : fs::directory_iterator("/proc")) {
+    std::ifstream file(entry.path() / "stat");
+    pid_t process = 0, its_parent = 0;
+    std::string name, state;
+    if (file >> process >> name >> state >> its_parent && its_parent == parent)
+      children.push_back(process);
+  }
+  return children;
+}
+
+TEST_F(EnsembleTest, IsolatesARunThatCrashes) {
+  const std::string log = out("log");
+  const pid_t child = testing::start_traceraft("ensemble " + runs + "--runs 3 --jobs 1 --out " +
+                                               out("a") + " > " + log + " 2>&1");
+  for (int i = 0; i < 6000 && lines_of(folder.path / "a/runs/seed-1/series.csv") < 5; ++i)
+    usleep(10000);
+  const std::vector<pid_t> members = children_of(child);
+  ASSERT_EQ(members.size(), 1u);
+  kill(members[0], SIGBUS);
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 3);
+  EXPECT_NE(content(log).find("the run of seed 1 failed: it crashed: Bus error"), std::string::npos)
+      << content(log);
+  EXPECT_NE(content(folder.path / "a/ensemble.html").find("2 of 3 runs"), std::string::npos);
+}
+
 TEST_F(EnsembleTest, IsolatesARunThatFails) {
   fs::create_directories(folder.path / "a/runs");
   std::ofstream(folder.path / "a/plan.json") << "{\"runs\": 3, \"first_seed\": 1}\n";

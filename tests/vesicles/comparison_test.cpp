@@ -188,6 +188,48 @@ TEST(Comparison, KnowsWhatToExpectOfFewRuns) {
   EXPECT_EQ(same_kind(3).misfit, HUGE_VAL);
 }
 
+// Curves that differ in level and slope, of which that of all is known.
+std::vector<History> curves(int count, std::uint64_t seed, double slope) {
+  std::vector<History> all;
+  for (int k = 0; k < count; ++k) {
+    const auto index = static_cast<std::uint64_t>(k);
+    const double level = 0.2 * normal_random(seed, 1, index);
+    const double own = slope + 0.1 * normal_random(seed, 2, index);
+    History run;
+    for (double t = 50; t <= 2000; t *= 1.1) {
+      run.time.push_back(t);
+      run.of(Quantity::perimeter).push_back(10 * std::exp(level + own * std::log(t / 300)));
+      run.of(Quantity::rafts).push_back(5);
+      run.of(Quantity::fraction).push_back(0.1);
+    }
+    all.push_back(run);
+  }
+  return all;
+}
+
+TEST(Comparison, SeesATrendAndSeldomOneThatIsNone) {
+  constexpr int kSets = 300;
+  int alarms = 0;
+  double squares = 0;
+  for (std::uint64_t set = 1; set <= kSets; ++set) {
+    const Agreement a =
+        compare_with_runs(looked_at(curves(17, 1000 + set, -0.3)), curves(8, set, -0.3))[0];
+    alarms += a.has_trend();
+    squares += std::pow(a.trend / a.trend_error, 2) / kSets;
+  }
+  EXPECT_LE(alarms, kSets * 3 / 100);
+  EXPECT_NEAR(std::sqrt(squares), 1, 0.25);
+  const Agreement steeper =
+      compare_with_runs(looked_at(curves(17, 2000, -0.8)), curves(8, 3, -0.3))[0];
+  EXPECT_TRUE(steeper.has_trend());
+  EXPECT_LT(steeper.trend, 0);
+  // Too few of either say nothing of it.
+  for (const auto& [vesicles, simulated] : {std::pair(4, 8), std::pair(17, 3)})
+    EXPECT_FALSE(
+        compare_with_runs(looked_at(curves(vesicles, 2000, -0.8)), curves(simulated, 3, -0.3))[0]
+            .has_trend());
+}
+
 TEST(Comparison, SeesVesiclesOfAnotherKind) {
   const auto agreements = compare_with_runs(looked_at(runs(20, 2)), runs(20, 1));
   EXPECT_EQ(agreements[0].within, 0);

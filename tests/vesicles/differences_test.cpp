@@ -26,9 +26,15 @@ TEST(Differences, NameRadiiAndFractions) {
   const auto large = differences(vesicles({5, 5, 8.5}, {0.09, 0.1, 0.12}), {5, 0.1});
   ASSERT_EQ(large.size(), 1u);
   EXPECT_NE(large[0].find("5 to 8.5 um (median 5)"), std::string::npos) << large[0];
+  EXPECT_NE(large[0].find("ask for 2 times the D"), std::string::npos) << large[0];
   const auto other = differences(vesicles({5, 5, 5}, {0.15, 0.16, 0.155}), {5, 0.1});
   ASSERT_EQ(other.size(), 1u);
   EXPECT_NE(other[0].find("0.155 of the vesicles"), std::string::npos) << other[0];
+}
+
+TEST(Differences, SizeCountsWithItsFourthPower) {
+  EXPECT_NEAR(factor_of_size(vesicles({6, 6}, {0.1, 0.1}), 6), 1, 1e-12);
+  EXPECT_NEAR(factor_of_size(vesicles({3, 12}, {0.1, 0.1}), 3), 16, 1e-9);
 }
 
 // Rafts cover less than the share of raft lipids: what counts is what would be measured.

@@ -39,5 +39,27 @@ TEST(Resolvable, DoubtsNothingThatMayBe) {
   EXPECT_EQ(too_long_boundaries(nothing), "");
 }
 
+// 50,000 rafts on a vesicle of 5 µm have some 30 nm.
+TEST(Resolvable, NamesRaftsThatAreTooMany) {
+  MeasuredVesicles data = look(0, 0.1);
+  data.measurements[0].values[static_cast<std::size_t>(Quantity::rafts)] = 50000;
+  const std::string doubt = too_long_boundaries(data);
+  EXPECT_NE(doubt.find("of vesicle 'a' at 30 s 0.028 um"), std::string::npos) << doubt;
+  data.measurements[0].values[static_cast<std::size_t>(Quantity::rafts)] = 50;
+  EXPECT_EQ(too_long_boundaries(data), "");
+}
+
+// A cap that covers a tenth has a perimeter of 3.77 R.
+TEST(Resolvable, NamesBoundariesShorterThanThatOfACap) {
+  EXPECT_EQ(too_short_boundaries(look(3.5, 0.1)), "");
+  EXPECT_EQ(too_short_boundaries(look(1.9, std::nullopt)), "");
+  const std::string doubt = too_short_boundaries(look(1.92, 0.1));  // a diameter for the radius
+  EXPECT_NE(doubt.find("of vesicle 'a' at 30 s 0.51 times"), std::string::npos) << doubt;
+  MeasuredVesicles uncertain = look(3, 0.1);
+  EXPECT_NE(too_short_boundaries(uncertain), "");
+  uncertain.measurements[0].sigma[static_cast<std::size_t>(Quantity::fraction)] = 0.03;
+  EXPECT_EQ(too_short_boundaries(uncertain), "");
+}
+
 }  // namespace
 }  // namespace traceraft

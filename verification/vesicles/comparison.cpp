@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
+#include <string>
 
 #include "kernel/core/error.hpp"
 #include "verification/measure/fit.hpp"
@@ -18,59 +21,155 @@ constexpr double kLeast = 0.5;
 // Rounding to whole rafts alone has this deviation.
 const double kRoundingDeviation = 1 / std::sqrt(12.0);
 
-Agreement agreement(const MeasuredVesicles& data, const std::vector<History>& runs,
-                    Quantity quantity) {
-  Agreement result{quantity};
-  double first = 0, last = HUGE_VAL;
-  for (const History& run : runs) {
-    first = std::max(first, run.time.front());
-    last = std::min(last, run.time.back());
+struct Deviation {
+  std::string vesicle;
+  double ln_time;
+  double off, size;  // measured − mean of the runs, and its standard deviation
+  double share;      // the latter over what is measured
+  bool within;       // the range of the runs
+
+  double z() const { return off / std::max(size, 1e-6); }
+};
+
+// Of one measurement, of logarithms where scatter is relative.
+Deviation deviation_of(const Measurement& m, Quantity quantity,
+                       const std::vector<const History*>& runs) {
+  const double y = *m.of(quantity);
+  std::vector<double> values;
+  for (const History* run : runs) values.push_back(run->at(quantity, m.time));
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const bool within = y >= *low && y <= *high;
+  double sigma =
+      std::max(m.sigma_of(quantity), quantity == Quantity::rafts ? kRoundingDeviation : 0.0);
+  double measured = y;
+  if (relative(quantity)) {
+    const double above_zero = std::max(y, kLeast);
+    sigma /= above_zero;
+    measured = std::log(above_zero);
+    for (double& value : values) value = std::log(std::max(value, kLeast));
   }
-  for (const Measurement& m : data.measurements) {
-    if (!m.of(quantity)) continue;
-    if (m.time < first || m.time > last) {
-      ++result.beyond;
-      continue;
-    }
-    const double y = *m.of(quantity);
-    std::vector<double> values;
-    for (const History& run : runs) values.push_back(run.at(quantity, m.time));
-    const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    result.within += y >= *low && y <= *high;
-    ++result.measurements;
-    double sigma =
-        std::max(m.sigma_of(quantity), quantity == Quantity::rafts ? kRoundingDeviation : 0.0);
-    double measured = y;
-    if (relative(quantity)) {
-      const double above_zero = std::max(y, kLeast);
-      sigma /= above_zero;
-      measured = std::log(above_zero);
-      for (double& value : values) value = std::log(std::max(value, kLeast));
-    }
-    const Moments runs_here = moments(values);
-    const double of_mean = 1 + 1 / static_cast<double>(runs.size());
-    const double deviation = std::hypot(runs_here.deviation * std::sqrt(of_mean), sigma);
-    const double z = (measured - runs_here.mean) / std::max(deviation, 1e-6);
-    const double unit = relative(quantity) ? 1 : std::max(runs_here.mean, 1e-6);
-    result.scatter += deviation * deviation / (unit * unit);
-    result.bias += z;
-    result.misfit += z * z;
-  }
-  const double count = std::max(1, result.measurements);
-  result.bias /= count;
-  result.misfit = std::sqrt(result.misfit / count);
-  result.scatter = std::sqrt(result.scatter / count);
+  const Moments runs_here = moments(values);
+  const double of_mean = 1 + 1 / static_cast<double>(runs.size());
+  const double deviation = std::hypot(runs_here.deviation * std::sqrt(of_mean), sigma);
+  const double unit = relative(quantity) ? 1 : std::max(runs_here.mean, 1e-6);
+  return {m.vesicle, std::log(m.time), measured - runs_here.mean,
+          deviation, deviation / unit, within};
+}
+
+std::vector<const History*> pointers(const std::vector<History>& runs) {
+  std::vector<const History*> result;
+  for (const History& run : runs) result.push_back(&run);
   return result;
 }
 
+// The least squares slope of z over ln t; the error of what vesicles leave, looks at one of which
+// are alike (clusters: Liang and Zeger 1986).
+struct Slope {
+  double value = 0, error = 0;
+};
+Slope slope_of(const std::vector<Deviation>& all) {
+  double time = 0, z = 0, xx = 0, xz = 0;
+  for (const Deviation& d : all) {
+    time += d.ln_time / static_cast<double>(all.size());
+    z += d.z() / static_cast<double>(all.size());
+  }
+  for (const Deviation& d : all) {
+    xx += (d.ln_time - time) * (d.ln_time - time);
+    xz += (d.ln_time - time) * d.z();
+  }
+  if (!(xx > 0)) return {};
+  const double slope = xz / xx;
+  std::map<std::string, double> scores;
+  for (const Deviation& d : all)
+    scores[d.vesicle] += (d.ln_time - time) * (d.z() - z - slope * (d.ln_time - time));
+  double squares = 0;
+  for (const auto& [vesicle, score] : scores) squares += score * score;
+  const auto n = static_cast<double>(scores.size());
+  return {slope, n > 1 ? std::sqrt(squares * n / (n - 1)) / xx : 0};
+}
+
+class Comparison {
+ public:
+  Comparison(const MeasuredVesicles& data, const std::vector<History>& runs, Quantity quantity)
+      : runs_(pointers(runs)) {
+    result_.quantity = quantity;
+    double first = 0, last = HUGE_VAL;
+    for (const History& run : runs) {
+      first = std::max(first, run.time.front());
+      last = std::min(last, run.time.back());
+    }
+    for (const Measurement& m : data.measurements) {
+      if (!m.of(quantity)) continue;
+      if (m.time < first || m.time > last)
+        ++result_.beyond;
+      else
+        compared_.push_back(&m);
+    }
+  }
+
+  Agreement run() {
+    const std::vector<Deviation> all = deviations(runs_);
+    for (const Deviation& d : all) {
+      result_.within += d.within;
+      result_.scatter += d.share * d.share;
+      result_.bias += d.z();
+      result_.misfit += d.z() * d.z();
+    }
+    result_.measurements = static_cast<int>(all.size());
+    const double count = std::max(1, result_.measurements);
+    result_.bias /= count;
+    result_.misfit = std::sqrt(result_.misfit / count);
+    result_.scatter = std::sqrt(result_.scatter / count);
+    set_trend(all);
+    return result_;
+  }
+
+ private:
+  std::vector<Deviation> deviations(const std::vector<const History*>& runs) const {
+    std::vector<Deviation> all;
+    for (const Measurement* m : compared_) all.push_back(deviation_of(*m, result_.quantity, runs));
+    return all;
+  }
+
+  // The error of the runs' means by leaving out each of them (jackknife).
+  void set_trend(const std::vector<Deviation>& all) {
+    constexpr std::size_t kFewestRuns = 4, kFewestVesicles = 5;
+    std::set<std::string> vesicles;
+    for (const Deviation& d : all) vesicles.insert(d.vesicle);
+    if (runs_.size() < kFewestRuns || vesicles.size() < kFewestVesicles) return;
+    const Slope slope = slope_of(all);
+    std::vector<double> without;
+    for (std::size_t k = 0; k < runs_.size(); ++k) {
+      std::vector<const History*> others = runs_;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+      std::vector<Deviation> changed = deviations(others);
+      for (std::size_t i = 0; i < all.size(); ++i) changed[i].size = all[i].size;
+      without.push_back(slope_of(changed).value);
+    }
+    const auto n = static_cast<double>(runs_.size());
+    result_.trend = slope.value;
+    result_.trend_error =
+        std::hypot(slope.error, moments(without).deviation * (n - 1) / std::sqrt(n));
+  }
+
+  const std::vector<const History*> runs_;
+  std::vector<const Measurement*> compared_;
+  Agreement result_{};
+};
+
 }  // namespace
+
+bool Agreement::has_trend() const {
+  constexpr double kSure = 3;
+  return std::fabs(trend) > kSure * trend_error;
+}
 
 std::vector<Agreement> compare_with_runs(const MeasuredVesicles& data,
                                          const std::vector<History>& runs) {
   if (runs.size() < 2)
     throw InputError("a comparison with measurements needs two finished runs at least");
   std::vector<Agreement> all;
-  for (const Quantity quantity : kQuantities) all.push_back(agreement(data, runs, quantity));
+  for (const Quantity quantity : kQuantities) all.push_back(Comparison(data, runs, quantity).run());
   return all;
 }
 

@@ -17,6 +17,11 @@ struct Agreement {
   double bias = 0;       // mean of (measured − mean of the runs) / deviation
   double misfit = 0;     // root of the mean square of the same
   double scatter = 0;    // root mean square of the deviation, relative to what is measured
+  // Of the deviations that bias is the mean of, per e-fold of time, and its standard error: of the
+  // vesicles, looks at one of which are alike, and of the runs. 0 and 0 if there are too few.
+  double trend = 0, trend_error = 0;
+
+  bool has_trend() const;  // by more than three standard errors
 };
 
 // deviation²: the variance between n runs, times 1 + 1/n as their mean scatters, too, and sigma² of

@@ -19,8 +19,9 @@ std::string difference_of_radii(const MeasuredVesicles& data, double radius) {
   return formatted(
       "The vesicles have radii of %.3g to %.3g um (median %.3g), the simulated one %.3g um: at the "
       "same time larger vesicles have more rafts and a larger perimeter over radius, so that part "
-      "of a deviation may be due to their size.",
-      d.min, d.max, d.median, radius);
+      "of a deviation may be due to their size. As far as coarsening takes times that go with R^4, "
+      "simulations of their size would ask for %.2g times the D.",
+      d.min, d.max, d.median, radius, factor_of_size(data, radius));
 }
 
 std::string difference_of_fractions(const MeasuredVesicles& data, double fraction) {
@@ -46,6 +47,12 @@ SimulatedVesicle simulated_vesicle(double radius, const std::vector<History>& ru
   for (const History& run : runs)
     sum += run.at(Quantity::fraction, std::sqrt(window.begin * window.end));
   return {radius, sum / static_cast<double>(runs.size())};
+}
+
+double factor_of_size(const MeasuredVesicles& data, double radius) {
+  double sum = 0;
+  for (const Measurement& m : data.measurements) sum += std::log(m.radius / radius);
+  return std::exp(4 * sum / static_cast<double>(data.measurements.size()));
 }
 
 std::vector<std::string> differences(const MeasuredVesicles& data, const SimulatedVesicle& model) {

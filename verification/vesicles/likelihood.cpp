@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kLeastCount = 0.5;             // of rafts: there may be none for a moment
 constexpr double kRoundingVariance = 1 / 12.0;  // of a whole number
-constexpr double kLeastScatter = 0.01, kUsualScatter = 0.1, kLargestScatter = 1;
+constexpr double kUsualScatter = 0.1, kLargestScatter = 1;
 
 double square(double x) {
   return x * x;

@@ -66,6 +66,7 @@ class RunStatistics {
 
 // The simulations do not know D: it only sets the unit of time, R²/D. Nor do they know the scatter
 // that measuring adds to the logarithm of a perimeter. Both are found at no cost.
+inline constexpr double kLeastScatter = 0.01;  // that is looked for
 struct TimeFit {
   double seconds_per_unit;  // of the time of the runs
   double scatter;

@@ -11,14 +11,27 @@ namespace {
 
 constexpr double kDiffraction = 0.2;  // µm
 
-// Of the rafts of a look if they are equal discs, or of what is between them; infinite where
-// nothing tells. A strip would be half as wide.
+// Of the rafts of a look if they are equal discs, by their boundaries (or of what is between them,
+// of which a strip would be half as wide) or by their number; infinite where nothing tells.
 double diameter_of(const Measurement& m) {
-  const auto perimeter = m.of(Quantity::perimeter);
-  if (!perimeter || !(*perimeter > 0)) return HUGE_VAL;
   const double fraction = m.of(Quantity::fraction).value_or(0.5);
-  const double area = 4 * kPi * std::min(fraction, 1 - fraction);
-  return 4 * area / *perimeter * m.radius;
+  double diameter = HUGE_VAL;
+  if (const double perimeter = m.of(Quantity::perimeter).value_or(0); perimeter > 0)
+    diameter = 16 * kPi * std::min(fraction, 1 - fraction) / perimeter;
+  if (const double rafts = m.of(Quantity::rafts).value_or(0); rafts > 0)
+    diameter = std::min(diameter, 4 * std::sqrt(fraction / rafts));
+  return diameter * m.radius;
+}
+
+// Of the perimeter, over the shortest that a raft fraction can have, that of a cap; infinite where
+// nothing tells. As far as errors of measuring allow.
+double length_of(const Measurement& m) {
+  const auto perimeter = m.of(Quantity::perimeter), fraction = m.of(Quantity::fraction);
+  if (!perimeter || !fraction || !(*fraction > 0 && *fraction < 1)) return HUGE_VAL;
+  constexpr double kSure = 2;
+  const double least = std::max(0.0, *fraction - kSure * m.sigma_of(Quantity::fraction));
+  return (*perimeter + kSure * m.sigma_of(Quantity::perimeter)) /
+         (4 * kPi * std::sqrt(least * (1 - least)));
 }
 
 }  // namespace
@@ -32,9 +45,26 @@ std::string too_long_boundaries(const MeasuredVesicles& data) {
       all.begin(), all.end(),
       [](const Measurement& a, const Measurement& b) { return diameter_of(a) < diameter_of(b); });
   return formatted(
-      "Of %td of %zu looks the perimeter is so long that even round rafts would be less than the "
-      "%.1f um across that light resolves: of vesicle '%s' at %.4g s %.2g um. Are the units right?",
+      "Of %td of %zu looks the perimeter is so long, or rafts are so many, that even round ones "
+      "would be less than the %.1f um across that light resolves: of vesicle '%s' at %.4g s %.2g "
+      "um. Are the units right?",
       narrow, all.size(), kDiffraction, worst.vesicle.c_str(), worst.time, diameter_of(worst));
+}
+
+std::string too_short_boundaries(const MeasuredVesicles& data) {
+  constexpr double kTooShort = 0.9;
+  const auto& all = data.measurements;
+  const auto shorter = [](const Measurement& m) { return length_of(m) < kTooShort; };
+  const auto count = std::count_if(all.begin(), all.end(), shorter);
+  if (count == 0) return "";
+  const Measurement& worst = *std::min_element(
+      all.begin(), all.end(),
+      [](const Measurement& a, const Measurement& b) { return length_of(a) < length_of(b); });
+  return formatted(
+      "Of %td of %zu looks the perimeter is shorter than any boundary around the raft fraction, of "
+      "vesicle '%s' at %.4g s %.2g times that of a single cap. Is the radius a diameter, or the "
+      "perimeter divided by the radius already?",
+      count, all.size(), worst.vesicle.c_str(), worst.time, length_of(worst));
 }
 
 }  // namespace traceraft

@@ -1,4 +1,4 @@
-// Whether a light microscope could have shown what was measured.
+// Whether there could be, and a light microscope could show, what was measured.
 #pragma once
 
 #include <string>
@@ -7,9 +7,13 @@
 
 namespace traceraft {
 
-// Boundaries that are so long that what they enclose is smaller than the limit of diffraction, half
-// a wavelength: equal discs with the area A and the perimeter P together have the diameter 4 A / P.
-// A sentence that counts such looks and names the worst; "" if there is none.
+// Boundaries so long, or rafts so many, that they are smaller than the limit of diffraction, half a
+// wavelength: N equal discs with the area A and the perimeter P together have the diameter 4 A / P,
+// or √(4 A / π N). A sentence that counts such looks and names the worst; "" if there is none.
 std::string too_long_boundaries(const MeasuredVesicles& data);
+
+// The same of perimeters that are shorter, by more than a tenth and errors of measuring, than that
+// of a single cap, which no boundary around as large a raft fraction can be.
+std::string too_short_boundaries(const MeasuredVesicles& data);
 
 }  // namespace traceraft
