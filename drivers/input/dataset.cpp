@@ -42,7 +42,7 @@ Dataset read_description(const fs::path& folder) {
   if (toml.has("radius"))
     d.units.radius = checked_radius(toml.number("radius") * d.units.length, toml.where("radius"));
   const std::string sigma = toml.text_or("sigma", "standard deviation");
-  if (sigma != "standard deviation" && sigma != "95 % interval")
+  if (sigma != "standard deviation" && sigma != "95 % interval" && sigma != "95% interval")
     throw InputError(toml.where("sigma") + ": '" + sigma +
                      "' is neither 'standard deviation' nor '95 % interval' (its half length)");
   constexpr double kHalfLength95 = 1.959964;

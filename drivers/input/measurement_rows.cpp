@@ -108,11 +108,11 @@ void read_value(const TableUnits& units, const CsvTable& table, std::size_t row,
 }
 
 void check_columns(const CsvTable& table, const std::vector<std::string>& known) {
-  table.require("vesicle");
-  table.require("time");
   for (const std::string& column : table.columns())
     if (std::find(known.begin(), known.end(), column) == known.end())
       throw InputError(table.heading() + ": " + unknown_name_message("column", column, known));
+  table.require("vesicle");
+  table.require("time");
   for (const Quantity quantity : kQuantities) {
     const std::string name = name_of(quantity).id;
     if (table.has(name + "_sigma") && !table.has(name))

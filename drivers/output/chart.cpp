@@ -98,8 +98,10 @@ std::string log_tics(const Extent& extent) {
   }
   for (double decade = std::pow(10, std::floor(std::log10(extent.least) - 1));
        decade <= 10 * extent.most; decade *= 10)
-    for (int digit = 1; digit <= 9; ++digit)
+    for (int digit = 1; digit <= 9; ++digit) {
       add(digit * decade, ratio < kDecade || digit == 1 || digit == 2 || digit == 5);
+      if (ratio < kDecade && digit == 1) add(1.5 * decade, true);
+    }
   return tics;
 }
 

@@ -76,12 +76,31 @@ void add_surface(Page& page, const fs::path& run, const PageRequest& request,
   missing.add(add_viewer(page, frames.mesh, frames.values, view));
 }
 
-void add_summary(Page& page, const fs::path& run) {
+// Of what summary.json says that has a unit which its name does not say.
+std::string unit_of(const std::string& key, const std::string& length, const std::string& time) {
+  if (key == "t") return time;
+  if (key == "h" || key == "perimeter" || key == "perimeter_level") return length;
+  if (key == "area" || key == "mass") return length + "^2";
+  if (key == "energy") return length + "^2, in units of the energy density";
+  return "";
+}
+
+std::string value_text(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  return value.is_number_float() ? formatted("%.6g", value.get<double>()) : value.dump();
+}
+
+void add_summary(Page& page, const fs::path& run, const std::string& length,
+                 const std::string& time) {
   if (!fs::exists(run / "summary.json")) return;
-  std::vector<Row> rows = {{"number", "value"}};
+  std::vector<Row> rows = {{"number", "value", "unit"}};
   from_json(run / "summary.json", [&](const Json& json) {
-    for (const auto& [key, value] : json.items())
-      rows.push_back({key, value.is_string() ? value.get<std::string>() : value.dump()});
+    for (const auto& [key, value] : json.items()) {
+      if (!value.is_object()) rows.push_back({key, value_text(value), unit_of(key, length, time)});
+      if (value.is_object())
+        for (const auto& [inner, entry] : value.items())
+          rows.push_back({key + "." + inner, value_text(entry), ""});
+    }
     return 0;
   });
   page.heading("Numbers");
@@ -99,7 +118,7 @@ void fill_run(Page& page, const fs::path& folder, const PageRequest& request, Mi
   const CsvTable series = CsvTable::read(folder / "series.csv");
   for (const Curve& curve : curves(scaled ? "R" : "um", unit))
     add_chart(page, series_chart(series, curve, unit), request.charts / curve.column, missing);
-  add_summary(page, folder);
+  add_summary(page, folder, scaled ? "R" : "um", unit);
   add_settings(page, configuration);
   add_provenance(page, folder, command_for("traceraft run", configuration));
 }

@@ -1,9 +1,11 @@
 #include "drivers/report/surface_frames.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "backends/posix/durable_file.hpp"
 #include "backends/zlib/vtu_reader.hpp"
@@ -57,12 +59,15 @@ class Grid {
       ++count[clusters[p]];
     }
     for (std::size_t k = 0; k < count.size(); ++k) coarse.position[k] /= count[k];
+    std::set<std::array<int, 3>> there;
     for (const std::array<int, 3>& fine : field.mesh.triangles) {
       const std::array<int, 3> corners = {clusters[fine[0]], clusters[fine[1]], clusters[fine[2]]};
       if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0])
         continue;
-      // Means may fold a thin triangle over, on others: it would be a dark speck.
-      if (normal(field.mesh, fine).dot(normal(coarse, corners)) > 0)
+      // Means may fold a thin triangle over, on others, or make the same of two: where one sees
+      // through the surface, that would be a dark speck.
+      if (normal(field.mesh, fine).dot(normal(coarse, corners)) > 0 &&
+          there.insert(sorted(corners)).second)
         coarse.triangles.push_back(corners);
     }
     return coarse;
@@ -86,6 +91,10 @@ class Grid {
   static Point normal(const SurfaceMesh& mesh, const std::array<int, 3>& corners) {
     const Point& a = mesh.position[corners[0]];
     return (mesh.position[corners[1]] - a).cross(mesh.position[corners[2]] - a);
+  }
+  static std::array<int, 3> sorted(std::array<int, 3> corners) {
+    std::sort(corners.begin(), corners.end());
+    return corners;
   }
   static double size_of(const SurfaceMesh& mesh) {
     double size = 0;

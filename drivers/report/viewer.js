@@ -51,6 +51,17 @@
     });
   }
 
+  // Are all points about as far from the centre?
+  function round(positions) {
+    let least = Infinity, most = 0;
+    for (let i = 0; i < positions.length; i += 3) {
+      const distance = Math.hypot(positions[i], positions[i + 1], positions[i + 2]);
+      least = Math.min(least, distance);
+      most = Math.max(most, distance);
+    }
+    return least > 0.9 * most;
+  }
+
   async function start() {
     const [positions, indices, values] = await Promise.all(
       ['mesh-positions', 'mesh-triangles', 'frames'].map(bytesOf));
@@ -93,10 +104,21 @@
     });
     const world = new THREE.Scene();
     const sides = [material(THREE.BackSide, 0.45), material(THREE.FrontSide, 0.0)];
-    sides.forEach((side, order) => {
+    const add = (side, order) => {
       const mesh = new THREE.Mesh(geometry, side);
       mesh.renderOrder = order;
       world.add(mesh);
+    };
+    // Where triangles overlap a veil would be painted twice, as a dark speck. Of what is round each
+    // side has one layer, and only what lies in it is painted.
+    sides.forEach((side, order) => {
+      add(side, 2 * order + 1);
+      if (!round(quantised)) return;
+      const layer = side.clone();
+      layer.colorWrite = false;
+      layer.depthWrite = true;
+      add(layer, 2 * order);
+      side.depthFunc = THREE.EqualDepth;
     });
 
     const draw = () => renderer.render(world, camera);

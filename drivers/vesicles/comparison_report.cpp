@@ -111,7 +111,7 @@ class ComparisonReport {
 
   std::vector<std::string> remarks() const {
     std::vector<std::string> remarks = remarks_on({measured_, simulated_});
-    if (summary_.times.back() < 0.99 * request_.window.end)
+    if (simulated_ && summary_.times.back() < 0.99 * request_.window.end)
       remarks.push_back(formatted("The runs end at %.4g s: their law is fitted until then.",
                                   summary_.times.back()));
     return remarks;

@@ -76,7 +76,8 @@ std::string origin_of(const MeasuredVesicles& data) {
 }
 
 std::string title_of(const MeasuredVesicles& data) {
-  return data.name + (data.synthetic ? " (SYNTHETIC, not measured)" : "");
+  const bool said = data.name.find("SYNTHETIC") != std::string::npos;
+  return data.name + (data.synthetic && !said ? " (SYNTHETIC, not measured)" : "");
 }
 
 std::string about_data(const MeasuredVesicles& data) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "kernel/core/text.hpp"
@@ -50,6 +51,10 @@ class Search {
     while (more) {
       more = look_for_one();
       save(more);
+    }
+    if (result_.finding == Finding::ambiguous) {
+      tell_apart();
+      save(false);
     }
     finish();
     return std::move(result_);
@@ -312,6 +317,34 @@ class Search {
     result_.rivals.assign(without_gap.begin() + 1, without_gap.end());
     result_.finding = result_.rivals.empty() ? Finding::named : Finding::ambiguous;
     return true;
+  }
+
+  // What is held out counts, too, between the members of a class, with the noise that was found.
+  void tell_apart() {
+    tell("what is held out says of the class");
+    FilterSettings settings = request_.filter;
+    settings.replicates = 0;
+    const auto evidence = [&](Refit& fit) {
+      FilterModel model{request_.base, fit.pace, fit.hypothesis, {}};
+      std::vector<ErrorMaps> maps;
+      (void)filter_fields(data_, model, settings, maps);
+      fit = refit(data_, model, settings, maps);
+      if (!fit.failure.empty()) return std::numeric_limits<double>::infinity();
+      model.pace = fit.pace;
+      model.hypothesis = fit.hypothesis;
+      return criterion(fit, values()) +
+             heldout_deviance(filter_fields(data_, model, settings, maps));
+    };
+    Refit found = result_.found;
+    const double least = evidence(found), limit = telling(values(), mesh_error());
+    std::vector<Refit> left;
+    for (Refit& rival : result_.rivals) {
+      const double worse = evidence(rival) - least;
+      tell("  " + rival.hypothesis.name() + " gains " + std::to_string(std::lround(-worse)));
+      if (worse < limit) left.push_back(std::move(rival));
+    }
+    result_.rivals = std::move(left);
+    if (result_.rivals.empty()) result_.finding = Finding::named;
   }
 
   void finish() {

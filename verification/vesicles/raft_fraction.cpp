@@ -127,7 +127,7 @@ RaftFractionEstimate estimated_raft_fraction(const LipidMixture& membrane, doubl
   const auto [low, high] = std::minmax(known.celsius, known.other_celsius);
   if (!(celsius >= low - kFarthest && celsius <= high + kFarthest))
     throw InputError(
-        formatted("--temperature: %.4g is too far from the %.4g to %.4g C of which "
+        formatted("a temperature of %.4g C is too far from the %.4g to %.4g C of which "
                   "raft fractions of %s are known; choose %.4g to %.4g",
                   celsius, low, high, known.name, low - kFarthest, high + kFarthest));
   const double share = (celsius - known.celsius) / (known.other_celsius - known.celsius);
