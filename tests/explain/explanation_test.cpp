@@ -109,5 +109,24 @@ TEST_F(RivalsTest, AreNotIfTheyLeaveOneToo) {
   EXPECT_EQ(left.found.hypothesis.name(), "gravity");
 }
 
+// Of those that leave no gap, too; what is as good stays.
+TEST_F(RivalsTest, AreToldApartByWhatIsHeldOut) {
+  const Refit right = fit_of("uptake"), wrong = fit_of("gravity");
+  EXPECT_EQ(class_of(explained(right, {right})).size(), 2u);
+  EXPECT_EQ(class_of(explained(right, {wrong})), std::vector<std::string>{"uptake"});
+  const FilterProblems data = problems_of(measured(), request_);
+  const auto held_out = [&](const Refit& fit) {
+    std::vector<ErrorMaps> maps;
+    const FilterResult pass =
+        filter_fields(data, {request_.base, fit.pace, fit.hypothesis, {}}, request_.filter, maps);
+    return heldout_deviance(pass);
+  };
+  // A snapshot of a thousand values, which no parameter was fitted to.
+  const double truth = held_out(right);
+  EXPECT_GT(truth, 800);
+  EXPECT_LT(truth, 1500);
+  EXPECT_GT(held_out(wrong), truth + 30);
+}
+
 }  // namespace
 }  // namespace traceraft
