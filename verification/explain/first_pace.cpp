@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "verification/explain/gaps.hpp"
 #include "verification/explain/score_test.hpp"
 
 namespace traceraft {
@@ -14,7 +15,7 @@ constexpr double kLargestStep = 0.7, kGoodEnough = 0.02;
 // A forecast of far too slow a membrane is about what was measured before, and its derivatives tell
 // the way to the right pace. Of far too fast a one everything has come to rest, and they tell
 // nothing: such a search begins at one of these.
-constexpr double kSlower[] = {1.0 / 8, 1.0 / 64};
+constexpr double kSlower[] = {1.0 / 8, 1.0 / 64, 1.0 / 512};
 
 struct Pass {
   FilterModel model;
@@ -45,14 +46,21 @@ class PaceSearch {
   }
 
  private:
-  // The most probable of some.
+  // That of the model, or the most probable of some if it is far off.
   Pass first_pass() const {
     Pass best = pass_at(1);
+    if (is_near(best.result)) return best;
     for (const double pace : kSlower) {
       Pass slower = pass_at(pace);
       if (slower.result.deviance < best.result.deviance) best = std::move(slower);
     }
     return best;
+  }
+
+  static bool is_near(const FilterResult& pass) {
+    constexpr double kFarGap = 2;  // measured minus forecast, over what noise makes of it
+    return std::fabs(screen(pass, {}, {}).pace_change) < kLargestStep &&
+           gaps_of_pass(pass).train < kFarGap * expected_gaps(pass).train;
   }
 
   Pass pass_at(double pace) const {
