@@ -155,7 +155,9 @@ int run_calibration(CalibrateRequest request) {
   if (!request.ensemble.empty()) return calibrate_ensemble(request, data);
   refuse_without_model(data.composition, request.model, request.flags);
   const Configuration model(read_config_file(request.model, "--model"), request.flags);
-  refuse_other_membrane(model.where("case"), data, model);
+  const std::vector<std::string> costly = costly_parameters(request.parameters);
+  if (std::find(costly.begin(), costly.end(), "fraction") == costly.end())
+    refuse_other_membrane(model.where("case"), data, model);
   refuse_scaled(model);
   refuse_calibrating(model);
   refuse_without_noise(model);

@@ -34,21 +34,31 @@ struct FoundLine {
   bool determined;
 };
 
-// D is known no better than the size of what is measured is that of what is simulated.
-bool size_is_told(const MeasuredVesicles& data, const Configuration& model, double low,
-                  double high) {
-  return std::fabs(std::log(factor_of_size(data, model.units().length()))) <
-         0.5 * std::log(high / low);
+// Is D known better than what the size of the vesicles makes of it?
+bool size_is_told(double factor, const Interval& unit) {
+  constexpr double kSame = 1.2;
+  return std::fabs(std::log(factor)) <
+         std::max(std::log(kSame), 0.5 * std::log(unit.high / unit.low));
 }
 
+bool have_trend(const std::vector<Agreement>& agreements) {
+  return std::any_of(agreements.begin(), agreements.end(), [](const Agreement& a) {
+    return a.quantity != Quantity::fraction && a.has_trend();
+  });
+}
+
+// Of D nothing is determined by vesicles of another size, or that coarsen otherwise.
 std::vector<FoundLine> findings_of(const MeasuredVesicles& data, const Configuration& model,
+                                   const std::vector<Agreement>& agreements,
                                    const Calibration& result) {
+  const double factor = factor_of_size(data, model.units().length());
   std::vector<FoundLine> lines;
   for (const CalibratedParameter& p : result.parameters) {
     if (p.name == "seconds_per_unit")
-      lines.push_back({"mobility", "cm^2/s", diffusion(model, p.value),
-                       diffusion(model, p.interval.high), diffusion(model, p.interval.low),
-                       p.determined && size_is_told(data, model, p.interval.low, p.interval.high)});
+      lines.push_back(
+          {"mobility", "cm^2/s", diffusion(model, p.value), diffusion(model, p.interval.high),
+           diffusion(model, p.interval.low),
+           p.determined && size_is_told(factor, p.interval) && !have_trend(agreements)});
     else
       lines.push_back({p.name, p.name == "fraction" ? "1" : "um", p.value, p.interval.low,
                        p.interval.high, p.determined});
@@ -181,6 +191,13 @@ std::vector<std::string> notes_on(const MeasuredVesicles& data, const Calibratio
         "The intervals hold if the initial noise is as long as the model's; if it is not, the "
         "others take the blame. With noise-length among --parameters it is looked for, too.");
   const double radius = runs.model.units().length();
+  const double factor = factor_of_size(data, radius);
+  if (const CalibratedParameter& unit = result.parameters.front();
+      unit.determined && !size_is_told(factor, unit.interval))
+    notes.push_back(
+        formatted("THE SIZE OF THE VESICLES decides about D: simulations with --radius %.3g would "
+                  "make it %.2g times as large.",
+                  radius * std::pow(factor, 0.25), factor));
   for (const std::string& note : cautions(data, radius, best, agreements)) notes.push_back(note);
   return notes;
 }
@@ -237,11 +254,11 @@ std::vector<std::string> sentences_on(const Calibration& result) {
 
 void write_calibration(const std::filesystem::path& folder, const MeasuredVesicles& data,
                        const CalibrationRuns& runs, const Calibration& result, bool quiet) {
-  const std::vector<FoundLine> lines = findings_of(data, runs.model, result);
-  const std::vector<Row> rows = rows_of(lines);
-  const Configuration found = found_model(runs.model, runs.names, lines);
   const std::vector<History> best = best_runs(runs, result);
   const std::vector<Agreement> agreements = compare_with_runs(data, best);
+  const std::vector<FoundLine> lines = findings_of(data, runs.model, agreements, result);
+  const std::vector<Row> rows = rows_of(lines);
+  const Configuration found = found_model(runs.model, runs.names, lines);
   const std::vector<Row> agreement = agreement_rows(agreements);
   std::vector<std::string> sentences = notes_on(data, runs, best, agreements, result);
   for (const std::string& sentence : sentences_on(result)) sentences.push_back(sentence);

@@ -33,9 +33,14 @@ namespace fs = std::filesystem;
 // Series are explained with D within this factor of the model's, if nothing else is known of it.
 constexpr double kTimeRange = 8;
 
-double time_range(double diffusion_error) {
-  constexpr double k95 = 2;
-  return diffusion_error > 0 ? std::exp(k95 * diffusion_error) : kTimeRange;
+UnitRange unit_range(const Configuration& model, double diffusion_error) {
+  constexpr double k95 = 2, kReach = 2;
+  UnitRange range{model.units().seconds_per_unit(), kTimeRange};
+  if (diffusion_error > 0) {
+    range.factor = std::exp(k95 * diffusion_error);
+    range.reach = kReach;
+  }
+  return range;
 }
 
 struct ExplainCommand {
@@ -114,7 +119,7 @@ bool explain_series_data(const ExplainCommand& command, const SeriesSetup& setup
   const SeriesEnsembles ensembles = run_series_ensembles(out / "ensembles", model, request);
   if (ensembles.stopped) return false;
   end_on_stop_signals(kInterrupted, go_on);
-  SeriesRequest search{{model.units().seconds_per_unit(), time_range(command.job.diffusion_error)}};
+  SeriesRequest search{unit_range(model, command.job.diffusion_error)};
   search.replicates = command.job.replicates;
   const SeriesExplanation found = numerically(
       [&] { return explain_series(data, ensembles.base, ensembles.candidates, search); });

@@ -137,6 +137,8 @@ ExplainSetup read_explain_job(const ExplainJob& job) {
   const Configuration model = setup.configuration();
   refuse_scaled(model);
   refuse_effects(model);
+  if (const std::string other = other_membrane(data.composition, model); !other.empty())
+    setup.notes.push_back("ANOTHER MEMBRANE: the model is of " + other + ".");
   for (FieldSeries& vesicle : setup.series)
     for (FieldSnapshot& snapshot : vesicle.snapshots) snapshot.time /= model.units().time();
 

@@ -46,11 +46,14 @@ constexpr double kSure = 3;
 void add_pace(const Explanation& found, const Units& base, std::vector<std::string>& all) {
   const double log_pace = std::fabs(std::log(found.found.pace));
   const double D = base.diffusion_cm2_s * found.found.pace;
-  if (log_pace > kSure * found.pace_doubt)
+  // What was found is between the two, and the difference from what is known varies as much less.
+  const double square =
+      found.pace_doubt * found.pace_doubt - found.found.pace_deviation * found.found.pace_deviation;
+  if (std::isfinite(square) && square > 0 && log_pace > kSure * std::sqrt(square))
     all.push_back(
-        formatted("The measurements ask for a D of %.3g cm^2/s, although the model's, %.3g, is "
-                  "said to be known to %.2g %%: is it?",
-                  D, base.diffusion_cm2_s, 100 * found.pace_doubt));
+        formatted("The measurements contradict that D is known to %.2g %%: together they make it "
+                  "%.3g cm^2/s, and the model's is %.3g.",
+                  100 * found.pace_doubt, D, base.diffusion_cm2_s));
   if (log_pace < std::log(kFarPace) || log_pace < kSure * found.found.pace_deviation) return;
   all.push_back(formatted(
       "The measurements ask for a D of %.2g cm^2/s, %.3g times %s than the "
@@ -66,14 +69,22 @@ void add_class(const Explanation& found, const Units& base, std::vector<std::str
     return std::fabs(std::log(a.pace / b.pace)) >
            kSure * std::hypot(a.pace_deviation, b.pace_deviation);
   };
-  if (std::none_of(found.rivals.begin(), found.rivals.end(),
-                   [&](const Refit& rival) { return differ(found.found, rival); }))
-    return;
-  std::string text = "They ask for different D, " + found.found.hypothesis.name() +
-                     formatted(" for %.3g cm^2/s", D(found.found));
+  std::vector<Refit> members = found.rivals;
+  members.push_back(found.found);
+  const bool different = std::any_of(members.begin(), members.end(), [&](const Refit& a) {
+    return std::any_of(members.begin(), members.end(),
+                       [&](const Refit& b) { return differ(a, b); });
+  });
+  if (!different) return;
+  std::string text = "What these data do not tell apart asks for different D, " +
+                     found.found.hypothesis.name() + formatted(" for %.3g cm^2/s", D(found.found));
   for (const Refit& rival : found.rivals)
     text += ", " + rival.hypothesis.name() + formatted(" for %.3g", D(rival));
-  all.push_back(text + ": if D was measured, --diffusion and --diffusion-error may decide.");
+  all.push_back(text + ": " +
+                (std::isfinite(found.pace_doubt)
+                     ? "a D that is known better may decide."
+                     : "if D was measured, --diffusion and --diffusion-error may "
+                       "decide."));
 }
 
 void add_mesh(const Explanation& found, std::vector<std::string>& all) {

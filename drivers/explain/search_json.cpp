@@ -220,13 +220,15 @@ Finding finding_of(const std::string& word) {
 
 Json search_json(const SearchState& state) {
   const Explanation& found = state.so_far;
-  Json rounds = Json::array(), rivals = Json::array(), disagreements = Json::array(),
-       changes = Json::array();
+  Json rounds = Json::array(), rivals = Json::array(), told_apart = Json::array(),
+       disagreements = Json::array(), changes = Json::array();
   for (const Round& round : found.rounds) rounds.push_back(json_of(round));
   for (const Refit& fit : found.rivals) rivals.push_back(json_of(fit));
+  for (const ToldApart& t : found.told_apart) told_apart.push_back({t.effect, t.less});
   for (const Disagreement& d : found.disagreements) disagreements.push_back(json_of(d));
   for (const FrameChange& change : found.changes) changes.push_back(json_of(change));
   return {{"more", state.more},
+          {"class_weighed", state.told_apart},
           {"noise", state.noise},
           {"finding", word_for(found.finding)},
           {"without_gap", word_for(found.without_gap)},
@@ -236,6 +238,7 @@ Json search_json(const SearchState& state) {
           {"rounds", rounds},
           {"disagreements", disagreements},
           {"changes", changes},
+          {"told_apart", told_apart},
           {"stopped", found.stopped},
           {"rerun", json_of(found.rerun)},
           {"base_maps", json_of(found.base_maps)},
@@ -245,6 +248,7 @@ Json search_json(const SearchState& state) {
 SearchState search_from(const Json& json, const CahnHilliardModel& base) {
   SearchState state;
   state.more = json.at("more");
+  state.told_apart = json.at("class_weighed");
   state.noise = json.at("noise").get<std::vector<std::vector<double>>>();
   Explanation& found = state.so_far;
   found.finding = finding_of(json.at("finding"));
@@ -255,6 +259,7 @@ SearchState search_from(const Json& json, const CahnHilliardModel& base) {
   for (const Json& round : json.at("rounds")) found.rounds.push_back(round_of(round, base));
   for (const Json& d : json.at("disagreements")) found.disagreements.push_back(disagreement_of(d));
   for (const Json& change : json.at("changes")) found.changes.push_back(change_of(change));
+  for (const Json& t : json.at("told_apart")) found.told_apart.push_back({t.at(0), t.at(1)});
   found.stopped = json.at("stopped");
   found.rerun = rerun_of(json.at("rerun"));
   found.base_maps = maps_of(json.at("base_maps"));

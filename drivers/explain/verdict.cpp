@@ -18,6 +18,13 @@ Json rivals_json(const Explanation& found, const Units& base) {
   return rivals;
 }
 
+Json told_apart_json(const Explanation& found) {
+  Json all = Json::array();
+  for (const ToldApart& t : found.told_apart)
+    all.push_back({{"effect", t.effect}, {"score", -t.less}});
+  return all;
+}
+
 Json bounds_json(const Explanation& found, const Units& base) {
   Json bounds = Json::object();
   for (const FoundBound& b : found_bounds(found, base))
@@ -133,6 +140,7 @@ Json verdict_json(const Explanation& found, const ExplainSetup& setup) {
           {"closest", found.finding == Finding::unnamed && !name.empty() ? Json(name) : Json()},
           {"parameters", parameters_json(found_parameters(found.found, base))},
           {"rivals", rivals_json(found, base)},
+          {"told_apart", told_apart_json(found)},
           {"bounds", bounds_json(found, base)},
           {"not_looked_for", not_looked_for(found)},
           {"alternatives", alternatives_json(found.rounds.front())},

@@ -7,6 +7,7 @@
 #include "backends/posix/durable_file.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
+#include "kernel/core/text.hpp"
 
 namespace traceraft {
 namespace {
@@ -83,17 +84,19 @@ double nice_step(double largest) {
 // Labelled tics of a logarithmic axis that decades alone do not fill: a few, evenly spaced, on a
 // short one; at every digit; at 1, 2 and 5 of a decade, with short tics at the others.
 std::string log_tics(const Extent& extent) {
-  constexpr double kShort = 2.5, kDecade = 10;
+  constexpr double kOne = 1.01, kShort = 2.5, kDecade = 10;
   const double ratio = extent.most / extent.least;
+  if (!(ratio > kOne)) return formatted("%.6g", extent.least);
   std::string tics;
   const auto add = [&](double at, bool labelled) {
-    tics += (tics.empty() ? "" : ", ") + std::string(labelled ? "" : "'' ") + format_number(at) +
-            (labelled ? "" : " 1");
+    tics += (tics.empty() ? "" : ", ") + std::string(labelled ? "" : "'' ") +
+            formatted("%.6g", at) + (labelled ? "" : " 1");
   };
   if (ratio < kShort) {
-    const double step = nice_step((extent.most - extent.least) / 4);
-    const double first = std::max(1.0, std::floor(extent.least / step));
-    for (double k = first; k <= std::ceil(extent.most / step); ++k) add(k * step, true);
+    const double step = nice_step((extent.most - extent.least) / 3);
+    const int first = std::max(1, static_cast<int>(std::floor(extent.least / step)));
+    for (int k = first; k <= static_cast<int>(std::ceil(extent.most / step)); ++k)
+      add(k * step, true);
     return tics;
   }
   for (double decade = std::pow(10, std::floor(std::log10(extent.least) - 1));
@@ -124,8 +127,9 @@ std::string script(const Chart& chart, const std::string& svg) {
   if (chart.log_y) {
     // What is 1 all the time does not lie on the axis then.
     constexpr double kMargin = 1.18;
-    text += log_axis("y", y) + "set yrange [" + format_number(y.least / kMargin) + ":" +
-            format_number(y.most * kMargin) + "]\n";
+    const Extent shown{y.least / kMargin, y.most * kMargin};
+    text += log_axis("y", shown) + "set yrange [" + format_number(shown.least) + ":" +
+            format_number(shown.most) + "]\n";
   }
   text += "set key outside below\nset grid lc rgb '#dddddd'\n";
   for (std::size_t i = 0; i < std::size(kColours); ++i)

@@ -30,7 +30,8 @@ std::vector<std::string> program_on(int ranks) {
 
 // As shells tell it; 0 if it ended by itself.
 int ProgramEnd::signal() const {
-  return exit_code > 128 ? exit_code - 128 : 0;
+  constexpr int kMostSignals = 64;  // mpirun has exit codes of its own beyond
+  return exit_code > 128 && exit_code <= 128 + kMostSignals ? exit_code - 128 : 0;
 }
 
 std::string ProgramEnd::reason() const {

@@ -143,7 +143,7 @@ TEST_F(CalibrateTest, DoesNotTakeOneVesicleForAnother) {
   const auto& mobility = json["parameters"]["mobility"];
   EXPECT_LT(mobility["interval_95"][1], 2 * mobility["interval_95"][0].get<double>());
   EXPECT_EQ(mobility["determined"], false);
-  EXPECT_NE(made.output.find("would ask for 2.8 times the D"), std::string::npos) << made.output;
+  EXPECT_NE(made.output.find("would make D 2.8 times as large"), std::string::npos) << made.output;
 
   const std::string other = "calibrate --data " + kept + "synthetic/guv-3to1";
   for (const std::string& model : {of_runs + out("d"), " --case guv-2to1 --out " + out("d")}) {

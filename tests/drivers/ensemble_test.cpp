@@ -148,8 +148,8 @@ TEST_F(EnsembleTest, IsolatesARunThatCrashes) {
   for (int i = 0; i < 6000 && lines_of(folder.path / "a/runs/seed-1/series.csv") < 5; ++i)
     usleep(10000);
   const std::vector<pid_t> members = children_of(child);
-  ASSERT_EQ(members.size(), 1u);
-  kill(members[0], SIGBUS);
+  EXPECT_EQ(members.size(), 1u);
+  for (const pid_t member : members) kill(member, SIGBUS);
   int status = 0;
   waitpid(child, &status, 0);
   EXPECT_EQ(WEXITSTATUS(status), 3);

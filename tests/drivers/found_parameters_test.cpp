@@ -68,10 +68,12 @@ TEST(Remarks, DoubtADThatMeasurementsContradict) {
   found.pace_doubt = 0.05;
   ASSERT_EQ(remarks(found, kCell).size(), 1u);
   const std::string text = remarks(found, kCell).front();
-  EXPECT_NE(
-      text.find("a D of 1.3e-05 cm^2/s, although the model's, 1e-05, is said to be known to 5"),
-      std::string::npos)
-      << text;
+  const std::string expected =
+      "to 5 %: together they make it 1.3e-05 cm^2/s, and the model's is 1e-05";
+  EXPECT_NE(text.find(expected), std::string::npos) << text;
+  // As sure as D was known before, the measurements have told nothing.
+  found.found.pace_deviation = 0.05;
+  EXPECT_TRUE(remarks(found, kCell).empty());
 }
 
 TEST(Remarks, SayWhetherAMeasuredDWouldDecide) {

@@ -144,7 +144,7 @@ TEST_F(ProgramTest, StopsStudiesAndGeneratorsAtOnceWhenAskedTo) {
         "hide --effects uptake --epsilon 0.5 --out " + out("hidden")}) {
     const pid_t child = testing::start_traceraft(command + " > /dev/null");
     sleep(2);
-    EXPECT_EQ(waitpid(child, nullptr, WNOHANG), 0) << command;
+    ASSERT_EQ(waitpid(child, nullptr, WNOHANG), 0) << command;
     const auto asked = std::chrono::steady_clock::now();
     kill(child, SIGTERM);
     int status = 0;

@@ -7,6 +7,7 @@
 
 #include "tests/support/small_vesicle.hpp"
 #include "verification/explain/candidates.hpp"
+#include "verification/explain/class_evidence.hpp"
 #include "verification/explain/rerun.hpp"
 
 namespace traceraft {
@@ -109,23 +110,31 @@ TEST_F(RivalsTest, AreNotIfTheyLeaveOneToo) {
   EXPECT_EQ(left.found.hypothesis.name(), "gravity");
 }
 
-// Of those that leave no gap, too; what is as good stays.
-TEST_F(RivalsTest, AreToldApartByWhatIsHeldOut) {
+// Of those that leave no gap, too; what is as good stays, and what is better comes first.
+TEST_F(RivalsTest, AreToldApartByAllThatWasMeasured) {
+  request_.false_alarms = -1;  // no gap is one
   const Refit right = fit_of("uptake"), wrong = fit_of("gravity");
   EXPECT_EQ(class_of(explained(right, {right})).size(), 2u);
-  EXPECT_EQ(class_of(explained(right, {wrong})), std::vector<std::string>{"uptake"});
-  const FilterProblems data = problems_of(measured(), request_);
-  const auto held_out = [&](const Refit& fit) {
-    std::vector<ErrorMaps> maps;
-    const FilterResult pass =
-        filter_fields(data, {request_.base, fit.pace, fit.hypothesis, {}}, request_.filter, maps);
-    return heldout_deviance(pass);
+  const Explanation found = explained(right, {wrong});
+  EXPECT_EQ(class_of(found), std::vector<std::string>{"uptake"});
+  ASSERT_EQ(found.told_apart.size(), 1u);
+  EXPECT_EQ(found.told_apart[0].effect, "gravity");
+  const Explanation turned = explained(wrong, {right});
+  EXPECT_EQ(turned.finding, Finding::named);
+  EXPECT_EQ(class_of(turned), std::vector<std::string>{"uptake"});
+  EXPECT_NEAR(turned.told_apart.at(0).less, found.told_apart[0].less, 2);
+
+  // As a search that holds out nothing has it, but for the noise, which is that of the found model.
+  request_.hold_out = false;
+  const auto criterion_of = [&](const Refit& start) {
+    const FilterProblems data = problems_of(measured(), request_);
+    const auto criteria = criteria_of_all(data, request_.base, {start}, request_.filter);
+    return criteria.at(0).value();
   };
-  // A snapshot of a thousand values, which no parameter was fitted to.
-  const double truth = held_out(right);
-  EXPECT_GT(truth, 800);
-  EXPECT_LT(truth, 1500);
-  EXPECT_GT(held_out(wrong), truth + 30);
+  const double all = criterion_of(wrong) - criterion_of(right),
+               counting = wrong.deviance - right.deviance;
+  EXPECT_NEAR(found.told_apart[0].less, all, 0.2 * all);
+  EXPECT_GT(all, 1.2 * counting);  // a third snapshot more
 }
 
 }  // namespace

@@ -224,7 +224,7 @@ TEST(Comparison, SeesATrendAndSeldomOneThatIsNone) {
   EXPECT_TRUE(steeper.has_trend());
   EXPECT_LT(steeper.trend, 0);
   // Too few of either say nothing of it.
-  for (const auto& [vesicles, simulated] : {std::pair(4, 8), std::pair(17, 3)})
+  for (const auto& [vesicles, simulated] : {std::pair(7, 8), std::pair(17, 5)})
     EXPECT_FALSE(
         compare_with_runs(looked_at(curves(vesicles, 2000, -0.8)), curves(simulated, 3, -0.3))[0]
             .has_trend());

@@ -55,7 +55,14 @@ TEST(Resolvable, NamesBoundariesShorterThanThatOfACap) {
   EXPECT_EQ(too_short_boundaries(look(1.9, std::nullopt)), "");
   const std::string doubt = too_short_boundaries(look(1.92, 0.1));  // a diameter for the radius
   EXPECT_NE(doubt.find("of vesicle 'a' at 30 s 0.51 times"), std::string::npos) << doubt;
+  EXPECT_EQ(too_short_boundaries(look(3.5, 0.9)), "");
+  EXPECT_NE(too_short_boundaries(look(1.9, 0.9)), "");
   MeasuredVesicles uncertain = look(3, 0.1);
+  for (const double fraction : {0.1, 0.9}) {
+    MeasuredVesicles sure = look(3.7, fraction);
+    sure.measurements[0].sigma[static_cast<std::size_t>(Quantity::fraction)] = 0.06;
+    EXPECT_EQ(too_short_boundaries(sure), "") << fraction;
+  }
   EXPECT_NE(too_short_boundaries(uncertain), "");
   uncertain.measurements[0].sigma[static_cast<std::size_t>(Quantity::fraction)] = 0.03;
   EXPECT_EQ(too_short_boundaries(uncertain), "");

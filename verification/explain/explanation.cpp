@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "kernel/core/text.hpp"
+#include "verification/explain/class_evidence.hpp"
 #include "verification/explain/first_pace.hpp"
 #include "verification/explain/neighbours.hpp"
 #include "verification/explain/noise_levels.hpp"
@@ -49,12 +49,8 @@ class Search {
                      far ? ": are time_unit and the model's --diffusion right?" : ""));
     }
     while (more) {
-      more = look_for_one();
+      more = look_for_one() || tell_apart();
       save(more);
-    }
-    if (result_.finding == Finding::ambiguous) {
-      tell_apart();
-      save(false);
     }
     finish();
     return std::move(result_);
@@ -79,7 +75,7 @@ class Search {
   }
 
   SearchState state(bool more) const {
-    SearchState now{result_, {}, more};
+    SearchState now{result_, {}, more, told_apart_};
     for (const FilterProblem& data : data_) now.noise.push_back(data.noise);
     return now;
   }
@@ -90,6 +86,7 @@ class Search {
 
   void go_on_from(const SearchState& state) {
     result_ = state.so_far;
+    told_apart_ = state.told_apart;
     for (FilterProblem& data : data_) data.noise = state.noise[data.vesicle];
     model_.hypothesis = result_.found.hypothesis;
     model_.pace = result_.found.pace;
@@ -263,14 +260,7 @@ class Search {
               });
   }
 
-  // That were measured and count, the first snapshots aside.
-  double values() const {
-    double count = 0;
-    for (const FilterProblem& data : data_)
-      for (std::size_t k = 1; k < data.train; ++k)
-        count += static_cast<double>(data.snapshots[k].values.size());
-    return count;
-  }
+  double values() const { return count_values(data_, false); }
 
   bool take(const Round& round) {
     const double usual_change = kUsualChange * contrast_of(data_) / noise_of(data_);
@@ -319,32 +309,44 @@ class Search {
     return true;
   }
 
-  // What is held out counts, too, between the members of a class, with the noise that was found.
-  void tell_apart() {
+  bool class_is_open() const {
+    const bool open =
+        result_.finding == Finding::ambiguous ||
+        (result_.finding == Finding::unnamed && result_.without_gap == Finding::ambiguous);
+    return open && result_.stopped.empty() && !result_.rivals.empty() && holds_out(data_);
+  }
+
+  // What is held out counts, too, between the members of a class. Returns whether another one than
+  // was found comes first then; the search goes on beside that.
+  bool tell_apart() {
+    if (told_apart_ || !class_is_open()) return false;
+    told_apart_ = true;
     tell("what is held out says of the class");
-    FilterSettings settings = request_.filter;
-    settings.replicates = 0;
-    const auto evidence = [&](Refit& fit) {
-      FilterModel model{request_.base, fit.pace, fit.hypothesis, {}};
-      std::vector<ErrorMaps> maps;
-      (void)filter_fields(data_, model, settings, maps);
-      fit = refit(data_, model, settings, maps);
-      if (!fit.failure.empty()) return std::numeric_limits<double>::infinity();
-      model.pace = fit.pace;
-      model.hypothesis = fit.hypothesis;
-      return criterion(fit, values()) +
-             heldout_deviance(filter_fields(data_, model, settings, maps));
-    };
-    Refit found = result_.found;
-    const double least = evidence(found), limit = telling(values(), mesh_error());
-    std::vector<Refit> left;
-    for (Refit& rival : result_.rivals) {
-      const double worse = evidence(rival) - least;
-      tell("  " + rival.hypothesis.name() + " gains " + std::to_string(std::lround(-worse)));
-      if (worse < limit) left.push_back(std::move(rival));
+    std::vector<Refit> members{result_.found};
+    members.insert(members.end(), result_.rivals.begin(), result_.rivals.end());
+    const auto criteria = criteria_of_all(data_, request_.base, members, request_.filter);
+    if (!criteria.front()) return false;
+    std::size_t best = 0;
+    for (std::size_t k = 1; k < members.size(); ++k)
+      if (criteria[k] && *criteria[k] < *criteria[best]) best = k;
+    if (result_.finding == Finding::unnamed) best = 0;  // its gap is that of the found one
+    const double limit = telling(count_values(data_, true), mesh_error());
+    result_.rivals.clear();
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      const double worse = criteria[k] ? *criteria[k] - *criteria[best] : 0;
+      tell("  " + members[k].hypothesis.name() + " gains " + std::to_string(std::lround(-worse)));
+      if (worse >= limit)
+        result_.told_apart.push_back({members[k].hypothesis.name(), worse});
+      else if (k != best)
+        result_.rivals.push_back(members[k]);
     }
-    result_.rivals = std::move(left);
-    if (result_.rivals.empty()) result_.finding = Finding::named;
+    if (result_.rivals.empty())
+      (result_.finding == Finding::unnamed ? result_.without_gap : result_.finding) =
+          Finding::named;
+    if (best == 0) return false;
+    set_found(members[best]);
+    screen_the_rest();
+    return true;
   }
 
   void finish() {
@@ -379,6 +381,7 @@ class Search {
   FilterModel model_;
   std::vector<ErrorMaps> maps_;
   Explanation result_;
+  bool told_apart_ = false;
 };
 
 }  // namespace

@@ -60,6 +60,12 @@ struct Rerun {
   bool refutes() const;
 };
 
+// A hypothesis that explains what counts as well as the found one, but not what is held out.
+struct ToldApart {
+  std::string effect;
+  double less;  // 2 ln of how much less probable it is, with all that was measured
+};
+
 struct Explanation {
   Finding finding = Finding::none;
   Finding without_gap = Finding::none;      // if it is `unnamed`: what it is if that gap is none
@@ -69,6 +75,7 @@ struct Explanation {
   std::vector<std::vector<double>> noises;  // of each vesicle's snapshots, in units of deviations
   Refit base, found;                        // with the pace refitted; found: the base if none was
   std::vector<Refit> rivals;                // other hypotheses that explain the data as well
+  std::vector<ToldApart> told_apart;
   std::vector<Round> rounds;
   // Measured minus forecast. Placebo: the best of the first round that was not found. Floor:
   // what is to be expected of the found model if nothing else is missing.
@@ -105,6 +112,7 @@ struct SearchState {
   Explanation so_far;
   std::vector<std::vector<double>> noise;  // of each vesicle, of each snapshot
   bool more = true;                        // is there another round?
+  bool told_apart = false;                 // has what is held out been asked about the class?
 };
 
 FilterProblems problems_of(const std::vector<FieldSeries>& series, const ExplainRequest& request);

@@ -41,18 +41,6 @@ Gaps expected_gaps(const FilterResult& pass) {
   return over_snapshots(pass, [](const Innovation& in) { return in.expected_squares; });
 }
 
-double heldout_deviance(const FilterResult& pass) {
-  const double mesh = pass.score[kMeshError] / pass.information(kMeshError, kMeshError);
-  double sum = 0;
-  for (const Innovation& in : pass.innovations) {
-    if (!in.held_out) continue;
-    const InnovationCovariance weight(in, 0);
-    const Vec values = in.values - mesh * in.parameters.col(kMeshError);
-    sum += values.dot(weight.solve(values).col(0)) + weight.log_determinant();
-  }
-  return sum;
-}
-
 std::vector<SnapshotGap> snapshot_gaps(const FilterResult& pass) {
   std::vector<SnapshotGap> gaps;
   for (const Innovation& in : pass.innovations) {

@@ -31,10 +31,6 @@ struct SnapshotGap {
 Gaps gaps_of_pass(const FilterResult& pass);
 Gaps expected_gaps(const FilterResult& pass);  // if nothing is missing
 
-// −2 ln of the likelihood of what is held out, the model being the truth with the error of its mesh
-// that is most probable by what counts; 0 if nothing is held out.
-double heldout_deviance(const FilterResult& pass);
-
 std::vector<SnapshotGap> snapshot_gaps(const FilterResult& pass);
 
 }  // namespace traceraft

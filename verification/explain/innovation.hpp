@@ -10,7 +10,7 @@ namespace traceraft {
 
 struct Innovation {
   std::size_t vesicle, snapshot;  // of the data
-  bool held_out;                  // it counts for nothing
+  bool held_out;                  // it counts for nothing, but between members of a class
   Vec forecast;                   // c where it was measured
   Vec noise;                      // standard deviation of each value, in c
   Vec values;                     // measured minus forecast, in units of the noise

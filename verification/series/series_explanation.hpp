@@ -19,15 +19,15 @@ struct SeriesRequest {
 
 struct SeriesScore {
   std::string effect;
-  double gain;       // 2 ln of the likelihood ratio, the effect's strength being free
-  double null_mean;  // the same of data of the base model, on average
-  double p;          // share of these in which any effect gains as much, over its own average
+  double gain;          // 2 ln of the likelihood ratio, the effect's strength being free
+  double null_mean;     // the same of data of the base model, on average
+  double p;             // share of these in which any effect gains as much, over its own average
   double ln_unit;       // of R²/D in seconds, with the effect
   double value, sigma;  // of the strength, in units of the parameter of the ensemble
   double low, high;     // its 95 % bounds
-  bool bounded;      // they are within what has been simulated
-  double vesicles;   // so many as these would show the effect at the ensemble's strength
-  Quantity telling;  // what shows it best
+  bool bounded;         // they are within what has been simulated
+  double vesicles;      // so many as these would show the effect at the ensemble's strength
+  Quantity telling;     // what shows it best
 };
 
 // Two classes that the data do not tell apart.

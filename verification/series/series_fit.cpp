@@ -38,9 +38,9 @@ class Fitter {
       : blocks_(blocks),
         model_(model),
         centre_(std::log(unit.start)),
-        width_(std::log(unit.factor)),
+        width_(unit.reach * std::log(unit.factor)),
         least_(std::max(centre_ - width_, std::log(unit.least))),
-        weight_(4 / (width_ * width_)),
+        weight_(4 / (std::log(unit.factor) * std::log(unit.factor))),
         fit_(start) {
     fit_.ln_unit = std::max(fit_.ln_unit, least_);
   }

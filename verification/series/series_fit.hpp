@@ -47,10 +47,12 @@ struct SeriesFit {
 };
 
 // Seconds per unit of time: what is known of it before, with 95 % confidence within a factor. The
-// fit does not leave that, nor what is at least needed for runs to last as long as the data.
+// fit does not leave that (or `reach`), nor what is at least needed for runs to last as long as the
+// data.
 struct UnitRange {
   double start, factor;
   double least = 0;
+  double reach = 1;  // of the fit, beyond the factor if larger than 1: a power of it
 };
 SeriesFit fit_series(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
                      const UnitRange& unit);

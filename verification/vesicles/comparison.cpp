@@ -100,7 +100,7 @@ class Comparison {
     }
     for (const Measurement& m : data.measurements) {
       if (!m.of(quantity)) continue;
-      if (m.time < first || m.time > last)
+      if (!(m.time > 0) || m.time < first || m.time > last)
         ++result_.beyond;
       else
         compared_.push_back(&m);
@@ -133,7 +133,7 @@ class Comparison {
 
   // The error of the runs' means by leaving out each of them (jackknife).
   void set_trend(const std::vector<Deviation>& all) {
-    constexpr std::size_t kFewestRuns = 4, kFewestVesicles = 5;
+    constexpr std::size_t kFewestRuns = 6, kFewestVesicles = 8;
     std::set<std::string> vesicles;
     for (const Deviation& d : all) vesicles.insert(d.vesicle);
     if (runs_.size() < kFewestRuns || vesicles.size() < kFewestVesicles) return;
@@ -160,7 +160,7 @@ class Comparison {
 }  // namespace
 
 bool Agreement::has_trend() const {
-  constexpr double kSure = 3;
+  constexpr double kSure = 3.5;  // of Student's t with seven degrees of freedom 1 % is beyond
   return std::fabs(trend) > kSure * trend_error;
 }
 

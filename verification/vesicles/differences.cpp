@@ -20,7 +20,7 @@ std::string difference_of_radii(const MeasuredVesicles& data, double radius) {
       "The vesicles have radii of %.3g to %.3g um (median %.3g), the simulated one %.3g um: at the "
       "same time larger vesicles have more rafts and a larger perimeter over radius, so that part "
       "of a deviation may be due to their size. As far as coarsening takes times that go with R^4, "
-      "simulations of their size would ask for %.2g times the D.",
+      "simulations of their size would make D %.2g times as large.",
       d.min, d.max, d.median, radius, factor_of_size(data, radius));
 }
 
@@ -50,9 +50,14 @@ SimulatedVesicle simulated_vesicle(double radius, const std::vector<History>& ru
 }
 
 double factor_of_size(const MeasuredVesicles& data, double radius) {
-  double sum = 0;
-  for (const Measurement& m : data.measurements) sum += std::log(m.radius / radius);
-  return std::exp(4 * sum / static_cast<double>(data.measurements.size()));
+  double sum = 0, count = 0;
+  for (const Measurement& m : data.measurements) {
+    if (!(m.of(Quantity::perimeter).value_or(0) > 0 || m.of(Quantity::rafts).value_or(0) > 0))
+      continue;
+    sum += std::log(m.radius / radius);
+    ++count;
+  }
+  return count > 0 ? std::exp(4 * sum / count) : 1;
 }
 
 std::vector<std::string> differences(const MeasuredVesicles& data, const SimulatedVesicle& model) {

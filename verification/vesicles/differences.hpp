@@ -18,8 +18,8 @@ struct SimulatedVesicle {
 SimulatedVesicle simulated_vesicle(double radius, const std::vector<History>& runs,
                                    const MeasuredVesicles& data);
 
-// By how much D would be larger if all vesicles that were looked at, rather than the simulated one,
-// were simulated: boundaries of rafts move by diffusion along them, over times that go with R⁴
+// By how much D would be larger if the vesicles that have shown rafts, rather than the simulated
+// one, were simulated: boundaries of rafts move by diffusion along them, over times that go with R⁴
 // (Cahn, Elliott and Novick-Cohen 1996; runs of 5 and 6.6 µm agree with that, docs/results.md).
 double factor_of_size(const MeasuredVesicles& data, double radius);
 

@@ -27,9 +27,10 @@ double diameter_of(const Measurement& m) {
 // nothing tells. As far as errors of measuring allow.
 double length_of(const Measurement& m) {
   const auto perimeter = m.of(Quantity::perimeter), fraction = m.of(Quantity::fraction);
-  if (!perimeter || !fraction || !(*fraction > 0 && *fraction < 1)) return HUGE_VAL;
+  if (!perimeter || !fraction) return HUGE_VAL;
   constexpr double kSure = 2;
-  const double least = std::max(0.0, *fraction - kSure * m.sigma_of(Quantity::fraction));
+  const double least = std::min(*fraction, 1 - *fraction) - kSure * m.sigma_of(Quantity::fraction);
+  if (!(least > 0)) return HUGE_VAL;
   return (*perimeter + kSure * m.sigma_of(Quantity::perimeter)) /
          (4 * kPi * std::sqrt(least * (1 - least)));
 }
