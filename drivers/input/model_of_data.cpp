@@ -32,7 +32,8 @@ std::string other_membrane(const std::string& composition, const Configuration& 
   for (const auto& [option, value] : entry.values)
     if (option == "raft-fraction" && model.number(option) != std::strtod(value.c_str(), nullptr))
       return "";
-  return entry.composition + " (case " + entry.name + "), the measurements of " + composition;
+  return entry.composition + " (case " + entry.name + (model.given("case") ? "" : ", by default") +
+         "), the measurements of " + composition;
 }
 
 }  // namespace traceraft

@@ -295,13 +295,22 @@ TEST(ExplainSeriesTest, SimulatesOnceAndSaysWhatSeriesTell) {
   const fs::path other = folder.path / "other.toml";
   write_durably(other, "epsilon = 0.8\ncells = 16\nraft-fraction = 0.4\n");
   const fs::path none = folder.path / "none";
-  write_durably(model, "epsilon = 0.8\ncells = 16\nsurface = \"torus\"\n");
+  const std::string torus_model = "epsilon = 0.8\ncells = 16\nsurface = \"torus\"\n";
+  write_durably(model, torus_model + "raft-fraction = 0.1\n");
   const auto torus = testing::traceraft("explain --series " TRACERAFT_ROOT
                                         "/verification/data/synthetic/guv-3to1 --model " +
                                         model.string() + " --out " + none.string());
   EXPECT_EQ(torus.code, 2);
   EXPECT_NE(torus.output.find("on spheres only"), std::string::npos) << torus.output;
   EXPECT_FALSE(fs::exists(none));
+  // The raft fraction of a membrane that nobody has named.
+  write_durably(model, torus_model);
+  const auto unnamed = testing::traceraft("explain --series " TRACERAFT_ROOT
+                                          "/verification/data/synthetic/guv-3to1 --model " +
+                                          model.string() + " --out " + none.string());
+  EXPECT_EQ(unnamed.code, 2);
+  EXPECT_NE(unnamed.output.find("2:1:20 (case guv-2to1, by default)"), std::string::npos)
+      << unnamed.output;
 
   const auto refused = testing::traceraft(command + other.string());
   EXPECT_EQ(refused.code, 2);
