@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "backends/gif/gif_writer.hpp"
+#include "backends/gif/label.hpp"
 #include "backends/png/png_writer.hpp"
 #include "backends/posix/durable_file.hpp"
 #include "drivers/commands.hpp"
@@ -21,7 +22,7 @@ struct ReportRequest {
   int frames = 60, pixels = 480;
   double detail = 0.015;
   int pause = 20;
-  bool quiet = false;
+  bool bare = false, quiet = false;
 };
 
 std::string frame_name(std::size_t number) {
@@ -34,8 +35,10 @@ void write_pictures(const ReportRequest& request) {
   const auto [low, high] = phases_of(run);
   const SurfaceFrames frames = read_frames(run, request.detail, request.frames);
   std::vector<Image> images;
-  for (const Vec& values : frames.values)
-    images.push_back(draw_front_and_back(frames.mesh, values, low, high, request.pixels));
+  for (std::size_t k = 0; k < frames.values.size(); ++k) {
+    images.push_back(draw_front_and_back(frames.mesh, frames.values[k], low, high, request.pixels));
+    if (!request.bare) write_label(images.back(), time_label(frames.times[k], time_unit_of(run)));
+  }
   if (!request.animation.empty()) {
     write_durably(request.animation, gif_bytes(images, request.pause));
     if (!request.quiet) std::printf("%s\n", request.animation.c_str());
@@ -100,6 +103,7 @@ Action define_report(CLI::App& app) {
   app.add_option("--pause", request->pause, "of the animation between frames, in 1/100 s")
       ->check(CLI::Range(2, 1000))
       ->capture_default_str();
+  app.add_flag("--bare", request->bare, "pictures and animation without the time in them");
   app.add_flag("--quiet", request->quiet, "print nothing but errors");
   app.footer("Example: traceraft report runs/guv-2to1-1 --animation rafts.gif");
   return [request] { return report(*request); };

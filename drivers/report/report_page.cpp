@@ -72,7 +72,7 @@ void add_surface(Page& page, const fs::path& run, const PageRequest& request,
   const auto [low, high] = phases_of(run);
   const SurfaceFrames frames = read_frames(run, request.detail, request.frames);
   View view{{}, low, high, frames.values.size() - 1};
-  for (const double t : frames.times) view.labels.push_back(formatted("t = %.4g ", t) + time_unit);
+  for (const double t : frames.times) view.labels.push_back(time_label(t, time_unit));
   missing.add(add_viewer(page, frames.mesh, frames.values, view));
 }
 
@@ -110,7 +110,7 @@ void add_summary(Page& page, const fs::path& run, const std::string& length,
 void fill_run(Page& page, const fs::path& folder, const PageRequest& request, Missing& missing) {
   const Configuration configuration(read_config_file(folder / "config.toml"), {});
   const bool scaled = configuration.units().scaled;
-  const std::string unit = scaled ? "R^2/D" : "s";
+  const std::string unit = time_unit_of(folder);
   page.paragraph("A run of the case " + configuration.text("case") + ", seed " +
                  configuration.text("seed") + ".");
   add_surface(page, folder, request, unit, missing);
@@ -151,7 +151,7 @@ void fill_ensemble(Page& page, const fs::path& path, const PageRequest& request,
                  configuration.text("case") + ", seeds " + std::to_string(plan.first_seed) +
                  " to " + std::to_string(plan.last_seed()) + ". Shown is " +
                  shown.filename().string() + ".");
-  add_surface(page, shown, request, units.scaled ? "R^2/D" : "s", missing);
+  add_surface(page, shown, request, time_unit_of(shown), missing);
   page.heading("All runs");
   const EnsembleSummary summary = summarise(runs);
   for (const Quantity quantity : kQuantities)
@@ -173,6 +173,15 @@ fs::path run_to_show(const fs::path& path) {
       if (folder.member(seed).end == MemberEnd::finished) return folder.run_of(seed);
   }
   throw InputError(path.string() + " holds no run that could be shown");
+}
+
+std::string time_unit_of(const fs::path& run_folder) {
+  const Configuration model(read_config_file(run_folder / "config.toml"), {});
+  return model.units().scaled ? "R^2/D" : "s";
+}
+
+std::string time_label(double t, const std::string& unit) {
+  return formatted("t = %.4g ", t) + unit;
 }
 
 std::pair<double, double> phases_of(const fs::path& run_folder) {

@@ -47,6 +47,13 @@ TEST_F(ReportTest, MakesAPagePicturesAndAnAnimation) {
         content(folder.path / "pictures" / ("frame-000" + std::to_string(k) + ".png")).substr(1, 3),
         "PNG");
   EXPECT_FALSE(fs::exists(folder.path / "pictures/frame-0005.png"));
+  // With the time in it, and without.
+  ASSERT_EQ(traceraft("report --quiet " + out("a") + " --frames 5 --pixels 64 --bare --snapshots " +
+                      out("bare"))
+                .code,
+            0);
+  EXPECT_NE(content(folder.path / "bare/frame-0004.png"),
+            content(folder.path / "pictures/frame-0004.png"));
   EXPECT_EQ(content(folder.path / "a.gif").substr(0, 6), "GIF89a");
 }
 

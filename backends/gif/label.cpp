@@ -1,0 +1,37 @@
+#include "backends/gif/label.hpp"
+
+#include <gif_lib.h>
+
+#include <algorithm>
+
+namespace traceraft {
+namespace {
+
+constexpr std::uint8_t kInk = 40;
+constexpr int kLettersPerHeight = 30, kAscii = 128;
+
+void paint(Image& image, int left, int top, int size) {
+  for (int y = std::max(top, 0); y < std::min(top + size, image.height); ++y)
+    for (int x = std::max(left, 0); x < std::min(left + size, image.width); ++x)
+      std::fill_n(image.rgb.begin() + 3 * (static_cast<std::ptrdiff_t>(y) * image.width + x), 3,
+                  kInk);
+}
+
+}  // namespace
+
+void write_label(Image& image, const std::string& text) {
+  const int dot = std::max(1, image.height / (kLettersPerHeight * GIF_FONT_HEIGHT));
+  const int width = dot * GIF_FONT_WIDTH * static_cast<int>(text.size());
+  const int top = image.height - dot * (GIF_FONT_HEIGHT + GIF_FONT_HEIGHT / 2);
+  int left = (image.width - width) / 2;
+  for (const char ch : text) {
+    const auto code = static_cast<unsigned char>(ch);
+    for (int row = 0; code < kAscii && row < GIF_FONT_HEIGHT; ++row)
+      for (int column = 0; column < GIF_FONT_WIDTH; ++column)
+        if (GifAsciiTable8x8[code][row] & (1 << (GIF_FONT_WIDTH - 1 - column)))
+          paint(image, left + column * dot, top + row * dot, dot);
+    left += dot * GIF_FONT_WIDTH;
+  }
+}
+
+}  // namespace traceraft
