@@ -149,13 +149,12 @@ int run_calibration(CalibrateRequest request) {
   if (request.data.empty()) throw InputError("--data: say which measurements to calibrate with");
   if (request.parameters.empty())
     request.parameters = request.ensemble.empty() ? "mobility,epsilon" : "mobility";
-  (void)costly_parameters(request.parameters);
+  const std::vector<std::string> costly = costly_parameters(request.parameters);
   const MeasuredVesicles data = read_dataset(request.data);
   (void)telling_vesicles(data);  // or refuses them
   if (!request.ensemble.empty()) return calibrate_ensemble(request, data);
   refuse_without_model(data.composition, request.model, request.flags);
   const Configuration model(read_config_file(request.model, "--model"), request.flags);
-  const std::vector<std::string> costly = costly_parameters(request.parameters);
   if (std::find(costly.begin(), costly.end(), "fraction") == costly.end())
     refuse_other_membrane(model.where("case"), data, model);
   refuse_scaled(model);
@@ -169,9 +168,8 @@ int run_calibration(CalibrateRequest request) {
            "parameters " + request.parameters + ", " + std::to_string(request.runs) + " runs to " +
                format_number(end_of_runs(data)) + " s",
            request.data, model);
-  const CalibratorRequest simulations{out,          costly_parameters(request.parameters),
-                                      most_cells,   request.runs,
-                                      request.jobs, request.quiet};
+  const CalibratorRequest simulations{out,          costly,       most_cells,
+                                      request.runs, request.jobs, request.quiet};
   Calibrator calibrator(simulations, data, model);
   if (!calibrator.run()) {
     if (!request.quiet) std::printf("to go on, give the same command with --out %s\n", out.c_str());

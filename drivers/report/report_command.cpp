@@ -34,10 +34,11 @@ void write_pictures(const ReportRequest& request) {
   const fs::path run = run_to_show(request.folder);
   const auto [low, high] = phases_of(run);
   const SurfaceFrames frames = read_frames(run, request.detail, request.frames);
+  const std::vector<std::string> labels = time_labels(run, frames.times);
   std::vector<Image> images;
   for (std::size_t k = 0; k < frames.values.size(); ++k) {
     images.push_back(draw_front_and_back(frames.mesh, frames.values[k], low, high, request.pixels));
-    if (!request.bare) write_label(images.back(), time_label(frames.times[k], time_unit_of(run)));
+    if (!request.bare) write_label(images.back(), labels[k]);
   }
   if (!request.animation.empty()) {
     write_durably(request.animation, gif_bytes(images, request.pause));

@@ -42,22 +42,33 @@ std::string finished_page(const fs::path& folder) {
   return "";
 }
 
+// Of what series.csv and summary.json say, where it has a unit that its name does not say.
+std::string unit_of(const std::string& key, const std::string& length, const std::string& time) {
+  if (key == "t" || key == "dt") return time;
+  if (key == "h" || key == "perimeter" || key == "perimeter_level") return length;
+  if (key == "area" || key == "mass") return length + "^2";
+  if (key == "energy") return length + "^2, in units of the energy density";
+  return "";
+}
+
 struct Curve {
-  std::string column, title, unit;  // unit: "" for a number
+  std::string column, title;
   bool log_y;
 };
 
-std::vector<Curve> curves(const std::string& length_unit, const std::string& time_unit) {
-  return {{"perimeter", "perimeter", length_unit, true},
-          {"rafts", "number of rafts", "", true},
-          {"raft_fraction", "raft area fraction", "", false},
-          {"energy", "energy", length_unit + "^2, in units of the energy density", false},
-          {"dt", "step size", time_unit, true}};
+std::vector<Curve> curves() {
+  return {{"perimeter", "perimeter", true},
+          {"rafts", "number of rafts", true},
+          {"raft_fraction", "raft area fraction", false},
+          {"energy", "energy", false},
+          {"dt", "step size", true}};
 }
 
-Chart series_chart(const CsvTable& series, const Curve& curve, const std::string& time_unit) {
-  const std::string label = curve.title + (curve.unit.empty() ? "" : " (" + curve.unit + ")");
-  Chart chart{curve.title, "time (" + time_unit + ")", label, true, curve.log_y, {}};
+Chart series_chart(const CsvTable& series, const Curve& curve, const std::string& length,
+                   const std::string& time) {
+  const std::string unit = unit_of(curve.column, length, time);
+  const std::string label = curve.title + (unit.empty() ? "" : " (" + unit + ")");
+  Chart chart{curve.title, "time (" + time + ")", label, true, curve.log_y, {}};
   chart.series = {{curve.column, {}, Mark::line}};
   const std::vector<double> t = series.numbers("t"), y = series.numbers(curve.column);
   for (std::size_t i = 0; i < t.size(); ++i)
@@ -65,24 +76,13 @@ Chart series_chart(const CsvTable& series, const Curve& curve, const std::string
   return chart;
 }
 
-void add_surface(Page& page, const fs::path& run, const PageRequest& request,
-                 const std::string& time_unit, Missing& missing) {
+void add_surface(Page& page, const fs::path& run, const PageRequest& request, Missing& missing) {
   if (!fs::exists(run / "fields.pvd")) return missing.add("the run has written no fields");
   page.heading("The surface");
   const auto [low, high] = phases_of(run);
   const SurfaceFrames frames = read_frames(run, request.detail, request.frames);
-  View view{{}, low, high, frames.values.size() - 1};
-  for (const double t : frames.times) view.labels.push_back(time_label(t, time_unit));
+  const View view{time_labels(run, frames.times), low, high, frames.values.size() - 1};
   missing.add(add_viewer(page, frames.mesh, frames.values, view));
-}
-
-// Of what summary.json says that has a unit which its name does not say.
-std::string unit_of(const std::string& key, const std::string& length, const std::string& time) {
-  if (key == "t") return time;
-  if (key == "h" || key == "perimeter" || key == "perimeter_level") return length;
-  if (key == "area" || key == "mass") return length + "^2";
-  if (key == "energy") return length + "^2, in units of the energy density";
-  return "";
 }
 
 std::string value_text(const Json& value) {
@@ -110,15 +110,16 @@ void add_summary(Page& page, const fs::path& run, const std::string& length,
 void fill_run(Page& page, const fs::path& folder, const PageRequest& request, Missing& missing) {
   const Configuration configuration(read_config_file(folder / "config.toml"), {});
   const bool scaled = configuration.units().scaled;
-  const std::string unit = time_unit_of(folder);
+  const std::string length = scaled ? "R" : "um", time = scaled ? "R^2/D" : "s";
   page.paragraph("A run of the case " + configuration.text("case") + ", seed " +
                  configuration.text("seed") + ".");
-  add_surface(page, folder, request, unit, missing);
+  add_surface(page, folder, request, missing);
   page.heading("In time");
   const CsvTable series = CsvTable::read(folder / "series.csv");
-  for (const Curve& curve : curves(scaled ? "R" : "um", unit))
-    add_chart(page, series_chart(series, curve, unit), request.charts / curve.column, missing);
-  add_summary(page, folder, scaled ? "R" : "um", unit);
+  for (const Curve& curve : curves())
+    add_chart(page, series_chart(series, curve, length, time), request.charts / curve.column,
+              missing);
+  add_summary(page, folder, length, time);
   add_settings(page, configuration);
   add_provenance(page, folder, command_for("traceraft run", configuration));
 }
@@ -151,7 +152,7 @@ void fill_ensemble(Page& page, const fs::path& path, const PageRequest& request,
                  configuration.text("case") + ", seeds " + std::to_string(plan.first_seed) +
                  " to " + std::to_string(plan.last_seed()) + ". Shown is " +
                  shown.filename().string() + ".");
-  add_surface(page, shown, request, time_unit_of(shown), missing);
+  add_surface(page, shown, request, missing);
   page.heading("All runs");
   const EnsembleSummary summary = summarise(runs);
   for (const Quantity quantity : kQuantities)
@@ -175,13 +176,12 @@ fs::path run_to_show(const fs::path& path) {
   throw InputError(path.string() + " holds no run that could be shown");
 }
 
-std::string time_unit_of(const fs::path& run_folder) {
+std::vector<std::string> time_labels(const fs::path& run_folder, const std::vector<double>& times) {
   const Configuration model(read_config_file(run_folder / "config.toml"), {});
-  return model.units().scaled ? "R^2/D" : "s";
-}
-
-std::string time_label(double t, const std::string& unit) {
-  return formatted("t = %.4g ", t) + unit;
+  const std::string unit = model.units().scaled ? "R^2/D" : "s";
+  std::vector<std::string> labels;
+  for (const double t : times) labels.push_back(formatted("t = %.4g ", t) + unit);
+  return labels;
 }
 
 std::pair<double, double> phases_of(const fs::path& run_folder) {

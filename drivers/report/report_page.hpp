@@ -16,9 +16,9 @@ std::filesystem::path run_to_show(const std::filesystem::path& folder);
 // The concentrations of the two phases of a run.
 std::pair<double, double> phases_of(const std::filesystem::path& run_folder);
 
-// "s", or "R^2/D" of a scaled run; and "t = 0.5 s".
-std::string time_unit_of(const std::filesystem::path& run_folder);
-std::string time_label(double t, const std::string& unit);
+// "t = 0.5 s" of each, in R^2/D of a scaled run.
+std::vector<std::string> time_labels(const std::filesystem::path& run_folder,
+                                     const std::vector<double>& times);
 
 struct PageRequest {
   int frames;

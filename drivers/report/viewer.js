@@ -111,9 +111,10 @@
     };
     // Where triangles overlap a veil would be painted twice, as a dark speck. Of what is round each
     // side has one layer, and only what lies in it is painted.
+    const layered = round(quantised);
     sides.forEach((side, order) => {
       add(side, 2 * order + 1);
-      if (!round(quantised)) return;
+      if (!layered) return;
       const layer = side.clone();
       layer.colorWrite = false;
       layer.depthWrite = true;

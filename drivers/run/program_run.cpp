@@ -46,8 +46,7 @@ std::string ProgramEnd::reason() const {
 }
 
 bool ProgramEnd::was_stopped() const {
-  return stop_requested() || exit_code == kInterrupted || exit_code == 128 + SIGTERM ||
-         exit_code == 128 + SIGINT;
+  return stop_requested() || exit_code == kInterrupted || signal() == SIGTERM || signal() == SIGINT;
 }
 
 bool ProgramEnd::telling() const {

@@ -79,8 +79,9 @@ Table agreement_table(const std::vector<Agreement>& agreements) {
     row[3] = static_cast<double>(a.within);
     row[4] = a.bias;
     row[5] = a.misfit;
-    if (a.trend_error > 0) row[6] = a.trend;
-    if (a.trend_error > 0) row[7] = a.trend_error;
+    if (!(a.trend_error > 0)) continue;
+    row[6] = a.trend;
+    row[7] = a.trend_error;
   }
   return table;
 }

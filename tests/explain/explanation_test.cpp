@@ -128,7 +128,7 @@ TEST_F(RivalsTest, AreToldApartByAllThatWasMeasured) {
   request_.hold_out = false;
   const auto criterion_of = [&](const Refit& start) {
     const FilterProblems data = problems_of(measured(), request_);
-    const auto criteria = criteria_of_all(data, request_.base, {start}, request_.filter);
+    const auto criteria = criteria_of(data, request_.base, {start}, request_.filter);
     return criteria.at(0).value();
   };
   const double all = criterion_of(wrong) - criterion_of(right),

@@ -15,7 +15,7 @@ std::optional<double> criterion_of(const FilterProblems& data, FilterModel model
     (void)filter_fields(data, model, settings, maps);
     const Refit fit = refit(data, model, settings, maps);
     if (!fit.failure.empty()) return {};
-    return criterion(fit, count_values(data, true));
+    return criterion(fit, count_values(data));
   } catch (const std::runtime_error&) {
     return {};
   }
@@ -29,24 +29,28 @@ bool holds_out(const FilterProblems& data) {
   });
 }
 
-std::vector<std::optional<double>> criteria_of_all(FilterProblems data,
-                                                   const CahnHilliardModel& base,
-                                                   const std::vector<Refit>& members,
-                                                   FilterSettings settings) {
+FilterProblems holding_nothing_out(FilterProblems data) {
   for (FilterProblem& vesicle : data) vesicle.train = vesicle.snapshots.size();
+  return data;
+}
+
+double count_values(const FilterProblems& data) {
+  double count = 0;
+  for (const FilterProblem& vesicle : data)
+    for (std::size_t k = 1; k < vesicle.train; ++k)
+      count += static_cast<double>(vesicle.snapshots[k].values.size());
+  return count;
+}
+
+std::vector<std::optional<double>> criteria_of(const FilterProblems& data,
+                                               const CahnHilliardModel& base,
+                                               const std::vector<Refit>& members,
+                                               FilterSettings settings) {
   settings.replicates = 0;
   std::vector<std::optional<double>> criteria;
   for (const Refit& member : members)
     criteria.push_back(criterion_of(data, {base, member.pace, member.hypothesis, {}}, settings));
   return criteria;
-}
-
-double count_values(const FilterProblems& data, bool with_held_out) {
-  double count = 0;
-  for (const FilterProblem& vesicle : data)
-    for (std::size_t k = 1; k < (with_held_out ? vesicle.snapshots.size() : vesicle.train); ++k)
-      count += static_cast<double>(vesicle.snapshots[k].values.size());
-  return count;
 }
 
 }  // namespace traceraft

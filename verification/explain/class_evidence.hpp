@@ -9,15 +9,17 @@
 namespace traceraft {
 
 bool holds_out(const FilterProblems& data);
+// With every snapshot counting.
+FilterProblems holding_nothing_out(FilterProblems data);
 
-// The criterion of each hypothesis, refitted with every snapshot counting and the noise of `data`;
+// That were measured and count, first snapshots aside.
+double count_values(const FilterProblems& data);
+
+// The criterion of each hypothesis, refitted to the snapshots that count, with the noise of `data`;
 // nothing where a refit fails.
-std::vector<std::optional<double>> criteria_of_all(FilterProblems data,
-                                                   const CahnHilliardModel& base,
-                                                   const std::vector<Refit>& members,
-                                                   FilterSettings settings);
-
-// That were measured: first snapshots aside, and what is held out unless it counts.
-double count_values(const FilterProblems& data, bool with_held_out);
+std::vector<std::optional<double>> criteria_of(const FilterProblems& data,
+                                               const CahnHilliardModel& base,
+                                               const std::vector<Refit>& members,
+                                               FilterSettings settings);
 
 }  // namespace traceraft

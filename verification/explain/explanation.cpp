@@ -260,7 +260,7 @@ class Search {
               });
   }
 
-  double values() const { return count_values(data_, false); }
+  double values() const { return count_values(data_); }
 
   bool take(const Round& round) {
     const double usual_change = kUsualChange * contrast_of(data_) / noise_of(data_);
@@ -324,13 +324,14 @@ class Search {
     tell("what is held out says of the class");
     std::vector<Refit> members{result_.found};
     members.insert(members.end(), result_.rivals.begin(), result_.rivals.end());
-    const auto criteria = criteria_of_all(data_, request_.base, members, request_.filter);
+    const FilterProblems all = holding_nothing_out(data_);
+    const auto criteria = criteria_of(all, request_.base, members, request_.filter);
     if (!criteria.front()) return false;
     std::size_t best = 0;
     for (std::size_t k = 1; k < members.size(); ++k)
       if (criteria[k] && *criteria[k] < *criteria[best]) best = k;
     if (result_.finding == Finding::unnamed) best = 0;  // its gap is that of the found one
-    const double limit = telling(count_values(data_, true), mesh_error());
+    const double limit = telling(count_values(all), mesh_error());
     result_.rivals.clear();
     for (std::size_t k = 0; k < members.size(); ++k) {
       const double worse = criteria[k] ? *criteria[k] - *criteria[best] : 0;

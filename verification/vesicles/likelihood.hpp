@@ -64,9 +64,11 @@ class RunStatistics {
   Means mean_;
 };
 
+// Of measuring, that is looked for.
+inline constexpr double kLeastScatter = 0.01;
+
 // The simulations do not know D: it only sets the unit of time, R²/D. Nor do they know the scatter
 // that measuring adds to the logarithm of a perimeter. Both are found at no cost.
-inline constexpr double kLeastScatter = 0.01;  // that is looked for
 struct TimeFit {
   double seconds_per_unit;  // of the time of the runs
   double scatter;

@@ -35,37 +35,51 @@ double length_of(const Measurement& m) {
          (4 * kPi * std::sqrt(least * (1 - least)));
 }
 
+// Looks of which a measure is below what is possible, and the one of which it is least.
+struct Impossible {
+  std::ptrdiff_t count = 0;
+  const Measurement* worst = nullptr;
+  double least = 0;
+};
+Impossible below(const MeasuredVesicles& data, double (*measure)(const Measurement&),
+                 double possible) {
+  Impossible found;
+  found.least = possible;
+  for (const Measurement& m : data.measurements) {
+    const double value = measure(m);
+    if (!(value < possible)) continue;
+    ++found.count;
+    if (value < found.least) {
+      found.worst = &m;
+      found.least = value;
+    }
+  }
+  return found;
+}
+
 }  // namespace
 
 std::string too_long_boundaries(const MeasuredVesicles& data) {
-  const auto& all = data.measurements;
-  const auto narrow = std::count_if(
-      all.begin(), all.end(), [](const Measurement& m) { return diameter_of(m) < kDiffraction; });
-  if (narrow == 0) return "";
-  const Measurement& worst = *std::min_element(
-      all.begin(), all.end(),
-      [](const Measurement& a, const Measurement& b) { return diameter_of(a) < diameter_of(b); });
+  const Impossible narrow = below(data, diameter_of, kDiffraction);
+  if (narrow.count == 0) return "";
   return formatted(
       "Of %td of %zu looks the perimeter is so long, or rafts are so many, that even round ones "
       "would be less than the %.1f um across that light resolves: of vesicle '%s' at %.4g s %.2g "
       "um. Are the units right?",
-      narrow, all.size(), kDiffraction, worst.vesicle.c_str(), worst.time, diameter_of(worst));
+      narrow.count, data.measurements.size(), kDiffraction, narrow.worst->vesicle.c_str(),
+      narrow.worst->time, narrow.least);
 }
 
 std::string too_short_boundaries(const MeasuredVesicles& data) {
   constexpr double kTooShort = 0.9;
-  const auto& all = data.measurements;
-  const auto shorter = [](const Measurement& m) { return length_of(m) < kTooShort; };
-  const auto count = std::count_if(all.begin(), all.end(), shorter);
-  if (count == 0) return "";
-  const Measurement& worst = *std::min_element(
-      all.begin(), all.end(),
-      [](const Measurement& a, const Measurement& b) { return length_of(a) < length_of(b); });
+  const Impossible shorter = below(data, length_of, kTooShort);
+  if (shorter.count == 0) return "";
   return formatted(
       "Of %td of %zu looks the perimeter is shorter than any boundary around the raft fraction, of "
       "vesicle '%s' at %.4g s %.2g times that of a single cap. Is the radius a diameter, or the "
       "perimeter divided by the radius already?",
-      count, all.size(), worst.vesicle.c_str(), worst.time, length_of(worst));
+      shorter.count, data.measurements.size(), shorter.worst->vesicle.c_str(), shorter.worst->time,
+      shorter.least);
 }
 
 }  // namespace traceraft
