@@ -1,9 +1,8 @@
 #include "verification/explain/class_evidence.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
-
-#include "verification/explain/judgement.hpp"
 
 namespace traceraft {
 namespace {
@@ -21,8 +20,6 @@ std::optional<double> criterion_of(const FilterProblems& data, FilterModel model
   }
 }
 
-}  // namespace
-
 bool holds_out(const FilterProblems& data) {
   return std::any_of(data.begin(), data.end(), [](const FilterProblem& vesicle) {
     return vesicle.train < vesicle.snapshots.size();
@@ -34,13 +31,33 @@ FilterProblems holding_nothing_out(FilterProblems data) {
   return data;
 }
 
-double count_values(const FilterProblems& data) {
-  double count = 0;
-  for (const FilterProblem& vesicle : data)
-    for (std::size_t k = 1; k < vesicle.train; ++k)
-      count += static_cast<double>(vesicle.snapshots[k].values.size());
-  return count;
+bool is_open(const Explanation& result) {
+  const bool open =
+      result.finding == Finding::ambiguous ||
+      (result.finding == Finding::unnamed && result.without_gap == Finding::ambiguous);
+  return open && result.stopped.empty() && !result.rivals.empty();
 }
+
+// By how much each member's criterion is worse than the best one's; 0 where it is not known.
+struct Comparison {
+  std::size_t best;
+  std::vector<double> worse;
+};
+
+std::optional<Comparison> compare(const FilterProblems& all, const std::vector<Refit>& members,
+                                  const Search& search) {
+  const auto criteria = criteria_of(all, search.request.base, members, search.request.filter);
+  if (!criteria.front()) return {};
+  Comparison result{0, {}};
+  for (std::size_t k = 1; k < members.size(); ++k)
+    if (criteria[k] && *criteria[k] < *criteria[result.best]) result.best = k;
+  // Its gap is that of the found one.
+  if (search.result.finding == Finding::unnamed) result.best = 0;
+  for (const auto& own : criteria) result.worse.push_back(own ? *own - *criteria[result.best] : 0);
+  return result;
+}
+
+}  // namespace
 
 std::vector<std::optional<double>> criteria_of(const FilterProblems& data,
                                                const CahnHilliardModel& base,
@@ -51,6 +68,58 @@ std::vector<std::optional<double>> criteria_of(const FilterProblems& data,
   for (const Refit& member : members)
     criteria.push_back(criterion_of(data, {base, member.pace, member.hypothesis, {}}, settings));
   return criteria;
+}
+
+bool leave_to_rivals(Search& search) {
+  const SearchState before = search.state(true);
+  std::vector<Refit> without_gap;
+  for (const Refit& rival : before.so_far.rivals) {
+    search.tell("instead " + rival.hypothesis.name());
+    search.go_on_from(before);
+    search.set_found(rival);
+    try {
+      const FilterResult pass = search.next_pass();
+      const Screening left = screen(pass, search.model.screened, search.model.hypothesis);
+      if (!has_gap(left, search.request.false_alarms)) without_gap.push_back(search.result.found);
+    } catch (const std::runtime_error& error) {
+      search.tell("  fails: " + std::string(error.what()));
+    }
+  }
+  search.go_on_from(before);
+  if (without_gap.empty()) return false;
+  search.set_found(without_gap.front());
+  Explanation& result = search.result;
+  result.rivals.assign(without_gap.begin() + 1, without_gap.end());
+  result.finding = result.rivals.empty() ? Finding::named : Finding::ambiguous;
+  return true;
+}
+
+bool tell_apart(Search& search) {
+  Explanation& result = search.result;
+  if (search.told_apart || !is_open(result) || !holds_out(search.data)) return false;
+  search.told_apart = true;
+  search.tell("what is held out says of the class");
+  std::vector<Refit> members{result.found};
+  members.insert(members.end(), result.rivals.begin(), result.rivals.end());
+  const FilterProblems all = holding_nothing_out(search.data);
+  const auto compared = compare(all, members, search);
+  if (!compared) return false;
+  const double limit = telling(count_values(all), search.mesh_error());
+  result.rivals.clear();
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    const double worse = compared->worse[k];
+    search.tell("  " + members[k].hypothesis.name() + " gains " +
+                std::to_string(std::lround(-worse)));
+    if (worse >= limit)
+      result.told_apart.push_back({members[k].hypothesis.name(), worse});
+    else if (k != compared->best)
+      result.rivals.push_back(members[k]);
+  }
+  if (result.rivals.empty())
+    (result.finding == Finding::unnamed ? result.without_gap : result.finding) = Finding::named;
+  if (compared->best == 0) return false;
+  search.set_found(members[compared->best]);
+  return true;
 }
 
 }  // namespace traceraft

@@ -1,19 +1,21 @@
-// What tells the members of a class apart: all that was measured, what is held out included.
+// What tells the members of a class apart: the gaps that they leave, and all that was measured,
+// what is held out included.
 #pragma once
 
 #include <optional>
 #include <vector>
 
-#include "verification/explain/refit.hpp"
+#include "verification/explain/search.hpp"
 
 namespace traceraft {
 
-bool holds_out(const FilterProblems& data);
-// With every snapshot counting.
-FilterProblems holding_nothing_out(FilterProblems data);
+// Of hypotheses that explain what counts as well as each other some may foretell what is held out
+// worse: the class is left to those that leave no gap, in their order. False if there is none.
+bool leave_to_rivals(Search& search);
 
-// That were measured and count, first snapshots aside.
-double count_values(const FilterProblems& data);
+// What is held out counts, too, between the members of a class that is open. Returns whether
+// another one than was found comes first then; the search goes on beside that.
+bool tell_apart(Search& search);
 
 // The criterion of each hypothesis, refitted to the snapshots that count, with the noise of `data`;
 // nothing where a refit fails.

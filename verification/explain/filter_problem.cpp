@@ -109,6 +109,14 @@ void add_series(const FieldSeries& series, const CahnHilliardModel& base,
 
 }  // namespace
 
+double count_values(const FilterProblems& data) {
+  double count = 0;
+  for (const FilterProblem& vesicle : data)
+    for (std::size_t k = 1; k < vesicle.train; ++k)
+      count += static_cast<double>(vesicle.snapshots[k].values.size());
+  return count;
+}
+
 FilterProblems make_filter_problems(const std::vector<FieldSeries>& series, const LevelSet& surface,
                                     const CahnHilliardModel& base, int cells, int threads,
                                     bool hold_out, const FilterSettings& settings) {

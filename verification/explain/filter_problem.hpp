@@ -53,6 +53,9 @@ struct FilterProblem {
 
 using FilterProblems = std::vector<FilterProblem>;
 
+// That were measured and count, first snapshots aside.
+double count_values(const FilterProblems& data);
+
 // Of all vesicles, on the same meshes. `hold_out`: the last of four snapshots or more is forecast,
 // but counts for nothing. Throws InputError for places that are off the surface, and where more
 // than a twentieth of the values are outliers.
