@@ -166,7 +166,7 @@ int explain(ExplainCommand command) {
   refuse_foreign_folder(out, {"search.json", "ensembles"});
   fs::create_directories(out);
   const FolderLock lock(out);
-  // The search is on disk after every round.
+  // The search is on disk after every refit.
   const std::string go_on =
       command.quiet ? "" : "to go on, give the same command with --out " + out.string();
   end_on_stop_signals(kInterrupted, go_on);

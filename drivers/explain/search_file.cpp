@@ -14,7 +14,7 @@ std::vector<double> numbers_of(const Vec& values) {
 }
 
 // Of the file: another one is read by another build.
-constexpr int kFormat = 3;
+constexpr int kFormat = 4;
 // Maps of many snapshots.
 constexpr std::uint64_t kMaxBytes = 1 << 30;
 

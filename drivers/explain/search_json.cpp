@@ -66,25 +66,26 @@ Json json_of(const Refit& fit) {
     snapshots.push_back({s.vesicle, s.snapshot, s.gap, s.expected});
   return {{"hypothesis", json_of(fit.hypothesis)},
           {"pace", fit.pace},
-          {"deviance", fit.deviance},
+          {"deviance", json_of(fit.deviance)},
           {"covariance", json_of(fit.covariance)},
           {"pace_deviation", fit.pace_deviation},
           {"gap", json_of(fit.gap)},
           {"expected", json_of(fit.expected)},
           {"snapshots", snapshots},
-          {"settled", fit.settled}};
+          {"settled", fit.settled},
+          {"failure", fit.failure}};
 }
 Refit refit_of(const Json& json) {
   Refit fit{hypothesis_of(json.at("hypothesis")),
             json.at("pace"),
-            json.at("deviance"),
+            number_of(json.at("deviance")),
             square_of(json.at("covariance")),
             json.at("pace_deviation"),
             gaps_of(json.at("gap")),
             gaps_of(json.at("expected")),
             {},
             json.at("settled"),
-            ""};
+            json.at("failure")};
   for (const Json& s : json.at("snapshots"))
     fit.snapshots.push_back({s.at(0), s.at(1), s.at(2), s.at(3)});
   return fit;
@@ -221,12 +222,13 @@ Finding finding_of(const std::string& word) {
 Json search_json(const SearchState& state) {
   const Explanation& found = state.so_far;
   Json rounds = Json::array(), rivals = Json::array(), told_apart = Json::array(),
-       disagreements = Json::array(), changes = Json::array();
+       disagreements = Json::array(), changes = Json::array(), ahead = Json::array();
   for (const Round& round : found.rounds) rounds.push_back(json_of(round));
   for (const Refit& fit : found.rivals) rivals.push_back(json_of(fit));
   for (const ToldApart& t : found.told_apart) told_apart.push_back({t.effect, t.less});
   for (const Disagreement& d : found.disagreements) disagreements.push_back(json_of(d));
   for (const FrameChange& change : found.changes) changes.push_back(json_of(change));
+  for (const auto& [number, fit] : state.ahead) ahead.push_back({number, json_of(fit)});
   return {{"more", state.more},
           {"class_weighed", state.told_apart},
           {"noise", state.noise},
@@ -239,6 +241,7 @@ Json search_json(const SearchState& state) {
           {"disagreements", disagreements},
           {"changes", changes},
           {"told_apart", told_apart},
+          {"ahead", ahead},
           {"stopped", found.stopped},
           {"rerun", json_of(found.rerun)},
           {"base_maps", json_of(found.base_maps)},
@@ -260,6 +263,7 @@ SearchState search_from(const Json& json, const CahnHilliardModel& base) {
   for (const Json& d : json.at("disagreements")) found.disagreements.push_back(disagreement_of(d));
   for (const Json& change : json.at("changes")) found.changes.push_back(change_of(change));
   for (const Json& t : json.at("told_apart")) found.told_apart.push_back({t.at(0), t.at(1)});
+  for (const Json& fit : json.at("ahead")) state.ahead[fit.at(0)] = refit_of(fit.at(1));
   found.stopped = json.at("stopped");
   found.rerun = rerun_of(json.at("rerun"));
   found.base_maps = maps_of(json.at("base_maps"));

@@ -122,7 +122,7 @@ TEST_F(ExplainTest, NamesNothingWhereNothingIsHidden) {
   EXPECT_NEAR(verdict["parameters"]["diffusion"]["value"], 1e-5, 0.05e-5);
 }
 
-// A killed search goes on from its last round and ends as if nothing had happened.
+// A killed search goes on from its last refit and ends as if nothing had happened.
 TEST_F(ExplainTest, GoesOnWhereItWasKilled) {
   constexpr int kCells = 13;
   draw("uptake");

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
+#include <stdexcept>
 
 #include "tests/support/small_vesicle.hpp"
 #include "verification/explain/candidates.hpp"
@@ -44,14 +46,18 @@ class RivalsTest : public ::testing::Test {
   }
 
   // As if a first round had found the one, and that the others explain the data as well.
-  Explanation explained(const Refit& found, const std::vector<Refit>& rivals) const {
+  SearchState state_of(const Refit& found, const std::vector<Refit>& rivals) const {
     SearchState state;
     state.so_far.found = state.so_far.base = found;
     state.so_far.rivals = rivals;
     state.so_far.finding = rivals.empty() ? Finding::named : Finding::ambiguous;
     for (const FilterProblem& data : problems_of(measured(), request_))
       state.noise.push_back(data.noise);
-    return explain_fields(measured(), request_, state);
+    return state;
+  }
+
+  Explanation explained(const Refit& found, const std::vector<Refit>& rivals) const {
+    return explain_fields(measured(), request_, state_of(found, rivals));
   }
 
   Explanation explained_by_gravity() const {
@@ -135,6 +141,40 @@ TEST_F(RivalsTest, AreToldApartByAllThatWasMeasured) {
                counting = wrong.deviance - right.deviance;
   EXPECT_NEAR(found.told_apart[0].less, all, 0.2 * all);
   EXPECT_GT(all, 1.2 * counting);  // a third snapshot more
+}
+
+// An interrupted round goes on from its last refit, and ends with the same numbers.
+TEST_F(RivalsTest, RefitsOfAnInterruptedRoundAreNotDoneAgain) {
+  constexpr std::size_t kDone = 2;
+  request_.false_alarms = 1;                       // whatever looks best is refitted
+  for (const Candidate& candidate : candidates())  // but for three whose refits are fast
+    if (candidate.effect != "exchange" && candidate.effect != "uptake" &&
+        candidate.effect != "gravity")
+      request_.without.push_back(candidate.effect);
+  const SearchState begin = state_of({}, {});
+  std::vector<std::size_t> saved;  // refits that each save has of the round
+  request_.save = [&](const SearchState& state) { saved.push_back(state.ahead.size()); };
+  const Explanation whole = explain_fields(measured(), request_, begin);
+  const std::vector<std::size_t> all = saved;
+  ASSERT_GT(*std::max_element(all.begin(), all.end()), kDone);
+
+  SearchState interrupted;
+  request_.save = [&](const SearchState& state) {
+    if (interrupted.ahead.size() < kDone) interrupted = state;  // other threads finish theirs
+    if (state.ahead.size() >= kDone) throw std::runtime_error("interrupted");
+  };
+  EXPECT_THROW(explain_fields(measured(), request_, begin), std::runtime_error);
+  ASSERT_EQ(interrupted.ahead.size(), kDone);
+  EXPECT_TRUE(interrupted.so_far.rounds.empty());
+
+  saved.clear();
+  request_.save = [&](const SearchState& state) { saved.push_back(state.ahead.size()); };
+  const Explanation resumed = explain_fields(measured(), request_, interrupted);
+  // What whole searches save after those refits.
+  EXPECT_EQ(saved, std::vector<std::size_t>(std::find(all.begin(), all.end(), kDone), all.end()));
+  EXPECT_EQ(class_of(resumed), class_of(whole));
+  EXPECT_EQ(resumed.found.deviance, whole.found.deviance);
+  EXPECT_EQ(resumed.found.pace, whole.found.pace);
 }
 
 }  // namespace

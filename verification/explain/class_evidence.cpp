@@ -96,8 +96,8 @@ bool leave_to_rivals(Search& search) {
 
 bool tell_apart(Search& search) {
   Explanation& result = search.result;
-  if (search.told_apart || !is_open(result) || !holds_out(search.data)) return false;
   search.told_apart = true;
+  if (!is_open(result) || !holds_out(search.data)) return false;
   search.tell("what is held out says of the class");
   std::vector<Refit> members{result.found};
   members.insert(members.end(), result.rivals.begin(), result.rivals.end());

@@ -13,8 +13,8 @@ namespace traceraft {
 // worse: the class is left to those that leave no gap, in their order. False if there is none.
 bool leave_to_rivals(Search& search);
 
-// What is held out counts, too, between the members of a class that is open. Returns whether
-// another one than was found comes first then; the search goes on beside that.
+// What is held out counts, too, between the members of a class that is open; asked once. Returns
+// whether another one than was found comes first then; the search goes on beside that.
 bool tell_apart(Search& search);
 
 // The criterion of each hypothesis, refitted to the snapshots that count, with the noise of `data`;

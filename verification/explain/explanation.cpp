@@ -14,9 +14,11 @@ namespace {
 
 void start(Search& search) {
   search.tell("pace of the base model");
-  search.model.pace = first_pace(search.data, search.request.base, search.request.filter);
-  const bool far = std::fabs(std::log(search.model.pace)) > std::log(kFarPace);
-  search.tell(formatted("  D is about %.2g times the model's%s", search.model.pace,
+  Refit base;
+  base.pace = first_pace(search.data, search.request.base, search.request.filter);
+  search.set_found(base);
+  const bool far = std::fabs(std::log(base.pace)) > std::log(kFarPace);
+  search.tell(formatted("  D is about %.2g times the model's%s", base.pace,
                         far ? ": are time_unit and the model's --diffusion right?" : ""));
 }
 
@@ -82,14 +84,17 @@ Explanation explain_fields(const std::vector<FieldSeries>& series, const Explain
   if (saved) {
     search.tell("what was found before");
     search.go_on_from(*saved);
+    search.ahead = saved->ahead;
   } else {
     start(search);
   }
   bool more = saved ? saved->more : true;
-  while (more) {
-    more = look_for_one(search) || tell_apart(search);
-    if (request.save) request.save(search.state(more));
+  while (more || !search.told_apart) {
+    search.begin_round(more);
+    more = more ? look_for_one(search) : tell_apart(search);
+    search.ahead.clear();
   }
+  search.save(search.state(more));
   return conclusion(std::move(search));
 }
 

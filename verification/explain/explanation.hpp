@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,7 +31,7 @@ struct ExplainRequest {
   double false_alarms = 0.02;  // with nothing missing, the share of data sets that seem to lack
                                // something
   std::function<void(const std::string& step)> progress = {};      // may be empty
-  std::function<void(const struct SearchState& state)> save = {};  // after every round
+  std::function<void(const struct SearchState& state)> save = {};  // after every refit
 };
 
 // A snapshot that seems turned, or whose values seem to be on another scale: further than what is
@@ -107,12 +108,14 @@ bool is_named(const Explanation& found);
 // nothing is named.
 std::vector<std::string> class_of(const Explanation& found);
 
-// Between two rounds: all that the search goes on from.
+// All that the search goes on from: what was found up to the last round, and what the one that is
+// not over has of refits.
 struct SearchState {
   Explanation so_far;
   std::vector<std::vector<double>> noise;  // of each vesicle, of each snapshot
   bool more = true;                        // is there another round?
   bool told_apart = false;                 // has what is held out been asked about the class?
+  std::map<std::size_t, Refit> ahead;      // by their number in the round
 };
 
 FilterProblems problems_of(const std::vector<FieldSeries>& series, const ExplainRequest& request);

@@ -201,13 +201,13 @@ Refit no_worse(const Refit& fit, const Refit& without) {
 
 std::vector<Refit> refit_each(const FilterProblems& data, const std::vector<FilterModel>& starts,
                               const FilterSettings& settings, const std::vector<ErrorMaps>& maps,
-                              const std::function<void(const Refit&)>& done) {
+                              const std::function<void(std::size_t, const Refit&)>& done) {
   std::vector<Refit> refits(starts.size());
   std::mutex one_at_a_time;
   const auto fit = [&](std::size_t k) {
     refits[k] = refit(data, starts[k], settings, maps);
     const std::lock_guard lock(one_at_a_time);
-    done(refits[k]);
+    done(k, refits[k]);
   };
   if (starts.size() == 1) {
     fit(0);  // which uses all processors itself

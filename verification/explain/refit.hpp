@@ -39,10 +39,11 @@ Refit no_worse(const Refit& fit, const Refit& without);
 Refit refit(const FilterProblems& data, const FilterModel& start, const FilterSettings& settings,
             const std::vector<ErrorMaps>& maps);
 
-// Of many, on all processors, in their order. `done` is called after each, one at a time.
+// Of many, on all processors, in their order. `done` is called after each, with its place among
+// them, one at a time.
 std::vector<Refit> refit_each(const FilterProblems& data, const std::vector<FilterModel>& starts,
                               const FilterSettings& settings, const std::vector<ErrorMaps>& maps,
-                              const std::function<void(const Refit&)>& done);
+                              const std::function<void(std::size_t, const Refit&)>& done);
 
 // The covariance that the replicates of a pass with the (refitted) model have, to first order: a
 // parametric bootstrap.

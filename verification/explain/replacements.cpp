@@ -14,7 +14,7 @@ bool all_resolved(const Refit& fit, const Search& search) {
   return true;
 }
 
-std::vector<Refit> refit_neighbours(const Search& search) {
+std::vector<Refit> refit_neighbours(Search& search) {
   search.tell("in place of " + search.model.hypothesis.name());
   std::vector<FilterModel> trials;
   for (Hypothesis& near :

@@ -49,21 +49,53 @@ FilterResult Search::next_pass() {
   return pass;
 }
 
-std::vector<Refit> Search::refit_all(const std::vector<FilterModel>& trials) const {
-  return refit_each(data, trials, request.filter, maps, [&](const Refit& fit) {
-    // With one effect more there is nothing to lose.
-    const bool more = fit.hypothesis.parts.size() > result.found.hypothesis.parts.size();
-    const double difference = result.found.deviance - fit.deviance;
-    const double gained = more ? std::max(0.0, difference) : difference;
-    tell("  " + fit.hypothesis.name() +
-         (fit.failure.empty() ? " gains " + std::to_string(std::lround(gained)) : " fails"));
+std::vector<Refit> Search::refit_all(const std::vector<FilterModel>& trials) {
+  const std::size_t first = numbered_;
+  numbered_ += trials.size();
+  std::vector<std::size_t> open;
+  std::vector<FilterModel> open_trials;
+  for (std::size_t k = first; k < numbered_; ++k) {
+    if (const auto known = ahead.find(k); known != ahead.end()) {
+      tell_gain(known->second);
+      continue;
+    }
+    open.push_back(k);
+    open_trials.push_back(trials[k - first]);
+  }
+  refit_each(data, open_trials, request.filter, maps, [&](std::size_t which, const Refit& fit) {
+    tell_gain(fit);
+    ahead[open[which]] = fit;
+    before_.ahead = ahead;
+    save(before_);
   });
+  std::vector<Refit> refits;
+  for (std::size_t k = first; k < numbered_; ++k) refits.push_back(ahead.at(k));
+  return refits;
+}
+
+void Search::tell_gain(const Refit& fit) const {
+  // With one effect more there is nothing to lose.
+  const bool more = fit.hypothesis.parts.size() > result.found.hypothesis.parts.size();
+  const double difference = result.found.deviance - fit.deviance;
+  const double gained = more ? std::max(0.0, difference) : difference;
+  tell("  " + fit.hypothesis.name() +
+       (fit.failure.empty() ? " gains " + std::to_string(std::lround(gained)) : " fails"));
 }
 
 SearchState Search::state(bool more) const {
-  SearchState now{result, {}, more, told_apart};
+  SearchState now{result, {}, more, told_apart, ahead};
   for (const FilterProblem& vesicle : data) now.noise.push_back(vesicle.noise);
   return now;
+}
+
+void Search::save(const SearchState& state) const {
+  if (request.save) request.save(state);
+}
+
+void Search::begin_round(bool more) {
+  before_ = state(more);
+  numbered_ = 0;
+  save(before_);
 }
 
 void Search::go_on_from(const SearchState& state) {

@@ -1,6 +1,7 @@
 // The search for effects: what it has at hand, and what it has found so far.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,8 @@ struct Search {
   FilterModel model;            // with what was found; the other candidates are screened
   std::vector<ErrorMaps> maps;  // of its forecasts
   Explanation result;
-  bool told_apart = false;  // has what is held out been asked about the class?
+  bool told_apart = false;             // has what is held out been asked about the class?
+  std::map<std::size_t, Refit> ahead;  // refits of this round, by their number in it
 
   Search(const std::vector<FieldSeries>& series, const ExplainRequest& explain_request);
 
@@ -35,11 +37,19 @@ struct Search {
   // the mesh, are its own. Throws std::runtime_error if a forecast fails.
   FilterResult next_pass();
 
-  // In their order, with news of each.
-  std::vector<Refit> refit_all(const std::vector<FilterModel>& trials) const;
+  // In their order, with news of each; those that an interrupted search has had are not done again.
+  std::vector<Refit> refit_all(const std::vector<FilterModel>& trials);
 
   SearchState state(bool more) const;
+  void save(const SearchState& state) const;
   void go_on_from(const SearchState& state);
+  void begin_round(bool more);
+
+ private:
+  void tell_gain(const Refit& fit) const;
+
+  SearchState before_;        // the round
+  std::size_t numbered_ = 0;  // refits of the round
 };
 
 // By the names of its effects.

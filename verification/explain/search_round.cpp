@@ -44,7 +44,7 @@ void draw_maps(Search& search, const FilterResult& pass, bool first) {
 // First orders of an effect that another D makes up for may lie beyond a ridge, from where the way
 // does not lead back: where such refits end worse than without the effect, they begin once more
 // with nothing of it.
-std::vector<Refit> refit_again(const Search& search, const std::vector<FilterModel>& trials,
+std::vector<Refit> refit_again(Search& search, const std::vector<FilterModel>& trials,
                                std::vector<Refit> fits) {
   std::vector<FilterModel> again;
   std::vector<std::size_t> which;
@@ -63,7 +63,7 @@ std::vector<Refit> refit_again(const Search& search, const std::vector<FilterMod
   return fits;
 }
 
-void refit_shortlist(const Search& search, Round& round) {
+void refit_shortlist(Search& search, Round& round) {
   search.tell("refits: 2 ln of the likelihood ratio that an effect gains");
   std::vector<FilterModel> trials;
   const double limit = telling(search.values(), round.screening.mesh_error);
