@@ -82,7 +82,7 @@ void refuse_calibrating(const Configuration& model) {
   const std::string effect = model.text("effect");
   for (const EffectEntry& entry : effects())
     for (const ParameterSpec& parameter : entry.parameters)
-      if ((parameter.unit == "1/s" || parameter.unit == "s") &&
+      if ((is_rate(parameter.unit) || parameter.unit == "s") &&
           effect.find(entry.name + ":") != std::string::npos)
         throw InputError(model.where("effect") + ": " + entry.name +
                          " has a time of its own, so that D is more than a unit of time; it cannot "

@@ -15,6 +15,7 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/random.hpp"
+#include "verification/explain/candidates.hpp"
 #include "verification/explain/effect_size.hpp"
 
 namespace traceraft {
@@ -40,6 +41,8 @@ std::vector<std::string> effects_of(const std::string& text, std::uint64_t seed)
     for (const std::string& name : names)
       if (name == "none" || name == "random" || std::count(names.begin(), names.end(), name) > 1)
         throw InputError("--effects: '" + name + "' stands beside others, or twice");
+      else
+        (void)candidate_to_hide(name);
     return names;
   }
   std::vector<std::string> all = effects_to_hide();
@@ -63,7 +66,10 @@ int hide_effects(const HideCommand& command) {
                      format_number(kWidestBlur * units.length()) + ", a fifth of the radius");
   if (command.first_s > 0) request.first = command.first_s / units.time();
   if (command.last_s > 0) request.last = command.last_s / units.time();
-  if (!(request.first < request.last)) throw InputError("--first: it has to be before --last");
+  if (!(request.first < request.last))
+    throw InputError("--first: " + format_number(request.first * units.time()) +
+                     " s has to be before --last, " + format_number(request.last * units.time()) +
+                     " s");
   const fs::path out = command.out.empty() ? first_free_folder("hidden") : command.out;
   if (fs::exists(out / "truth.json"))
     throw InputError("--out: " + out.string() + " holds a hidden truth already");

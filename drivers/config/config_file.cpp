@@ -58,6 +58,10 @@ std::string toml_value(const OptionSpec& spec, const Configuration& configuratio
   }
 }
 
+std::string config_line(const OptionSpec& spec, const Configuration& configuration) {
+  return spec.name + " = " + toml_value(spec, configuration) + "  # " + spec.help + "\n";
+}
+
 }  // namespace
 
 std::string in_shell(const std::string& text) {
@@ -82,9 +86,16 @@ std::string config_text(const Configuration& configuration) {
   for (const OptionSpec& spec : run_options()) {
     if (spec.group != group) text += "\n# " + spec.group + "\n";
     group = spec.group;
-    text += spec.name + " = " + toml_value(spec, configuration) + "  # " + spec.help + "\n";
+    text += config_line(spec, configuration);
   }
   return text.substr(1);
+}
+
+std::string config_lines(const Configuration& configuration,
+                         const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += config_line(run_option(name), configuration);
+  return text;
 }
 
 std::string flags_text(const Configuration& configuration) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "drivers/config/configuration.hpp"
 
@@ -15,6 +16,9 @@ GivenValues read_config_file(const std::filesystem::path& path,
 
 // All options with their resolved values, each with its meaning: reads back as the same run.
 std::string config_text(const Configuration& configuration);
+
+// The lines of some of them.
+std::string config_lines(const Configuration& configuration, const std::vector<std::string>& names);
 
 // A word of a command, quoted where a shell would make something else of it.
 std::string in_shell(const std::string& text);

@@ -61,6 +61,7 @@ void explain_field_data(const ExplainCommand& command, ExplainSetup& setup, cons
     std::printf("%s\n", data_text(setup).c_str());
     std::printf("the model: %s\n", flags_text(setup.configuration()).c_str());
     for (const std::string& note : setup.notes) std::printf("%s\n", note.c_str());
+    std::fflush(stdout);
   }
   const SearchFile file(out, setup);
   std::optional<SearchState> search = file.load();
@@ -84,7 +85,9 @@ void explain_field_data(const ExplainCommand& command, ExplainSetup& setup, cons
   print_explanation(found, setup);
   const std::string run = command_for_found(out, found, setup);
   if (!run.empty())
-    std::printf("\nrun it with: %s\n", run.c_str());
+    std::printf(
+        "\nrun it with: %s\n(it starts from noise, not from the vesicle that was measured)\n",
+        run.c_str());
   else if (fs::exists(out / "model.toml"))
     std::printf("\n%s is that of an earlier explanation\n", (out / "model.toml").c_str());
   std::printf("\nwritten: %s\n", (out / "explain.html").c_str());
@@ -124,8 +127,9 @@ bool explain_series_data(const ExplainCommand& command, const SeriesSetup& setup
   const SeriesExplanation found = numerically(
       [&] { return explain_series(data, ensembles.base, ensembles.candidates, search); });
   // Fields say more: the verdict is theirs if there are any.
-  if (command.job.data.empty()) write_series_verdict(out, given, ensembles, found, search);
-  write_series_explanation(out, data, model, ensembles, found, command.quiet);
+  if (command.job.data.empty())
+    write_series_verdict(out, command.job.model, given, ensembles, found, search);
+  write_series_explanation(out, data, model, ensembles, found, search, command.quiet);
   return true;
 }
 

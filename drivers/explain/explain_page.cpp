@@ -1,12 +1,14 @@
 #include "drivers/explain/explain_page.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "drivers/config/config_file.hpp"
 #include "drivers/explain/explain_report.hpp"
 #include "drivers/explain/explain_tables.hpp"
 #include "drivers/explain/remarks.hpp"
 #include "drivers/explain/verdict.hpp"
+#include "drivers/explain/verdict_sentence.hpp"
 #include "drivers/output/chart.hpp"
 #include "drivers/output/page.hpp"
 #include "drivers/report/viewer.hpp"
@@ -43,16 +45,14 @@ class ExplainPage {
     add_what();
     page_.heading("Effects that were not found");
     page_.paragraph(
-        "95 % bounds of their first parameters, to first order, beside what was found. With ten "
-        "effects one of them excludes 0 by chance in four data sets of ten.");
+        "95 % bounds of their first parameters, to first order, beside what was found." +
+        chance_text());
     page_.table(bound_rows(found_, units_));
-    std::string others;
-    for (const std::string& name : not_looked_for(found_))
-      others += (others.empty() ? "" : ", ") + name;
-    page_.paragraph("Not looked for: " + others +
-                    ". Turns are allowed for between snapshots, thermal noise makes no forecast, "
-                    "curvature sorts nothing where it is the same everywhere" +
-                    (setup_.request.without.empty() ? "." : "; others were left out on request."));
+    page_.paragraph("Not looked for: " + joined(not_looked_for(found_), ", ") +
+                    ". Turns are allowed for between snapshots, thermal noise makes no forecast" +
+                    (sorts_by_curvature()
+                         ? "."
+                         : ", curvature sorts nothing where it is the same everywhere."));
     page_.heading("Where this comes from");
     page_.paragraph("traceraft " + std::string(kVersion) + ". Noise " +
                     formatted("%.4f of c, ", found_.noise) + std::to_string(found_.replicates) +
@@ -60,7 +60,10 @@ class ExplainPage {
                     formatted("h/epsilon = %.2f.", found_.h_over_epsilon) + " The model:");
     page_.code(flags_text(setup_.configuration()));
     if (const std::string run = command_for_found(folder_, found_, setup_); !run.empty()) {
-      page_.paragraph("The model with what was found runs with:");
+      page_.paragraph(
+          "The model with what was found runs, from noise and not from the vesicle that was "
+          "measured, "
+          "with:");
       page_.code(run);
     }
     write_durably(folder_ / "explain.html", page_.html());
@@ -68,6 +71,25 @@ class ExplainPage {
   }
 
  private:
+  // Bounds of effects that have one sign begin at 0.
+  std::string chance_text() const {
+    const auto excluding = std::count_if(
+        found_.bounds.begin(), found_.bounds.end(),
+        [](const Bound& bound) { return bound.seen && find_candidate(bound.effect)->two_sided; });
+    if (excluding == 0) return "";
+    return formatted(
+        " Of the %d effects that may have either sign one excludes 0 by chance in %.0f %% "
+        "of data sets.",
+        static_cast<int>(excluding), 100 * (1 - std::pow(0.95, static_cast<double>(excluding))));
+  }
+
+  bool sorts_by_curvature() const {
+    const auto holds = [](const std::vector<std::string>& names) {
+      return std::count(names.begin(), names.end(), "curvature") > 0;
+    };
+    return holds(setup_.request.without) || !holds(not_looked_for(found_));
+  }
+
   void add_gaps() {
     page_.heading("How the gap shrinks");
     page_.paragraph(
@@ -102,8 +124,9 @@ class ExplainPage {
     page_.paragraph(
         "Measured minus forecast near each place, in standard deviations of noise: orange where "
         "more raft was measured, blue where less. Noise alone surpasses " +
-        formatted("%.1f anywhere in one of twenty data sets; the colours end at %.0f.",
-                  found_.base_maps.threshold, kColourEnd) +
+        formatted("%.1f anywhere on the maps in one of twenty data sets; the colours end at -%.0f "
+                  "and %.0f.",
+                  found_.base_maps.threshold, kColourEnd, kColourEnd) +
         (both ? " The base model first, then with " + found_.found.hypothesis.name() + "." : ""));
     std::vector<Vec> frames;
     View view{{}, -kColourEnd, kColourEnd, strongest(found_.base_maps), true};
@@ -114,7 +137,8 @@ class ExplainPage {
             model +
             (setup_.series.size() > 1 ? ", vesicle " + std::to_string(map.vesicle + 1) : "") +
             formatted(", t = %.4g s: up to %.1f", map.time * units_.seconds_per_unit(),
-                      map.z.cwiseAbs().maxCoeff()));
+                      map.z.cwiseAbs().maxCoeff()) +
+            " standard deviations");
       }
     };
     add("base model", found_.base_maps);
@@ -126,10 +150,13 @@ class ExplainPage {
           "significantly with the base model by itself; what is said above rests on all together.");
       return;
     }
-    page_.paragraph(std::to_string(found_.disagreements.size()) +
-                    " patches of the surface (a twelfth of it, inside rafts, outside or at their "
-                    "boundaries, in one "
-                    "snapshot) disagree significantly with the base model. The strongest:");
+    page_.paragraph(
+        std::to_string(found_.disagreements.size()) +
+        " patches of the surface (a twelfth of it, inside rafts, outside or at their "
+        "boundaries, in one "
+        "snapshot) disagree significantly with the base model: so many that at most " +
+        formatted("%.0f %% of such lists hold one by chance", 100 * found_.false_alarms) +
+        " (Benjamini and Hochberg). The strongest:");
     page_.table(disagreement_rows(found_, units_, kMostRows));
   }
 
@@ -148,17 +175,15 @@ class ExplainPage {
       const std::string known = round.known.hypothesis.name();
       page_.paragraph((known.empty() ? std::string("What the base model lacks")
                                      : "What is lacking beside " + known) +
-                      ". Noise alone gains as much by any candidate in " +
+                      ". Noise alone gains as much by any candidate in at most " +
                       share(round.screening.p) +
-                      " of data sets, and leaves as large a gap of any shape in " +
+                      " of data sets, and leaves as large a gap of any shape in at most " +
                       share(round.screening.gap_p) + ".");
       page_.table(score_rows(round));
     }
   }
 
-  static std::string share(double p) {
-    return p < 1e-3 ? "less than 0.1 %" : formatted("%.1f %%", 100 * p);
-  }
+  static std::string share(double p) { return p < 1e-3 ? "0.1 %" : formatted("%.1f %%", 100 * p); }
 
   const fs::path folder_;
   const Explanation& found_;

@@ -4,10 +4,12 @@
 
 #include "drivers/config/config_file.hpp"
 #include "drivers/explain/explain_tables.hpp"
+#include "drivers/explain/extended_model.hpp"
 #include "drivers/explain/remarks.hpp"
 #include "drivers/explain/verdict.hpp"
+#include "drivers/explain/verdict_sentence.hpp"
 #include "drivers/output/text_table.hpp"
-#include "kernel/core/parameters.hpp"
+#include "kernel/core/text.hpp"
 #include "verification/study.hpp"
 
 namespace traceraft {
@@ -44,7 +46,9 @@ void write_explanation(const std::filesystem::path& folder, const Explanation& f
   write_durably(folder / "scores.csv", csv_text(scores_table(found)));
   write_durably(folder / "disagreements.csv", csv_text(disagreements_table(found, units)));
   if (has_model(found))
-    write_durably(folder / "model.toml", config_text(found_model(found, setup.model)));
+    write_extended_model(folder / "model.toml", setup.model_file, found_model(found, setup.model),
+                         "found by traceraft explain: " + found.found.hypothesis.name() +
+                             ", with D refitted beside it");
   write_durably(folder / "verdict.json", verdict_json(found, setup).dump(2) + "\n");
 }
 
@@ -52,7 +56,7 @@ std::string command_for_found(const std::filesystem::path& folder, const Explana
                               const ExplainSetup& setup) {
   if (!has_model(found)) return "";
   return "traceraft run --config " + in_shell((folder / "model.toml").string()) + " --t-end " +
-         format_number(setup.last_s());
+         formatted("%.6g", setup.last_s());
 }
 
 void print_explanation(const Explanation& found, const ExplainSetup& setup) {

@@ -129,6 +129,7 @@ ExplainSetup read_explain_job(const ExplainJob& job) {
   if (job.flags.count("epsilon") == 0) refuse_without_model(data.composition, job.model, job.flags);
   const GivenValues own = read_config_file(job.model, "--model");
   ExplainSetup setup;
+  setup.model_file = job.model;
   setup.model = given_model(own, job, data.radius_um);
   setup.notes = notes_on(own, data);
   setup.name = data.name;

@@ -21,7 +21,8 @@ struct ExplainJob {
 };
 
 struct ExplainSetup {
-  GivenValues model;  // with the radius of the vesicle
+  std::string model_file;  // of the user; empty: none
+  GivenValues model;       // with the radius of the vesicle
   std::vector<FieldSeries> series;
   ExplainRequest request;
   std::vector<std::string> notes = {};  // what is odd about data and model, and what was made of it

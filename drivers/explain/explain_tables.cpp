@@ -52,11 +52,13 @@ std::vector<Row> gap_rows(const Explanation& found) {
     rows.push_back(
         {name, formatted("%.4g", g.train), g.heldout > 0 ? formatted("%.4g", g.heldout) : ""});
   };
+  const bool more = !found.found.hypothesis.parts.empty();
+  const std::string name = is_named(found) ? "what was found" : "what comes closest";
   add("base model", found.base_gap);
-  add("what was found", found.found_gap);
+  if (more) add(name, found.found_gap);
   if (found.placebo_gap) add("second best", *found.placebo_gap);
   add("to be expected if nothing is missing", found.floor);
-  if (!found.found.hypothesis.parts.empty()) {
+  if (more) {
     const auto text = [](const std::optional<double>& share) {
       return share ? formatted("%.0f %%", 100 * *share) : "too little to tell";
     };
@@ -69,7 +71,7 @@ std::vector<Row> gap_rows(const Explanation& found) {
     const std::string where =
         " (" + std::to_string(rerun.cells) + " cells, " + rerun.integrator + ")";
     add("base model" + where, rerun.base);
-    add("what was found" + where, rerun.found);
+    if (more) add(name + where, rerun.found);
     add("to be expected" + where, rerun.floor);
   }
   return rows;
@@ -90,7 +92,7 @@ std::vector<Row> score_rows(const Round& round) {
 
 std::vector<Row> disagreement_rows(const Explanation& found, const Units& base, std::size_t most) {
   std::vector<Row> rows{
-      {"vesicle", "time (s)", "where", "around (x, y, z)", "standard deviations", "p"}};
+      {"vesicle", "time (s)", "where", "around (x, y, z), in R", "standard deviations", "p"}};
   for (const Disagreement& d : found.disagreements) {
     if (rows.size() > most) break;
     rows.push_back({std::to_string(d.vesicle + 1),

@@ -77,13 +77,13 @@ std::vector<FoundBound> found_bounds(const Explanation& found, const Units& base
   return result;
 }
 
-Configuration found_model(const Explanation& found, GivenValues model) {
+GivenValues found_model(const Explanation& found, GivenValues model) {
   const Units units = Configuration(model, {}).units();
   const Units now = found_units(units, found.found);
   model["diffusion"] = {format_number(now.diffusion_cm2_s), "--diffusion"};
   if (!found.found.hypothesis.parts.empty())
     model["effect"] = {effect_text(found.found.hypothesis.terms(), now), "--effect"};
-  return {model, {}};
+  return model;
 }
 
 std::string effect_text(const std::vector<EffectTerm>& terms, const Units& units) {

@@ -32,7 +32,7 @@ std::vector<FoundBound> found_bounds(const Explanation& found, const Units& base
 
 // The model with the effects and the diffusion that were found, as `traceraft run --config` takes
 // it. `model`: with the radius of the vesicle.
-Configuration found_model(const Explanation& found, GivenValues model);
+GivenValues found_model(const Explanation& found, GivenValues model);
 
 // Effects as --effect takes them.
 std::string effect_text(const std::vector<EffectTerm>& terms, const Units& units);

@@ -3,21 +3,23 @@
 #include <algorithm>
 #include <cmath>
 
-#include "drivers/explain/verdict.hpp"
+#include "drivers/explain/found_parameters.hpp"
+#include "drivers/explain/verdict_sentence.hpp"
 #include "kernel/core/text.hpp"
 
 namespace traceraft {
 namespace {
 
-// "vesicle 1, snapshot 3 seems turned by 0.30 rad ..."
+// "Vesicle 1, snapshot 3: it seems turned by 0.30 rad ..."
 std::string text_of(const FrameChange& change) {
+  std::vector<std::string> ways;
+  if (change.turn != 0)
+    ways.push_back(formatted("turned by %.2g rad since the one before", change.turn));
+  if (change.gain != 0) ways.push_back(formatted("scaled by %.3g", 1 + change.gain));
+  if (change.offset != 0) ways.push_back(formatted("shifted by %.2g", change.offset));
   return "Vesicle " + std::to_string(change.vesicle + 1) + ", snapshot " +
-         std::to_string(change.snapshot + 1) +
-         formatted(
-             ": it seems turned by %.2g rad since the one before, and its values scaled by "
-             "%.3g and shifted by %.2g. That is more than the search allows for; align and "
-             "calibrate the images first.",
-             change.turn, 1 + change.gain, change.offset);
+         std::to_string(change.snapshot + 1) + ": it seems " + joined(ways, ", and ") +
+         ". That is more than the search allows for; align and calibrate the images first.";
 }
 
 void add_failures(const Explanation& found, std::vector<std::string>& all) {
@@ -39,9 +41,6 @@ void add_assumptions(const Explanation& found, const Units& base, std::vector<st
                     "may be taken for another effect.");
 }
 
-// In standard deviations.
-constexpr double kSure = 3;
-
 // A mistake in the unit of time looks like another D.
 void add_pace(const Explanation& found, const Units& base, std::vector<std::string>& all) {
   const double log_pace = std::fabs(std::log(found.found.pace));
@@ -54,11 +53,51 @@ void add_pace(const Explanation& found, const Units& base, std::vector<std::stri
         formatted("The measurements contradict that D is known to %.2g %%: together they make it "
                   "%.3g cm^2/s, and the model's is %.3g.",
                   100 * found.pace_doubt, D, base.diffusion_cm2_s));
+  if (found.finding == Finding::none && changes_pace(found.found) &&
+      !std::isfinite(found.pace_doubt))
+    all.push_back(
+        "Effects that another D makes up for, above all bulk-mobility, would not be seen: if D was "
+        "measured, say so by --diffusion and --diffusion-error.");
   if (log_pace < std::log(kFarPace) || log_pace < kSure * found.found.pace_deviation) return;
   all.push_back(formatted(
       "The measurements ask for a D of %.2g cm^2/s, %.3g times %s than the "
       "model's, %.2g: are time_unit and the model's --diffusion right?",
       D, std::exp(log_pace), found.found.pace < 1 ? "smaller" : "larger", base.diffusion_cm2_s));
+}
+
+// What the search thought of before.
+void add_story(const Explanation& found, std::vector<std::string>& all) {
+  for (std::size_t k = 0; k < found.rounds.size(); ++k) {
+    if (found.rounds[k].refits.empty()) continue;
+    const bool last = k + 1 == found.rounds.size();
+    const std::string first = found.rounds[k].refits.front().hypothesis.name(),
+                      then = last ? found.found.hypothesis.name()
+                                  : found.rounds[k + 1].known.hypothesis.name();
+    const auto is_first = [&](const ToldApart& t) { return t.effect == first; };
+    if (first == then || found.rounds[k].known.hypothesis.name() == then ||
+        std::any_of(found.told_apart.begin(), found.told_apart.end(), is_first))
+      continue;
+    all.push_back(first + " seemed to explain most, until it was compared with " + then + ".");
+  }
+  for (const ToldApart& t : found.told_apart)
+    all.push_back(t.effect +
+                  formatted(" explains the snapshots that were fitted about as well, but is less "
+                            "probable with the one held out (2 ln of the likelihood ratio: %.0f).",
+                            -t.less));
+}
+
+// A strength that cannot be larger was wanted larger.
+void add_ends(const Explanation& found, const Units& base, std::vector<std::string>& all) {
+  for (const auto& part : found.found.hypothesis.parts) {
+    const double a = part.coefficients.front();
+    const Candidate& own = part.candidate;
+    if (own.directions > 1 || a == 0 || (a > own.least && a < own.most)) continue;
+    const FoundParameter strength = parameters_of(own.term(part.coefficients), base).front();
+    all.push_back(own.effect + " is as strong as it can be, " + strength.name +
+                  formatted(" %.4g", strength.value) +
+                  ": something like it may be at work, of "
+                  "another form.");
+  }
 }
 
 // Members of a class that would have different D: what a measurement of D would decide.
@@ -133,6 +172,8 @@ std::vector<std::string> remarks(const Explanation& found, const Units& base) {
         "dataset.toml does not say how blurred the images are (blur, 0 if they are not): "
         "boundaries that a microscope widens are taken for physics.");
   add_pace(found, base, all);
+  add_story(found, all);
+  add_ends(found, base, all);
   add_class(found, base, all);
   add_mesh(found, all);
   for (const FrameChange& change : found.changes) all.push_back(text_of(change));
@@ -153,6 +194,8 @@ std::vector<std::string> remarks_on(const Explanation& found, const ExplainSetup
   std::vector<std::string> all = setup.notes;
   for (std::string& remark : remarks(found, setup.configuration().units()))
     all.push_back(std::move(remark));
+  if (const auto& without = setup.request.without; !without.empty())
+    all.push_back("Not looked for, as asked: " + joined(without, ", ") + ".");
   return all;
 }
 

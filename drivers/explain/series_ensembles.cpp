@@ -14,6 +14,7 @@
 #include "drivers/run/run_setup.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
+#include "kernel/core/text.hpp"
 #include "kernel/effects/effects.hpp"
 #include "verification/explain/candidates.hpp"
 #include "verification/explain/effect_size.hpp"
@@ -103,6 +104,18 @@ std::vector<EffectTerm> sizes(const fs::path& folder, const Configuration& model
   return terms;
 }
 
+// "asymmetry, strength 0.0256"
+std::string name_of_simulated(const std::string& name, const std::vector<EffectTerm>& terms,
+                              const Units& units) {
+  for (const EffectTerm& term : terms)
+    if (term.effect == name) {
+      const FoundParameter strength = parameters_of(within_range(term, units), units).front();
+      return name + ", " + strength.name + formatted(" %.3g", strength.value) +
+             (strength.unit.empty() ? "" : " " + strength.unit);
+    }
+  return "no effect";
+}
+
 }  // namespace
 
 EffectTerm within_range(EffectTerm term, const Units& units) {
@@ -130,8 +143,10 @@ SeriesEnsembles run_series_ensembles(const fs::path& folder, const Configuration
   catch_stop_signals();
   const Units units = model.units();
   SeriesEnsembles result;
+  std::size_t ensembles = 0;
   const auto simulate = [&](const std::string& name, const std::string& effect) {
-    tell(request, "simulations with " + (effect.empty() ? "no effect" : effect));
+    tell(request, "simulations with " + name_of_simulated(name, terms, units) +
+                      formatted(" (%zu of %zu)", ++ensembles, terms.size() + 1));
     return run_point(folder / name, ensemble_model(model, effect, kFastestPace * request.looks.end),
                      {request.runs, request.jobs, request.quiet});
   };

@@ -20,19 +20,13 @@ namespace fs = std::filesystem;
 
 constexpr int kOfCharts = 10;  // of the curves of charts and power laws
 
-std::string listed(const std::vector<std::string>& names, const char* between) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : between) + name;
-  return text;
-}
-
 std::string vesicles_text(double count) {
   return count < 1e4 ? formatted("%.0f", std::ceil(count)) : "more than 10000";
 }
 
 std::string sentence(const SeriesExplanation& found) {
   std::vector<std::string> classes;
-  for (const auto& members : found.named) classes.push_back(listed(members, ", "));
+  for (const auto& members : found.named) classes.push_back(joined(members, ", "));
   switch (found.finding) {
     case Finding::none:
       return "No significant disagreement: the model explains the series within their scatter.";
@@ -44,19 +38,32 @@ std::string sentence(const SeriesExplanation& found) {
     case Finding::named:
       return "The model lacks " + classes.front() + ".";
     default:
-      return "The model lacks one of: " + listed(classes, "; or ") +
+      return "The model lacks one of: " + joined(classes, "; or ") +
              ". Series do not tell these apart.";
   }
+}
+
+std::string share(double p) {
+  return formatted(p < 1e-3 ? "%.2f %%" : "%.1f %%", 100 * p);
+}
+
+// What the verdict rests on.
+std::string ground(const SeriesExplanation& found, const SeriesEnsembles& ensembles,
+                   const SeriesRequest& request) {
+  return "It rests on " + std::to_string(ensembles.base.size()) +
+         " runs of the model and of each of " + std::to_string(ensembles.candidates.size()) +
+         " effects, and on " + std::to_string(request.replicates) +
+         " data sets of the model alone: at most " + share(found.p) +
+         " of these gain as much by any effect, and at most " + share(found.trend_p) +
+         " leave as much of a trend. What counts is less than " + share(request.false_alarms) +
+         ", and " + share(kTrendLevel * request.false_alarms) + " for trends.";
 }
 
 std::vector<Row> offset_rows(const SeriesExplanation& found) {
   std::vector<Row> rows{{"measured beside the model", "on average", "deviations",
                          "per e-fold of time", "deviations"}};
   for (const SeriesOffset& o : found.offsets) {
-    const bool relative = o.quantity != Quantity::fraction;
-    const auto text = [&](double value) {
-      return relative ? formatted("%+.1f %%", 100 * std::expm1(value)) : formatted("%+.4f", value);
-    };
+    const auto text = [](double ln) { return formatted("%+.1f %%", 100 * std::expm1(ln)); };
     rows.push_back({name_of(o.quantity).label, text(o.level),
                     formatted("%+.1f", o.level_deviations), text(o.slope),
                     formatted("%+.1f", o.slope_deviations)});
@@ -161,12 +168,13 @@ Chart curve_chart(Quantity quantity, const MeasuredVesicles& data, const SeriesE
 
 void write_series_explanation(const fs::path& folder, const MeasuredVesicles& data,
                               const Configuration& model, const SeriesEnsembles& simulated,
-                              const SeriesExplanation& found, bool quiet) {
+                              const SeriesExplanation& found, const SeriesRequest& request,
+                              bool quiet) {
   const SeriesEnsembles ensembles = in_seconds(simulated, std::exp(found.base.ln_unit));
   const std::vector<Exponent> laws = exponents(data, ensembles);
   std::vector<std::string> words{title_of(data) + ": " + std::to_string(found.vesicles) +
                                      " vesicles, " + std::to_string(found.looks) + " looks.",
-                                 sentence(found)};
+                                 sentence(found), ground(found, simulated, request)};
   for (const SeriesTie& tie : found.ties) words.push_back(advice(tie));
   words.push_back(formatted("D is %.3g cm^2/s if nothing is missing.",
                             found_units(model, found).diffusion_cm2_s));
@@ -177,7 +185,7 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
     words.push_back("Of effects with more than one parameter, one each was simulated: " + text +
                     ".");
   for (const auto& members : found.classes)
-    if (members.size() > 1) words.push_back("Alike in series: " + listed(members, ", ") + ".");
+    if (members.size() > 1) words.push_back("Alike in series: " + joined(members, ", ") + ".");
   const std::vector<Row> offset = offset_rows(found), scores = score_rows(model, found),
                          exponent = exponent_rows(laws);
 

@@ -7,9 +7,10 @@
 
 namespace traceraft {
 
-// Throws IoError.
+// `request`: by which it was found. Throws IoError.
 void write_series_explanation(const std::filesystem::path& folder, const MeasuredVesicles& data,
                               const Configuration& model, const SeriesEnsembles& ensembles,
-                              const SeriesExplanation& found, bool quiet);
+                              const SeriesExplanation& found, const SeriesRequest& request,
+                              bool quiet);
 
 }  // namespace traceraft

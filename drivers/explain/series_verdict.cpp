@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "drivers/config/config_file.hpp"
+#include "drivers/explain/extended_model.hpp"
 #include "drivers/explain/verdict.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/effects/effects.hpp"
@@ -62,7 +62,7 @@ Json offsets_json(const SeriesExplanation& found) {
   Json offsets = Json::array();
   for (const SeriesOffset& o : found.offsets)
     offsets.push_back({{"quantity", name_of(o.quantity).id},
-                       {"of", o.quantity == Quantity::fraction ? "value" : "ln"},
+                       {"of", "ln"},
                        {"level", o.level},
                        {"level_deviations", o.level_deviations},
                        {"slope", o.slope},
@@ -100,15 +100,15 @@ std::vector<std::string> class_of(const SeriesExplanation& found) {
   return members;
 }
 
-Configuration named_model(GivenValues model, const SeriesEnsembles& ensembles,
-                          const SeriesExplanation& found) {
+GivenValues named_model(GivenValues model, const SeriesEnsembles& ensembles,
+                        const SeriesExplanation& found) {
   const SeriesScore& best = found.scores.front();
   EffectTerm term = *term_of(ensembles, best.effect);
   term.values.front() = best.value;
   const Units units = units_of(Configuration(model, {}), best.ln_unit);
   model["diffusion"] = {format_number(units.diffusion_cm2_s), "--diffusion"};
   model["effect"] = {effect_text({within_range(term, units)}, units), "--effect"};
-  return {model, {}};
+  return model;
 }
 
 }  // namespace
@@ -175,12 +175,15 @@ Json series_verdict_json(const Configuration& model, const SeriesEnsembles& ense
             {"trend_p", found.trend_p}}}};
 }
 
-void write_series_verdict(const std::filesystem::path& folder, const GivenValues& model,
+void write_series_verdict(const std::filesystem::path& folder,
+                          const std::filesystem::path& model_file, const GivenValues& model,
                           const SeriesEnsembles& ensembles, const SeriesExplanation& found,
                           const SeriesRequest& request) {
   const Configuration base(model, {});
   if (is_named(found))
-    write_durably(folder / "model.toml", config_text(named_model(model, ensembles, found)));
+    write_extended_model(
+        folder / "model.toml", model_file, named_model(model, ensembles, found),
+        "found by traceraft explain: " + found.scores.front().effect + ", with D fitted beside it");
   write_durably(folder / "verdict.json",
                 series_verdict_json(base, ensembles, found, request).dump(2) + "\n");
 }

@@ -37,9 +37,10 @@ Json series_json(const Configuration& model, const SeriesEnsembles& ensembles,
 // The keys that measured fields have; what series do not tell is null.
 Json series_verdict_json(const Configuration& model, const SeriesEnsembles& ensembles,
                          const SeriesExplanation& found, const SeriesRequest& request);
-// verdict.json, and model.toml if something was named: the model, here as its user gave it, with
-// the effect that explains most and D. Throws IoError.
-void write_series_verdict(const std::filesystem::path& folder, const GivenValues& model,
+// verdict.json, and model.toml if something was named: the model, here as its user gave it (in
+// `model_file`, if not empty, and flags), with the effect that explains most and D. Throws IoError.
+void write_series_verdict(const std::filesystem::path& folder,
+                          const std::filesystem::path& model_file, const GivenValues& model,
                           const SeriesEnsembles& ensembles, const SeriesExplanation& found,
                           const SeriesRequest& request);
 

@@ -66,6 +66,7 @@ Json where_json(const Explanation& found, const Units& base) {
 }
 
 Json rounds_json(const Explanation& found) {
+  const bool held_out = found.base_gap.heldout > 0;
   Json rounds = Json::array();
   for (const Round& round : found.rounds) {
     const auto& scores = round.screening.scores;
@@ -74,7 +75,7 @@ Json rounds_json(const Explanation& found) {
                       {"p", round.screening.p},
                       {"gap_p", round.screening.gap_p},
                       {"gap_p_train", round.screening.train_gap_p},
-                      {"gap_p_heldout", round.screening.heldout_gap_p},
+                      {"gap_p_heldout", held_out ? Json(round.screening.heldout_gap_p) : Json()},
                       {"mesh_error", round.screening.mesh_error}});
   }
   return rounds;
@@ -166,49 +167,6 @@ Json verdict_json(const Explanation& found, const ExplainSetup& setup) {
             {"cells", setup.request.cells},
             {"h_over_epsilon", found.h_over_epsilon}}},
           {"remarks", remarks_on(found, setup)}};
-}
-
-namespace {
-
-// "rafts that repel each other over a distance; ..."
-std::string in_words(const Hypothesis& hypothesis) {
-  std::string words;
-  for (const EffectTerm& term : hypothesis.terms())
-    words += (words.empty() ? "" : "; ") + physics_of(term);
-  return words;
-}
-
-}  // namespace
-
-std::string verdict_sentence(const Explanation& found) {
-  const std::string name = found.found.hypothesis.name();
-  switch (found.finding) {
-    case Finding::none:
-      return "No significant disagreement: the model explains the data within their noise.";
-    case Finding::named:
-      return "The model lacks " + name + ": " + in_words(found.found.hypothesis) + ".";
-    case Finding::ambiguous: {
-      std::string others;
-      for (const Refit& fit : found.rivals) others += ", or " + fit.hypothesis.name();
-      return "The model lacks " + name + others +
-             ": these data do not tell them apart. The first of them explains most: " +
-             in_words(found.found.hypothesis) + ".";
-    }
-    case Finding::below_resolution:
-      return "There is a disagreement, but the error of the model's mesh could be all of it: "
-             "repeat with more --cells.";
-    case Finding::not_identifiable:
-      if (found.rounds.front().screening.p <= found.false_alarms)
-        return "Something seems to be missing, too little of it to say what: " +
-               found.rounds.front().screening.scores.front().effect +
-               " would explain most of it. More points, less noise or more snapshots would tell.";
-      return "No significant disagreement, but these data would hardly show an effect: they need "
-             "more points, less noise, or snapshots that are further apart.";
-    case Finding::unnamed:
-      return "There is a disagreement that no known effect explains" +
-             (name.empty() ? std::string(".") : "; " + name + " comes closest.");
-  }
-  return "";
 }
 
 }  // namespace traceraft

@@ -1,4 +1,4 @@
-// What a search has found, for programs and in words.
+// What a search has found, for programs.
 #pragma once
 
 #include "drivers/explain/explain_run.hpp"
@@ -15,8 +15,5 @@ Json parameters_json(const std::vector<FoundParameter>& found);
 
 // verdict.json (docs/formats.md).
 Json verdict_json(const Explanation& found, const ExplainSetup& setup);
-
-// For people.
-std::string verdict_sentence(const Explanation& found);
 
 }  // namespace traceraft

@@ -9,6 +9,7 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/named_list.hpp"
 #include "kernel/core/parameters.hpp"
+#include "kernel/core/text.hpp"
 
 namespace traceraft {
 namespace {
@@ -130,11 +131,8 @@ std::optional<std::size_t> CsvTable::index(const std::string& column) const {
 
 void CsvTable::require(const std::string& column) const {
   if (!has(column))
-    throw InputError(heading() + ": there is no column '" + column + "' (there are: " + [&] {
-      std::string names;
-      for (const std::string& name : columns_) names += (names.empty() ? "" : ", ") + name;
-      return names;
-    }() + ")");
+    throw InputError(heading() + ": there is no column '" + column +
+                     "' (there are: " + joined(columns_, ", ") + ")");
 }
 
 const std::string& CsvTable::text(std::size_t row, const std::string& column) const {

@@ -16,6 +16,10 @@ TomlTable read_description(const fs::path& folder, bool fields, bool series) {
   if (series) keys.insert(keys.end(), {"sigma", "table"});
   if (fs::exists(folder) && !fs::is_directory(folder))
     throw InputError(folder.string() + " is a file; the folder that holds dataset.toml is needed");
+  if (fs::is_directory(folder) && !fs::exists(folder / "dataset.toml") &&
+      fs::exists(folder / "data" / "dataset.toml"))
+    throw InputError(folder.string() + " holds no dataset.toml; did you mean '" +
+                     (folder / "data").string() + "'?");
   return TomlTable::read(folder / "dataset.toml", keys);
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <string>
+#include <vector>
 
 namespace traceraft {
 
@@ -12,6 +13,12 @@ std::string formatted(const char* format, Values... values) {
   char buffer[512];
   std::snprintf(buffer, sizeof buffer, format, values...);
   return buffer;
+}
+
+inline std::string joined(const std::vector<std::string>& parts, const char* between) {
+  std::string text;
+  for (const std::string& part : parts) text += (&part == &parts.front() ? "" : between) + part;
+  return text;
 }
 
 }  // namespace traceraft

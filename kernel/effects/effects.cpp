@@ -53,8 +53,12 @@ const std::string& physics_of(const EffectTerm& term) {
   return term.values.front() < 0 && !entry.reversed.empty() ? entry.reversed : entry.summary;
 }
 
+bool is_rate(const std::string& unit) {
+  return unit == "1/s" || unit == "K/s";
+}
+
 double to_model_units(const std::string& unit, const Units& units) {
-  if (unit == "1/s") return units.time();
+  if (is_rate(unit)) return units.time();
   if (unit == "s") return 1 / units.time();
   if (unit == "um") return 1 / units.length();
   return 1;

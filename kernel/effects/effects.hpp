@@ -1,5 +1,5 @@
 // What a model may be missing: effects by name. One file per effect, one line in effects.cpp;
-// docs/extending.md shows how to add one.
+// docs/effects.md shows how to add one.
 #pragma once
 
 #include <functional>
@@ -68,6 +68,8 @@ bool has_unit_wells(const CahnHilliardModel& model);
 // not made for; ranges are those of whoever asks.
 CahnHilliardModel with_effects(CahnHilliardModel model, const std::vector<EffectTerm>& terms);
 
+// A parameter per time?
+bool is_rate(const std::string& unit);
 // The factor from a parameter's unit to R and R²/D.
 double to_model_units(const std::string& unit, const Units& units);
 

@@ -7,6 +7,7 @@
 
 #include "drivers/explain/remarks.hpp"
 #include "drivers/explain/verdict.hpp"
+#include "drivers/explain/verdict_sentence.hpp"
 #include "verification/explain/candidates.hpp"
 
 namespace traceraft {
@@ -43,6 +44,7 @@ TEST(FoundParameters, WhatIsHeldDoesNotBlurTheRate) {
 TEST(Remarks, AskWhetherTheUnitOfTimeIsRight) {
   Explanation found;
   found.rounds.resize(1);
+  found.finding = Finding::named;
   found.false_alarms = 0.02;
   found.found.pace_deviation = 0.1;
   for (const double pace : {1.0 / 9, 1.0, 9.0}) {
@@ -61,6 +63,7 @@ TEST(Remarks, AskWhetherTheUnitOfTimeIsRight) {
 TEST(Remarks, DoubtADThatMeasurementsContradict) {
   Explanation found;
   found.rounds.resize(1);
+  found.finding = Finding::named;
   found.found.pace = 1.3;
   EXPECT_TRUE(remarks(found, kCell).empty());  // nothing else is known of it
   found.pace_doubt = 0.1;
@@ -93,6 +96,62 @@ TEST(Remarks, SayWhetherAMeasuredDWouldDecide) {
       << text;
 }
 
+// Where nothing is found, D may stand for something.
+TEST(Remarks, SayWhatAnotherDMayHide) {
+  Explanation found;
+  found.rounds.resize(1);
+  found.found.pace = 1.2;
+  found.found.pace_deviation = 0.01;
+  ASSERT_EQ(remarks(found, kCell).size(), 1u);
+  EXPECT_NE(remarks(found, kCell).front().find("bulk-mobility"), std::string::npos);
+  EXPECT_NE(verdict_sentence(found).find("with 1.2 times its D"), std::string::npos);
+  found.found.pace_deviation = 0.1;  // or the same D
+  EXPECT_TRUE(remarks(found, kCell).empty());
+  EXPECT_EQ(verdict_sentence(found).find("its D"), std::string::npos);
+}
+
+Refit of_strength(const std::string& effect, double strength) {
+  Refit fit;
+  fit.hypothesis.parts = {{find_candidate(effect).value(), {strength}}};
+  fit.covariance = Eigen::MatrixXd::Identity(1, 1);
+  return fit;
+}
+
+TEST(Remarks, TellWhatTheSearchThoughtOfBefore) {
+  Explanation found;
+  found.finding = Finding::named;
+  found.found = of_strength("gravity", 0.01);
+  found.rounds.resize(2);
+  found.rounds[0].refits = {of_strength("uptake", 0.1), found.found};
+  found.rounds[1].known.hypothesis = found.found.hypothesis;
+  ASSERT_EQ(remarks(found, kCell).size(), 1u);
+  EXPECT_EQ(remarks(found, kCell).front(),
+            "uptake seemed to explain most, until it was compared with gravity.");
+  found.told_apart = {{"uptake", 129}};
+  ASSERT_EQ(remarks(found, kCell).size(), 1u);
+  EXPECT_NE(
+      remarks(found, kCell).front().find("the one held out (2 ln of the likelihood ratio: -129)"),
+      std::string::npos);
+  found.told_apart.clear();
+  std::swap(found.rounds[0].refits[0], found.rounds[0].refits[1]);
+  EXPECT_TRUE(remarks(found, kCell).empty());
+  // A round whose best was not taken has changed nothing.
+  found.rounds[1].refits = {of_strength("uptake", 0.1)};
+  EXPECT_TRUE(remarks(found, kCell).empty());
+}
+
+TEST(Remarks, SayThatAStrengthIsAtItsEnd) {
+  Explanation found;
+  found.rounds.resize(1);
+  found.finding = Finding::named;
+  const Candidate contrast = find_candidate("mobility-contrast").value();
+  found.found = of_strength("mobility-contrast", contrast.most);
+  ASSERT_EQ(remarks(found, kCell).size(), 1u);
+  EXPECT_NE(remarks(found, kCell).front().find("as strong as it can be"), std::string::npos);
+  found.found = of_strength("mobility-contrast", 0.9 * contrast.most);
+  EXPECT_TRUE(remarks(found, kCell).empty());
+}
+
 // A sign is not a matter of words alone.
 TEST(Verdict, SaysWhatAnEffectOfThisSignDoes) {
   Explanation found;
@@ -101,6 +160,9 @@ TEST(Verdict, SaysWhatAnEffectOfThisSignDoes) {
   EXPECT_NE(verdict_sentence(found).find("rafts that sink"), std::string::npos);
   found.found.hypothesis.parts[0].coefficients[0] = -0.01;
   EXPECT_NE(verdict_sentence(found).find("rafts that rise"), std::string::npos);
+  EXPECT_EQ(verdict_sentence(found).find("The model lacks gravity"), 0u);
+  found.rerun = Rerun{};  // which gains nothing
+  EXPECT_EQ(verdict_sentence(found).find("The model may lack gravity"), 0u);
 }
 
 }  // namespace

@@ -7,7 +7,8 @@
 namespace traceraft {
 namespace {
 
-// Whoever mistakes minutes for seconds is off by a factor of sixty.
+// Whoever mistakes milliseconds for seconds is off by a factor of a thousand, and who mistakes
+// minutes for them by sixty.
 TEST(FirstPace, IsFoundFromFarAway) {
   BlindRequest asked = testing::small_vesicle(4);
   asked.effects.clear();
@@ -16,7 +17,7 @@ TEST(FirstPace, IsFoundFromFarAway) {
   FilterSettings few;
   few.rank = 80;
   few.replicates = 0;
-  for (const double factor : {1.0 / 60, 20.0, 400.0}) {
+  for (const double factor : {1e-3, 20.0, 400.0}) {
     std::vector<FieldSeries> vesicles = drawn.vesicles;
     for (FieldSnapshot& snapshot : vesicles[0].snapshots) snapshot.time *= factor;
     const FilterProblems data =

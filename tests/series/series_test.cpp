@@ -203,6 +203,16 @@ TEST(SeriesFit, SaysHowFarMeasurementsLieBesideIt) {
   }
 }
 
+// By its logarithm, like the others.
+TEST(SeriesFit, SaysHowFarTheRaftFractionLiesBesideIt) {
+  MeasuredVesicles data = measured({}, 15, 0.02, 1);
+  for (Measurement& m : data.measurements)
+    *m.values[static_cast<std::size_t>(Quantity::fraction)] *= 2;
+  const SeriesOffset offset = explained(data).offsets.at(2);
+  EXPECT_EQ(offset.quantity, Quantity::fraction);
+  EXPECT_NEAR(offset.level, std::log(2.0), 0.02);
+}
+
 TEST(SeriesExplanation, SaysHowManyVesiclesItWouldTake) {
   const SeriesExplanation few = explained(measured({}, 3, 1, 1));
   EXPECT_EQ(few.finding, Finding::not_identifiable);

@@ -32,7 +32,7 @@ Candidate by_strength(const std::string& effect, double step, bool two_sided) {
             return term;
           },
           step,
-          strength.unit == "1/s",
+          is_rate(strength.unit),
           two_sided,
           least,
           most};

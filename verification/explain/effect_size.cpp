@@ -14,15 +14,6 @@ namespace {
 // Standard deviation of c below which there is nothing to see.
 constexpr double kLeastContrast = 0.01;
 
-Candidate candidate_of(const std::string& effect) {
-  const auto valid = effects_to_hide(), known = effects().names();
-  if (std::find(valid.begin(), valid.end(), effect) == valid.end())
-    throw InputError(std::find(known.begin(), known.end(), effect) != known.end()
-                         ? "the effect " + effect + " is none that explain looks for on a sphere"
-                         : unknown_name_message("effect to hide", effect, valid));
-  return *find_candidate(effect);
-}
-
 BlindLooks sizing_looks(BlindRequest request) {
   if (request.sizing_snapshots > 0) request.snapshots = request.sizing_snapshots;
   return BlindLooks(request);
@@ -48,12 +39,12 @@ EffectSizing::EffectSizing(const BlindRequest& request)
 }
 
 EffectTerm EffectSizing::term(const std::string& effect, std::uint64_t number) const {
-  return term(effect, random_coefficients(candidate_of(effect), number));
+  return term(effect, random_coefficients(candidate_to_hide(effect), number));
 }
 
 // A small one, then in proportion, twice.
 EffectTerm EffectSizing::term(const std::string& effect, std::vector<double> coefficients) const {
-  const Candidate candidate = candidate_of(effect);
+  const Candidate candidate = candidate_to_hide(effect);
   for (int k = 0; k < 2; ++k) {
     const double ratio = request_.gap / gap_of(candidate.term(coefficients));
     for (double& a : coefficients) a = candidate.within_range(ratio * a);
@@ -83,6 +74,15 @@ double EffectSizing::gap_of(const EffectTerm& term) const {
     squares += space.inner(difference, difference) / space.area / (contrast * contrast);
   }
   return std::sqrt(squares / static_cast<double>(next_.size()));
+}
+
+Candidate candidate_to_hide(const std::string& effect) {
+  const auto valid = effects_to_hide(), known = effects().names();
+  if (std::find(valid.begin(), valid.end(), effect) == valid.end())
+    throw InputError(std::find(known.begin(), known.end(), effect) != known.end()
+                         ? "the effect " + effect + " is none that explain looks for on a sphere"
+                         : unknown_name_message("effect to hide", effect, valid));
+  return *find_candidate(effect);
 }
 
 std::vector<std::string> effects_to_hide() {

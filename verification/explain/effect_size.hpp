@@ -14,6 +14,8 @@ struct Candidate;
 
 // Effects that can be hidden: those that a sphere shows.
 std::vector<std::string> effects_to_hide();
+// Throws InputError for another one.
+Candidate candidate_to_hide(const std::string& effect);
 
 // Found on a mesh that is coarser than the truth's: strengths need not be exact.
 class EffectSizing {

@@ -22,13 +22,19 @@ void start(Search& search) {
                         far ? ": are time_unit and the model's --diffusion right?" : ""));
 }
 
-// The best of the first round that was not found.
+// What was found, or that with something more?
+bool has_found(const Hypothesis& hypothesis, const Hypothesis& found) {
+  return std::all_of(found.parts.begin(), found.parts.end(),
+                     [&](const auto& part) { return hypothesis.has(part.candidate.effect); });
+}
+
+// The best of the last round that had others than the found one.
 std::optional<Gaps> placebo_of(const Explanation& result) {
-  const auto& refits = result.rounds.front().refits;
-  for (const Refit& fit : refits)
-    if (!is_no_other(fit, refits.front()) &&
-        !result.found.hypothesis.has(last_effect(fit.hypothesis)))
-      return fit.gap;
+  for (auto round = result.rounds.rbegin(); round != result.rounds.rend(); ++round)
+    for (const Refit& fit : round->refits)
+      if (!has_found(fit.hypothesis, result.found.hypothesis) &&
+          !fit.hypothesis.contains(result.found.hypothesis))
+        return fit.gap;
   return {};
 }
 

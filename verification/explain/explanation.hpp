@@ -35,7 +35,7 @@ struct ExplainRequest {
 };
 
 // A snapshot that seems turned, or whose values seem to be on another scale: further than what is
-// known of them allows for. All small if it is only one of them.
+// known of them allows for. What is within that is 0.
 struct FrameChange {
   std::size_t vesicle, snapshot;
   double turn;          // since the snapshot before, as an angle
@@ -78,8 +78,8 @@ struct Explanation {
   std::vector<Refit> rivals;                // other hypotheses that explain the data as well
   std::vector<ToldApart> told_apart;
   std::vector<Round> rounds;
-  // Measured minus forecast. Placebo: the best of the first round that was not found. Floor:
-  // what is to be expected of the found model if nothing else is missing.
+  // Measured minus forecast. Placebo: the best hypothesis that was not found, of the last round
+  // that had one. Floor: what is to be expected of the found model if nothing else is missing.
   Gaps base_gap, found_gap, floor;
   std::optional<Gaps> placebo_gap;
   bool blur_stated = true;                                      // as requested

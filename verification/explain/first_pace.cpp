@@ -9,9 +9,11 @@
 namespace traceraft {
 namespace {
 
-constexpr int kRank = 80, kTangentSteps = 2, kMostSteps = 12;
+constexpr int kRank = 80, kTangentSteps = 2, kMostSteps = 40;
 // Of ln D: at most in one pass, and what is left to other searches.
 constexpr double kLargestStep = 0.7, kGoodEnough = 0.02;
+// Of ln D: further away errors of the state grow and fade in another way.
+constexpr double kMapsReach = 0.5;
 // A forecast of far too slow a membrane is about what was measured before, and its derivatives tell
 // the way to the right pace. Of far too fast a one everything has come to rest, and they tell
 // nothing: such a search begins at one of these.
@@ -35,7 +37,12 @@ class PaceSearch {
 
   double run() const {
     Pass pass = first_pass();
+    double pace_of_maps = pass.model.pace;
     for (int k = 0; k < kMostSteps; ++k) {
+      if (std::fabs(std::log(pass.model.pace / pace_of_maps)) > kMapsReach) {
+        pass.maps = {};
+        pace_of_maps = pass.model.pace;
+      }
       if (k > 0) pass.result = filter_fields(data_, pass.model, rough_, pass.maps);
       const double change = screen(pass.result, {}, {}).pace_change;
       const double step = std::clamp(change, -kLargestStep, kLargestStep);

@@ -4,9 +4,18 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "kernel/core/text.hpp"
 #include "verification/explain/noise_levels.hpp"
 
 namespace traceraft {
+namespace {
+
+// Of ln D: a refit that ends further away is no longer one of the noise, and of the errors of
+// states and of the mesh, that it began with.
+constexpr double kMapsReach = 0.5;
+constexpr int kMostFirstPasses = 4;
+
+}  // namespace
 
 Search::Search(const std::vector<FieldSeries>& series, const ExplainRequest& explain_request)
     : request(explain_request),
@@ -30,11 +39,18 @@ void Search::set_found(const Refit& fit) {
 }
 
 FilterResult Search::first_pass() {
-  fit_noise(data, filter_fields(data, model, request.filter, maps));
-  FilterResult pass = filter_fields(data, model, request.filter, maps);
+  FilterResult pass;
+  for (int k = 0; k < kMostFirstPasses; ++k) {
+    const double pace = model.pace;
+    maps = {};
+    fit_noise(data, filter_fields(data, model, request.filter, maps));
+    pass = filter_fields(data, model, request.filter, maps);
+    set_found(refit(data, model, request.filter, maps));
+    if (std::fabs(std::log(result.found.pace / pace)) < kMapsReach) break;
+    tell(formatted("  D is rather %.2g times the model's", result.found.pace));
+  }
   result.disagreements = disagreements(data, pass, request.base.well);
   result.disagreements.resize(significant(result.disagreements, request.false_alarms));
-  set_found(refit(data, model, request.filter, maps));
   bootstrap(pass, model, result.found);
   result.base = result.found;
   return pass;

@@ -1,6 +1,8 @@
 #include "verification/explain/search_round.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "verification/explain/class_evidence.hpp"
@@ -26,11 +28,13 @@ void note_changes(Search& search, const FilterResult& pass) {
   const DoubleWell& well = search.request.base.well;
   search.result.changes.clear();
   for (const Innovation& in : pass.innovations) {
-    if (in.frame.cwiseAbs().maxCoeff() < kChanged) continue;
-    const double turn = known.turn * in.frame.head(3).norm();
+    const auto changed = [&](Eigen::Index k) { return std::fabs(in.frame[k]) >= kChanged; };
+    const bool turned = changed(0) || changed(1) || changed(2);
+    if (!turned && !changed(3) && !changed(4)) continue;
     const double offset = known.offset * (well.b - well.a);
     search.result.changes.push_back(
-        {in.vesicle, in.snapshot, turn, known.gain * in.frame[3], offset * in.frame[4]});
+        {in.vesicle, in.snapshot, turned ? known.turn * in.frame.head(3).norm() : 0,
+         changed(3) ? known.gain * in.frame[3] : 0, changed(4) ? offset * in.frame[4] : 0});
   }
 }
 
@@ -82,6 +86,32 @@ void refit_shortlist(Search& search, Round& round) {
             });
 }
 
+// With the noise and the errors of the model that has it, an effect may turn out to be none: the
+// refit without it, then.
+std::optional<Refit> without_what_is_none(const Search& search) {
+  const Refit& found = search.result.found;
+  for (std::size_t k = 0; k < found.hypothesis.parts.size(); ++k) {
+    if (resolved(found, k, search.values(), search.mesh_error())) continue;
+    FilterModel trial = search.model;
+    trial.hypothesis.parts.erase(trial.hypothesis.parts.begin() + static_cast<std::ptrdiff_t>(k));
+    Refit fit = refit(search.data, trial, search.request.filter, search.maps);
+    if (fit.failure.empty() && criterion(fit, search.values()) <= criterion(found, search.values()))
+      return fit;
+  }
+  return {};
+}
+
+void drop_to(Search& search, const Refit& fit) {
+  Explanation& result = search.result;
+  search.tell("  of " + result.found.hypothesis.name() + " one is none");
+  search.set_found(fit);
+  result.rivals.clear();
+  const bool nothing = fit.hypothesis.parts.empty();
+  const Screening& screening = result.rounds.back().screening;
+  result.without_gap = nothing ? Finding::not_identifiable : Finding::named;
+  result.finding = nothing ? without_name(screening, search.request.false_alarms) : Finding::named;
+}
+
 bool leave(Search& search, const Judgement& judgement) {
   if (judgement.finding == Finding::unnamed && leave_to_rivals(search)) return true;
   Explanation& result = search.result;
@@ -117,6 +147,10 @@ bool look_for_one(Search& search) {
   FilterResult pass;
   try {
     pass = first ? search.first_pass() : search.next_pass();
+    if (const auto fit = first ? std::nullopt : without_what_is_none(search)) {
+      drop_to(search, *fit);
+      return false;
+    }
   } catch (const std::runtime_error& error) {
     if (first) throw;
     result.stopped = error.what();

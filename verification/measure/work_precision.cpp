@@ -52,9 +52,7 @@ std::string sentence(const std::vector<WorkPoint>& points, const Recommendation&
             : formatted("; the next, %s, takes %.1f times as long", describe(next).c_str(),
                         other.median / wall.median);
   }
-  std::string missed;
-  for (const std::string& name : advice.missed) missed += (missed.empty() ? "" : ", ") + name;
-  if (!missed.empty()) advised += "; not reached by " + missed;
+  if (!advice.missed.empty()) advised += "; not reached by " + joined(advice.missed, ", ");
   return advised + ".";
 }
 

@@ -13,9 +13,6 @@
 namespace traceraft {
 namespace {
 
-// A trend that no effect explains has to be that much less probable.
-constexpr double kTrendLevel = 0.4;
-
 void refuse(const MeasuredVesicles& data, const std::vector<History>& base,
             const std::vector<SeriesCandidate>& candidates) {
   refuse_vesicles(data);

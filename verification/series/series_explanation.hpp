@@ -17,6 +17,10 @@ struct SeriesRequest {
   double false_alarms = 0.05;  // with nothing missing, that something seems to be named
 };
 
+// Of the false alarms, what trends that no effect explains may make: such a one has to be that much
+// less probable.
+inline constexpr double kTrendLevel = 0.4;
+
 struct SeriesScore {
   std::string effect;
   double gain;          // 2 ln of the likelihood ratio, the effect's strength being free

@@ -88,8 +88,8 @@ Vec residual(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
 double trend_left(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
                   const SeriesFit& fit);
 
-// How the measurements of a quantity lie beside a fit: on average, and per e-fold of time. Of the
-// logarithm, but for the raft fraction; and in standard deviations.
+// How the logarithms of measurements of a quantity lie beside a fit: on average, and per e-fold of
+// time; and in standard deviations.
 struct SeriesOffset {
   Quantity quantity;
   double level, level_deviations, slope, slope_deviations;

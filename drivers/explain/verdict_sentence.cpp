@@ -1,0 +1,78 @@
+#include "drivers/explain/verdict_sentence.hpp"
+
+#include <cmath>
+
+#include "kernel/core/text.hpp"
+#include "kernel/effects/effects.hpp"
+
+namespace traceraft {
+namespace {
+
+// "rafts that repel each other over a distance; ..."
+std::string in_words(const Hypothesis& hypothesis) {
+  std::string words;
+  for (const EffectTerm& term : hypothesis.terms())
+    words += (words.empty() ? "" : "; ") + physics_of(term);
+  return words;
+}
+
+// A model that on another mesh foretells no better than the base may be none.
+std::string lacks(const Explanation& found) {
+  const bool doubtful = found.rerun && found.rerun->failure.empty() && !found.rerun->confirms();
+  return doubtful ? "The model may lack " : "The model lacks ";
+}
+
+std::string class_sentence(const Explanation& found) {
+  std::string others;
+  for (const Refit& fit : found.rivals)
+    others += ", or " + fit.hypothesis.name() + " (" + in_words(fit.hypothesis) + ")";
+  return lacks(found) + found.found.hypothesis.name() + " (" + in_words(found.found.hypothesis) +
+         ")" + others + ": these data do not tell them apart. The first of them explains most.";
+}
+
+std::string nothing_sentence(const Explanation& found) {
+  if (!changes_pace(found.found))
+    return "No significant disagreement: the model explains the data within their noise.";
+  return "No significant disagreement: with " + formatted("%.3g", found.found.pace) +
+         " times its D the model explains the data within their noise.";
+}
+
+std::string doubt_sentence(const Explanation& found) {
+  const Screening& first = found.rounds.front().screening;
+  if (first.p <= found.false_alarms)
+    return "Something seems to be missing, too little of it to say what: " +
+           first.scores.front().effect +
+           " would explain most of it. More points, less noise or more snapshots would tell.";
+  return "No significant disagreement, but these data would hardly show an effect: they need "
+         "more points, less noise, or snapshots that are further apart.";
+}
+
+}  // namespace
+
+bool changes_pace(const Refit& fit) {
+  constexpr double kLeast = 0.01;  // of D: what no mesh is better than
+  return std::fabs(std::log(fit.pace)) > std::max(kLeast, kSure * fit.pace_deviation);
+}
+
+std::string verdict_sentence(const Explanation& found) {
+  const std::string name = found.found.hypothesis.name();
+  switch (found.finding) {
+    case Finding::none:
+      return nothing_sentence(found);
+    case Finding::named:
+      return lacks(found) + name + ": " + in_words(found.found.hypothesis) + ".";
+    case Finding::ambiguous:
+      return class_sentence(found);
+    case Finding::below_resolution:
+      return "There is a disagreement, but the error of the model's mesh could be all of it: "
+             "repeat with more --cells.";
+    case Finding::not_identifiable:
+      return doubt_sentence(found);
+    case Finding::unnamed:
+      return "There is a disagreement that none of the effects that were looked for explains" +
+             (name.empty() ? std::string(".") : "; " + name + " comes closest.");
+  }
+  return "";
+}
+
+}  // namespace traceraft
