@@ -21,6 +21,7 @@
 #include "drivers/numerical_failure.hpp"
 #include "drivers/output/status_line.hpp"
 #include "drivers/run/run_folder.hpp"
+#include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/effects/effects.hpp"
 #include "verification/explain/rerun.hpp"
@@ -116,6 +117,10 @@ SeriesSetup read_series_job(const ExplainCommand& command) {
 bool explain_series_data(const ExplainCommand& command, const SeriesSetup& setup,
                          const fs::path& out, const std::string& go_on) {
   const auto& [data, given, model] = setup;
+  if (!command.quiet) {
+    std::printf("%s\nthe model: %s\n", title_of(data).c_str(), flags_text(model).c_str());
+    std::fflush(stdout);
+  }
   const SeriesEnsemblesRequest request{looks(data),         command.runs,
                                        command.jobs,        command.job.processors(),
                                        command.job.without, command.quiet};

@@ -39,6 +39,24 @@ std::vector<std::string> notes_on(const GivenValues& model, const FieldDataset& 
   return notes;
 }
 
+// Only spheres are simple enough to say where before the mesh is there.
+void refuse_points_off_the_sphere(const FieldDataset& data, const std::string& folder) {
+  std::size_t number = 0;
+  for (const FieldSeries& vesicle : data.vesicles)
+    for (const FieldSnapshot& snapshot : vesicle.snapshots) {
+      ++number;
+      for (std::size_t i = 0; i < snapshot.points.size(); ++i) {
+        const Point x = data.radius_um * snapshot.points[i];
+        const double distance = snapshot.points[i].norm() - 1;
+        if (std::fabs(distance) <= kOffSurface) continue;
+        throw InputError(folder + "/" + snapshot_file(number) + ", point " + std::to_string(i + 1) +
+                         formatted(": (%.4g, %.4g, %.4g) um is %.2g R off the sphere, further than "
+                                   "%g R: are radius and length_unit right, and the centre at 0?",
+                                   x[0], x[1], x[2], std::fabs(distance), kOffSurface));
+      }
+    }
+}
+
 // Missing values that somebody has coded as numbers, and c on another scale.
 void refuse_far_values(const std::vector<FieldSeries>& vesicles, const DoubleWell& well,
                        const std::string& folder) {
@@ -134,17 +152,21 @@ ExplainSetup read_explain_job(const ExplainJob& job) {
   setup.notes = notes_on(own, data);
   setup.name = data.name;
   setup.synthetic = data.synthetic;
-  setup.series = std::move(data.vesicles);
   const Configuration model = setup.configuration();
   refuse_scaled(model);
   refuse_effects(model);
+  setup.request.base = physical_model(model);
+  const DoubleWell& well = setup.request.base.well;
+  if (model.text("surface") == "sphere") refuse_points_off_the_sphere(data, job.data);
+  if (const std::string note = note_on_scale(data, well.a, well.b); !note.empty())
+    setup.notes.push_back(note);
+  setup.series = std::move(data.vesicles);
   if (const std::string other = other_membrane(data.composition, model); !other.empty())
     setup.notes.push_back("ANOTHER MEMBRANE: the model is of " + other + ".");
   for (FieldSeries& vesicle : setup.series)
     for (FieldSnapshot& snapshot : vesicle.snapshots) snapshot.time /= model.units().time();
 
   ExplainRequest& request = setup.request;
-  request.base = physical_model(model);
   request.surface = surface_of(model);
   request.cells = static_cast<int>(model.integer("cells"));
   request.threads = job.processors();

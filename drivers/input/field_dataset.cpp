@@ -166,6 +166,22 @@ std::string note_on_distance(const FieldDataset& data) {
       *middle * data.radius_um, data.radius_um);
 }
 
+std::string note_on_scale(const FieldDataset& data, double a, double b) {
+  constexpr double kFar = 0.5, kMost = 0.2;  // of the distance of the phases, of the values
+  double far = 0, all = 0;
+  for (const FieldSeries& vesicle : data.vesicles)
+    for (const FieldSnapshot& snapshot : vesicle.snapshots) {
+      const auto c = snapshot.values.array();
+      far += static_cast<double>((c < a - kFar * (b - a) || c > b + kFar * (b - a)).count());
+      all += static_cast<double>(c.size());
+    }
+  if (far <= kMost * all) return "";
+  return formatted(
+      "%.0f %% of the values of c are further from the phases, %g and %g, than half of their "
+      "distance: is c on that scale?",
+      100 * far / all, a, b);
+}
+
 void write_field_dataset(const fs::path& folder, const FieldDataset& data,
                          const std::string& remark) {
   const auto quoted = [](const std::string& text) { return nlohmann::json(text).dump(); };

@@ -30,6 +30,10 @@ FieldDataset read_field_dataset(const std::filesystem::path& folder);
 // measurement is off by chance: a sentence, else "".
 std::string note_on_distance(const FieldDataset& data);
 
+// If more of the values lie far from the phases a and b than noise would put there: a sentence,
+// else "".
+std::string note_on_scale(const FieldDataset& data, double a, double b);
+
 // Writes such a folder, the tables first. Throws IoError.
 void write_field_dataset(const std::filesystem::path& folder, const FieldDataset& data,
                          const std::string& remark);

@@ -72,6 +72,8 @@ std::vector<std::string> notes_on(const FieldDataset& data) {
   for (std::string* note : {&off_sphere, &off_scale})
     if (!note->empty()) notes.push_back(std::move(*note));
   if (const std::string note = note_on_distance(data); !note.empty()) notes.push_back(note);
+  if (const std::string note = note_on_scale(data, 0, 1); !note.empty() && off_scale.empty())
+    notes.push_back(note);
   if (!data.blur_um)
     notes.push_back("how blurred the images are is not said (blur, 0 if they are not)");
   return notes;
@@ -87,7 +89,7 @@ void print_fields(const FieldDataset& data) {
   if (data.blur_um) std::printf("images blurred by %g um\n", *data.blur_um);
   Table table{"fields",
               {"vesicle", "time (s)", "points", "patches of 12", "|x|/R from", "to", "mean of c",
-               "deviation of c", "least", "largest", "sigma"},
+               "deviation of c", "least", "largest", "usual sigma"},
               {}};
   for (const FieldSeries& vesicle : data.vesicles)
     for (const FieldSnapshot& snapshot : vesicle.snapshots)

@@ -89,6 +89,20 @@ TEST_F(FieldDatasetTest, AsksAboutARadiusThatThePointsContradict) {
   EXPECT_NE(note.find("said to be 5 um"), std::string::npos) << note;
 }
 
+TEST_F(FieldDatasetTest, AsksAboutValuesOnAnotherScale) {
+  FieldDataset data = small_dataset();
+  for (FieldSnapshot& snapshot : data.vesicles[0].snapshots)
+    for (Eigen::Index i = 0; i < snapshot.values.size(); ++i) snapshot.values[i] = i % 2;
+  const auto scale = [&](double factor, double zero) {
+    for (FieldSnapshot& snapshot : data.vesicles[0].snapshots)
+      snapshot.values = (factor * snapshot.values.array() + zero).matrix();
+  };
+  EXPECT_EQ(note_on_scale(data, 0, 1), "");
+  scale(2, 1);
+  EXPECT_NE(note_on_scale(data, 0, 1).find("is c on that scale?"), std::string::npos);
+  EXPECT_EQ(note_on_scale(data, 1, 3), "");
+}
+
 TEST_F(FieldDatasetTest, KnowsSeriesFromFields) {
   std::filesystem::remove(folder.path / "snapshot_001.csv");
   replace("measurements.csv", "vesicle,time\n");

@@ -108,8 +108,9 @@ bool tell_apart(Search& search) {
   result.rivals.clear();
   for (std::size_t k = 0; k < members.size(); ++k) {
     const double worse = compared->worse[k];
-    search.tell("  " + members[k].hypothesis.name() + " gains " +
-                std::to_string(std::lround(-worse)));
+    search.tell("  " + members[k].hypothesis.name() +
+                (k == compared->best ? std::string(" explains most")
+                                     : " loses " + std::to_string(std::lround(worse))));
     if (worse >= limit)
       result.told_apart.push_back({members[k].hypothesis.name(), worse});
     else if (k != compared->best)

@@ -10,7 +10,7 @@ namespace {
 constexpr int kFewestValues = 10;
 constexpr std::array<const char*, 3> kStates = {"outside rafts", "boundary", "inside rafts"};
 
-// A quarter of the way from one well to the other counts as the boundary.
+// The middle half of the way from one well to the other counts as the boundary.
 std::size_t state_of(double forecast, const DoubleWell& well) {
   const double share = (forecast - well.a) / (well.b - well.a);
   return share < 0.25 ? 0 : share > 0.75 ? 2 : 1;

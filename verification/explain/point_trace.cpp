@@ -145,9 +145,10 @@ PointTrace point_trace(const SurfaceSpace& space, const std::vector<Point>& poin
   for (std::size_t row = 0; row < points.size(); ++row) {
     const auto nearest = finder.find(points[row], reach);
     if (nearest.distance > reach)
-      throw InputError("point " + std::to_string(row + 1) + ", " + text_of(points[row]) +
-                       " in units of R, is further than " + format_number(reach) +
-                       " R from the surface; are the radius and the unit of length right?");
+      throw InputError(
+          "point " + std::to_string(row + 1) + ", " + text_of(points[row]) +
+          " in units of R, is further than " + format_number(reach) +
+          " R from the surface; are the surface, its radius and the unit of length right?");
     for (int k = 0; k < 3; ++k) {
       const CutPoint& cut = space.surface.points[space.surface.triangles[nearest.triangle][k]];
       entries.emplace_back(static_cast<int>(row), cut.low, nearest.at[k] * (1 - cut.s));

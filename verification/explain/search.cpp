@@ -43,8 +43,11 @@ FilterResult Search::first_pass() {
   for (int k = 0; k < kMostFirstPasses; ++k) {
     const double pace = model.pace;
     maps = {};
+    tell("  forecasts, and errors of states and of the mesh");
     fit_noise(data, filter_fields(data, model, request.filter, maps));
+    tell(formatted("  what %zu effects would change", model.screened.size()));
     pass = filter_fields(data, model, request.filter, maps);
+    tell("  D");
     set_found(refit(data, model, request.filter, maps));
     if (std::fabs(std::log(result.found.pace / pace)) < kMapsReach) break;
     tell(formatted("  D is rather %.2g times the model's", result.found.pace));
@@ -58,8 +61,11 @@ FilterResult Search::first_pass() {
 
 FilterResult Search::next_pass() {
   maps = {};
+  tell("  forecasts, and errors of states and of the mesh");
   fit_noise(data, filter_fields(data, model, request.filter, maps));
+  tell("  D, and what was found");
   set_found(refit(data, model, request.filter, maps));
+  tell(formatted("  what %zu effects would change", model.screened.size()));
   FilterResult pass = filter_fields(data, model, request.filter, maps);
   bootstrap(pass, model, result.found);
   return pass;
@@ -94,8 +100,9 @@ void Search::tell_gain(const Refit& fit) const {
   const bool more = fit.hypothesis.parts.size() > result.found.hypothesis.parts.size();
   const double difference = result.found.deviance - fit.deviance;
   const double gained = more ? std::max(0.0, difference) : difference;
-  tell("  " + fit.hypothesis.name() +
-       (fit.failure.empty() ? " gains " + std::to_string(std::lround(gained)) : " fails"));
+  const std::string change = (gained < 0 ? std::string(" loses ") : std::string(" gains ")) +
+                             std::to_string(std::labs(std::lround(gained)));
+  tell("  " + fit.hypothesis.name() + (fit.failure.empty() ? change : " fails"));
 }
 
 SearchState Search::state(bool more) const {

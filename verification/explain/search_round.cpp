@@ -87,29 +87,39 @@ void refit_shortlist(Search& search, Round& round) {
 }
 
 // With the noise and the errors of the model that has it, an effect may turn out to be none: the
-// refit without it, then.
+// most probable refit without such a one, then.
 std::optional<Refit> without_what_is_none(const Search& search) {
   const Refit& found = search.result.found;
+  std::optional<Refit> best;
+  double least = criterion(found, search.values());
   for (std::size_t k = 0; k < found.hypothesis.parts.size(); ++k) {
     if (resolved(found, k, search.values(), search.mesh_error())) continue;
     FilterModel trial = search.model;
     trial.hypothesis.parts.erase(trial.hypothesis.parts.begin() + static_cast<std::ptrdiff_t>(k));
     Refit fit = refit(search.data, trial, search.request.filter, search.maps);
-    if (fit.failure.empty() && criterion(fit, search.values()) <= criterion(found, search.values()))
-      return fit;
+    if (!fit.failure.empty() || criterion(fit, search.values()) > least) continue;
+    least = criterion(fit, search.values());
+    best = std::move(fit);
   }
-  return {};
+  return best;
 }
 
-void drop_to(Search& search, const Refit& fit) {
+// Returns whether there was any.
+bool drop_what_is_none(Search& search) {
   Explanation& result = search.result;
-  search.tell("  of " + result.found.hypothesis.name() + " one is none");
-  search.set_found(fit);
-  result.rivals.clear();
-  const bool nothing = fit.hypothesis.parts.empty();
+  bool dropped = false;
+  while (const auto fit = without_what_is_none(search)) {
+    search.tell("  one of them is none: " + result.found.hypothesis.name());
+    search.set_found(*fit);
+    dropped = true;
+  }
+  if (!dropped) return false;
+  const bool nothing = result.found.hypothesis.parts.empty();
   const Screening& screening = result.rounds.back().screening;
+  result.rivals.clear();
   result.without_gap = nothing ? Finding::not_identifiable : Finding::named;
   result.finding = nothing ? without_name(screening, search.request.false_alarms) : Finding::named;
+  return true;
 }
 
 bool leave(Search& search, const Judgement& judgement) {
@@ -147,10 +157,7 @@ bool look_for_one(Search& search) {
   FilterResult pass;
   try {
     pass = first ? search.first_pass() : search.next_pass();
-    if (const auto fit = first ? std::nullopt : without_what_is_none(search)) {
-      drop_to(search, *fit);
-      return false;
-    }
+    if (!first && drop_what_is_none(search)) return false;
   } catch (const std::runtime_error& error) {
     if (first) throw;
     result.stopped = error.what();
