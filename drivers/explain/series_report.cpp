@@ -18,6 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double k95 = 1.96;
 constexpr int kOfCharts = 10;  // of the curves of charts and power laws
 
 std::string vesicles_text(double count) {
@@ -176,8 +177,9 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
                                      " vesicles, " + std::to_string(found.looks) + " looks.",
                                  sentence(found), ground(found, simulated, request)};
   for (const SeriesTie& tie : found.ties) words.push_back(advice(tie));
-  words.push_back(formatted("D is %.3g cm^2/s if nothing is missing.",
-                            found_units(model, found).diffusion_cm2_s));
+  words.push_back(formatted(
+      "D is %.3g cm^2/s, within a factor of %.2g (95 %%, by scatter alone), if nothing is missing.",
+      found_units(model, found).diffusion_cm2_s, std::exp(k95 * found.unit_deviation)));
   words.insert(words.end(), ensembles.notes.begin(), ensembles.notes.end());
   const SimulatedVesicle vesicle = simulated_vesicle(model.units().length(), ensembles.base, data);
   for (const std::string& note : differences(data, vesicle)) words.push_back(note);

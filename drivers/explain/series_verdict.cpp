@@ -83,8 +83,9 @@ std::vector<FoundParameter> found_parameters(const Configuration& model,
                       scale.factor * best.sigma});
     for (FoundParameter& p : assumed_of(model, ensembles, best)) result.push_back(std::move(p));
   }
-  result.push_back(
-      {"", "diffusion", "cm^2/s", units_of(model, ln_unit).diffusion_cm2_s, std::nullopt});
+  const double D = units_of(model, ln_unit).diffusion_cm2_s;
+  result.push_back({"", "diffusion", "cm^2/s", D,
+                    is_named(found) ? std::nullopt : std::optional(D * found.unit_deviation)});
   return result;
 }
 
@@ -130,6 +131,7 @@ std::vector<FoundParameter> assumed_parameters(const EffectTerm& term, const Uni
 
 Json series_json(const Configuration& model, const SeriesEnsembles& ensembles,
                  const SeriesExplanation& found, const std::vector<Exponent>& laws) {
+  const double D = found_units(model, found).diffusion_cm2_s;
   Json ties = Json::array(), exponents = Json::array();
   for (const SeriesTie& tie : found.ties)
     ties.push_back({{"effect", tie.effect},
@@ -145,7 +147,7 @@ Json series_json(const Configuration& model, const SeriesEnsembles& ensembles,
           {"trend_p", found.trend_p},
           {"vesicles", found.vesicles},
           {"looks", found.looks},
-          {"diffusion", {{"value", found_units(model, found).diffusion_cm2_s}, {"unit", "cm^2/s"}}},
+          {"diffusion", {{"value", D}, {"sigma", D * found.unit_deviation}, {"unit", "cm^2/s"}}},
           {"offsets", offsets_json(found)},
           {"scores", scores_json(model, ensembles, found)},
           {"classes", found.classes},

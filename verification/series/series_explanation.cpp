@@ -53,6 +53,8 @@ class SeriesSearch {
     result_.vesicles = static_cast<int>(data_.vesicles().size());
     result_.looks = static_cast<int>(data_.measurements.size());
     result_.base = gains_.base;
+    result_.unit_deviation =
+        std::sqrt((null_.ln_unit.array() - gains_.base.ln_unit).square().mean());
     result_.offsets = offsets(blocks_of(data_), {&curves_.base}, gains_.base);
     result_.p = 1;
     for (std::size_t k = 0; k < candidates_.size(); ++k) result_.scores.push_back(score_of(k));

@@ -47,6 +47,7 @@ struct SeriesExplanation {
   double p;                                       // that the best score is noise
   double trend_p;                                 // that what is left of the best model is
   SeriesFit base;                                 // without any effect
+  double unit_deviation;                          // of its ln_unit, from data of the base model
   std::vector<SeriesOffset> offsets;              // of the measurements beside it
   std::vector<SeriesScore> scores;                // most telling first
   std::vector<std::vector<std::string>> classes;  // effects that change series alike

@@ -75,6 +75,7 @@ SeriesNull null_of(const MeasuredVesicles& data, const std::vector<History>& run
   const auto count = static_cast<Eigen::Index>(candidates.size());
   Eigen::MatrixXd gained(replicates, count);
   result.trend.resize(replicates);
+  result.ln_unit.resize(replicates);
   for (int r = 0; r < replicates; ++r) {
     const auto replicate = static_cast<std::uint64_t>(r + 1);
     const std::vector<int> sample = resample(static_cast<int>(runs.size()), replicate, kSample);
@@ -82,6 +83,7 @@ SeriesNull null_of(const MeasuredVesicles& data, const std::vector<History>& run
                                        {runs, candidates, sample}, candidates, unit);
     gained.row(r) = gains.values.transpose();
     result.trend[r] = gains.trend;
+    result.ln_unit[r] = gains.base.ln_unit;
   }
   result.mean = gained.colwise().mean().transpose().cwiseMax(0.5);
   result.highest = (gained * result.mean.cwiseInverse().asDiagonal()).rowwise().maxCoeff();

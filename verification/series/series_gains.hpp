@@ -41,6 +41,7 @@ struct SeriesNull {
   Vec mean;     // of each candidate's gain, half a unit at least
   Vec highest;  // of each replicate: the largest gain over its mean
   Vec trend;    // of each replicate: what is left of the base
+  Vec ln_unit;  // of each replicate: that of the base
 };
 // `fit`: of the base model to the data.
 SeriesNull null_of(const MeasuredVesicles& data, const std::vector<History>& runs,
