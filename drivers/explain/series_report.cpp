@@ -34,7 +34,7 @@ std::string sentence(const SeriesExplanation& found) {
     case Finding::not_identifiable:
       return "No significant disagreement, but so few vesicles would not show any of the effects.";
     case Finding::unnamed:
-      return "There is a trend that no known effect explains" +
+      return "There is a trend that none of the effects that were looked for explains" +
              (classes.empty() ? "." : "; " + classes.front() + " comes closest.");
     case Finding::named:
       return "The model lacks " + classes.front() + ".";

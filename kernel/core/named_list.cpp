@@ -38,11 +38,12 @@ std::string unknown_name_message(std::string_view kind, std::string_view name,
   for (char& ch : shown)
     if (static_cast<unsigned char>(ch) < 32) ch = '?';
   std::string message = "unknown " + std::string(kind) + " '" + shown + "'";
-  // What shares little with a name is no slip of the pen.
+  // What shares little with a name is no slip of the pen; the dashes of flags are no letters.
+  const std::size_t letters = shown.size() - std::min(shown.size(), shown.find_first_not_of('-'));
   const std::string nearest = nearest_name(shown, valid);
   const bool begun = !shown.empty() && nearest.compare(0, shown.size(), shown) == 0;
   const bool near =
-      begun || (!valid.empty() && 2 * edit_distance(shown, nearest) <= shown.size() + 1);
+      begun || (!valid.empty() && 2 * edit_distance(shown, nearest) <= letters + 1);
   if (near) message += "; did you mean '" + nearest + "'?";
   if (!near || valid.size() <= 12) {
     message += near ? " Valid:" : "; valid:";

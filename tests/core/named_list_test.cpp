@@ -28,6 +28,8 @@ TEST(NamedList, ProposesWhatIsNear) {
   EXPECT_FALSE(proposes("micron", "mm"));
   EXPECT_FALSE(proposes("operator", "temperature"));
   EXPECT_FALSE(proposes("D", "epsilon"));
+  EXPECT_FALSE(proposes("--effect", "--quiet"));
+  EXPECT_TRUE(proposes("--cels", "--cells"));
   EXPECT_TRUE(proposes("guv", "guv-2to1"));
   EXPECT_TRUE(proposes("radius_um", "radius"));
   EXPECT_EQ(unknown_name_message("unit", "micron", {"um", "nm"}),
