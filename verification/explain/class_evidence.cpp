@@ -70,6 +70,12 @@ std::vector<std::optional<double>> criteria_of(const FilterProblems& data,
   return criteria;
 }
 
+bool is_as_probable(const Search& search, const Refit& one, const Refit& other) {
+  const auto criteria = criteria_of(holding_nothing_out(search.data), search.request.base,
+                                    {one, other}, search.request.filter);
+  return criteria[0] && criteria[1] && *criteria[0] <= *criteria[1];
+}
+
 bool leave_to_rivals(Search& search) {
   const SearchState before = search.state(true);
   std::vector<Refit> without_gap;

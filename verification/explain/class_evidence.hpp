@@ -17,6 +17,10 @@ bool leave_to_rivals(Search& search);
 // whether another one than was found comes first then; the search goes on beside that.
 bool tell_apart(Search& search);
 
+// With all that was measured, what is held out included: is `one` as probable as `other`, each
+// refitted? False where a refit fails.
+bool is_as_probable(const Search& search, const Refit& one, const Refit& other);
+
 // The criterion of each hypothesis, refitted to the snapshots that count, with the noise of `data`;
 // nothing where a refit fails.
 std::vector<std::optional<double>> criteria_of(const FilterProblems& data,

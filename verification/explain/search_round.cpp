@@ -87,7 +87,7 @@ void refit_shortlist(Search& search, Round& round) {
 }
 
 // With the noise and the errors of the model that has it, an effect may turn out to be none: the
-// most probable refit without such a one, then.
+// most probable refit without such a one, then. What is held out may tell that there is one.
 std::optional<Refit> without_what_is_none(const Search& search) {
   const Refit& found = search.result.found;
   std::optional<Refit> best;
@@ -101,7 +101,7 @@ std::optional<Refit> without_what_is_none(const Search& search) {
     least = criterion(fit, search.values());
     best = std::move(fit);
   }
-  return best;
+  return best && is_as_probable(search, *best, found) ? best : std::nullopt;
 }
 
 // Returns whether there was any.
