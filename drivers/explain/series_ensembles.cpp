@@ -105,15 +105,10 @@ std::vector<EffectTerm> sizes(const fs::path& folder, const Configuration& model
 }
 
 // "asymmetry, strength 0.0256"
-std::string name_of_simulated(const std::string& name, const std::vector<EffectTerm>& terms,
-                              const Units& units) {
-  for (const EffectTerm& term : terms)
-    if (term.effect == name) {
-      const FoundParameter strength = parameters_of(within_range(term, units), units).front();
-      return name + ", " + strength.name + formatted(" %.3g", strength.value) +
-             (strength.unit.empty() ? "" : " " + strength.unit);
-    }
-  return "no effect";
+std::string label_of(const EffectTerm& term, const Units& units) {
+  const FoundParameter strength = parameters_of(term, units).front();
+  return term.effect + ", " + strength.name + formatted(" %.3g", strength.value) +
+         (strength.unit.empty() ? "" : " " + strength.unit);
 }
 
 }  // namespace
@@ -144,13 +139,14 @@ SeriesEnsembles run_series_ensembles(const fs::path& folder, const Configuration
   const Units units = model.units();
   SeriesEnsembles result;
   std::size_t ensembles = 0;
-  const auto simulate = [&](const std::string& name, const std::string& effect) {
-    tell(request, "simulations with " + name_of_simulated(name, terms, units) +
-                      formatted(" (%zu of %zu)", ++ensembles, terms.size() + 1));
+  const auto simulate = [&](const std::string& name, const std::string& effect,
+                            const std::string& label) {
+    tell(request,
+         "simulations with " + label + formatted(" (%zu of %zu)", ++ensembles, terms.size() + 1));
     return run_point(folder / name, ensemble_model(model, effect, kFastestPace * request.looks.end),
                      {request.runs, request.jobs, request.quiet});
   };
-  PointEnd base = simulate("base", "");
+  PointEnd base = simulate("base", "", "no effect");
   if (!base.failures.empty())
     throw InputError("the run of seed " + std::to_string(base.failures.front().seed) +
                      " failed: " + base.failures.front().why);
@@ -159,7 +155,7 @@ SeriesEnsembles run_series_ensembles(const fs::path& folder, const Configuration
   for (const EffectTerm& sized : terms) {
     const EffectTerm term = within_range(sized, units);
     if (result.stopped) return result;
-    PointEnd end = simulate(term.effect, effect_text({term}, units));
+    PointEnd end = simulate(term.effect, effect_text({term}, units), label_of(term, units));
     result.stopped = end.stopped;
     if (!end.failures.empty()) {
       result.notes.push_back(term.effect + " was left out, as the run of seed " +

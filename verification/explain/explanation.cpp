@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "kernel/core/text.hpp"
 #include "verification/explain/class_evidence.hpp"
@@ -90,15 +91,14 @@ Explanation explain_fields(const std::vector<FieldSeries>& series, const Explain
   if (saved) {
     search.tell("what was found before");
     search.go_on_from(*saved);
-    search.ahead = saved->ahead;
   } else {
     start(search);
   }
   bool more = saved ? saved->more : true;
+  auto ahead = saved ? saved->ahead : std::map<std::size_t, Refit>();
   while (more || !search.told_apart) {
-    search.begin_round(more);
+    search.begin_round(more, std::exchange(ahead, {}));
     more = more ? look_for_one(search) : tell_apart(search);
-    search.ahead.clear();
   }
   search.save(search.state(more));
   return conclusion(std::move(search));

@@ -25,6 +25,9 @@ struct ErrorMaps {
   std::size_t intervals() const { return basis.size(); }
 };
 
+// Of ln D: further away errors of states grow and fade in another way, and maps are found anew.
+inline constexpr double kMapsReach = 0.5;
+
 struct FilterResult {
   std::vector<Innovation> innovations;
   Eigen::MatrixXd information;  // Σ Xᵀ S⁻¹ X

@@ -12,8 +12,6 @@ namespace {
 constexpr int kRank = 80, kTangentSteps = 2, kMostSteps = 40;
 // Of ln D: at most in one pass, and what is left to other searches.
 constexpr double kLargestStep = 0.7, kGoodEnough = 0.02;
-// Of ln D: further away errors of the state grow and fade in another way.
-constexpr double kMapsReach = 0.5;
 // A forecast of far too slow a membrane is about what was measured before, and its derivatives tell
 // the way to the right pace. Of far too fast a one everything has come to rest, and they tell
 // nothing: such a search begins at one of these.

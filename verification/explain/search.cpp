@@ -10,9 +10,7 @@
 namespace traceraft {
 namespace {
 
-// Of ln D: a refit that ends further away is no longer one of the noise, and of the errors of
-// states and of the mesh, that it began with.
-constexpr double kMapsReach = 0.5;
+// A refit that ends beyond kMapsReach is none of the noise and the errors that it began with.
 constexpr int kMostFirstPasses = 4;
 
 }  // namespace
@@ -74,6 +72,7 @@ FilterResult Search::next_pass() {
 std::vector<Refit> Search::refit_all(const std::vector<FilterModel>& trials) {
   const std::size_t first = numbered_;
   numbered_ += trials.size();
+  std::map<std::size_t, Refit>& ahead = before_.ahead;
   std::vector<std::size_t> open;
   std::vector<FilterModel> open_trials;
   for (std::size_t k = first; k < numbered_; ++k) {
@@ -87,7 +86,6 @@ std::vector<Refit> Search::refit_all(const std::vector<FilterModel>& trials) {
   refit_each(data, open_trials, request.filter, maps, [&](std::size_t which, const Refit& fit) {
     tell_gain(fit);
     ahead[open[which]] = fit;
-    before_.ahead = ahead;
     save(before_);
   });
   std::vector<Refit> refits;
@@ -106,7 +104,7 @@ void Search::tell_gain(const Refit& fit) const {
 }
 
 SearchState Search::state(bool more) const {
-  SearchState now{result, {}, more, told_apart, ahead};
+  SearchState now{result, {}, more, told_apart, {}};
   for (const FilterProblem& vesicle : data) now.noise.push_back(vesicle.noise);
   return now;
 }
@@ -115,8 +113,9 @@ void Search::save(const SearchState& state) const {
   if (request.save) request.save(state);
 }
 
-void Search::begin_round(bool more) {
+void Search::begin_round(bool more, std::map<std::size_t, Refit> ahead) {
   before_ = state(more);
+  before_.ahead = std::move(ahead);
   numbered_ = 0;
   save(before_);
 }

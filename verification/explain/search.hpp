@@ -16,8 +16,7 @@ struct Search {
   FilterModel model;            // with what was found; the other candidates are screened
   std::vector<ErrorMaps> maps;  // of its forecasts
   Explanation result;
-  bool told_apart = false;             // has what is held out been asked about the class?
-  std::map<std::size_t, Refit> ahead;  // refits of this round, by their number in it
+  bool told_apart = false;  // has what is held out been asked about the class?
 
   Search(const std::vector<FieldSeries>& series, const ExplainRequest& explain_request);
 
@@ -43,12 +42,13 @@ struct Search {
   SearchState state(bool more) const;
   void save(const SearchState& state) const;
   void go_on_from(const SearchState& state);
-  void begin_round(bool more);
+  // `ahead`: refits of it that an interrupted search has had.
+  void begin_round(bool more, std::map<std::size_t, Refit> ahead);
 
  private:
   void tell_gain(const Refit& fit) const;
 
-  SearchState before_;        // the round
+  SearchState before_;        // the round, with the refits that it has had
   std::size_t numbered_ = 0;  // refits of the round
 };
 
