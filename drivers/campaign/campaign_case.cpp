@@ -6,9 +6,9 @@
 #include <stdexcept>
 
 #include "drivers/campaign/hidden_case.hpp"
-#include "drivers/explain/explain_report.hpp"
-#include "drivers/explain/explain_run.hpp"
+#include "drivers/explain/resumable_search.hpp"
 #include "drivers/output/json_file.hpp"
+#include "drivers/output/status_line.hpp"
 #include "kernel/core/random.hpp"
 #include "kernel/core/stopwatch.hpp"
 #include "verification/explain/rerun.hpp"
@@ -66,12 +66,26 @@ Gaps floor_of(const ExplainSetup& setup, const HiddenTruth& truth) {
   }
 }
 
-// What the search took, beside its verdict: a case may be scored by another process.
-fs::path time_file(const fs::path& explained) {
-  return explained / "time.json";
-}
+// What the search took, in all processes that carried it on.
 double seconds_of(const fs::path& explained) {
-  return from_json(time_file(explained), [](const Json& json) { return json.at("seconds"); });
+  const fs::path file = explained / "time.json";
+  if (!fs::exists(file)) return 0;
+  return from_json(file, [](const Json& json) { return json.at("seconds"); });
+}
+
+// Its steps are told to the case's log.
+void search(const fs::path& explained, ExplainSetup& setup) {
+  const double before = seconds_of(explained);
+  const Stopwatch watch;
+  setup.request.progress = [&](const std::string& step) {
+    const double seconds = before + watch.seconds();
+    write_durably(explained / "time.json", Json{{"seconds", seconds}}.dump() + "\n");
+    std::printf("%s  %s\n", clock_text(seconds).c_str(), step.c_str());
+    std::fflush(stdout);
+  };
+  (void)search_resumably(explained, setup);
+  setup.request.progress("done");
+  setup.request.progress = nullptr;
 }
 
 void write_score(const CampaignFolder& folder, const CampaignGroup& group, const CaseId& id,
@@ -119,14 +133,8 @@ void carry_out_case(const CampaignFolder& folder, const CampaignPlan& plan, cons
   job.diffusion_error = settings.diffusion_error;
   job.without = settings.without;
   ExplainSetup setup = read_explain_job(job);
-  if (!fs::exists(path / "explain" / "verdict.json")) {
-    fs::create_directories(path / "explain");
-    const Stopwatch watch;
-    Explanation found = explain_fields(setup.series, setup.request);
-    run_again(setup.series, setup.request, found);
-    write_durably(time_file(path / "explain"), Json{{"seconds", watch.seconds()}}.dump() + "\n");
-    write_explanation(path / "explain", found, setup);
-  }
+  fs::create_directories(path / "explain");
+  search(path / "explain", setup);
   write_score(folder, group, id, setup);
 }
 

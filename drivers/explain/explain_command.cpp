@@ -12,7 +12,7 @@
 #include "drivers/explain/explain_page.hpp"
 #include "drivers/explain/explain_report.hpp"
 #include "drivers/explain/explain_run.hpp"
-#include "drivers/explain/search_file.hpp"
+#include "drivers/explain/resumable_search.hpp"
 #include "drivers/explain/series_report.hpp"
 #include "drivers/explain/series_verdict.hpp"
 #include "drivers/input/dataset.hpp"
@@ -24,7 +24,6 @@
 #include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/effects/effects.hpp"
-#include "verification/explain/rerun.hpp"
 
 namespace traceraft {
 namespace {
@@ -64,23 +63,7 @@ void explain_field_data(const ExplainCommand& command, ExplainSetup& setup, cons
     for (const std::string& note : setup.notes) std::printf("%s\n", note.c_str());
     std::fflush(stdout);
   }
-  const SearchFile file(out, setup);
-  std::optional<SearchState> search = file.load();
-  setup.request.save = [&](const SearchState& state) {
-    search = state;
-    file.save(state);
-  };
-  Explanation found =
-      numerically([&] { return explain_fields(setup.series, setup.request, search); });
-  if (is_to_run_again(found) && !found.rerun) {
-    write_explanation(out, found, setup);
-    if (!command.quiet) setup.request.progress("once more, on another mesh, by another integrator");
-    run_again(setup.series, setup.request, found);
-    search->so_far.finding = found.finding;
-    search->so_far.rerun = found.rerun;
-    file.save(*search);
-  }
-  write_explanation(out, found, setup);
+  const Explanation found = search_resumably(out, setup);
   const std::string missing = write_explain_page(out, found, setup);
   if (command.quiet) return;
   print_explanation(found, setup);

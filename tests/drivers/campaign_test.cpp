@@ -94,10 +94,15 @@ TEST(CampaignTest, CountsWhatWasFoundAndGoesOn) {
   EXPECT_NE(summary.find("naming,1,"), std::string::npos) << summary;
   EXPECT_NE(summary.find("null,1,"), std::string::npos) << summary;
 
-  fs::remove(out / "cases" / "naming-000" / "score.json");
+  // A case whose end was not seen goes on from the last refit of its search.
+  for (const char* file : {"score.json", "explain/verdict.json"})
+    fs::remove(out / "cases" / "naming-000" / file);
   const auto again = testing::traceraft(command);
   ASSERT_EQ(again.code, 0) << again.output;
   EXPECT_TRUE(fs::exists(out / "cases" / "naming-000" / "score.json"));
+  const std::string log = testing::content(out / "cases" / "naming-000.log");
+  EXPECT_EQ(log.find("pace of the base model"), std::string::npos) << log;
+  EXPECT_NE(log.find("what was found before"), std::string::npos) << log;
   const auto changed = testing::traceraft(command + " --seed 2");
   EXPECT_EQ(changed.code, 2);
   EXPECT_NE(changed.output.find("a campaign of another plan"), std::string::npos) << changed.output;
