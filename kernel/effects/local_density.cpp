@@ -26,17 +26,13 @@ class LocalDensityEffect final : public Effect {
                    BlockJacobian& J) const override {
     const Values at(*this, space, t, c, mu);
     const bool source = density_.slot == Slot::source;
-    const auto add = [&](double DensityValue::*derivative, CsrMatrix& block) {
-      add_weighted_mass(
-          space, sign(),
-          [&](int triangle, std::size_t p) {
-            return at(quadrature_point(space.surface, static_cast<std::size_t>(triangle), p)).*
-                   derivative;
-          },
-          block);
-    };
-    add(&DensityValue::by_c, source ? J.cc : J.mc);
-    add(&DensityValue::by_mu, source ? J.cm : J.mm);
+    add_weighted_masses<2>(space, sign(),
+                           [&](int triangle, std::size_t p) -> std::array<double, 2> {
+                             const DensityValue density = at(quadrature_point(
+                                 space.surface, static_cast<std::size_t>(triangle), p));
+                             return {density.by_c, density.by_mu};
+                           },
+                           {source ? &J.cc : &J.mc, source ? &J.cm : &J.mm});
   }
 
   void add_tangent_product(const SurfaceSpace& space, double t, ConstVec c, ConstVec mu,

@@ -1,6 +1,9 @@
 // Mass matrices with a weight that varies: ∫ w φ_i φ_j.
 #pragma once
 
+#include <algorithm>
+#include <array>
+
 #include "kernel/fem/surface_space.hpp"
 #include "kernel/fem/triangle_rule.hpp"
 
@@ -69,16 +72,44 @@ inline std::array<double, 3> corner_values(const SurfaceSpace& space, int triang
   return {point_value[i], point_value[j], point_value[k]};
 }
 
-// matrix += factor · ∫ w φ_i φ_j with w = weight(triangle, point of kDegreeFourRule).
+// matrices[n] += factor · ∫ w_n φ_i φ_j with the N weights w = weights(triangle, point of
+// kDegreeFourRule), which are evaluated once for all; where one is zero its matrix is not touched.
+template <std::size_t N, class Weights>
+void add_weighted_masses(const SurfaceSpace& space, double factor, const Weights& weights,
+                         const std::array<CsrMatrix*, N>& matrices) {
+  constexpr std::size_t kPoints = kDegreeFourRule.size();
+  space.team->run([&](int part) {
+    const RowBlock& block = space.blocks[part];
+    std::array<std::array<double, std::size(kPolygonTriangles) * kPoints>, N> at;
+    for (int e = block.touching_elements.begin; e < block.touching_elements.end; ++e) {
+      const CutElement& element = space.elements[e];
+      const std::size_t points = kPoints * static_cast<std::size_t>(element.triangles());
+      for (std::size_t k = 0; k < points; ++k) {
+        const std::array<double, N> w =
+            weights(element.first_triangle + static_cast<int>(k / kPoints), k % kPoints);
+        for (std::size_t n = 0; n < N; ++n) at[n][k] = w[n];
+      }
+      for (std::size_t n = 0; n < N; ++n) {
+        if (std::all_of(at[n].begin(), at[n].begin() + points, [](double w) { return w == 0; }))
+          continue;
+        const auto weight = [&](int triangle, std::size_t p) {
+          return at[n][static_cast<std::size_t>(triangle - element.first_triangle) * kPoints + p];
+        };
+        add_element_matrix(element, detail::weighted_element(space, element, factor, weight), block,
+                           *matrices[n]);
+      }
+    }
+  });
+}
+
+// The same for one weight, a number.
 template <class Weight>
 void add_weighted_mass(const SurfaceSpace& space, double factor, const Weight& weight,
                        CsrMatrix& matrix) {
-  add_element_matrices(
-      space,
-      [&](const CutElement& element, int) -> Eigen::Matrix4d {
-        return detail::weighted_element(space, element, factor, weight);
-      },
-      matrix);
+  add_weighted_masses<1>(
+      space, factor,
+      [&](int triangle, std::size_t p) { return std::array<double, 1>{weight(triangle, p)}; },
+      {&matrix});
 }
 
 }  // namespace traceraft
