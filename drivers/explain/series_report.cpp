@@ -165,6 +165,21 @@ Chart curve_chart(Quantity quantity, const MeasuredVesicles& data, const SeriesE
   return chart;
 }
 
+std::string diffusion_sentence(const Configuration& model, const SeriesExplanation& found) {
+  const double D = found_units(model, found).diffusion_cm2_s;
+  if (found.unit_at_end)
+    return formatted(
+        "D is not determined: the best one, %.3g cm^2/s, is at the end of what is looked at.", D);
+  const std::string range =
+      formatted("%.3g cm^2/s, within a factor of %.2g (95 %%, by scatter alone)", D,
+                std::exp(k95 * found.unit_deviation));
+  if (!found.unit_told)
+    return "These series tell hardly more of D than was known before: " + range + ".";
+  return "D is " + range +
+         (found.finding == Finding::unnamed ? ", if what is missing leaves it alone."
+                                            : ", if nothing is missing.");
+}
+
 }  // namespace
 
 void write_series_explanation(const fs::path& folder, const MeasuredVesicles& data,
@@ -177,9 +192,7 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
                                      " vesicles, " + std::to_string(found.looks) + " looks.",
                                  sentence(found), ground(found, simulated, request)};
   for (const SeriesTie& tie : found.ties) words.push_back(advice(tie));
-  words.push_back(formatted(
-      "D is %.3g cm^2/s, within a factor of %.2g (95 %%, by scatter alone), if nothing is missing.",
-      found_units(model, found).diffusion_cm2_s, std::exp(k95 * found.unit_deviation)));
+  words.push_back(diffusion_sentence(model, found));
   words.insert(words.end(), ensembles.notes.begin(), ensembles.notes.end());
   const SimulatedVesicle vesicle = simulated_vesicle(model.units().length(), ensembles.base, data);
   for (const std::string& note : differences(data, vesicle)) words.push_back(note);

@@ -214,6 +214,23 @@ TEST(SeriesExplanation, KnowsHowWellItKnowsD) {
   }
 }
 
+// Where nothing coarsens, series say nothing of it.
+TEST(SeriesExplanation, KnowsThatItDoesNotKnowD) {
+  const Law rest{0};
+  SeriesRequest request{{1, 8}};
+  request.replicates = 99;
+  std::vector<SeriesCandidate> more_rafts{{"line-tension", 1, true, ensemble({0, 0, 0, 0.3})}};
+  const SeriesExplanation found =
+      explain_series(measured(rest, 10, 0.1, 1), ensemble(rest), more_rafts, request);
+  EXPECT_FALSE(found.unit_told);
+  EXPECT_FALSE(found.unit_at_end);
+  EXPECT_NEAR(found.unit_deviation, std::log(8.0) / 2, 0.25 * std::log(8.0) / 2);
+  const SeriesExplanation told = explained(measured({}, 10, 0.1, 1));
+  EXPECT_TRUE(told.unit_told);
+  const SeriesExplanation far = explained(measured({}, 10, 0.1, 1 / 30.0));
+  EXPECT_TRUE(far.unit_at_end);
+}
+
 // By its logarithm, like the others.
 TEST(SeriesFit, SaysHowFarTheRaftFractionLiesBesideIt) {
   MeasuredVesicles data = measured({}, 15, 0.02, 1);

@@ -13,6 +13,9 @@
 namespace traceraft {
 namespace {
 
+// Of ln of the unit; and of its deviation, over what it was before.
+constexpr double kAtEnd = 0.1, kTold = 0.7;
+
 void refuse(const MeasuredVesicles& data, const std::vector<History>& base,
             const std::vector<SeriesCandidate>& candidates) {
   refuse_vesicles(data);
@@ -55,6 +58,10 @@ class SeriesSearch {
     result_.base = gains_.base;
     result_.unit_deviation =
         std::sqrt((null_.ln_unit.array() - gains_.base.ln_unit).square().mean());
+    const double from_end = std::min(gains_.base.ln_unit - request_.unit.lowest(),
+                                     request_.unit.highest() - gains_.base.ln_unit);
+    result_.unit_at_end = from_end < kAtEnd;
+    result_.unit_told = result_.unit_deviation < kTold * request_.unit.deviation();
     result_.offsets = offsets(blocks_of(data_), {&curves_.base}, gains_.base);
     result_.p = 1;
     for (std::size_t k = 0; k < candidates_.size(); ++k) result_.scores.push_back(score_of(k));

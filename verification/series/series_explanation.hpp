@@ -48,6 +48,8 @@ struct SeriesExplanation {
   double trend_p;                                 // that what is left of the best model is
   SeriesFit base;                                 // without any effect
   double unit_deviation;                          // of its ln_unit, from data of the base model
+  bool unit_at_end;                               // it would be further away if the fit let it
+  bool unit_told;                                 // is it known much better than before?
   std::vector<SeriesOffset> offsets;              // of the measurements beside it
   std::vector<SeriesScore> scores;                // most telling first
   std::vector<std::vector<std::string>> classes;  // effects that change series alike

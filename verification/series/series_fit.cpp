@@ -38,9 +38,9 @@ class Fitter {
       : blocks_(blocks),
         model_(model),
         centre_(std::log(unit.start)),
-        width_(unit.reach * std::log(unit.factor)),
-        least_(std::max(centre_ - width_, std::log(unit.least))),
-        weight_(4 / (std::log(unit.factor) * std::log(unit.factor))),
+        least_(unit.lowest()),
+        most_(unit.highest()),
+        weight_(1 / (unit.deviation() * unit.deviation())),
         fit_(start) {
     fit_.ln_unit = std::max(fit_.ln_unit, least_);
   }
@@ -77,7 +77,7 @@ class Fitter {
     const double least = metric.product(r, r) + penalty();
     for (double share = 1; share > 0.1; share *= 0.5) {
       fit_.amplitude = before.amplitude + share * step_a;
-      fit_.ln_unit = std::clamp(before.ln_unit + share * step_u, least_, centre_ + width_);
+      fit_.ln_unit = std::clamp(before.ln_unit + share * step_u, least_, most_);
       const Vec now = residual();
       if (metric.product(now, now) + penalty() <= least) return;
     }
@@ -115,11 +115,22 @@ class Fitter {
 
   const std::vector<SeriesBlock>& blocks_;
   const SeriesModel& model_;
-  const double centre_, width_, least_, weight_;
+  const double centre_, least_, most_, weight_;
   SeriesFit fit_;
 };
 
 }  // namespace
+
+double UnitRange::deviation() const {
+  constexpr double k95 = 2;
+  return std::log(factor) / k95;
+}
+double UnitRange::lowest() const {
+  return std::max(std::log(start) - reach * std::log(factor), std::log(least));
+}
+double UnitRange::highest() const {
+  return std::log(start) + reach * std::log(factor);
+}
 
 std::vector<SeriesBlock> blocks_of(const MeasuredVesicles& data) {
   std::vector<SeriesBlock> blocks;

@@ -53,6 +53,11 @@ struct UnitRange {
   double start, factor;
   double least = 0;
   double reach = 1;  // of the fit, beyond the factor if larger than 1: a power of it
+
+  double deviation() const;  // of ln of the unit, before
+  // Of ln of the unit, where a fit may end.
+  double lowest() const;
+  double highest() const;
 };
 SeriesFit fit_series(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
                      const UnitRange& unit);

@@ -10,7 +10,14 @@ namespace traceraft {
 namespace {
 
 // Streams of random numbers.
-enum SeriesStream : std::uint64_t { kRunOf = 1, kVesicle = 2, kLook = 3, kSample = 4, kStated = 5 };
+enum SeriesStream : std::uint64_t {
+  kRunOf = 1,
+  kVesicle = 2,
+  kLook = 3,
+  kSample = 4,
+  kStated = 5,
+  kUnit = 6
+};
 
 // The same looks at vesicles of the base model, one run each.
 MeasuredVesicles draw_base(const MeasuredVesicles& data, const std::vector<History>& runs,
@@ -39,6 +46,13 @@ MeasuredVesicles draw_base(const MeasuredVesicles& data, const std::vector<Histo
     ++vesicle;
   }
   return drawn_data;
+}
+
+// What is known of D before is a measurement, too.
+UnitRange draw_unit(const SeriesFit& fit, const UnitRange& unit, std::uint64_t replicate) {
+  UnitRange drawn = unit;
+  drawn.start = std::exp(fit.ln_unit + unit.deviation() * normal_random(replicate, kUnit, 0));
+  return drawn;
 }
 
 }  // namespace
@@ -79,8 +93,9 @@ SeriesNull null_of(const MeasuredVesicles& data, const std::vector<History>& run
   for (int r = 0; r < replicates; ++r) {
     const auto replicate = static_cast<std::uint64_t>(r + 1);
     const std::vector<int> sample = resample(static_cast<int>(runs.size()), replicate, kSample);
-    const SeriesGains gains = gains_of(draw_base(data, runs, fit, replicate),
-                                       {runs, candidates, sample}, candidates, unit);
+    const SeriesGains gains =
+        gains_of(draw_base(data, runs, fit, replicate), {runs, candidates, sample}, candidates,
+                 draw_unit(fit, unit, replicate));
     gained.row(r) = gains.values.transpose();
     result.trend[r] = gains.trend;
     result.ln_unit[r] = gains.base.ln_unit;
