@@ -7,6 +7,7 @@
 
 #include "drivers/campaign/hidden_case.hpp"
 #include "drivers/explain/resumable_search.hpp"
+#include "drivers/explain/search_file.hpp"
 #include "drivers/output/json_file.hpp"
 #include "drivers/output/status_line.hpp"
 #include "kernel/core/random.hpp"
@@ -73,8 +74,19 @@ double seconds_of(const fs::path& explained) {
   return from_json(file, [](const Json& json) { return json.at("seconds"); });
 }
 
+// One by another build, or that cannot be read, is none.
+void forget_if_unusable(const fs::path& explained, const ExplainSetup& setup) {
+  try {
+    (void)SearchFile(explained, setup).load();
+  } catch (const std::runtime_error& error) {
+    std::printf("the search begins anew: %s\n", error.what());
+    for (const char* file : {"search.json", "time.json"}) fs::remove(explained / file);
+  }
+}
+
 // Its steps are told to the case's log.
 void search(const fs::path& explained, ExplainSetup& setup) {
+  forget_if_unusable(explained, setup);
   const double before = seconds_of(explained);
   const Stopwatch watch;
   setup.request.progress = [&](const std::string& step) {

@@ -95,7 +95,9 @@ void hide(const fs::path& folder, const GivenValues& model, BlindRequest request
   data.blur_um = request.blur * units.length();
   data.vesicles = std::move(drawn.vesicles);
   write_field_dataset(folder / "data", data, "synthetic measurements");
-  write_durably(folder / "model.toml", config_text(configuration));
+  std::vector<std::string> names;
+  for (const auto& [name, value] : model) names.push_back(name);
+  write_durably(folder / "model.toml", config_lines(configuration, names));
 }
 
 HiddenTruth open_truth(const fs::path& folder) {

@@ -71,9 +71,9 @@ int hide_effects(const HideCommand& command) {
                      " s has to be before --last, " + format_number(request.last * units.time()) +
                      " s");
   const fs::path out = command.out.empty() ? first_free_folder("hidden") : command.out;
-  if (fs::exists(out / "truth.json"))
+  if (fs::exists(out / "model.toml"))  // which is written last
     throw InputError("--out: " + out.string() + " holds a hidden truth already");
-  refuse_foreign_folder(out, {});
+  refuse_foreign_folder(out, {"truth.json"});
   refuse_hiding(Configuration(model, {}), request);
   fs::create_directories(out);
   const FolderLock lock(out);

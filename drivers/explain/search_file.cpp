@@ -3,7 +3,7 @@
 #include "backends/sodium/seal.hpp"
 #include "drivers/config/config_file.hpp"
 #include "drivers/explain/search_json.hpp"
-#include "drivers/version.hpp"
+#include "drivers/output/program_checksum.hpp"
 #include "kernel/core/error.hpp"
 
 namespace traceraft {
@@ -13,16 +13,13 @@ std::vector<double> numbers_of(const Vec& values) {
   return {values.begin(), values.end()};
 }
 
-// Of the file: another one is read by another build.
-constexpr int kFormat = 4;
 // Maps of many snapshots.
 constexpr std::uint64_t kMaxBytes = 1 << 30;
 
 // Of everything that the search depends on.
 std::string fingerprint_of(const ExplainSetup& setup) {
   const ExplainRequest& request = setup.request;
-  Json all = {{"version", kVersion},
-              {"format", kFormat},
+  Json all = {{"program", program_checksum()},
               {"model", config_text(Configuration(setup.model, {}))},
               {"without", request.without},
               {"effects", request.most_effects},
@@ -52,7 +49,7 @@ std::optional<SearchState> SearchFile::load() const {
         if (json.at("fingerprint") != fingerprint_)
           throw InputError("--out: " + path_.parent_path().string() +
                            " holds a search of other data, another model or other settings, or by "
-                           "another version; choose another folder");
+                           "another build of the program; choose another folder");
         return std::optional(search_from(json, setup_.request.base));
       },
       kMaxBytes);

@@ -7,10 +7,10 @@
 #include "backends/posix/durable_file.hpp"
 #include "backends/posix/folder_lock.hpp"
 #include "backends/posix/process.hpp"
-#include "backends/zlib/checksum.hpp"
 #include "drivers/commands.hpp"
 #include "drivers/ensemble/ensemble_runs.hpp"
 #include "drivers/exit_codes.hpp"
+#include "drivers/output/program_checksum.hpp"
 #include "drivers/output/status_line.hpp"
 #include "drivers/run/program_run.hpp"
 #include "drivers/run/run_folder.hpp"
@@ -37,8 +37,6 @@ struct VerifyRequest {
   std::string out;                        // "" for the first free runs/verify-N
   std::string document;                   // Markdown file to write; "" for none
 };
-
-constexpr std::uint64_t kLargestProgram = std::uint64_t{1} << 32;
 
 std::vector<StudyEntry> chosen_studies(const VerifyRequest& request) {
   std::vector<StudyEntry> chosen;
@@ -94,10 +92,9 @@ VerificationContext context_of(const VerifyRequest& request, const BenchRequest&
   if (request.jobs > 0) command += " --jobs " + std::to_string(request.jobs);
   if (!request.document.empty()) command += " --document " + request.document;
   // The program itself decides the numbers, and what was asked of it.
-  const std::string program = formatted("%08x", crc32_of(read_file(own_path(), kLargestProgram)));
   const std::string threads = std::to_string(bench.threads) + " threads";
   return {command, "traceraft " + std::string(kVersion) + ", " + threads + ".",
-          "program " + program + (request.quick ? ", quick" : "") + ", integrator " +
+          "program " + program_checksum() + (request.quick ? ", quick" : "") + ", integrator " +
               or_default(request.integrator) + ", linear solver " +
               or_default(request.linear_solver) + ", " + threads};
 }

@@ -123,6 +123,13 @@ TEST(CampaignTest, CountsWhatWasFoundAndGoesOn) {
   const auto refused = testing::traceraft(there);
   EXPECT_EQ(refused.code, 2);
   EXPECT_NE(refused.output.find("has another plan"), std::string::npos) << refused.output;
+
+  // A search that no longer fits is made again.
+  write_durably(out / "cases" / "null-000" / "explain" / "search.json", "{}");
+  fs::remove(out / "cases" / "null-000" / "score.json");
+  ASSERT_EQ(testing::traceraft(command).code, 0);
+  EXPECT_NE(testing::content(out / "cases" / "null-000.log").find("the search begins anew"),
+            std::string::npos);
 }
 
 TEST(CampaignTest, RefusesUnknownGroups) {

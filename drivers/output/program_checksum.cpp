@@ -1,0 +1,17 @@
+#include "drivers/output/program_checksum.hpp"
+
+#include <cstdint>
+
+#include "backends/posix/child.hpp"
+#include "backends/posix/durable_file.hpp"
+#include "backends/zlib/checksum.hpp"
+#include "kernel/core/text.hpp"
+
+namespace traceraft {
+
+std::string program_checksum() {
+  constexpr std::uint64_t kLargest = std::uint64_t{1} << 32;
+  return formatted("%08x", crc32_of(read_file(own_path(), kLargest)));
+}
+
+}  // namespace traceraft
