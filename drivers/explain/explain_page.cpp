@@ -154,8 +154,8 @@ class ExplainPage {
         std::to_string(found_.disagreements.size()) +
         " patches of the surface (a twelfth of it, inside rafts, outside or at their "
         "boundaries, in one "
-        "snapshot) disagree significantly with the base model: so many that at most " +
-        formatted("%.0f %% of such lists hold one by chance", 100 * found_.false_alarms) +
+        "snapshot) disagree significantly with the base model: of such lists' entries " +
+        formatted("%.0f %% at most are there by chance, on average", 100 * found_.false_alarms) +
         " (Benjamini and Hochberg). The strongest:");
     page_.table(disagreement_rows(found_, units_, kMostRows));
   }

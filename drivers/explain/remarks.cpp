@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "drivers/explain/found_parameters.hpp"
 #include "drivers/explain/verdict_sentence.hpp"
@@ -33,12 +34,15 @@ void add_failures(const Explanation& found, std::vector<std::string>& all) {
 
 // Of what was found, parameters that were not looked for.
 void add_assumptions(const Explanation& found, const Units& base, std::vector<std::string>& all) {
+  std::map<std::string, std::vector<std::string>> assumed;  // of each effect
   for (const FoundParameter& p : found_parameters(found.found, base))
     if (!p.sigma)
-      all.push_back(p.effect + " is looked for with a " + p.name + formatted(" of %.4g", p.value) +
-                    (p.unit.empty() ? "" : " " + p.unit) +
-                    " alone; of another one, its strength is another one, and what has another one "
-                    "may be taken for another effect.");
+      assumed[p.effect].push_back(p.name + formatted(" = %.4g", p.value) +
+                                  (p.unit.empty() ? "" : " " + p.unit));
+  for (const auto& [effect, values] : assumed)
+    all.push_back(effect + " is looked for with " + joined(values, ", ") +
+                  " alone: with other values its strength is another one, and what has them may be "
+                  "taken for another effect.");
 }
 
 // A mistake in the unit of time looks like another D.
@@ -65,19 +69,31 @@ void add_pace(const Explanation& found, const Units& base, std::vector<std::stri
       D, std::exp(log_pace), found.found.pace < 1 ? "smaller" : "larger", base.diffusion_cm2_s));
 }
 
+std::string text_of(const Turn& turn) {
+  switch (turn.why) {
+    case Turn::replaced:
+      return turn.from + " seemed to explain most, until it was compared with " + turn.to + ".";
+    case Turn::left_gap:
+      return turn.from + " came first, but leaves a gap that " + turn.to + " does not leave.";
+    case Turn::foretold:
+      return turn.from + " came first, but with what was held out " + turn.to +
+             " is more probable.";
+    case Turn::is_none:
+      return turn.from + " was found, but " +
+             (turn.to.empty() ? std::string("with the noise of the model that has it")
+                              : "beside " + turn.to) +
+             " it turned out to be none.";
+  }
+  return "";
+}
+
 // What the search thought of before.
 void add_story(const Explanation& found, std::vector<std::string>& all) {
-  for (std::size_t k = 0; k < found.rounds.size(); ++k) {
-    if (found.rounds[k].refits.empty()) continue;
-    const bool last = k + 1 == found.rounds.size();
-    const std::string first = found.rounds[k].refits.front().hypothesis.name(),
-                      then = last ? found.found.hypothesis.name()
-                                  : found.rounds[k + 1].known.hypothesis.name();
-    const auto is_first = [&](const ToldApart& t) { return t.effect == first; };
-    if (first == then || found.rounds[k].known.hypothesis.name() == then ||
-        std::any_of(found.told_apart.begin(), found.told_apart.end(), is_first))
-      continue;
-    all.push_back(first + " seemed to explain most, until it was compared with " + then + ".");
+  for (const Turn& turn : found.turns) {
+    const auto is_from = [&](const ToldApart& t) { return t.effect == turn.from; };
+    const bool said = turn.why == Turn::foretold &&
+                      std::any_of(found.told_apart.begin(), found.told_apart.end(), is_from);
+    if (!said) all.push_back(text_of(turn));
   }
   for (const ToldApart& t : found.told_apart)
     all.push_back(t.effect +

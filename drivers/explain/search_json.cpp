@@ -127,23 +127,27 @@ Screening screening_of(const Json& json) {
 }
 
 Json json_of(const Round& round) {
-  Json screened = Json::array(), refits = Json::array(), failures = Json::array();
+  Json screened = Json::array(), refits = Json::array(), failures = Json::array(),
+       moves = Json::array();
   for (const Candidate& candidate : round.known.screened) screened.push_back(candidate.effect);
   for (const Refit& fit : round.refits) refits.push_back(json_of(fit));
   for (const Round::Failure& failure : round.failures)
     failures.push_back({failure.effect, failure.why});
+  for (const Refit& fit : round.moves) moves.push_back(json_of(fit));
   return {{"known", json_of(round.known.hypothesis)},
           {"pace", round.known.pace},
           {"screened", screened},
           {"screening", json_of(round.screening)},
           {"without", json_of(round.without)},
           {"refits", refits},
-          {"failures", failures}};
+          {"failures", failures},
+          {"moves", moves}};
 }
 Round round_of(const Json& json, const CahnHilliardModel& base) {
   Round round{{base, json.at("pace"), hypothesis_of(json.at("known")), {}},
               screening_of(json.at("screening")),
               refit_of(json.at("without")),
+              {},
               {},
               {}};
   for (const std::string effect : json.at("screened"))
@@ -151,6 +155,7 @@ Round round_of(const Json& json, const CahnHilliardModel& base) {
   for (const Json& fit : json.at("refits")) round.refits.push_back(refit_of(fit));
   for (const Json& failure : json.at("failures"))
     round.failures.push_back({failure.at(0), failure.at(1)});
+  for (const Json& fit : json.at("moves")) round.moves.push_back(refit_of(fit));
   return round;
 }
 
@@ -222,10 +227,12 @@ Finding finding_of(const std::string& word) {
 Json search_json(const SearchState& state) {
   const Explanation& found = state.so_far;
   Json rounds = Json::array(), rivals = Json::array(), told_apart = Json::array(),
-       disagreements = Json::array(), changes = Json::array(), ahead = Json::array();
+       turns = Json::array(), disagreements = Json::array(), changes = Json::array(),
+       ahead = Json::array();
   for (const Round& round : found.rounds) rounds.push_back(json_of(round));
   for (const Refit& fit : found.rivals) rivals.push_back(json_of(fit));
   for (const ToldApart& t : found.told_apart) told_apart.push_back({t.effect, t.less});
+  for (const Turn& turn : found.turns) turns.push_back({turn.why, turn.from, turn.to});
   for (const Disagreement& d : found.disagreements) disagreements.push_back(json_of(d));
   for (const FrameChange& change : found.changes) changes.push_back(json_of(change));
   for (const auto& [number, fit] : state.ahead) ahead.push_back({number, json_of(fit)});
@@ -241,6 +248,7 @@ Json search_json(const SearchState& state) {
           {"disagreements", disagreements},
           {"changes", changes},
           {"told_apart", told_apart},
+          {"turns", turns},
           {"ahead", ahead},
           {"stopped", found.stopped},
           {"rerun", json_of(found.rerun)},
@@ -263,6 +271,8 @@ SearchState search_from(const Json& json, const CahnHilliardModel& base) {
   for (const Json& d : json.at("disagreements")) found.disagreements.push_back(disagreement_of(d));
   for (const Json& change : json.at("changes")) found.changes.push_back(change_of(change));
   for (const Json& t : json.at("told_apart")) found.told_apart.push_back({t.at(0), t.at(1)});
+  for (const Json& turn : json.at("turns"))
+    found.turns.push_back({static_cast<Turn::Why>(turn.at(0).get<int>()), turn.at(1), turn.at(2)});
   for (const Json& fit : json.at("ahead")) state.ahead[fit.at(0)] = refit_of(fit.at(1));
   found.stopped = json.at("stopped");
   found.rerun = rerun_of(json.at("rerun"));

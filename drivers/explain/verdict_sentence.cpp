@@ -27,7 +27,8 @@ std::string class_sentence(const Explanation& found) {
   for (const Refit& fit : found.rivals)
     others += ", or " + fit.hypothesis.name() + " (" + in_words(fit.hypothesis) + ")";
   return lacks(found) + found.found.hypothesis.name() + " (" + in_words(found.found.hypothesis) +
-         ")" + others + ": these data do not tell them apart. The first of them explains most.";
+         ")" + others +
+         ": these data do not tell them apart. Numbers and figures are of the first.";
 }
 
 std::string nothing_sentence(const Explanation& found) {
@@ -37,11 +38,17 @@ std::string nothing_sentence(const Explanation& found) {
          " times its D the model explains the data within their noise.";
 }
 
+// Of single effects, refitted if any was.
+std::string closest(const Explanation& found) {
+  const Round& first = found.rounds.front();
+  return first.refits.empty() ? first.screening.scores.front().effect
+                              : first.refits.front().hypothesis.name();
+}
+
 std::string doubt_sentence(const Explanation& found) {
   const Screening& first = found.rounds.front().screening;
   if (first.p <= found.false_alarms)
-    return "Something seems to be missing, too little of it to say what: " +
-           first.scores.front().effect +
+    return "Something seems to be missing, too little of it to say what: " + closest(found) +
            " would explain most of it. More points, less noise or more snapshots would tell.";
   return "No significant disagreement, but these data would hardly show an effect: they need "
          "more points, less noise, or snapshots that are further apart.";

@@ -121,23 +121,25 @@ TEST(Remarks, TellWhatTheSearchThoughtOfBefore) {
   Explanation found;
   found.finding = Finding::named;
   found.found = of_strength("gravity", 0.01);
-  found.rounds.resize(2);
-  found.rounds[0].refits = {of_strength("uptake", 0.1), found.found};
-  found.rounds[1].known.hypothesis = found.found.hypothesis;
-  ASSERT_EQ(remarks(found, kCell).size(), 1u);
-  EXPECT_EQ(remarks(found, kCell).front(),
-            "uptake seemed to explain most, until it was compared with gravity.");
+  found.rounds.resize(1);
+  EXPECT_TRUE(remarks(found, kCell).empty());
+  found.turns = {{Turn::replaced, "uptake", "cooling"},
+                 {Turn::left_gap, "cooling", "exchange"},
+                 {Turn::foretold, "exchange", "gravity + uptake"},
+                 {Turn::is_none, "uptake", "gravity"}};
+  const std::vector<std::string> expected{
+      "uptake seemed to explain most, until it was compared with cooling.",
+      "cooling came first, but leaves a gap that exchange does not leave.",
+      "exchange came first, but with what was held out gravity + uptake is more probable.",
+      "uptake was found, but beside gravity it turned out to be none."};
+  EXPECT_EQ(remarks(found, kCell), expected);
+  // Once is enough.
+  found.turns = {{Turn::foretold, "uptake", "gravity"}};
   found.told_apart = {{"uptake", 129}};
   ASSERT_EQ(remarks(found, kCell).size(), 1u);
   EXPECT_NE(
       remarks(found, kCell).front().find("the one held out (2 ln of the likelihood ratio: -129)"),
       std::string::npos);
-  found.told_apart.clear();
-  std::swap(found.rounds[0].refits[0], found.rounds[0].refits[1]);
-  EXPECT_TRUE(remarks(found, kCell).empty());
-  // A round whose best was not taken has changed nothing.
-  found.rounds[1].refits = {of_strength("uptake", 0.1)};
-  EXPECT_TRUE(remarks(found, kCell).empty());
 }
 
 TEST(Remarks, SayThatAStrengthIsAtItsEnd) {

@@ -138,8 +138,8 @@ TEST_F(RivalsTest, AreToldApartByAllThatWasMeasured) {
   request_.hold_out = false;
   const auto criterion_of = [&](const Refit& start) {
     const FilterProblems data = problems_of(measured(), request_);
-    const auto criteria = criteria_of(data, request_.base, {start}, request_.filter);
-    return criteria.at(0).value();
+    const auto fits = refits_of(data, request_.base, {start}, request_.filter);
+    return criterion(fits.at(0), count_values(data));
   };
   const double all = criterion_of(wrong) - criterion_of(right),
                counting = wrong.deviance - right.deviance;
@@ -154,11 +154,18 @@ TEST_F(RivalsTest, EffectsThatTurnOutToBeNoneAreDropped) {
   Refit both = fit_of("uptake");
   both.hypothesis.parts.push_back({find_candidate("gravity").value(), {0.001}});
   SearchState state = state_of(both, {});
-  state.so_far.rounds = {Round{{request_.base, 1, {}, {}}, {}, state.so_far.base, {}, {}}};
+  state.so_far.rounds = {Round{{request_.base, 1, {}, {}}, {}, state.so_far.base, {}, {}, {}}};
   const Explanation found = explain_fields(measured(), request_, state);
   EXPECT_EQ(found.finding, Finding::named);
   EXPECT_EQ(class_of(found), std::vector<std::string>{"uptake"});
-  EXPECT_EQ(found.rounds.size(), 1u);  // the search is over
+  ASSERT_EQ(found.turns.size(), 1u);
+  EXPECT_EQ(found.turns[0].why, Turn::is_none);
+  EXPECT_EQ(found.turns[0].from, "gravity");
+  EXPECT_EQ(found.turns[0].to, "uptake");
+  // What is left is asked what is lacking beside it, and has the bounds of what was dropped.
+  EXPECT_EQ(found.rounds.back().known.hypothesis.name(), "uptake");
+  const auto is_of_gravity = [](const Bound& bound) { return bound.effect == "gravity"; };
+  EXPECT_TRUE(std::any_of(found.bounds.begin(), found.bounds.end(), is_of_gravity));
 
   both.hypothesis.parts.erase(both.hypothesis.parts.begin());
   state.so_far.found = both;

@@ -2,7 +2,6 @@
 // what is held out included.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "verification/explain/search.hpp"
@@ -14,18 +13,16 @@ namespace traceraft {
 bool leave_to_rivals(Search& search);
 
 // What is held out counts, too, between the members of a class that is open; asked once. Returns
-// whether another one than was found comes first then; the search goes on beside that.
+// whether another one than was found comes first then, by more than hardly anything, and all of its
+// effects being resolved; the search goes on beside that.
 bool tell_apart(Search& search);
 
 // With all that was measured, what is held out included: is `one` as probable as `other`, each
 // refitted? False where a refit fails.
 bool is_as_probable(const Search& search, const Refit& one, const Refit& other);
 
-// The criterion of each hypothesis, refitted to the snapshots that count, with the noise of `data`;
-// nothing where a refit fails.
-std::vector<std::optional<double>> criteria_of(const FilterProblems& data,
-                                               const CahnHilliardModel& base,
-                                               const std::vector<Refit>& members,
-                                               FilterSettings settings);
+// Each hypothesis, refitted to the snapshots that count, with the noise of `data`.
+std::vector<Refit> refits_of(const FilterProblems& data, const CahnHilliardModel& base,
+                             const std::vector<Refit>& members, FilterSettings settings);
 
 }  // namespace traceraft

@@ -29,14 +29,24 @@ bool has_found(const Hypothesis& hypothesis, const Hypothesis& found) {
                      [&](const auto& part) { return hypothesis.has(part.candidate.effect); });
 }
 
-// The best of the last round that had others than the found one.
-std::optional<Gaps> placebo_of(const Explanation& result) {
-  for (auto round = result.rounds.rbegin(); round != result.rounds.rend(); ++round)
-    for (const Refit& fit : round->refits)
+// The best rival, or the best of the last round that had others than the found one.
+std::optional<Gaps> placebo_of(const Search& search) {
+  const Explanation& result = search.result;
+  const Refit* best = nullptr;
+  const auto consider = [&](const std::vector<Refit>& fits) {
+    for (const Refit& fit : fits)
       if (!has_found(fit.hypothesis, result.found.hypothesis) &&
-          !fit.hypothesis.contains(result.found.hypothesis))
-        return fit.gap;
-  return {};
+          !fit.hypothesis.contains(result.found.hypothesis) &&
+          (best == nullptr || criterion(fit, search.values()) < criterion(*best, search.values())))
+        best = &fit;
+  };
+  consider(result.rivals);
+  for (auto round = result.rounds.rbegin(); round != result.rounds.rend() && best == nullptr;
+       ++round) {
+    consider(round->refits);
+    consider(round->moves);
+  }
+  return best != nullptr ? std::optional(best->gap) : std::nullopt;
 }
 
 Explanation conclusion(Search search) {
@@ -56,7 +66,7 @@ Explanation conclusion(Search search) {
   result.h_over_epsilon = search.h_over_epsilon();
   result.base_gap = result.base.gap;
   result.found_gap = result.found.gap;
-  result.placebo_gap = placebo_of(result);
+  result.placebo_gap = placebo_of(search);
   result.floor = result.found.expected;
   // Beside what was found; where the search had to stop nothing was looked for beside it.
   if (result.stopped.empty())

@@ -67,6 +67,18 @@ struct ToldApart {
   double less;  // 2 ln of how much less probable it is, with all that was measured
 };
 
+// A hypothesis that the search left for another one, by the names of its effects.
+struct Turn {
+  enum Why {
+    replaced,  // by one near it, which is more probable
+    left_gap,  // and one that explains what counts as well does not
+    foretold,  // what is held out: the other one is more probable with all that was measured
+    is_none    // an effect, beside the rest, with the noise of the model that has it
+  };
+  Why why;
+  std::string from, to;
+};
+
 struct Explanation {
   Finding finding = Finding::none;
   Finding without_gap = Finding::none;      // if it is `unnamed`: what it is if that gap is none
@@ -77,9 +89,10 @@ struct Explanation {
   Refit base, found;                        // with the pace refitted; found: the base if none was
   std::vector<Refit> rivals;                // other hypotheses that explain the data as well
   std::vector<ToldApart> told_apart;
+  std::vector<Turn> turns;  // in their order
   std::vector<Round> rounds;
-  // Measured minus forecast. Placebo: the best hypothesis that was not found, of the last round
-  // that had one. Floor: what is to be expected of the found model if nothing else is missing.
+  // Measured minus forecast. Placebo: the best other hypothesis, a rival or of the last round that
+  // had one. Floor: what is to be expected of the found model if nothing else is missing.
   Gaps base_gap, found_gap, floor;
   std::optional<Gaps> placebo_gap;
   bool blur_stated = true;                                      // as requested

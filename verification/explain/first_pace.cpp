@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <string>
 
 #include "verification/explain/gaps.hpp"
 #include "verification/explain/score_test.hpp"
@@ -37,29 +40,48 @@ class PaceSearch {
     Pass pass = first_pass();
     double pace_of_maps = pass.model.pace;
     for (int k = 0; k < kMostSteps; ++k) {
-      if (std::fabs(std::log(pass.model.pace / pace_of_maps)) > kMapsReach) {
-        pass.maps = {};
-        pace_of_maps = pass.model.pace;
-      }
-      if (k > 0) pass.result = filter_fields(data_, pass.model, rough_, pass.maps);
       const double change = screen(pass.result, {}, {}).pace_change;
-      const double step = std::clamp(change, -kLargestStep, kLargestStep);
-      pass.model.pace *= std::exp(step);
-      if (std::fabs(step) < kGoodEnough) break;
+      double step = std::clamp(change, -kLargestStep, kLargestStep);
+      while (std::fabs(step) >= kGoodEnough && !go_on(pass, step, pace_of_maps)) step /= 2;
+      if (std::fabs(step) < kGoodEnough) return pass.model.pace * std::exp(step);
     }
     return pass.model.pace;
   }
 
  private:
+  // False, and no change, where the model cannot be advanced.
+  bool go_on(Pass& pass, double step, double& pace_of_maps) const {
+    Pass next{pass.model, pass.maps, {}};
+    next.model.pace *= std::exp(step);
+    const bool far = std::fabs(std::log(next.model.pace / pace_of_maps)) > kMapsReach;
+    if (far) next.maps = {};
+    try {
+      next.result = filter_fields(data_, next.model, rough_, next.maps);
+    } catch (const std::runtime_error&) {
+      return false;
+    }
+    if (far) pace_of_maps = next.model.pace;
+    pass = std::move(next);
+    return true;
+  }
+
   // That of the model, or the most probable of some if it is far off.
   Pass first_pass() const {
-    Pass best = pass_at(1);
-    if (is_near(best.result)) return best;
-    for (const double pace : kSlower) {
-      Pass slower = pass_at(pace);
-      if (slower.result.deviance < best.result.deviance) best = std::move(slower);
-    }
-    return best;
+    std::optional<Pass> best;
+    std::string failure;
+    const auto consider = [&](double pace) {
+      try {
+        Pass pass = pass_at(pace);
+        if (!best || pass.result.deviance < best->result.deviance) best = std::move(pass);
+      } catch (const std::runtime_error& error) {
+        failure = error.what();
+      }
+    };
+    consider(1);
+    if (best && is_near(best->result)) return std::move(*best);
+    for (const double pace : kSlower) consider(pace);
+    if (!best) throw std::runtime_error(failure);
+    return std::move(*best);
   }
 
   static bool is_near(const FilterResult& pass) {

@@ -54,6 +54,12 @@ bool resolved(const Refit& fit, std::size_t effect, double values, double mesh_e
   return certainty(fit, effect) >= telling(values, mesh_error);
 }
 
+bool all_resolved(const Refit& fit, double values, double mesh_error) {
+  for (std::size_t k = 0; k < fit.hypothesis.parts.size(); ++k)
+    if (!resolved(fit, k, values, mesh_error)) return false;
+  return true;
+}
+
 double criterion(const Refit& fit, double values) {
   return fit.deviance + std::log(values) * static_cast<double>(fit.hypothesis.coefficients());
 }

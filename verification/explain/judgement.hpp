@@ -37,6 +37,7 @@ struct Round {
     std::string effect, why;
   };
   std::vector<Failure> failures;  // of the shortlist, whose forecasts failed
+  std::vector<Refit> moves;       // near what was taken then, with effects replaced or dropped
 };
 
 // 2 ln of a likelihood ratio of 20: less does not tell two hypotheses apart.
@@ -67,6 +68,7 @@ double telling(double values, double mesh_error);
 // Is an effect so certain that noise and what extrapolation to finer meshes may be wrong by could
 // not look like it, even if that had its very shape?
 bool resolved(const Refit& fit, std::size_t effect, double values, double mesh_error);
+bool all_resolved(const Refit& fit, double values, double mesh_error);
 
 const std::string& last_effect(const Hypothesis& hypothesis);
 

@@ -1,5 +1,7 @@
 #include "verification/explain/replacements.hpp"
 
+#include <algorithm>
+
 #include "verification/explain/neighbours.hpp"
 
 namespace traceraft {
@@ -7,12 +9,6 @@ namespace {
 
 // Effects that are replaced or dropped at once.
 constexpr int kMostMoves = 3;
-
-bool all_resolved(const Refit& fit, const Search& search) {
-  for (std::size_t k = 0; k < fit.hypothesis.parts.size(); ++k)
-    if (!resolved(fit, k, search.values(), search.mesh_error())) return false;
-  return true;
-}
 
 std::vector<Refit> refit_neighbours(Search& search) {
   search.tell("in place of " + search.model.hypothesis.name());
@@ -31,7 +27,7 @@ const Refit* better_one(const Search& search, const std::vector<Refit>& fits) {
   for (const Refit& fit : fits)
     if (fit.failure.empty() &&
         criterion(fit, search.values()) < criterion(*best, search.values()) &&
-        all_resolved(fit, search))
+        all_resolved(fit, search.values(), search.mesh_error()))
       best = &fit;
   return best == &search.result.found ? nullptr : best;
 }
@@ -52,11 +48,15 @@ void improve(Search& search) {
   Explanation& result = search.result;
   for (int move = 0; result.found.hypothesis.parts.size() > 1 || move > 0; ++move) {
     const std::vector<Refit> fits = refit_neighbours(search);
+    std::copy_if(fits.begin(), fits.end(), std::back_inserter(result.rounds.back().moves),
+                 [](const Refit& fit) { return fit.failure.empty(); });
     const Refit* best = move < kMostMoves ? better_one(search, fits) : nullptr;
     if (best == nullptr) {
       add_rivals(search, fits);
       break;
     }
+    result.turns.push_back(
+        {Turn::replaced, result.found.hypothesis.name(), best->hypothesis.name()});
     search.set_found(*best);
     result.rivals.clear();
   }

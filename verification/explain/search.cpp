@@ -11,7 +11,10 @@ namespace traceraft {
 namespace {
 
 // A refit that ends beyond kMapsReach is none of the noise and the errors that it began with.
-constexpr int kMostFirstPasses = 4;
+constexpr int kMostPasses = 4;
+bool is_within_reach(double pace, double pace_of_maps) {
+  return std::fabs(std::log(pace / pace_of_maps)) < kMapsReach;
+}
 
 }  // namespace
 
@@ -38,7 +41,7 @@ void Search::set_found(const Refit& fit) {
 
 FilterResult Search::first_pass() {
   FilterResult pass;
-  for (int k = 0; k < kMostFirstPasses; ++k) {
+  for (int k = 0; k < kMostPasses; ++k) {
     const double pace = model.pace;
     maps = {};
     tell("  forecasts, and errors of states and of the mesh");
@@ -47,7 +50,7 @@ FilterResult Search::first_pass() {
     pass = filter_fields(data, model, request.filter, maps);
     tell("  D");
     set_found(refit(data, model, request.filter, maps));
-    if (std::fabs(std::log(result.found.pace / pace)) < kMapsReach) break;
+    if (is_within_reach(result.found.pace, pace)) break;
     tell(formatted("  D is rather %.2g times the model's", result.found.pace));
   }
   result.disagreements = disagreements(data, pass, request.base.well);
@@ -58,11 +61,15 @@ FilterResult Search::first_pass() {
 }
 
 FilterResult Search::next_pass() {
-  maps = {};
-  tell("  forecasts, and errors of states and of the mesh");
-  fit_noise(data, filter_fields(data, model, request.filter, maps));
-  tell("  D, and what was found");
-  set_found(refit(data, model, request.filter, maps));
+  for (int k = 0; k < kMostPasses; ++k) {
+    const double pace = model.pace;
+    maps = {};
+    tell("  forecasts, and errors of states and of the mesh");
+    fit_noise(data, filter_fields(data, model, request.filter, maps));
+    tell("  D, and what was found");
+    set_found(refit(data, model, request.filter, maps));
+    if (is_within_reach(result.found.pace, pace)) break;
+  }
   tell(formatted("  what %zu effects would change", model.screened.size()));
   FilterResult pass = filter_fields(data, model, request.filter, maps);
   bootstrap(pass, model, result.found);
@@ -76,7 +83,9 @@ std::vector<Refit> Search::refit_all(const std::vector<FilterModel>& trials) {
   std::vector<std::size_t> open;
   std::vector<FilterModel> open_trials;
   for (std::size_t k = first; k < numbered_; ++k) {
-    if (const auto known = ahead.find(k); known != ahead.end()) {
+    const auto known = ahead.find(k);
+    if (known != ahead.end() &&
+        known->second.hypothesis.name() == trials[k - first].hypothesis.name()) {
       tell_gain(known->second);
       continue;
     }

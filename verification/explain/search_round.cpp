@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <stdexcept>
 
+#include "kernel/core/error.hpp"
 #include "verification/explain/class_evidence.hpp"
+#include "verification/explain/drops.hpp"
 #include "verification/explain/noise_levels.hpp"
 #include "verification/explain/replacements.hpp"
 #include "verification/explain/shortlist.hpp"
@@ -71,7 +72,13 @@ void refit_shortlist(Search& search, Round& round) {
   search.tell("refits: 2 ln of the likelihood ratio that an effect gains");
   std::vector<FilterModel> trials;
   const double limit = telling(search.values(), round.screening.mesh_error);
-  for (Hypothesis::Part& part : shortlist(round.screening, search.request.shortlist, limit)) {
+  Screening open = round.screening;
+  open.scores.erase(std::remove_if(open.scores.begin(), open.scores.end(),
+                                   [&](const CandidateScore& score) {
+                                     return was_dropped(search.result, score.effect);
+                                   }),
+                    open.scores.end());
+  for (Hypothesis::Part& part : shortlist(open, search.request.shortlist, limit)) {
     trials.push_back(search.model);
     trials.back().hypothesis.parts.push_back(std::move(part));
   }
@@ -84,42 +91,6 @@ void refit_shortlist(Search& search, Round& round) {
             [n = search.values()](const Refit& a, const Refit& b) {
               return criterion(a, n) < criterion(b, n);
             });
-}
-
-// With the noise and the errors of the model that has it, an effect may turn out to be none: the
-// most probable refit without such a one, then. What is held out may tell that there is one.
-std::optional<Refit> without_what_is_none(const Search& search) {
-  const Refit& found = search.result.found;
-  std::optional<Refit> best;
-  double least = criterion(found, search.values());
-  for (std::size_t k = 0; k < found.hypothesis.parts.size(); ++k) {
-    if (resolved(found, k, search.values(), search.mesh_error())) continue;
-    FilterModel trial = search.model;
-    trial.hypothesis.parts.erase(trial.hypothesis.parts.begin() + static_cast<std::ptrdiff_t>(k));
-    Refit fit = refit(search.data, trial, search.request.filter, search.maps);
-    if (!fit.failure.empty() || criterion(fit, search.values()) > least) continue;
-    least = criterion(fit, search.values());
-    best = std::move(fit);
-  }
-  return best && is_as_probable(search, *best, found) ? best : std::nullopt;
-}
-
-// Returns whether there was any.
-bool drop_what_is_none(Search& search) {
-  Explanation& result = search.result;
-  bool dropped = false;
-  while (const auto fit = without_what_is_none(search)) {
-    search.tell("  one of them is none: " + result.found.hypothesis.name());
-    search.set_found(*fit);
-    dropped = true;
-  }
-  if (!dropped) return false;
-  const bool nothing = result.found.hypothesis.parts.empty();
-  const Screening& screening = result.rounds.back().screening;
-  result.rivals.clear();
-  result.without_gap = nothing ? Finding::not_identifiable : Finding::named;
-  result.finding = nothing ? without_name(screening, search.request.false_alarms) : Finding::named;
-  return true;
 }
 
 bool leave(Search& search, const Judgement& judgement) {
@@ -156,8 +127,9 @@ bool look_for_one(Search& search) {
                     : "what is lacking beside " + search.model.hypothesis.name());
   FilterResult pass;
   try {
-    pass = first ? search.first_pass() : search.next_pass();
-    if (!first && drop_what_is_none(search)) return false;
+    pass = first ? search.first_pass() : drop_what_is_none(search, search.next_pass());
+  } catch (const IoError&) {
+    throw;
   } catch (const std::runtime_error& error) {
     if (first) throw;
     result.stopped = error.what();
@@ -166,7 +138,7 @@ bool look_for_one(Search& search) {
   note_changes(search, pass);
   draw_maps(search, pass, first);
   const FilterModel& model = search.model;
-  Round round{model, screen(pass, model.screened, model.hypothesis), result.found, {}, {}};
+  Round round{model, screen(pass, model.screened, model.hypothesis), result.found, {}, {}, {}};
   const auto most = static_cast<std::size_t>(search.request.most_effects);
   const bool more =
       model.hypothesis.parts.size() < most && result.rounds.size() < most + kMoreRounds;
