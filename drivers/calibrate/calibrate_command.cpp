@@ -131,7 +131,9 @@ int calibrate_ensemble(const CalibrateRequest& request, const MeasuredVesicles& 
   const std::string command = "traceraft calibrate --data " + in_shell(request.data) +
                               " --ensemble " + in_shell(request.ensemble) +
                               " --parameters mobility";
-  write_calibration(out, data, {model, {}, {point}, 0, command, bound}, result, request.quiet);
+  write_calibration(out, data,
+                    {model, {}, {point}, 0, command, bound, missing_runs(request.ensemble)}, result,
+                    request.quiet);
   return kSuccess;
 }
 
@@ -166,7 +168,8 @@ int run_calibration(CalibrateRequest request) {
   const FolderLock lock(out);
   remember(out,
            "parameters " + request.parameters + ", " + std::to_string(request.runs) + " runs to " +
-               format_number(end_of_runs(data)) + " s",
+               format_number(end_of_runs(data)) + " s, at most " + std::to_string(most_cells) +
+               " cells",
            request.data, model);
   const CalibratorRequest simulations{out,          costly,       most_cells,
                                       request.runs, request.jobs, request.quiet};

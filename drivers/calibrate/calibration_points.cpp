@@ -21,9 +21,7 @@ int cells_for(const Configuration& model, double epsilon) {
 }
 
 double noise_length(const Configuration& model) {
-  const long long cells =
-      model.integer("noise-cells") > 0 ? model.integer("noise-cells") : model.integer("cells") / 4;
-  return kBoxWidth * model.units().length() / static_cast<double>(cells);
+  return kBoxWidth * model.units().length() / static_cast<double>(model.noise_cells());
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ std::string best_known(const Calibration& result) {
   std::string text;
   for (std::size_t i = 0; i < result.best_powers.size(); ++i) {
     const double power = result.best_powers[i];
-    if (std::fabs(power) < 0.02) continue;
+    if (std::fabs(power) < 0.1) continue;  // hardly
     text += (text.empty() ? "" : " * ") +
             (i == 0 ? std::string("mobility") : result.parameters[i].name) +
             (std::fabs(power - 1) < 0.02 ? "" : formatted("^%.2f", power));
@@ -162,6 +162,7 @@ std::vector<std::string> notes_on(const MeasuredVesicles& data, const Calibratio
                                   const Calibration& result) {
   const std::vector<std::string>& names = runs.names;
   std::vector<std::string> notes;
+  if (!runs.missing.empty()) notes.push_back(runs.missing);
   if (!result.converged)
     notes.push_back(
         "NOT CONVERGED: the last simulations do not surround what was found; begin again from the "
@@ -194,10 +195,12 @@ std::vector<std::string> notes_on(const MeasuredVesicles& data, const Calibratio
   const double factor = factor_of_size(data, radius);
   if (const CalibratedParameter& unit = result.parameters.front();
       unit.determined && !size_is_told(factor, unit.interval))
-    notes.push_back(
-        formatted("THE SIZE OF THE VESICLES decides about D: simulations with --radius %.3g would "
-                  "make it %.2g times as large.",
-                  radius * std::pow(factor, 0.25), factor));
+    notes.push_back(formatted(
+        "THE SIZE OF THE VESICLES decides about D: simulations with --radius %.3g "
+        "--cells %.0f would make it %.2g times as large.",
+        radius * std::pow(factor, 0.25),
+        std::round(static_cast<double>(runs.model.integer("cells")) * std::pow(factor, 0.25)),
+        factor));
   for (const std::string& note : cautions(data, radius, best, agreements)) notes.push_back(note);
   return notes;
 }

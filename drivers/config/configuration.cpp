@@ -104,6 +104,11 @@ Configuration::Configuration(const GivenValues& file, const GivenValues& flags) 
     values_["noise-cells"].text = text("cells");
 }
 
+long long Configuration::noise_cells() const {
+  const long long own = integer("noise-cells");
+  return own > 0 ? own : std::max(1LL, integer("cells") / 4);
+}
+
 void Configuration::set(const OptionSpec& spec, const GivenValue& value) {
   double unit = 1;
   if (spec.dimension != Dimension::none && flag("scaled")) {

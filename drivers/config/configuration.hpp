@@ -39,6 +39,7 @@ class Configuration {
   bool given(const std::string& name) const { return given_.count(name) != 0; }
 
   Units units() const;
+  long long noise_cells() const;  // with 0 resolved
 
  private:
   void set(const OptionSpec& spec, const GivenValue& value);

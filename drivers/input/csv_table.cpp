@@ -75,6 +75,7 @@ void refuse_other_separators(const std::string& where, const std::vector<std::st
 // Line by line, so that every row knows where it stands.
 Rows parse(const std::filesystem::path& path, std::string text) {
   if (text.compare(0, 3, "\xEF\xBB\xBF") == 0) text.erase(0, 3);  // as spreadsheets begin
+  if (text.find('\n') == std::string::npos) std::replace(text.begin(), text.end(), '\r', '\n');
   Rows rows;
   Parser parser;
   const auto refuse = [&] {
@@ -119,7 +120,10 @@ CsvTable CsvTable::read(const std::filesystem::path& path) {
     if (table.cells_[i].size() != table.columns_.size())
       throw InputError(table.where(i) + ": " + std::to_string(table.cells_[i].size()) +
                        " cells, but there are " + std::to_string(table.columns_.size()) +
-                       " columns");
+                       " columns" +
+                       (table.cells_[i].size() > table.columns_.size()
+                            ? " (are there commas within numbers, where points are needed?)"
+                            : ""));
   return table;
 }
 

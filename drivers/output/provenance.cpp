@@ -8,7 +8,10 @@ namespace traceraft {
 void add_settings(Page& page, const Configuration& configuration) {
   std::vector<std::vector<std::string>> rows = {{"setting", "value", "meaning"}};
   for (const OptionSpec& spec : run_options())
-    rows.push_back({spec.name, configuration.text(spec.name), spec.help});
+    rows.push_back({spec.name,
+                    spec.name == "noise-cells" ? std::to_string(configuration.noise_cells())
+                                               : configuration.text(spec.name),
+                    spec.help});
   page.heading("Settings");
   page.table(rows);
 }

@@ -5,6 +5,7 @@
 
 #include "drivers/config/config_file.hpp"
 #include "drivers/ensemble/ensemble_report.hpp"
+#include "drivers/ensemble/histories_file.hpp"
 #include "drivers/input/csv_table.hpp"
 #include "drivers/output/chart.hpp"
 #include "drivers/output/json_file.hpp"
@@ -13,6 +14,7 @@
 #include "drivers/output/text_table.hpp"
 #include "drivers/report/viewer.hpp"
 #include "drivers/run/run_setup.hpp"
+#include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/text.hpp"
 
@@ -30,6 +32,10 @@ bool is_run(const fs::path& folder) {
 bool is_ensemble(const fs::path& folder) {
   return EnsembleFolder(folder).started() && fs::exists(folder / "runs") &&
          !fs::exists(folder / "compare.csv");
+}
+
+bool keeps_histories(const fs::path& folder) {
+  return fs::exists(folder / "config.toml") && fs::exists(folder / kHistoriesFile);
 }
 
 // The page that another command has written, "" if there is none.
@@ -139,6 +145,23 @@ void add_comparison(Page& page, const fs::path& folder, std::size_t runs) {
   page.raw(page_body(read_file(folder / "comparison.html", kLargestPage)));
 }
 
+// What is kept of an ensemble has no fields to show.
+void fill_kept(Page& page, const fs::path& path, const PageRequest& request, Missing& missing) {
+  const Configuration configuration = model_of(path);
+  const std::vector<History> runs = runs_of(path);
+  page.paragraph(formatted("What is kept of %zu runs of the case ", runs.size()) +
+                 configuration.text("case") + ".");
+  const EnsembleSummary summary = summarise(runs);
+  page.heading("All runs");
+  for (const Quantity quantity : kQuantities)
+    add_chart(page, ensemble_chart(summary, quantity, true), request.charts / name_of(quantity).id,
+              missing);
+  page.heading("Numbers");
+  page.table(ensemble_rows(summary, true));
+  add_settings(page, configuration);
+  add_provenance(page, path, command_for("traceraft ensemble", configuration));
+}
+
 void fill_ensemble(Page& page, const fs::path& path, const PageRequest& request, Missing& missing) {
   const EnsembleFolder folder(path);
   const Configuration configuration(read_config_file(folder.config()), {});
@@ -200,7 +223,8 @@ std::string write_report_page(const fs::path& folder, const fs::path& out,
     write_durably(out, page);
     return "";
   }
-  if (!is_run(folder) && !is_ensemble(folder))
+  const bool kept = !is_run(folder) && !is_ensemble(folder) && keeps_histories(folder);
+  if (!is_run(folder) && !is_ensemble(folder) && !kept)
     throw InputError(folder.string() +
                      " holds no run, ensemble, comparison or verification of traceraft");
   make_folder(out.parent_path());
@@ -209,6 +233,8 @@ std::string write_report_page(const fs::path& folder, const fs::path& out,
   Missing missing;
   if (is_run(folder))
     fill_run(page, folder, request, missing);
+  else if (kept)
+    fill_kept(page, folder, request, missing);
   else
     fill_ensemble(page, folder, request, missing);
   write_durably(out, page.html());

@@ -85,12 +85,11 @@ InitialRequest initial_request(const Configuration& configuration, const CahnHil
   InitialRequest request;
   const long long cells = configuration.integer("cells");
   request.raft_fraction = configuration.number("raft-fraction");
-  request.noise_cells = configuration.integer("noise-cells");
+  request.noise_cells = configuration.noise_cells();
   if (request.noise_cells > cells)
     throw InputError(configuration.where("noise-cells") + ": " +
                      std::to_string(request.noise_cells) + " is more than --cells " +
                      std::to_string(cells));
-  if (request.noise_cells == 0) request.noise_cells = std::max(1LL, cells / 4);
   request.seed = static_cast<std::uint64_t>(configuration.integer("seed"));
   request.caps = parse_caps(configuration);
   if (const std::string formula = configuration.text("initial-formula"); !formula.empty())

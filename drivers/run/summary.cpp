@@ -125,6 +125,15 @@ std::string resolution_text(const RunSetup& run) {
                    ratio > kCoarse ? "; TOO COARSE: take more --cells" : "");
 }
 
+// The length of the noise decides how many rafts survive (docs/guide.md).
+std::string initial_text(const Configuration& configuration, const RunSetup& run) {
+  const std::string kind = configuration.text("initial");
+  if (kind != "noise") return kind;
+  const double length = 2 * kBoxHalfWidth / static_cast<double>(configuration.noise_cells());
+  return formatted("noise of %.3g um = %.3g epsilon", length * run.units.radius_um,
+                   length / run.problem->model().epsilon);
+}
+
 void print_setup(const Configuration& configuration, const RunSetup& run) {
   const Units& units = run.units;
   std::printf("traceraft %s\n", kVersion);
@@ -145,9 +154,9 @@ void print_setup(const Configuration& configuration, const RunSetup& run) {
                           units.radius_um, units.seconds_per_unit(),
                           run.t_end * units.seconds_per_unit(), run.t_end));
   if (run.initial.size() > 0)
-    line("initial state",
-         formatted("%s, mean concentration %.6f, seed %lld", configuration.text("initial").c_str(),
-                   run.initial_mean, configuration.integer("seed")));
+    line("initial state", formatted("%s, mean concentration %.6f, seed %lld",
+                                    initial_text(configuration, run).c_str(), run.initial_mean,
+                                    configuration.integer("seed")));
   const int workers = run.ranks->size() > 1 ? run.ranks->size() : run.team->size();
   line("method",
        formatted("%s with %s, tolerance %g, %d %s%s, %s", configuration.text("integrator").c_str(),

@@ -5,6 +5,7 @@
 
 #include "kernel/core/text.hpp"
 #include "verification/vesicles/differences.hpp"
+#include "verification/vesicles/onset.hpp"
 #include "verification/vesicles/resolvable.hpp"
 
 namespace traceraft {
@@ -20,13 +21,21 @@ std::vector<std::string> doubts_of(const std::vector<Agreement>& agreements) {
   std::vector<std::string> sentences;
   if (std::all_of(agreements.begin(), agreements.end(),
                   [](const Agreement& a) { return a.measurements == 0; }))
-    sentences.push_back("NOTHING IS COMPARED: no measurement is of a time that all runs cover.");
+    sentences.push_back(
+        "NOTHING IS COMPARED: no measurement is of a time that all runs cover. Are time_unit and "
+        "the time zero right?");
   for (const Agreement& a : agreements)
     if (a.measurements > 0 && a.scatter < kSmall)
       sentences.push_back(
           formatted("Runs and measurement scatter by %.2g %% only in %s: what they are "
                     "compared in units of is next to nothing.",
                     100 * a.scatter, name_of(a.quantity).label));
+  for (const Agreement& a : agreements)
+    if (a.without_rafts > 0)
+      sentences.push_back(std::to_string(a.without_rafts) +
+                          (a.without_rafts == 1 ? " look" : " looks") +
+                          " without a raft cannot be compared with the runs in " +
+                          name_of(a.quantity).label + ", whose logarithms are.");
   for (const Agreement& a : agreements)
     if (a.has_trend())
       sentences.push_back(
@@ -35,6 +44,22 @@ std::vector<std::string> doubts_of(const std::vector<Agreement>& agreements) {
                     "explain looks for what is missing.",
                     name_of(a.quantity).label, a.trend, a.trend_error));
   return sentences;
+}
+
+std::string text_of(const Onset& onset) {
+  std::vector<std::string> trends;
+  for (const Agreement& a : onset.agreements)
+    if (a.trend_error > 0 && a.quantity != Quantity::fraction)
+      trends.push_back(formatted("%s %+.2g +- %.1g with a misfit of %.2f",
+                                 name_of(a.quantity).label, a.trend, a.trend_error, a.misfit));
+  return formatted(
+             "An onset %.3g s %safter the time zero of the measurements would remove the trend (",
+             onset.delay, onset.at_end ? "or more " : "") +
+         joined(trends, ", ") +
+         formatted(
+             "): if the sample may take as long to begin, time_offset = %.3g in dataset.toml "
+             "and another calibration say what D is then.",
+             -onset.delay);
 }
 
 }  // namespace
@@ -68,20 +93,21 @@ std::vector<Row> agreement_rows(const std::vector<Agreement>& agreements) {
 
 Table agreement_table(const std::vector<Agreement>& agreements) {
   Table table{"comparison",
-              {"quantity", "compared", "beyond", "within_range", "mean_deviation", "misfit",
-               "trend", "trend_error"},
+              {"quantity", "compared", "beyond", "without_rafts", "within_range", "mean_deviation",
+               "misfit", "trend", "trend_error"},
               {}};
   for (const Agreement& a : agreements) {
     table.rows.push_back({name_of(a.quantity).id, static_cast<double>(a.measurements),
-                          static_cast<double>(a.beyond), "", "", "", "", ""});
+                          static_cast<double>(a.beyond), static_cast<double>(a.without_rafts), "",
+                          "", "", "", ""});
     if (a.measurements == 0) continue;
     std::vector<Cell>& row = table.rows.back();
-    row[3] = static_cast<double>(a.within);
-    row[4] = a.bias;
-    row[5] = a.misfit;
+    row[4] = static_cast<double>(a.within);
+    row[5] = a.bias;
+    row[6] = a.misfit;
     if (!(a.trend_error > 0)) continue;
-    row[6] = a.trend;
-    row[7] = a.trend_error;
+    row[7] = a.trend;
+    row[8] = a.trend_error;
   }
   return table;
 }
@@ -90,9 +116,11 @@ std::vector<std::string> cautions(const MeasuredVesicles& data, double radius,
                                   const std::vector<History>& runs,
                                   const std::vector<Agreement>& agreements) {
   std::vector<std::string> all = differences(data, simulated_vesicle(radius, runs, data));
-  for (const std::string& doubt : {too_long_boundaries(data), too_short_boundaries(data)})
+  for (const std::string& doubt :
+       {unusual_times(data), too_long_boundaries(data), too_short_boundaries(data)})
     if (!doubt.empty()) all.push_back(doubt);
   for (const std::string& doubt : doubts_of(agreements)) all.push_back(doubt);
+  if (const auto onset = onset_without_trend(data, runs)) all.push_back(text_of(*onset));
   return all;
 }
 

@@ -53,7 +53,11 @@ class ComparisonReport {
   void write() {
     fs::create_directories(request_.out);
     write_durably(request_.out / "comparison.json",
-                  Json{{"runs", runs_.size()}, {"data", data_.name}}.dump(2) + "\n");
+                  Json{{"runs", runs_.size()},
+                       {"missing_runs", missing_runs(request_.ensemble)},
+                       {"data", data_.name}}
+                          .dump(2) +
+                      "\n");
     write_durably(request_.out / "comparison.csv", csv_text(agreement_table(agreements_)));
     write_durably(request_.out / "comparison.html", page().html());
   }
@@ -100,6 +104,8 @@ class ComparisonReport {
 
   std::vector<std::string> notes() const {
     std::vector<std::string> notes;
+    if (const std::string missing = missing_runs(request_.ensemble); !missing.empty())
+      notes.push_back(missing);
     if (const std::string other = other_membrane(data_.composition, model_); !other.empty())
       notes.push_back("ANOTHER MEMBRANE: the simulations are of " + other + ".");
     for (const std::string& note : cautions(data_, model_.units().length(), runs_, agreements_))

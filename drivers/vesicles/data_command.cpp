@@ -74,9 +74,10 @@ int draw(const DataRequest& request) {
     throw InputError(request.folder + " holds data already; choose another folder");
   const PublishedFacts facts = read_facts(request.facts);
   const auto seed = static_cast<std::uint64_t>(request.seed);
-  const MeasuredVesicles data = request.ensemble.empty()
-                                    ? draw_measurements(facts, seed)
-                                    : draw_from_runs(facts, runs_of(request.ensemble), seed);
+  const MeasuredVesicles data =
+      request.ensemble.empty() ? draw_measurements(facts, seed)
+                               : draw_from_runs(facts, runs_of(request.ensemble),
+                                                model_of(request.ensemble).units().length(), seed);
   write_dataset(request.folder, data,
                 std::string("SYNTHETIC: drawn from ") +
                     (request.ensemble.empty() ? "published facts" : "simulations") +

@@ -28,6 +28,10 @@ Configuration model_of(const std::filesystem::path& ensemble);
 // histories.csv has kept of them. Throws InputError as model_of.
 std::vector<History> runs_of(const std::filesystem::path& ensemble);
 
+// "ONLY 2 OF 3 RUNS: ..." of an ensemble, some of whose runs are not there, or are damaged; "" if
+// all are.
+std::string missing_runs(const std::filesystem::path& ensemble);
+
 // Simulations, in s and R, and the measurements in them, from a tenth of the first measured time
 // on.
 Chart comparison_chart(const MeasuredVesicles& data, const EnsembleSummary& summary,

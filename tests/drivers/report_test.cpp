@@ -68,6 +68,12 @@ TEST_F(ReportTest, ShowsEnsemblesAndCopiesFinishedPages) {
   const std::string page = content(folder.path / "e/report.html");
   EXPECT_NE(page.find("Shown is seed-1"), std::string::npos);
   EXPECT_NE(page.find("number of rafts"), std::string::npos);
+  // Of what is kept of one, all but the surface.
+  const std::string kept = TRACERAFT_ROOT "/verification/data/ensembles/guv-2to1";
+  ASSERT_EQ(traceraft("report --quiet " + kept + " --out " + out("kept.html")).code, 0);
+  const std::string of_kept = content(folder.path / "kept.html");
+  EXPECT_NE(of_kept.find("What is kept of 10 runs"), std::string::npos);
+  EXPECT_NE(of_kept.find("number of rafts"), std::string::npos);
   ASSERT_EQ(traceraft("verify geometry energy --quick --quiet --jobs 2 --out " + out("v")).code, 0);
   ASSERT_EQ(traceraft("report --quiet " + out("v")).code, 0);
   EXPECT_EQ(content(folder.path / "v/report.html"), content(folder.path / "v/verify.html"));

@@ -44,6 +44,16 @@ TEST_F(CsvTableTest, ReadsWhatSpreadsheetsWrite) {
   EXPECT_NE(table.where(1, "time").find("data.csv:5: column 'time'"), std::string::npos);
 }
 
+TEST_F(CsvTableTest, CountsLinesThatEndAsOnOldMacintoshes) {
+  const CsvTable table = read("time,name\r1,a\r2,b\r");
+  EXPECT_EQ(table.numbers("time"), (std::vector<double>{1, 2}));
+  EXPECT_NE(table.where(1, "time").find("data.csv:3"), std::string::npos);
+}
+
+TEST_F(CsvTableTest, SaysWhatNumbersWithCommasLookLike) {
+  EXPECT_NE(complaint("t,a\n1,5,2,5\n").find("commas within numbers"), std::string::npos);
+}
+
 TEST_F(CsvTableTest, EndsWithoutANewline) {
   EXPECT_EQ(read("t\n1\n2").numbers("t"), (std::vector<double>{1, 2}));
 }

@@ -202,7 +202,7 @@ TEST_F(DatasetTest, WhatIsDrawnFromRunsReadsBack) {
   run.of(Quantity::perimeter) = {10, 10, 10};
   run.of(Quantity::rafts) = {3, 0, 0};
   run.of(Quantity::fraction) = {0.1, 0.1, 0.1};
-  write_dataset(folder.path / "drawn", draw_from_runs(facts, {run, run, run}, 5), "a test");
+  write_dataset(folder.path / "drawn", draw_from_runs(facts, {run, run, run}, 6, 5), "a test");
   int empty = 0;
   for (const Measurement& m : read_dataset(folder.path / "drawn").measurements) {
     empty += *m.of(Quantity::rafts) == 0;

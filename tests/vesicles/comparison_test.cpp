@@ -8,6 +8,7 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/random.hpp"
 #include "kernel/core/types.hpp"
+#include "verification/vesicles/onset.hpp"
 #include "verification/vesicles/power_law.hpp"
 #include "verification/vesicles/published.hpp"
 
@@ -230,12 +231,68 @@ TEST(Comparison, SeesATrendAndSeldomOneThatIsNone) {
             .has_trend());
 }
 
+// Vesicles like the runs, whose clock was started 120 s before they began.
+TEST(Onset, IsFoundWhereItExplainsTheTrend) {
+  MeasuredVesicles late = looked_at(curves(17, 1001, -1.5));
+  const auto simulated = curves(8, 3, -1.5);
+  EXPECT_FALSE(onset_without_trend(late, simulated));
+  for (Measurement& m : late.measurements) m.time += 120;
+  ASSERT_TRUE(compare_with_runs(late, simulated)[0].has_trend());
+  const auto onset = onset_without_trend(late, simulated);
+  ASSERT_TRUE(onset);
+  EXPECT_NEAR(onset->delay, 120, 25);
+  EXPECT_FALSE(onset->at_end);
+  EXPECT_FALSE(onset->agreements[0].has_trend());
+}
+
 TEST(Comparison, SeesVesiclesOfAnotherKind) {
   const auto agreements = compare_with_runs(looked_at(runs(20, 2)), runs(20, 1));
   EXPECT_EQ(agreements[0].within, 0);
   EXPECT_GT(agreements[0].bias, 3);
   EXPECT_GT(agreements[0].misfit, 3);
   EXPECT_THROW((void)compare_with_runs(looked_at(runs(2, 1)), runs(1, 1)), InputError);
+}
+
+History steady(double perimeter, double rafts, double t_end) {
+  History run;
+  run.time = {1, t_end};
+  run.of(Quantity::perimeter) = {perimeter, perimeter};
+  run.of(Quantity::rafts) = {rafts, rafts};
+  run.of(Quantity::fraction) = {0.1, 0.1};
+  return run;
+}
+
+// Half as many rafts are as far off as twice as many.
+TEST(Comparison, WeighsSmallCountsAsLargeOnes) {
+  const auto bias_of = [](double rafts) {
+    MeasuredVesicles data;
+    data.measurements = {{"v", 100, 5, {std::nullopt, rafts, std::nullopt}, {}}};
+    return compare_with_runs(data, {steady(8, 4, 500), steady(8, 4, 500)})[1].bias;
+  };
+  EXPECT_NEAR(bias_of(2), -bias_of(8), 1e-9);
+  EXPECT_NEAR(bias_of(8), std::log(2.0) * 4 * std::sqrt(12.0), 1e-9);
+}
+
+TEST(Comparison, CountsLooksWithoutRaftsApart) {
+  MeasuredVesicles data;
+  data.measurements = {{"v", 100, 5, {8.0, 4.0, 0.1}, {}}, {"v", 200, 5, {0.0, 0.0, 0.0}, {}}};
+  const auto agreements = compare_with_runs(data, {steady(8, 4, 500), steady(9, 4, 500)});
+  for (const Agreement& a : {agreements[0], agreements[1]}) {
+    EXPECT_EQ(a.measurements, 1);
+    EXPECT_EQ(a.without_rafts, 1);
+    EXPECT_LT(std::fabs(a.bias), 1);
+  }
+  EXPECT_EQ(agreements[2].measurements, 2);
+}
+
+// Which roundoff may have put before the last look.
+TEST(Comparison, IncludesTheEndOfTheRuns) {
+  MeasuredVesicles data;
+  data.measurements = {{"v", 500, 5, {8.0, 4.0, 0.1}, {}}, {"v", 500.1, 5, {8.0, 4.0, 0.1}, {}}};
+  const double end = std::nextafter(500.0, 0.0);
+  const Agreement a = compare_with_runs(data, {steady(8, 4, end), steady(9, 4, end)})[0];
+  EXPECT_EQ(a.measurements, 1);
+  EXPECT_EQ(a.beyond, 1);
 }
 
 TEST(PowerLaw, OfRunsHasAnInterval) {

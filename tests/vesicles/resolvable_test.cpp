@@ -28,6 +28,15 @@ TEST(Resolvable, NamesRaftsThatLightDoesNotShow) {
   EXPECT_NE(doubt.find("of vesicle 'a' at 30 s 0.16 um"), std::string::npos) << doubt;
 }
 
+TEST(Resolvable, AsksAboutUnusualTimes) {
+  MeasuredVesicles data = look(8, 0.1);
+  for (const auto& [time, doubtful] : {std::pair(0.5, true), std::pair(30.0, false),
+                                       std::pair(86000.0, false), std::pair(4e5, true)}) {
+    data.measurements[0].time = time;
+    EXPECT_EQ(unusual_times(data) != "", doubtful) << time;
+  }
+}
+
 // As much raft as possible, half of the surface, has the largest discs.
 TEST(Resolvable, DoubtsNothingThatMayBe) {
   EXPECT_EQ(too_long_boundaries(look(620, std::nullopt)), "");

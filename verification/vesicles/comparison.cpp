@@ -16,7 +16,7 @@ bool relative(Quantity quantity) {
   return quantity != Quantity::fraction;
 }
 
-// Of a count or a perimeter whose logarithm is taken: there may be no raft.
+// Of a count or a perimeter of a run, whose logarithm is taken: there may be no raft.
 constexpr double kLeast = 0.5;
 // Rounding to whole rafts alone has this deviation.
 const double kRoundingDeviation = 1 / std::sqrt(12.0);
@@ -41,14 +41,13 @@ Deviation deviation_of(const Measurement& m, Quantity quantity,
   const bool within = y >= *low && y <= *high;
   double sigma =
       std::max(m.sigma_of(quantity), quantity == Quantity::rafts ? kRoundingDeviation : 0.0);
-  double measured = y;
-  if (relative(quantity)) {
-    const double above_zero = std::max(y, kLeast);
-    sigma /= above_zero;
-    measured = std::log(above_zero);
+  if (relative(quantity))
     for (double& value : values) value = std::log(std::max(value, kLeast));
-  }
   const Moments runs_here = moments(values);
+  // By the count that was seen small ones would weigh less than large ones.
+  if (quantity == Quantity::rafts) sigma /= std::exp(runs_here.mean);
+  if (quantity == Quantity::perimeter) sigma /= y;
+  const double measured = relative(quantity) ? std::log(y) : y;
   const double of_mean = 1 + 1 / static_cast<double>(runs.size());
   const double deviation = std::hypot(runs_here.deviation * std::sqrt(of_mean), sigma);
   const double unit = relative(quantity) ? 1 : std::max(runs_here.mean, 1e-6);
@@ -93,6 +92,7 @@ class Comparison {
   Comparison(const MeasuredVesicles& data, const std::vector<History>& runs, Quantity quantity)
       : runs_(pointers(runs)) {
     result_.quantity = quantity;
+    constexpr double kRoundoff = 1e-9;  // of times
     double first = 0, last = HUGE_VAL;
     for (const History& run : runs) {
       first = std::max(first, run.time.front());
@@ -100,8 +100,10 @@ class Comparison {
     }
     for (const Measurement& m : data.measurements) {
       if (!m.of(quantity)) continue;
-      if (!(m.time > 0) || m.time < first || m.time > last)
+      if (!(m.time > 0) || m.time < first || m.time > (1 + kRoundoff) * last)
         ++result_.beyond;
+      else if (relative(quantity) && !(*m.of(quantity) > 0))
+        ++result_.without_rafts;
       else
         compared_.push_back(&m);
     }
@@ -161,7 +163,8 @@ class Comparison {
 
 bool Agreement::has_trend() const {
   constexpr double kSure = 3.5;  // of Student's t with seven degrees of freedom 1 % is beyond
-  return std::fabs(trend) > kSure * trend_error;
+  constexpr double kRoundoff = 1e-6;
+  return std::fabs(trend) > std::max(kSure * trend_error, kRoundoff);
 }
 
 std::vector<Agreement> compare_with_runs(const MeasuredVesicles& data,

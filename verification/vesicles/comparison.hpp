@@ -11,12 +11,13 @@ namespace traceraft {
 // How well the runs of an ensemble foretell one quantity.
 struct Agreement {
   Quantity quantity;
-  int measurements = 0;  // within the time that the runs cover
-  int beyond = 0;        // outside that time: not compared
-  int within = 0;        // between the smallest and the largest of the runs
-  double bias = 0;       // mean of (measured − mean of the runs) / deviation
-  double misfit = 0;     // root of the mean square of the same
-  double scatter = 0;    // root mean square of the deviation, relative to what is measured
+  int measurements = 0;   // within the time that the runs cover
+  int beyond = 0;         // outside that time: not compared
+  int without_rafts = 0;  // looks that saw none, whose logarithm is nothing: not compared
+  int within = 0;         // between the smallest and the largest of the runs
+  double bias = 0;        // mean of (measured − mean of the runs) / deviation
+  double misfit = 0;      // root of the mean square of the same
+  double scatter = 0;     // root mean square of the deviation, relative to what is measured
   // Of the deviations that bias is the mean of, per e-fold of time, and its standard error: of the
   // vesicles, looks at one of which are alike, and of the runs. 0 and 0 if there are too few.
   double trend = 0, trend_error = 0;
@@ -25,7 +26,8 @@ struct Agreement {
 };
 
 // deviation²: the variance between n runs, times 1 + 1/n as their mean scatters, too, and sigma² of
-// the measurement; logarithms of perimeters and counts, whose scatter is relative. Throws
+// the measurement; logarithms of perimeters and counts, whose scatter is relative, the errors of
+// counts to what is expected of them. Throws
 // InputError if there are fewer than two runs.
 std::vector<Agreement> compare_with_runs(const MeasuredVesicles& data,
                                          const std::vector<History>& runs);

@@ -26,8 +26,8 @@ std::string difference_of_radii(const MeasuredVesicles& data, double radius) {
 
 std::string difference_of_fractions(const MeasuredVesicles& data, double fraction) {
   std::vector<double> means;
-  for (const auto& mean : mean_fractions(data))
-    if (mean) means.push_back(*mean);
+  for (const auto& vesicle : fractions_of_vesicles(data))
+    if (vesicle) means.push_back(vesicle->mean);
   if (means.size() < 2) return "";
   const Distribution d = distribution(means);
   const double off = std::fabs(d.mean - fraction);
@@ -42,11 +42,15 @@ std::string difference_of_fractions(const MeasuredVesicles& data, double fractio
 
 SimulatedVesicle simulated_vesicle(double radius, const std::vector<History>& runs,
                                    const MeasuredVesicles& data) {
-  const Window window = looks(data);
-  double sum = 0;
-  for (const History& run : runs)
-    sum += run.at(Quantity::fraction, std::sqrt(window.begin * window.end));
-  return {radius, sum / static_cast<double>(runs.size())};
+  double sum = 0, count = 0;
+  for (const auto& vesicle : fractions_of_vesicles(data)) {
+    if (!vesicle) continue;
+    for (const History& run : runs)
+      for (const double t : vesicle->times)
+        sum += run.at(Quantity::fraction, t) / static_cast<double>(vesicle->times.size());
+    count += static_cast<double>(runs.size());
+  }
+  return {radius, count > 0 ? sum / count : 0};
 }
 
 double factor_of_size(const MeasuredVesicles& data, double radius) {

@@ -14,7 +14,8 @@ struct SimulatedVesicle {
   double raft_fraction;  // of the area, as it is measured
 };
 
-// At the middle of the times of the measurements, in ln t; times of the runs are those of the data.
+// With the mean raft fraction at the times at which that of vesicles was measured; times of the
+// runs are those of the data.
 SimulatedVesicle simulated_vesicle(double radius, const std::vector<History>& runs,
                                    const MeasuredVesicles& data);
 

@@ -22,21 +22,25 @@ TimeFit with_fractions(const Evidence& all, const RunStatistics& runs, TimeFit f
 }  // namespace
 
 MeasuredFractions::MeasuredFractions(const MeasuredVesicles& data)
-    : window_(looks(data)), means_(mean_fractions(data)) {
+    : vesicles_(fractions_of_vesicles(data)) {
   std::vector<double> known;
-  for (const auto& mean : means_)
-    if (mean) known.push_back(*mean);
-  if (known.size() > 1 && window_.end > 0) variance_ = std::pow(moments(known).deviation, 2);
+  for (const auto& vesicle : vesicles_)
+    if (vesicle) known.push_back(vesicle->mean);
+  if (known.size() > 1) variance_ = std::pow(moments(known).deviation, 2);
 }
 
 double MeasuredFractions::deviance(const std::vector<int>& sample, const RunStatistics& runs,
                                    double seconds_per_unit) const {
   if (!(variance_ > 0)) return 0;
-  const double t = std::sqrt(window_.begin * window_.end) / seconds_per_unit;
-  const double simulated = runs.fraction(t);
   double sum = 0;
-  for (const int k : sample)
-    if (means_[k]) sum += std::pow(*means_[k] - simulated, 2) / variance_;
+  for (const int k : sample) {
+    const auto& vesicle = vesicles_[static_cast<std::size_t>(k)];
+    if (!vesicle) continue;
+    double simulated = 0;
+    for (const double t : vesicle->times) simulated += runs.fraction(t / seconds_per_unit);
+    simulated /= static_cast<double>(vesicle->times.size());
+    sum += std::pow(vesicle->mean - simulated, 2) / variance_;
+  }
   return sum;
 }
 

@@ -14,7 +14,8 @@ struct Box {
   std::vector<double> lower, upper;
 };
 
-// Mean raft fractions of vesicles, which scatter from vesicle to vesicle.
+// Mean raft fractions of vesicles, which scatter from vesicle to vesicle. As fractions of runs grow
+// in time, they are held against those at the very times.
 class MeasuredFractions {
  public:
   explicit MeasuredFractions(const MeasuredVesicles& data);
@@ -23,8 +24,7 @@ class MeasuredFractions {
                   double seconds_per_unit) const;
 
  private:
-  Window window_;
-  std::vector<std::optional<double>> means_;
+  std::vector<std::optional<FractionOfVesicle>> vesicles_;
   double variance_ = 0;  // 0: too few to say anything
 };
 

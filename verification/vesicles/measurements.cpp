@@ -25,18 +25,19 @@ Window looks(const MeasuredVesicles& data) {
   return window;
 }
 
-std::vector<std::optional<double>> mean_fractions(const MeasuredVesicles& data) {
-  std::vector<std::optional<double>> means;
+std::vector<std::optional<FractionOfVesicle>> fractions_of_vesicles(const MeasuredVesicles& data) {
+  std::vector<std::optional<FractionOfVesicle>> all;
   for (const auto& [first, last] : data.vesicles()) {
-    double sum = 0, count = 0;
+    FractionOfVesicle fraction{0, {}};
     for (std::size_t i = first; i < last; ++i)
       if (const auto& value = data.measurements[i].of(Quantity::fraction)) {
-        sum += *value;
-        ++count;
+        fraction.mean += *value;
+        fraction.times.push_back(data.measurements[i].time);
       }
-    means.push_back(count > 0 ? std::optional(sum / count) : std::nullopt);
+    fraction.mean /= static_cast<double>(fraction.times.size());
+    all.push_back(fraction.times.empty() ? std::nullopt : std::optional(fraction));
   }
-  return means;
+  return all;
 }
 
 namespace {

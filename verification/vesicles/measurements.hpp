@@ -43,8 +43,13 @@ struct MeasuredVesicles {
 // From the first look after time zero to the last one; nothing if there is none, {inf, 0}.
 Window looks(const MeasuredVesicles& data);
 
-// Of each vesicle over its looks; nothing if its fraction was not measured.
-std::vector<std::optional<double>> mean_fractions(const MeasuredVesicles& data);
+// The raft fraction of a vesicle: the mean over the times (s) at which it was measured.
+struct FractionOfVesicle {
+  double mean;
+  std::vector<double> times;
+};
+// Of each vesicle; nothing if its fraction was not measured.
+std::vector<std::optional<FractionOfVesicle>> fractions_of_vesicles(const MeasuredVesicles& data);
 
 // A raft as a spherical cap.
 struct Cap {

@@ -89,10 +89,10 @@ MeasuredVesicles draw_measurements(const PublishedFacts& facts, std::uint64_t se
 }
 
 MeasuredVesicles draw_from_runs(const PublishedFacts& facts, const std::vector<History>& runs,
-                                std::uint64_t seed) {
+                                double radius, std::uint64_t seed) {
   MeasuredVesicles data = described(facts);
   data.name = "simulated vesicles, looked at as " + facts.name + ", SYNTHETIC";
-  data.origin = "simulated runs; times, radii and scatter as in " + facts.origin;
+  data.origin = "simulated runs; times and scatter as in " + facts.origin;
   data.composition.clear();
   data.celsius.reset();
   data.time_zero = "the start of the simulated runs";
@@ -103,7 +103,7 @@ MeasuredVesicles draw_from_runs(const PublishedFacts& facts, const std::vector<H
     const History& run = runs[k];
     if (run.time.empty() || run.time.back() < facts.window.end)
       throw InputError("the runs end before the window of the facts does");
-    const double radius = draw_radius(draw, facts);
+    (void)draw.uniform();  // was a radius: sets of results.md stay what they are
     for (const double t :
          draw_times(draw, looks_at(k, vesicles, facts.measurements), facts.window)) {
       const double rafts = run.at(Quantity::rafts, t);

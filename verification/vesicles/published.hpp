@@ -30,9 +30,9 @@ MeasuredVesicles draw_measurements(const PublishedFacts& facts, std::uint64_t se
 
 // The same looks at simulated vesicles, one run each: perimeters scatter as published, fractions
 // with half of the published variance (runs have none), which are their uncertainties; numbers of
-// rafts are exact. As many vesicles as there are runs, at most; the runs have to cover the window.
-// Throws InputError if they do not, or if there is none.
+// rafts and radii (`radius`, in µm) are exact. As many vesicles as there are runs, at most; the
+// runs have to cover the window. Throws InputError if they do not, or if there is none.
 MeasuredVesicles draw_from_runs(const PublishedFacts& facts, const std::vector<History>& runs,
-                                std::uint64_t seed);
+                                double radius, std::uint64_t seed);
 
 }  // namespace traceraft

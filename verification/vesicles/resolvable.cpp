@@ -59,6 +59,13 @@ Impossible below(const MeasuredVesicles& data, double (*measure)(const Measureme
 
 }  // namespace
 
+std::string unusual_times(const MeasuredVesicles& data) {
+  constexpr double kDay = 86400, kSecond = 1;
+  const double last = looks(data).end;
+  if (last >= kSecond && last <= kDay) return "";
+  return formatted("The last look is %.3g s after time zero. Is time_unit right?", last);
+}
+
 std::string too_long_boundaries(const MeasuredVesicles& data) {
   const Impossible narrow = below(data, diameter_of, kDiffraction);
   if (narrow.count == 0) return "";

@@ -16,4 +16,8 @@ std::string too_long_boundaries(const MeasuredVesicles& data);
 // of a single cap, which no boundary around as large a raft fraction can be.
 std::string too_short_boundaries(const MeasuredVesicles& data);
 
+// Looks beyond a day, or all of them within a second: most likely the unit of time is another one.
+// "" if there are none.
+std::string unusual_times(const MeasuredVesicles& data);
+
 }  // namespace traceraft
