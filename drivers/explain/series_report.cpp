@@ -9,6 +9,7 @@
 #include "drivers/output/page.hpp"
 #include "drivers/output/text_table.hpp"
 #include "drivers/version.hpp"
+#include "drivers/vesicles/agreement_report.hpp"
 #include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/text.hpp"
 #include "verification/vesicles/differences.hpp"
@@ -193,6 +194,8 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
                                  sentence(found), ground(found, simulated, request)};
   for (const SeriesTie& tie : found.ties) words.push_back(advice(tie));
   words.push_back(diffusion_sentence(model, found));
+  if (const std::string onset = onset_note(data, ensembles.base); !onset.empty())
+    words.push_back(onset);
   words.insert(words.end(), ensembles.notes.begin(), ensembles.notes.end());
   const SimulatedVesicle vesicle = simulated_vesicle(model.units().length(), ensembles.base, data);
   for (const std::string& note : differences(data, vesicle)) words.push_back(note);

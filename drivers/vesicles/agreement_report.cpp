@@ -46,22 +46,6 @@ std::vector<std::string> doubts_of(const std::vector<Agreement>& agreements) {
   return sentences;
 }
 
-std::string text_of(const Onset& onset) {
-  std::vector<std::string> trends;
-  for (const Agreement& a : onset.agreements)
-    if (a.trend_error > 0 && a.quantity != Quantity::fraction)
-      trends.push_back(formatted("%s %+.2g +- %.1g with a misfit of %.2f",
-                                 name_of(a.quantity).label, a.trend, a.trend_error, a.misfit));
-  return formatted(
-             "An onset %.3g s %safter the time zero of the measurements would remove the trend (",
-             onset.delay, onset.at_end ? "or more " : "") +
-         joined(trends, ", ") +
-         formatted(
-             "): if the sample may take as long to begin, time_offset = %.3g in dataset.toml "
-             "and another calibration say what D is then.",
-             -onset.delay);
-}
-
 }  // namespace
 
 std::string about_agreement(std::size_t runs) {
@@ -112,6 +96,24 @@ Table agreement_table(const std::vector<Agreement>& agreements) {
   return table;
 }
 
+std::string onset_note(const MeasuredVesicles& data, const std::vector<History>& runs) {
+  const auto onset = onset_without_trend(data, runs);
+  if (!onset) return "";
+  std::vector<std::string> trends;
+  for (const Agreement& a : onset->agreements)
+    if (a.trend_error > 0 && a.quantity != Quantity::fraction)
+      trends.push_back(formatted("%s %+.2g +- %.1g with a misfit of %.2f",
+                                 name_of(a.quantity).label, a.trend, a.trend_error, a.misfit));
+  return formatted(
+             "An onset %.3g s %safter the time zero of the measurements would remove the trend (",
+             onset->delay, onset->at_end ? "or more " : "") +
+         joined(trends, ", ") +
+         formatted(
+             "): if the sample may take as long to begin, time_offset = %.3g in dataset.toml "
+             "and another calibration say what D is then.",
+             -onset->delay);
+}
+
 std::vector<std::string> cautions(const MeasuredVesicles& data, double radius,
                                   const std::vector<History>& runs,
                                   const std::vector<Agreement>& agreements) {
@@ -120,7 +122,7 @@ std::vector<std::string> cautions(const MeasuredVesicles& data, double radius,
        {unusual_times(data), too_long_boundaries(data), too_short_boundaries(data)})
     if (!doubt.empty()) all.push_back(doubt);
   for (const std::string& doubt : doubts_of(agreements)) all.push_back(doubt);
-  if (const auto onset = onset_without_trend(data, runs)) all.push_back(text_of(*onset));
+  if (const std::string onset = onset_note(data, runs); !onset.empty()) all.push_back(onset);
   return all;
 }
 

@@ -17,6 +17,9 @@ std::string about_agreement(std::size_t runs);
 std::vector<Row> agreement_rows(const std::vector<Agreement>& agreements);
 Table agreement_table(const std::vector<Agreement>& agreements);
 
+// A sentence on an onset that would remove a trend; "" if there is no trend, or none would.
+std::string onset_note(const MeasuredVesicles& data, const std::vector<History>& runs);
+
 // Why the two may differ although the model is right, or cannot be compared: vesicles of another
 // size or raft fraction than the simulated one (`radius`, µm), perimeters that light does not show,
 // nothing to compare or to measure deviations with.
