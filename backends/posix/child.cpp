@@ -28,7 +28,8 @@ constexpr useconds_t kPause = 50000;  // microseconds between looks
   default_stop_signals();
   setpgid(0, 0);  // Ctrl-C reaches the parent, which asks once; twice would be "at once"
   const int input = open("/dev/null", O_RDONLY);
-  const int output = open(log, O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  // Another process may be writing to it, as of a run that both want to go on with.
+  const int output = open(log, O_WRONLY | O_CREAT | O_APPEND, 0644);
   if (input >= 0 && output >= 0 && dup2(input, STDIN_FILENO) >= 0 &&
       dup2(output, STDOUT_FILENO) >= 0 && dup2(output, STDERR_FILENO) >= 0)
     execvpe(arguments[0], arguments, environment);

@@ -48,10 +48,15 @@ Configuration known_configuration(const EnsembleFolder& folder, const EnsembleRe
                                   const GivenValues& file) {
   const Configuration known(read_config_file(folder.config()), {});
   if (file.empty() && request.flags.empty()) return known;
-  if (numerical_identity(new_configuration(request, file)) != numerical_identity(known))
+  const Configuration asked = new_configuration(request, file);
+  if (numerical_identity(asked) != numerical_identity(known))
     throw InputError("--out: " + folder.path().string() +
                      " holds an ensemble of other runs; choose another folder, or give only --out "
                      "to go on with it");
+  for (const auto& [name, value] : request.flags)
+    if (asked.text(name) != known.text(name))
+      throw InputError(value.where + ": the runs in " + folder.path().string() + " have '" +
+                       known.text(name) + "', and those that it grows by have it, too");
   return known;
 }
 

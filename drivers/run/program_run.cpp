@@ -1,5 +1,6 @@
 #include "drivers/run/program_run.hpp"
 
+#include <algorithm>
 #include <csignal>
 #include <cstring>
 #include <stdexcept>
@@ -65,8 +66,10 @@ ProgramEnd run_program(const std::vector<std::string>& arguments, const std::fil
                        int ranks, double time_limit, const std::function<void()>& tick) {
   std::vector<std::string> command = program_on(ranks);
   command.insert(command.end(), arguments.begin(), arguments.end());
+  const std::uintmax_t before = std::filesystem::exists(log) ? std::filesystem::file_size(log) : 0;
   const ChildResult result = run_child({command, log, time_limit, tick});
   std::string text = read_file(log, kLargestLog);
+  text.erase(0, std::min<std::size_t>(before, text.size()));
   while (!text.empty() && text.back() == '\n') text.pop_back();
   return {result.exit_code, result.out_of_time, text.substr(text.rfind('\n') + 1)};
 }

@@ -254,6 +254,10 @@ TEST_F(EnsembleTest, RefusesWhatMakesNoEnsemble) {
        {std::pair("--case two-rafts --out " + out("b"), "it has to be noise"),
         std::pair("--case guv-3to1 --out " + out("a"), "holds an ensemble of other runs"),
         std::pair("--first-seed 3 --out " + out("a"), "begins with seed 1"),
+        std::pair("--case guv-2to1 --cells 20 --epsilon 0.5 --t-end 100 --checkpoint-interval 5 "
+                  "--out " +
+                      out("a"),
+                  "those that it grows by have it, too"),
         std::pair("--member 9 --out " + out("a"), "allowed: 1 to 1"),
         std::pair("--member 1 --out " + out("c"), "has to name an ensemble"),
         std::pair(runs + "--seed 3 --out " + out("d"), "unknown flag '--seed'")}) {
