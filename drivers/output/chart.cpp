@@ -29,7 +29,7 @@ const char* style(Mark mark) {
 
 // Told apart by people who see few colours, too (Okabe and Ito).
 constexpr const char* kColours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                    "#e69f00", "#56b4e9", "#000000", "#999999"};
+                                    "#e69f00", "#000000", "#56b4e9", "#999999"};
 
 // Within gnuplot's single quotes nothing is special but the quote.
 std::string quoted(const std::string& text) {

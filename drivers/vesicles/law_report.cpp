@@ -14,7 +14,7 @@ const Row& law_heading() {
 }
 
 Row law_row(const std::string& of, const std::optional<FittedLaw>& law) {
-  if (!law) return {of, "too few points", "", "", "", ""};
+  if (!law) return {of, "too few points within the --window", "", "", "", ""};
   const auto with = [](double value, const Interval& interval) {
     return formatted("%.3g (%.3g to %.3g)", value, interval.low, interval.high);
   };
