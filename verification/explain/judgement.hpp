@@ -36,7 +36,7 @@ struct Round {
   struct Failure {
     std::string effect, why;
   };
-  std::vector<Failure> failures;  // of the shortlist, whose forecasts failed
+  std::vector<Failure> failures;  // what could not be refitted
   std::vector<Refit> moves;       // near what was taken then, with effects replaced or dropped
 };
 

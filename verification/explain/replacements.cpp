@@ -1,7 +1,5 @@
 #include "verification/explain/replacements.hpp"
 
-#include <algorithm>
-
 #include "verification/explain/neighbours.hpp"
 
 namespace traceraft {
@@ -48,8 +46,12 @@ void improve(Search& search) {
   Explanation& result = search.result;
   for (int move = 0; result.found.hypothesis.parts.size() > 1 || move > 0; ++move) {
     const std::vector<Refit> fits = refit_neighbours(search);
-    std::copy_if(fits.begin(), fits.end(), std::back_inserter(result.rounds.back().moves),
-                 [](const Refit& fit) { return fit.failure.empty(); });
+    Round& round = result.rounds.back();
+    for (const Refit& fit : fits)
+      if (fit.failure.empty())
+        round.moves.push_back(fit);
+      else
+        round.failures.push_back({fit.hypothesis.name(), fit.failure});
     const Refit* best = move < kMostMoves ? better_one(search, fits) : nullptr;
     if (best == nullptr) {
       add_rivals(search, fits);
