@@ -28,8 +28,8 @@ class RivalsTest : public ::testing::Test {
   RivalsTest() {
     request_.base = testing::small_vesicle(4).base;
     request_.surface = make_surface("sphere");
-    request_.cells = 16;
-    request_.filter.rank = 80;
+    request_.cells = 12;
+    request_.filter.rank = 60;
     request_.filter.replicates = 49;
     request_.most_effects = 1;  // what was found, or its rivals
     const std::set<std::string> some{"exchange", "gravity", "line-tension", "uptake"};
