@@ -37,6 +37,7 @@ int ProgramEnd::signal() const {
 
 std::string ProgramEnd::reason() const {
   if (exit_code == 127) return "mpirun is not there; install the Debian package openmpi-bin";
+  if (exit_code == kInterrupted) return "it was stopped; the same command goes on with it";
   if (signal() == SIGKILL) return "it was killed; was there too little memory?";
   if (signal() > 0)
     return std::string("it crashed: ") + strsignal(signal()) +

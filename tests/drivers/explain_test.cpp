@@ -49,7 +49,7 @@ class ExplainTest : public ::testing::Test {
       for (FieldSnapshot& snapshot : vesicle.snapshots) snapshot.time *= Units().time();
     write_field_dataset(folder.path / "data", data, "drawn by a test");
   }
-  std::string command(int cells = 16, int replicates = 49) const {
+  std::string command(int cells = 15, int replicates = 49) const {
     return "explain --data " + (folder.path / "data").string() + " --epsilon 0.75 --cells " +
            std::to_string(cells) + " --most-effects 1 --threads " + std::to_string(threads) +
            " --replicates " + std::to_string(replicates) + " --out " +
@@ -173,7 +173,7 @@ TEST_F(ExplainTest, JoinsWhatVesiclesSay) {
   ASSERT_EQ(drawn.vesicles.size(), 2u);
   EXPECT_NE(drawn.vesicles[0].snapshots[0].values[0], drawn.vesicles[1].snapshots[0].values[0]);
   write(drawn.vesicles);
-  ASSERT_EQ(testing::traceraft(command_of_few(16)).code, 0);
+  ASSERT_EQ(testing::traceraft(command_of_few(13)).code, 0);
   const nlohmann::json found = verdict();
   EXPECT_EQ(found["effect"], "uptake") << found.dump(2);
   const nlohmann::json& rate = found["parameters"]["uptake.rate"];
@@ -192,7 +192,7 @@ TEST_F(ExplainTest, SaysWhatIsOddAboutTheData) {
               std::sin(0.3) * x[0] + std::cos(0.3) * x[1], x[2]);
   for (int k = 0; k < 5; ++k) snapshots[1].values[100 * k] = 4;
   write(vesicles);
-  const auto end = testing::traceraft(command_of_few(13));
+  const auto end = testing::traceraft(command_of_few(11));
   ASSERT_EQ(end.code, 0) << end.output;
   const std::string remarks = verdict()["remarks"].dump();
   EXPECT_NE(remarks.find("5 values that are far"), std::string::npos) << remarks;
