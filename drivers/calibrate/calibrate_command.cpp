@@ -107,7 +107,8 @@ int calibrate_ensemble(const CalibrateRequest& request, const MeasuredVesicles& 
   refuse_other_membrane("--ensemble", data, model);
   refuse_calibrating(model);
   const double seconds = model.units().seconds_per_unit();
-  CalibrationPoint point{{}, runs_of(request.ensemble)};
+  EnsembleRuns ensemble = runs_of(request.ensemble);
+  CalibrationPoint point{{}, std::move(ensemble.histories)};
   if (point.runs.size() < 2) throw InputError("--ensemble: fewer than two runs");
   double shortest = HUGE_VAL;
   for (History& run : point.runs) {
@@ -131,8 +132,7 @@ int calibrate_ensemble(const CalibrateRequest& request, const MeasuredVesicles& 
   const std::string command = "traceraft calibrate --data " + in_shell(request.data) +
                               " --ensemble " + in_shell(request.ensemble) +
                               " --parameters mobility";
-  write_calibration(out, data,
-                    {model, {}, {point}, 0, command, bound, missing_runs(request.ensemble)}, result,
+  write_calibration(out, data, {model, {}, {point}, 0, command, bound, ensemble.missing}, result,
                     request.quiet);
   return kSuccess;
 }

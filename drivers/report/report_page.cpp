@@ -145,19 +145,25 @@ void add_comparison(Page& page, const fs::path& folder, std::size_t runs) {
   page.raw(page_body(read_file(folder / "comparison.html", kLargestPage)));
 }
 
-// What is kept of an ensemble has no fields to show.
-void fill_kept(Page& page, const fs::path& path, const PageRequest& request, Missing& missing) {
-  const Configuration configuration = model_of(path);
-  const std::vector<History> runs = runs_of(path);
-  page.paragraph(formatted("What is kept of %zu runs of the case ", runs.size()) +
-                 configuration.text("case") + ".");
+// `physical`: in s, rather than in units of R²/D.
+void add_all_runs(Page& page, const std::vector<History>& runs, bool physical,
+                  const PageRequest& request, Missing& missing) {
   const EnsembleSummary summary = summarise(runs);
   page.heading("All runs");
   for (const Quantity quantity : kQuantities)
-    add_chart(page, ensemble_chart(summary, quantity, true), request.charts / name_of(quantity).id,
-              missing);
+    add_chart(page, ensemble_chart(summary, quantity, physical),
+              request.charts / name_of(quantity).id, missing);
   page.heading("Numbers");
-  page.table(ensemble_rows(summary, true));
+  page.table(ensemble_rows(summary, physical));
+}
+
+// What is kept of an ensemble has no fields to show.
+void fill_kept(Page& page, const fs::path& path, const PageRequest& request, Missing& missing) {
+  const Configuration configuration = model_of(path);
+  const std::vector<History> runs = runs_of(path).histories;
+  page.paragraph(formatted("What is kept of %zu runs of the case ", runs.size()) +
+                 configuration.text("case") + ".");
+  add_all_runs(page, runs, true, request, missing);
   add_settings(page, configuration);
   add_provenance(page, path, command_for("traceraft ensemble", configuration));
 }
@@ -176,13 +182,7 @@ void fill_ensemble(Page& page, const fs::path& path, const PageRequest& request,
                  " to " + std::to_string(plan.last_seed()) + ". Shown is " +
                  shown.filename().string() + ".");
   add_surface(page, shown, request, missing);
-  page.heading("All runs");
-  const EnsembleSummary summary = summarise(runs);
-  for (const Quantity quantity : kQuantities)
-    add_chart(page, ensemble_chart(summary, quantity, !units.scaled),
-              request.charts / name_of(quantity).id, missing);
-  page.heading("Numbers");
-  page.table(ensemble_rows(summary, !units.scaled));
+  add_all_runs(page, runs, !units.scaled, request, missing);
   add_comparison(page, path, runs.size());
   add_ensemble_origin(page, folder, configuration);
 }

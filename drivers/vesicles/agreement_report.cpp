@@ -118,9 +118,7 @@ std::vector<std::string> cautions(const MeasuredVesicles& data, double radius,
                                   const std::vector<History>& runs,
                                   const std::vector<Agreement>& agreements) {
   std::vector<std::string> all = differences(data, simulated_vesicle(radius, runs, data));
-  for (const std::string& doubt :
-       {unusual_times(data), too_long_boundaries(data), too_short_boundaries(data)})
-    if (!doubt.empty()) all.push_back(doubt);
+  for (const std::string& doubt : doubts_about(data)) all.push_back(doubt);
   for (const std::string& doubt : doubts_of(agreements)) all.push_back(doubt);
   if (const std::string onset = onset_note(data, runs); !onset.empty()) all.push_back(onset);
   return all;

@@ -44,20 +44,21 @@ class ComparisonReport {
       : data_(data),
         request_(request),
         model_(model_of(request.ensemble)),
-        runs_(runs_of(request.ensemble)),
+        ensemble_(runs_of(request.ensemble)),
+        runs_(ensemble_.histories),
         agreements_(compare_with_runs(data, runs_)),
+        notes_(notes()),
         summary_(summarise(runs_)),
         measured_(fit_measurements(data, request.window)),
         simulated_(fit_runs(runs_, summary_.times, request.window)) {}
 
   void write() {
     fs::create_directories(request_.out);
-    write_durably(request_.out / "comparison.json",
-                  Json{{"runs", runs_.size()},
-                       {"missing_runs", missing_runs(request_.ensemble)},
-                       {"data", data_.name}}
-                          .dump(2) +
-                      "\n");
+    write_durably(
+        request_.out / "comparison.json",
+        Json{{"runs", runs_.size()}, {"missing_runs", ensemble_.missing}, {"data", data_.name}}
+                .dump(2) +
+            "\n");
     write_durably(request_.out / "comparison.csv", csv_text(agreement_table(agreements_)));
     write_durably(request_.out / "comparison.html", page().html());
   }
@@ -69,7 +70,7 @@ class ComparisonReport {
                 request_.window.begin, request_.window.end);
     print_rows(laws());
     for (const std::string& remark : remarks()) std::printf("%s\n", remark.c_str());
-    for (const std::string& note : notes()) std::printf("\n%s\n", note.c_str());
+    for (const std::string& note : notes_) std::printf("\n%s\n", note.c_str());
     std::printf("\nopen next: %s\n", (request_.out / "comparison.html").c_str());
     if (!missing_.text().empty()) std::printf("the page lacks: %s\n", missing_.text().c_str());
   }
@@ -82,7 +83,7 @@ class ComparisonReport {
     page.paragraph(std::to_string(runs_.size()) + " runs in " + request_.ensemble.string() + ". " +
                    about_agreement(runs_.size()));
     page.table(agreement_rows(agreements_));
-    for (const std::string& note : notes()) page.paragraph(note);
+    for (const std::string& note : notes_) page.paragraph(note);
     page.paragraph(formatted("Power laws fitted from %g to %g s.", request_.window.begin,
                              request_.window.end));
     page.table(laws());
@@ -104,8 +105,7 @@ class ComparisonReport {
 
   std::vector<std::string> notes() const {
     std::vector<std::string> notes;
-    if (const std::string missing = missing_runs(request_.ensemble); !missing.empty())
-      notes.push_back(missing);
+    if (!ensemble_.missing.empty()) notes.push_back(ensemble_.missing);
     if (const std::string other = other_membrane(data_.composition, model_); !other.empty())
       notes.push_back("ANOTHER MEMBRANE: the simulations are of " + other + ".");
     for (const std::string& note : cautions(data_, model_.units().length(), runs_, agreements_))
@@ -140,8 +140,10 @@ class ComparisonReport {
   const MeasuredVesicles& data_;
   const ComparisonRequest& request_;
   Configuration model_;
-  std::vector<History> runs_;
+  const EnsembleRuns ensemble_;
+  const std::vector<History>& runs_;
   std::vector<Agreement> agreements_;
+  const std::vector<std::string> notes_;
   EnsembleSummary summary_;
   std::optional<FittedLaw> measured_, simulated_;
   Missing missing_;  // of the charts

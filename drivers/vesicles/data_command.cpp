@@ -76,7 +76,7 @@ int draw(const DataRequest& request) {
   const auto seed = static_cast<std::uint64_t>(request.seed);
   const MeasuredVesicles data =
       request.ensemble.empty() ? draw_measurements(facts, seed)
-                               : draw_from_runs(facts, runs_of(request.ensemble),
+                               : draw_from_runs(facts, runs_of(request.ensemble).histories,
                                                 model_of(request.ensemble).units().length(), seed);
   write_dataset(request.folder, data,
                 std::string("SYNTHETIC: drawn from ") +

@@ -47,12 +47,17 @@ std::string estimated_fraction(const std::string& composition, double celsius) {
   }
 }
 
-// Of a folder that has runs; none of one that keeps their histories alone.
-FinishedMembers finished_in(const fs::path& path) {
-  const Configuration model = model_of(path);
-  const EnsembleFolder folder(path);
-  if (!folder.started()) return {};
-  return finished_members(folder, model.units().length(), model.number("t-end"));
+std::string missing_of(const EnsembleFolder& folder, const FinishedMembers& finished) {
+  const int planned = folder.load().runs;
+  const std::size_t there = finished.seeds.size();
+  if (there == static_cast<std::size_t>(planned)) return "";
+  std::string text = "ONLY " + std::to_string(there) + " OF " + std::to_string(planned) +
+                     " RUNS of " + folder.path().string() +
+                     " have finished: traceraft ensemble --out " +
+                     in_shell(folder.path().string()) + " goes on with the others.";
+  for (const MemberFailure& damaged : finished.damaged)
+    text += " Seed " + std::to_string(damaged.seed) + ": " + damaged.why + ".";
+  return text;
 }
 
 }  // namespace
@@ -112,9 +117,7 @@ void print_dataset(const MeasuredVesicles& data, const std::optional<FittedLaw>&
   if (!data.composition.empty() && data.celsius)
     std::printf("  %-22s %s\n", "estimated fraction",
                 estimated_fraction(data.composition, *data.celsius).c_str());
-  for (const std::string& doubt :
-       {unusual_times(data), too_long_boundaries(data), too_short_boundaries(data)})
-    if (!doubt.empty()) std::printf("\nNOTE: %s\n", doubt.c_str());
+  for (const std::string& doubt : doubts_about(data)) std::printf("\nNOTE: %s\n", doubt.c_str());
   std::printf("\npower law from %g to %g s\n", window.begin, window.end);
   print_rows({law_heading(), law_row(origin_of(data), law)});
   for (const std::string& remark : remarks_on({law})) std::printf("%s\n", remark.c_str());
@@ -131,25 +134,20 @@ Configuration model_of(const fs::path& path) {
   return configuration;
 }
 
-std::vector<History> runs_of(const fs::path& path) {
-  const std::vector<History> runs = finished_in(path).histories;
-  const fs::path kept = path / kHistoriesFile;
-  return runs.empty() && fs::exists(kept) ? read_histories(kept) : runs;
-}
-
-std::string missing_runs(const fs::path& path) {
+EnsembleRuns runs_of(const fs::path& path) {
+  const Configuration model = model_of(path);
   const EnsembleFolder folder(path);
-  if (!folder.started()) return "";
-  const FinishedMembers finished = finished_in(path);
-  const int planned = folder.load().runs;
-  const std::size_t there = finished.seeds.size();
-  if (there == static_cast<std::size_t>(planned) || there == 0) return "";
-  std::string text = "ONLY " + std::to_string(there) + " OF " + std::to_string(planned) +
-                     " RUNS of " + path.string() + " have finished: traceraft ensemble --out " +
-                     in_shell(path.string()) + " goes on with the others.";
-  for (const MemberFailure& damaged : finished.damaged)
-    text += " Seed " + std::to_string(damaged.seed) + ": " + damaged.why + ".";
-  return text;
+  const fs::path kept = path / kHistoriesFile;
+  if (folder.started()) {
+    FinishedMembers finished =
+        finished_members(folder, model.units().length(), model.number("t-end"));
+    if (!finished.histories.empty()) {
+      const std::string missing = missing_of(folder, finished);
+      return {std::move(finished.histories), missing};
+    }
+    if (!fs::exists(kept)) return {};
+  }
+  return {read_histories(kept), ""};
 }
 
 }  // namespace traceraft

@@ -24,13 +24,13 @@ void print_dataset(const MeasuredVesicles& data, const std::optional<FittedLaw>&
 // none, or if its times are in units of R²/D.
 Configuration model_of(const std::filesystem::path& ensemble);
 
-// The finished runs of an ensemble, in s and R, or what a folder with its config.toml and
-// histories.csv has kept of them. Throws InputError as model_of.
-std::vector<History> runs_of(const std::filesystem::path& ensemble);
-
-// "ONLY 2 OF 3 RUNS: ..." of an ensemble, some of whose runs are not there, or are damaged; "" if
-// all are.
-std::string missing_runs(const std::filesystem::path& ensemble);
+struct EnsembleRuns {
+  std::vector<History> histories;  // in s and R
+  std::string missing;  // "ONLY 2 OF 3 RUNS ...", why, and what to do; "" if all are there
+};
+// The finished runs of an ensemble, or what a folder with its config.toml and histories.csv has
+// kept of them. Throws InputError as model_of.
+EnsembleRuns runs_of(const std::filesystem::path& ensemble);
 
 // Simulations, in s and R, and the measurements in them, from a tenth of the first measured time
 // on.

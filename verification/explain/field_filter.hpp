@@ -7,6 +7,7 @@
 // the unknown state integrated out.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "verification/explain/candidates.hpp"
@@ -27,6 +28,9 @@ struct ErrorMaps {
 
 // Of ln D: further away errors of states grow and fade in another way, and maps are found anew.
 inline constexpr double kMapsReach = 0.5;
+inline bool maps_reach(double pace, double pace_of_maps) {
+  return std::fabs(std::log(pace / pace_of_maps)) < kMapsReach;
+}
 
 struct FilterResult {
   std::vector<Innovation> innovations;

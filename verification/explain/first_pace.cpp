@@ -53,7 +53,7 @@ class PaceSearch {
   bool go_on(Pass& pass, double step, double& pace_of_maps) const {
     Pass next{pass.model, pass.maps, {}};
     next.model.pace *= std::exp(step);
-    const bool far = std::fabs(std::log(next.model.pace / pace_of_maps)) > kMapsReach;
+    const bool far = !maps_reach(next.model.pace, pace_of_maps);
     if (far) next.maps = {};
     try {
       next.result = filter_fields(data_, next.model, rough_, next.maps);

@@ -12,9 +12,6 @@ namespace {
 
 // A refit that ends beyond kMapsReach is none of the noise and the errors that it began with.
 constexpr int kMostPasses = 4;
-bool is_within_reach(double pace, double pace_of_maps) {
-  return std::fabs(std::log(pace / pace_of_maps)) < kMapsReach;
-}
 
 }  // namespace
 
@@ -50,7 +47,7 @@ FilterResult Search::first_pass() {
     pass = filter_fields(data, model, request.filter, maps);
     tell("  D");
     set_found(refit(data, model, request.filter, maps));
-    if (is_within_reach(result.found.pace, pace)) break;
+    if (maps_reach(result.found.pace, pace)) break;
     tell(formatted("  D is rather %.2g times the model's", result.found.pace));
   }
   result.disagreements = disagreements(data, pass, request.base.well);
@@ -68,7 +65,7 @@ FilterResult Search::next_pass() {
     fit_noise(data, filter_fields(data, model, request.filter, maps));
     tell("  D, and what was found");
     set_found(refit(data, model, request.filter, maps));
-    if (is_within_reach(result.found.pace, pace)) break;
+    if (maps_reach(result.found.pace, pace)) break;
   }
   tell(formatted("  what %zu effects would change", model.screened.size()));
   FilterResult pass = filter_fields(data, model, request.filter, maps);

@@ -89,4 +89,12 @@ std::string too_short_boundaries(const MeasuredVesicles& data) {
       shorter.least);
 }
 
+std::vector<std::string> doubts_about(const MeasuredVesicles& data) {
+  std::vector<std::string> doubts;
+  for (const std::string& doubt :
+       {unusual_times(data), too_long_boundaries(data), too_short_boundaries(data)})
+    if (!doubt.empty()) doubts.push_back(doubt);
+  return doubts;
+}
+
 }  // namespace traceraft

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "verification/vesicles/measurements.hpp"
 
@@ -19,5 +20,8 @@ std::string too_short_boundaries(const MeasuredVesicles& data);
 // Looks beyond a day, or all of them within a second: most likely the unit of time is another one.
 // "" if there are none.
 std::string unusual_times(const MeasuredVesicles& data);
+
+// All of these that there are.
+std::vector<std::string> doubts_about(const MeasuredVesicles& data);
 
 }  // namespace traceraft
