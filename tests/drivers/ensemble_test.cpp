@@ -173,6 +173,13 @@ TEST_F(EnsembleTest, IsolatesARunThatFails) {
 // Files that were damaged after their run had finished are their member's own.
 TEST_F(EnsembleTest, GathersTheOthersOfADamagedRun) {
   ASSERT_EQ(traceraft("ensemble --quiet " + runs + "--runs 4 --out " + out("a")).code, 0);
+  const std::string compare =
+      "data compare " TRACERAFT_ROOT "/verification/data/synthetic/guv-2to1 --ensemble " + out("a");
+  EXPECT_EQ(traceraft(compare).output.find("OF 4 RUNS"), std::string::npos);
+  fs::rename(folder.path / "a/runs/seed-4", folder.path / "seed-4");
+  const Outcome incomplete = traceraft(compare);
+  EXPECT_NE(incomplete.output.find("ONLY 3 OF 4 RUNS"), std::string::npos) << incomplete.output;
+  fs::rename(folder.path / "seed-4", folder.path / "a/runs/seed-4");
   const fs::path first = folder.path / "a/runs/seed-1/series.csv";
   std::string series = content(first);
   series.resize(series.rfind('\n', series.size() / 2) + 1);
