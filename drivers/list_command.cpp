@@ -8,7 +8,7 @@
 #include "kernel/effects/effects.hpp"
 #include "kernel/physics/mobility.hpp"
 #include "kernel/problem/initial_data.hpp"
-#include "verification/studies.hpp"
+#include "verification/studies/studies.hpp"
 
 namespace traceraft {
 namespace {

@@ -6,8 +6,8 @@
 #include <mutex>
 
 #include "tests/support/forwarding.hpp"
-#include "verification/bench.hpp"
-#include "verification/studies.hpp"
+#include "verification/measure/bench.hpp"
+#include "verification/studies/studies.hpp"
 
 namespace traceraft {
 namespace {

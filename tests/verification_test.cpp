@@ -1,8 +1,8 @@
 // The quick form of every verification study holds.
 #include <gtest/gtest.h>
 
-#include "verification/bench.hpp"
-#include "verification/studies.hpp"
+#include "verification/measure/bench.hpp"
+#include "verification/studies/studies.hpp"
 
 namespace traceraft {
 namespace {

@@ -12,7 +12,7 @@
 #include "drivers/output/status_line.hpp"
 #include "kernel/core/random.hpp"
 #include "kernel/core/stopwatch.hpp"
-#include "verification/explain/rerun.hpp"
+#include "verification/explain/search/rerun.hpp"
 
 namespace traceraft {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "kernel/core/random.hpp"
 #include "kernel/effects/effects.hpp"
-#include "verification/explain/effect_size.hpp"
+#include "verification/explain/blind/effect_size.hpp"
 
 namespace traceraft {
 namespace {

@@ -9,7 +9,7 @@
 #include "drivers/input/csv_table.hpp"
 #include "drivers/output/text_table.hpp"
 #include "kernel/core/error.hpp"
-#include "verification/explain/refit.hpp"
+#include "verification/explain/fit/refit.hpp"
 
 namespace traceraft {
 namespace {

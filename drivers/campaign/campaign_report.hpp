@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "drivers/campaign/campaign_case.hpp"
-#include "verification/study.hpp"
+#include "verification/measure/figures.hpp"
 
 namespace traceraft {
 

@@ -15,8 +15,8 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/random.hpp"
-#include "verification/explain/candidates.hpp"
-#include "verification/explain/effect_size.hpp"
+#include "verification/explain/blind/effect_size.hpp"
+#include "verification/explain/forecast/candidates.hpp"
 
 namespace traceraft {
 namespace {

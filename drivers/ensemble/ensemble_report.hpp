@@ -8,7 +8,7 @@
 #include "drivers/ensemble/ensemble_runs.hpp"
 #include "drivers/output/page.hpp"
 #include "drivers/output/text_table.hpp"
-#include "verification/study.hpp"
+#include "verification/measure/figures.hpp"
 #include "verification/vesicles/history.hpp"
 
 namespace traceraft {

@@ -10,7 +10,7 @@
 #include "drivers/explain/verdict_sentence.hpp"
 #include "drivers/output/text_table.hpp"
 #include "kernel/core/text.hpp"
-#include "verification/study.hpp"
+#include "verification/measure/figures.hpp"
 
 namespace traceraft {
 namespace {

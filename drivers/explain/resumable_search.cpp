@@ -3,7 +3,7 @@
 #include "drivers/explain/explain_report.hpp"
 #include "drivers/explain/search_file.hpp"
 #include "drivers/numerical_failure.hpp"
-#include "verification/explain/rerun.hpp"
+#include "verification/explain/search/rerun.hpp"
 
 namespace traceraft {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "drivers/output/json_file.hpp"
-#include "verification/explain/explanation.hpp"
+#include "verification/explain/search/explanation.hpp"
 
 namespace traceraft {
 

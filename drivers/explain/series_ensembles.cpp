@@ -16,8 +16,8 @@
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
 #include "kernel/effects/effects.hpp"
-#include "verification/explain/candidates.hpp"
-#include "verification/explain/effect_size.hpp"
+#include "verification/explain/blind/effect_size.hpp"
+#include "verification/explain/forecast/candidates.hpp"
 
 namespace traceraft {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "verification/explain/explanation.hpp"
+#include "verification/explain/search/explanation.hpp"
 
 namespace traceraft {
 

@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "backends/posix/durable_file.hpp"
+#include "drivers/config/toml_table.hpp"
 #include "drivers/input/measured_folder.hpp"
 #include "drivers/input/measured_units.hpp"
 #include "drivers/input/measurement_rows.hpp"
-#include "drivers/input/toml_table.hpp"
 #include "drivers/output/csv.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"

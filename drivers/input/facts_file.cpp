@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "drivers/input/toml_table.hpp"
+#include "drivers/config/toml_table.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 #include "verification/vesicles/raft_fraction.hpp"

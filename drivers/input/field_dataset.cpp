@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "backends/posix/durable_file.hpp"
+#include "drivers/config/toml_table.hpp"
 #include "drivers/input/csv_table.hpp"
 #include "drivers/input/measured_units.hpp"
-#include "drivers/input/toml_table.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/named_list.hpp"
 #include "kernel/core/parameters.hpp"

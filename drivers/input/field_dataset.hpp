@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "drivers/input/measured_folder.hpp"
-#include "verification/explain/field_series.hpp"
+#include "verification/explain/fields/field_series.hpp"
 
 namespace traceraft {
 

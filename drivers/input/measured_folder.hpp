@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "drivers/input/toml_table.hpp"
+#include "drivers/config/toml_table.hpp"
 
 namespace traceraft {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "drivers/config/configuration.hpp"
-#include "drivers/input/toml_table.hpp"
+#include "drivers/config/toml_table.hpp"
 
 namespace traceraft {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "drivers/output/page.hpp"
-#include "verification/study.hpp"
+#include "verification/measure/figures.hpp"
 
 namespace traceraft {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "verification/study.hpp"
+#include "verification/measure/figures.hpp"
 
 namespace traceraft {
 

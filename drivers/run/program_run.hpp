@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "verification/bench.hpp"
+#include "verification/measure/bench.hpp"
 
 namespace traceraft {
 

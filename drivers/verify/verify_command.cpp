@@ -20,8 +20,8 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/stopwatch.hpp"
 #include "kernel/core/text.hpp"
-#include "verification/bench.hpp"
-#include "verification/studies.hpp"
+#include "verification/measure/bench.hpp"
+#include "verification/studies/studies.hpp"
 
 namespace traceraft {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "verification/study.hpp"
+#include "verification/studies/study.hpp"
 
 namespace traceraft {
 

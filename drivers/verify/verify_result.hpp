@@ -6,7 +6,7 @@
 #include <string>
 
 #include "drivers/output/json_file.hpp"
-#include "verification/study.hpp"
+#include "verification/studies/study.hpp"
 
 namespace traceraft {
 

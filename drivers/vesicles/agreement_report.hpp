@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "drivers/output/text_table.hpp"
-#include "verification/study.hpp"
+#include "verification/measure/figures.hpp"
 #include "verification/vesicles/comparison.hpp"
 
 namespace traceraft {

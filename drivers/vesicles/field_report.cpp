@@ -7,7 +7,7 @@
 
 #include "drivers/output/text_table.hpp"
 #include "kernel/core/text.hpp"
-#include "verification/explain/disagreement.hpp"
+#include "verification/explain/filter/disagreement.hpp"
 #include "verification/vesicles/history.hpp"
 
 namespace traceraft {

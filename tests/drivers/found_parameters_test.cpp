@@ -8,7 +8,7 @@
 #include "drivers/explain/remarks.hpp"
 #include "drivers/explain/verdict.hpp"
 #include "drivers/explain/verdict_sentence.hpp"
-#include "verification/explain/candidates.hpp"
+#include "verification/explain/forecast/candidates.hpp"
 
 namespace traceraft {
 namespace {

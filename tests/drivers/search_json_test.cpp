@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "verification/bench.hpp"
+#include "verification/measure/bench.hpp"
 
 namespace traceraft {
 namespace {

@@ -8,7 +8,7 @@
 #include "drivers/config/config_file.hpp"
 #include "drivers/run/run_setup.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "verification/explain/candidates.hpp"
+#include "verification/explain/forecast/candidates.hpp"
 
 namespace traceraft {
 namespace {

@@ -1,4 +1,4 @@
-#include "verification/explain/blind_simulation.hpp"
+#include "verification/explain/blind/blind_simulation.hpp"
 
 #include <gtest/gtest.h>
 

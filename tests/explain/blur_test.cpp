@@ -1,11 +1,11 @@
 // Blur of spherical harmonics, which it only makes smaller, and of what is uniform, which it
 // leaves.
-#include "verification/explain/blur.hpp"
+#include "verification/explain/fields/blur.hpp"
 
 #include <gtest/gtest.h>
 
-#include "verification/bench.hpp"
-#include "verification/explain/resolved_forecast.hpp"
+#include "verification/explain/forecast/resolved_forecast.hpp"
+#include "verification/measure/bench.hpp"
 
 namespace traceraft {
 namespace {

@@ -1,4 +1,4 @@
-#include "verification/explain/bounds.hpp"
+#include "verification/explain/search/bounds.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "verification/explain/curvature_contrast.hpp"
+#include "verification/explain/forecast/curvature_contrast.hpp"
 
 #include <gtest/gtest.h>
 

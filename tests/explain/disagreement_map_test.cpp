@@ -1,4 +1,4 @@
-#include "verification/explain/disagreement_map.hpp"
+#include "verification/explain/filter/disagreement_map.hpp"
 
 #include <gtest/gtest.h>
 

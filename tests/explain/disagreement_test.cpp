@@ -1,5 +1,5 @@
 // Which disagreements are significant.
-#include "verification/explain/disagreement.hpp"
+#include "verification/explain/filter/disagreement.hpp"
 
 #include <gtest/gtest.h>
 

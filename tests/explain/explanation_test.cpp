@@ -1,5 +1,5 @@
 // The search where it has to choose between what it found and its rivals.
-#include "verification/explain/explanation.hpp"
+#include "verification/explain/search/explanation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <stdexcept>
 
 #include "tests/support/small_vesicle.hpp"
-#include "verification/explain/candidates.hpp"
-#include "verification/explain/class_evidence.hpp"
-#include "verification/explain/rerun.hpp"
+#include "verification/explain/forecast/candidates.hpp"
+#include "verification/explain/search/class_evidence.hpp"
+#include "verification/explain/search/rerun.hpp"
 
 namespace traceraft {
 namespace {

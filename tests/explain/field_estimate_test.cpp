@@ -1,4 +1,4 @@
-#include "verification/explain/field_estimate.hpp"
+#include "verification/explain/fields/field_estimate.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "verification/explain/first_pace.hpp"
+#include "verification/explain/fit/first_pace.hpp"
 
 #include <gtest/gtest.h>
 

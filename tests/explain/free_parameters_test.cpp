@@ -1,5 +1,5 @@
 // Optima at the ends of ranges, on passes whose information and scores are written down by hand.
-#include "verification/explain/free_parameters.hpp"
+#include "verification/explain/fit/free_parameters.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "verification/explain/innovation.hpp"
+#include "verification/explain/filter/innovation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "verification/explain/judgement.hpp"
+#include "verification/explain/search/judgement.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "verification/explain/neighbours.hpp"
+#include "verification/explain/search/neighbours.hpp"
 
 #include <gtest/gtest.h>
 

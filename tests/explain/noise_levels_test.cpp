@@ -1,5 +1,5 @@
 // What innovations say of the noise of measurements.
-#include "verification/explain/noise_levels.hpp"
+#include "verification/explain/filter/noise_levels.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "verification/explain/outliers.hpp"
+#include "verification/explain/fields/outliers.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "verification/explain/point_trace.hpp"
+#include "verification/explain/fields/point_trace.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // Refits on a small vesicle, measured with little noise on a mesh that resolves it.
-#include "verification/explain/refit.hpp"
+#include "verification/explain/fit/refit.hpp"
 
 #include <gtest/gtest.h>
 
 #include "kernel/core/error.hpp"
 #include "tests/support/small_vesicle.hpp"
-#include "verification/explain/candidates.hpp"
-#include "verification/explain/effect_size.hpp"
+#include "verification/explain/blind/effect_size.hpp"
+#include "verification/explain/forecast/candidates.hpp"
 
 namespace traceraft {
 namespace {

@@ -1,5 +1,5 @@
 // What held-out measurements say of two models, on forecasts that are written down.
-#include "verification/explain/rerun.hpp"
+#include "verification/explain/search/rerun.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-#include "verification/explain/resolved_forecast.hpp"
+#include "verification/explain/forecast/resolved_forecast.hpp"
 
 #include <gtest/gtest.h>
 
 #include "backends/list.hpp"
 #include "tests/support/spaces.hpp"
-#include "verification/explain/forecast.hpp"
+#include "verification/explain/forecast/forecast.hpp"
 
 namespace traceraft {
 namespace {

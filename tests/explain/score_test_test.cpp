@@ -1,5 +1,5 @@
 // The score test on passes whose information and scores are written down by hand.
-#include "verification/explain/score_test.hpp"
+#include "verification/explain/fit/score_test.hpp"
 
 #include <gtest/gtest.h>
 

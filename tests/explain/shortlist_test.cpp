@@ -1,5 +1,5 @@
 // Shortlists of screenings that are written down by hand.
-#include "verification/explain/shortlist.hpp"
+#include "verification/explain/search/shortlist.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // A blind case that takes seconds: a small vesicle, measured with little noise.
 #pragma once
 
-#include "verification/bench.hpp"
-#include "verification/explain/blind_case.hpp"
+#include "verification/explain/blind/blind_case.hpp"
+#include "verification/measure/bench.hpp"
 
 namespace traceraft::testing {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "verification/bench.hpp"
+#include "verification/measure/bench.hpp"
 #include "verification/measure/error_norms.hpp"
 
 namespace traceraft {

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "kernel/core/error.hpp"
-#include "verification/explain/bounds.hpp"
-#include "verification/explain/score_test.hpp"
+#include "verification/explain/fit/score_test.hpp"
+#include "verification/explain/search/bounds.hpp"
 #include "verification/measure/fit.hpp"
 #include "verification/series/series_responses.hpp"
 

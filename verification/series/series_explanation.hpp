@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "verification/explain/judgement.hpp"
+#include "verification/explain/search/judgement.hpp"
 #include "verification/series/series_gains.hpp"
 
 namespace traceraft {

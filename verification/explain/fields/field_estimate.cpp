@@ -1,0 +1,167 @@
+#include "verification/explain/fields/field_estimate.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <stdexcept>
+
+#include "backends/nlopt/minimise.hpp"
+#include "backends/openblas/dense_algebra.hpp"
+#include "kernel/core/random.hpp"
+#include "verification/measure/sparse_view.hpp"
+
+namespace traceraft {
+namespace {
+
+using SparseFactors = Eigen::SimplicialLLT<EigenMatrix>;
+
+double log_determinant(const SparseFactors& factors) {
+  return 2 * factors.matrixL().nestedExpression().diagonal().array().log().sum();
+}
+
+// −2 ln of the marginal likelihood as a function of the prior; everything scaled by the noise.
+class FieldRegression {
+ public:
+  FieldRegression(const SurfaceSpace& space, const NoisyValues& measured)
+      : mass_(as_eigen(space, space.stabilised_mass)),
+        trace_mass_(as_eigen(space, space.mass)),
+        stiffness_(stiffness_along_normals(space)),
+        count_(measured.values.size()) {
+    const Vec weight = measured.deviation.cwiseAbs2().cwiseInverse();
+    mean_ = measured.values.dot(weight) / weight.sum();
+    const Vec centred = measured.values.array() - mean_;
+    information_ = EigenMatrix(measured.trace.transpose() * weight.asDiagonal() * measured.trace);
+    load_ = measured.trace.transpose() * weight.cwiseProduct(centred);
+    squares_ = centred.dot(weight.cwiseProduct(centred));
+    log_weights_ = weight.array().log().sum();
+    inverse_diagonal_ = mass_.diagonal().cwiseInverse();
+  }
+
+  // Factors of the precision of the field given the values.
+  void compute(const FieldPrior& prior) {
+    const EigenMatrix B = mass_ / (prior.length * prior.length) + stiffness_;
+    const EigenMatrix precision =
+        prior.smoothing * EigenMatrix(B * inverse_diagonal_.asDiagonal() * B) + information_;
+    factorise(prior_factors_, B);
+    factorise(factors_, precision);
+    field_ = factors_.solve(load_);
+  }
+  double noise() const {
+    return std::sqrt(std::max(squares_ - load_.dot(field_), 1e-300) / static_cast<double>(count_));
+  }
+  double deviance(const FieldPrior& prior) {
+    compute(prior);
+    const double log_prior = 2 * log_determinant(prior_factors_) +
+                             inverse_diagonal_.array().log().sum() +
+                             static_cast<double>(field_.size()) * std::log(prior.smoothing);
+    return 2 * static_cast<double>(count_) * std::log(noise()) + log_determinant(factors_) -
+           log_prior - log_weights_;
+  }
+
+  Vec field() const { return field_.array() + mean_; }
+
+  // M̃ Y = M X, as initial data of a run: off the surface nothing is known.
+  Eigen::MatrixXd projected(const Eigen::MatrixXd& X) const {
+    return SparseFactors(mass_).solve(trace_mass_ * X);
+  }
+
+  // The directions of the covariance Σ that matter most for smooth parts of the field: eigenvectors
+  // of Σ W with W = Tᵀ M T and T = (1 − length² Δ)⁻¹, by subspace iteration. Without W they would
+  // be waves that nothing measures and that the flow damps at once.
+  Eigen::MatrixXd errors(double length, int rank) const {
+    constexpr int kIterations = 4, kExtra = 16;
+    const EigenMatrix smoother = mass_ + length * length * stiffness_;
+    const SparseFactors smoothing(smoother);
+    const auto weighted = [&](const Eigen::MatrixXd& X) -> Eigen::MatrixXd {
+      return mass_ * smoothing.solve(trace_mass_ * smoothing.solve(mass_ * X));
+    };
+    Eigen::MatrixXd X(field_.size(), std::min<Eigen::Index>(rank + kExtra, field_.size()));
+    for (Eigen::Index i = 0; i < X.size(); ++i)
+      X.data()[i] = uniform_random(1, 0, static_cast<std::uint64_t>(i)) - 0.5;
+    for (int k = 0; k < kIterations; ++k) {
+      X = factors_.solve(weighted(X)).eval();
+      const Eigen::LLT<Eigen::MatrixXd> gram(X.transpose() * weighted(X));
+      X = gram.matrixU().solve<Eigen::OnTheRight>(X).eval();
+    }
+    const Eigen::MatrixXd WX = weighted(X);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz(WX.transpose() * factors_.solve(WX));
+    const Eigen::Index kept = std::min<Eigen::Index>(rank, X.cols());
+    return X * ritz.eigenvectors().rightCols(kept) *
+           ritz.eigenvalues().tail(kept).cwiseMax(0).cwiseSqrt().asDiagonal();
+  }
+
+  // L⁻ᵀ z with normal z has the covariance (L Lᵀ)⁻¹.
+  Eigen::MatrixXd draws(int count, std::uint64_t stream) const {
+    Eigen::MatrixXd z(field_.size(), count);
+    for (Eigen::Index i = 0; i < z.size(); ++i)
+      z.data()[i] = normal_random(2, stream, static_cast<std::uint64_t>(i));
+    return factors_.permutationPinv() * factors_.matrixU().solve(z);
+  }
+
+ private:
+  void factorise(SparseFactors& factors, const EigenMatrix& A) {
+    if (!factors.rows()) factors.analyzePattern(A);
+    factors.factorize(A);
+    if (factors.info() != Eigen::Success)
+      throw std::runtime_error("the precision of a field is not positive definite");
+  }
+  EigenMatrix mass_, trace_mass_, stiffness_, information_;
+  Eigen::Index count_;
+  double mean_, squares_, log_weights_;
+  Vec load_, inverse_diagonal_, field_;
+  SparseFactors prior_factors_, factors_;
+};
+
+FieldEstimate result_of(FieldRegression& regression, const FieldPrior& prior,
+                        const ErrorRequest& wanted) {
+  regression.compute(prior);
+  FieldEstimate result{regression.projected(regression.field()), prior, regression.noise(), {}, {}};
+  if (wanted.rank > 0)
+    result.errors =
+        regression.projected(result.noise * regression.errors(wanted.length, wanted.rank));
+  if (wanted.draws > 0)
+    result.draws =
+        regression.projected(result.noise * regression.draws(wanted.draws, wanted.stream));
+  return result;
+}
+
+}  // namespace
+
+FieldEstimate estimate_field(const SurfaceSpace& space, const NoisyValues& measured,
+                             const ErrorRequest& wanted) {
+  FieldRegression regression(space, measured);
+  const double density = static_cast<double>(measured.values.size()) / space.area;
+  MinimiseRequest request;
+  // Logarithms of the length and of the smoothing.
+  request.function = [&](const std::vector<double>& x) {
+    return regression.deviance({std::exp(x[0]), std::exp(x[1])});
+  };
+  const double length = 2 * space.h();
+  const double smoothing = density * std::pow(length, 4) * 1e-2;
+  request.start = {std::log(length), std::log(smoothing)};
+  request.lower = {std::log(length / 8), std::log(smoothing) - 14};
+  request.upper = {std::log(length * 16), std::log(smoothing) + 14};
+  request.step = {0.7, 2};
+  request.tolerance = 5e-3;
+  request.most_evaluations = 60;
+  const Minimum best = minimise(request);
+  return result_of(regression, {std::exp(best.x[0]), std::exp(best.x[1])}, wanted);
+}
+
+FieldEstimate estimate_field(const SurfaceSpace& space, const NoisyValues& measured,
+                             const FieldPrior& prior, const ErrorRequest& wanted) {
+  FieldRegression regression(space, measured);
+  return result_of(regression, prior, wanted);
+}
+
+void compress(const Eigen::SparseMatrix<double>& A, Eigen::MatrixXd& X, int most) {
+  const SymmetricEigen eigen = symmetric_eigen(transposed_product(X, A * X));
+  const Eigen::Index columns = X.cols();
+  const double largest = columns ? eigen.values[columns - 1] : 0;
+  Eigen::Index kept = 0;
+  while (kept < std::min<Eigen::Index>(most, columns) &&
+         eigen.values[columns - 1 - kept] > 1e-10 * largest)
+    ++kept;
+  X = product(X, eigen.vectors.rightCols(kept));
+}
+
+}  // namespace traceraft

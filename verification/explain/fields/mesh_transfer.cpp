@@ -1,0 +1,28 @@
+#include "verification/explain/fields/mesh_transfer.hpp"
+
+#include "kernel/fem/density_load.hpp"
+
+namespace traceraft {
+
+MeshTransfer::MeshTransfer(const SurfaceSpace& from, SpacePtr to) : to_(std::move(to)) {
+  const CutSurface& surface = to_->surface;
+  std::vector<Point> places;
+  Vec weights(static_cast<Eigen::Index>(surface.triangles.size() * kDegreeFourRule.size()));
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    for (std::size_t p = 0; p < kDegreeFourRule.size(); ++p) {
+      weights[static_cast<Eigen::Index>(places.size())] =
+          kDegreeFourRule[p].weight * surface.triangle_area[t];
+      places.push_back(quadrature_point(surface, t, p).x);
+    }
+  const double reach = from.h() + to_->h();
+  load_ = point_trace(*to_, places, reach).transpose() * weights.asDiagonal() *
+          point_trace(from, places, reach);
+}
+
+Vec MeshTransfer::operator()(ConstVec c) const {
+  Vec projected(to_->nodes());
+  require(to_->solve_mass(load_ * c, projected));
+  return projected;
+}
+
+}  // namespace traceraft

@@ -1,0 +1,133 @@
+#include "verification/explain/filter/filter_problem.hpp"
+
+#include <cmath>
+
+#include "backends/list.hpp"
+#include "kernel/core/error.hpp"
+#include "verification/explain/fields/outliers.hpp"
+
+namespace traceraft {
+namespace {
+
+// Of the tolerance that integrators have unless asked: far below the noise of a measurement.
+constexpr double kForecastTolerance = 0.3;
+// Outliers are that far from what is around them, in units of the distance of the wells; more than
+// that share of the values is refused, and they are looked for that often.
+constexpr double kOutlying = 0.2, kMostOutliers = 0.05;
+constexpr int kMostPasses = 6;
+
+// What data state as their deviations is taken as relative to each other; 1: what the values would
+// have if all told as much as they do together.
+double typical_deviation(const FieldSeries& series) {
+  double weights = 0, count = 0;
+  for (const FieldSnapshot& snapshot : series.snapshots) {
+    weights += snapshot.deviation.cwiseAbs2().cwiseInverse().sum();
+    count += static_cast<double>(snapshot.deviation.size());
+  }
+  return std::sqrt(count / weights);
+}
+
+std::vector<NoisyValues> noisy_values(const FilterProblem& data) {
+  const double typical = typical_deviation(data.series);
+  std::vector<NoisyValues> result;
+  for (const FieldSnapshot& snapshot : data.series.snapshots) try {
+      result.push_back({point_trace(*data.space, snapshot.points, kOffSurface), snapshot.values,
+                        snapshot.deviation / typical});
+    } catch (const InputError& error) {
+      throw InputError("vesicle " + data.series.vesicle + ", snapshot " +
+                       std::to_string(result.size() + 1) + ": " + error.what());
+    }
+  return result;
+}
+
+// What is common to all vesicles.
+FilterProblem on_meshes(const LevelSet& surface, int cells, int threads,
+                        const FilterSettings& settings) {
+  FilterProblem data;
+  // On meshes of some thousand nodes threads are better used for different columns and models.
+  data.team = std::make_shared<ThreadTeam>(threads);
+  data.space = serial_space(surface, cells);
+  data.finer = std::make_shared<const FinerMeshes>(finer_meshes(surface, data.space, cells));
+  data.mass = as_eigen(*data.space, data.space->stabilised_mass);
+  data.patterns = std::make_shared<const GapPatterns>(*data.space, settings.gap_degree);
+  if (settings.blur > 0) data.blur = std::make_shared<const Blur>(*data.space, settings.blur);
+  data.tangent_solver = choose_linear_solver("direct", *data.space).primary;
+  data.make_integrator = [name = settings.integrator](const DaeProblem& problem,
+                                                      const SurfaceSpace& space) {
+    const IntegratorEntry& entry = integrators().find(name);
+    IntegratorSettings integrator;
+    integrator.tolerance = kForecastTolerance * entry.tolerance;
+    return entry.make(problem, choose_linear_solver("block", space), space.team, integrator);
+  };
+  return data;
+}
+
+void refuse_outliers(const FilterProblem& data) {
+  std::size_t left = 0;
+  for (const FieldSnapshot& snapshot : data.series.snapshots) left += snapshot.points.size();
+  const auto outliers = static_cast<double>(data.outliers);
+  if (outliers > kMostOutliers * (outliers + static_cast<double>(left)))
+    throw InputError("vesicle " + data.series.vesicle + ": " + std::to_string(data.outliers) +
+                     " values of c belong to no field, too many to be slips: each is far from "
+                     "those around it");
+}
+
+// The prior of the first field, the noise of those that count, and what is left without outliers.
+FieldPrior clean(const FieldSeries& series, const DoubleWell& well, FilterProblem& data) {
+  data.series = series;
+  FieldPrior prior{};
+  std::size_t dropped = 1;
+  for (int pass = 0; dropped > 0; ++pass) {
+    data.snapshots = noisy_values(data);
+    prior = estimate_field(*data.space, data.snapshots.front(), ErrorRequest{}).prior;
+    double squares = 0;
+    dropped = 0;
+    for (std::size_t k = 0; k < data.snapshots.size(); ++k) {
+      const FieldEstimate here = estimate_field(*data.space, data.snapshots[k], prior, {});
+      if (k < data.train) squares += here.noise * here.noise / static_cast<double>(data.train);
+      if (pass < kMostPasses)
+        dropped += drop_outliers(data.snapshots[k].trace * here.field,
+                                 kOutlying * (well.b - well.a), data.series.snapshots[k]);
+    }
+    data.noise.assign(data.snapshots.size(), std::sqrt(squares));
+    data.outliers += dropped;
+    refuse_outliers(data);
+  }
+  return prior;
+}
+
+void add_series(const FieldSeries& series, const CahnHilliardModel& base,
+                const FilterSettings& settings, FilterProblem& data) {
+  const FieldPrior prior = clean(series, base.well, data);
+  data.finer_traces = finer_traces(*data.finer, data.series);
+  data.first = estimate_field(*data.space, data.snapshots.front(), prior,
+                              {2 * base.epsilon, settings.rank, settings.replicates, data.vesicle});
+  NoisyValues resolved = data.snapshots.front();
+  resolved.trace = data.finer_traces[1].front();
+  data.first_resolved = estimate_field(*data.finer->spaces[1], resolved, prior, {}).field;
+}
+
+}  // namespace
+
+double count_values(const FilterProblems& data) {
+  double count = 0;
+  for (const FilterProblem& vesicle : data)
+    for (std::size_t k = 1; k < vesicle.train; ++k)
+      count += static_cast<double>(vesicle.snapshots[k].values.size());
+  return count;
+}
+
+FilterProblems make_filter_problems(const std::vector<FieldSeries>& series, const LevelSet& surface,
+                                    const CahnHilliardModel& base, int cells, int threads,
+                                    bool hold_out, const FilterSettings& settings) {
+  FilterProblems problems(series.size(), on_meshes(surface, cells, threads, settings));
+  for (std::size_t v = 0; v < series.size(); ++v) {
+    const std::size_t snapshots = series[v].snapshots.size();
+    problems[v].vesicle = v;
+    problems[v].train = hold_out && snapshots >= 4 ? snapshots - 1 : snapshots;
+    add_series(series[v], base, settings, problems[v]);
+  }
+  return problems;
+}
+
+}  // namespace traceraft

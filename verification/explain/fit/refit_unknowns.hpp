@@ -1,0 +1,21 @@
+// What a refit solves for: ln pace, then all coefficients; rates in units of time of the base
+// model, as what data tell of a rate then hardly depends on the pace.
+#pragma once
+
+#include "verification/explain/filter/field_filter.hpp"
+
+namespace traceraft {
+
+// Factors from the coefficients to the unknowns; the first, of the pace, is 1.
+Vec unknown_factors(const Hypothesis& hypothesis, double pace);
+
+Vec unknowns(const FilterModel& model);
+void set_unknowns(FilterModel& model, const Vec& x);  // coefficients within their ranges
+
+// Derivatives of the unknowns by ln pace and the coefficients.
+Eigen::MatrixXd unknown_derivatives(const FilterModel& model);
+
+// Where the pace and the coefficients are among the parameters of a pass.
+std::vector<Eigen::Index> own_parameters(const Hypothesis& hypothesis);
+
+}  // namespace traceraft

@@ -1,0 +1,183 @@
+#include "verification/explain/search/class_evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "kernel/core/error.hpp"
+
+namespace traceraft {
+namespace {
+
+Refit refit_of(const FilterProblems& data, FilterModel model, const FilterSettings& settings) {
+  try {
+    std::vector<ErrorMaps> maps;
+    (void)filter_fields(data, model, settings, maps);
+    return refit(data, model, settings, maps);
+  } catch (const std::runtime_error& error) {
+    Refit failed;
+    failed.failure = error.what();
+    return failed;
+  }
+}
+
+bool holds_out(const FilterProblems& data) {
+  return std::any_of(data.begin(), data.end(), [](const FilterProblem& vesicle) {
+    return vesicle.train < vesicle.snapshots.size();
+  });
+}
+
+FilterProblems holding_nothing_out(FilterProblems data) {
+  for (FilterProblem& vesicle : data) vesicle.train = vesicle.snapshots.size();
+  return data;
+}
+
+bool is_open(const Explanation& result) {
+  const bool open =
+      result.finding == Finding::ambiguous ||
+      (result.finding == Finding::unnamed && result.without_gap == Finding::ambiguous);
+  return open && result.stopped.empty() && !result.rivals.empty();
+}
+
+// The found one is not left for one that is hardly any better (Akaike 1974).
+constexpr double kBetter = 2;
+
+// A member of the class, and as it fits all that was measured.
+struct Member {
+  Refit fit, all;
+};
+
+// The most probable one with all that was measured; the first one, if none with effects that are
+// resolved is better.
+std::size_t best_of(const std::vector<Member>& members, double values, const Search& search) {
+  // Its gap is that of the found one.
+  if (search.result.finding == Finding::unnamed) return 0;
+  std::size_t best = 0;
+  double least = criterion(members.front().all, values) - kBetter;
+  for (std::size_t k = 1; k < members.size(); ++k) {
+    const Refit& fit = members[k].all;
+    if (!fit.failure.empty() || criterion(fit, values) >= least ||
+        !all_resolved(fit, values, search.mesh_error()))
+      continue;
+    least = criterion(fit, values);
+    best = k;
+  }
+  return best;
+}
+
+// What is no other hypothesis than the found one, of which it has a special case, but may be one
+// beside another best.
+std::vector<Refit> shadows(const Search& search, const Refit& best) {
+  const Refit& found = search.result.found;
+  const double limit = telling(search.values(), search.mesh_error());
+  std::vector<Refit> result;
+  for (const Round& round : search.result.rounds)
+    for (const Refit& fit : round.refits)
+      if (fit.hypothesis.parts.size() == found.hypothesis.parts.size() && is_no_other(fit, found) &&
+          !is_among(class_of(search.result), fit) &&
+          explains_as_well(fit, best, search.values(), limit))
+        result.push_back(fit);
+  return result;
+}
+
+void weigh(std::vector<Refit> fits, const FilterProblems& all, const Search& search,
+           std::vector<Member>& members) {
+  std::vector<Refit> refits = refits_of(all, search.request.base, fits, search.request.filter);
+  for (std::size_t k = 0; k < fits.size(); ++k)
+    members.push_back({std::move(fits[k]), std::move(refits[k])});
+}
+
+// The found one first. None if that cannot be refitted.
+std::vector<Member> members_of(const FilterProblems& all, const Search& search) {
+  std::vector<Refit> fits{search.result.found};
+  fits.insert(fits.end(), search.result.rivals.begin(), search.result.rivals.end());
+  std::vector<Member> members;
+  weigh(std::move(fits), all, search, members);
+  if (!members.front().all.failure.empty()) return {};
+  if (const std::size_t best = best_of(members, count_values(all), search); best != 0)
+    weigh(shadows(search, members[best].fit), all, search, members);
+  return members;
+}
+
+}  // namespace
+
+std::vector<Refit> refits_of(const FilterProblems& data, const CahnHilliardModel& base,
+                             const std::vector<Refit>& members, FilterSettings settings) {
+  settings.replicates = 0;
+  std::vector<Refit> fits;
+  for (const Refit& member : members)
+    fits.push_back(refit_of(data, {base, member.pace, member.hypothesis, {}}, settings));
+  return fits;
+}
+
+bool is_as_probable(const Search& search, const Refit& one, const Refit& other) {
+  const FilterProblems all = holding_nothing_out(search.data);
+  const std::vector<Refit> fits =
+      refits_of(all, search.request.base, {one, other}, search.request.filter);
+  const double values = count_values(all);
+  return fits[0].failure.empty() && fits[1].failure.empty() &&
+         criterion(fits[0], values) <= criterion(fits[1], values);
+}
+
+bool leave_to_rivals(Search& search) {
+  const SearchState before = search.state(true);
+  std::vector<Refit> without_gap;
+  for (const Refit& rival : before.so_far.rivals) {
+    search.tell("instead " + rival.hypothesis.name());
+    search.go_on_from(before);
+    search.set_found(rival);
+    try {
+      const FilterResult pass = search.next_pass();
+      const Screening left = screen(pass, search.model.screened, search.model.hypothesis);
+      if (!has_gap(left, search.request.false_alarms)) without_gap.push_back(search.result.found);
+    } catch (const IoError&) {
+      throw;
+    } catch (const std::runtime_error& error) {
+      search.tell("  fails: " + std::string(error.what()));
+    }
+  }
+  search.go_on_from(before);
+  if (without_gap.empty()) return false;
+  Explanation& result = search.result;
+  result.turns.push_back(
+      {Turn::left_gap, result.found.hypothesis.name(), without_gap.front().hypothesis.name()});
+  search.set_found(without_gap.front());
+  result.rivals.assign(without_gap.begin() + 1, without_gap.end());
+  result.finding = result.rivals.empty() ? Finding::named : Finding::ambiguous;
+  return true;
+}
+
+bool tell_apart(Search& search) {
+  Explanation& result = search.result;
+  search.told_apart = true;
+  if (!is_open(result) || !holds_out(search.data)) return false;
+  search.tell("what is held out says of the class");
+  const FilterProblems all = holding_nothing_out(search.data);
+  const std::vector<Member> members = members_of(all, search);
+  if (members.empty()) return false;
+  const double values = count_values(all), limit = telling(values, search.mesh_error());
+  const std::size_t best = best_of(members, values, search);
+  result.rivals.clear();
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    const std::string name = members[k].fit.hypothesis.name();
+    // 0 where it is not known.
+    const double worse = members[k].all.failure.empty() ? criterion(members[k].all, values) -
+                                                              criterion(members[best].all, values)
+                                                        : 0;
+    const long less = std::lround(worse);
+    search.tell("  " + name + (less < 0 ? " gains " : " loses ") + std::to_string(std::labs(less)));
+    if (worse >= limit)
+      result.told_apart.push_back({name, worse});
+    else if (k != best)
+      result.rivals.push_back(members[k].fit);
+  }
+  if (result.rivals.empty())
+    (result.finding == Finding::unnamed ? result.without_gap : result.finding) = Finding::named;
+  if (best == 0) return false;
+  result.turns.push_back(
+      {Turn::foretold, members.front().fit.hypothesis.name(), members[best].fit.hypothesis.name()});
+  search.set_found(members[best].fit);
+  return true;
+}
+
+}  // namespace traceraft

@@ -1,0 +1,132 @@
+#include "verification/explain/search/rerun.hpp"
+
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+namespace traceraft {
+namespace {
+
+constexpr double kOtherCells = 1.15;
+constexpr char kOtherIntegrator[] = "rosenbrock";
+
+// Standard deviations, beyond which one in a hundred truths falls short.
+constexpr double kRefuted = 2.33;
+
+FilterResult pass_of(const std::vector<FieldSeries>& series, const ExplainRequest& request,
+                     const FilterModel& model, const std::vector<std::vector<double>>& noises) {
+  FilterProblems data = problems_of(series, request);
+  if (!noises.empty())
+    for (FilterProblem& vesicle : data) vesicle.noise = noises[vesicle.vesicle];
+  std::vector<ErrorMaps> maps;
+  return filter_fields(data, model, request.filter, maps);
+}
+
+FilterResult pass_of_model(const std::vector<FieldSeries>& series, const ExplainRequest& request,
+                           double pace, const std::vector<EffectTerm>& effects,
+                           const std::vector<std::vector<double>>& noises) {
+  ExplainRequest alone = request;
+  alone.filter.replicates = 0;
+  return pass_of(series, alone, {with_effects(request.base, effects), pace, {}, {}}, noises);
+}
+
+// As the search asks it, of the model that it ended with.
+FilterResult what_is_left(const std::vector<FieldSeries>& series, const ExplainRequest& request,
+                          const Explanation& found) {
+  const Refit& end = found.found;
+  return pass_of(series, request, {request.base, end.pace, end.hypothesis, {}}, found.noises);
+}
+
+Rerun compare_both(const std::vector<FieldSeries>& series, ExplainRequest other,
+                   const Explanation& found) {
+  const int lanes = std::min(other.threads, 2);
+  other.threads = 1;
+  std::array<FilterResult, 2> passes;
+  ThreadTeam(lanes).run([&](int lane) {
+    for (int k = lane; k < 2; k += lanes)
+      passes[k] = k == 0 ? pass_of_model(series, other, found.base.pace, {}, found.noises)
+                         : pass_of_model(series, other, found.found.pace,
+                                         found.found.hypothesis.terms(), found.noises);
+  });
+  return compare_forecasts(passes[0], passes[1]);
+}
+
+// Is what nothing explains there on the other mesh, too?
+void look_for_gap(const std::vector<FieldSeries>& series, const ExplainRequest& other,
+                  Explanation& found, Rerun& rerun) {
+  try {
+    const FilterResult pass = what_is_left(series, other, found);
+    if (found.found.hypothesis.parts.empty()) {
+      rerun.base = rerun.found = gaps_of_pass(pass);
+      rerun.floor = expected_gaps(pass);
+    }
+    const Screening left = screen(pass, {}, found.found.hypothesis);
+    rerun.gap_p = left.gap_p;
+    if (!has_gap(left, found.false_alarms)) found.finding = found.without_gap;
+  } catch (const std::runtime_error& error) {
+    rerun.gap_failure = error.what();
+  }
+}
+
+}  // namespace
+
+bool Rerun::refutes() const {
+  return failure.empty() && gain < 0 && shortfall > kRefuted;
+}
+
+Rerun compare_forecasts(const FilterResult& base, const FilterResult& found) {
+  Rerun result;
+  result.base = gaps_of_pass(base);
+  result.found = gaps_of_pass(found);
+  result.floor = expected_gaps(found);
+  const bool held_out = result.found.heldout > 0;
+  // If the found model is the truth, its innovations ν have the covariance S; νᵀ S⁻¹ d has the
+  // variance dᵀ S⁻¹ d then, d being the difference of the forecasts.
+  double along = 0, difference = 0;
+  for (std::size_t k = 0; k < found.innovations.size(); ++k) {
+    const Innovation& f = found.innovations[k];
+    if (f.held_out != held_out) continue;
+    Columns values(f.values.size(), 2);
+    values << f.values, base.innovations[k].values - f.values;
+    const Columns weighted = InnovationCovariance(f, 0).solve(values);
+    const double one = values.col(1).dot(weighted.col(0)), two = values.col(1).dot(weighted.col(1));
+    result.gain += 2 * one + two;
+    along -= one;
+    difference += two;
+  }
+  result.shortfall = difference > 0 ? along / std::sqrt(difference) : 0;
+  return result;
+}
+
+bool is_to_run_again(const Explanation& found) {
+  return !found.found.hypothesis.parts.empty() || found.finding == Finding::unnamed;
+}
+
+void run_again(const std::vector<FieldSeries>& series, const ExplainRequest& request,
+               Explanation& found) {
+  if (!is_to_run_again(found)) return;
+  ExplainRequest other = request;
+  other.cells = static_cast<int>(std::lround(kOtherCells * request.cells));
+  other.filter.integrator = kOtherIntegrator;
+  Rerun result;
+  if (!found.found.hypothesis.parts.empty()) try {
+      result = compare_both(series, other, found);
+    } catch (const std::runtime_error& error) {
+      result.failure = error.what();
+    }
+  if (found.finding == Finding::unnamed) look_for_gap(series, other, found, result);
+  result.cells = other.cells;
+  result.integrator = kOtherIntegrator;
+  if (is_named(found) && result.refutes())
+    found.finding = without_name(found.rounds.front().screening, found.false_alarms);
+  found.rerun = result;
+}
+
+ModelGaps gaps_of_model(const std::vector<FieldSeries>& series, const ExplainRequest& request,
+                        double pace, const std::vector<EffectTerm>& effects,
+                        const std::vector<std::vector<double>>& noises) {
+  const FilterResult pass = pass_of_model(series, request, pace, effects, noises);
+  return {gaps_of_pass(pass), expected_gaps(pass)};
+}
+
+}  // namespace traceraft

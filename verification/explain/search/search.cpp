@@ -1,0 +1,140 @@
+#include "verification/explain/search/search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "kernel/core/text.hpp"
+#include "verification/explain/filter/noise_levels.hpp"
+
+namespace traceraft {
+namespace {
+
+// A refit that ends beyond kMapsReach is none of the noise and the errors that it began with.
+constexpr int kMostPasses = 4;
+
+}  // namespace
+
+Search::Search(const std::vector<FieldSeries>& series, const ExplainRequest& explain_request)
+    : request(explain_request),
+      data(problems_of(series, request)),
+      candidates(candidates_for(request.base, *request.surface,
+                                data.front().space->surface.position, request.without)),
+      model{request.base, 1, {}, candidates} {}
+
+void Search::tell(const std::string& step) const {
+  if (request.progress) request.progress(step);
+}
+
+void Search::set_found(const Refit& fit) {
+  if (!fit.failure.empty()) throw std::runtime_error(fit.failure);
+  result.found = fit;
+  model.hypothesis = fit.hypothesis;
+  model.pace = fit.pace;
+  model.screened.clear();
+  std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(model.screened),
+               [&](const Candidate& c) { return !fit.hypothesis.has(c.effect); });
+}
+
+FilterResult Search::first_pass() {
+  FilterResult pass;
+  for (int k = 0; k < kMostPasses; ++k) {
+    const double pace = model.pace;
+    maps = {};
+    tell("  forecasts, and errors of states and of the mesh");
+    fit_noise(data, filter_fields(data, model, request.filter, maps));
+    tell(formatted("  what %zu effects would change", model.screened.size()));
+    pass = filter_fields(data, model, request.filter, maps);
+    tell("  D");
+    set_found(refit(data, model, request.filter, maps));
+    if (maps_reach(result.found.pace, pace)) break;
+    tell(formatted("  D is rather %.2g times the model's", result.found.pace));
+  }
+  result.disagreements = disagreements(data, pass, request.base.well);
+  result.disagreements.resize(significant(result.disagreements, request.false_alarms));
+  bootstrap(pass, model, result.found);
+  result.base = result.found;
+  return pass;
+}
+
+FilterResult Search::next_pass() {
+  for (int k = 0; k < kMostPasses; ++k) {
+    const double pace = model.pace;
+    maps = {};
+    tell("  forecasts, and errors of states and of the mesh");
+    fit_noise(data, filter_fields(data, model, request.filter, maps));
+    tell("  D, and what was found");
+    set_found(refit(data, model, request.filter, maps));
+    if (maps_reach(result.found.pace, pace)) break;
+  }
+  tell(formatted("  what %zu effects would change", model.screened.size()));
+  FilterResult pass = filter_fields(data, model, request.filter, maps);
+  bootstrap(pass, model, result.found);
+  return pass;
+}
+
+std::vector<Refit> Search::refit_all(const std::vector<FilterModel>& trials) {
+  const std::size_t first = numbered_;
+  numbered_ += trials.size();
+  std::map<std::size_t, Refit>& ahead = before_.ahead;
+  std::vector<std::size_t> open;
+  std::vector<FilterModel> open_trials;
+  for (std::size_t k = first; k < numbered_; ++k) {
+    const auto known = ahead.find(k);
+    if (known != ahead.end() &&
+        known->second.hypothesis.name() == trials[k - first].hypothesis.name()) {
+      tell_gain(known->second);
+      continue;
+    }
+    open.push_back(k);
+    open_trials.push_back(trials[k - first]);
+  }
+  refit_each(data, open_trials, request.filter, maps, [&](std::size_t which, const Refit& fit) {
+    tell_gain(fit);
+    ahead[open[which]] = fit;
+    save(before_);
+  });
+  std::vector<Refit> refits;
+  for (std::size_t k = first; k < numbered_; ++k) refits.push_back(ahead.at(k));
+  return refits;
+}
+
+void Search::tell_gain(const Refit& fit) const {
+  // With one effect more there is nothing to lose.
+  const bool more = fit.hypothesis.parts.size() > result.found.hypothesis.parts.size();
+  const double difference = result.found.deviance - fit.deviance;
+  const double gained = more ? std::max(0.0, difference) : difference;
+  const std::string change = (gained < 0 ? std::string(" loses ") : std::string(" gains ")) +
+                             std::to_string(std::labs(std::lround(gained)));
+  tell("  " + fit.hypothesis.name() + (fit.failure.empty() ? change : " fails"));
+}
+
+SearchState Search::state(bool more) const {
+  SearchState now{result, {}, more, told_apart, {}};
+  for (const FilterProblem& vesicle : data) now.noise.push_back(vesicle.noise);
+  return now;
+}
+
+void Search::save(const SearchState& state) const {
+  if (request.save) request.save(state);
+}
+
+void Search::begin_round(bool more, std::map<std::size_t, Refit> ahead) {
+  before_ = state(more);
+  before_.ahead = std::move(ahead);
+  numbered_ = 0;
+  save(before_);
+}
+
+void Search::go_on_from(const SearchState& state) {
+  result = state.so_far;
+  told_apart = state.told_apart;
+  for (FilterProblem& vesicle : data) vesicle.noise = state.noise[vesicle.vesicle];
+  set_found(result.found);
+}
+
+bool is_among(const std::vector<std::string>& hypotheses, const Refit& fit) {
+  return std::find(hypotheses.begin(), hypotheses.end(), fit.hypothesis.name()) != hypotheses.end();
+}
+
+}  // namespace traceraft

@@ -1,0 +1,126 @@
+#include "verification/studies/coarsening_laws.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "kernel/core/stopwatch.hpp"
+#include "kernel/core/text.hpp"
+
+namespace traceraft {
+
+Window window_where(const std::vector<double>& times,
+                    const std::function<bool(std::size_t)>& holds) {
+  std::size_t end = times.size();
+  while (end > 0 && !holds(end - 1)) --end;
+  if (end == 0) return {times.back(), times.back()};
+  std::size_t begin = end - 1;
+  while (begin > 0 && holds(begin - 1)) --begin;
+  return {times[begin], times[end - 1]};
+}
+
+Ensemble::Ensemble(const Bench& bench, EnsembleRequest request_)
+    : request(std::move(request_)), members(run_ensemble(bench, request)) {}
+
+std::vector<double> Ensemble::mean(std::vector<double> Member::*values) const {
+  return geometric_mean(members, values, everyone(members));
+}
+
+Table exponents_table() {
+  return {"exponents",
+          {"ensemble", "quantity", "law of", "from", "to", "exponent", "low", "high", "theory"},
+          {}};
+}
+
+Exponent measure_law(const Ensemble& ensemble, const Law& law, const Window& window, Origin origin,
+                     Table& exponents) {
+  if (!(window.end >= 3 * window.begin))
+    throw std::runtime_error("the window of the " + law.quantity + " is too short to fit a law");
+  const Exponent found = fit_exponent(ensemble.members, law.values, ensemble.request.times,
+                                      window.begin, window.end, origin);
+  exponents.rows.push_back({law.ensemble, law.quantity,
+                            origin == Origin::zero ? "t" : formatted("t + %.3g", found.offset),
+                            window.begin, window.end, found.b, found.interval.low,
+                            found.interval.high, law.theory});
+  return found;
+}
+
+Claim exponent_claim(const Law& law, const std::string& of, const Exponent& found, double margin) {
+  return claim_near(law.ensemble + ": exponent of the " + law.quantity + " in " + of, found.b,
+                    law.theory, margin, 0.5 * (found.interval.high - found.interval.low));
+}
+
+Claim interval_claim(const Law& law, const std::string& of, const Exponent& found) {
+  return claim_between(formatted("%.3g", law.theory) + " lies in the 95 % interval of the " +
+                           law.quantity + " in " + of + " (1: yes)",
+                       found.interval.contains(law.theory), 1, 1);
+}
+
+Points as_points(const std::vector<double>& times, const std::vector<double>& values) {
+  Points points;
+  for (std::size_t i = 0; i < times.size(); ++i) points.emplace_back(times[i], values[i]);
+  return points;
+}
+
+ChartSeries law_line(const std::string& name, const Points& points, const Window& window,
+                     double b) {
+  const double middle = std::sqrt(window.begin * window.end);
+  const auto near =
+      std::min_element(points.begin(), points.end(), [&](const auto& p, const auto& q) {
+        return std::fabs(std::log(p.first / middle)) < std::fabs(std::log(q.first / middle));
+      });
+  const auto at = [&](double t) { return near->second * std::pow(t / near->first, b); };
+  return {name, {{window.begin, at(window.begin)}, {window.end, at(window.end)}}, Mark::line};
+}
+
+Chart coarsening_chart(const std::string& title, const std::string& y_label,
+                       std::vector<ChartSeries> series) {
+  return {title, "t (R^2/D)", y_label, true, true, std::move(series)};
+}
+
+EnsembleRequest ensemble_request(const std::string& mobility, double fraction, const Sizes& sizes,
+                                 double t_end) {
+  EnsembleRequest request;
+  request.mobility = mobility;
+  request.raft_fraction = fraction;
+  request.cells = sizes.cells;
+  request.epsilon = sizes.epsilon;
+  request.members = sizes.members;
+  request.tolerance = 1e-2;  // 1e-3 gives nearly the same rafts (docs/decisions/0013)
+  request.t_end = t_end;
+  request.part = sizes.part;
+  constexpr int kPerDecade = 24;
+  for (double t = 0.1; t <= t_end; t *= std::pow(10.0, 1.0 / kPerDecade))
+    request.times.push_back(t);
+  return request;
+}
+
+Ensemble measured_ensemble(const Bench& bench, const std::string& name,
+                           const EnsembleRequest& request, Findings& findings) {
+  const Stopwatch watch;
+  Ensemble ensemble(bench, request);
+  const double seconds = watch.seconds();
+  double steps = 0;
+  for (const Member& member : ensemble.members)
+    steps += member.steps / static_cast<double>(ensemble.members.size());
+  findings.cost.rows.push_back({name, static_cast<double>(request.cells), request.epsilon,
+                                10.0 / 3 / request.cells / request.epsilon,
+                                static_cast<double>(request.members), request.t_end, steps,
+                                seconds});
+  return ensemble;
+}
+
+StudyReport finished_report(Findings findings, const std::string& windows) {
+  findings.report.notes = {
+      "Seeded runs; intervals are by the bootstrap over runs and hold their scatter, not "
+      "corrections to the law. A length is |Gamma|/perimeter: " +
+      windows};
+  findings.report.tables = {findings.exponents, findings.cost};
+  return findings.report;
+}
+
+std::string at_time(double t) {
+  return formatted("t = %.3g", t);
+}
+
+}  // namespace traceraft

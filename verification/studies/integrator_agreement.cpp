@@ -1,0 +1,152 @@
+// All integrators and linear solvers, on one and on two ranks, approach the same solution of one
+// seeded run.
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/core/parameters.hpp"
+#include "verification/measure/bench.hpp"
+#include "verification/measure/fit.hpp"
+#include "verification/studies/studies.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr int kCells = 16;
+constexpr double kEpsilon = 0.2, kFraction = 0.4;
+constexpr double kEnd = 1;  // rafts have formed and begun to coarsen
+
+class Agreement {
+ public:
+  explicit Agreement(const Bench& bench)
+      : bench_(bench),
+        space_(bench.space("sphere", kCells)),
+        problem_(bench.problem(space_, bench_model("degenerate", kEpsilon))) {
+    InitialRequest request;
+    request.raft_fraction = kFraction;
+    start_ = initial_state(*problem_, "noise", request);
+  }
+  Vec solve(const std::string& integrator, const std::string& solver, double tolerance) const {
+    IntegratorSettings settings;
+    settings.tolerance = tolerance;
+    settings.linear_tolerance = std::min(1e-4, tolerance);
+    const IntegratorPtr method =
+        bench_.make_integrator(*problem_, *space_, integrator, solver, settings);
+    advance_to(*method, start_, kEnd);
+    return method->state();
+  }
+  // The whole program, on ranks.
+  Vec solve_on(int ranks, const std::string& integrator, const std::string& solver,
+               double end) const {
+    const ProgramRun run = bench_.request.run_program(
+        {"--integrator", integrator, "--linear-solver", solver, "--cells", std::to_string(kCells),
+         "--epsilon", format_number(kEpsilon), "--raft-fraction", format_number(kFraction),
+         "--tolerance", format_number(solver_tolerance()), "--linear-tolerance",
+         format_number(solver_tolerance()), "--t-end", format_number(end)},
+        ranks, space_->nodes());
+    Vec y = Vec::Zero(problem_->size());
+    y.head(run.c.size()) = run.c;
+    return y;
+  }
+  // At which solvers and ranks are compared.
+  double solver_tolerance() const { return bench_.quick() ? 1e-3 : 1e-4; }
+  // ‖c_a − c_b‖/‖c(0)‖ in L²(Γ).
+  double distance(const Vec& a, const Vec& b) const {
+    return problem_->norm(a - b) / problem_->norm(start_.y);
+  }
+
+ private:
+  const Bench& bench_;
+  SpacePtr space_;
+  ProblemPtr problem_;
+  StartState start_;
+};
+
+void compare_integrators(const Bench& bench, const Agreement& runs, StudyReport& report) {
+  const double tightest = bench.quick() ? 1e-5 : 1e-6;
+  const std::string apart_from = "distance from ida at " + format_number(tightest);
+  Table table{"integrators", {"integrator", "tolerance", apart_from}, {}};
+  Chart chart{"Approach: " + apart_from, "tolerance", "relative, of c in L2", true, true, {}};
+  const Vec reference = runs.solve("ida", bench.linear_solver(), tightest);
+  double apart = 0;
+  for (const std::string& name : bench.integrators()) {
+    Points levels;
+    for (double tolerance = 1e-2; tolerance > (bench.quick() ? 5e-4 : 5e-6); tolerance /= 10)
+      levels.emplace_back(
+          tolerance, runs.distance(runs.solve(name, bench.linear_solver(), tolerance), reference));
+    if (name != "ida") {
+      levels.emplace_back(
+          tightest, runs.distance(runs.solve(name, bench.linear_solver(), tightest), reference));
+      apart = std::max(apart, levels.back().second);
+    }
+    for (const auto& [tolerance, distance] : levels)
+      table.rows.push_back({name, tolerance, distance});
+    chart.series.push_back({name, levels});
+  }
+  report.claims.push_back(claim_at_most("largest distance at tolerance " + format_number(tightest),
+                                        apart, 2 * tightest));  // the sum of the two tolerances
+  report.tables.push_back(table);
+  report.charts.push_back(chart);
+}
+
+// With one integrator and one tolerance the solvers differ by what their solves leave over.
+void compare_solvers(const Bench& bench, const Agreement& runs, StudyReport& report) {
+  Table table{"solvers", {"integrator", "solver", "distance from direct"}, {}};
+  const double tolerance = runs.solver_tolerance();
+  double apart = 0;
+  for (const std::string& name : bench.integrators()) {
+    const Vec reference = runs.solve(name, "direct", tolerance);
+    for (const std::string& solver : bench.linear_solvers()) {
+      const double distance = runs.distance(runs.solve(name, solver, tolerance), reference);
+      table.rows.push_back({name, solver, distance});
+      apart = std::max(apart, distance);
+    }
+  }
+  report.claims.push_back(
+      claim_at_most("largest distance of two solvers at tolerance " + format_number(tolerance),
+                    apart, 2 * tolerance));
+  report.tables.push_back(table);
+}
+
+void compare_ranks(const Bench& bench, const Agreement& runs, StudyReport& report) {
+  const double end = bench.quick() ? 0.1 : kEnd;  // many steps even so
+  Table table{"ranks", {"integrator", "solver", "distance of 2 ranks from 1"}, {}};
+  double apart = 0;
+  for (const std::string& solver : bench.linear_solvers_on_ranks())
+    for (const std::string& name : bench.integrators()) {
+      const double distance =
+          runs.distance(runs.solve_on(2, name, solver, end), runs.solve_on(1, name, solver, end));
+      table.rows.push_back({name, solver, distance});
+      apart = std::max(apart, distance);
+    }
+  if (table.rows.empty()) {
+    report.notes.push_back("This build has no solver that works on ranks.");
+    return;
+  }
+  report.claims.push_back(
+      claim_at_most("largest distance of 2 ranks from 1 at t = " + format_number(end), apart,
+                    2 * runs.solver_tolerance()));
+  report.tables.push_back(table);
+}
+
+StudyReport run(const Bench& bench) {
+  const Agreement runs(bench);
+  StudyReport report;
+  report.notes = {
+      "40 % rafts from noise, 16 cells, width 0.2, degenerate mobility, to t = 1: rafts "
+      "have formed and coarsen."};
+  compare_integrators(bench, runs, report);
+  bench.progress(0.6);
+  compare_solvers(bench, runs, report);
+  bench.progress(0.8);
+  compare_ranks(bench, runs, report);
+  return report;
+}
+
+}  // namespace
+
+StudyEntry integrator_agreement_study() {
+  return {"agreement", "integrators, linear solvers and ranks approach one solution", run, false,
+          true};
+}
+
+}  // namespace traceraft

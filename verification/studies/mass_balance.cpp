@@ -1,0 +1,130 @@
+// The mass ∫c does not drift: over seeds, surfaces, mobilities, integrators, linear solvers and
+// ranks.
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/core/parameters.hpp"
+#include "verification/measure/bench.hpp"
+#include "verification/studies/studies.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr double kBound = 1e-12;  // relative
+constexpr int kCells = 24;
+constexpr double kEpsilon = 0.2, kFraction = 0.3, kTolerance = 1e-2;
+
+double end_of_run(const Bench& bench) {
+  return bench.quick() ? 2 : 20;
+}
+
+struct Combination {
+  std::string surface = "sphere", mobility = "degenerate", integrator, solver;
+  std::uint64_t seed = 1;
+  int ranks = 1;
+};
+
+// Of every factor all levels, the other factors at their first one; without --quick the full
+// product of integrators, solvers, surfaces and mobilities.
+std::vector<Combination> combinations(const Bench& bench) {
+  const std::vector<std::string> on = {"sphere", "ellipsoid", "torus",
+                                       "biconcave:middle=0.4,rim=0.7", "dziuk"};
+  const std::vector<std::string> laws = {"degenerate", "constant:value=0.25"};
+  std::vector<Combination> list;
+  for (const std::string& integrator : bench.integrators())
+    for (const std::string& solver : bench.linear_solvers())
+      for (const std::string& surface : on)
+        for (const std::string& mobility : laws) {
+          const bool base = surface == on.front() && mobility == laws.front();
+          const bool first = solver == bench.linear_solvers().front();
+          if (!bench.quick() || base || first)
+            list.push_back({surface, mobility, integrator, solver, 1});
+        }
+  for (std::uint64_t seed = 2; seed <= (bench.quick() ? 3 : 10); ++seed)
+    list.push_back({on.front(), laws.front(), bench.integrator(), bench.linear_solver(), seed});
+  for (const std::string& integrator : bench.integrators())
+    for (const std::string& solver : bench.linear_solvers_on_ranks())
+      list.push_back({on.front(), laws.front(), integrator, solver, 1, 2});
+  return list;
+}
+
+struct Drift {
+  double largest = 0;  // |m(t) − m(0)|/m(0) over all steps
+  double steps = 0;
+};
+
+Drift drift_on_ranks(const Bench& bench, const Combination& what) {
+  const ProgramRun run =
+      bench.request.run_program({"--surface",       what.surface,
+                                 "--mobility",      what.mobility,
+                                 "--integrator",    what.integrator,
+                                 "--linear-solver", what.solver,
+                                 "--seed",          std::to_string(what.seed),
+                                 "--cells",         std::to_string(kCells),
+                                 "--epsilon",       format_number(kEpsilon),
+                                 "--raft-fraction", format_number(kFraction),
+                                 "--tolerance",     format_number(kTolerance),
+                                 "--t-end",         format_number(end_of_run(bench))},
+                                what.ranks, bench.space(what.surface, kCells)->nodes());
+  return {run.mass_drift, run.steps};
+}
+
+Drift drift_of(const Bench& bench, const Combination& what) {
+  if (what.ranks > 1) return drift_on_ranks(bench, what);
+  const SpacePtr space = bench.space(*make_surface(what.surface), kCells, 1);
+  const ProblemPtr problem = bench.problem(space, bench_model(what.mobility, kEpsilon));
+  InitialRequest request;
+  request.raft_fraction = kFraction;
+  request.seed = what.seed;
+  const StartState start = initial_state(*problem, "noise", request);
+  IntegratorSettings settings;
+  settings.tolerance = kTolerance;
+  const IntegratorPtr integrator =
+      bench.make_integrator(*problem, *space, what.integrator, what.solver, settings);
+  const double mass = problem->mass(start.y);
+  Drift drift;
+  advance_to(*integrator, start, end_of_run(bench), [&] {
+    drift.largest =
+        std::max(drift.largest, std::fabs(problem->mass(integrator->state()) / mass - 1));
+    ++drift.steps;
+  });
+  return drift;
+}
+
+StudyReport run(const Bench& bench) {
+  const std::vector<Combination> list = combinations(bench);
+  Table table{"drift",
+              {"surface", "mobility", "integrator", "solver", "ranks", "seed", "steps", "drift"},
+              {}};
+  double largest = 0, steps = 0;
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const Combination& what = list[k];
+    const Drift drift = drift_of(bench, what);
+    table.rows.push_back({what.surface, what.mobility, what.integrator, what.solver,
+                          static_cast<double>(what.ranks), static_cast<double>(what.seed),
+                          drift.steps, drift.largest});
+    // NaN is the largest of all.
+    if (!(drift.largest <= largest)) largest = drift.largest;
+    steps += drift.steps;
+    bench.progress(static_cast<double>(k + 1) / static_cast<double>(list.size()));
+  }
+  StudyReport report;
+  report.notes = {
+      "Largest relative change of the mass over all accepted steps; 24 cells, 30 % rafts "
+      "from noise, width 0.2, tolerance 1e-2."};
+  report.tables = {table};
+  report.claims = {claim_at_most("largest relative drift of the mass", largest, kBound),
+                   claim_between("runs", static_cast<double>(list.size()), 1, 1e6),
+                   claim_between("accepted steps", steps, 1, 1e9)};
+  return report;
+}
+
+}  // namespace
+
+StudyEntry mass_balance_study() {
+  return {"mass",
+          "the mass does not drift: surfaces, mobilities, integrators, solvers, ranks, seeds", run,
+          false, true};
+}
+
+}  // namespace traceraft

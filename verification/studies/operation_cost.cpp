@@ -1,0 +1,70 @@
+// What the pieces cost, and how that grows with the mesh.
+#include <algorithm>
+
+#include "backends/posix/process.hpp"
+#include "kernel/core/stopwatch.hpp"
+#include "kernel/fem/mobility_stiffness.hpp"
+#include "verification/measure/bench.hpp"
+#include "verification/studies/studies.hpp"
+
+namespace traceraft {
+namespace {
+
+// Median seconds of an action over some repetitions.
+template <class Action>
+double median_seconds(int repetitions, const Action& action) {
+  std::vector<double> times;
+  for (int i = 0; i < repetitions; ++i) {
+    const Stopwatch watch;
+    action();
+    times.push_back(watch.seconds());
+  }
+  std::nth_element(times.begin(), times.begin() + repetitions / 2, times.end());
+  return times[repetitions / 2];
+}
+
+StudyReport run(const Bench& bench) {
+  Table table{"cost",
+              {"cells", "tets", "nodes", "setup_ms", "peak_MB", "product_ms", "assemble_ms",
+               "products", "residual_ms"},
+              {}};
+  std::vector<std::array<double, 3>> levels;  // nodes, set-up, assembly in products
+  for (int cells = 64; cells <= (bench.quick() ? 128 : 512); cells *= 2) {
+    const Stopwatch watch;
+    const SpacePtr space = bench.space(*make_surface("sphere"), cells, 1);
+    const double setup = watch.seconds(), peak = peak_memory_mb();
+    const ProblemPtr problem = bench.problem(space, bench_model("degenerate", 2 * space->h()));
+    const int n = problem->block_size();
+    Vec y = Vec::Zero(problem->size()), ydot = y, r(problem->size()), product(n);
+    y.head(n) = make_initial_field("noise", *space, {});
+    CsrMatrix matrix(space->pattern);
+    const double one_product =
+        median_seconds(21, [&] { space->mass.multiply(y.head(n), product, *space->team); });
+    const double assembly = median_seconds(21, [&] {
+      const Mobility& mobility = *problem->model().mobility;
+      assemble_mobility_stiffness(*space, mobility_integrals(*space, mobility, y.head(n)), matrix);
+    });
+    const double residual = median_seconds(11, [&] { (void)problem->residual(0, y, ydot, r); });
+    table.rows.push_back({static_cast<double>(cells), static_cast<double>(space->elements.size()),
+                          static_cast<double>(n), 1e3 * setup, peak, 1e3 * one_product,
+                          1e3 * assembly, assembly / one_product, 1e3 * residual});
+    levels.push_back({static_cast<double>(n), setup, assembly / one_product});
+  }
+  const auto& fine = levels.back();
+  const auto& coarse = levels[levels.size() - 2];
+  StudyReport report;
+  report.tables = {table};
+  report.claims = {
+      claim_near("nodes, 2n to n: grow like the surface", fine[0] / coarse[0], 4, 0.1),
+      claim_between("set-up time, 2n to n (4: like the surface)", fine[1] / coarse[1], 0, 6),
+      claim_between("assembly of K_M in products (at most 3 x 3)", fine[2], 0, 9)};
+  return report;
+}
+
+}  // namespace
+
+StudyEntry operation_cost_study() {
+  return {"cost", "time and memory of set-up, products and assembly over the mesh size", run, true};
+}
+
+}  // namespace traceraft

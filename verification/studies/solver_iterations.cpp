@@ -1,0 +1,169 @@
+// GMRES iterations of the block solver with fresh factors, over meshes, cuts, step sizes, widths
+// and mobilities.
+#include <algorithm>
+
+#include "backends/list.hpp"
+#include "verification/measure/bench.hpp"
+#include "verification/measure/fit.hpp"
+#include "verification/measure/motion.hpp"
+#include "verification/measure/shift_range.hpp"
+#include "verification/studies/studies.hpp"
+
+namespace traceraft {
+namespace {
+
+// What integrators ask for: euler, with the stabilised tangent, and ida, with the exact one.
+constexpr double kTolerance[2] = {1e-4, 1e-2};
+// The exact Jacobian of a step far longer than the state allows is indefinite. What is claimed of
+// it is for steps up to twice the one that ida takes there, as it at most doubles a step.
+constexpr double kLongestStep = 2;
+
+constexpr double kHardest = 0.01;  // of the widths: the least for the mesh
+
+enum class State { coarsening, late };  // many rafts; one large and one small
+
+struct Sample {
+  Vec y;
+  double step;  // that ida takes there
+};
+
+Sample state_at(const Bench& bench, const CahnHilliard& problem, State state, double t_end) {
+  InitialRequest request;
+  request.raft_fraction = 0.3;
+  request.noise_cells = 16;
+  request.caps = {{Point(0, 0, 1), 0.9}, {Point(1, 2, -3).normalized(), 0.4}};
+  IntegratorSettings settings;
+  settings.tolerance = 1e-2;
+  const IntegratorPtr ida =
+      bench.make_integrator(problem, problem.space(), "ida", "block", settings);
+  advance_to(*ida, initial_state(problem, state == State::late ? "caps" : "noise", request), t_end);
+  return {ida->state(), ida->next_step()};
+}
+
+// −F(y, 0): what the first correction of a step from y solves with.
+Vec right_side(const CahnHilliard& problem, const Vec& y) {
+  Vec r(problem.size());
+  require(problem.residual(0, y, Vec::Zero(y.size()), r));
+  return -r;
+}
+
+// −1: the fallback would be needed.
+double iterations(const CahnHilliard& problem, const Vec& y, const Vec& b, double shift,
+                  Tangent tangent) {
+  const LinearSolverPtr solver = linear_solvers().find("block").make(problem.space(), {})(1);
+  BlockJacobian J = problem.make_jacobian();
+  require(problem.jacobian(0, y, Vec::Zero(y.size()), shift, tangent, J));
+  require(solver->setup(J));
+  Vec x = Vec::Zero(b.size());
+  const SolveReport report = solver->solve(J, b, x, kTolerance[tangent == Tangent::exact]);
+  return report.status.ok() ? report.iterations : -1;
+}
+
+struct Most {
+  double iterations[2] = {0, 0};  // stabilised, exact
+  double failures = 0;
+};
+
+// A row for each tangent at one state.
+void measure(const Bench& bench, const CahnHilliard& problem, const std::string& mobility,
+             State state, Table& table, Most& most) {
+  const Sample sample = state_at(bench, problem, state, 5);
+  const Vec b = right_side(problem, sample.y);
+  for (const Tangent tangent : {Tangent::stabilised, Tangent::exact}) {
+    const bool exact = tangent == Tangent::exact;
+    std::vector<Cell> row = {state == State::late ? "late" : "coarsening",
+                             exact ? "exact" : "stabilised",
+                             mobility,
+                             static_cast<double>(problem.space().mesh.cube.cells),
+                             problem.model().epsilon,
+                             sample.step};
+    for (const double shift : shift_range()) {
+      const double count = iterations(problem, sample.y, b, shift, tangent);
+      row.push_back(count);
+      if (exact && 1 / shift > kLongestStep * sample.step) continue;
+      if (count < 0) ++most.failures;
+      most.iterations[exact] = std::max(most.iterations[exact], count);
+    }
+    table.rows.push_back(row);
+  }
+}
+
+// The sphere turned and shifted against the mesh, while rafts coarsen there.
+void measure_cuts(const Bench& bench, StudyReport& report) {
+  constexpr int kCells = 32;
+  const int count = bench.quick() ? 6 : 50;
+  const std::vector<double> shifts = shift_range();
+  std::vector<std::vector<double>> of_cut(static_cast<std::size_t>(count));
+  bench.in_parallel(count, [&](int k) {
+    const Motion motion(static_cast<std::uint64_t>(k) + 1, 0.5 * 10 / 3 / kCells);
+    const ProblemPtr problem =
+        bench.problem(bench.space(moved(make_surface("sphere"), motion), kCells, 1),
+                      bench_model("degenerate", 0.05));
+    const Vec y = state_at(bench, *problem, State::coarsening, 5).y, b = right_side(*problem, y);
+    for (const double shift : shifts)
+      of_cut[k].push_back(iterations(*problem, y, b, shift, Tangent::stabilised));
+  });
+  Table table{"cuts", {std::to_string(count) + " cuts"}, {{"fewest"}, {"mean"}, {"most"}}};
+  double most = 0, fewest = 1e9;
+  for (std::size_t s = 0; s < shifts.size(); ++s) {
+    std::vector<double> values;
+    for (const auto& cut : of_cut) values.push_back(cut[s]);
+    const Moments m = moments(values);
+    table.columns.push_back(shift_label(shifts[s]));
+    table.rows[0].push_back(m.low);
+    table.rows[1].push_back(m.mean);
+    table.rows[2].push_back(m.high);
+    most = std::max(most, m.high);
+    fewest = std::min(fewest, m.low);
+  }
+  report.tables.push_back(table);
+  report.claims.push_back(
+      claim_between("surfaces that lie anyhow in the mesh: most iterations to 1e-4", most, 1, 25));
+  report.claims.push_back(
+      claim_between("surfaces that lie anyhow in the mesh: fewest (-1: none)", fewest, 0, most));
+}
+
+StudyReport measure_meshes(const Bench& bench, int coarsest, int finest) {
+  Table table{"iterations", {"state", "tangent", "mobility", "cells", "epsilon", "ida_step"}, {}};
+  for (const double shift : shift_range()) table.columns.push_back(shift_label(shift));
+  Most most;
+  for (int cells = coarsest; cells <= finest; cells *= 2) {
+    const SpacePtr space = bench.space("sphere", cells);
+    for (const double epsilon : {0.01, 0.02, 0.05}) {
+      for (const char* mobility : {"degenerate", "constant:value=0.25"}) {
+        // The degenerate law is the harder one.
+        if (cells > coarsest && mobility != std::string("degenerate")) continue;
+        if (cells > coarsest && bench.quick() && epsilon > kHardest) continue;
+        const ProblemPtr problem = bench.problem(space, bench_model(mobility, epsilon));
+        for (const State state : {State::coarsening, State::late})
+          measure(bench, *problem, mobility, state, table, most);
+      }
+    }
+    bench.progress(static_cast<double>(cells * cells) / (finest * finest));
+  }
+  StudyReport report;
+  report.notes = {
+      "GMRES of block with fresh factors; s is the shift in D/R^2; -1: more than its limit. The "
+      "exact tangent is held to its claim for steps up to twice the one that ida takes there."};
+  report.tables = {table};
+  report.claims = {
+      claim_between("stabilised tangent: most iterations to 1e-4", most.iterations[0], 1, 25),
+      claim_between("exact, to 2 x ida's step: most to 1e-2", most.iterations[1], 1, 25),
+      claim_at_most("solves that need the fallback", most.failures, 0)};
+  if (finest <= 128) measure_cuts(bench, report);
+  return report;
+}
+
+}  // namespace
+
+StudyEntry solver_iterations_study() {
+  return {"iterations", "GMRES iterations over meshes, cuts, shifts, widths and mobilities",
+          [](const Bench& bench) { return measure_meshes(bench, 32, bench.quick() ? 64 : 128); }};
+}
+
+StudyEntry large_solver_iterations_study() {
+  return {"iterations-large", "the same on a fine mesh: a quarter of an hour",
+          [](const Bench& bench) { return measure_meshes(bench, 256, 256); }, true};
+}
+
+}  // namespace traceraft

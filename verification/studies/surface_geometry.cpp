@@ -1,0 +1,158 @@
+// Γ_h itself: area, closedness and total curvature; and that nothing depends on how the mesh cuts
+// the surface.
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "verification/measure/bench.hpp"
+#include "verification/measure/fit.hpp"
+#include "verification/measure/manufactured.hpp"
+#include "verification/measure/motion.hpp"
+#include "verification/measure/sparse_view.hpp"
+#include "verification/studies/studies.hpp"
+
+namespace traceraft {
+namespace {
+
+struct Body {
+  const char* surface;
+  double area;       // of the default parameters
+  double curvature;  // ∫ of the Gaussian curvature, 2π · Euler characteristic
+};
+
+// The ellipsoid's by its elliptic integrals.
+double ellipsoid_area(double a, double b, double c) {
+  const double angle = std::acos(c / a), sine = std::sin(angle);
+  const double k = std::sqrt(a * a * (b * b - c * c) / (b * b * (a * a - c * c)));
+  return 2 * kPi * c * c + 2 * kPi * a * b / sine *
+                               (std::ellint_2(k, angle) * sine * sine +
+                                std::ellint_1(k, angle) * std::cos(angle) * std::cos(angle));
+}
+
+// Gauss–Bonnet: the angles that are missing to 2π around the points of a closed surface of
+// triangles add up to 2πχ.
+double angle_defects(const CutSurface& surface) {
+  std::vector<double> missing(surface.points.size(), 2 * kPi);
+  for (const auto& corner : surface.triangles)
+    for (int v = 0; v < 3; ++v) {
+      const Point at = surface.position[corner[v]];
+      const Point e = surface.position[corner[(v + 1) % 3]] - at;
+      const Point f = surface.position[corner[(v + 2) % 3]] - at;
+      missing[corner[v]] -= std::atan2(e.cross(f).norm(), e.dot(f));
+    }
+  double sum = 0;
+  for (const double angle : missing) sum += angle;
+  return sum;
+}
+
+void measure_bodies(const Bench& bench, StudyReport& report) {
+  const std::vector<Body> bodies = {{"sphere", 4 * kPi, 4 * kPi},
+                                    {"ellipsoid", ellipsoid_area(1.2, 1, 0.8), 4 * kPi},
+                                    {"torus", 4 * kPi * kPi * 0.4, 0}};
+  Table table{"area", {"surface", "cells", "area", "error", "total curvature"}, {}};
+  Chart chart{"Error of the area", "h", "relative error", true, true, {}};
+  for (const Body& body : bodies) {
+    Points levels;
+    double worst = 0;
+    for (int cells = 16; cells <= (bench.quick() ? 64 : 256); cells *= 2) {
+      const SpacePtr space = bench.space(body.surface, cells);
+      const double error = std::fabs(space->area / body.area - 1);
+      const double curvature = angle_defects(space->surface);
+      levels.emplace_back(space->h(), error);
+      worst = std::max(worst, std::fabs(curvature - body.curvature));
+      table.rows.push_back(
+          {body.surface, static_cast<double>(cells), space->area, error, curvature});
+    }
+    report.claims.push_back(
+        claim_order(std::string(body.surface) + ": order of the area", levels, 2, 0.2));
+    report.claims.push_back(claim_at_most(
+        std::string(body.surface) + ": total curvature against 2 pi chi", worst, 1e-6));
+    chart.series.push_back({body.surface, levels});
+  }
+  report.tables.push_back(table);
+  report.charts.push_back(chart);
+}
+
+SurfaceFunction moved(const SurfaceFunction& base, const Motion& motion) {
+  return [=](const Point& x) {
+    SurfacePoint p = base(motion.home(x));
+    p.gradient = motion.turn.transpose() * p.gradient;
+    return p;
+  };
+}
+
+// Largest over smallest eigenvalue of D^-½ A D^-½ with the diagonal D of A.
+double scaled_condition(const SurfaceSpace& space, const CsrMatrix& A) {
+  Eigen::MatrixXd dense = as_eigen(space, A);
+  const Vec scale = dense.diagonal().cwiseSqrt().cwiseInverse();
+  dense = scale.asDiagonal() * dense * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(dense, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues()[dense.rows() - 1] / solver.eigenvalues()[0];
+}
+
+struct Cut {
+  double area, l2, h1, mass_condition, helmholtz_condition;
+};
+
+Cut measure_cut(const Bench& bench, std::uint64_t number) {
+  constexpr int kCells = 20, kCoarse = 10;
+  const LevelSetPtr ellipsoid = make_surface("ellipsoid");
+  const Motion motion(number, 0.5 * 10 / 3 / kCells);
+  const SpacePtr space = bench.space(moved(ellipsoid, motion), kCells, 1);
+  const ErrorNorms errors = stationary_error(*space, moved(surface_function("ellipsoid"), motion));
+  const SpacePtr coarse = bench.space(moved(ellipsoid, motion), kCoarse, 1);
+  const CsrMatrix stiffness = combine(1, coarse->stiffness, coarse->h(), coarse->normal);
+  return {space->area, errors.l2, errors.h1, scaled_condition(*coarse, coarse->stabilised_mass),
+          scaled_condition(*coarse, combine(1, stiffness, 1, coarse->mass))};
+}
+
+void measure_cuts(const Bench& bench, StudyReport& report) {
+  const int count = bench.quick() ? 25 : 100;
+  std::vector<Cut> cuts(static_cast<std::size_t>(count));
+  bench.in_parallel(
+      count, [&](int k) { cuts[k] = measure_cut(bench, static_cast<std::uint64_t>(k) + 1); });
+  Table table{"cuts", {"quantity", "mean", "deviation", "smallest", "largest"}, {}};
+  const auto row = [&](const std::string& what, double Cut::*value) {
+    std::vector<double> values;
+    for (const Cut& cut : cuts) values.push_back(cut.*value);
+    const Moments m = moments(values);
+    table.rows.push_back({what, m.mean, m.deviation, m.low, m.high});
+    return m;
+  };
+  const Moments area = row("area", &Cut::area);
+  const Moments l2 = row("error of the stationary problem in L2", &Cut::l2);
+  const Moments h1 = row("error of the stationary problem in H1", &Cut::h1);
+  const Moments mass = row("condition of M + h S, scaled", &Cut::mass_condition);
+  const Moments helmholtz = row("condition of K + M + h S, scaled", &Cut::helmholtz_condition);
+  report.tables.push_back(table);
+  const double exact = ellipsoid_area(1.2, 1, 0.8);
+  const std::string of = std::to_string(count) + " cuts: ";
+  report.claims.push_back(claim_at_most(of + "spread of the area over its mean error",
+                                        (area.high - area.low) / (exact - area.mean), 0.25));
+  report.claims.push_back(
+      claim_at_most(of + "largest over mean error in L2", l2.high / l2.mean, 1.25));
+  report.claims.push_back(
+      claim_at_most(of + "largest over mean error in H1", h1.high / h1.mean, 1.25));
+  report.claims.push_back(
+      claim_at_most(of + "largest condition of M + h S, scaled", mass.high, 40));
+  report.claims.push_back(claim_at_most(of + "largest over mean condition of K + M + h S",
+                                        helmholtz.high / helmholtz.mean, 2));
+}
+
+StudyReport run(const Bench& bench) {
+  StudyReport report;
+  report.notes = {
+      "The ellipsoid of the cuts is turned and shifted anyhow against the mesh; errors "
+      "on 20 cells, condition numbers after diagonal scaling on 10."};
+  measure_bodies(bench, report);
+  bench.progress(0.5);
+  measure_cuts(bench, report);
+  return report;
+}
+
+}  // namespace
+
+StudyEntry surface_geometry_study() {
+  return {"geometry", "area and curvature of the discrete surface, independence of the cuts", run};
+}
+
+}  // namespace traceraft
