@@ -55,12 +55,12 @@ class ExplainTest : public ::testing::Test {
            " --replicates " + std::to_string(replicates) + " --out " +
            (folder.path / "out").string();
   }
-  // Where it does not matter how many effects are looked for.
+  // Gravity, Ohta-Kawasaki and uptake, where it does not matter how many effects are looked for.
   std::string command_of_few(int cells, const std::string& also_without = "",
                              int replicates = 49) const {
     return command(cells, replicates) +
-           " --without allen-cahn,asymmetry,cooling,line-tension,mobility-contrast,"
-           "mobility-exponent,thermal" +
+           " --without allen-cahn,asymmetry,bulk-mobility,cooling,exchange,line-tension,"
+           "mobility-contrast,mobility-exponent,thermal" +
            also_without;
   }
   nlohmann::json verdict() const {
@@ -124,7 +124,7 @@ TEST_F(ExplainTest, NamesNothingWhereNothingIsHidden) {
 
 // A killed search goes on from its last refit and ends as if nothing had happened.
 TEST_F(ExplainTest, GoesOnWhereItWasKilled) {
-  constexpr int kCells = 13;
+  constexpr int kCells = 11;
   draw("uptake");
   const pid_t child = testing::start_traceraft(command_of_few(kCells));
   const fs::path saved = folder.path / "out" / "search.json";
@@ -167,7 +167,7 @@ TEST_F(ExplainTest, JoinsWhatVesiclesSay) {
   BlindRequest asked = request();
   asked.effects = {"uptake"};
   asked.vesicles = 2;
-  asked.snapshots = 4;
+  asked.snapshots = 3;
   asked.points = 700;
   const BlindCase drawn = draw_blind_case(asked);
   ASSERT_EQ(drawn.vesicles.size(), 2u);
