@@ -69,7 +69,6 @@ std::vector<Refit> refit_again(Search& search, const std::vector<FilterModel>& t
 }
 
 void refit_shortlist(Search& search, Round& round) {
-  search.tell("refits: 2 ln of the likelihood ratio that an effect gains");
   std::vector<FilterModel> trials;
   const double limit = telling(search.values(), round.screening.mesh_error);
   Screening open = round.screening;
@@ -82,6 +81,8 @@ void refit_shortlist(Search& search, Round& round) {
     trials.push_back(search.model);
     trials.back().hypothesis.parts.push_back(std::move(part));
   }
+  search.tell(
+      formatted("%zu refits: 2 ln of the likelihood ratio that an effect gains", trials.size()));
   for (const Refit& fit : refit_again(search, trials, search.refit_all(trials)))
     if (fit.failure.empty())
       round.refits.push_back(no_worse(fit, round.without));
