@@ -41,24 +41,23 @@ bool size_is_told(double factor, const Interval& unit) {
          std::max(std::log(kSame), 0.5 * std::log(unit.high / unit.low));
 }
 
-bool have_trend(const std::vector<Agreement>& agreements) {
-  return std::any_of(agreements.begin(), agreements.end(), [](const Agreement& a) {
-    return a.quantity != Quantity::fraction && a.has_trend();
+// Do the runs that fit best coarsen as the vesicles do?
+bool are_alike(const std::vector<Agreement>& agreements, std::size_t runs) {
+  return std::none_of(agreements.begin(), agreements.end(), [&](const Agreement& a) {
+    return a.quantity != Quantity::fraction && (a.has_trend() || lies_beside(a, runs));
   });
 }
 
 // Of D nothing is determined by vesicles of another size, or that coarsen otherwise.
 std::vector<FoundLine> findings_of(const MeasuredVesicles& data, const Configuration& model,
-                                   const std::vector<Agreement>& agreements,
-                                   const Calibration& result) {
+                                   bool alike, const Calibration& result) {
   const double factor = factor_of_size(data, model.units().length());
   std::vector<FoundLine> lines;
   for (const CalibratedParameter& p : result.parameters) {
     if (p.name == "seconds_per_unit")
-      lines.push_back(
-          {"mobility", "cm^2/s", diffusion(model, p.value), diffusion(model, p.interval.high),
-           diffusion(model, p.interval.low),
-           p.determined && size_is_told(factor, p.interval) && !have_trend(agreements)});
+      lines.push_back({"mobility", "cm^2/s", diffusion(model, p.value),
+                       diffusion(model, p.interval.high), diffusion(model, p.interval.low),
+                       p.determined && size_is_told(factor, p.interval) && alike});
     else
       lines.push_back({p.name, p.name == "fraction" ? "1" : "um", p.value, p.interval.low,
                        p.interval.high, p.determined});
@@ -143,16 +142,32 @@ Configuration found_model(const Configuration& model, const std::vector<std::str
   return {{}, given};
 }
 
-// The runs that fit best, at the D that fits these.
+// The runs of a choice, at the D that fits these.
+std::vector<History> runs_in_seconds(const CalibrationRuns& all, const Calibration& result,
+                                     std::size_t choice) {
+  std::vector<History> runs = all.points[choice].runs;
+  for (History& run : runs)
+    for (double& t : run.time) t *= result.at_points[choice].seconds_per_unit;
+  return runs;
+}
+
+// Those that fit best.
 std::vector<History> best_runs(const CalibrationRuns& all, const Calibration& result) {
   const auto& fits = result.at_points;
   const auto best =
       std::min_element(fits.begin(), fits.end(),
                        [](const TimeFit& a, const TimeFit& b) { return a.deviance < b.deviance; });
-  std::vector<History> runs = all.points[static_cast<std::size_t>(best - fits.begin())].runs;
-  for (History& run : runs)
-    for (double& t : run.time) t *= best->seconds_per_unit;
-  return runs;
+  return runs_in_seconds(all, result, static_cast<std::size_t>(best - fits.begin()));
+}
+
+// Choices at which there mostly is nothing to compare.
+int choices_without_rafts(const MeasuredVesicles& data, const CalibrationRuns& all,
+                          const Calibration& result) {
+  constexpr double kMost = 0.5;
+  int count = 0;
+  for (std::size_t k = 0; k < all.points.size(); ++k)
+    count += share_without_rafts(data, runs_in_seconds(all, result, k)) > kMost;
+  return count;
 }
 
 // What is to be known before the numbers.
@@ -175,9 +190,14 @@ std::vector<std::string> notes_on(const MeasuredVesicles& data, const Calibratio
                     runs.bound);
   if (const int nothing = looks_that_tell_nothing(data); nothing > 0)
     notes.push_back(
-        formatted("%d of %zu measurements are of no raft, or of neither perimeter nor "
-                  "number: they are not used.",
+        formatted("%d of %zu measurements are of time zero, of no raft, or of neither perimeter "
+                  "nor number: they are not used.",
                   nothing, data.measurements.size()));
+  if (const int choices = choices_without_rafts(data, runs, result); choices > 0)
+    notes.push_back(formatted(
+        "At %d of %zu choices the simulated vesicles have no rafts when the measured ones are "
+        "looked at: these choices say nothing of D.",
+        choices, runs.points.size()));
   for (const CalibratedParameter& p : result.parameters) {
     if (p.name != "epsilon") continue;
     const double smallest = range_of(runs.model, p.name, runs.most_cells).low;
@@ -259,7 +279,8 @@ void write_calibration(const std::filesystem::path& folder, const MeasuredVesicl
                        const CalibrationRuns& runs, const Calibration& result, bool quiet) {
   const std::vector<History> best = best_runs(runs, result);
   const std::vector<Agreement> agreements = compare_with_runs(data, best);
-  const std::vector<FoundLine> lines = findings_of(data, runs.model, agreements, result);
+  const std::vector<FoundLine> lines =
+      findings_of(data, runs.model, are_alike(agreements, best.size()), result);
   const std::vector<Row> rows = rows_of(lines);
   const Configuration found = found_model(runs.model, runs.names, lines);
   const std::vector<Row> agreement = agreement_rows(agreements);

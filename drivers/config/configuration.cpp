@@ -2,11 +2,11 @@
 
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "backends/list.hpp"
 #include "drivers/config/cases.hpp"
+#include "drivers/config/utf8.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 
@@ -17,15 +17,6 @@ bool parse_flag(const GivenValue& value) {
   if (value.text == "true") return true;
   if (value.text == "false") return false;
   throw InputError(value.where + ": '" + value.text + "' is neither true nor false");
-}
-
-bool is_utf8(const std::string& text) {
-  try {
-    nlohmann::json(text).dump();
-    return true;
-  } catch (const nlohmann::json::type_error&) {
-    return false;
-  }
 }
 
 double checked_number(const OptionSpec& spec, const GivenValue& value, const std::string& text,

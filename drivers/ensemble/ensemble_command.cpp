@@ -53,10 +53,11 @@ Configuration known_configuration(const EnsembleFolder& folder, const EnsembleRe
     throw InputError("--out: " + folder.path().string() +
                      " holds an ensemble of other runs; choose another folder, or give only --out "
                      "to go on with it");
-  for (const auto& [name, value] : request.flags)
-    if (asked.text(name) != known.text(name))
-      throw InputError(value.where + ": the runs in " + folder.path().string() + " have '" +
-                       known.text(name) + "', and those that it grows by have it, too");
+  for (const GivenValues* given : {&file, &request.flags})
+    for (const auto& [name, value] : *given)
+      if (name != "seed" && asked.text(name) != known.text(name))
+        throw InputError(value.where + ": the runs in " + folder.path().string() + " have '" +
+                         known.text(name) + "', and those that it grows by have it, too");
   return known;
 }
 
@@ -103,7 +104,8 @@ int carry_out(const EnsembleRequest& request, const EnsembleFolder& folder,
                  static_cast<unsigned long long>(failure.seed), failure.why.c_str());
   if (end.stopped) {
     if (!request.quiet)
-      std::printf("go on with: traceraft ensemble --out %s\n", folder.path().c_str());
+      std::printf("go on with: traceraft ensemble --out %s\n",
+                  in_shell(folder.path().string()).c_str());
     return kInterrupted;
   }
   const std::vector<History>& runs = finished.histories;
@@ -152,8 +154,8 @@ int run_ensemble(const EnsembleRequest& request) {
   if (!request.quiet)
     std::printf(
         "%d tasks of 2 processors, %d GB and at most %d h each: see its #SBATCH lines\n"
-        "submit it with: sbatch '%s'\n",
-        plan.runs, task.gigabytes, task.hours, script.c_str());
+        "submit it with: sbatch %s\n",
+        plan.runs, task.gigabytes, task.hours, in_shell(script.string()).c_str());
   return kSuccess;
 }
 

@@ -1,5 +1,7 @@
 #include "drivers/ensemble/histories_file.hpp"
 
+#include <algorithm>
+
 #include "backends/posix/durable_file.hpp"
 #include "drivers/input/csv_table.hpp"
 #include "drivers/output/text_table.hpp"
@@ -40,6 +42,11 @@ std::vector<History> read_histories(const std::filesystem::path& file) {
       run.of(quantity).push_back(table.number(row, name_of(quantity).id));
   }
   if (runs.empty()) throw InputError(file.string() + ": no rows");
+  const std::vector<double>&first = runs.front().time, &last = runs.back().time;
+  if (last.size() < first.size() && std::equal(last.begin(), last.end(), first.begin()))
+    throw InputError(file.string() +
+                     ": the last run ends before the times of the first one do; is the file cut "
+                     "off?");
   return runs;
 }
 

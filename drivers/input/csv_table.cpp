@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "backends/posix/durable_file.hpp"
+#include "drivers/config/utf8.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/named_list.hpp"
 #include "kernel/core/parameters.hpp"
@@ -27,8 +28,14 @@ void take_cell(void* cell, std::size_t size, void* target) {
   static_cast<Rows*>(target)->row.emplace_back(static_cast<const char*>(cell), size);
 }
 
+// Rows without a value, which spreadsheets leave at the end, are none.
 void take_row(int, void* target) {
   Rows& rows = *static_cast<Rows*>(target);
+  if (std::all_of(rows.row.begin(), rows.row.end(),
+                  [](const std::string& cell) { return cell.empty(); })) {
+    rows.row.clear();
+    return;
+  }
   rows.rows.push_back(std::move(rows.row));
   rows.lines.push_back(rows.line);
   rows.row.clear();
@@ -86,6 +93,9 @@ Rows parse(const std::filesystem::path& path, std::string text) {
     const std::size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
     ++rows.line;
     const std::string line = text.substr(begin, end - begin);
+    if (!is_utf8(line))
+      throw InputError(path.string() + ":" + std::to_string(rows.line) +
+                       ": this is not UTF-8; save the table as CSV in UTF-8");
     if (line[0] == '#')
       refuse_row_as_remark(path, rows, line);
     else if (!parser.feed(line, rows))

@@ -38,6 +38,8 @@ Dataset read_description(const fs::path& folder) {
   d.units.length = length_factor(toml, "length_unit");
   d.units.time = time_factor(toml, "time_unit");
   d.units.time_offset = time_offset(toml);
+  d.data.time_unit = d.units.time;
+  d.data.time_offset = d.units.time_offset;
   d.where_radius = toml.where("radius");
   if (toml.has("radius"))
     d.units.radius = checked_radius(toml.number("radius") * d.units.length, toml.where("radius"));
@@ -55,7 +57,7 @@ Dataset read_description(const fs::path& folder) {
 
 MeasuredVesicles read_dataset(const fs::path& folder) {
   Dataset d = read_description(folder);
-  if (!std::filesystem::exists(d.table))
+  if (!std::filesystem::is_regular_file(d.table))
     throw InputError(d.table.string() + ": there is no such table of measurements");
   const CsvTable table = CsvTable::read(d.table);
   // Fields in the same folder are of one radius, which says nothing of the vesicles of a table.

@@ -22,7 +22,8 @@ constexpr double kSameRadius = 1.2, kTooShort = 0.5;
 double in_range(const CsvTable& table, std::size_t row, const char* column, double low,
                 double high) {
   const double value = table.number(row, column);
-  if (value >= low && value <= high) return value;
+  constexpr double kRoundoff = 1e-12;  // of changes of unit
+  if (value >= low && value <= (1 + kRoundoff) * high) return std::min(value, high);
   throw InputError(table.where(row, column) + ": " + format_number(value) +
                    " is impossible (allowed: " + format_number(low) + " to " + format_number(high) +
                    ")");

@@ -165,22 +165,28 @@ void fill_kept(Page& page, const fs::path& path, const PageRequest& request, Mis
                  configuration.text("case") + ".");
   add_all_runs(page, runs, true, request, missing);
   add_settings(page, configuration);
-  add_provenance(page, path, command_for("traceraft ensemble", configuration));
+  add_provenance(
+      page, path,
+      command_for(formatted("traceraft ensemble --runs %zu", runs.size()), configuration));
 }
 
 void fill_ensemble(Page& page, const fs::path& path, const PageRequest& request, Missing& missing) {
   const EnsembleFolder folder(path);
   const Configuration configuration(read_config_file(folder.config()), {});
   const Units units = configuration.units();
-  const std::vector<History> runs =
-      finished_members(folder, units.length(), configuration.number("t-end")).histories;
+  const FinishedMembers finished =
+      finished_members(folder, units.length(), configuration.number("t-end"));
+  const std::vector<History>& runs = finished.histories;
   if (runs.empty()) throw InputError(path.string() + ": no run of this ensemble has finished");
-  const fs::path shown = run_to_show(path);
+  const fs::path shown = folder.run_of(finished.seeds.front());
   const EnsemblePlan plan = folder.load();
   page.paragraph(formatted("%zu of %d runs of the case ", runs.size(), plan.runs) +
                  configuration.text("case") + ", seeds " + std::to_string(plan.first_seed) +
                  " to " + std::to_string(plan.last_seed()) + ". Shown is " +
                  shown.filename().string() + ".");
+  for (const MemberFailure& failure : finished.damaged)
+    page.paragraph("The run of seed " + std::to_string(failure.seed) +
+                   " is left out: " + failure.why);
   add_surface(page, shown, request, missing);
   add_all_runs(page, runs, !units.scaled, request, missing);
   add_comparison(page, path, runs.size());

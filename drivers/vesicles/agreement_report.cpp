@@ -15,15 +15,28 @@ constexpr char kDeviations[] =
     "Deviations are those from the mean of the runs, over the scatter between runs and the "
     "uncertainty of the measurement; of logarithms for perimeters and counts. ";
 
-// Where there is nothing to compare, or nothing to measure deviations with.
-std::vector<std::string> doubts_of(const std::vector<Agreement>& agreements) {
-  constexpr double kSmall = 0.02;
+// Where there is nothing to compare, or nothing to measure deviations with, or nothing alike.
+std::vector<std::string> doubts_of(const MeasuredVesicles& data, const std::vector<History>& runs,
+                                   const std::vector<Agreement>& agreements) {
+  constexpr double kSmall = 0.02, kSome = 0.1;
   std::vector<std::string> sentences;
   if (std::all_of(agreements.begin(), agreements.end(),
                   [](const Agreement& a) { return a.measurements == 0; }))
     sentences.push_back(
         "NOTHING IS COMPARED: no measurement is of a time that all runs cover. Are time_unit and "
         "the time zero right?");
+  if (const double share = share_without_rafts(data, runs); share > kSome)
+    sentences.push_back(formatted(
+        "THE SIMULATED VESICLES HAVE NO RAFTS at %.0f %% of the times at which the measured ones "
+        "are looked at: with this raft fraction and epsilon they dissolve, or never form.",
+        100 * share));
+  for (const Agreement& a : agreements)
+    if (lies_beside(a, runs.size()))
+      sentences.push_back(formatted(
+          "THE MEASUREMENTS LIE BESIDE THE RUNS: of %d values of %s %d lie within their range; if "
+          "nothing were wrong, %.0f %% would.",
+          a.measurements, name_of(a.quantity).label, a.within,
+          100 * same_kind(runs.size()).within));
   for (const Agreement& a : agreements)
     if (a.measurements > 0 && a.scatter < kSmall)
       sentences.push_back(
@@ -109,9 +122,9 @@ std::string onset_note(const MeasuredVesicles& data, const std::vector<History>&
              onset->delay, onset->at_end ? "or more " : "") +
          joined(trends, ", ") +
          formatted(
-             "): if the sample may take as long to begin, time_offset = %.3g in dataset.toml "
-             "and another calibration say what D is then.",
-             -onset->delay);
+             "): if the sample may take as long to begin, time_offset = %.4g in dataset.toml "
+             "(in its time_unit; it is %g now) and another calibration say what D is then.",
+             data.time_offset - onset->delay / data.time_unit, data.time_offset);
 }
 
 std::vector<std::string> cautions(const MeasuredVesicles& data, double radius,
@@ -119,7 +132,7 @@ std::vector<std::string> cautions(const MeasuredVesicles& data, double radius,
                                   const std::vector<Agreement>& agreements) {
   std::vector<std::string> all = differences(data, simulated_vesicle(radius, runs, data));
   for (const std::string& doubt : doubts_about(data)) all.push_back(doubt);
-  for (const std::string& doubt : doubts_of(agreements)) all.push_back(doubt);
+  for (const std::string& doubt : doubts_of(data, runs, agreements)) all.push_back(doubt);
   if (const std::string onset = onset_note(data, runs); !onset.empty()) all.push_back(onset);
   return all;
 }

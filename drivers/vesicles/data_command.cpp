@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 
 #include "drivers/commands.hpp"
@@ -14,6 +15,7 @@
 #include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
+#include "kernel/core/text.hpp"
 
 namespace traceraft {
 namespace {
@@ -91,11 +93,23 @@ int draw(const DataRequest& request) {
 struct DataAction {
   std::string name;
   int (*run)(const DataRequest&);
+  std::vector<std::string> options;  // that it uses, of those that not all use
 };
 const NamedList<DataAction>& actions() {
-  static const NamedList<DataAction> list("action",
-                                          {{"check", check}, {"compare", compare}, {"draw", draw}});
+  static const NamedList<DataAction> list(
+      "action", {{"check", check, {"--window"}},
+                 {"compare", compare, {"--ensemble", "--facts", "--out", "--window"}},
+                 {"draw", draw, {"--ensemble", "--facts", "--seed"}}});
   return list;
+}
+
+// What would do nothing was meant to do something.
+void refuse_unused(const CLI::App& app, const DataAction& action) {
+  for (const char* option : {"--ensemble", "--facts", "--out", "--seed", "--window"})
+    if (app.count(option) > 0 &&
+        std::find(action.options.begin(), action.options.end(), option) == action.options.end())
+      throw InputError(std::string(option) + ": data " + action.name +
+                       " does not use it (it uses " + joined(action.options, ", ") + ")");
 }
 
 Action define_data(CLI::App& app) {
@@ -122,7 +136,11 @@ Action define_data(CLI::App& app) {
   app.footer(
       "Example: traceraft data compare my-vesicles --ensemble "
       "verification/data/ensembles/guv-3to1");
-  return [request] { return actions().find(request->action).run(*request); };
+  return [request, &app] {
+    const DataAction& action = actions().find(request->action);
+    refuse_unused(app, action);
+    return action.run(*request);
+  };
 }
 
 }  // namespace

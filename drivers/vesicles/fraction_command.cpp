@@ -44,7 +44,8 @@ int estimate_fraction(const FractionRequest& request) {
     std::printf("  %-22s %.3f ordered, %.3f disordered\n", "lipids", lipids, 1 - lipids);
     if (estimate.phases->ordered.dppc < estimate.phases->disordered.dppc)
       std::printf(
-          "  NOTE: rafts are richer in DPPC than what is around them; are --ordered and "
+          "  NOTE: the ordered phase given has less DPPC than the disordered one; are --ordered "
+          "and "
           "--disordered the right way round?\n");
   }
   std::printf("  %-22s %.1f %%  (%s)\n", "raft area fraction", 100 * estimate.area,

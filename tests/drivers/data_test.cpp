@@ -5,6 +5,7 @@
 #include <fstream>
 #include <functional>
 
+#include "drivers/input/dataset.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -66,6 +67,39 @@ TEST(DataTest, ComparesNothingWithoutSayingSo) {
                 (folder.path / "kept").string() + " --out " + (folder.path / "d").string());
   EXPECT_EQ(apart.code, 2);
   EXPECT_NE(apart.output.find("no times in common"), std::string::npos) << apart.output;
+}
+
+// In the unit of the file, beside what it says already.
+TEST(DataTest, SaysWhichOffsetWouldRemoveATrend) {
+  const testing::TemporaryFolder folder;
+  const MeasuredVesicles kept =
+      read_dataset(TRACERAFT_ROOT "/verification/data/synthetic/guv-3to1");
+  std::ofstream(folder.path / "dataset.toml")
+      << "name = \"late\"\nkind = \"measured\"\ntime_zero = \"start\"\nlength_unit = "
+         "\"um\"\ntime_unit = \"min\"\ntime_offset = -0.5\n";
+  std::ofstream table(folder.path / "measurements.csv");
+  table << "vesicle,time,radius,perimeter,rafts\n";
+  for (const Measurement& m : kept.measurements)
+    table << m.vesicle << "," << m.time / 60 + 0.5 << "," << m.radius << ","
+          << *m.of(Quantity::perimeter) * m.radius << "," << *m.of(Quantity::rafts) << "\n";
+  table.close();
+  const Outcome compared =
+      traceraft("data compare " + folder.path.string() +
+                " --ensemble " TRACERAFT_ROOT "/verification/data/ensembles/guv-3to1 --out " +
+                (folder.path / "c").string());
+  const std::string words = "time_offset = ";
+  const std::size_t at = compared.output.find(words);
+  ASSERT_NE(at, std::string::npos) << compared.output;
+  // An onset after 97 s or so (docs/results.md).
+  EXPECT_NEAR(std::stod(compared.output.substr(at + words.size())), -0.5 - 97 / 60.0, 0.2);
+}
+
+TEST(DataTest, RefusesWhatWouldDoNothing) {
+  const Outcome made =
+      traceraft("data check " TRACERAFT_ROOT "/verification/data/synthetic/guv-3to1 --seed 3");
+  EXPECT_EQ(made.code, 2);
+  EXPECT_NE(made.output.find("--seed: data check does not use it"), std::string::npos)
+      << made.output;
 }
 
 // An exponential is a power law whose origin is infinitely early.

@@ -192,6 +192,10 @@ TEST_F(EnsembleTest, GathersTheOthersOfADamagedRun) {
                             "there is no column 'perimeter'", "seed 3 failed"})
     EXPECT_NE(made.output.find(words), std::string::npos) << made.output;
   EXPECT_NE(content(folder.path / "a/ensemble.html").find("1 of 4 runs"), std::string::npos);
+  ASSERT_EQ(traceraft("report " + out("a")).code, 0);
+  const std::string page = content(folder.path / "a/report.html");
+  EXPECT_NE(page.find("Shown is seed-4"), std::string::npos);
+  EXPECT_NE(page.find("The run of seed 2 is left out: "), std::string::npos);
   // Time goes on to the end of the run that is whole.
   EXPECT_NEAR(CsvTable::read(csv("a")).numbers("t").back(), 100, 10);
 }
@@ -257,8 +261,15 @@ TEST_F(EnsembleTest, LeavesFoldersOfOthersAlone) {
 
 TEST_F(EnsembleTest, RefusesWhatMakesNoEnsemble) {
   ASSERT_EQ(traceraft("ensemble --quiet " + runs + "--runs 1 --out " + out("a")).code, 0);
+  std::string config = content(folder.path / "a/config.toml");
+  const std::string key = "checkpoint-interval = ";
+  ASSERT_NE(config.find(key), std::string::npos);
+  config.insert(config.find(key) + key.size(), "7");
+  std::ofstream(folder.path / "other.toml") << config;
   for (const auto& [flags, complaint] :
-       {std::pair("--case two-rafts --out " + out("b"), "it has to be noise"),
+       {std::pair("--runs 2 --config " + out("other.toml") + " --out " + out("a"),
+                  "those that it grows by have it, too"),
+        std::pair("--case two-rafts --out " + out("b"), "it has to be noise"),
         std::pair("--case guv-3to1 --out " + out("a"), "holds an ensemble of other runs"),
         std::pair("--first-seed 3 --out " + out("a"), "begins with seed 1"),
         std::pair("--case guv-2to1 --cells 20 --epsilon 0.5 --t-end 100 --checkpoint-interval 5 "

@@ -50,6 +50,17 @@ TEST_F(CsvTableTest, CountsLinesThatEndAsOnOldMacintoshes) {
   EXPECT_NE(table.where(1, "time").find("data.csv:3"), std::string::npos);
 }
 
+TEST_F(CsvTableTest, SaysWhereItIsNotUtf8) {
+  EXPECT_NE(complaint("t,a\n1,x\n2,caf\xE9\n").find("data.csv:3: this is not UTF-8"),
+            std::string::npos);
+}
+
+TEST_F(CsvTableTest, LeavesRowsWithoutAValueOut) {
+  const CsvTable table = read("t,a\n1,x\n,\n2,\n,\n");
+  EXPECT_EQ(table.numbers("t"), (std::vector<double>{1, 2}));
+  EXPECT_NE(table.where(1, "t").find("data.csv:4"), std::string::npos);
+}
+
 TEST_F(CsvTableTest, SaysWhatNumbersWithCommasLookLike) {
   EXPECT_NE(complaint("t,a\n1,5,2,5\n").find("commas within numbers"), std::string::npos);
 }

@@ -54,6 +54,10 @@ TEST_F(DatasetTest, ConvertsUnits) {
       read("vesicle,time,rafts\na,1,2\n", "radius = 5000\ntime_offset = 0.5\n");
   EXPECT_DOUBLE_EQ(later.measurements[0].time, 90);
   EXPECT_DOUBLE_EQ(later.measurements[0].radius, 5);
+  EXPECT_EQ(later.time_unit, 60);
+  EXPECT_EQ(later.time_offset, 0.5);
+  // A cap as large as the vesicle, in units that 5 um is no double of.
+  EXPECT_EQ(read("vesicle,time,radius,cap_radius\na,1,8190,8190\n").measurements.size(), 1u);
 }
 
 TEST_F(DatasetTest, ComputesRaftsFromCaps) {

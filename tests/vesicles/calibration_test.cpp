@@ -146,6 +146,30 @@ TEST(Calibration, SaysWhereItsSearchEnds) {
   EXPECT_FALSE(found.parameters[0].determined);
 }
 
+// Of late looks at a number of rafts that no longer changes any D is as good as a larger one.
+TEST(Calibration, KnowsNoUnitWhereCurvesAreFlat) {
+  std::vector<History> runs = simulate(kEpsilon, true, 20, 77);
+  for (History& run : runs)
+    for (std::size_t i = 0; i < run.time.size(); ++i)
+      if (run.time[i] > 100)
+        for (const Quantity quantity : kQuantities) run.of(quantity)[i] = run.of(quantity)[i - 1];
+  std::vector<History> vesicles = runs;
+  for (History& vesicle : vesicles)
+    for (double& t : vesicle.time) t *= kSeconds;
+  PublishedFacts late = design();
+  late.window = {1000 * kSeconds, 2000 * kSeconds};
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const MeasuredVesicles data = draw_from_runs(late, vesicles, 5, seed);
+    const Calibration found = calibrate(data, {}, {{{}, runs}}, around(kSeconds));
+    const CalibratedParameter& unit = found.parameters[0];
+    EXPECT_FALSE(unit.determined) << seed;
+    // Looks are 1000 units after the start with the truth, and more than 100 with ten times that.
+    EXPECT_LT(unit.interval.low, kSeconds / 4) << seed;
+    EXPECT_GT(unit.interval.high, 4 * kSeconds) << seed;
+    EXPECT_DOUBLE_EQ(found.correlation(0, 0), 1);
+  }
+}
+
 // ε goes with D: if that is not found, neither is ε, however narrow its interval.
 TEST(Calibration, DeterminesNothingBesideAUnitAtItsEnd) {
   std::vector<CalibrationPoint> points;
@@ -236,6 +260,18 @@ TEST(Calibration, DeterminesNothingUnlessItConverges) {
   mark_unconverged(found);
   EXPECT_FALSE(found.parameters[1].determined);
   EXPECT_FALSE(found.converged);
+}
+
+// At time zero there is the initial noise, of which the model foretells nothing.
+TEST(Calibration, LeavesLooksOfTimeZeroOut) {
+  const std::vector<CalibrationPoint> points = {{{}, simulate(kEpsilon, true, 20, 77)}};
+  MeasuredVesicles data = measured(true, 1);
+  const double without = calibrate(data, {}, points, around(kSeconds)).parameters[0].value;
+  Measurement first = data.measurements.front();
+  first.time = 0;
+  data.measurements.insert(data.measurements.begin(), first);
+  EXPECT_EQ(looks_that_tell_nothing(data), 1);
+  EXPECT_EQ(calibrate(data, {}, points, around(kSeconds)).parameters[0].value, without);
 }
 
 TEST(Calibration, RefusesTooLittle) {

@@ -250,6 +250,8 @@ TEST(Comparison, SeesVesiclesOfAnotherKind) {
   EXPECT_EQ(agreements[0].within, 0);
   EXPECT_GT(agreements[0].bias, 3);
   EXPECT_GT(agreements[0].misfit, 3);
+  EXPECT_TRUE(lies_beside(agreements[0], 20));
+  EXPECT_FALSE(lies_beside(compare_with_runs(looked_at(runs(20, 1)), runs(20, 1))[0], 20));
   EXPECT_THROW((void)compare_with_runs(looked_at(runs(2, 1)), runs(1, 1)), InputError);
 }
 
@@ -283,6 +285,20 @@ TEST(Comparison, CountsLooksWithoutRaftsApart) {
     EXPECT_LT(std::fabs(a.bias), 1);
   }
   EXPECT_EQ(agreements[2].measurements, 2);
+}
+
+TEST(Comparison, SeesRunsWithoutRafts) {
+  MeasuredVesicles data;
+  data.measurements = {{"v", 100, 5, {8.0, 4.0, 0.1}, {}}, {"v", 900, 5, {8.0, 4.0, 0.1}, {}}};
+  const History with = steady(8, 4, 500), without = steady(0, 0, 500);
+  EXPECT_EQ(share_without_rafts(data, {with, with}), 0);
+  EXPECT_EQ(share_without_rafts(data, {with, without}), 0.5);  // the later look is not covered
+  EXPECT_EQ(share_without_rafts(data, {}), 0);
+  // Nor is there a law of what is not there.
+  std::vector<double> times;
+  for (double t = 100; t < 500; t += 20) times.push_back(t);
+  EXPECT_TRUE(fit_runs({with, with, without}, times, {100, 500}));
+  EXPECT_FALSE(fit_runs({without, with, without}, times, {100, 500}));
 }
 
 // Which roundoff may have put before the last look.

@@ -23,15 +23,29 @@ Eigen::MatrixXd covariance(const std::vector<std::vector<double>>& replicates) {
   return centred.transpose() * centred / static_cast<double>(rows - 1);
 }
 
-// The median of the replicates is a better estimate than the fit to what was measured where that is
-// flat, and takes its minimum from the noise of the runs (bagging: Breiman 1996).
+std::vector<double> column(const std::vector<std::vector<double>>& replicates, std::size_t i) {
+  std::vector<double> values;
+  for (const auto& replicate : replicates) values.push_back(replicate[i]);
+  return values;
+}
+
+Interval logarithms(const Interval& range) {
+  return {std::log(range.low), std::log(range.high)};
+}
+
+// All in logarithms. The median of the replicates is a better estimate than the fit to what was
+// measured where that is flat, and takes its minimum from the noise of the runs (bagging: Breiman
+// 1996). `probable`: what the interval cannot leave out. `searched`: of what ends within `edge` of
+// its ends nothing is known.
 CalibratedParameter parameter(const std::string& name, const std::vector<double>& replicates,
-                              double lower, double upper, double edge) {
-  const double low = quantile(replicates, 0.025), high = quantile(replicates, 0.975);
+                              const Interval& probable, const Interval& searched, double edge) {
+  const double low = std::min(quantile(replicates, 0.025), probable.low);
+  const double high = std::max(quantile(replicates, 0.975), probable.high);
   return {name,
           std::exp(quantile(replicates, 0.5)),
           {std::exp(low), std::exp(high)},
-          high - low < std::log(kDetermined) && low > lower + edge && high < upper - edge};
+          high - low < std::log(kDetermined) && low > searched.low + edge &&
+              high < searched.high - edge};
 }
 
 void set_best_powers(const Eigen::MatrixXd& spread, Calibration& result) {
@@ -72,19 +86,19 @@ Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtPara
   const std::vector<std::vector<double>> replicates = fit.replicates();
   const Box simulated = explored(points, sought, 0);
   Calibration result;
-  for (std::size_t i = 0; i <= sought.size(); ++i) {
-    std::vector<double> values;
-    for (const auto& replicate : replicates) values.push_back(replicate[i]);
-    result.parameters.push_back(parameter(
-        i == 0 ? "seconds_per_unit" : sought[i - 1].name, values,
-        i == 0 ? std::log(unit.allowed.low) : simulated.lower[i - 1],
-        i == 0 ? std::log(unit.allowed.high) : simulated.upper[i - 1],
-        i == 0 ? kUnitEdge : kSimulatedEdge * (simulated.upper[i - 1] - simulated.lower[i - 1])));
+  result.parameters = {parameter("seconds_per_unit", column(replicates, 0), logarithms(fit.units()),
+                                 logarithms(unit.allowed), kUnitEdge)};
+  for (std::size_t i = 0; i < sought.size(); ++i) {
+    const Interval range{simulated.lower[i], simulated.upper[i]};
+    result.parameters.push_back(parameter(sought[i].name, column(replicates, i + 1),
+                                          {HUGE_VAL, -HUGE_VAL}, range,
+                                          kSimulatedEdge * (range.high - range.low)));
   }
   const Eigen::MatrixXd spread = covariance(replicates);
   const Vec deviation = spread.diagonal().cwiseSqrt().cwiseMax(1e-12);
   result.correlation =
       deviation.cwiseInverse().asDiagonal() * spread * deviation.cwiseInverse().asDiagonal();
+  result.correlation.diagonal().setOnes();  // also of what did not vary at all
   set_best_powers(spread, result);
   for (const JointFit& point : fit.at_points()) result.at_points.push_back(point.time);
   result.best = fit.found().time;

@@ -11,12 +11,14 @@ namespace {
 constexpr std::size_t kLeastVesicles = 3;  // to know how they scatter
 
 bool tells(const Measurement& m) {
+  if (!(m.time > 0)) return false;
   return m.of(Quantity::perimeter).value_or(0) > 0 || m.of(Quantity::rafts).value_or(0) > 0;
 }
 
 }  // namespace
 
 std::vector<int> telling_vesicles(const MeasuredVesicles& data) {
+  if (!(looks(data).end > 0)) throw InputError("a calibration needs looks after time zero");
   std::vector<int> result;
   const auto vesicles = data.vesicles();
   for (std::size_t k = 0; k < vesicles.size(); ++k) {
@@ -28,9 +30,8 @@ std::vector<int> telling_vesicles(const MeasuredVesicles& data) {
   if (result.size() < kLeastVesicles)
     throw InputError(
         "a calibration needs three vesicles at least, to know how they scatter, with rafts whose "
-        "perimeter or number was measured; there are " +
+        "perimeter or number was measured after time zero; there are " +
         std::to_string(result.size()));
-  if (!(looks(data).end > 0)) throw InputError("a calibration needs looks after time zero");
   return result;
 }
 

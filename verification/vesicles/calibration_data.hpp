@@ -7,10 +7,10 @@
 
 namespace traceraft {
 
-// Numbers of the vesicles that show rafts whose perimeter or number was measured. Throws InputError
-// if they are fewer than three, or if there is no look after time zero.
+// Numbers of the vesicles that show rafts whose perimeter or number was measured after time zero.
+// Throws InputError if they are fewer than three, or if there is no look after time zero.
 std::vector<int> telling_vesicles(const MeasuredVesicles& data);
-// Measurements without a raft, or of neither perimeter nor number: they are not used.
+// Measurements of time zero, without a raft, or of neither perimeter nor number: they are not used.
 int looks_that_tell_nothing(const MeasuredVesicles& data);
 
 }  // namespace traceraft

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "kernel/core/error.hpp"
+#include "kernel/core/random.hpp"
 #include "verification/measure/fit.hpp"
 #include "verification/vesicles/calibration_data.hpp"
 #include "verification/vesicles/local_regression.hpp"
@@ -92,14 +93,24 @@ CalibrationFit::CalibrationFit(const MeasuredVesicles& data,
       at_points_(fit_points(evidence(vesicles_), points, runs_)),
       found_(fit_jointly(evidence(vesicles_), runs_, box_, best_of(at_points_))) {}
 
+Interval CalibrationFit::units() const {
+  return as_probable(data_, vesicles_, runs_.at(found_.ln_parameters), unit_, found_.time);
+}
+
 std::vector<std::vector<double>> CalibrationFit::replicates() const {
+  std::vector<Interval> units;
+  for (std::size_t k = 0; k < at_points_.size(); ++k)
+    units.push_back(as_probable(data_, vesicles_, runs_.at_point(k), unit_, at_points_[k].time));
   std::vector<std::vector<double>> all;
   for (std::uint64_t r = 1; r <= kReplicates; ++r) {
     const std::vector<int> some = some_of(vesicles_, r);
     const RunEmulator others = runs_.with_runs(resample(count_, r, 32));
-    // From another point each time: what is flat is not to be taken for known.
-    all.push_back(
-        estimates(fit_jointly(evidence(some), others, box_, {at_points_[r % at_points_.size()]})));
+    // From another point each time, and another D: what is flat is not to be taken for known.
+    const std::size_t k = r % at_points_.size();
+    JointFit start = at_points_[k];
+    start.time.seconds_per_unit =
+        units[k].low * std::pow(units[k].high / units[k].low, uniform_random(r, 33, 0));
+    all.push_back(estimates(fit_jointly(evidence(some), others, box_, {start})));
   }
   return all;
 }

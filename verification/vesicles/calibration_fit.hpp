@@ -21,6 +21,8 @@ class CalibrationFit {
 
   const std::vector<JointFit>& at_points() const { return at_points_; }
   const JointFit& found() const { return found_; }
+  // Units of time that are about as probable as that found, with the parameters found.
+  Interval units() const;
   // Estimates of other vesicles and other runs of the same kind.
   std::vector<std::vector<double>> replicates() const;
 

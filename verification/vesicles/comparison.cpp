@@ -181,4 +181,24 @@ SameKind same_kind(std::size_t runs) {
   return {(n - 1) / (n + 1), n > 3 ? std::sqrt((n - 1) / (n - 3)) : HUGE_VAL};
 }
 
+bool lies_beside(const Agreement& agreement, std::size_t runs) {
+  constexpr int kFewest = 5;
+  constexpr double kNextToNothing = 0.2;  // of what is to be expected
+  constexpr double kMisfit = 3;           // errors of measuring may be larger than the range
+  return agreement.measurements >= kFewest && agreement.misfit > kMisfit &&
+         agreement.within < kNextToNothing * same_kind(runs).within * agreement.measurements;
+}
+
+double share_without_rafts(const MeasuredVesicles& data, const std::vector<History>& runs) {
+  constexpr double kNone = 0.5;  // rafts
+  double none = 0, all = 0;
+  for (const Measurement& m : data.measurements)
+    for (const History& run : runs) {
+      if (!(m.time > 0) || m.time > run.time.back()) continue;
+      none += run.at(Quantity::rafts, m.time) < kNone;
+      ++all;
+    }
+  return all > 0 ? none / all : 0;
+}
+
 }  // namespace traceraft

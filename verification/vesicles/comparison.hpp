@@ -40,4 +40,12 @@ struct SameKind {
 };
 SameKind same_kind(std::size_t runs);
 
+// Does next to nothing lie within the range of so many runs, or near it? Then these tell of
+// something else.
+bool lies_beside(const Agreement& agreement, std::size_t runs);
+
+// The share of looks, over all runs that cover their time, at which the simulated vesicle has no
+// raft; 0 if there are no such looks.
+double share_without_rafts(const MeasuredVesicles& data, const std::vector<History>& runs);
+
 }  // namespace traceraft

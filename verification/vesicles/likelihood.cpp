@@ -68,7 +68,8 @@ std::vector<Look> looks_of(const MeasuredVesicles& data, const std::vector<int>&
   for (const int k : sample)
     for (std::size_t i = vesicles[k].first; i < vesicles[k].second; ++i) {
       const Measurement& m = data.measurements[i];
-      const double t = std::max(m.time, 1e-12);
+      const double t = m.time;
+      if (!(t > 0)) continue;  // what runs begin with is none of their doing
       if (const auto& p = m.of(Quantity::perimeter); p && *p > 0)
         looks.push_back(
             {Quantity::perimeter, t, std::log(*p), square(m.sigma_of(Quantity::perimeter) / *p)});
@@ -204,6 +205,23 @@ TimeFit fit_time(const MeasuredVesicles& data, const std::vector<int>& sample,
     if (found.deviance < best.deviance) best = found;
   }
   return best;
+}
+
+Interval as_probable(const MeasuredVesicles& data, const std::vector<int>& sample,
+                     const RunStatistics& runs, const TimeUnit& unit, const TimeFit& fit) {
+  constexpr int kUnits = 200;
+  constexpr double kAbout = 1;  // of the deviance, a standard deviation where it is a parabola
+  const std::vector<Look> looks = looks_of(data, sample);
+  const double low = std::log(unit.allowed.low), high = std::log(unit.allowed.high);
+  const double most = deviance_of(looks, runs, fit.seconds_per_unit, fit.scatter) + kAbout;
+  Interval range{fit.seconds_per_unit, fit.seconds_per_unit};
+  for (int k = 0; k <= kUnits; ++k) {
+    const double seconds = std::exp(low + (high - low) * k / kUnits);
+    if (deviance_of(looks, runs, seconds, fit.scatter) > most) continue;
+    range.low = std::min(range.low, seconds);
+    range.high = std::max(range.high, seconds);
+  }
+  return range;
 }
 
 TimeFit fit_time(const MeasuredVesicles& data, const std::vector<int>& sample,

@@ -30,7 +30,8 @@ std::vector<std::optional<FractionOfVesicle>> fractions_of_vesicles(const Measur
   for (const auto& [first, last] : data.vesicles()) {
     FractionOfVesicle fraction{0, {}};
     for (std::size_t i = first; i < last; ++i)
-      if (const auto& value = data.measurements[i].of(Quantity::fraction)) {
+      if (const auto& value = data.measurements[i].of(Quantity::fraction);
+          value && data.measurements[i].time > 0) {
         fraction.mean += *value;
         fraction.times.push_back(data.measurements[i].time);
       }

@@ -35,6 +35,8 @@ struct MeasuredVesicles {
   std::optional<double> celsius;
   // Those of one vesicle together, at ascending times.
   std::vector<Measurement> measurements;
+  // Of their file: the unit of its times in s, and what it adds to them, in that unit.
+  double time_unit = 1, time_offset = 0;
 
   // First and last index + 1 of each vesicle's measurements.
   std::vector<std::pair<std::size_t, std::size_t>> vesicles() const;
@@ -43,7 +45,8 @@ struct MeasuredVesicles {
 // From the first look after time zero to the last one; nothing if there is none, {inf, 0}.
 Window looks(const MeasuredVesicles& data);
 
-// The raft fraction of a vesicle: the mean over the times (s) at which it was measured.
+// The raft fraction of a vesicle: the mean over the times (s) after time zero at which it was
+// measured.
 struct FractionOfVesicle {
   double mean;
   std::vector<double> times;

@@ -115,9 +115,15 @@ std::optional<FittedLaw> fit_measurements(const MeasuredVesicles& data, const Wi
 
 std::optional<FittedLaw> fit_runs(const std::vector<History>& runs,
                                   const std::vector<double>& times, const Window& window) {
+  const auto have_rafts = [&](double t) {
+    const auto none = std::count_if(runs.begin(), runs.end(), [&](const History& run) {
+      return run.at(Quantity::perimeter, t) < kLeastPerimeter;
+    });
+    return 2 * static_cast<std::size_t>(none) < runs.size();
+  };
   std::vector<double> within;
   for (const double t : times)
-    if (window.contains(t)) within.push_back(t);
+    if (window.contains(t) && have_rafts(t)) within.push_back(t);
   if (within.size() < kLeastPoints || static_cast<int>(runs.size()) < kLeastVesicles)
     return std::nullopt;
   return with_intervals(
