@@ -47,19 +47,26 @@ CampaignPlan new_plan(const CampaignRequest& request) {
 }
 
 // What it began with, more cases aside.
-CampaignPlan grown_plan(const CampaignRequest& request, const CampaignFolder& folder) {
+CampaignPlan grown_plan(const CampaignRequest& request, const CampaignFolder& folder,
+                        const std::string& option) {
   CampaignPlan plan = folder.load();
   const bool asked = std::any_of(request.planned.begin(), request.planned.end(),
                                  [](const CLI::Option* option) { return option->count() > 0; });
   if (asked) {
     const CampaignPlan wanted = new_plan(request);
     if (wanted.groups != plan.groups || !same_but_for_cases(wanted, plan))
-      throw InputError("--out: " + folder.path().string() +
+      throw InputError(option + ": " + folder.path().string() +
                        " holds a campaign of another plan; choose another folder, or give only "
                        "--out to go on with it, and --cases for more of them");
   }
   plan.cases = std::max(plan.cases, request.cases);
   return plan;
+}
+
+CampaignFolder begun_elsewhere(const std::string& path) {
+  CampaignFolder folder(path);
+  if (!folder.started()) throw InputError("--elsewhere: " + path + " holds no campaign");
+  return folder;
 }
 
 // Of campaigns with the same plan that were carried out elsewhere; a case that several of them have
@@ -69,7 +76,7 @@ std::vector<CaseScore> scores_of(const std::vector<std::string>& folders,
   std::vector<CaseScore> scores;
   std::set<std::string> counted;
   for (const std::string& path : folders) {
-    const CampaignFolder folder(path);
+    const CampaignFolder folder = begun_elsewhere(path);
     if (!same_but_for_cases(plan, folder.load()))
       throw InputError("--elsewhere: the campaign in " + folder.path().string() +
                        " has another plan");
@@ -155,10 +162,11 @@ int run_campaign(const CampaignRequest& request) {
   }
   catch_stop_signals();
   const CampaignFolder folder(request.out.empty() ? first_free_folder("campaign") : request.out);
-  const CampaignPlan plan = goes_on ? grown_plan(request, folder)
-                            : request.elsewhere.empty()
-                                ? new_plan(request)
-                                : grown_plan(request, CampaignFolder(request.elsewhere[0]));
+  const CampaignPlan plan =
+      goes_on ? grown_plan(request, folder, "--out")
+      : request.elsewhere.empty()
+          ? new_plan(request)
+          : grown_plan(request, begun_elsewhere(request.elsewhere[0]), "--elsewhere");
   std::vector<CaseScore> scores = scores_of(request.elsewhere, plan);
   if (!goes_on) refuse_foreign_folder(folder.path(), {});
   fs::create_directories(folder.path() / "cases");

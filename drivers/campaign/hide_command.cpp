@@ -79,6 +79,9 @@ int hide_effects(const HideCommand& command) {
   const FolderLock lock(out);
   end_on_stop_signals(kInterrupted, "nothing was hidden; give the same command again");
   std::printf("computing the truth on %d cells\n", request.cells);
+  if (2 * request.cells < 5 * Configuration(model, {}).integer("cells"))
+    std::printf(
+        "NOTE: the error of so coarse a truth may be named itself; 4 times --cells is safe\n");
   std::fflush(stdout);
   hide(out, model, request);
   std::printf("find it with: traceraft explain --data %s --model %s\n", (out / "data").c_str(),

@@ -55,7 +55,7 @@ class ExplainPage {
                          : ", curvature sorts nothing where it is the same everywhere."));
     page_.heading("Where this comes from");
     page_.paragraph("traceraft " + std::string(kVersion) + ". Noise " +
-                    formatted("%.4f of c, ", found_.noise) + std::to_string(found_.replicates) +
+                    formatted("%.3g of c, ", found_.noise) + std::to_string(found_.replicates) +
                     " replicates of noise alone, " +
                     formatted("h/epsilon = %.2f.", found_.h_over_epsilon) + " The model:");
     page_.code(flags_text(setup_.configuration()));

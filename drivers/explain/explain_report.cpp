@@ -67,7 +67,7 @@ void print_explanation(const Explanation& found, const ExplainSetup& setup) {
   print_rows(gap_rows(found));
   for (const std::string& remark : remarks_on(found, setup)) std::printf("\n%s\n", remark.c_str());
   std::printf(
-      "\nnoise of the measurements %.4f; patches that disagree significantly with the base model: "
+      "\nnoise of the measurements %.3g; patches that disagree significantly with the base model: "
       "%zu\n",
       found.noise, found.disagreements.size());
 }

@@ -29,7 +29,7 @@ std::vector<Row> parameter_rows(const Explanation& found, const Units& base) {
       rows.push_back({before + p.effect + (p.effect.empty() ? "" : " ") + p.name,
                       formatted("%.4g", p.value), interval_of(p), p.unit});
   };
-  add(found.found, "");
+  add(fit_shown(found), "");
   if (found.finding == Finding::ambiguous)
     for (const Refit& fit : found.rivals) add(fit, "or: ");
   return rows;

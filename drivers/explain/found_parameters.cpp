@@ -47,6 +47,10 @@ std::vector<FoundParameter> parameters_of(const EffectTerm& term, const Units& u
   return result;
 }
 
+const Refit& fit_shown(const Explanation& found) {
+  return is_named(found) || found.finding == Finding::unnamed ? found.found : found.base;
+}
+
 std::vector<FoundParameter> found_parameters(const Refit& fit, const Units& base) {
   const Units units = found_units(base, fit);
   std::vector<FoundParameter> result;

@@ -19,6 +19,9 @@ struct FoundParameter {
 // All parameters of an effect, in their own units and without sigma.
 std::vector<FoundParameter> parameters_of(const EffectTerm& term, const Units& units);
 
+// Whose parameters are told: what was refuted has none.
+const Refit& fit_shown(const Explanation& found);
+
 // Parameters of a model's effects, then D (effect "").
 std::vector<FoundParameter> found_parameters(const Refit& fit, const Units& base);
 

@@ -156,9 +156,10 @@ void add_rerun(const Explanation& found, std::vector<std::string>& all) {
     all.push_back("On another mesh and by another integrator it could not be repeated: " +
                   found.rerun->failure);
   else if (found.rerun->refutes())
-    all.push_back("On another mesh and by another integrator " + found.found.hypothesis.name() +
-                  " foretells the measurements worse than the base model, beyond what noise does: "
-                  "it is no explanation of them, though it came closest in the search.");
+    all.push_back(
+        "On another mesh and by another integrator " + found.found.hypothesis.name() +
+        " foretells the measurements worse than the base model, beyond what noise and the mesh do: "
+        "it is no explanation of them, though it came closest in the search.");
   else if (is_named(found) && !found.rerun->confirms())
     all.push_back(
         "On another mesh and by another integrator what was found foretells the measurements no "
@@ -199,7 +200,7 @@ std::vector<std::string> remarks(const Explanation& found, const Units& base) {
   const Round& last = found.rounds.back();
   if (is_named(found) && found.stopped.empty() && last.screening.p <= found.false_alarms)
     all.push_back(last.refits.empty() && last.failures.empty()
-                      ? "Something is still lacking; more --most-effects would look for it."
+                      ? "Something may still be lacking; more --most-effects would look for it."
                       : "Something may still be lacking, too little of it to say what.");
   add_assumptions(found, base, all);
   add_rerun(found, all);

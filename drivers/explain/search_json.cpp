@@ -203,6 +203,7 @@ Json json_of(const std::optional<Rerun>& rerun) {
           {"failure", rerun->failure},
           {"gain", rerun->gain},
           {"shortfall", rerun->shortfall},
+          {"doubt", rerun->doubt},
           {"gap_p", rerun->gap_p ? Json(*rerun->gap_p) : Json()},
           {"gap_failure", rerun->gap_failure}};
 }
@@ -210,7 +211,7 @@ std::optional<Rerun> rerun_of(const Json& json) {
   if (json.is_null()) return {};
   Rerun rerun{json.at("cells"),          json.at("integrator"),     gaps_of(json.at("base")),
               gaps_of(json.at("found")), gaps_of(json.at("floor")), json.at("failure"),
-              json.at("gain"),           json.at("shortfall")};
+              json.at("gain"),           json.at("shortfall"),      json.at("doubt")};
   if (const Json& p = json.at("gap_p"); !p.is_null()) rerun.gap_p = p.get<double>();
   rerun.gap_failure = json.at("gap_failure");
   return rerun;

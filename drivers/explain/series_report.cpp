@@ -57,7 +57,7 @@ std::string ground(const SeriesExplanation& found, const SeriesEnsembles& ensemb
          " effects, and on " + std::to_string(request.replicates) +
          " data sets of the model alone: at most " + share(found.p) +
          " of these gain as much by any effect, and at most " + share(found.trend_p) +
-         " leave as much of a trend. What counts is less than " + share(request.false_alarms) +
+         " leave as much of a trend. What counts is at most " + share(request.false_alarms) +
          ", and " + share(kTrendLevel * request.false_alarms) + " for trends.";
 }
 

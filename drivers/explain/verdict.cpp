@@ -111,11 +111,6 @@ Json data_json(const ExplainSetup& setup) {
           {"snapshots", snapshots}};
 }
 
-// What was refuted has no parameters.
-const Refit& shown(const Explanation& found) {
-  return is_named(found) || found.finding == Finding::unnamed ? found.found : found.base;
-}
-
 }  // namespace
 
 std::vector<std::string> not_looked_for(const Explanation& found) {
@@ -144,7 +139,7 @@ Json verdict_json(const Explanation& found, const ExplainSetup& setup) {
           {"effect", is_named(found) ? Json(name) : Json()},
           {"class", class_of(found)},
           {"closest", found.finding == Finding::unnamed && !name.empty() ? Json(name) : Json()},
-          {"parameters", parameters_json(found_parameters(shown(found), base))},
+          {"parameters", parameters_json(found_parameters(fit_shown(found), base))},
           {"rivals", rivals_json(found, base)},
           {"told_apart", told_apart_json(found)},
           {"bounds", bounds_json(found, base)},

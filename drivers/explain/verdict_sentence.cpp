@@ -47,6 +47,9 @@ std::string closest(const Explanation& found) {
 
 std::string doubt_sentence(const Explanation& found) {
   const Screening& first = found.rounds.front().screening;
+  if (found.rerun && found.rerun->refutes())
+    return "Something seems to be missing, and what seemed to explain it does not: " +
+           found.found.hypothesis.name() + ", as another mesh and integrator show.";
   if (first.p <= found.false_alarms)
     return "Something seems to be missing, too little of it to say what: " + closest(found) +
            " would explain most of it. More points, less noise or more snapshots would tell.";

@@ -36,7 +36,7 @@ FilterResult pass_with(double share, std::uint64_t seed, double unknown = 0) {
 }
 
 TEST(Rerun, ConfirmsWhatComesCloserToTheTruth) {
-  const Rerun rerun = compare_forecasts(pass_with(0.5, 1), pass_with(0, 1));
+  const Rerun rerun = compare_forecasts(pass_with(0.5, 1), pass_with(0, 1), 0);
   EXPECT_TRUE(rerun.confirms());
   EXPECT_FALSE(rerun.refutes());
   EXPECT_NEAR(rerun.gain, kMeasured * 0.25 / 2, 60);  // of the mean square of the wave
@@ -44,7 +44,7 @@ TEST(Rerun, ConfirmsWhatComesCloserToTheTruth) {
 }
 
 TEST(Rerun, RefutesWhatGoesAwayFromIt) {
-  const Rerun rerun = compare_forecasts(pass_with(0, 1), pass_with(0.5, 1));
+  const Rerun rerun = compare_forecasts(pass_with(0, 1), pass_with(0.5, 1), 0);
   EXPECT_FALSE(rerun.confirms());
   EXPECT_TRUE(rerun.refutes());
 }
@@ -57,7 +57,8 @@ TEST(Rerun, SeldomRefutesTheTruth) {
     int refuted = 0;
     double squares = 0;
     for (std::uint64_t k = 1; k <= kTrials; ++k) {
-      const Rerun rerun = compare_forecasts(pass_with(0.05, k, unknown), pass_with(0, k, unknown));
+      const Rerun rerun =
+          compare_forecasts(pass_with(0.05, k, unknown), pass_with(0, k, unknown), 0);
       refuted += rerun.refutes();
       squares += rerun.shortfall * rerun.shortfall / kTrials;
     }
@@ -66,8 +67,18 @@ TEST(Rerun, SeldomRefutesTheTruth) {
   }
 }
 
+// Forecasts are no better than their mesh.
+TEST(Rerun, DoesNotRefuteByErrorsOfTheMesh) {
+  const FilterResult base = pass_with(0, 1), found = pass_with(0.5, 1);
+  const double shortfall = compare_forecasts(base, found, 0).shortfall;
+  // Half of the error, times the root of the number of values, is what it may be.
+  const double enough = 2 * shortfall / std::sqrt(kMeasured);
+  EXPECT_TRUE(compare_forecasts(base, found, 0.5 * enough).refutes());
+  EXPECT_FALSE(compare_forecasts(base, found, enough).refutes());
+}
+
 TEST(Rerun, SaysNothingOfModelsThatAreAlike) {
-  const Rerun rerun = compare_forecasts(pass_with(0.1, 1), pass_with(0.1, 1));
+  const Rerun rerun = compare_forecasts(pass_with(0.1, 1), pass_with(0.1, 1), 0);
   EXPECT_FALSE(rerun.confirms());
   EXPECT_FALSE(rerun.refutes());
 }

@@ -81,6 +81,36 @@ TEST_F(TangentFlowTest, RateIsTheDerivativeByTime) {
   EXPECT_LT(base.field_norm(slope - along.end_rate), 1e-3 * base.field_norm(slope));
 }
 
+// Points that an effect couples are no neighbours in the assembled Jacobian.
+TEST_F(TangentFlowTest, IsExactWhereDistantPointsAreCoupled) {
+  const auto& all = candidates();
+  const Candidate& repulsion =
+      *std::find_if(all.begin(), all.end(),
+                    [](const Candidate& candidate) { return candidate.effect == "ohta-kawasaki"; });
+  constexpr double kStrength = 0.6;  // changes c by 6 % of its contrast
+  const auto with = [&](double strength) {
+    return CahnHilliard(space, with_effects(base.model(), {repulsion.term({strength})}));
+  };
+  const auto end = [&](double strength, ConstVec from) {
+    return advance(with(strength), from, kBegin, kEnd, kSteps).end;
+  };
+  const CahnHilliard problem = with(kStrength);
+  const Forecast path = advance(problem, c, kBegin, kEnd, kSteps);
+  const CoefficientForcing forcing(problem, problem.model(), {}, {repulsion});
+  const Vec direction = project(*space, testing::random_vector(space->nodes(), 5));
+  Columns S(space->nodes(), 2);
+  S << direction, Vec::Zero(space->nodes());
+  TangentFlow flow(problem, choose_linear_solver("direct", *space).primary,
+                   std::make_shared<ThreadTeam>(2));
+  flow.advance(path.paths.front(), S, [&](double t, ConstVec y) { return forcing(t, y); });
+  const double step = 1e-3;
+  const Vec by_state =
+      (end(kStrength, c + step * direction) - end(kStrength, c - step * direction)) / (2 * step);
+  const Vec by_strength = (end(kStrength + step, c) - end(kStrength - step, c)) / (2 * step);
+  EXPECT_LT(base.field_norm(by_state - S.col(0)), 0.01 * base.field_norm(by_state));
+  EXPECT_LT(base.field_norm(by_strength - S.col(1)), 0.01 * base.field_norm(by_strength));
+}
+
 class TangentOfEffect : public TangentFlowTest,
                         public ::testing::WithParamInterface<std::string> {};
 

@@ -38,7 +38,7 @@ class Fitter {
       : blocks_(blocks),
         model_(model),
         centre_(std::log(unit.start)),
-        least_(unit.lowest()),
+        least_(std::min(unit.lowest(), unit.highest())),  // the runs may end before what is drawn
         most_(unit.highest()),
         weight_(1 / (unit.deviation() * unit.deviation())),
         fit_(start) {

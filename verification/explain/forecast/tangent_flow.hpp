@@ -31,11 +31,16 @@ class TangentFlow {
  private:
   // Solves M̃ (X − G) shift + ∂F/∂y X + forcing = 0 for the differential part.
   Columns solve_stage(double t, ConstVec y, double shift, const Columns& G, const Forcing& forcing);
+  // By the factors of the assembled Jacobian: (c, μ), a column for each.
+  Columns solve(const Columns& right);
+  // Iterative refinement: what effects that couple distant points leave out of these.
+  void refine(double t, ConstVec y, double shift, const Columns& right, Columns& X);
 
   const CahnHilliard& problem_;
   std::shared_ptr<const ThreadTeam> team_;
   LinearSolverPtr solver_;
   BlockJacobian jacobian_;
+  bool is_assembled_;
 };
 
 }  // namespace traceraft

@@ -80,11 +80,14 @@ std::vector<Refit> shadows(const Search& search, const Refit& best) {
   return result;
 }
 
-void weigh(std::vector<Refit> fits, const FilterProblems& all, const Search& search,
+void weigh(const std::vector<Refit>& fits, const FilterProblems& all, const Search& search,
            std::vector<Member>& members) {
-  std::vector<Refit> refits = refits_of(all, search.request.base, fits, search.request.filter);
-  for (std::size_t k = 0; k < fits.size(); ++k)
-    members.push_back({std::move(fits[k]), std::move(refits[k])});
+  for (const Refit& fit : fits) {
+    search.tell("  " + fit.hypothesis.name() + ", with all that was measured");
+    const std::vector<Refit> refits =
+        refits_of(all, search.request.base, {fit}, search.request.filter);
+    members.push_back({fit, refits.front()});
+  }
 }
 
 // The found one first. None if that cannot be refitted.
@@ -92,7 +95,7 @@ std::vector<Member> members_of(const FilterProblems& all, const Search& search) 
   std::vector<Refit> fits{search.result.found};
   fits.insert(fits.end(), search.result.rivals.begin(), search.result.rivals.end());
   std::vector<Member> members;
-  weigh(std::move(fits), all, search, members);
+  weigh(fits, all, search, members);
   if (!members.front().all.failure.empty()) return {};
   if (const std::size_t best = best_of(members, count_values(all), search); best != 0)
     weigh(shadows(search, members[best].fit), all, search, members);

@@ -49,9 +49,9 @@ struct Rerun {
   Gaps base, found, floor;  // in units of c
   std::string failure;      // why there is none, if it failed
   // Of what is held out, if anything is: 2 ln of the likelihood ratio of found and base, with the
-  // covariance that innovations have if the found model is the truth; and by how many standard
-  // deviations it is smaller than it would be then.
-  double gain = 0, shortfall = 0;
+  // covariance that innovations have if the found model is the truth; by how many standard
+  // deviations it is smaller than it would be then; and how many of them errors of the mesh may be.
+  double gain = 0, shortfall = 0, doubt = 0;
   // That what is left of a gap which nothing explains is noise; looked at if there is one, and why
   // not, if that failed.
   std::optional<double> gap_p = {};

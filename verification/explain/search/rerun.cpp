@@ -48,7 +48,7 @@ Rerun compare_both(const std::vector<FieldSeries>& series, ExplainRequest other,
                          : pass_of_model(series, other, found.found.pace,
                                          found.found.hypothesis.terms(), found.noises);
   });
-  return compare_forecasts(passes[0], passes[1]);
+  return compare_forecasts(passes[0], passes[1], found.rounds.back().screening.mesh_error);
 }
 
 // Is what nothing explains there on the other mesh, too?
@@ -71,10 +71,10 @@ void look_for_gap(const std::vector<FieldSeries>& series, const ExplainRequest& 
 }  // namespace
 
 bool Rerun::refutes() const {
-  return failure.empty() && gain < 0 && shortfall > kRefuted;
+  return failure.empty() && gain < 0 && shortfall > kRefuted + doubt;
 }
 
-Rerun compare_forecasts(const FilterResult& base, const FilterResult& found) {
+Rerun compare_forecasts(const FilterResult& base, const FilterResult& found, double mesh_error) {
   Rerun result;
   result.base = gaps_of_pass(base);
   result.found = gaps_of_pass(found);
@@ -82,10 +82,11 @@ Rerun compare_forecasts(const FilterResult& base, const FilterResult& found) {
   const bool held_out = result.found.heldout > 0;
   // If the found model is the truth, its innovations ν have the covariance S; νᵀ S⁻¹ d has the
   // variance dᵀ S⁻¹ d then, d being the difference of the forecasts.
-  double along = 0, difference = 0;
+  double along = 0, difference = 0, count = 0;
   for (std::size_t k = 0; k < found.innovations.size(); ++k) {
     const Innovation& f = found.innovations[k];
     if (f.held_out != held_out) continue;
+    count += static_cast<double>(f.values.size());
     Columns values(f.values.size(), 2);
     values << f.values, base.innovations[k].values - f.values;
     const Columns weighted = InnovationCovariance(f, 0).solve(values);
@@ -95,6 +96,7 @@ Rerun compare_forecasts(const FilterResult& base, const FilterResult& found) {
     difference += two;
   }
   result.shortfall = difference > 0 ? along / std::sqrt(difference) : 0;
+  result.doubt = mesh_doubt(count, mesh_error);
   return result;
 }
 

@@ -15,7 +15,8 @@ void run_again(const std::vector<FieldSeries>& series, const ExplainRequest& req
                Explanation& found);
 
 // How two models foretell the same measurements: Rerun's gain and shortfall, and the gaps.
-Rerun compare_forecasts(const FilterResult& base, const FilterResult& found);
+// `mesh_error`: of forecasts, as in Screening.
+Rerun compare_forecasts(const FilterResult& base, const FilterResult& found, double mesh_error);
 
 // The gaps of a model that has these effects already, and what is to be expected of them with this
 // noise of each vesicle's snapshots, in units of their deviations (none: as single fields tell it).

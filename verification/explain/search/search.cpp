@@ -106,7 +106,8 @@ void Search::tell_gain(const Refit& fit) const {
   const double gained = more ? std::max(0.0, difference) : difference;
   const std::string change = (gained < 0 ? std::string(" loses ") : std::string(" gains ")) +
                              std::to_string(std::labs(std::lround(gained)));
-  tell("  " + fit.hypothesis.name() + (fit.failure.empty() ? change : " fails"));
+  const std::string name = fit.hypothesis.parts.empty() ? "no effect" : fit.hypothesis.name();
+  tell("  " + name + (fit.failure.empty() ? change : " fails"));
 }
 
 SearchState Search::state(bool more) const {
