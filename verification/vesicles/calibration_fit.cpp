@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kReplicates = 200;
 constexpr double kOvershoot = 0.5;  // of what was explored, beyond it
+constexpr double kAbout = 1;        // of deviances that are about the same
 // Of the points, where searches begin.
 constexpr std::size_t kStarts = 3;
 
@@ -110,7 +111,12 @@ std::vector<std::vector<double>> CalibrationFit::replicates() const {
     JointFit start = at_points_[k];
     start.time.seconds_per_unit =
         units[k].low * std::pow(units[k].high / units[k].low, uniform_random(r, 33, 0));
-    all.push_back(estimates(fit_jointly(evidence(some), others, box_, {start})));
+    JointFit fit = fit_jointly(evidence(some), others, box_, {start});
+    // It may have stayed in a valley of its own, which is not as deep.
+    const TimeFit at_found = evidence(some).fit(others.at(found_.ln_parameters), found_.time);
+    if (fit.time.deviance > at_found.deviance + kAbout)
+      fit = fit_jointly(evidence(some), others, box_, {found_});
+    all.push_back(estimates(fit));
   }
   return all;
 }
