@@ -47,15 +47,16 @@ CampaignPlan new_plan(const CampaignRequest& request) {
 }
 
 // What it began with, more cases aside.
+// `flag`: that names the folder.
 CampaignPlan grown_plan(const CampaignRequest& request, const CampaignFolder& folder,
-                        const std::string& option) {
+                        const std::string& flag) {
   CampaignPlan plan = folder.load();
   const bool asked = std::any_of(request.planned.begin(), request.planned.end(),
                                  [](const CLI::Option* option) { return option->count() > 0; });
   if (asked) {
     const CampaignPlan wanted = new_plan(request);
     if (wanted.groups != plan.groups || !same_but_for_cases(wanted, plan))
-      throw InputError(option + ": " + folder.path().string() +
+      throw InputError(flag + ": " + folder.path().string() +
                        " holds a campaign of another plan; choose another folder, or give only "
                        "--out to go on with it, and --cases for more of them");
   }

@@ -55,7 +55,8 @@ int hide_effects(const HideCommand& command) {
   GivenValues model = read_config_file(command.model, "--model");
   for (const auto& [name, value] : command.flags) model[name] = value;
   if (command.model.empty()) add_small_vesicle(model, "hide");
-  const Units units = Configuration(model, {}).units();
+  const Configuration configuration(model, {});
+  const Units units = configuration.units();
   BlindRequest request = command.request;
   request.cells = command.truth_cells > 0 ? command.truth_cells : truth_cells(model);
   request.seed = command.seed >= 0 ? static_cast<std::uint64_t>(command.seed) : random_seed();
@@ -74,12 +75,12 @@ int hide_effects(const HideCommand& command) {
   if (fs::exists(out / "model.toml"))  // which is written last
     throw InputError("--out: " + out.string() + " holds a hidden truth already");
   refuse_foreign_folder(out, {"truth.json"});
-  refuse_hiding(Configuration(model, {}), request);
+  refuse_hiding(configuration, request);
   fs::create_directories(out);
   const FolderLock lock(out);
   end_on_stop_signals(kInterrupted, "nothing was hidden; give the same command again");
   std::printf("computing the truth on %d cells\n", request.cells);
-  if (2 * request.cells < 5 * Configuration(model, {}).integer("cells"))
+  if (2 * request.cells < 5 * configuration.integer("cells"))
     std::printf(
         "NOTE: the error of so coarse a truth may be named itself; 4 times --cells is safe\n");
   std::fflush(stdout);

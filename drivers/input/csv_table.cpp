@@ -31,13 +31,11 @@ void take_cell(void* cell, std::size_t size, void* target) {
 // Rows without a value, which spreadsheets leave at the end, are none.
 void take_row(int, void* target) {
   Rows& rows = *static_cast<Rows*>(target);
-  if (std::all_of(rows.row.begin(), rows.row.end(),
-                  [](const std::string& cell) { return cell.empty(); })) {
-    rows.row.clear();
-    return;
+  if (std::any_of(rows.row.begin(), rows.row.end(),
+                  [](const std::string& cell) { return !cell.empty(); })) {
+    rows.rows.push_back(std::move(rows.row));
+    rows.lines.push_back(rows.line);
   }
-  rows.rows.push_back(std::move(rows.row));
-  rows.lines.push_back(rows.line);
   rows.row.clear();
 }
 

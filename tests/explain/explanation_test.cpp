@@ -138,8 +138,7 @@ TEST_F(RivalsTest, AreToldApartByAllThatWasMeasured) {
   request_.hold_out = false;
   const auto criterion_of = [&](const Refit& start) {
     const FilterProblems data = problems_of(measured(), request_);
-    const auto fits = refits_of(data, request_.base, {start}, request_.filter);
-    return criterion(fits.at(0), count_values(data));
+    return criterion(refit_of(data, request_.base, start, request_.filter), count_values(data));
   };
   const double all = criterion_of(wrong) - criterion_of(right),
                counting = wrong.deviance - right.deviance;

@@ -11,8 +11,7 @@ namespace {
 constexpr std::size_t kLeastVesicles = 3;  // to know how they scatter
 
 bool tells(const Measurement& m) {
-  if (!(m.time > 0)) return false;
-  return m.of(Quantity::perimeter).value_or(0) > 0 || m.of(Quantity::rafts).value_or(0) > 0;
+  return m.time > 0 && m.shows_rafts();
 }
 
 }  // namespace

@@ -14,7 +14,6 @@ namespace {
 
 constexpr int kReplicates = 200;
 constexpr double kOvershoot = 0.5;  // of what was explored, beyond it
-constexpr double kAbout = 1;        // of deviances that are about the same
 // Of the points, where searches begin.
 constexpr std::size_t kStarts = 3;
 
@@ -114,7 +113,7 @@ std::vector<std::vector<double>> CalibrationFit::replicates() const {
     JointFit fit = fit_jointly(evidence(some), others, box_, {start});
     // It may have stayed in a valley of its own, which is not as deep.
     const TimeFit at_found = evidence(some).fit(others.at(found_.ln_parameters), found_.time);
-    if (fit.time.deviance > at_found.deviance + kAbout)
+    if (fit.time.deviance > at_found.deviance + kAboutAsProbable)
       fit = fit_jointly(evidence(some), others, box_, {found_});
     all.push_back(estimates(fit));
   }

@@ -56,8 +56,7 @@ SimulatedVesicle simulated_vesicle(double radius, const std::vector<History>& ru
 double factor_of_size(const MeasuredVesicles& data, double radius) {
   double sum = 0, count = 0;
   for (const Measurement& m : data.measurements) {
-    if (!(m.of(Quantity::perimeter).value_or(0) > 0 || m.of(Quantity::rafts).value_or(0) > 0))
-      continue;
+    if (!m.shows_rafts()) continue;
     sum += std::log(m.radius / radius);
     ++count;
   }

@@ -210,10 +210,10 @@ TimeFit fit_time(const MeasuredVesicles& data, const std::vector<int>& sample,
 Interval as_probable(const MeasuredVesicles& data, const std::vector<int>& sample,
                      const RunStatistics& runs, const TimeUnit& unit, const TimeFit& fit) {
   constexpr int kUnits = 200;
-  constexpr double kAbout = 1;  // of the deviance, a standard deviation where it is a parabola
   const std::vector<Look> looks = looks_of(data, sample);
   const double low = std::log(unit.allowed.low), high = std::log(unit.allowed.high);
-  const double most = deviance_of(looks, runs, fit.seconds_per_unit, fit.scatter) + kAbout;
+  const double most =
+      deviance_of(looks, runs, fit.seconds_per_unit, fit.scatter) + kAboutAsProbable;
   Interval range{fit.seconds_per_unit, fit.seconds_per_unit};
   for (int k = 0; k <= kUnits; ++k) {
     const double seconds = std::exp(low + (high - low) * k / kUnits);

@@ -85,6 +85,8 @@ struct TimeUnit {
 // scatter of measuring.
 TimeFit fit_time(const MeasuredVesicles& data, const std::vector<int>& sample,
                  const RunStatistics& runs, const TimeUnit& unit);
+// Of deviances, a standard deviation where they are parabolas.
+inline constexpr double kAboutAsProbable = 1;
 // Units of time, from the shortest to the longest, by which the data are about as probable as by
 // `fit`, at its scatter: where curves are flat, these are many.
 Interval as_probable(const MeasuredVesicles& data, const std::vector<int>& sample,

@@ -25,6 +25,10 @@ struct Measurement {
   double sigma_of(Quantity quantity) const {
     return sigma[static_cast<std::size_t>(quantity)].value_or(0);
   }
+  // Rafts whose perimeter or number was measured.
+  bool shows_rafts() const {
+    return of(Quantity::perimeter).value_or(0) > 0 || of(Quantity::rafts).value_or(0) > 0;
+  }
 };
 
 struct MeasuredVesicles {

@@ -9,18 +9,6 @@
 namespace traceraft {
 namespace {
 
-Refit refit_of(const FilterProblems& data, FilterModel model, const FilterSettings& settings) {
-  try {
-    std::vector<ErrorMaps> maps;
-    (void)filter_fields(data, model, settings, maps);
-    return refit(data, model, settings, maps);
-  } catch (const std::runtime_error& error) {
-    Refit failed;
-    failed.failure = error.what();
-    return failed;
-  }
-}
-
 bool holds_out(const FilterProblems& data) {
   return std::any_of(data.begin(), data.end(), [](const FilterProblem& vesicle) {
     return vesicle.train < vesicle.snapshots.size();
@@ -84,9 +72,7 @@ void weigh(const std::vector<Refit>& fits, const FilterProblems& all, const Sear
            std::vector<Member>& members) {
   for (const Refit& fit : fits) {
     search.tell("  " + fit.hypothesis.name() + ", with all that was measured");
-    const std::vector<Refit> refits =
-        refits_of(all, search.request.base, {fit}, search.request.filter);
-    members.push_back({fit, refits.front()});
+    members.push_back({fit, refit_of(all, search.request.base, fit, search.request.filter)});
   }
 }
 
@@ -104,22 +90,28 @@ std::vector<Member> members_of(const FilterProblems& all, const Search& search) 
 
 }  // namespace
 
-std::vector<Refit> refits_of(const FilterProblems& data, const CahnHilliardModel& base,
-                             const std::vector<Refit>& members, FilterSettings settings) {
+Refit refit_of(const FilterProblems& data, const CahnHilliardModel& base, const Refit& member,
+               FilterSettings settings) {
   settings.replicates = 0;
-  std::vector<Refit> fits;
-  for (const Refit& member : members)
-    fits.push_back(refit_of(data, {base, member.pace, member.hypothesis, {}}, settings));
-  return fits;
+  const FilterModel model{base, member.pace, member.hypothesis, {}};
+  try {
+    std::vector<ErrorMaps> maps;
+    (void)filter_fields(data, model, settings, maps);
+    return refit(data, model, settings, maps);
+  } catch (const std::runtime_error& error) {
+    Refit failed;
+    failed.failure = error.what();
+    return failed;
+  }
 }
 
 bool is_as_probable(const Search& search, const Refit& one, const Refit& other) {
   const FilterProblems all = holding_nothing_out(search.data);
-  const std::vector<Refit> fits =
-      refits_of(all, search.request.base, {one, other}, search.request.filter);
+  const Refit first = refit_of(all, search.request.base, one, search.request.filter);
+  const Refit second = refit_of(all, search.request.base, other, search.request.filter);
   const double values = count_values(all);
-  return fits[0].failure.empty() && fits[1].failure.empty() &&
-         criterion(fits[0], values) <= criterion(fits[1], values);
+  return first.failure.empty() && second.failure.empty() &&
+         criterion(first, values) <= criterion(second, values);
 }
 
 bool leave_to_rivals(Search& search) {

@@ -21,8 +21,8 @@ bool tell_apart(Search& search);
 // refitted? False where a refit fails.
 bool is_as_probable(const Search& search, const Refit& one, const Refit& other);
 
-// Each hypothesis, refitted to the snapshots that count, with the noise of `data`.
-std::vector<Refit> refits_of(const FilterProblems& data, const CahnHilliardModel& base,
-                             const std::vector<Refit>& members, FilterSettings settings);
+// A hypothesis, refitted to the snapshots that count, with the noise of `data`.
+Refit refit_of(const FilterProblems& data, const CahnHilliardModel& base, const Refit& member,
+               FilterSettings settings);
 
 }  // namespace traceraft
