@@ -29,7 +29,7 @@ class RivalsTest : public ::testing::Test {
     request_.base = testing::small_vesicle(4).base;
     request_.surface = make_surface("sphere");
     request_.cells = 12;
-    request_.filter.rank = 60;
+    request_.filter.rank = 40;
     request_.filter.replicates = 49;
     request_.most_effects = 1;  // what was found, or its rivals
     const std::set<std::string> some{"exchange", "gravity", "line-tension", "uptake"};

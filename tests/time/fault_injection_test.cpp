@@ -77,7 +77,7 @@ class FaultySolver final : public testing::ForwardingSolver {
 class FaultInjection : public ::testing::TestWithParam<std::string> {
  protected:
   static constexpr double kEnd = 0.3;
-  FaultInjection() : space(make_space(12)), problem(space, make_model()) {}
+  FaultInjection() : space(make_space(8)), problem(space, make_model()) {}
 
   struct Outcome {
     Status status;

@@ -78,9 +78,15 @@ void measure(const Bench& bench, const CahnHilliard& problem, const std::string&
                              problem.model().epsilon,
                              sample.step};
     for (const double shift : shift_range()) {
+      const bool claimed = !exact || 1 / shift <= kLongestStep * sample.step;
+      // Where nothing is claimed they are hundreds, and take most of the time.
+      if (!claimed && bench.quick()) {
+        row.push_back("");
+        continue;
+      }
       const double count = iterations(problem, sample.y, b, shift, tangent);
       row.push_back(count);
-      if (exact && 1 / shift > kLongestStep * sample.step) continue;
+      if (!claimed) continue;
       if (count < 0) ++most.failures;
       most.iterations[exact] = std::max(most.iterations[exact], count);
     }
