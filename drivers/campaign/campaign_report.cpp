@@ -9,6 +9,7 @@
 #include "drivers/input/csv_table.hpp"
 #include "drivers/output/text_table.hpp"
 #include "kernel/core/error.hpp"
+#include "kernel/core/text.hpp"
 #include "verification/explain/fit/refit.hpp"
 
 namespace traceraft {
@@ -31,6 +32,11 @@ double median_of(const Scores& scores, const Value& value) {
   std::vector<double> values;
   for (const CaseScore& score : scores) values.push_back(value(score));
   return median(values);
+}
+
+// So that it does not matter which of two effects was hidden, or found, first.
+std::string in_order(const std::string& names) {
+  return joined(sorted_names(names), " + ");
 }
 
 Cell cell(double value) {
@@ -112,10 +118,10 @@ Table confusion_of(const Scores& scores) {
   for (const CaseScore& score : scores) {
     if (campaign_groups().find(score.id.group).aim != Aim::name) continue;
     const std::string verdict =
-        score.effect.empty()
-            ? score.verdict
-            : score.effect + (score.outcome == CaseOutcome::in_class ? " (in class)" : "");
-    ++counts[score.hidden][verdict];
+        score.effect.empty() ? score.verdict
+                             : in_order(score.effect) +
+                                   (score.outcome == CaseOutcome::in_class ? " (in class)" : "");
+    ++counts[in_order(score.hidden)][verdict];
     ++found[verdict];
   }
   Table table{"confusion", {"hidden \\ found"}, {}};

@@ -74,5 +74,15 @@ TEST(CampaignReport, TellsClassesFromConfusion) {
   EXPECT_EQ(std::stod(rows[3][3]), 1);
 }
 
+TEST(CampaignReport, CountsPairsOnceInWhateverOrder) {
+  const auto rows = table_rows(
+      confusion_of({score(1, "gravity + uptake", "uptake + gravity", CaseOutcome::right, 0),
+                    score(2, "uptake + gravity", "gravity + uptake", CaseOutcome::right, 0)}));
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0], (std::vector<std::string>{"hidden \\ found", "gravity + uptake"}));
+  EXPECT_EQ(rows[1][0], "gravity + uptake");
+  EXPECT_EQ(std::stod(rows[1][1]), 2);
+}
+
 }  // namespace
 }  // namespace traceraft
