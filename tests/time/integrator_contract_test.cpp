@@ -1,69 +1,20 @@
 // What every integrator promises (kernel/time/integrator.hpp), and what it does when things fail.
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
 #include <sstream>
 
 #include "backends/list.hpp"
-#include "kernel/time/jacobian_solver.hpp"
-#include "tests/support/forwarding.hpp"
+#include "tests/support/faulty.hpp"
 #include "tests/support/spaces.hpp"
 
 namespace traceraft {
 namespace {
 
+using testing::Faulty;
 using testing::make_model;
 using testing::make_space;
 using testing::noise_state;
-
-// A linear solver that fails on chosen calls.
-class Faulty final : public testing::ForwardingSolver {
- public:
-  struct Plan {
-    std::function<bool(long)> setup_fails = [](long) { return false; };
-    std::function<bool(long)> solve_fails = [](long) { return false; };
-    bool lazy = false;  // never asks for a set-up by itself
-  };
-  Faulty(LinearSolverPtr inner, Plan plan)
-      : ForwardingSolver(std::move(inner)), plan_(std::move(plan)) {}
-
-  Status setup(const BlockJacobian& J, int lane) override {
-    if (plan_.setup_fails(setups_++)) return Status::retry("injected set-up failure");
-    return ForwardingSolver::setup(J, lane);
-  }
-  bool wants_setup(const BlockJacobian& J, int lane) const override {
-    return !plan_.lazy && ForwardingSolver::wants_setup(J, lane);
-  }
-  SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance,
-                    int lane) override {
-    if (plan_.solve_fails(solves_++)) {
-      x.setConstant(std::nan(""));  // as a failed solve may leave anything behind
-      return {Status::retry("injected solve failure"), 3};
-    }
-    return ForwardingSolver::solve(J, b, x, tolerance, lane);
-  }
-
- private:
-  Plan plan_;
-  long setups_ = 0, solves_ = 0;
-};
-
-// A problem whose residual is not a number from some evaluation on, or at all large steps.
-class Poisoned final : public testing::ForwardingProblem {
- public:
-  Poisoned(const DaeProblem& inner, std::function<bool(double)> poisoned_at)
-      : ForwardingProblem(inner), poisoned_at_(std::move(poisoned_at)) {}
-  Status residual(double t, ConstVec y, ConstVec ydot, VecRef r) const override {
-    if (poisoned_at_(t) && !silent) return Status::retry("injected failure");
-    const Status status = ForwardingProblem::residual(t, y, ydot, r);
-    if (poisoned_at_(t)) r[r.size() / 3] = std::nan("");
-    return status;
-  }
-  bool silent = false;  // a NaN that the model does not notice
-
- private:
-  std::function<bool(double)> poisoned_at_;
-};
+using testing::Poisoned;
 
 class IntegratorContract : public ::testing::TestWithParam<std::string> {
  protected:
@@ -374,189 +325,6 @@ TEST_P(IntegratorContract, RefusesStepsThatGainEnergyIfAskedTo) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, IntegratorContract, ::testing::ValuesIn(integrators().names()));
-
-TEST(Ida, RefusesTheMemoryOfAnotherVersion) {
-  const auto space = make_space(8);
-  const CahnHilliard problem(space, make_model());
-  const auto make = [&] {
-    return integrators().find("ida").make(problem, choose_linear_solver("direct", *space),
-                                          space->team, {});
-  };
-  const testing::StartState start = noise_state(problem);
-  const IntegratorPtr integrator = make();
-  ASSERT_TRUE(integrator->start(0, start.y, start.ydot, 1).ok());
-  ASSERT_TRUE(integrator->advance().ok());
-  std::ostringstream out;
-  integrator->save(out);
-  std::string data = out.str();
-  const std::size_t vector = sizeof(std::int64_t) + sizeof(double) * start.y.size();
-  data[6 * sizeof(double) + sizeof(long) + vector] ^= 8;  // the size of IDA's memory
-  std::istringstream in(data);
-  try {
-    make()->load(in);
-    FAIL();
-  } catch (const IoError& error) {
-    EXPECT_NE(std::string(error.what()).find("version"), std::string::npos) << error.what();
-  }
-}
-
-// The first correction of a step decides its accuracy; later ones are small and solved loosely, but
-// not at random.
-TEST(Ida, SolvesEveryCorrectionAsItPromises) {
-  class Watching final : public testing::ForwardingSolver {
-   public:
-    Watching(LinearSolverPtr inner, std::vector<double>& asked)
-        : ForwardingSolver(std::move(inner)), asked_(asked) {}
-    SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance,
-                      int lane) override {
-      asked_.push_back(tolerance);
-      return ForwardingSolver::solve(J, b, x, tolerance, lane);
-    }
-
-   private:
-    std::vector<double>& asked_;
-  };
-  const auto space = make_space(8);
-  const CahnHilliard problem(space, make_model());
-  std::vector<double> asked;
-  LinearSolverChoice choice = choose_linear_solver("block", *space);
-  const LinearSolverFactory inner = choice.primary;
-  choice.primary = [&](int lanes) { return std::make_unique<Watching>(inner(lanes), asked); };
-  const IntegratorPtr integrator = integrators().find("ida").make(problem, choice, space->team, {});
-  const testing::StartState start = noise_state(problem);
-  ASSERT_TRUE(integrator->start(0, start.y, start.ydot, 5).ok());
-  while (integrator->time() < 5) ASSERT_TRUE(integrator->advance().ok());
-  EXPECT_GT(std::count(asked.begin(), asked.end(), 1e-2), 0);
-  EXPECT_GT(std::count(asked.begin(), asked.end(), 1e-1), 0);
-  EXPECT_EQ(
-      std::count(asked.begin(), asked.end(), 1e-2) + std::count(asked.begin(), asked.end(), 1e-1),
-      static_cast<long>(asked.size()));
-}
-
-// Factors renewed for the second of two systems belong to that system's state, and a restart must
-// compute them there again.
-TEST(JacobianSolver, RemembersTheStateOfRenewedFactorsWhicheverLaneNeededThem) {
-  const auto space = make_space(10);
-  const CahnHilliard problem(space, make_model());
-  const testing::StartState start = noise_state(problem);
-  Faulty::Plan plan;
-  plan.lazy = true;
-  plan.solve_fails = [](long call) { return call == 3; };  // lane 1 in the second round
-  LinearSolverChoice choice = choose_linear_solver("block", *space);
-  choice.fallback = nullptr;
-  LinearSolverChoice faulty = choice;
-  faulty.primary = [&](int lanes) { return std::make_unique<Faulty>(choice.primary(lanes), plan); };
-  const auto systems = [&](double shift) {
-    std::vector<NewtonSystem> list(2);
-    for (std::size_t lane = 0; lane < 2; ++lane) {
-      list[lane].shift = shift * (lane == 0 ? 1 : 30);
-      list[lane].tangent = Tangent::stabilised;
-      list[lane].y = (lane == 0 ? 1 : 0.7) * start.y;
-      list[lane].ydot = Vec::Zero(problem.size());
-      list[lane].b = testing::random_vector(problem.size(), 5 + lane);
-      list[lane].x = Vec::Zero(problem.size());
-    }
-    return list;
-  };
-  JacobianSolver whole(problem, faulty, 2, space->team);
-  auto first = systems(1), second = systems(2), third = systems(3);
-  whole.solve(first, 1e-6);
-  whole.solve(second, 1e-6);
-  ASSERT_EQ(whole.statistics().renewals, 1);
-  std::stringstream saved;
-  whole.save(static_cast<std::ostream&>(saved));
-  plan.solve_fails = [](long) { return false; };
-  JacobianSolver resumed(problem, faulty, 2, space->team);
-  resumed.load(static_cast<std::istream&>(saved));
-  auto again = third;
-  whole.solve(third, 1e-6);
-  resumed.solve(again, 1e-6);
-  for (std::size_t lane = 0; lane < 2; ++lane) EXPECT_EQ(third[lane].x, again[lane].x) << lane;
-}
-
-TEST(Euler, NeverGainsEnergyWhereItPromisesSo) {
-  const auto space = make_space(16);
-  long gained_by_second = 0;
-  for (const char* kept : {"first", "decaying", "second"})
-    for (const char* mobility : {"degenerate", "constant"})
-      for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-        const CahnHilliard problem(space, make_model(mobility, 0.1));
-        IntegratorSettings settings;
-        settings.kept_solution = kept;
-        settings.tolerance = 0.05;  // large steps are where an unstable scheme would show
-        const IntegratorPtr integrator = integrators().find("euler").make(
-            problem, choose_linear_solver("block", *space), space->team, settings);
-        EXPECT_EQ(integrator->promises_energy_decay(), kept != std::string("second"));
-        const testing::StartState start = noise_state(problem, seed, 0.4);
-        ASSERT_TRUE(integrator->start(0, start.y, start.ydot, 1000).ok());
-        const double scale = problem.energy(start.y);
-        double energy = scale;
-        while (integrator->time() < 1000) {
-          ASSERT_TRUE(integrator->advance().ok());
-          const double next = problem.energy(integrator->state());
-          if (integrator->promises_energy_decay()) {
-            ASSERT_LE(next, energy + 1e-10 * scale) << kept << " at t = " << integrator->time();
-          } else {
-            gained_by_second += next > energy + 1e-10 * scale;
-          }
-          energy = next;
-        }
-      }
-  EXPECT_GT(gained_by_second, 0) << "the test is too gentle to tell the solutions apart";
-}
-
-TEST(Euler, OneStepIsTheHandAssembledStabilisedScheme) {
-  // (M̃/Δt + …): M̃ (c − c_n)/Δt + A μ = 0, M̃ μ = b(c_n) + β M̃ (c − c_n) + ε² (K + ρS) c, as one
-  // dense system.
-  const auto space = make_space(8);
-  const CahnHilliard problem(space, make_model());
-  const int n = problem.block_size();
-  const testing::StartState start = noise_state(problem);
-  IntegratorSettings settings;
-  settings.initial_step = 1e-3;
-  settings.tolerance = 0.5;
-  const IntegratorPtr integrator = integrators().find("euler").make(
-      problem, choose_linear_solver("direct", *space), space->team, settings);
-  ASSERT_TRUE(integrator->start(0, start.y, start.ydot, 1).ok());
-  ASSERT_TRUE(integrator->advance().ok());
-  ASSERT_EQ(integrator->time(), 1e-3);
-
-  BlockJacobian J = problem.make_jacobian();
-  ASSERT_TRUE(problem.jacobian(0, start.y, start.ydot, 1e3, Tangent::stabilised, J).ok());
-  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(2 * n, 2 * n);
-  const SparsityPattern& p = *space->pattern;
-  for (int i = 0; i < n; ++i)
-    for (int k = p.row_begin[i]; k < p.row_begin[i + 1]; ++k) {
-      system(i, p.column[k]) = 1e3 * space->stabilised_mass.values[k];
-      system(i, n + p.column[k]) = J.cm.values[k];
-      system(n + i, n + p.column[k]) = space->stabilised_mass.values[k];
-      system(n + i, p.column[k]) =
-          -0.04 * (space->stiffness.values[k] + space->h() * space->normal.values[k]) -
-          space->stabilised_mass.values[k];
-    }
-  Vec right = Vec::Zero(2 * n);
-  const Vec c = start.y.head(n);
-  space->stabilised_mass.multiply_add(1e3, c, right.head(n), *space->team);
-  add_potential(*space, problem.model().well, PotentialRule::consistent, 1, c, right.tail(n));
-  space->stabilised_mass.multiply_add(-1, c, right.tail(n), *space->team);
-  const Vec expected = system.partialPivLu().solve(right);
-  EXPECT_LT((integrator->state() - expected).norm(), 1e-10 * expected.norm());
-}
-
-TEST(Euler, DoesNotDependOnThreads) {
-  Vec states[2];
-  for (const int threads : {1, 2}) {
-    const auto space = make_space(12, "sphere", threads);
-    const CahnHilliard problem(space, make_model());
-    const testing::StartState start = noise_state(problem);
-    const IntegratorPtr integrator = integrators().find("euler").make(
-        problem, choose_linear_solver("block", *space), space->team, {});
-    ASSERT_TRUE(integrator->start(0, start.y, start.ydot, 1).ok());
-    while (integrator->time() < 1) ASSERT_TRUE(integrator->advance().ok());
-    states[threads - 1] = integrator->state();
-  }
-  EXPECT_EQ(states[0], states[1]);
-}
 
 }  // namespace
 }  // namespace traceraft
