@@ -9,7 +9,6 @@
 #include "drivers/input/csv_table.hpp"
 #include "drivers/output/text_table.hpp"
 #include "kernel/core/error.hpp"
-#include "kernel/core/text.hpp"
 #include "verification/explain/fit/refit.hpp"
 
 namespace traceraft {
@@ -32,11 +31,6 @@ double median_of(const Scores& scores, const Value& value) {
   std::vector<double> values;
   for (const CaseScore& score : scores) values.push_back(value(score));
   return median(values);
-}
-
-// So that it does not matter which of two effects was hidden, or found, first.
-std::string in_order(const std::string& names) {
-  return joined(sorted_names(names), " + ");
 }
 
 Cell cell(double value) {

@@ -5,9 +5,25 @@
 
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
+#include "kernel/core/text.hpp"
 #include "kernel/effects/effects.hpp"
 
 namespace traceraft {
+namespace {
+
+std::vector<std::string> sorted_parts(const std::string& names) {
+  std::vector<std::string> parts;
+  for (std::size_t at = 0; at < names.size();) {
+    const std::size_t end = std::min(names.find(" + ", at), names.size());
+    parts.push_back(names.substr(at, end - at));
+    at = end + 3;
+  }
+  std::sort(parts.begin(), parts.end());
+  return parts;
+}
+
+}  // namespace
+
 std::string word_for(CaseOutcome outcome) {
   switch (outcome) {
     case CaseOutcome::right:
@@ -29,21 +45,14 @@ CaseOutcome outcome_of(const std::string& word) {
   throw InputError("a case of a campaign cannot end with '" + word + "'");
 }
 
-std::vector<std::string> sorted_names(const std::string& names) {
-  std::vector<std::string> parts;
-  for (std::size_t at = 0; at < names.size();) {
-    const std::size_t end = std::min(names.find(" + ", at), names.size());
-    parts.push_back(names.substr(at, end - at));
-    at = end + 3;
-  }
-  std::sort(parts.begin(), parts.end());
-  return parts;
-}
-
 std::string names_of(const std::vector<EffectTerm>& terms) {
   std::string names;
   for (const EffectTerm& term : terms) names += (names.empty() ? "" : " + ") + term.effect;
   return names;
+}
+
+std::string in_order(const std::string& names) {
+  return joined(sorted_parts(names), " + ");
 }
 
 CaseOutcome outcome_of(Aim aim, const std::string& hidden_names, const Json& verdict) {
@@ -58,11 +67,11 @@ CaseOutcome outcome_of(Aim aim, const std::string& hidden_names, const Json& ver
            : word == "unnamed" ? CaseOutcome::right
                                : CaseOutcome::missed;
   if (!named) return CaseOutcome::missed;
-  const auto hidden = sorted_names(hidden_names);
-  const std::vector<std::string> found = sorted_names(verdict.at("effect"));
+  const auto hidden = sorted_parts(hidden_names);
+  const std::vector<std::string> found = sorted_parts(verdict.at("effect"));
   if (found == hidden) return word == "named" ? CaseOutcome::right : CaseOutcome::in_class;
   for (const std::string equivalent : verdict.at("class"))
-    if (sorted_names(equivalent) == hidden) return CaseOutcome::in_class;
+    if (sorted_parts(equivalent) == hidden) return CaseOutcome::in_class;
   // A part of what was hidden, and nothing else, is no wrong name.
   return std::includes(hidden.begin(), hidden.end(), found.begin(), found.end())
              ? CaseOutcome::missed

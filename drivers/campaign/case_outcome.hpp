@@ -21,8 +21,9 @@ CaseOutcome outcome_of(const std::string& word);  // throws InputError for other
 
 // Names joined by " + ".
 std::string names_of(const std::vector<EffectTerm>& terms);
-// Of what names_of joins, each by itself, in the order of the alphabet.
-std::vector<std::string> sorted_names(const std::string& names);
+// The same in the order of the alphabet, so that it does not matter which was hidden, or found,
+// first.
+std::string in_order(const std::string& names);
 
 // `hidden`: names_of the truth; `verdict`: the content of verdict.json.
 CaseOutcome outcome_of(Aim aim, const std::string& hidden, const Json& verdict);

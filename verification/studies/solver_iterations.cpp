@@ -150,7 +150,8 @@ StudyReport measure_meshes(const Bench& bench, int coarsest, int finest) {
   StudyReport report;
   report.notes = {
       "GMRES of block with fresh factors; s is the shift in D/R^2; -1: more than its limit. The "
-      "exact tangent is held to its claim for steps up to twice the one that ida takes there."};
+      "exact tangent is held to its claim for steps up to twice the one that ida takes there; "
+      "of longer ones it is counted without --quick."};
   report.tables = {table};
   report.claims = {
       claim_between("stabilised tangent: most iterations to 1e-4", most.iterations[0], 1, 25),

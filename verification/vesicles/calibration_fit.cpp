@@ -104,17 +104,18 @@ std::vector<std::vector<double>> CalibrationFit::replicates() const {
   std::vector<std::vector<double>> all;
   for (std::uint64_t r = 1; r <= kReplicates; ++r) {
     const std::vector<int> some = some_of(vesicles_, r);
+    const Evidence drawn = evidence(some);
     const RunEmulator others = runs_.with_runs(resample(count_, r, 32));
     // From another point each time, and another D: what is flat is not to be taken for known.
     const std::size_t k = r % at_points_.size();
     JointFit start = at_points_[k];
     start.time.seconds_per_unit =
         units[k].low * std::pow(units[k].high / units[k].low, uniform_random(r, 33, 0));
-    JointFit fit = fit_jointly(evidence(some), others, box_, {start});
+    JointFit fit = fit_jointly(drawn, others, box_, {start});
     // It may have stayed in a valley of its own, which is not as deep.
-    const TimeFit at_found = evidence(some).fit(others.at(found_.ln_parameters), found_.time);
+    const TimeFit at_found = drawn.fit(others.at(found_.ln_parameters), found_.time);
     if (fit.time.deviance > at_found.deviance + kAboutAsProbable)
-      fit = fit_jointly(evidence(some), others, box_, {found_});
+      fit = fit_jointly(drawn, others, box_, {found_});
     all.push_back(estimates(fit));
   }
   return all;
