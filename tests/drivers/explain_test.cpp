@@ -125,7 +125,13 @@ TEST_F(ExplainTest, NamesNothingWhereNothingIsHidden) {
 // A killed search goes on from its last refit and ends as if nothing had happened.
 TEST_F(ExplainTest, GoesOnWhereItWasKilled) {
   constexpr int kCells = 11;
-  draw("uptake");
+  BlindRequest asked = request();
+  asked.effects = {"uptake"};
+  asked.gap = 0.1;
+  asked.snapshots = 4;
+  asked.points = 500;
+  asked.last = 70;
+  write(draw_blind_case(asked).vesicles);
   const pid_t child = testing::start_traceraft(command_of_few(kCells));
   const fs::path saved = folder.path / "out" / "search.json";
   const auto has_a_refit = [&] {
