@@ -24,6 +24,7 @@ void add_options(CLI::App& command, GivenValues& values, const Wanted& wanted) {
                   [store](std::int64_t count) { store(count > 0 ? "true" : "false"); }, spec.help)
             : command.add_option_function<std::string>(flag, store, spec.help);
     option->group(spec.group);
+    if (spec.list) option->join(';');
     if (!spec.default_text.empty() && spec.kind != OptionKind::flag)
       option->default_str(spec.default_text)->run_callback_for_default(false);
   }

@@ -64,7 +64,8 @@ const std::vector<OptionSpec>& run_options() {
       {"effect", K::text, "", "Physics",
        "what is added to the model, as in exchange:rate=1e-3,target=0.2; several between "
        "semicolons "
-       "(see: traceraft list)"},
+       "or by several flags (see: traceraft list)",
+       0, 0, D::none, true, true},
       {"potential", K::text, "consistent", "Physics",
        "f0' by quadrature, the gradient of an energy (consistent), or nodal as in the paper's "
        "code"},

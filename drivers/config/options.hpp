@@ -20,6 +20,7 @@ struct OptionSpec {
   double min = 0, max = 0;  // of numbers, in µm and s; not checked if equal
   Dimension dimension = Dimension::none;
   bool numerical = true;  // does it change the numbers of a run?
+  bool list = false;      // of what stands between semicolons; several flags are joined by them
 };
 
 struct IntegratorEntry;

@@ -33,7 +33,11 @@ std::vector<EffectTerm> read_terms(const std::string& specification, const Units
     const std::size_t end = std::min(specification.find(';', begin), specification.size());
     const std::string one = trimmed(specification.substr(begin, end - begin));
     begin = end + 1;
-    if (!one.empty()) terms.push_back(read_term(one, units));
+    if (one.empty()) continue;
+    terms.push_back(read_term(one, units));
+    for (std::size_t k = 0; k + 1 < terms.size(); ++k)
+      if (terms[k].effect == terms.back().effect)
+        throw InputError("effect " + terms[k].effect + ": it is given twice");
   }
   return terms;
 }

@@ -74,8 +74,8 @@ bool is_rate(const std::string& unit);
 double to_model_units(const std::string& unit, const Units& units);
 
 // "exchange:rate=1e-3,target=0.2; gravity:strength=0.1" -> added to the model, as by with_effects.
-// Throws InputError also for an unknown key, a value out of range, and a strength that is not
-// given.
+// Throws InputError also for an unknown key, a value out of range, a strength that is not given,
+// and an effect that is given twice.
 void add_effects(const std::string& specification, const Units& units, CahnHilliardModel& model);
 
 }  // namespace traceraft

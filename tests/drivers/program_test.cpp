@@ -76,6 +76,18 @@ TEST_F(ProgramTest, RunsAndWritesWhatItPromises) {
   EXPECT_NE(content(folder.path / "a/fields.pvd").find("fields/field-0002.vtu"), std::string::npos);
 }
 
+TEST_F(ProgramTest, TakesEffectsByOneFlagOrSeveral) {
+  const std::string run = "run --quiet " + quick;
+  ASSERT_EQ(
+      traceraft(run + "--effect 'uptake:rate=1; gravity:strength=0.1' --out " + out("one")).code,
+      0);
+  ASSERT_EQ(
+      traceraft(run + "--effect uptake:rate=1 --effect gravity:strength=0.1 --out " + out("two"))
+          .code,
+      0);
+  expect_same_results("one", "two");
+}
+
 TEST_F(ProgramTest, RepeatsItselfBitwiseOnAnyNumberOfThreads) {
   ASSERT_EQ(traceraft("run --quiet --threads 1 " + quick + "--out " + out("a")).code, 0);
   ASSERT_EQ(traceraft("run --quiet --threads 2 " + quick + "--out " + out("b")).code, 0);

@@ -200,6 +200,9 @@ TEST(Effects, SayWhatIsWrong) {
   EXPECT_NE(complaint("exchange:rate=-1").find("out of range"), std::string::npos);
   EXPECT_NE(complaint("exchange").find("exchange:rate=..."), std::string::npos);
   EXPECT_NE(complaint("rotation:rate=1,x=0,y=0,z=0").find("axis"), std::string::npos);
+  EXPECT_NE(
+      complaint("gravity:strength=1; exchange:rate=1; gravity:strength=2").find("given twice"),
+      std::string::npos);
   EXPECT_EQ(complaint(" ; gravity:strength=1 ;exchange:rate=1"), "");
   EXPECT_EQ(model.effects.size(), 2u);
 }
