@@ -13,6 +13,7 @@ namespace traceraft {
 namespace {
 
 constexpr double kLinearTolerance = 1e-4;
+constexpr double kLeastOfOne = 1e-10;  // of the norm of c = 1: errors are not relative to less
 
 class Euler final : public ControlledIntegrator {
  public:
@@ -25,11 +26,12 @@ class Euler final : public ControlledIntegrator {
   Status start(double t0, ConstVec y0, ConstVec ydot0, double t_end) override {
     energy_ = problem_.energy(y0);
     rate_ = ydot0;
+    norm_of_one_ = problem_.norm(Vec::Ones(y0.size()));
     return ControlledIntegrator::start(t0, y0, ydot0, t_end);
   }
 
   bool promises_energy_decay() const override {
-    return problem_.dissipates_energy() && settings_.kept_solution != "second";
+    return problem_.dissipates_in_stabilised_steps() && settings_.kept_solution != "second";
   }
 
   void save(CheckpointOut out) const override {
@@ -39,6 +41,7 @@ class Euler final : public ControlledIntegrator {
   void load(CheckpointIn in) override {
     ControlledIntegrator::load(in);
     read_binary(in, rate_, problem_.size());
+    norm_of_one_ = problem_.norm(Vec::Ones(problem_.size()));
     energy_ = problem_.energy(state());
   }
 
@@ -103,7 +106,7 @@ class Euler final : public ControlledIntegrator {
     const double difference =
         started() ? problem_.norm(second_ - first_) : 0.5 * problem_.norm(first_ - y - dt * rate_);
     const double size = problem_.norm(started() ? second_ : y);
-    error = difference == 0 ? 0 : difference / std::max(size, 1e-300);  // c = 0 everywhere is 0/0
+    error = difference / std::max(size, kLeastOfOne * norm_of_one_);
     return {};
   }
 
@@ -118,6 +121,7 @@ class Euler final : public ControlledIntegrator {
     statistics_.order = kept_second_ && started() ? 2 : 1;
   }
 
+  double norm_of_one_ = 1;
   double energy_ = 0, next_energy_ = 0;  // of y_n and y_{n+1}, where they decide which is kept
   Vec rate_;                             // ẏ at the start
   std::vector<NewtonSystem> systems_;    // of an attempt: first and second order

@@ -237,6 +237,7 @@ CahnHilliardModel physical_model(const Configuration& configuration) {
                     ? PotentialRule::nodal
                     : PotentialRule::consistent;
   result.stabilisation = configuration.number("stabilisation");
+  result.seed = static_cast<std::uint64_t>(configuration.integer("seed"));
   said_of(configuration, "effect", [&] {
     add_effects(configuration.text("effect"), units, result);
     return 0;
@@ -255,7 +256,7 @@ RunSetup build_run(const Configuration& configuration, InitialState initial) {
   const IntegratorEntry& integrator = said_of(configuration, "integrator", [&] {
     return std::cref(integrators().find(configuration.text("integrator")));
   });
-  const IntegratorSettings settings = integrator_settings(configuration, integrator, run.units);
+  IntegratorSettings settings = integrator_settings(configuration, integrator, run.units);
   said_of(configuration, "linear-solver",
           [&] { return linear_solvers().find(configuration.text("linear-solver")).name; });
 
@@ -266,7 +267,13 @@ RunSetup build_run(const Configuration& configuration, InitialState initial) {
     return std::make_shared<const SurfaceSpace>(*surface, configuration.integer("cells"), run.team,
                                                 run.ranks);
   });
+  said_of(configuration, "effect", [&] {
+    for (const EffectPtr& effect : physics.effects) effect->require_surface(*run.space);
+    return 0;
+  });
   run.problem = std::make_unique<CahnHilliard>(run.space, physics);
+  if (const double longest = run.problem->longest_step(); std::isfinite(longest))
+    settings.max_step = settings.max_step > 0 ? std::min(settings.max_step, longest) : longest;
   if (settings.reject_energy_rises && !run.problem->dissipates_energy())
     throw InputError(configuration.where("energy-guard") +
                      ": reject is for models that can only lose energy, and this one need not; "

@@ -150,6 +150,10 @@ void print_setup(const Configuration& configuration, const RunSetup& run) {
   line("mobility", formatted("%s, D = %g cm^2/s", configuration.text("mobility").c_str(),
                              units.diffusion_cm2_s));
   if (!configuration.text("effect").empty()) line("effects", configuration.text("effect"));
+  if (const double longest = run.problem->longest_step(); longest < run.t_end)
+    line("steps", formatted("%.0f or more: at most %g %s each, which its effects need",
+                            std::ceil(run.t_end / longest), longest * units.time(),
+                            units.scaled ? "R^2/D" : "s"));
   line("units", formatted("length R = %g um, time R^2/D = %g s; the run ends at %g s = %g R^2/D",
                           units.radius_um, units.seconds_per_unit(),
                           run.t_end * units.seconds_per_unit(), run.t_end));

@@ -9,12 +9,18 @@ namespace {
 
 class Advection final : public Effect {
  public:
-  Advection(std::string name, Velocity velocity)
-      : name_(std::move(name)), velocity_(std::move(velocity)) {}
+  Advection(std::string name, Velocity velocity,
+            std::function<void(const SurfaceSpace&)> require_surface)
+      : name_(std::move(name)),
+        velocity_(std::move(velocity)),
+        require_surface_(std::move(require_surface)) {}
 
   std::string name() const override { return name_; }
   bool conserves_mass() const override { return true; }
   bool dissipates_energy() const override { return false; }
+  void require_surface(const SurfaceSpace& space) const override {
+    if (require_surface_) require_surface_(space);
+  }
 
   void add_residual(const SurfaceSpace& space, double t, ConstVec c, ConstVec, VecRef residual_c,
                     VecRef) const override {
@@ -72,12 +78,15 @@ class Advection final : public Effect {
 
   std::string name_;
   Velocity velocity_;
+  std::function<void(const SurfaceSpace&)> require_surface_;
 };
 
 }  // namespace
 
-EffectPtr advection(std::string name, Velocity velocity) {
-  return std::make_shared<Advection>(std::move(name), std::move(velocity));
+EffectPtr advection(std::string name, Velocity velocity,
+                    std::function<void(const SurfaceSpace&)> require_surface) {
+  return std::make_shared<Advection>(std::move(name), std::move(velocity),
+                                     std::move(require_surface));
 }
 
 }  // namespace traceraft

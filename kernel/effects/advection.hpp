@@ -11,7 +11,9 @@ namespace traceraft {
 using Velocity = std::function<Point(const Point&, double)>;
 
 // ∂c/∂t + div(c u) = …, that is −∫ c u·∇_Γ v in F1: conserves ∫c for any u. With an incompressible
-// u it leaves the energy alone but for the error of the mesh.
-EffectPtr advection(std::string name, Velocity velocity);
+// u it leaves the energy alone but for the error of the mesh. `require_surface` is called with the
+// space of a run and throws InputError if the flow is none of this surface.
+EffectPtr advection(std::string name, Velocity velocity,
+                    std::function<void(const SurfaceSpace&)> require_surface = {});
 
 }  // namespace traceraft

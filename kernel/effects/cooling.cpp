@@ -33,8 +33,10 @@ EffectEntry cooling_effect() {
             model.effects.push_back(mobility_flux(
                 "cooling", model.mobility, [slowing](double t) { return std::expm1(-slowing * t); },
                 true));
+            model.pace = [slowing](double t) { return std::exp(-slowing * t); };
           },
-          true};
+          true,
+          4};
 }
 
 }  // namespace traceraft

@@ -12,11 +12,21 @@ std::string trimmed(const std::string& text) {
                                     : text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
+// With defaults, which are in µm and s, in the units that values are given in.
+std::vector<ParameterSpec> specs_in(const EffectEntry& entry, const Units& units) {
+  Units physical = units;
+  physical.scaled = false;
+  std::vector<ParameterSpec> specs = entry.parameters;
+  for (ParameterSpec& spec : specs)
+    spec.default_value *= to_model_units(spec.unit, physical) / to_model_units(spec.unit, units);
+  return specs;
+}
+
 EffectTerm read_term(const std::string& one, const Units& units) {
   const NamedArguments named = split_named_arguments(one);
   const EffectEntry& entry = effects().find(named.name);
   const Parameters given =
-      parse_parameters("effect " + entry.name, named.arguments, entry.parameters);
+      parse_parameters("effect " + entry.name, named.arguments, specs_in(entry, units));
   const ParameterSpec& strength = entry.parameters.front();
   if (given[strength.name] == strength.default_value)
     throw InputError("effect " + entry.name + ": say how strong it is, as in " + entry.name + ":" +

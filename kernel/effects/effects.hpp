@@ -30,8 +30,8 @@ struct EffectEntry {
   // Adds it to a model. Parameters are in units of R and R²/D.
   std::function<void(const Parameters&, CahnHilliardModel&)> add;
   bool unit_wells = false;  // it takes the phases to be at c = 0 and 1
-  // Effects that change the mobility do so in this order, before those that make something of it
-  // (which have 0).
+  // Effects that change the mobility, in space or in time, do so in this order, before those that
+  // make something of it (which have 0).
   int mobility_stage = 0;
 };
 

@@ -13,6 +13,10 @@ class LocalDensityEffect final : public Effect {
   std::string name() const override { return density_.name; }
   bool conserves_mass() const override { return density_.conserves_mass; }
   bool dissipates_energy() const override { return density_.dissipates_energy; }
+  // A source has the μ of the step before.
+  bool dissipates_explicitly() const override {
+    return density_.dissipates_energy && density_.slot == Slot::potential;
+  }
 
   void add_residual(const SurfaceSpace& space, double t, ConstVec c, ConstVec mu, VecRef residual_c,
                     VecRef residual_mu) const override {

@@ -12,6 +12,8 @@ class NodalPotentialEffect final : public Effect {
   bool dissipates_energy() const override { return true; }
   bool tangent_is_assembled() const override { return !potential_.linear; }
 
+  // One that depends on c may be stiffer than the wells are.
+  bool dissipates_explicitly() const override { return !potential_.linear; }
   void add_residual(const SurfaceSpace& space, double, ConstVec c, ConstVec, VecRef,
                     VecRef residual_mu) const override {
     add_load(space, c, residual_mu);

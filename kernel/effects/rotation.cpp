@@ -1,9 +1,47 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
 #include "kernel/effects/advection.hpp"
 #include "kernel/effects/effects.hpp"
 
 namespace traceraft {
+namespace {
 
-// A vesicle that turns under the microscope: u = ω × x.
+// How far the surface is from one that turns into itself: of its first and second moments, what a
+// quarter of a turn changes.
+double asymmetry_around(const Point& axis, const SurfaceSpace& space) {
+  Eigen::Matrix<double, 3, 4> moments = Eigen::Matrix<double, 3, 4>::Zero();
+  const CutSurface& surface = space.surface;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    Point centre = Point::Zero();
+    for (const int corner : surface.triangles[t]) centre += surface.position[corner] / 3;
+    moments.col(0) += surface.triangle_area[t] * centre;
+    moments.rightCols<3>() += surface.triangle_area[t] * centre * centre.transpose();
+  }
+  for (int i = 0; i < moments.size(); ++i)
+    moments.data()[i] = space.communicator->sum(moments.data()[i]);
+  const Eigen::Matrix3d quarter = Eigen::AngleAxisd(kPi / 2, axis).toRotationMatrix();
+  const Eigen::Matrix3d second = moments.rightCols<3>();
+  const double first = (quarter * moments.col(0) - moments.col(0)).norm();
+  return std::max(first / (space.area * std::sqrt(second.trace() / space.area)),
+                  (quarter * second * quarter.transpose() - second).norm() / second.norm());
+}
+
+void require_revolution(const Point& axis, const SurfaceSpace& space) {
+  constexpr double kOfTheMesh = 0.01;
+  if (const double part = asymmetry_around(axis, space); part > kOfTheMesh)
+    throw InputError(
+        "effect rotation: the surface does not turn into itself around the axis x, y, "
+        "z: its moments differ by " +
+        format_number(std::round(1000 * part) / 10) +
+        " % after a quarter of a turn (allowed: 1 %)");
+}
+
+}  // namespace
+
+// A vesicle that turns under the microscope: u = ω × x. On another body than one of revolution this
+// would not lie in the surface, and what does of it would compress the membrane.
 EffectEntry rotation_effect() {
   return {"rotation",
           "a vesicle that turns",
@@ -19,9 +57,10 @@ EffectEntry rotation_effect() {
           [](const Parameters& p, CahnHilliardModel& model) {
             const Point axis(p["x"], p["y"], p["z"]);
             if (axis.norm() == 0) throw InputError("effect rotation: the axis x, y, z is zero");
-            const Point omega = p["rate"] * axis.normalized();
+            const Point unit = axis.normalized(), omega = p["rate"] * unit;
             model.effects.push_back(advection(
-                "rotation", [omega](const Point& x, double) -> Point { return omega.cross(x); }));
+                "rotation", [omega](const Point& x, double) -> Point { return omega.cross(x); },
+                [unit](const SurfaceSpace& space) { require_revolution(unit, space); }));
           }};
 }
 

@@ -9,16 +9,19 @@ namespace {
 
 // Cook's noise: a random flux √(2 kT M) ξ with ξ white in space and time. In every tetrahedron one
 // vector with variance 1/|Γ_T|; in time drawn every τ with variance 1/τ and linear in between, so
-// that integrators see a continuous function that they resolve with steps below τ. Draws depend on
-// the tetrahedron's place in the mesh, not on the number of ranks.
+// that integrators see a continuous function. A step that is longer than τ would take one draw for
+// all of it, and noise as much too strong; longest_step() keeps them below. Draws depend on the
+// tetrahedron's place in the mesh, not on the number of ranks. Where lipids are slower, so is their
+// noise (`pace`).
 class ThermalNoise final : public Effect {
  public:
-  ThermalNoise(double kT, double tau, std::uint64_t seed, MobilityPtr law)
-      : kT_(kT), tau_(tau), seed_(seed), law_(std::move(law)) {}
+  ThermalNoise(double kT, double tau, std::uint64_t seed, const CahnHilliardModel& model)
+      : kT_(kT), tau_(tau), seed_(seed), law_(model.mobility), pace_(model.pace) {}
 
   std::string name() const override { return "thermal"; }
   bool conserves_mass() const override { return true; }
   bool dissipates_energy() const override { return false; }
+  double longest_step() const override { return 0.5 * tau_; }
 
   void add_residual(const SurfaceSpace& space, double t, ConstVec c, ConstVec, VecRef residual_c,
                     VecRef) const override {
@@ -68,8 +71,8 @@ class ThermalNoise final : public Effect {
     const double begin = std::floor(when), share = when - begin;
     const Point flux = (1 - share) * draw(place, begin) + share * draw(place, begin + 1);
     const Point normal = cut_normal(space.mesh, tet);
-    return -std::sqrt(2 * kT_ / tau_) / space.h() * scaled_gradients(tet.kuhn) *
-           (flux - flux.dot(normal) * normal);
+    return -std::sqrt(2 * kT_ / tau_ * (pace_ ? pace_(t) : 1)) / space.h() *
+           scaled_gradients(tet.kuhn) * (flux - flux.dot(normal) * normal);
   }
 
   Point draw(std::uint64_t place, double when) const {
@@ -92,6 +95,7 @@ class ThermalNoise final : public Effect {
   double kT_, tau_;
   std::uint64_t seed_;
   MobilityPtr law_;
+  std::function<double(double)> pace_;
 };
 
 }  // namespace
@@ -101,15 +105,16 @@ EffectEntry thermal_effect() {
           "thermal fluctuations of the flux (Cook's noise)",
           "",
           {{"strength", "", 0, 0, 1, "kT, in units of the energy density times R^2"},
-           {"time", "s", 1e-3, 1e-12, 1e9, "between draws; steps have to be shorter"},
-           {"seed", "", 1, 0, 1e9, "of the draws", true}},
+           {"time", "s", 1e-3, 1e-12, 1e9, "between draws; steps are at most half of it"},
+           {"seed", "", 1, 0, 1e9, "of the draws, beside that of the run", true}},
           MassClass::conserves,
           EnergyClass::active,
           "differences between vesicles that grow with time",
           {},
           [](const Parameters& p, CahnHilliardModel& model) {
+            const auto own = static_cast<std::uint64_t>(p["seed"]);
             model.effects.push_back(std::make_shared<ThermalNoise>(
-                p["strength"], p["time"], static_cast<std::uint64_t>(p["seed"]), model.mobility));
+                p["strength"], p["time"], (own << 32) + model.seed, model));
           }};
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "kernel/fem/mobility_stiffness.hpp"
 
@@ -189,6 +190,19 @@ bool CahnHilliard::dissipates_energy() const {
   return model_.rule == PotentialRule::consistent &&
          std::all_of(model_.effects.begin(), model_.effects.end(),
                      [](const EffectPtr& effect) { return effect->dissipates_energy(); });
+}
+
+bool CahnHilliard::dissipates_in_stabilised_steps() const {
+  return dissipates_energy() &&
+         std::all_of(model_.effects.begin(), model_.effects.end(),
+                     [](const EffectPtr& effect) { return effect->dissipates_explicitly(); });
+}
+
+double CahnHilliard::longest_step() const {
+  double longest = std::numeric_limits<double>::infinity();
+  for (const EffectPtr& effect : model_.effects)
+    longest = std::min(longest, effect->longest_step());
+  return longest;
 }
 
 }  // namespace traceraft

@@ -1,6 +1,7 @@
 // The trace finite element semi-discretisation of the surface Cahn–Hilliard equation as a DAE.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -19,6 +20,9 @@ struct CahnHilliardModel {
   PotentialRule rule = PotentialRule::consistent;
   double stabilisation = 1.0;  // ρ = stabilisation · h
   std::vector<EffectPtr> effects;
+  // How fast lipids are in time, over `mobility`, where an effect changes that; empty: always 1.
+  std::function<double(double)> pace;
+  std::uint64_t seed = 1;  // of what effects draw at random
 
   // β of the stabilised tangent: 1 for the default well, as in the reference code. Twice the
   // curvature in the wells, so steps decay while |f0''| ≤ 2β.
@@ -52,8 +56,12 @@ class CahnHilliard final : public DaeProblem {
   bool conserves_mass() const override;
   double energy(ConstVec y) const override;
   bool dissipates_energy() const override;
+  bool dissipates_in_stabilised_steps() const override;
   double energy_scale() const override;  // of a surface halfway between the wells
   const Communicator& ranks() const override { return *space_->communicator; }
+
+  // That effects resolve in time; infinity if there is none such.
+  double longest_step() const;
 
   const SurfaceSpace& space() const { return *space_; }
   const CahnHilliardModel& model() const { return model_; }

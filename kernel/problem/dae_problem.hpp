@@ -53,6 +53,8 @@ class DaeProblem {
   // A functional that does not grow along solutions, and whether the model promises that.
   virtual double energy(ConstVec y) const = 0;
   virtual bool dissipates_energy() const = 0;
+  // Whether steps of first order with the stabilised tangent let it fall, too.
+  virtual bool dissipates_in_stabilised_steps() const { return dissipates_energy(); }
   // The size of its terms, which cancel near equilibrium: its roundoff is relative to that.
   virtual double energy_scale() const = 0;
 

@@ -1,6 +1,7 @@
 // A term added to the base model.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -31,6 +32,13 @@ class Effect {
   // Jacobian to add_tangent_product; with the assembled one Newton's method then converges
   // linearly.
   virtual bool tangent_is_assembled() const { return true; }
+  // Does the energy fall in steps with the stabilised tangent, too, which treat the effect
+  // explicitly? A potential does as the wells do, while |f0''| ≤ 2β with it.
+  virtual bool dissipates_explicitly() const { return dissipates_energy(); }
+  // Integrators that take longer steps would not see what the effect does in time.
+  virtual double longest_step() const { return std::numeric_limits<double>::infinity(); }
+  // Throws InputError if the effect is not made for this surface.
+  virtual void require_surface(const SurfaceSpace&) const {}
   // What the effect adds to the energy, over all ranks; F2 is the gradient of the sum.
   virtual double energy(const SurfaceSpace&, ConstVec /*c*/) const { return 0; }
 

@@ -11,12 +11,12 @@ namespace traceraft {
 
 class RunMonitor {
  public:
-  // mass_scale: what a drift is relative to where the mass itself is nearly zero. energy_scale:
-  // DaeProblem's.
+  // What a drift of the mass and a rise of the energy are relative to where these themselves are
+  // nearly zero; energy_scale: DaeProblem's.
   void start(const Observables& row, double mass_scale, double energy_scale) {
     initial_mass_ = row.mass;
     mass_scale_ = std::fabs(row.mass) > 1e-3 * mass_scale ? std::fabs(row.mass) : mass_scale;
-    initial_energy_ = row.energy;
+    initial_energy_ = std::fabs(row.energy) > 1e-3 * energy_scale ? row.energy : energy_scale;
     energy_ = row.energy;
     allowed_rise_ = EnergyGuard::allowed_rise(row.energy, energy_scale);
   }
@@ -34,7 +34,7 @@ class RunMonitor {
   }
   double mass_drift() const { return drift_; }  // largest so far
   long energy_rises() const { return rises_; }
-  double largest_rise() const { return largest_rise_; }  // relative to the initial energy
+  double largest_rise() const { return largest_rise_; }  // over the initial energy
 
  private:
   double initial_mass_ = 0, mass_scale_ = 1, initial_energy_ = 1, energy_ = 0, drift_ = 0,

@@ -248,5 +248,43 @@ TEST(Effects, TakeTheirParametersInPhysicalUnits) {
   EXPECT_LT((r - s).norm(), 1e-12 * s.norm());
 }
 
+// What is not given is in µm and s, whatever the units of what is.
+TEST(Effects, HaveTheSameDefaultsInAnyUnits) {
+  const auto space = make_space(10);
+  const auto residual = [&](const std::string& effect, bool scaled) {
+    CahnHilliardModel model = make_model();
+    add_effects(effect, {5, 1e-5, scaled}, model);
+    const CahnHilliard problem(space, model);
+    Vec r(problem.size());
+    EXPECT_TRUE(problem.residual(0.7, random_state(problem, 4), Vec::Zero(problem.size()), r).ok());
+    return r;
+  };
+  for (const char* effect : {"ohta-kawasaki:strength=1", "thermal:strength=0.01"}) {
+    const Vec physical = residual(effect, false);
+    EXPECT_LT((residual(effect, true) - physical).norm(), 1e-12 * physical.norm()) << effect;
+  }
+}
+
+TEST(Effects, RefuseSurfacesThatTheyAreNotMadeFor) {
+  const auto complaint = [&](const std::string& effect, const std::string& surface) -> std::string {
+    CahnHilliardModel model = make_model();
+    add_effects(effect, kScaled, model);
+    try {
+      for (const EffectPtr& one : model.effects) one->require_surface(*make_space(32, surface));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  for (const char* surface : {"sphere", "torus", "ellipsoid:a=1.2,b=1.2,c=0.8"})
+    EXPECT_EQ(complaint("rotation:rate=1", surface), "");
+  EXPECT_EQ(complaint("rotation:rate=1,x=1,z=0", "ellipsoid:a=1.2,b=1,c=1"), "");
+  for (const char* surface : {"ellipsoid:a=1.05,b=1,c=1", "ellipsoid", "dziuk"})
+    EXPECT_NE(complaint("rotation:rate=1", surface).find("turn into itself"), std::string::npos)
+        << surface;
+  EXPECT_NE(complaint("rotation:rate=1,x=1", "torus").find("turn into itself"), std::string::npos);
+  EXPECT_EQ(complaint("gravity:strength=1", "ellipsoid"), "");
+}
+
 }  // namespace
 }  // namespace traceraft

@@ -225,5 +225,59 @@ TEST_F(EffectPhysics, ThermalNoiseHasTheVarianceOfItsDissipation) {
   EXPECT_LT(std::fabs(sum / kDraws), 4 * std::sqrt(expected / kDraws));
 }
 
+TEST_F(EffectPhysics, ThermalNoiseIsAsMuchSlowerAsItsDissipation) {
+  const std::string noise = "thermal:strength=0.01,time=0.25";
+  const std::string cooling = "cooling:rate=2,out=0,in=0,activation=0.3";
+  constexpr double kTime = 1.5;
+  const Vec warm = contribution(space, noise, y, kTime),
+            slower = contribution(space, cooling, y, kTime);
+  for (const std::string& both : {noise + ";" + cooling, cooling + ";" + noise}) {
+    const Vec cold = contribution(space, both, y, kTime) - slower;
+    EXPECT_LT((cold - std::exp(-0.3 * kTime) * warm).norm(), 1e-10 * warm.norm()) << both;
+  }
+}
+
+TEST_F(EffectPhysics, ThermalNoiseOfAnotherRunIsAnother) {
+  const auto noise_of = [&](std::uint64_t run, const std::string& own) {
+    CahnHilliardModel model = make_model();
+    model.seed = run;
+    add_effects("thermal:strength=0.01,time=0.25" + own, kUnits, model);
+    Vec r(2 * n);
+    EXPECT_TRUE(CahnHilliard(space, model).residual(0.1, y, Vec::Zero(2 * n), r).ok());
+    return r;
+  };
+  EXPECT_EQ(noise_of(1, ""), noise_of(1, ",seed=1"));
+  const Vec one = noise_of(1, ""), run = noise_of(2, ""), own = noise_of(1, ",seed=2");
+  EXPECT_GT((one - run).norm(), 0.1 * one.norm());
+  EXPECT_GT((one - own).norm(), 0.1 * one.norm());
+  EXPECT_GT((run - own).norm(), 0.1 * one.norm());
+}
+
+// An energy that falls without end where c leaves [0, 1] would let small rafts run away.
+TEST_F(EffectPhysics, AsymmetryLeavesTheWellsTheDeepestPlaces) {
+  const Vec direction = random_vector(2 * n, 8);
+  for (const char* effect : {"asymmetry:strength=0.2", "asymmetry:strength=-0.2"}) {
+    CahnHilliardModel model = make_model();
+    add_effects(effect, kUnits, model);
+    const CahnHilliard problem(space, model);
+    for (const double c : {-3.0, -0.5, -0.1, 0.1, 0.5, 0.9, 1.1, 1.5, 4.0})
+      EXPECT_GT(problem.energy(Vec::Constant(2 * n, c)), 0) << effect << " at " << c;
+    // Outside, too, the tangent is the derivative, and continuous at the wells.
+    Vec wide = y;
+    wide.head(n) = random_vector(n, 5, -0.5, 1.5);
+    const auto residual_at = [&](double step) {
+      Vec r(2 * n);
+      EXPECT_TRUE(problem.residual(0, wide + step * direction, Vec::Zero(2 * n), r).ok());
+      return r;
+    };
+    Vec product(2 * n);
+    ASSERT_TRUE(
+        problem.jacobian_product(0, wide, Vec::Zero(2 * n), 0, Tangent::exact, direction, product)
+            .ok());
+    const Vec difference = (residual_at(1e-6) - residual_at(-1e-6)) / 2e-6;
+    EXPECT_LT((product - difference).tail(n).norm(), 1e-6 * product.tail(n).norm()) << effect;
+  }
+}
+
 }  // namespace
 }  // namespace traceraft

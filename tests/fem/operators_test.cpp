@@ -7,22 +7,15 @@
 #include "kernel/fem/potential.hpp"
 #include "kernel/fem/trace.hpp"
 #include "kernel/fem/triangle_rule.hpp"
+#include "tests/support/dense.hpp"
 #include "tests/support/spaces.hpp"
 
 namespace traceraft {
 namespace {
 
+using testing::dense;
 using testing::make_space;
 using testing::random_vector;
-
-Eigen::MatrixXd dense(const CsrMatrix& matrix) {
-  const SparsityPattern& p = *matrix.pattern;
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(p.rows(), p.rows());
-  for (int i = 0; i < p.rows(); ++i)
-    for (int k = p.row_begin[i]; k < p.row_begin[i + 1]; ++k)
-      result(i, p.column[k]) += matrix.values[k];
-  return result;
-}
 
 // ∫_Γ f(x, c_h, ∇c_h) by brute force over the triangles of Γ_h: slow and easy to check by hand.
 template <class F>

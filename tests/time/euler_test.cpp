@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <cmath>
 
 #include "backends/list.hpp"
+#include "kernel/effects/effects.hpp"
 #include "tests/support/spaces.hpp"
 
 namespace traceraft {
@@ -42,6 +44,49 @@ TEST(Euler, NeverGainsEnergyWhereItPromisesSo) {
         }
       }
   EXPECT_GT(gained_by_second, 0) << "the test is too gentle to tell the solutions apart";
+}
+
+// What it has of the step before may gain energy, also where the model cannot.
+TEST(Euler, PromisesNothingOfSourcesThatItTreatsExplicitly) {
+  const auto space = make_space(8);
+  const auto promises = [&](const std::string& effect) {
+    CahnHilliardModel model = make_model();
+    add_effects(effect, {1, 1, true}, model);
+    const CahnHilliard problem(space, model);
+    EXPECT_TRUE(problem.dissipates_energy()) << effect;
+    IntegratorSettings settings;
+    settings.kept_solution = "first";
+    return integrators()
+        .find("euler")
+        .make(problem, choose_linear_solver("block", *space), space->team, settings)
+        ->promises_energy_decay();
+  };
+  for (const char* effect : {"gravity:strength=0.1", "asymmetry:strength=0.1",
+                             "line-tension:excess=0.5", "bulk-mobility:strength=0.1"})
+    EXPECT_TRUE(promises(effect)) << effect;
+  for (const char* effect : {"allen-cahn:rate=1", "ohta-kawasaki:strength=1,range=1"})
+    EXPECT_FALSE(promises(effect)) << effect;
+}
+
+// Nothing to be relative to but what the source brings.
+TEST(Euler, StartsFromNothing) {
+  const auto space = make_space(8);
+  CahnHilliardModel model = make_model();
+  add_effects("uptake:rate=1", {1, 1, true}, model);
+  const CahnHilliard problem(space, model);
+  IntegratorSettings settings;
+  settings.tolerance = 1e-3;
+  const IntegratorPtr integrator = integrators().find("euler").make(
+      problem, choose_linear_solver("block", *space), space->team, settings);
+  Vec y = Vec::Zero(problem.size()), ydot = y;
+  ASSERT_TRUE(problem.consistent_initial_state(0, y, ydot).ok());
+  ASSERT_TRUE(integrator->start(0, y, ydot, 1).ok());
+  while (integrator->time() < 1) {
+    const Status status = integrator->advance();
+    ASSERT_TRUE(status.ok()) << status.why;
+  }
+  // ċ = 1 − c
+  EXPECT_NEAR(problem.mass(integrator->state()) / space->area, 1 - std::exp(-1.0), 0.01);
 }
 
 TEST(Euler, OneStepIsTheHandAssembledStabilisedScheme) {

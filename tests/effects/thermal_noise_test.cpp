@@ -1,0 +1,98 @@
+// Thermal noise through the steps of integrators: as much of it as fluctuation and dissipation say.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "backends/list.hpp"
+#include "kernel/effects/effects.hpp"
+#include "tests/support/dense.hpp"
+#include "tests/support/spaces.hpp"
+
+namespace traceraft {
+namespace {
+
+using testing::dense;
+using testing::make_model;
+using testing::make_space;
+
+constexpr double kT = 1e-8;  // so little that a phase stays where it is linear
+
+// Integrals of c with spherical harmonics of degrees 1 and 2: what is slow.
+Eigen::MatrixXd harmonics(const SurfaceSpace& space) {
+  const int n = space.nodes();
+  Eigen::MatrixXd values(n, 8);
+  for (int i = 0; i < n; ++i) {
+    const Point x = space.mesh.position(i);
+    values.row(i) << x[0], x[1], x[2], x[0] * x[1], x[1] * x[2], x[2] * x[0],
+        x[0] * x[0] - x[1] * x[1], 3 * x[2] * x[2] - x.squaredNorm();
+  }
+  return dense(space.mass) * values;
+}
+
+// Around a uniform phase M̃ ċ = −A μ + η with M̃ μ = B c and ⟨η ηᵀ⟩ = 2 kT K_M δ(t − t'). In the
+// eigenvectors of B^½ M̃⁻¹ A M̃⁻¹ B^½, with its eigenvalues λ, z = B^½ c has the covariance
+// Q_ij/(λ_i + λ_j), Q = 2 kT B^½ M̃⁻¹ K_M M̃⁻¹ B^½.
+Vec variances(const CahnHilliard& base, const Vec& y, const Eigen::MatrixXd& of) {
+  BlockJacobian J = base.make_jacobian();
+  EXPECT_TRUE(base.jacobian(0, y, Vec::Zero(y.size()), 0, Tangent::exact, J).ok());
+  const SurfaceSpace& space = base.space();
+  const Eigen::MatrixXd M = dense(J.mm), A = dense(J.cm);
+  const Eigen::MatrixXd K = A - space.h() * base.model().mobility->scale() * dense(space.normal);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> B(-dense(J.mc));
+  const Eigen::MatrixXd half = M.llt().solve(B.operatorSqrt());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> rates(half.transpose() * A * half);
+  const Vec& rate = rates.eigenvalues();
+  Eigen::MatrixXd covariance = 2 * kT * rates.eigenvectors().transpose() * half.transpose() * K *
+                               half * rates.eigenvectors();
+  for (int i = 0; i < rate.size(); ++i)
+    for (int j = 0; j < rate.size(); ++j)
+      // The mean has no rate, and no noise.
+      covariance(i, j) = i == 0 || j == 0 ? 0 : covariance(i, j) / (rate[i] + rate[j]);
+  const Eigen::MatrixXd to_z = rates.eigenvectors().transpose() * B.operatorInverseSqrt() * of;
+  return (to_z.transpose() * covariance * to_z).diagonal();
+}
+
+class ThermalNoiseTest : public ::testing::TestWithParam<const char*> {};
+
+// Steps that its error would let grow far beyond the time between draws.
+TEST_P(ThermalNoiseTest, MovesAPhaseAsMuchAsItsDissipationAllows) {
+  constexpr double kBegin = 10, kEnd = 60;
+  const auto space = make_space(8);
+  CahnHilliardModel model = make_model("constant");
+  const CahnHilliard base(space, model);
+  add_effects("thermal:strength=1e-8,time=0.1", {1, 1, true}, model);
+  const CahnHilliard problem(space, model);
+  EXPECT_DOUBLE_EQ(problem.longest_step(), 0.05);
+  EXPECT_TRUE(std::isinf(base.longest_step()));
+
+  const int n = problem.block_size();
+  Vec y = Vec::Zero(2 * n), ydot = y;
+  y.head(n).setOnes();
+  const Eigen::MatrixXd slow = harmonics(*space);
+  const Vec expected = variances(base, y, slow);
+  ASSERT_TRUE(problem.consistent_initial_state(0, y, ydot).ok());
+  IntegratorSettings settings;
+  settings.tolerance = 1e-2;
+  settings.max_step = problem.longest_step();
+  const IntegratorPtr integrator =
+      integrators()
+          .find(GetParam())
+          .make(problem, choose_linear_solver("block", *space), space->team, settings);
+  ASSERT_TRUE(integrator->start(0, y, ydot, kEnd).ok());
+  double sum = 0, time = 0;
+  while (integrator->time() < kEnd) {
+    const Status status = integrator->advance();
+    ASSERT_TRUE(status.ok()) << status.why;
+    if (integrator->time() < kBegin) continue;
+    const Vec moved = slow.transpose() * (integrator->state().head(n) - Vec::Ones(n));
+    sum += integrator->step() * moved.cwiseAbs2().cwiseQuotient(expected).mean();
+    time += integrator->step();
+  }
+  EXPECT_NEAR(sum / time, 1, 0.35);  // some 200 draws that do not depend on each other: 0.1
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ThermalNoiseTest, ::testing::Values("euler", "ida", "rosenbrock"));
+
+}  // namespace
+}  // namespace traceraft
