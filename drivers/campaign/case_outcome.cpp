@@ -85,8 +85,11 @@ std::optional<StrengthError> strength_error(const HiddenTruth& truth, Units unit
   const ParameterSpec& strength = effects().find(term.effect).parameters.front();
   const auto found = verdict.at("parameters").find(term.effect + "." + strength.name);
   if (found == verdict.at("parameters").end()) return {};
+  // A gap that no strength reaches is one at the end of the range, where a search ends, too.
+  const double hidden = term.values.front();
+  if (strength.unit.empty() && (hidden <= strength.min || hidden >= strength.max)) return {};
   units.diffusion_cm2_s *= truth.pace;
-  const double value = term.values.front() / to_model_units(strength.unit, units);
+  const double value = hidden / to_model_units(strength.unit, units);
   const double difference = found->at("value").get<double>() - value;
   return StrengthError{std::fabs(difference / value),
                        difference / found->at("sigma").get<double>()};

@@ -28,8 +28,8 @@ std::string in_order(const std::string& names);
 // `hidden`: names_of the truth; `verdict`: the content of verdict.json.
 CaseOutcome outcome_of(Aim aim, const std::string& hidden, const Json& verdict);
 
-// Of the first hidden effect's strength, if the verdict has it; relative, and in the standard
-// deviations that the verdict says. `units`: of the model.
+// Of the first hidden effect's strength, if the verdict has it and it is not at the end of its
+// range; relative, and in the standard deviations that the verdict says. `units`: of the model.
 struct StrengthError {
   double relative, deviations;
 };

@@ -50,6 +50,10 @@ struct ExplainCommand {
   bool quiet = false;
 };
 
+void print_earlier_model(const fs::path& out) {
+  std::printf("\n%s is that of an earlier explanation\n", (out / "model.toml").c_str());
+}
+
 void explain_field_data(const ExplainCommand& command, ExplainSetup& setup, const fs::path& out) {
   const Stopwatch watch;
   if (!command.quiet)
@@ -73,7 +77,7 @@ void explain_field_data(const ExplainCommand& command, ExplainSetup& setup, cons
         "\nrun it with: %s\n(it starts from noise, not from the vesicle that was measured)\n",
         run.c_str());
   else if (fs::exists(out / "model.toml"))
-    std::printf("\n%s is that of an earlier explanation\n", (out / "model.toml").c_str());
+    print_earlier_model(out);
   std::printf("\nwritten: %s\n", (out / "explain.html").c_str());
   if (!missing.empty()) std::printf("the page lacks: %s\n", missing.c_str());
 }
@@ -118,6 +122,8 @@ bool explain_series_data(const ExplainCommand& command, const SeriesSetup& setup
   if (command.job.data.empty())
     write_series_verdict(out, command.job.model, given, ensembles, found, search);
   write_series_explanation(out, data, model, ensembles, found, search, command.quiet);
+  if (!command.quiet && !is_named(found) && fs::exists(out / "model.toml"))
+    print_earlier_model(out);
   return true;
 }
 

@@ -135,7 +135,7 @@ class ExplainPage {
         frames.push_back(map.z);
         view.labels.push_back(
             model +
-            (setup_.series.size() > 1 ? ", vesicle " + std::to_string(map.vesicle + 1) : "") +
+            (setup_.series.size() > 1 ? ", vesicle " + setup_.series[map.vesicle].vesicle : "") +
             formatted(", t = %.4g s: up to %.1f", map.time * units_.seconds_per_unit(),
                       map.z.cwiseAbs().maxCoeff()) +
             " standard deviations");
@@ -157,7 +157,7 @@ class ExplainPage {
         "snapshot) disagree significantly with the base model: of such lists' entries " +
         formatted("%.0f %% at most are there by chance, on average", 100 * found_.false_alarms) +
         " (Benjamini and Hochberg). The strongest:");
-    page_.table(disagreement_rows(found_, units_, kMostRows));
+    page_.table(disagreement_rows(found_, setup_, kMostRows));
   }
 
   static std::size_t strongest(const DisagreementMaps& maps) {

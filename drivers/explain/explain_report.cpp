@@ -24,11 +24,11 @@ Table scores_table(const Explanation& found) {
   return table;
 }
 
-Table disagreements_table(const Explanation& found, const Units& units) {
+Table disagreements_table(const Explanation& found, const ExplainSetup& setup, const Units& units) {
   Table table{
       "disagreements", {"vesicle", "time/s", "state", "x", "y", "z", "deviations", "p"}, {}};
   for (const Disagreement& d : found.disagreements)
-    table.rows.push_back({static_cast<double>(d.vesicle + 1), d.time * units.seconds_per_unit(),
+    table.rows.push_back({setup.series[d.vesicle].vesicle, d.time * units.seconds_per_unit(),
                           d.state, d.direction[0], d.direction[1], d.direction[2], d.z, d.p});
   return table;
 }
@@ -44,7 +44,7 @@ void write_explanation(const std::filesystem::path& folder, const Explanation& f
                        const ExplainSetup& setup) {
   const Units units = setup.configuration().units();
   write_durably(folder / "scores.csv", csv_text(scores_table(found)));
-  write_durably(folder / "disagreements.csv", csv_text(disagreements_table(found, units)));
+  write_durably(folder / "disagreements.csv", csv_text(disagreements_table(found, setup, units)));
   if (has_model(found))
     write_extended_model(folder / "model.toml", setup.model_file, found_model(found, setup.model),
                          "found by traceraft explain: " + found.found.hypothesis.name() +

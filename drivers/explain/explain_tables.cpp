@@ -90,12 +90,14 @@ std::vector<Row> score_rows(const Round& round) {
   return rows;
 }
 
-std::vector<Row> disagreement_rows(const Explanation& found, const Units& base, std::size_t most) {
+std::vector<Row> disagreement_rows(const Explanation& found, const ExplainSetup& setup,
+                                   std::size_t most) {
+  const Units base = setup.configuration().units();
   std::vector<Row> rows{
       {"vesicle", "time (s)", "where", "around (x, y, z), in R", "standard deviations", "p"}};
   for (const Disagreement& d : found.disagreements) {
     if (rows.size() > most) break;
-    rows.push_back({std::to_string(d.vesicle + 1),
+    rows.push_back({setup.series[d.vesicle].vesicle,
                     formatted("%.4g", d.time * base.seconds_per_unit()), d.state,
                     formatted("%.2f, %.2f, %.2f", d.direction[0], d.direction[1], d.direction[2]),
                     formatted("%+.1f", d.z), formatted("%.1e", d.p)});

@@ -11,15 +11,18 @@
 namespace traceraft {
 namespace {
 
-// "Vesicle 1, snapshot 3: it seems turned by 0.30 rad ..."
-std::string text_of(const FrameChange& change) {
+// "Vesicle 1, snapshot 3 (12 s): it seems turned by 0.30 rad ..."
+std::string text_of(const FrameChange& change, const ExplainSetup& setup) {
   std::vector<std::string> ways;
   if (change.turn != 0)
     ways.push_back(formatted("turned by %.2g rad since the one before", change.turn));
   if (change.gain != 0) ways.push_back(formatted("scaled by %.3g", 1 + change.gain));
   if (change.offset != 0) ways.push_back(formatted("shifted by %.2g", change.offset));
-  return "Vesicle " + std::to_string(change.vesicle + 1) + ", snapshot " +
-         std::to_string(change.snapshot + 1) + ": it seems " + joined(ways, ", and ") +
+  const FieldSeries& series = setup.series[change.vesicle];
+  const double time = series.snapshots[change.snapshot].time;
+  return "Vesicle " + series.vesicle + ", snapshot " + std::to_string(change.snapshot + 1) +
+         formatted(" (%.4g s)", time * setup.configuration().units().seconds_per_unit()) +
+         ": it seems " + joined(ways, ", and ") +
          ". That is more than the search allows for; align and calibrate the images first.";
 }
 
@@ -96,10 +99,11 @@ void add_story(const Explanation& found, std::vector<std::string>& all) {
     if (!said) all.push_back(text_of(turn));
   }
   for (const ToldApart& t : found.told_apart)
-    all.push_back(t.effect +
-                  formatted(" explains the snapshots that were fitted about as well, but is less "
-                            "probable with the one held out (2 ln of the likelihood ratio: %.0f).",
-                            -t.less));
+    all.push_back(
+        t.effect +
+        formatted(" explains the snapshots that were fitted about as well, but is less "
+                  "probable with the one held out (difference of Schwarz' criterion: %.0f).",
+                  -t.less));
 }
 
 // A strength that cannot be larger was wanted larger.
@@ -193,7 +197,6 @@ std::vector<std::string> remarks(const Explanation& found, const Units& base) {
   add_ends(found, base, all);
   add_class(found, base, all);
   add_mesh(found, all);
-  for (const FrameChange& change : found.changes) all.push_back(text_of(change));
   add_failures(found, all);
   if (!found.found.settled)
     all.push_back("The parameters were not quite at rest when their refit ended.");
@@ -211,6 +214,7 @@ std::vector<std::string> remarks_on(const Explanation& found, const ExplainSetup
   std::vector<std::string> all = setup.notes;
   for (std::string& remark : remarks(found, setup.configuration().units()))
     all.push_back(std::move(remark));
+  for (const FrameChange& change : found.changes) all.push_back(text_of(change, setup));
   if (const auto& without = setup.request.without; !without.empty())
     all.push_back("Not looked for, as asked: " + joined(without, ", ") + ".");
   return all;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 
 #include "drivers/explain/series_verdict.hpp"
 #include "drivers/output/chart.hpp"
@@ -106,13 +107,16 @@ std::string assumed_text(const SeriesEnsembles& ensembles, const Units& units) {
   return text;
 }
 
-SeriesEnsembles in_seconds(SeriesEnsembles ensembles, double seconds_per_unit) {
-  const auto convert = [=](std::vector<History>& runs) {
+// Each with the D that fits best with it.
+SeriesEnsembles in_seconds(SeriesEnsembles ensembles, const SeriesExplanation& found) {
+  const auto convert = [](std::vector<History>& runs, double ln_unit) {
     for (History& run : runs)
-      for (double& t : run.time) t *= seconds_per_unit;
+      for (double& t : run.time) t *= std::exp(ln_unit);
   };
-  convert(ensembles.base);
-  for (SeriesCandidate& candidate : ensembles.candidates) convert(candidate.runs);
+  convert(ensembles.base, found.base.ln_unit);
+  for (SeriesCandidate& candidate : ensembles.candidates)
+    for (const SeriesScore& score : found.scores)
+      if (score.effect == candidate.effect) convert(candidate.runs, score.ln_unit);
   return ensembles;
 }
 
@@ -144,7 +148,8 @@ std::vector<Row> exponent_rows(const std::vector<Exponent>& laws) {
   return rows;
 }
 
-Chart curve_chart(Quantity quantity, const MeasuredVesicles& data, const SeriesEnsembles& ensembles,
+// The model's curves, and those with the best effect as strong, and with the D, as they fit best.
+Chart curve_chart(Quantity quantity, const MeasuredVesicles& data, const SeriesEnsembles& simulated,
                   const SeriesExplanation& found) {
   Chart chart{name_of(quantity).label,        "time (s)", name_of(quantity).label, true,
               quantity != Quantity::fraction, {}};
@@ -152,17 +157,26 @@ Chart curve_chart(Quantity quantity, const MeasuredVesicles& data, const SeriesE
   for (const Measurement& m : data.measurements)
     if (m.of(quantity)) measured.points.emplace_back(m.time, *m.of(quantity));
   chart.series.push_back(measured);
-  const auto add = [&](const std::string& name, const std::vector<History>& runs) {
+  const RunCurves base(simulated.base, each_once(simulated.base.size()));
+  const auto add = [&](const std::string& name, const std::vector<double>& times, double ln_unit,
+                       const std::function<double(double)>& ln_mean) {
     ChartSeries series{name, {}, Mark::line};
-    const RunCurves curves(runs, each_once(runs.size()));
-    for (const double t : common_times(runs, kOfCharts))
-      series.points.emplace_back(t, std::exp(curves.mean(quantity, std::log(t))));
+    for (const double t : times)
+      series.points.emplace_back(t * std::exp(ln_unit), std::exp(ln_mean(std::log(t))));
     chart.series.push_back(series);
   };
-  add("the model", ensembles.base);
-  for (const SeriesCandidate& candidate : ensembles.candidates)
-    if (candidate.effect == found.scores.front().effect)
-      add("with " + candidate.effect, candidate.runs);
+  const auto of_base = [&](double ln_t) { return base.mean(quantity, ln_t); };
+  add("the model", common_times(simulated.base, kOfCharts), found.base.ln_unit, of_base);
+  const SeriesScore& best = found.scores.front();
+  for (const SeriesCandidate& candidate : simulated.candidates) {
+    if (candidate.effect != best.effect) continue;
+    const RunCurves changed(candidate.runs, each_once(candidate.runs.size()));
+    const double amplitude = best.value / candidate.strength;
+    add("with " + candidate.effect, common_times(candidate.runs, kOfCharts), best.ln_unit,
+        [&](double ln_t) {
+          return of_base(ln_t) + amplitude * (changed.mean(quantity, ln_t) - of_base(ln_t));
+        });
+  }
   return chart;
 }
 
@@ -187,7 +201,7 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
                               const Configuration& model, const SeriesEnsembles& simulated,
                               const SeriesExplanation& found, const SeriesRequest& request,
                               bool quiet) {
-  const SeriesEnsembles ensembles = in_seconds(simulated, std::exp(found.base.ln_unit));
+  const SeriesEnsembles ensembles = in_seconds(simulated, found);
   const std::vector<Exponent> laws = exponents(data, ensembles);
   std::vector<std::string> words{title_of(data) + ": " + std::to_string(found.vesicles) +
                                      " vesicles, " + std::to_string(found.looks) + " looks.",
@@ -216,7 +230,7 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
   page.heading("In time");
   Missing missing;
   for (const Quantity quantity : kQuantities) {
-    const Chart chart = curve_chart(quantity, data, ensembles, found);
+    const Chart chart = curve_chart(quantity, data, simulated, found);
     add_chart(page, chart, folder / (std::string("series-") + name_of(quantity).id), missing);
   }
   page.paragraph("traceraft " + std::string(kVersion) + ".");

@@ -15,10 +15,6 @@ Units units_of(const Configuration& model, double ln_unit) {
   return model.units().with_seconds_per_unit(std::exp(ln_unit));
 }
 
-bool is_named(const SeriesExplanation& found) {
-  return found.finding == Finding::named || found.finding == Finding::ambiguous;
-}
-
 // As it was simulated; null if it was not.
 const EffectTerm* term_of(const SeriesEnsembles& ensembles, const std::string& effect) {
   for (const EffectTerm& term : ensembles.terms)
@@ -142,7 +138,7 @@ Json series_json(const Configuration& model, const SeriesEnsembles& ensembles,
     exponents.push_back(
         {{"model", e.model}, {"b", e.law.law.b}, {"interval_95", {e.law.b.low, e.law.b.high}}});
   return {{"verdict", word_for(found.finding)},
-          {"class", found.named},
+          {"class", is_named(found) ? Json(found.named) : Json::array()},
           {"p", found.p},
           {"trend_p", found.trend_p},
           {"vesicles", found.vesicles},

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "drivers/explain/remarks.hpp"
+#include "kernel/core/parameters.hpp"
 #include "kernel/effects/effects.hpp"
 
 namespace traceraft {
@@ -56,10 +57,10 @@ Json closed_json(const Explanation& found) {
   return {{"train", json(closed.train)}, {"heldout", json(closed.heldout)}};
 }
 
-Json where_json(const Explanation& found, const Units& base) {
+Json where_json(const Explanation& found, const ExplainSetup& setup, const Units& base) {
   if (found.disagreements.empty()) return {};
   const Disagreement& most = found.disagreements.front();
-  return {{"vesicle", most.vesicle + 1},
+  return {{"vesicle", parse_number("vesicle", setup.series[most.vesicle].vesicle)},
           {"time", most.time * base.seconds_per_unit()},
           {"region", {most.direction[0], most.direction[1], most.direction[2]}},
           {"state", most.state}};
@@ -152,7 +153,7 @@ Json verdict_json(const Explanation& found, const ExplainSetup& setup) {
             {"floor", gap_json(found.floor)}}},
           {"closed", closed_json(found)},
           {"rerun", rerun_json(found)},
-          {"where", where_json(found, base)},
+          {"where", where_json(found, setup, base)},
           {"null",
            {{"replicates", found.replicates},
             {"false_alarm_level", found.false_alarms},

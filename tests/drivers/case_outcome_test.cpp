@@ -88,5 +88,17 @@ TEST(StrengthError, IsInUnitsOfTheTruth) {
   EXPECT_FALSE(strength_error(truth, units, found));
 }
 
+// Where sizing stopped the search has to stop, too: that it does is no success.
+TEST(StrengthError, IsNoneAtTheEndOfARange) {
+  const auto of_truth = [](double strength) {
+    Json found = verdict("named", "mobility-contrast");
+    found["parameters"]["mobility-contrast.strength"] = {{"value", 1.0}, {"sigma", 0.1}};
+    return strength_error({{{"mobility-contrast", {strength}}}, 1, 0.03}, {}, found);
+  };
+  EXPECT_TRUE(of_truth(0.9));
+  EXPECT_FALSE(of_truth(1));
+  EXPECT_FALSE(of_truth(-1));
+}
+
 }  // namespace
 }  // namespace traceraft

@@ -197,12 +197,14 @@ TEST_F(ExplainTest, SaysWhatIsOddAboutTheData) {
     x = Point(std::cos(0.3) * x[0] - std::sin(0.3) * x[1],
               std::sin(0.3) * x[0] + std::cos(0.3) * x[1], x[2]);
   for (int k = 0; k < 5; ++k) snapshots[1].values[100 * k] = 4;
+  vesicles[0].vesicle = "7";
   write(vesicles);
   const auto end = testing::traceraft(command_of_few(11));
   ASSERT_EQ(end.code, 0) << end.output;
   const std::string remarks = verdict()["remarks"].dump();
   EXPECT_NE(remarks.find("5 values that are far"), std::string::npos) << remarks;
-  EXPECT_NE(remarks.find("snapshot 3: it seems turned by 0."), std::string::npos) << remarks;
+  EXPECT_NE(remarks.find("Vesicle 7, snapshot 3 ("), std::string::npos) << remarks;
+  EXPECT_NE(remarks.find("): it seems turned by 0."), std::string::npos) << remarks;
   EXPECT_NE(end.output.find("seems turned"), std::string::npos) << end.output;
 }
 

@@ -137,9 +137,10 @@ TEST(Remarks, TellWhatTheSearchThoughtOfBefore) {
   found.turns = {{Turn::foretold, "uptake", "gravity"}};
   found.told_apart = {{"uptake", 129}};
   ASSERT_EQ(remarks(found, kCell).size(), 1u);
-  EXPECT_NE(
-      remarks(found, kCell).front().find("the one held out (2 ln of the likelihood ratio: -129)"),
-      std::string::npos);
+  EXPECT_NE(remarks(found, kCell)
+                .front()
+                .find("the one held out (difference of Schwarz' criterion: -129)"),
+            std::string::npos);
 }
 
 TEST(Remarks, SayThatAStrengthIsAtItsEnd) {

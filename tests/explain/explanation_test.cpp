@@ -30,6 +30,8 @@ class RivalsTest : public ::testing::Test {
     request_.surface = make_surface("sphere");
     request_.cells = 12;
     request_.filter.rank = 40;
+    // The first look is right: with three that count uptake would be one with what it might lack.
+    request_.filter.first_gain = request_.filter.first_offset = 0;
     request_.filter.replicates = 49;
     request_.most_effects = 1;  // what was found, or its rivals
     const std::set<std::string> some{"exchange", "gravity", "line-tension", "uptake"};

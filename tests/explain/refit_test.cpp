@@ -17,8 +17,11 @@ BlindRequest request() {
   return testing::small_vesicle(3);
 }
 
+// From one look to the next an uptake is hardly to be told from a zero that the first one lacks:
+// here that one is right.
 FilterSettings settings() {
   FilterSettings few;
+  few.first_gain = few.first_offset = 0;
   few.rank = 80;
   few.replicates = 0;
   return few;
@@ -182,6 +185,33 @@ TEST(FieldFilter, KnowsNoUnitOfC) {
   }
 }
 
+// Whoever calibrates images knows c up to a zero and a scale, of the first one, too: what the model
+// would make of them is no gap.
+TEST(FieldFilter, AllowsForAZeroAndAScaleThatAllSnapshotsShare) {
+  BlindRequest asked = request();
+  asked.effects.clear();
+  const std::vector<FieldSeries> right = draw_blind_case(asked).vesicles;
+  const FilterModel model{asked.base, 1, {}, {}};
+  const auto pass_of = [&](double gain, double offset) {
+    FilterSettings how = settings();
+    how.first_gain = how.first_offset = FilterSettings().first_gain;
+    std::vector<FieldSeries> vesicles = right;
+    for (FieldSnapshot& snapshot : vesicles[0].snapshots)
+      snapshot.values = (1 + gain) * snapshot.values.array() + offset;
+    FilterProblems data =
+        make_filter_problems(vesicles, *make_surface("sphere"), model.base, kCells, 2, true, how);
+    std::vector<ErrorMaps> maps;
+    return filter_fields(data, model, how, maps);
+  };
+  const FilterResult without = pass_of(0, 0);
+  for (const auto& [gain, offset] : {std::pair{0.0, 0.05}, std::pair{0.1, 0.0}}) {
+    const FilterResult with = pass_of(gain, offset);
+    // 490 and three times the gap if the first snapshot were right as it is.
+    EXPECT_NEAR(with.deviance, without.deviance, 50);
+    EXPECT_LT(gaps_of_pass(with).train, 1.15 * expected_gaps(with).train);
+  }
+}
+
 // A rate that no forecast survives, however often it is halved.
 TEST_F(RefitTest, SaysWhyThereIsNone) {
   const FilterProblems data = problems(drawn().vesicles);
@@ -244,6 +274,7 @@ TEST(Filter, DoesNotLookAtWhatIsHeldOut) {
 // The scores of noise have the information as their covariance where the model is right.
 TEST(Filter, KnowsHowScoresOfNoiseScatter) {
   FilterSettings many = settings();
+  many.first_gain = many.first_offset = FilterSettings().first_gain;
   many.replicates = 199;
   FilterModel model{request().base, 1, {}, {find_candidate("gravity").value()}};
   BlindRequest asked = request();

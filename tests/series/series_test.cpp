@@ -45,14 +45,16 @@ std::vector<SeriesCandidate> candidates() {
           {"line-tension", 1, true, ensemble({-1 / 3.0, 0, 0, 0.3})}};
 }
 
-MeasuredVesicles measured(const Law& law, int vesicles, double noise, double seconds_per_unit) {
+MeasuredVesicles measured(const Law& law, int vesicles, double noise, double seconds_per_unit,
+                          std::uint64_t first_seed = 100) {
   MeasuredVesicles data;
   for (int v = 0; v < vesicles; ++v) {
-    const History history = vesicle(law, 100 + static_cast<std::uint64_t>(v), seconds_per_unit);
+    const History history =
+        vesicle(law, first_seed + static_cast<std::uint64_t>(v), seconds_per_unit);
     for (int k = 0; k < 6; ++k) {
       Measurement m;
       m.vesicle = std::to_string(v);
-      m.time = seconds_per_unit * std::pow(10.0, 0.3 + 0.45 * k + 0.02 * v);
+      m.time = seconds_per_unit * std::pow(10.0, 0.3 + 0.45 * k + 0.02 * (v % 20));
       m.radius = 5;
       for (const Quantity quantity : kQuantities) {
         const auto q = static_cast<std::size_t>(quantity);
@@ -201,6 +203,44 @@ TEST(SeriesFit, SaysHowFarMeasurementsLieBesideIt) {
     EXPECT_LT(std::fabs(offset.level), 0.1);
     EXPECT_LT(std::fabs(offset.slope), 0.02);
   }
+}
+
+// Forty vesicles know their mean better than ten runs know that of the model: what lies beside it
+// then is not so many deviations of the vesicles alone, √(1 + 40/10).
+TEST(SeriesFit, CountsDeviationsWithTheScatterOfTheRuns) {
+  double squares = 0;
+  constexpr int kSets = 10;
+  for (std::uint64_t set = 1; set <= kSets; ++set) {
+    SeriesRequest request{{1, 1.1}};
+    request.replicates = 29;
+    std::vector<History> runs;
+    for (std::uint64_t k = 0; k < 10; ++k) runs.push_back(vesicle({}, 1000 * set + k));
+    const std::vector<SeriesCandidate> alone{{"uptake", 2, true, runs}};
+    const SeriesExplanation found =
+        explain_series(measured({}, 40, 0.02, 1, 1000 * set + 100), runs, alone, request);
+    squares += std::pow(found.offsets[0].level_deviations, 2);
+  }
+  EXPECT_LT(std::sqrt(squares / kSets), 1.6);
+  EXPECT_GT(std::sqrt(squares / kSets), 0.5);
+}
+
+// What another D does is seen where D is known.
+TEST(SeriesExplanation, SeesWhatAnotherDDoesIfDIsKnown) {
+  MeasuredVesicles data = measured({}, 20, 0.05, 1);
+  for (Measurement& m : data.measurements)  // whole numbers are not quite alike
+    m.values[static_cast<std::size_t>(Quantity::rafts)].reset();
+  std::vector<History> slower;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) slower.push_back(vesicle({}, seed, 2));
+  const auto explained_with = [&](double factor) {
+    SeriesRequest request{{1, factor}};
+    request.replicates = 49;
+    return explain_series(data, ensemble({}), {{"bulk-mobility", 1, true, slower}}, request);
+  };
+  const SeriesExplanation unknown = explained_with(8), known = explained_with(1.05);
+  EXPECT_EQ(unknown.finding, Finding::not_identifiable);
+  EXPECT_GT(unknown.scores[0].vesicles, 1e3);
+  EXPECT_EQ(known.finding, Finding::none);
+  EXPECT_LT(known.scores[0].vesicles, 20);
 }
 
 // D is 1. Perimeters scatter by 8 % between vesicles and between runs and fall as t^(-1/3), so that

@@ -48,7 +48,7 @@ class SeriesSearch {
         request_(request),
         curves_(base, candidates, each_once(base.size())),
         gains_(gains_of(data, curves_, candidates, request.unit)),
-        responses_(blocks_of(data), curves_, gains_.base),
+        responses_(blocks_of(data), curves_, gains_.base, request.unit),
         classes_(classes_of(responses_, candidates.size())),
         null_(null_of(data, base, candidates, gains_.base, request.unit, request.replicates)) {}
 
@@ -62,7 +62,11 @@ class SeriesSearch {
                                      request_.unit.highest() - gains_.base.ln_unit);
     result_.unit_at_end = from_end < kAtEnd;
     result_.unit_told = result_.unit_deviation < kTold * request_.unit.deviation();
-    result_.offsets = offsets(blocks_of(data_), {&curves_.base}, gains_.base);
+    result_.offsets = gains_.offsets;
+    for (std::size_t q = 0; q < result_.offsets.size(); ++q) {
+      result_.offsets[q].level_deviations /= null_.levels[static_cast<Eigen::Index>(q)];
+      result_.offsets[q].slope_deviations /= null_.slopes[static_cast<Eigen::Index>(q)];
+    }
     result_.p = 1;
     for (std::size_t k = 0; k < candidates_.size(); ++k) result_.scores.push_back(score_of(k));
     for (const auto& members : classes_) result_.classes.push_back(names_of(members));
@@ -83,7 +87,6 @@ class SeriesSearch {
     const double width = bound_width(fit.deviation, 1, candidate.two_sided, noise);
     const double least = candidate.two_sided ? fit.amplitude - width : 0.0;
     const double most = fit.amplitude + width;
-    const double squares = responses_.squares(k);
     return {candidate.effect,
             gain,
             noise,
@@ -94,14 +97,14 @@ class SeriesSearch {
             std::min(least * candidate.strength, most * candidate.strength),
             std::max(least * candidate.strength, most * candidate.strength),
             most <= kLargestAmplitude && least >= -kLargestAmplitude,
-            needed(squares, noise),
+            needed(responses_.of(k), noise),
             responses_.telling(responses_.of(k))};
   }
 
-  // Vesicles like these that show what has the square of this size, noise being as it is.
-  double needed(double squares, double noise) const {
-    return static_cast<double>(data_.vesicles().size()) * kSeen * kSeen * std::max(1.0, noise) /
-           std::max(squares, 1e-12);
+  // Vesicles like these that show it, noise being as it is.
+  double needed(const SeriesResponse& response, double noise) const {
+    return static_cast<double>(data_.vesicles().size()) *
+           responses_.times_needed(response, kSeen * kSeen * std::max(1.0, noise));
   }
 
   std::vector<std::string> names_of(const std::vector<std::size_t>& members) const {
@@ -165,10 +168,10 @@ class SeriesSearch {
         result_.named.insert(result_.named.begin(), names_of(members));
       } else if (gain(best) - gain(other) < kTelling * noise) {
         result_.named.push_back(names_of(members));
-        const Vec difference = gains_.fits[best].amplitude * responses_.beyond(best, other);
+        const SeriesResponse difference =
+            gains_.fits[best].amplitude * responses_.beyond(best, other);
         result_.ties.push_back({candidates_[best].effect, candidates_[other].effect,
-                                needed(responses_.squares(difference), noise),
-                                responses_.telling(difference)});
+                                needed(difference, noise), responses_.telling(difference)});
       }
     }
   }
@@ -185,6 +188,10 @@ class SeriesSearch {
 };
 
 }  // namespace
+
+bool is_named(const SeriesExplanation& found) {
+  return found.finding == Finding::named || found.finding == Finding::ambiguous;
+}
 
 void refuse_vesicles(const MeasuredVesicles& data) {
   if (data.vesicles().size() < 3)

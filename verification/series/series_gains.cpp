@@ -70,6 +70,7 @@ SeriesGains gains_of(const MeasuredVesicles& data, const SeriesCurves& curves,
   SeriesGains gains;
   gains.base = fit_series(blocks, {&curves.base}, unit);
   gains.trend = trend_left(blocks, {&curves.base}, gains.base);
+  gains.offsets = offsets(blocks, {&curves.base}, gains.base);
   gains.values.resize(static_cast<Eigen::Index>(candidates.size()));
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     gains.fits.push_back(fit_series(
@@ -90,6 +91,7 @@ SeriesNull null_of(const MeasuredVesicles& data, const std::vector<History>& run
   Eigen::MatrixXd gained(replicates, count);
   result.trend.resize(replicates);
   result.ln_unit.resize(replicates);
+  Eigen::ArrayXXd levels, slopes;  // quantity by replicate
   for (int r = 0; r < replicates; ++r) {
     const auto replicate = static_cast<std::uint64_t>(r + 1);
     const std::vector<int> sample = resample(static_cast<int>(runs.size()), replicate, kSample);
@@ -99,7 +101,16 @@ SeriesNull null_of(const MeasuredVesicles& data, const std::vector<History>& run
     gained.row(r) = gains.values.transpose();
     result.trend[r] = gains.trend;
     result.ln_unit[r] = gains.base.ln_unit;
+    const auto measured = static_cast<Eigen::Index>(gains.offsets.size());
+    levels.conservativeResize(measured, replicates);
+    slopes.conservativeResize(measured, replicates);
+    for (Eigen::Index q = 0; q < measured; ++q) {
+      levels(q, r) = gains.offsets[static_cast<std::size_t>(q)].level_deviations;
+      slopes(q, r) = gains.offsets[static_cast<std::size_t>(q)].slope_deviations;
+    }
   }
+  result.levels = levels.square().rowwise().mean().sqrt();
+  result.slopes = slopes.square().rowwise().mean().sqrt();
   result.mean = gained.colwise().mean().transpose().cwiseMax(0.5);
   result.highest = (gained * result.mean.cwiseInverse().asDiagonal()).rowwise().maxCoeff();
   return result;

@@ -29,9 +29,10 @@ struct SeriesCurves {
 
 struct SeriesGains {
   SeriesFit base;
-  std::vector<SeriesFit> fits;  // with each candidate
-  Vec values;                   // 2 ln of the likelihood ratios
-  double trend;                 // left of the base
+  std::vector<SeriesFit> fits;        // with each candidate
+  Vec values;                         // 2 ln of the likelihood ratios
+  double trend;                       // left of the base
+  std::vector<SeriesOffset> offsets;  // of the data beside the base
 };
 SeriesGains gains_of(const MeasuredVesicles& data, const SeriesCurves& curves,
                      const std::vector<SeriesCandidate>& candidates, const UnitRange& unit);
@@ -42,6 +43,9 @@ struct SeriesNull {
   Vec highest;  // of each replicate: the largest gain over its mean
   Vec trend;    // of each replicate: what is left of the base
   Vec ln_unit;  // of each replicate: that of the base
+  // Root mean squares of the deviations of offsets, that of the level and that of the slope: more
+  // than 1, as the model's mean is that of a few runs.
+  Vec levels, slopes;
 };
 // `fit`: of the base model to the data.
 SeriesNull null_of(const MeasuredVesicles& data, const std::vector<History>& runs,

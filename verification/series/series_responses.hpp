@@ -7,24 +7,35 @@
 
 namespace traceraft {
 
-// Vectors with an entry per look. `fit`: of the base model.
+// To every look, and to what was known of D before: one look more, in its standard deviations.
+struct SeriesResponse {
+  Vec looks;
+  double unit = 0;
+};
+SeriesResponse operator*(double factor, const SeriesResponse& response);
+
+// `fit`: of the base model; `unit`: what was known of D before.
 class SeriesResponses {
  public:
   SeriesResponses(const std::vector<SeriesBlock>& blocks, const SeriesCurves& curves,
-                  const SeriesFit& fit);
+                  const SeriesFit& fit, const UnitRange& unit);
 
-  const Vec& of(std::size_t k) const { return own_[k]; }
+  const SeriesResponse& of(std::size_t k) const { return own_[k]; }
   // What effect k does of which no amount of effect j is capable.
-  Vec beyond(std::size_t k, std::size_t j) const;
+  SeriesResponse beyond(std::size_t k, std::size_t j) const;
   double correlation(std::size_t j, std::size_t k) const;
-  double squares(const Vec& e) const { return metric_.product(e, e); }
-  double squares(std::size_t k) const { return squares(own_[k]); }
+  // How many times as many vesicles would make its square that large, no more being known of D
+  // before.
+  double times_needed(const SeriesResponse& e, double square) const;
   // The quantity that shows most of it.
-  Quantity telling(const Vec& e) const;
+  Quantity telling(const SeriesResponse& e) const;
 
  private:
+  double product(const SeriesResponse& a, const SeriesResponse& b) const;
+
   SeriesMetric metric_;
-  std::vector<Vec> own_;
+  SeriesResponse by_unit_;  // what another D does
+  std::vector<SeriesResponse> own_;
 };
 
 // Numbers of effects: every two members of a class change series alike.

@@ -43,7 +43,7 @@ DisagreementMaps disagreement_maps(const FilterProblems& data, const FilterResul
   for (const Innovation& in : result.innovations) {
     const FieldSnapshot& snapshot = data[in.vesicle].series.snapshots[in.snapshot];
     const PointTrace W = weights(places, snapshot.points, length);
-    const Columns noise = W * in.replicates;
+    const Columns noise = W * gaps_of_replicates(in);
     const Vec variance = noise.rowwise().squaredNorm() / static_cast<double>(noise.cols());
     const Vec inverse = (variance.array() > 0).select(variance.array().rsqrt(), 0.0);
     maps.snapshots.push_back({in.vesicle, snapshot.time, inverse.cwiseProduct(W * in.gap)});

@@ -172,15 +172,19 @@ class Filter {
     add_noise(k, in.replicates);
     in.model_error = most_probable_error(in);
     in.noise = noise;
+    // What the first snapshot's scale and zero make of the forecast is taken out as that of others.
+    const Eigen::Index known = belief_.errors.cols(), frames = turned.cols() + frame.cols(),
+                       first = k == 0 ? kFirstFrame : 0;
+    in.first_frame = first;
     in.expected_squares =
         noise.squaredNorm() +
-        (noise.asDiagonal() * error_values.leftCols(belief_.errors.cols())).squaredNorm();
+        (noise.asDiagonal() * error_values.middleCols(first, known - first)).squaredNorm();
 
     const InnovationCovariance weight(in, in.model_error);
     const Vec found = weight.amplitudes(in.values);
-    const Eigen::Index known = belief_.errors.cols(), frames = turned.cols() + frame.cols();
     in.frame = found.segment(known, frames);
-    in.gap = in.values - in.directions.middleCols(known, frames) * in.frame;
+    in.gap = in.values - in.directions.middleCols(known, frames) * in.frame -
+             in.directions.leftCols(first) * found.head(first);
     in.weighted_squares = in.values.dot(weight.solve(in.values).col(0));
     if (!in.held_out) account(in, weight);
     if (in.replicates.cols() > 0)

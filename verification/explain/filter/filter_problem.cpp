@@ -4,6 +4,7 @@
 
 #include "backends/list.hpp"
 #include "kernel/core/error.hpp"
+#include "kernel/core/random.hpp"
 #include "verification/explain/fields/outliers.hpp"
 
 namespace traceraft {
@@ -96,12 +97,30 @@ FieldPrior clean(const FieldSeries& series, const DoubleWell& well, FilterProble
   return prior;
 }
 
+// The first snapshot has a scale and a zero of its own, too, which the model would take for c.
+void add_frame(const FilterSettings& settings, double distance, std::size_t vesicle,
+               FieldEstimate& first) {
+  Eigen::MatrixXd frame(first.field.size(), kFirstFrame);
+  frame << settings.first_gain * first.field,
+      Vec::Constant(first.field.size(), settings.first_offset * distance);
+  Eigen::MatrixXd errors(first.field.size(), kFirstFrame + first.errors.cols());
+  errors << frame, first.errors;
+  first.errors = std::move(errors);
+  for (Eigen::Index j = 0; j < first.draws.cols(); ++j) {
+    const auto amplitude = [&](std::uint64_t of) {
+      return normal_random(10, vesicle, kFirstFrame * static_cast<std::uint64_t>(j) + of);
+    };
+    first.draws.col(j) += frame * Eigen::Vector2d(amplitude(0), amplitude(1));
+  }
+}
+
 void add_series(const FieldSeries& series, const CahnHilliardModel& base,
                 const FilterSettings& settings, FilterProblem& data) {
   const FieldPrior prior = clean(series, base.well, data);
   data.finer_traces = finer_traces(*data.finer, data.series);
   data.first = estimate_field(*data.space, data.snapshots.front(), prior,
                               {2 * base.epsilon, settings.rank, settings.replicates, data.vesicle});
+  add_frame(settings, base.well.b - base.well.a, data.vesicle, data.first);
   NoisyValues resolved = data.snapshots.front();
   resolved.trace = data.finer_traces[1].front();
   data.first_resolved = estimate_field(*data.finer->spaces[1], resolved, prior, {}).field;

@@ -20,13 +20,17 @@ struct FilterSettings {
   int error_steps = 2;    // the same for errors of the state
   double gain = 0.1;      // standard deviations of the scale and of the zero of each snapshot's
   double offset = 0.1;  // values, as far as they are unknown; the latter of the distance of phases
-  double blur = 0;      // of the point spread function of the images, in R: they have it, or none
-  double turn = 0.05;   // of the angle by which a vesicle may have turned between two snapshots
-  int gap_degree = 6;   // of the polynomials that gaps are sought as
+  double first_gain = 0.1, first_offset = 0.1;  // of the first snapshot, which forecasts begin with
+  double blur = 0;     // of the point spread function of the images, in R: they have it, or none
+  double turn = 0.05;  // of the angle by which a vesicle may have turned between two snapshots
+  int gap_degree = 6;  // of the polynomials that gaps are sought as
   // Standard deviation of ln D of the base model, as far as D is known from elsewhere.
   double pace_doubt = std::numeric_limits<double>::infinity();
   std::string integrator = "ida";  // of forecasts
 };
+
+// Directions of errors of the first snapshot's state that are of its scale and its zero.
+inline constexpr Eigen::Index kFirstFrame = 2;
 
 // Everything about the series of one vesicle that does not depend on parameters.
 struct FilterProblem {
@@ -40,7 +44,7 @@ struct FilterProblem {
   std::vector<NoisyValues> snapshots;  // of the series, on `space`
   FinerTraces finer_traces;
   std::size_t train = 0;      // snapshots that count
-  FieldEstimate first;        // of the first snapshot
+  FieldEstimate first;        // of the first snapshot, whose scale and zero begin its errors
   Vec first_resolved;         // its field on the finest mesh
   std::vector<double> noise;  // of each snapshot, in units of its deviations
   std::shared_ptr<const GapPatterns> patterns;

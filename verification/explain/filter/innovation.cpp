@@ -51,6 +51,12 @@ Columns InnovationCovariance::posterior_root(const Columns& L) const {
   return divided_by_upper(L * scale_.asDiagonal(), factors_.matrixU());
 }
 
+Columns gaps_of_replicates(const Innovation& in) {
+  if (in.first_frame == 0) return in.replicates;
+  const Columns found = InnovationCovariance(in, in.model_error).amplitudes(in.replicates);
+  return in.replicates - in.directions.leftCols(in.first_frame) * found.topRows(in.first_frame);
+}
+
 double most_probable_error(const Innovation& innovation) {
   const Vec load = innovation.directions.transpose() * innovation.values;
   double best = 0, least = std::numeric_limits<double>::infinity();

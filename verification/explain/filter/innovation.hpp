@@ -18,14 +18,16 @@ struct Innovation {
   // deviations, then patterns that a gap could have (GapPatterns), of size 1.
   Columns directions;
   Eigen::Index state_directions;
+  // The first of them are what the first snapshot's scale and zero make of the forecast.
+  Eigen::Index first_frame = 0;
   Eigen::MatrixXd gram;         // Gᵀ G, its lower half
   Columns parameters;           // X: derivatives of the forecast by the parameters
   Columns replicates;           // values of noise alone
   double weighted_squares = 0;  // νᵀ S⁻¹ ν, one per value on average
   double expected_squares = 0;  // of the gap in c, by noise and what it leaves unknown of c
   // Most probable turns about the three axes, scale and zero of the values, and their blur if
-  // images have one, in their standard deviations; `gap`: the values without what these make of
-  // them.
+  // images have one, in their standard deviations; `gap`: the values without what these, and the
+  // first snapshot's, make of them.
   Vec frame, gap;
   double model_error;  // size of the state's error that is no noise, per step, of the distance of
                        // the phases
@@ -49,6 +51,9 @@ class InnovationCovariance {
   Vec scale_;
   Eigen::LLT<Eigen::MatrixXd> factors_;  // of 1 + D Gᵀ G D
 };
+
+// The replicates without what the first snapshot's scale and zero make of them.
+Columns gaps_of_replicates(const Innovation& innovation);
 
 // The size of the model's error that makes an innovation most probable.
 double most_probable_error(const Innovation& innovation);
