@@ -127,17 +127,16 @@ TEST_F(ExplainTest, GoesOnWhereItWasKilled) {
   constexpr int kCells = 11;
   BlindRequest asked = request();
   asked.effects = {"uptake"};
-  asked.gap = 0.1;
-  asked.snapshots = 4;
+  asked.gap = 0.2;
   asked.points = 500;
-  asked.last = 70;
+  asked.last = 90;
   write(draw_blind_case(asked).vesicles);
   const pid_t child = testing::start_traceraft(command_of_few(kCells));
   const fs::path saved = folder.path / "out" / "search.json";
   const auto has_a_refit = [&] {
     return fs::exists(saved) && testing::content(saved).find("\"ahead\":[[") != std::string::npos;
   };
-  for (int k = 0; k < 30000 && !has_a_refit(); ++k) usleep(20000);
+  while (!has_a_refit() && waitpid(child, nullptr, WNOHANG) == 0) usleep(20000);
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
   ASSERT_TRUE(has_a_refit());
