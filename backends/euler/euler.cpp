@@ -13,20 +13,19 @@ namespace traceraft {
 namespace {
 
 constexpr double kLinearTolerance = 1e-4;
-constexpr double kLeastOfOne = 1e-10;  // of the norm of c = 1: errors are not relative to less
 
 class Euler final : public ControlledIntegrator {
  public:
   Euler(const DaeProblem& problem, const LinearSolverChoice& solvers,
         std::shared_ptr<const ThreadTeam> team, const IntegratorSettings& settings)
-      : ControlledIntegrator(problem, solvers, 2, std::move(team), settings, 2, 0.1) {}
+      : ControlledIntegrator(problem, solvers, 2, std::move(team), settings, 2, 0.1),
+        least_size_(1e-10 * problem.norm(Vec::Ones(problem.size()))) {}
 
   std::string name() const override { return "euler"; }
 
   Status start(double t0, ConstVec y0, ConstVec ydot0, double t_end) override {
     energy_ = problem_.energy(y0);
     rate_ = ydot0;
-    norm_of_one_ = problem_.norm(Vec::Ones(y0.size()));
     return ControlledIntegrator::start(t0, y0, ydot0, t_end);
   }
 
@@ -41,7 +40,6 @@ class Euler final : public ControlledIntegrator {
   void load(CheckpointIn in) override {
     ControlledIntegrator::load(in);
     read_binary(in, rate_, problem_.size());
-    norm_of_one_ = problem_.norm(Vec::Ones(problem_.size()));
     energy_ = problem_.energy(state());
   }
 
@@ -106,7 +104,7 @@ class Euler final : public ControlledIntegrator {
     const double difference =
         started() ? problem_.norm(second_ - first_) : 0.5 * problem_.norm(first_ - y - dt * rate_);
     const double size = problem_.norm(started() ? second_ : y);
-    error = difference / std::max(size, kLeastOfOne * norm_of_one_);
+    error = difference / std::max(size, least_size_);
     return {};
   }
 
@@ -121,7 +119,7 @@ class Euler final : public ControlledIntegrator {
     statistics_.order = kept_second_ && started() ? 2 : 1;
   }
 
-  double norm_of_one_ = 1;
+  const double least_size_;              // of c: errors are not relative to less
   double energy_ = 0, next_energy_ = 0;  // of y_n and y_{n+1}, where they decide which is kept
   Vec rate_;                             // ẏ at the start
   std::vector<NewtonSystem> systems_;    // of an attempt: first and second order

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <memory>
 
 #include "backends/sundials/ida_memory.hpp"
@@ -195,8 +196,9 @@ class Ida final : public Integrator {
     must(IDASetMaxConvFails(memory_, 100));  // the smallest step ends a run, not their number
     must(IDASetInitStep(memory_, first_step_));
     must(IDASetMinStep(memory_, settings_.min_step > 0 ? settings_.min_step : 1e-14 * span_));
-    if (const double largest = either("maxstep", settings_.max_step); largest > 0)
-      must(IDASetMaxStep(memory_, largest));
+    const double asked = either("maxstep", settings_.max_step);
+    const double most = asked > 0 ? asked : std::numeric_limits<double>::infinity();
+    must(IDASetMaxStep(memory_, std::min(most, problem_.longest_step())));
     must(IDASetStopTime(memory_, t_end_));
     make_linear_solver();
     must(IDASetLinearSolver(memory_, linear_.get(), nullptr));

@@ -63,8 +63,7 @@ const std::vector<OptionSpec>& run_options() {
        "free energy rho (c-a)^2 (b-c)^2 of a homogeneous mixture"},
       {"effect", K::text, "", "Physics",
        "what is added to the model, as in exchange:rate=1e-3,target=0.2; several between "
-       "semicolons "
-       "or by several flags (see: traceraft list)",
+       "semicolons or by several flags (see: traceraft list)",
        0, 0, D::none, true, true},
       {"potential", K::text, "consistent", "Physics",
        "f0' by quadrature, the gradient of an energy (consistent), or nodal as in the paper's "

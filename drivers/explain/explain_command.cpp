@@ -122,7 +122,7 @@ bool explain_series_data(const ExplainCommand& command, const SeriesSetup& setup
   if (command.job.data.empty())
     write_series_verdict(out, command.job.model, given, ensembles, found, search);
   write_series_explanation(out, data, model, ensembles, found, search, command.quiet);
-  if (!command.quiet && !is_named(found) && fs::exists(out / "model.toml"))
+  if (!command.quiet && !is_named(found.finding) && fs::exists(out / "model.toml"))
     print_earlier_model(out);
   return true;
 }

@@ -72,23 +72,24 @@ std::vector<FoundParameter> found_parameters(const Configuration& model,
                                              const SeriesExplanation& found) {
   const SeriesScore& best = found.scores.front();
   const StrengthScale scale = scale_of(best, model);
-  const double ln_unit = is_named(found) ? best.ln_unit : found.base.ln_unit;
+  const double ln_unit = is_named(found.finding) ? best.ln_unit : found.base.ln_unit;
   std::vector<FoundParameter> result;
-  if (is_named(found)) {
+  if (is_named(found.finding)) {
     result.push_back({best.effect, scale.parameter, scale.unit, scale.factor * best.value,
                       scale.factor * best.sigma});
     for (FoundParameter& p : assumed_of(model, ensembles, best)) result.push_back(std::move(p));
   }
   const double D = units_of(model, ln_unit).diffusion_cm2_s;
-  result.push_back({"", "diffusion", "cm^2/s", D,
-                    is_named(found) ? std::nullopt : std::optional(D * found.unit_deviation)});
+  result.push_back(
+      {"", "diffusion", "cm^2/s", D,
+       is_named(found.finding) ? std::nullopt : std::optional(D * found.unit_deviation)});
   return result;
 }
 
 // `effect` first.
 std::vector<std::string> class_of(const SeriesExplanation& found) {
   std::vector<std::string> members;
-  if (!is_named(found)) return members;
+  if (!is_named(found.finding)) return members;
   const std::string& best = found.scores.front().effect;
   members.push_back(best);
   for (const auto& some : found.named)
@@ -138,7 +139,7 @@ Json series_json(const Configuration& model, const SeriesEnsembles& ensembles,
     exponents.push_back(
         {{"model", e.model}, {"b", e.law.law.b}, {"interval_95", {e.law.b.low, e.law.b.high}}});
   return {{"verdict", word_for(found.finding)},
-          {"class", is_named(found) ? Json(found.named) : Json::array()},
+          {"class", is_named(found.finding) ? Json(found.named) : Json::array()},
           {"p", found.p},
           {"trend_p", found.trend_p},
           {"vesicles", found.vesicles},
@@ -163,7 +164,7 @@ Json series_verdict_json(const Configuration& model, const SeriesEnsembles& ense
   const Json no_gap{{"train", Json()}, {"heldout", Json()}};
   const bool closest = found.finding == Finding::unnamed && !found.named.empty();
   return {{"verdict", word_for(found.finding)},
-          {"effect", is_named(found) ? Json(found.scores.front().effect) : Json()},
+          {"effect", is_named(found.finding) ? Json(found.scores.front().effect) : Json()},
           {"class", class_of(found)},
           {"closest", closest ? Json(found.named.front().front()) : Json()},
           {"parameters", parameters_json(found_parameters(model, ensembles, found))},
@@ -182,7 +183,7 @@ void write_series_verdict(const std::filesystem::path& folder,
                           const SeriesEnsembles& ensembles, const SeriesExplanation& found,
                           const SeriesRequest& request) {
   const Configuration base(model, {});
-  if (is_named(found))
+  if (is_named(found.finding))
     write_extended_model(
         folder / "model.toml", model_file, named_model(model, ensembles, found),
         "found by traceraft explain: " + found.scores.front().effect + ", with D fitted beside it");

@@ -57,11 +57,11 @@ Json closed_json(const Explanation& found) {
   return {{"train", json(closed.train)}, {"heldout", json(closed.heldout)}};
 }
 
-Json where_json(const Explanation& found, const ExplainSetup& setup, const Units& base) {
+Json where_json(const Explanation& found, const ExplainSetup& setup) {
   if (found.disagreements.empty()) return {};
   const Disagreement& most = found.disagreements.front();
   return {{"vesicle", parse_number("vesicle", setup.series[most.vesicle].vesicle)},
-          {"time", most.time * base.seconds_per_unit()},
+          {"time", most.time * setup.configuration().units().seconds_per_unit()},
           {"region", {most.direction[0], most.direction[1], most.direction[2]}},
           {"state", most.state}};
 }
@@ -153,7 +153,7 @@ Json verdict_json(const Explanation& found, const ExplainSetup& setup) {
             {"floor", gap_json(found.floor)}}},
           {"closed", closed_json(found)},
           {"rerun", rerun_json(found)},
-          {"where", where_json(found, setup, base)},
+          {"where", where_json(found, setup)},
           {"null",
            {{"replicates", found.replicates},
             {"false_alarm_level", found.false_alarms},

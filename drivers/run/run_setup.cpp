@@ -256,7 +256,7 @@ RunSetup build_run(const Configuration& configuration, InitialState initial) {
   const IntegratorEntry& integrator = said_of(configuration, "integrator", [&] {
     return std::cref(integrators().find(configuration.text("integrator")));
   });
-  IntegratorSettings settings = integrator_settings(configuration, integrator, run.units);
+  const IntegratorSettings settings = integrator_settings(configuration, integrator, run.units);
   said_of(configuration, "linear-solver",
           [&] { return linear_solvers().find(configuration.text("linear-solver")).name; });
 
@@ -272,8 +272,6 @@ RunSetup build_run(const Configuration& configuration, InitialState initial) {
     return 0;
   });
   run.problem = std::make_unique<CahnHilliard>(run.space, physics);
-  if (const double longest = run.problem->longest_step(); std::isfinite(longest))
-    settings.max_step = settings.max_step > 0 ? std::min(settings.max_step, longest) : longest;
   if (settings.reject_energy_rises && !run.problem->dissipates_energy())
     throw InputError(configuration.where("energy-guard") +
                      ": reject is for models that can only lose energy, and this one need not; "

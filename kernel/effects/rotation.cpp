@@ -11,20 +11,16 @@ namespace {
 // How far the surface is from one that turns into itself: of its first and second moments, what a
 // quarter of a turn changes.
 double asymmetry_around(const Point& axis, const SurfaceSpace& space) {
-  Eigen::Matrix<double, 3, 4> moments = Eigen::Matrix<double, 3, 4>::Zero();
-  const CutSurface& surface = space.surface;
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-    Point centre = Point::Zero();
-    for (const int corner : surface.triangles[t]) centre += surface.position[corner] / 3;
-    moments.col(0) += surface.triangle_area[t] * centre;
-    moments.rightCols<3>() += surface.triangle_area[t] * centre * centre.transpose();
+  Eigen::MatrixX3d x(space.nodes(), 3);
+  for (int i = 0; i < space.nodes(); ++i) x.row(i) = space.mesh.position(i);
+  Point first;
+  Eigen::Matrix3d second;
+  for (int i = 0; i < 3; ++i) {
+    first[i] = space.integral(x.col(i));
+    for (int j = 0; j < 3; ++j) second(i, j) = space.inner(x.col(i), x.col(j));
   }
-  for (int i = 0; i < moments.size(); ++i)
-    moments.data()[i] = space.communicator->sum(moments.data()[i]);
   const Eigen::Matrix3d quarter = Eigen::AngleAxisd(kPi / 2, axis).toRotationMatrix();
-  const Eigen::Matrix3d second = moments.rightCols<3>();
-  const double first = (quarter * moments.col(0) - moments.col(0)).norm();
-  return std::max(first / (space.area * std::sqrt(second.trace() / space.area)),
+  return std::max((quarter * first - first).norm() / std::sqrt(space.area * second.trace()),
                   (quarter * second * quarter.transpose() - second).norm() / second.norm());
 }
 

@@ -57,11 +57,9 @@ class CahnHilliard final : public DaeProblem {
   double energy(ConstVec y) const override;
   bool dissipates_energy() const override;
   bool dissipates_in_stabilised_steps() const override;
+  double longest_step() const override;
   double energy_scale() const override;  // of a surface halfway between the wells
   const Communicator& ranks() const override { return *space_->communicator; }
-
-  // That effects resolve in time; infinity if there is none such.
-  double longest_step() const;
 
   const SurfaceSpace& space() const { return *space_; }
   const CahnHilliardModel& model() const { return model_; }

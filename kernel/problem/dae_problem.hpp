@@ -1,6 +1,8 @@
 // The only door between a model and a time integrator: F(t, y, ẏ) = 0.
 #pragma once
 
+#include <limits>
+
 #include "kernel/core/status.hpp"
 #include "kernel/core/types.hpp"
 #include "kernel/linear/block_jacobian.hpp"
@@ -55,6 +57,8 @@ class DaeProblem {
   virtual bool dissipates_energy() const = 0;
   // Whether steps of first order with the stabilised tangent let it fall, too.
   virtual bool dissipates_in_stabilised_steps() const { return dissipates_energy(); }
+  // Integrators that take longer steps would not see what it does in time.
+  virtual double longest_step() const { return std::numeric_limits<double>::infinity(); }
   // The size of its terms, which cancel near equilibrium: its roundoff is relative to that.
   virtual double energy_scale() const = 0;
 

@@ -35,7 +35,7 @@ class Effect {
   // Does the energy fall in steps with the stabilised tangent, too, which treat the effect
   // explicitly? A potential does as the wells do, while |f0''| ≤ 2β with it.
   virtual bool dissipates_explicitly() const { return dissipates_energy(); }
-  // Integrators that take longer steps would not see what the effect does in time.
+  // As of DaeProblem.
   virtual double longest_step() const { return std::numeric_limits<double>::infinity(); }
   // Throws InputError if the effect is not made for this surface.
   virtual void require_surface(const SurfaceSpace&) const {}

@@ -52,7 +52,7 @@ class ControlledIntegrator : public Integrator {
   double step_ = 0;
 
  private:
-  void make_control() { control_ = StepControl(settings_, span_, power_); }
+  void make_control() { control_ = StepControl(settings_, span_, power_, problem_.longest_step()); }
   Status judged_attempt(double dt, double& error);
 
   int power_;

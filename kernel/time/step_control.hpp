@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "kernel/time/integrator.hpp"
 
@@ -17,10 +18,12 @@ class StepControl {
   static constexpr double kMaxCut = 0.1;
 
   StepControl() = default;
-  StepControl(const IntegratorSettings& settings, double span, double power)
+  // `longest`: that the problem needs (DaeProblem::longest_step).
+  StepControl(const IntegratorSettings& settings, double span, double power,
+              double longest = std::numeric_limits<double>::infinity())
       : tolerance_(settings.tolerance),
         power_(power),
-        max_(settings.max_step > 0 ? settings.max_step : span),
+        max_(std::min(settings.max_step > 0 ? settings.max_step : span, longest)),
         min_(std::min(max_, settings.min_step > 0 ? settings.min_step : 1e-14 * span)) {}
 
   double min_step() const { return min_; }

@@ -74,7 +74,6 @@ TEST_P(ThermalNoiseTest, MovesAPhaseAsMuchAsItsDissipationAllows) {
   ASSERT_TRUE(problem.consistent_initial_state(0, y, ydot).ok());
   IntegratorSettings settings;
   settings.tolerance = 1e-2;
-  settings.max_step = problem.longest_step();
   const IntegratorPtr integrator =
       integrators()
           .find(GetParam())

@@ -9,6 +9,7 @@
 #include "backends/suitesparse/direct_solver.hpp"
 #include "kernel/linear/setup_policy.hpp"
 #include "kernel/linear/two_solve_preconditioner.hpp"
+#include "tests/support/dense.hpp"
 #include "tests/support/spaces.hpp"
 
 namespace traceraft {
@@ -252,11 +253,7 @@ TEST(TwoSolve, ShiftsAreTheRootsTheyStandFor) {
 class DenseSolver final : public SpdSolver {
  public:
   Status factorise(const CsrMatrix& A) override {
-    const SparsityPattern& p = *A.pattern;
-    Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(p.rows(), p.rows());
-    for (int i = 0; i < p.rows(); ++i)
-      for (int k = p.row_begin[i]; k < p.row_begin[i + 1]; ++k) dense(i, p.column[k]) = A.values[k];
-    factor_.compute(dense);
+    factor_.compute(testing::dense(A));
     return factor_.info() == Eigen::Success ? Status{} : Status::retry("not positive definite");
   }
   void solve(ConstVec b, VecRef x, const ThreadTeam&, int) override { x = factor_.solve(b); }

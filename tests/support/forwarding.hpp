@@ -32,6 +32,10 @@ class ForwardingProblem : public DaeProblem {
   bool conserves_mass() const override { return inner_.conserves_mass(); }
   double energy(ConstVec y) const override { return inner_.energy(y); }
   bool dissipates_energy() const override { return inner_.dissipates_energy(); }
+  bool dissipates_in_stabilised_steps() const override {
+    return inner_.dissipates_in_stabilised_steps();
+  }
+  double longest_step() const override { return inner_.longest_step(); }
   double energy_scale() const override { return inner_.energy_scale(); }
   const Communicator& ranks() const override { return inner_.ranks(); }
 

@@ -63,9 +63,10 @@ class SeriesSearch {
     result_.unit_at_end = from_end < kAtEnd;
     result_.unit_told = result_.unit_deviation < kTold * request_.unit.deviation();
     result_.offsets = gains_.offsets;
-    for (std::size_t q = 0; q < result_.offsets.size(); ++q) {
-      result_.offsets[q].level_deviations /= null_.levels[static_cast<Eigen::Index>(q)];
-      result_.offsets[q].slope_deviations /= null_.slopes[static_cast<Eigen::Index>(q)];
+    for (SeriesOffset& offset : result_.offsets) {
+      const auto q = static_cast<std::size_t>(offset.quantity);
+      offset.level_deviations /= null_.levels[q];
+      offset.slope_deviations /= null_.slopes[q];
     }
     result_.p = 1;
     for (std::size_t k = 0; k < candidates_.size(); ++k) result_.scores.push_back(score_of(k));
@@ -188,10 +189,6 @@ class SeriesSearch {
 };
 
 }  // namespace
-
-bool is_named(const SeriesExplanation& found) {
-  return found.finding == Finding::named || found.finding == Finding::ambiguous;
-}
 
 void refuse_vesicles(const MeasuredVesicles& data) {
   if (data.vesicles().size() < 3)

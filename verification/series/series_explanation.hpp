@@ -57,8 +57,6 @@ struct SeriesExplanation {
   std::vector<SeriesTie> ties;                    // between the best effect and other classes
 };
 
-bool is_named(const SeriesExplanation& found);  // an effect, or a class of them
-
 // Throws InputError if there are fewer than three, before anything is simulated for them.
 void refuse_vesicles(const MeasuredVesicles& data);
 

@@ -91,7 +91,6 @@ SeriesNull null_of(const MeasuredVesicles& data, const std::vector<History>& run
   Eigen::MatrixXd gained(replicates, count);
   result.trend.resize(replicates);
   result.ln_unit.resize(replicates);
-  Eigen::ArrayXXd levels, slopes;  // quantity by replicate
   for (int r = 0; r < replicates; ++r) {
     const auto replicate = static_cast<std::uint64_t>(r + 1);
     const std::vector<int> sample = resample(static_cast<int>(runs.size()), replicate, kSample);
@@ -101,16 +100,14 @@ SeriesNull null_of(const MeasuredVesicles& data, const std::vector<History>& run
     gained.row(r) = gains.values.transpose();
     result.trend[r] = gains.trend;
     result.ln_unit[r] = gains.base.ln_unit;
-    const auto measured = static_cast<Eigen::Index>(gains.offsets.size());
-    levels.conservativeResize(measured, replicates);
-    slopes.conservativeResize(measured, replicates);
-    for (Eigen::Index q = 0; q < measured; ++q) {
-      levels(q, r) = gains.offsets[static_cast<std::size_t>(q)].level_deviations;
-      slopes(q, r) = gains.offsets[static_cast<std::size_t>(q)].slope_deviations;
+    for (const SeriesOffset& offset : gains.offsets) {
+      const auto q = static_cast<std::size_t>(offset.quantity);
+      result.levels[q] += std::pow(offset.level_deviations, 2);
+      result.slopes[q] += std::pow(offset.slope_deviations, 2);
     }
   }
-  result.levels = levels.square().rowwise().mean().sqrt();
-  result.slopes = slopes.square().rowwise().mean().sqrt();
+  for (auto* squares : {&result.levels, &result.slopes})
+    for (double& value : *squares) value = std::sqrt(value / replicates);
   result.mean = gained.colwise().mean().transpose().cwiseMax(0.5);
   result.highest = (gained * result.mean.cwiseInverse().asDiagonal()).rowwise().maxCoeff();
   return result;

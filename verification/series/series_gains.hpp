@@ -2,6 +2,7 @@
 // be expected of vesicles that lack nothing.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -43,9 +44,9 @@ struct SeriesNull {
   Vec highest;  // of each replicate: the largest gain over its mean
   Vec trend;    // of each replicate: what is left of the base
   Vec ln_unit;  // of each replicate: that of the base
-  // Root mean squares of the deviations of offsets, that of the level and that of the slope: more
-  // than 1, as the model's mean is that of a few runs.
-  Vec levels, slopes;
+  // Of each quantity: root mean squares of the deviations of its level and its slope, more than 1,
+  // as the model's mean is that of a few runs.
+  std::array<double, kQuantities.size()> levels{}, slopes{};
 };
 // `fit`: of the base model to the data.
 SeriesNull null_of(const MeasuredVesicles& data, const std::vector<History>& runs,

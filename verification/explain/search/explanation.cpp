@@ -77,7 +77,7 @@ Explanation conclusion(Search search) {
 }  // namespace
 
 bool is_named(const Explanation& found) {
-  return found.finding == Finding::named || found.finding == Finding::ambiguous;
+  return is_named(found.finding);
 }
 
 std::vector<std::string> class_of(const Explanation& found) {

@@ -19,6 +19,10 @@ enum class Finding {
                      // one that is too small to tell which effect it is
   unnamed            // a significant disagreement that no candidate explains
 };
+// Are there effects that belong to the model?
+inline bool is_named(Finding finding) {
+  return finding == Finding::named || finding == Finding::ambiguous;
+}
 inline constexpr std::array kFindings{Finding::none,
                                       Finding::named,
                                       Finding::ambiguous,
