@@ -1,9 +1,12 @@
 // Tests that run on all ranks of mpirun at the same time; one of them speaks, all of them can fail.
 #include <gtest/gtest.h>
 
+#include "backends/posix/process.hpp"
 #include "backends/ranks.hpp"
+#include "backends/suitesparse/blas.hpp"
 
 int main(int argc, char** argv) {
+  traceraft::restart_with_environment(traceraft::preferred_environment(), argv);
   ::testing::InitGoogleTest(&argc, argv);
   const traceraft::RankSession session;
   const auto ranks = traceraft::world();
