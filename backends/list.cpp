@@ -6,6 +6,7 @@
 #include "backends/suitesparse/cholmod_solver.hpp"
 #include "backends/suitesparse/direct_solver.hpp"
 #include "backends/sundials/ida.hpp"
+#include "backends/sundials/ida_settings.hpp"
 #include "backends/sundials/spfgmr.hpp"
 #ifdef TRACERAFT_WITH_TRILINOS
 #include "backends/trilinos/teko_solver.hpp"

@@ -1,9 +1,8 @@
 // --integrator ida: SUNDIALS IDA, variable-order BDF for the DAE.
 #pragma once
 
-#include <vector>
+#include <memory>
 
-#include "kernel/core/parameters.hpp"
 #include "kernel/time/integrator.hpp"
 
 namespace traceraft {
@@ -19,9 +18,5 @@ namespace traceraft {
 // Between the steps the solution is IDA's interpolant; the end of the run is met exactly.
 IntegratorPtr make_ida(const DaeProblem& problem, const LinearSolverChoice& solvers,
                        std::shared_ptr<const ThreadTeam> team, const IntegratorSettings& settings);
-
-// The options that IDA has beyond the general ones, under IDA's names. 0 leaves an option that has
-// a general counterpart to that.
-std::vector<ParameterSpec> ida_parameters();
 
 }  // namespace traceraft

@@ -1,0 +1,46 @@
+#include "backends/sundials/ida_settings.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace traceraft {
+namespace {
+
+constexpr double kLinearTolerance = 1e-2;
+constexpr double kLaterFactor = 10;
+
+}  // namespace
+
+std::vector<ParameterSpec> ida_parameters() {
+  return {
+      {"rtol", "", 0, 0, 0.5, "relative tolerance in L2 of the surface; 0: --tolerance"},
+      {"atol", "", 0, 0, 1e3, "absolute tolerance of c; 0: 1e-10"},
+      {"maxord", "", 5, 1, 5, "maximum order of the BDF", true},
+      {"initstep", "s", 0, 0, 1e300, "first step; 0: --initial-step"},
+      {"maxstep", "s", 0, 0, 1e300, "largest step; 0: --max-step"},
+      {"suppressalg", "", 1, 0, 1, "1: algebraic variables are left out of the error test", true},
+      {"epslin", "", 0, 0, 0.5, "relative residual of Newton corrections; 0: --linear-tolerance"},
+      {"nonlinconvcoef", "", 0.33, 1e-6, 1, "factor in the test of Newton's convergence"},
+  };
+}
+
+IdaSettings::IdaSettings(const IntegratorSettings& settings) : settings_(settings) {
+  for (const ParameterSpec& spec : ida_parameters())
+    settings_.own.emplace(spec.name, spec.default_value);
+}
+
+double IdaSettings::linear_tolerance(int correction) const {
+  const double first = either("epslin", settings_.linear_tolerance_or(kLinearTolerance));
+  return correction == 0 ? first : std::min(0.5, kLaterFactor * first);
+}
+
+double IdaSettings::max_step() const {
+  const double asked = either("maxstep", settings_.max_step);
+  return asked > 0 ? asked : std::numeric_limits<double>::infinity();
+}
+
+double IdaSettings::min_step(double span) const {
+  return settings_.min_step > 0 ? settings_.min_step : 1e-14 * span;
+}
+
+}  // namespace traceraft
