@@ -3,6 +3,7 @@
 #include "backends/posix/durable_file.hpp"
 #include "drivers/output/chart.hpp"
 #include "drivers/output/provenance.hpp"
+#include "kernel/core/error.hpp"
 #include "kernel/core/text.hpp"
 
 namespace traceraft {

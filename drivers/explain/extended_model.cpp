@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kMaxBytes = 1 << 20;
+constexpr std::uint64_t kMaxModelBytes = 1 << 20;
 
 // Names whose values the file does not have.
 std::vector<std::string> changed_names(const GivenValues& file, const GivenValues& wanted) {
@@ -61,7 +61,7 @@ void write_extended_model(const fs::path& file, const fs::path& original, const 
   const std::vector<std::string> names = changed_names(read_config_file(original), wanted);
   const Configuration whole(wanted, {});
   const std::string block = "# " + heading + "\n" + config_lines(whole, names);
-  const std::string before = original.empty() ? "" : read_file(original, kMaxBytes);
+  const std::string before = original.empty() ? "" : read_file(original, kMaxModelBytes);
   write_durably(file, with_block(before, names, block));
   // TOML has more ways to say things than one line each.
   if (!is_that_model(file, wanted)) write_durably(file, config_text(whole));

@@ -14,7 +14,7 @@ std::vector<double> numbers_of(const Vec& values) {
 }
 
 // Maps of many snapshots.
-constexpr std::uint64_t kMaxBytes = 1 << 30;
+constexpr std::uint64_t kMaxSearchBytes = 1 << 30;
 
 // Of everything that the search depends on.
 std::string fingerprint_of(const ExplainSetup& setup) {
@@ -52,7 +52,7 @@ std::optional<SearchState> SearchFile::load() const {
                            "another build of the program; choose another folder");
         return std::optional(search_from(json, setup_.request.base));
       },
-      kMaxBytes);
+      kMaxSearchBytes);
 }
 
 void SearchFile::save(const SearchState& state) const {

@@ -15,7 +15,7 @@ constexpr double kForecastTolerance = 0.3;
 // Outliers are that far from what is around them, in units of the distance of the wells; more than
 // that share of the values is refused, and they are looked for that often.
 constexpr double kOutlying = 0.2, kMostOutliers = 0.05;
-constexpr int kMostPasses = 6;
+constexpr int kMostNoisePasses = 6;
 
 // What data state as their deviations is taken as relative to each other; 1: what the values would
 // have if all told as much as they do together.
@@ -86,7 +86,7 @@ FieldPrior clean(const FieldSeries& series, const DoubleWell& well, FilterProble
     for (std::size_t k = 0; k < data.snapshots.size(); ++k) {
       const FieldEstimate here = estimate_field(*data.space, data.snapshots[k], prior, {});
       if (k < data.train) squares += here.noise * here.noise / static_cast<double>(data.train);
-      if (pass < kMostPasses)
+      if (pass < kMostNoisePasses)
         dropped += drop_outliers(data.snapshots[k].trace * here.field,
                                  kOutlying * (well.b - well.a), data.series.snapshots[k]);
     }

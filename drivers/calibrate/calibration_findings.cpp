@@ -1,0 +1,124 @@
+#include "drivers/calibrate/calibration_findings.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "drivers/calibrate/calibration_points.hpp"
+#include "drivers/output/json_file.hpp"
+#include "kernel/core/text.hpp"
+#include "verification/vesicles/differences.hpp"
+
+namespace traceraft {
+namespace {
+
+// Do the runs that fit best coarsen as the vesicles do?
+bool are_alike(const std::vector<Agreement>& agreements, std::size_t runs) {
+  return std::none_of(agreements.begin(), agreements.end(), [&](const Agreement& a) {
+    return a.quantity != Quantity::fraction && (a.has_trend() || lies_beside(a, runs));
+  });
+}
+
+std::vector<FoundParameter> parameters_of(const MeasuredVesicles& data, const Configuration& model,
+                                          bool alike, const Calibration& result) {
+  const double factor = factor_of_size(data, model.units().length());
+  std::vector<FoundParameter> found;
+  for (const CalibratedParameter& p : result.parameters) {
+    if (p.name == "seconds_per_unit")
+      found.push_back({"mobility", "cm^2/s", diffusion(model, p.value),
+                       diffusion(model, p.interval.high), diffusion(model, p.interval.low),
+                       p.determined && size_is_told(factor, p.interval) && alike});
+    else
+      found.push_back({p.name, p.name == "fraction" ? "1" : "um", p.value, p.interval.low,
+                       p.interval.high, p.determined});
+  }
+  return found;
+}
+
+std::vector<History> best_runs(const CalibrationRuns& all, const Calibration& result) {
+  const auto& fits = result.at_points;
+  const auto best =
+      std::min_element(fits.begin(), fits.end(),
+                       [](const TimeFit& a, const TimeFit& b) { return a.deviance < b.deviance; });
+  return runs_in_seconds(all, result, static_cast<std::size_t>(best - fits.begin()));
+}
+
+}  // namespace
+
+double diffusion(const Configuration& model, double seconds_per_unit) {
+  return model.units().with_seconds_per_unit(seconds_per_unit).diffusion_cm2_s;
+}
+
+bool size_is_told(double factor, const Interval& seconds_per_unit) {
+  constexpr double kSame = 1.2;
+  return std::fabs(std::log(factor)) <
+         std::max(std::log(kSame), 0.5 * std::log(seconds_per_unit.high / seconds_per_unit.low));
+}
+
+std::vector<History> runs_in_seconds(const CalibrationRuns& all, const Calibration& result,
+                                     std::size_t choice) {
+  std::vector<History> runs = all.points[choice].runs;
+  for (History& run : runs)
+    for (double& t : run.time) t *= result.at_points[choice].seconds_per_unit;
+  return runs;
+}
+
+std::string best_known(const Calibration& result) {
+  std::string text;
+  for (std::size_t i = 0; i < result.best_powers.size(); ++i) {
+    const double power = result.best_powers[i];
+    if (std::fabs(power) < 0.1) continue;  // hardly
+    text += (text.empty() ? "" : " * ") +
+            (i == 0 ? std::string("mobility") : result.parameters[i].name) +
+            (std::fabs(power - 1) < 0.02 ? "" : formatted("^%.2f", power));
+  }
+  return text + formatted(" to %.0f %%", 100 * result.best_deviation);
+}
+
+Configuration found_model(const CalibrationRuns& runs,
+                          const std::vector<FoundParameter>& parameters) {
+  std::vector<double> values;
+  for (std::size_t i = 1; i < parameters.size(); ++i) values.push_back(parameters[i].value);
+  const Configuration at =
+      configuration_at(runs.model, runs.names, values, runs.model.number("t-end"));
+  GivenValues given;
+  for (const OptionSpec& spec : run_options())
+    if (!at.text(spec.name).empty() && spec.name != "output-times" && spec.name != "fields")
+      given[spec.name] = {at.text(spec.name), "--" + spec.name};
+  given["diffusion"] = {formatted("%.6g", parameters[0].value), "--diffusion"};
+  return {{}, given};
+}
+
+std::string calibration_json(const std::vector<FoundParameter>& parameters,
+                             const Calibration& result) {
+  Json json;
+  for (const FoundParameter& found : parameters)
+    json["parameters"][found.name] = {{"value", found.value},
+                                      {"interval_95", {found.low, found.high}},
+                                      {"unit", found.unit},
+                                      {"determined", found.determined}};
+  json["best_known"] = best_known(result);
+  json["scatter_of_ln_perimeter"] = result.best.scatter;
+  json["points_at_bound_of_mobility"] = result.at_bound;
+  json["mobility_at_bound"] = result.unit_at_bound;
+  json["converged"] = result.converged;
+  for (Eigen::Index i = 0; i < result.correlation.rows(); ++i) {
+    Json row = Json::array();
+    // Of ln D, not of ln R²/D.
+    for (Eigen::Index j = 0; j < result.correlation.cols(); ++j)
+      row.push_back(result.correlation(i, j) * ((i == 0) != (j == 0) ? -1 : 1));
+    json["correlation"].push_back(row);
+  }
+  return json.dump(2) + "\n";
+}
+
+CalibrationFindings findings_of(const MeasuredVesicles& data, const CalibrationRuns& runs,
+                                const Calibration& result) {
+  CalibrationFindings found;
+  found.best = best_runs(runs, result);
+  found.agreements = compare_with_runs(data, found.best);
+  found.parameters =
+      parameters_of(data, runs.model, are_alike(found.agreements, found.best.size()), result);
+  return found;
+}
+
+}  // namespace traceraft

@@ -1,0 +1,62 @@
+// What a calibration found: D and the other parameters, whether the data determine them, and the
+// runs that fit best.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "drivers/config/configuration.hpp"
+#include "verification/vesicles/calibration.hpp"
+#include "verification/vesicles/comparison.hpp"
+
+namespace traceraft {
+
+// What was simulated, and how.
+struct CalibrationRuns {
+  const Configuration& model;
+  std::vector<std::string> names;  // of the parameters of the points
+  std::vector<CalibrationPoint> points;
+  int most_cells;            // that simulations might have
+  std::string command;       // that asks for it
+  std::string bound;         // where the search for D ends, and what to do about it
+  std::string missing = {};  // of an ensemble's runs, those that are not there
+};
+
+struct FoundParameter {
+  std::string name, unit;
+  double value, low, high;  // the interval of 95 %
+  bool determined;          // by the data
+};
+
+struct CalibrationFindings {
+  std::vector<FoundParameter> parameters;  // "mobility", D in cm²/s, first
+  std::vector<History> best;               // the runs that fit best, in seconds
+  std::vector<Agreement> agreements;       // of the measurements with these
+};
+
+// Of D nothing is determined by vesicles of another size, or that coarsen otherwise.
+CalibrationFindings findings_of(const MeasuredVesicles& data, const CalibrationRuns& runs,
+                                const Calibration& result);
+
+// D in cm²/s from R²/D in seconds.
+double diffusion(const Configuration& model, double seconds_per_unit);
+
+// Is D known better than `factor`, what the size of the vesicles makes of it?
+bool size_is_told(double factor, const Interval& seconds_per_unit);
+
+// The runs of a choice, at the D that fits these.
+std::vector<History> runs_in_seconds(const CalibrationRuns& all, const Calibration& result,
+                                     std::size_t choice);
+
+// The product of powers of D and the parameters that the data know best.
+std::string best_known(const Calibration& result);
+
+// The model as a configuration, with the parameters that were found.
+Configuration found_model(const CalibrationRuns& runs,
+                          const std::vector<FoundParameter>& parameters);
+
+// calibration.json: see docs/formats.md.
+std::string calibration_json(const std::vector<FoundParameter>& parameters,
+                             const Calibration& result);
+
+}  // namespace traceraft

@@ -1,0 +1,117 @@
+#include "drivers/calibrate/calibration_notes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "drivers/calibrate/calibration_points.hpp"
+#include "drivers/vesicles/agreement_report.hpp"
+#include "kernel/core/text.hpp"
+#include "verification/vesicles/calibration_data.hpp"
+#include "verification/vesicles/differences.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr double kAtEnd = 1.01;  // of a range
+
+// Choices at which there mostly is nothing to compare.
+int choices_without_rafts(const MeasuredVesicles& data, const CalibrationRuns& all,
+                          const Calibration& result) {
+  constexpr double kMost = 0.5;
+  int count = 0;
+  for (std::size_t k = 0; k < all.points.size(); ++k)
+    count += share_without_rafts(data, runs_in_seconds(all, result, k)) > kMost;
+  return count;
+}
+
+using Notes = std::vector<std::string>;
+
+// Where the search for parameters ended.
+void add_search(const CalibrationRuns& runs, const Calibration& result, Notes& notes) {
+  if (!runs.missing.empty()) notes.push_back(runs.missing);
+  if (!result.converged)
+    notes.push_back(
+        "NOT CONVERGED: the last simulations do not surround what was found; begin again from the "
+        "calibrated model.");
+  if (result.unit_at_bound)
+    notes.push_back("D LIES AT THE END OF THE SEARCH, and is not known. " + runs.bound);
+  else if (result.at_bound > 0)
+    notes.push_back(formatted("At %d of %zu choices D fits best where the search for it ends. ",
+                              result.at_bound, runs.points.size()) +
+                    runs.bound);
+}
+
+// Measurements and choices of parameters that say nothing.
+void add_unused(const MeasuredVesicles& data, const CalibrationRuns& runs,
+                const Calibration& result, Notes& notes) {
+  if (const int nothing = looks_that_tell_nothing(data); nothing > 0)
+    notes.push_back(
+        formatted("%d of %zu measurements are of time zero, of no raft, or of neither perimeter "
+                  "nor number: they are not used.",
+                  nothing, data.measurements.size()));
+  if (const int choices = choices_without_rafts(data, runs, result); choices > 0)
+    notes.push_back(formatted(
+        "At %d of %zu choices the simulated vesicles have no rafts when the measured ones are "
+        "looked at: these choices say nothing of D.",
+        choices, runs.points.size()));
+}
+
+// What parameters cannot be, or were not asked to be.
+void add_limits(const CalibrationRuns& runs, const Calibration& result, Notes& notes) {
+  for (const CalibratedParameter& p : result.parameters) {
+    if (p.name != "epsilon") continue;
+    const double smallest = range_of(runs.model, p.name, runs.most_cells).low;
+    if (p.interval.low < kAtEnd * smallest)
+      notes.push_back(
+          formatted("Epsilon may be smaller than what %d cells resolve, %.3g um, below which it is "
+                    "not looked for; take more --most-cells.",
+                    runs.most_cells, smallest));
+  }
+  if (!runs.names.empty() &&
+      std::find(runs.names.begin(), runs.names.end(), "noise-length") == runs.names.end())
+    notes.push_back(
+        "The intervals hold if the initial noise is as long as the model's; if it is not, the "
+        "others take the blame. With noise-length among --parameters it is looked for, too.");
+}
+
+void add_size(const MeasuredVesicles& data, const CalibrationRuns& runs, const Calibration& result,
+              Notes& notes) {
+  const double radius = runs.model.units().length();
+  const double factor = factor_of_size(data, radius);
+  if (const CalibratedParameter& unit = result.parameters.front();
+      unit.determined && !size_is_told(factor, unit.interval))
+    notes.push_back(formatted(
+        "THE SIZE OF THE VESICLES decides about D: simulations with --radius %.3g "
+        "--cells %.0f would make it %.2g times as large.",
+        radius * std::pow(factor, 0.25),
+        std::round(static_cast<double>(runs.model.integer("cells")) * std::pow(factor, 0.25)),
+        factor));
+}
+
+// For readers: what was found beyond the table.
+void add_findings(const Calibration& result, Notes& notes) {
+  if (result.converged && !result.unit_at_bound)
+    notes.push_back("The data know best " + best_known(result) + ".");
+  notes.push_back(result.best.scatter > kAtEnd * kLeastScatter
+                      ? formatted("Perimeters scatter by %.0f %% beyond what runs do.",
+                                  100 * result.best.scatter)
+                      : "Perimeters scatter no more than runs do.");
+}
+
+}  // namespace
+
+std::vector<std::string> notes_on(const MeasuredVesicles& data, const CalibrationRuns& runs,
+                                  const CalibrationFindings& found, const Calibration& result) {
+  Notes notes;
+  add_search(runs, result, notes);
+  add_unused(data, runs, result, notes);
+  add_limits(runs, result, notes);
+  add_size(data, runs, result, notes);
+  for (const std::string& note :
+       cautions(data, runs.model.units().length(), found.best, found.agreements))
+    notes.push_back(note);
+  add_findings(result, notes);
+  return notes;
+}
+
+}  // namespace traceraft
