@@ -9,7 +9,7 @@
 #include "drivers/input/measured_units.hpp"
 #include "drivers/numerical_failure.hpp"
 #include "drivers/output/json_file.hpp"
-#include "drivers/run/run_setup.hpp"
+#include "drivers/run/physical_model.hpp"
 #include "kernel/effects/effects.hpp"
 
 namespace traceraft {

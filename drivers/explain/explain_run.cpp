@@ -8,7 +8,7 @@
 #include "drivers/input/field_dataset.hpp"
 #include "drivers/input/measured_units.hpp"
 #include "drivers/input/model_of_data.hpp"
-#include "drivers/run/run_setup.hpp"
+#include "drivers/run/physical_model.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"

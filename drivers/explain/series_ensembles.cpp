@@ -11,7 +11,7 @@
 #include "drivers/explain/found_parameters.hpp"
 #include "drivers/input/measured_units.hpp"
 #include "drivers/output/json_file.hpp"
-#include "drivers/run/run_setup.hpp"
+#include "drivers/run/physical_model.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"

@@ -13,7 +13,7 @@
 #include "drivers/output/provenance.hpp"
 #include "drivers/output/text_table.hpp"
 #include "drivers/report/viewer.hpp"
-#include "drivers/run/run_setup.hpp"
+#include "drivers/run/physical_model.hpp"
 #include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/text.hpp"

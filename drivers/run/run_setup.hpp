@@ -30,12 +30,6 @@ struct RunSetup {
   std::vector<double> output_labels;  // the same as the user wrote them, in the user's units
 };
 
-// What the options say of the free energy, the surface and the model with its effects, in units of
-// R and R²/D. Throw InputError.
-DoubleWell double_well(const Configuration& configuration);
-LevelSetPtr surface_of(const Configuration& configuration);
-CahnHilliardModel physical_model(const Configuration& configuration);
-
 enum class InitialState { build, from_checkpoint /* leaves RunSetup::initial empty */ };
 
 // On all ranks of the program. Throws InputError for anything a run could not start with; creates

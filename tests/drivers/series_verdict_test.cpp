@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "drivers/config/config_file.hpp"
-#include "drivers/run/run_setup.hpp"
+#include "drivers/run/physical_model.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "verification/explain/forecast/candidates.hpp"
 

@@ -1,0 +1,30 @@
+// Options whose values need more than their type and range: what is wrong with one is said of where
+// it was given.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "drivers/config/configuration.hpp"
+#include "kernel/core/error.hpp"
+
+namespace traceraft {
+
+// Runs `make`, so that what it finds wrong is said of the place where the option was given.
+template <class Make>
+auto said_of(const Configuration& configuration, const char* option, const Make& make) {
+  try {
+    return make();
+  } catch (const InputError& error) {
+    throw InputError(configuration.where(option) + ": " + error.what());
+  }
+}
+
+// The text of an option that must be one of a few words. Throws InputError.
+std::string one_of(const Configuration& configuration, const char* option, const char* kind,
+                   const std::vector<std::string>& words);
+
+// Given on the command line? A configuration file holds every option.
+bool from_flag(const Configuration& configuration, const std::string& option);
+
+}  // namespace traceraft

@@ -1,0 +1,81 @@
+#include "drivers/run/initial_state.hpp"
+
+#include <sstream>
+
+#include "backends/muparser/formula.hpp"
+#include "drivers/run/checked_options.hpp"
+#include "drivers/config/config_file.hpp"
+#include "drivers/run/checkpoint_store.hpp"
+#include "kernel/problem/initial_data.hpp"
+
+namespace traceraft {
+namespace {
+
+std::vector<CapRaft> parse_caps(const Configuration& configuration) {
+  std::vector<CapRaft> caps;
+  std::istringstream list(configuration.text("initial-caps"));
+  const std::string where = configuration.where("initial-caps");
+  for (std::string item; std::getline(list, item, ';');) {
+    std::istringstream words(item);
+    std::vector<double> numbers;
+    for (std::string word; words >> word;) numbers.push_back(parse_number(where, word));
+    if (numbers.empty()) continue;
+    if (numbers.size() != 4)
+      throw InputError(where + ": '" + item + "' needs four numbers, x y z angle");
+    const Point direction(numbers[0], numbers[1], numbers[2]);
+    if (direction.norm() == 0) throw InputError(where + ": a direction is zero in '" + item + "'");
+    if (!(numbers[3] > 0 && numbers[3] < 180))
+      throw InputError(where + ": an angle must lie between 0 and 180 degrees in '" + item + "'");
+    caps.push_back({direction, numbers[3] * kPi / 180});
+  }
+  return caps;
+}
+
+// Data for another kind of initial state than the case's are a mistake, not something to ignore.
+void require_kind(const Configuration& configuration, const char* option, const char* kind) {
+  if (configuration.given(option) &&
+      (from_flag(configuration, option) || !configuration.given("initial")) &&
+      split_named_arguments(configuration.text("initial")).name != kind)
+    throw InputError(configuration.where(option) + ": it needs --initial " + kind);
+}
+
+InitialRequest initial_request(const Configuration& configuration, const CahnHilliardModel& model) {
+  InitialRequest request;
+  const long long cells = configuration.integer("cells");
+  request.raft_fraction = configuration.number("raft-fraction");
+  request.noise_cells = configuration.noise_cells();
+  if (request.noise_cells > cells)
+    throw InputError(configuration.where("noise-cells") + ": " +
+                     std::to_string(request.noise_cells) + " is more than --cells " +
+                     std::to_string(cells));
+  request.seed = static_cast<std::uint64_t>(configuration.integer("seed"));
+  request.caps = parse_caps(configuration);
+  if (const std::string formula = configuration.text("initial-formula"); !formula.empty())
+    request.formula = parse_formula(configuration.where("initial-formula"), formula);
+  request.epsilon = model.epsilon;
+  request.well = model.well;
+  return request;
+}
+
+}  // namespace
+
+Vec initial_field(const Configuration& configuration, const CahnHilliardModel& model,
+                  const SurfaceSpace& space) {
+  const std::string kind = configuration.text("initial");
+  require_kind(configuration, "initial-formula", "formula");
+  require_kind(configuration, "initial-caps", "caps");
+  const InitialRequest request = initial_request(configuration, model);
+  return said_of(configuration, "initial", [&] {
+    const auto [name, folder] = split_named_arguments(kind);
+    if (name == "restart") {
+      const bool root = space.communicator->root();
+      const int nodes = static_cast<int>(space.totals.nodes);
+      return space.order.scattered(
+          root ? final_concentration(folder, nodes, numerical_identity(configuration)) : Vec());
+    }
+    (void)initial_fields().find(name, {"restart:DIR"});
+    return make_initial_field(kind, space, request);
+  });
+}
+
+}  // namespace traceraft

@@ -1,0 +1,49 @@
+#include "drivers/run/numerical_methods.hpp"
+
+#include "drivers/run/checked_options.hpp"
+
+namespace traceraft {
+
+IntegratorSettings integrator_settings(const Configuration& configuration,
+                                       const IntegratorEntry& integrator, const Units& units) {
+  IntegratorSettings settings;
+  for (const ParameterSpec& parameter : integrator.parameters)
+    settings.own[parameter.name] = configuration.number(integrator_option(integrator, parameter)) /
+                                   (parameter.unit == "s" ? units.time() : 1);
+  settings.tolerance = configuration.number("tolerance");
+  settings.initial_step = configuration.number("initial-step") / units.time();
+  settings.min_step = configuration.number("min-step") / units.time();
+  settings.max_step = configuration.number("max-step") / units.time();
+  settings.linear_tolerance = configuration.number("linear-tolerance");
+  settings.kept_solution =
+      one_of(configuration, "keep", "solution", {"decaying", "second", "first"});
+  settings.reject_energy_rises =
+      one_of(configuration, "energy-guard", "guard", {"warn", "reject", "off"}) == "reject";
+  for (const char* largest : {"max-step", "ida-maxstep"})
+    if (const double most = configuration.number(largest) / units.time();
+        most > 0 && settings.min_step > most)
+      throw InputError(configuration.where("min-step") + ": it is larger than --" + largest);
+  return settings;
+}
+
+LinearSolverChoice linear_solver(const Configuration& configuration, const SurfaceSpace& space) {
+  const LinearSolverEntry& solver = linear_solvers().find(configuration.text("linear-solver"));
+  WordOptions options;
+  for (const LinearSolverEntry& other : linear_solvers())
+    for (const WordOption& option : other.options) {
+      const std::string name = linear_solver_option(other, option);
+      if (other.name == solver.name)
+        options[option.name] = configuration.text(name);
+      else if (from_flag(configuration, name))
+        throw InputError(configuration.where(name) + ": it needs --linear-solver " + other.name);
+    }
+  try {
+    return choose_linear_solver(solver.name, space, options);
+  } catch (const OptionError& error) {
+    throw InputError(configuration.where(solver.name + "-" + error.option) + ": " + error.what());
+  } catch (const InputError& error) {
+    throw InputError(configuration.where("linear-solver") + ": " + error.what());
+  }
+}
+
+}  // namespace traceraft

@@ -1,0 +1,63 @@
+#include "drivers/run/physical_model.hpp"
+
+#include "backends/list.hpp"
+#include "backends/muparser/formula.hpp"
+#include "drivers/run/checked_options.hpp"
+#include "kernel/effects/effects.hpp"
+
+namespace traceraft {
+
+DoubleWell double_well(const Configuration& configuration) {
+  return said_of(configuration, "well", [&] {
+    const Parameters p = parse_parameters("double well", configuration.text("well"),
+                                          {{"rho", "", 0.25, 1e-12, 1e12, "height"},
+                                           {"a", "", 0, -1e6, 1e6, "first minimum"},
+                                           {"b", "", 1, -1e6, 1e6, "second minimum"}});
+    if (!(p["a"] < p["b"])) throw InputError("double well: a must be smaller than b");
+    return DoubleWell{p["rho"], p["a"], p["b"]};
+  });
+}
+
+LevelSetPtr surface_of(const Configuration& configuration) {
+  const std::string formula = configuration.text("surface-formula");
+  if (configuration.text("surface") == "formula") {
+    if (formula.empty())
+      throw InputError(configuration.where("surface") +
+                       ": formula needs --surface-formula, as in "
+                       "--surface-formula \"x^2+y^2+2*z^2-1\"");
+    return std::make_shared<FunctionLevelSet>(
+        parse_formula(configuration.where("surface-formula"), formula));
+  }
+  if (!formula.empty())
+    throw InputError(configuration.where("surface-formula") + ": it needs --surface formula");
+  return said_of(configuration, "surface", [&] {
+    const std::string specification = configuration.text("surface");
+    (void)surfaces().find(split_named_arguments(specification).name, {"formula"});
+    return make_surface(specification);
+  });
+}
+
+CahnHilliardModel physical_model(const Configuration& configuration) {
+  const Units units = configuration.units();
+  CahnHilliardModel result;
+  result.mobility = said_of(configuration, "mobility",
+                            [&] { return make_mobility(configuration.text("mobility")); });
+  result.well = double_well(configuration);
+  if (!result.mobility->constant() && (result.well.a != 0 || result.well.b != 1))
+    throw InputError(configuration.where("well") +
+                     ": the degenerate mobility c(1-c) belongs to wells at 0 and 1; choose "
+                     "--mobility constant:value=0.25");
+  result.epsilon = configuration.number("epsilon") / units.length();
+  result.rule = one_of(configuration, "potential", "potential", {"consistent", "nodal"}) == "nodal"
+                    ? PotentialRule::nodal
+                    : PotentialRule::consistent;
+  result.stabilisation = configuration.number("stabilisation");
+  result.seed = static_cast<std::uint64_t>(configuration.integer("seed"));
+  said_of(configuration, "effect", [&] {
+    add_effects(configuration.text("effect"), units, result);
+    return 0;
+  });
+  return result;
+}
+
+}  // namespace traceraft
