@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "kernel/core/error.hpp"
+#include "kernel/core/text.hpp"
 #include "verification/explain/filter/noise_levels.hpp"
 #include "verification/explain/search/class_evidence.hpp"
 #include "verification/explain/search/drops.hpp"
