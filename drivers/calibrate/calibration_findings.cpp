@@ -18,10 +18,11 @@ bool are_alike(const std::vector<Agreement>& agreements, std::size_t runs) {
   });
 }
 
-std::vector<FoundParameter> parameters_of(const MeasuredVesicles& data, const Configuration& model,
-                                          bool alike, const Calibration& result) {
+std::vector<CalibrationFinding> parameters_of(const MeasuredVesicles& data,
+                                              const Configuration& model, bool alike,
+                                              const Calibration& result) {
   const double factor = factor_of_size(data, model.units().length());
-  std::vector<FoundParameter> found;
+  std::vector<CalibrationFinding> found;
   for (const CalibratedParameter& p : result.parameters) {
     if (p.name == "seconds_per_unit")
       found.push_back({"mobility", "cm^2/s", diffusion(model, p.value),
@@ -75,7 +76,7 @@ std::string best_known(const Calibration& result) {
 }
 
 Configuration found_model(const CalibrationRuns& runs,
-                          const std::vector<FoundParameter>& parameters) {
+                          const std::vector<CalibrationFinding>& parameters) {
   std::vector<double> values;
   for (std::size_t i = 1; i < parameters.size(); ++i) values.push_back(parameters[i].value);
   const Configuration at =
@@ -88,10 +89,10 @@ Configuration found_model(const CalibrationRuns& runs,
   return {{}, given};
 }
 
-std::string calibration_json(const std::vector<FoundParameter>& parameters,
+std::string calibration_json(const std::vector<CalibrationFinding>& parameters,
                              const Calibration& result) {
   Json json;
-  for (const FoundParameter& found : parameters)
+  for (const CalibrationFinding& found : parameters)
     json["parameters"][found.name] = {{"value", found.value},
                                       {"interval_95", {found.low, found.high}},
                                       {"unit", found.unit},

@@ -22,16 +22,16 @@ struct CalibrationRuns {
   std::string missing = {};  // of an ensemble's runs, those that are not there
 };
 
-struct FoundParameter {
+struct CalibrationFinding {
   std::string name, unit;
   double value, low, high;  // the interval of 95 %
   bool determined;          // by the data
 };
 
 struct CalibrationFindings {
-  std::vector<FoundParameter> parameters;  // "mobility", D in cm²/s, first
-  std::vector<History> best;               // the runs that fit best, in seconds
-  std::vector<Agreement> agreements;       // of the measurements with these
+  std::vector<CalibrationFinding> parameters;  // "mobility", D in cm²/s, first
+  std::vector<History> best;                   // the runs that fit best, in seconds
+  std::vector<Agreement> agreements;           // of the measurements with these
 };
 
 // Of D nothing is determined by vesicles of another size, or that coarsen otherwise.
@@ -53,10 +53,10 @@ std::string best_known(const Calibration& result);
 
 // The model as a configuration, with the parameters that were found.
 Configuration found_model(const CalibrationRuns& runs,
-                          const std::vector<FoundParameter>& parameters);
+                          const std::vector<CalibrationFinding>& parameters);
 
 // calibration.json: see docs/formats.md.
-std::string calibration_json(const std::vector<FoundParameter>& parameters,
+std::string calibration_json(const std::vector<CalibrationFinding>& parameters,
                              const Calibration& result);
 
 }  // namespace traceraft

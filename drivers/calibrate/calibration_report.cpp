@@ -17,10 +17,10 @@
 namespace traceraft {
 namespace {
 
-std::vector<Row> rows_of(const std::vector<FoundParameter>& parameters) {
+std::vector<Row> rows_of(const std::vector<CalibrationFinding>& parameters) {
   std::vector<Row> rows = {
       {"parameter", "value", "95 % interval", "unit", "determined by the data"}};
-  for (const FoundParameter& found : parameters)
+  for (const CalibrationFinding& found : parameters)
     rows.push_back({found.name, formatted("%.3g", found.value),
                     formatted("%.3g to %.3g", found.low, found.high), found.unit,
                     found.determined ? "yes" : "NO"});

@@ -121,9 +121,10 @@ SeriesEnsembles in_seconds(SeriesEnsembles ensembles, const SeriesExplanation& f
 }
 
 // Of the perimeter, over the times that were looked at.
-std::vector<Exponent> exponents(const MeasuredVesicles& data, const SeriesEnsembles& ensembles) {
+std::vector<PerimeterExponent> exponents(const MeasuredVesicles& data,
+                                         const SeriesEnsembles& ensembles) {
   const Window window = looks(data);
-  std::vector<Exponent> result;
+  std::vector<PerimeterExponent> result;
   if (const auto law = fit_measurements(data, window))
     result.push_back({data.synthetic ? "synthetic data" : "measured", *law});
   const auto add = [&](const std::string& name, const std::vector<History>& runs) {
@@ -136,10 +137,10 @@ std::vector<Exponent> exponents(const MeasuredVesicles& data, const SeriesEnsemb
   return result;
 }
 
-std::vector<Row> exponent_rows(const std::vector<Exponent>& laws) {
+std::vector<Row> exponent_rows(const std::vector<PerimeterExponent>& laws) {
   constexpr double kWide = 1;  // of an exponent
   std::vector<Row> rows{{"perimeter over radius as c (t - t0)^b", "b", "95 % interval", ""}};
-  for (const Exponent& e : laws) {
+  for (const PerimeterExponent& e : laws) {
     const bool determined = !e.law.t0_open && e.law.b.high - e.law.b.low < kWide;
     rows.push_back({e.model, formatted("%.3f", e.law.law.b),
                     formatted("%.3f to %.3f", e.law.b.low, e.law.b.high),
@@ -202,7 +203,7 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
                               const SeriesExplanation& found, const SeriesRequest& request,
                               bool quiet) {
   const SeriesEnsembles ensembles = in_seconds(simulated, found);
-  const std::vector<Exponent> laws = exponents(data, ensembles);
+  const std::vector<PerimeterExponent> laws = exponents(data, ensembles);
   std::vector<std::string> words{title_of(data) + ": " + std::to_string(found.vesicles) +
                                      " vesicles, " + std::to_string(found.looks) + " looks.",
                                  sentence(found), ground(found, simulated, request)};

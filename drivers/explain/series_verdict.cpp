@@ -127,7 +127,7 @@ std::vector<FoundParameter> assumed_parameters(const EffectTerm& term, const Uni
 }
 
 Json series_json(const Configuration& model, const SeriesEnsembles& ensembles,
-                 const SeriesExplanation& found, const std::vector<Exponent>& laws) {
+                 const SeriesExplanation& found, const std::vector<PerimeterExponent>& laws) {
   const double D = found_units(model, found).diffusion_cm2_s;
   Json ties = Json::array(), exponents = Json::array();
   for (const SeriesTie& tie : found.ties)
@@ -135,7 +135,7 @@ Json series_json(const Configuration& model, const SeriesEnsembles& ensembles,
                     {"other", tie.other},
                     {"vesicles_needed", tie.vesicles},
                     {"shown_by", name_of(tie.telling).id}});
-  for (const Exponent& e : laws)
+  for (const PerimeterExponent& e : laws)
     exponents.push_back(
         {{"model", e.model}, {"b", e.law.law.b}, {"interval_95", {e.law.b.low, e.law.b.high}}});
   return {{"verdict", word_for(found.finding)},

@@ -26,13 +26,13 @@ StrengthScale scale_of(const SeriesScore& score, const Configuration& model);
 std::vector<FoundParameter> assumed_parameters(const EffectTerm& term, const Units& units);
 
 // Of the perimeter: measured, or simulated with this model.
-struct Exponent {
+struct PerimeterExponent {
   std::string model;
   FittedLaw law;
 };
 
 Json series_json(const Configuration& model, const SeriesEnsembles& ensembles,
-                 const SeriesExplanation& found, const std::vector<Exponent>& exponents);
+                 const SeriesExplanation& found, const std::vector<PerimeterExponent>& exponents);
 
 // The keys that measured fields have; what series do not tell is null.
 Json series_verdict_json(const Configuration& model, const SeriesEnsembles& ensembles,

@@ -5,9 +5,9 @@
 
 #include "kernel/core/checkpoint_stream.hpp"
 #include "kernel/time/energy_guard.hpp"
-#include "kernel/time/history.hpp"
 #include "kernel/time/integrator.hpp"
 #include "kernel/time/jacobian_solver.hpp"
+#include "kernel/time/state_history.hpp"
 #include "kernel/time/step_control.hpp"
 
 namespace traceraft {
@@ -48,7 +48,7 @@ class ControlledIntegrator : public Integrator {
   const IntegratorSettings settings_;
   JacobianSolver solver_;
   IntegratorStatistics statistics_;
-  History history_;
+  StateHistory history_;
   double step_ = 0;
 
  private:

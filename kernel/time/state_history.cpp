@@ -1,15 +1,15 @@
-#include "kernel/time/history.hpp"
+#include "kernel/time/state_history.hpp"
 
 #include <utility>
 
 namespace traceraft {
 
-void History::add(double t, Vec y) {
+void StateHistory::add(double t, Vec y) {
   entries_.push_back({t, std::move(y)});
   if (entries_.size() > most_) entries_.pop_front();
 }
 
-void History::interpolate(double t, VecRef y) const {
+void StateHistory::interpolate(double t, VecRef y) const {
   y.setZero();
   for (const Entry& at : entries_) {
     double weight = 1;
@@ -19,7 +19,7 @@ void History::interpolate(double t, VecRef y) const {
   }
 }
 
-void History::save(CheckpointOut out) const {
+void StateHistory::save(CheckpointOut out) const {
   write_binary(out, static_cast<std::uint64_t>(entries_.size()));
   for (const Entry& entry : entries_) {
     write_binary(out, entry.t);
@@ -27,7 +27,7 @@ void History::save(CheckpointOut out) const {
   }
 }
 
-void History::load(CheckpointIn in, Eigen::Index length) {
+void StateHistory::load(CheckpointIn in, Eigen::Index length) {
   std::uint64_t size = 0;
   read_binary(in, size);
   if (size > most_) throw IoError("checkpoint: it holds too many states");

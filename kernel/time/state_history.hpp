@@ -10,9 +10,9 @@
 namespace traceraft {
 
 // Keeps the newest states, at most `most`, with their times.
-class History {
+class StateHistory {
  public:
-  explicit History(std::size_t most) : most_(most) {}
+  explicit StateHistory(std::size_t most) : most_(most) {}
 
   void clear() { entries_.clear(); }
   void add(double t, Vec y);
