@@ -42,7 +42,7 @@ class Ida final : public Integrator {
     create(t0, y0, ydot0);
     y_ = y0;
     before_ = t_ = t0;
-    equations_.guard().start(y0);
+    equations_.start(y0);
     return {};
   }
 
@@ -56,7 +56,7 @@ class Ida final : public Integrator {
     before_ = t_;
     t_ = t;
     y_ = view(yy_.get());
-    equations_.guard().accept();
+    equations_.accept();
     return {};
   }
 
@@ -93,37 +93,24 @@ class Ida final : public Integrator {
     IDAGetNumNonlinSolvIters(memory_, &result.newton_iterations);
     IDAGetNumStepSolveFails(memory_, &result.failures);
     IDAGetLastOrder(memory_, &result.order);
-    result.energy_rises = equations_.guard().refused();
-    result.residuals = equations_.residuals.number;
-    result.assembly_seconds = equations_.residuals.seconds;
-    return equations_.solver().added_to(result);
+    return equations_.added_to(result);
   }
-  LinearStatistics linear_statistics() const override {
-    return equations_.solver().linear_statistics();
-  }
+  LinearStatistics linear_statistics() const override { return equations_.linear_statistics(); }
 
   void save(CheckpointOut out) const override {
-    for (const double value :
-         {before_, t_, t_end_, span_, first_step_, equations_.residuals.seconds})
-      write_binary(out, value);
-    write_binary(out, equations_.residuals.number);
+    for (const double value : {before_, t_, t_end_, span_, first_step_}) write_binary(out, value);
+    equations_.save_residuals(out);
     write_binary(out, y_);
     save_ida_memory(memory_, out);
-    equations_.newton_test().save(out);
-    equations_.guard().save(out);
-    equations_.solver().save(out);
+    equations_.save(out);
   }
   void load(CheckpointIn in) override {
-    for (double* value :
-         {&before_, &t_, &t_end_, &span_, &first_step_, &equations_.residuals.seconds})
-      read_binary(in, *value);
-    read_binary(in, equations_.residuals.number);
+    for (double* value : {&before_, &t_, &t_end_, &span_, &first_step_}) read_binary(in, *value);
+    equations_.load_residuals(in);
     read_binary(in, y_, problem_.size());
     create(t_, y_, Vec::Zero(y_.size()));
     load_ida_memory(memory_, in);
-    equations_.newton_test().load(in);
-    equations_.guard().load(in);
-    equations_.solver().load(in);
+    equations_.load(in);
   }
 
  private:

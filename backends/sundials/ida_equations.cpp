@@ -56,6 +56,35 @@ void IdaEquations::throw_again() {
   if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
 }
 
+IntegratorStatistics IdaEquations::added_to(IntegratorStatistics statistics) const {
+  statistics.energy_rises = guard_.refused();
+  statistics.residuals = residuals_;
+  statistics.assembly_seconds = residual_seconds_;
+  return solver_.added_to(statistics);
+}
+
+void IdaEquations::save_residuals(CheckpointOut out) const {
+  write_binary(out, residual_seconds_);
+  write_binary(out, residuals_);
+}
+
+void IdaEquations::load_residuals(CheckpointIn in) {
+  read_binary(in, residual_seconds_);
+  read_binary(in, residuals_);
+}
+
+void IdaEquations::save(CheckpointOut out) const {
+  newton_test_.save(out);
+  guard_.save(out);
+  solver_.save(out);
+}
+
+void IdaEquations::load(CheckpointIn in) {
+  newton_test_.load(in);
+  guard_.load(in);
+  solver_.load(in);
+}
+
 // IDA asks nothing of a "matrix-embedded" solver but to solve with the current iterate.
 void IdaEquations::make_linear_solver(SUNContext context) {
   linear_.reset(SUNLinSolNewEmpty(context));
@@ -121,8 +150,8 @@ int IdaEquations::guarded(int fatal, const Action& action) noexcept {
 int IdaEquations::residual(double t, N_Vector y, N_Vector ydot, N_Vector r, void* data) {
   auto& self = *static_cast<IdaEquations*>(data);
   return self.guarded(-1, [&] {
-    const ScopedTimer timer(self.residuals.seconds);
-    ++self.residuals.number;
+    const ScopedTimer timer(self.residual_seconds_);
+    ++self.residuals_;
     return self.code(self.problem_.residual(t, view(y), view(ydot), view(r)), 1, -1);
   });
 }

@@ -37,18 +37,20 @@ class IdaEquations {
   std::string complaint() const { return why_.empty() ? message_ : why_; }
   const std::string& message() const { return message_; }
 
-  EnergyGuard& guard() { return guard_; }
-  const EnergyGuard& guard() const { return guard_; }
-  NewtonTest& newton_test() { return newton_test_; }
-  const NewtonTest& newton_test() const { return newton_test_; }
-  JacobianSolver& solver() { return solver_; }
-  const JacobianSolver& solver() const { return solver_; }
+  // Of the energy guard: y begins the run; the state judged last is accepted.
+  void start(ConstVec y) { guard_.start(y); }
+  void accept() { guard_.accept(); }
 
-  struct Residuals {
-    long number = 0;
-    double seconds = 0;
-  };
-  Residuals residuals;
+  // An integrator's statistics with what happened here.
+  IntegratorStatistics added_to(IntegratorStatistics statistics) const;
+  LinearStatistics linear_statistics() const { return solver_.linear_statistics(); }
+
+  // What the next step depends on, for a memory that this is attached to.
+  void save(CheckpointOut out) const;
+  void load(CheckpointIn in);
+  // What was spent on residuals: checkpoints have it before the memory.
+  void save_residuals(CheckpointOut out) const;
+  void load_residuals(CheckpointIn in);
 
  private:
   static int residual(double t, N_Vector y, N_Vector ydot, N_Vector r, void* data);
@@ -73,7 +75,9 @@ class IdaEquations {
   VectorPtr work_;
   LinearPtr linear_;
   NewtonPtr newton_;
-  double unit_ = 1;            // norm of the field 1
+  double unit_ = 1;  // norm of the field 1
+  double residual_seconds_ = 0;
+  long residuals_ = 0;         // and their number
   std::string message_, why_;  // IDA's last complaint, and what made a callback fail
   std::exception_ptr thrown_;
 };
