@@ -84,6 +84,12 @@ TEST(SeriesFit, FindsUnitAndStrength) {
   EXPECT_LT(fit.deviation, 0.1);
   const SeriesFit without = fit_series(blocks, {&base}, {1, 8});
   EXPECT_GT(without.deviance, fit.deviance + 20);
+  // 2 ln of the likelihood of all looks together, and of what was known of D.
+  const SeriesMetric metric(blocks, known_variance(blocks, base, fit.ln_unit), fit.scatter);
+  const SeriesModel model{&base, &changed};
+  const Vec r = residual(blocks, model, fit);
+  const double known = std::pow(fit.ln_unit / UnitRange{1, 8}.deviation(), 2);
+  EXPECT_NEAR(fit.deviance, metric.product(r, r) + metric.log_determinant() + known, 1e-8);
 }
 
 TEST(SeriesMetric, IsThatOfTheDenseCovariance) {
@@ -91,7 +97,7 @@ TEST(SeriesMetric, IsThatOfTheDenseCovariance) {
   std::vector<SeriesBlock> blocks = blocks_of(measured({}, 3, 0.1, 1));
   blocks.resize(2);
   const SeriesScatter scatter{{0.3, 0.2, 0.1}, {0.05, 0.15, 0.25}};
-  const SeriesMetric metric(blocks, base, 0.1, scatter);
+  const SeriesMetric metric(blocks, known_variance(blocks, base, 0.1), scatter);
   const Eigen::Index n = blocks[0].values.size(), all = n + blocks[1].values.size();
   Eigen::MatrixXd S = Eigen::MatrixXd::Zero(all, all);
   for (std::size_t b = 0; b < 2; ++b) {
@@ -108,6 +114,9 @@ TEST(SeriesMetric, IsThatOfTheDenseCovariance) {
   Vec first = v;
   first.tail(all - n).setZero();
   EXPECT_NEAR(metric.product(u, v, blocks[0].quantity), u.dot(S.ldlt().solve(first)), 1e-9);
+  const SeriesMetric alone(blocks, known_variance(blocks, base, 0.1), scatter, blocks[0].quantity);
+  EXPECT_NEAR(alone.product(u, v), u.dot(S.ldlt().solve(first)), 1e-9);
+  EXPECT_NEAR(alone.log_determinant(), std::log(S.topLeftCorner(n, n).determinant()), 1e-9);
 }
 
 TEST(SeriesExplanation, NamesTheClassOfWhatIsMissing) {

@@ -3,30 +3,11 @@
 // an effect free.
 #pragma once
 
-#include <array>
-#include <optional>
 #include <vector>
 
-#include "kernel/core/types.hpp"
-#include "verification/series/run_curves.hpp"
-#include "verification/vesicles/measurements.hpp"
+#include "verification/series/series_metric.hpp"
 
 namespace traceraft {
-
-// Looks at one quantity of one vesicle.
-struct SeriesBlock {
-  Quantity quantity;
-  Vec ln_t;      // of seconds
-  Vec values;    // logarithms
-  Vec variance;  // that is known: of rounding, and of what the data state
-};
-// Values that are not positive say nothing.
-std::vector<SeriesBlock> blocks_of(const MeasuredVesicles& data);
-
-// Vesicles scatter around the mean of the runs; looks at a vesicle scatter around what is its own.
-struct SeriesScatter {
-  std::array<double, 3> vesicle, look;  // standard deviations, per quantity
-};
 
 // The model with an effect of strength a has the logarithms mean + a (changed − mean).
 struct SeriesModel {
@@ -65,44 +46,9 @@ SeriesFit fit_series(const std::vector<SeriesBlock>& blocks, const SeriesModel& 
 SeriesFit fit_series(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
                      const UnitRange& unit, const SeriesFit& near);
 
-// The inner product in which looks are independent and of variance 1, of vectors with an entry per
-// look, block after block.
-class SeriesMetric {
- public:
-  SeriesMetric(const std::vector<SeriesBlock>& blocks, const RunCurves& base, double ln_unit,
-               const SeriesScatter& scatter);
-  // `only`: of one quantity alone.
-  double product(const Vec& u, const Vec& v, std::optional<Quantity> only = {}) const;
-  double log_determinant() const;
-
- private:
-  struct Block {
-    Quantity quantity;
-    Eigen::Index first, count;
-    double shared;  // variance of what is the vesicle's own
-    Vec inverse;    // of the variances of the looks
-  };
-  std::vector<Block> blocks_;
-};
-
 // With an entry per look: measured minus model.
 Vec residual(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
              const SeriesFit& fit);
-// What is left of a fit that polynomials of ln t explain, a cubic for each quantity, in squares of
-// standard deviations.
-double trend_left(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
-                  const SeriesFit& fit);
-
-// How the logarithms of measurements of a quantity lie beside a fit: on average, and per e-fold of
-// time; and in standard deviations.
-struct SeriesOffset {
-  Quantity quantity;
-  double level, level_deviations, slope, slope_deviations;
-};
-// Of those that were measured.
-std::vector<SeriesOffset> offsets(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
-                                  const SeriesFit& fit);
-
 // With an entry per look: changed − mean, or the derivative of the mean by ln of the unit of time.
 Vec response(const std::vector<SeriesBlock>& blocks, const RunCurves& base,
              const RunCurves& changed, double ln_unit);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "verification/series/series_fit.hpp"
+#include "verification/series/series_misfit.hpp"
 
 namespace traceraft {
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "backends/nlopt/minimise.hpp"
 #include "verification/measure/fit.hpp"
+#include "verification/measure/log_of_product.hpp"
 
 namespace traceraft {
 namespace {
@@ -56,10 +58,15 @@ ScatterLaw fitted_scatter(const Points& points) {
 }
 
 // A measured logarithm.
-struct Look {
-  Quantity quantity;
-  double time, value;
+struct Logarithm {
+  double value;
   double sigma2;  // variance that is stated; of a number of rafts, absolute
+};
+
+// At one time of one vesicle.
+struct Look {
+  double ln_time;
+  std::optional<Logarithm> perimeter, rafts;
 };
 
 std::vector<Look> looks_of(const MeasuredVesicles& data, const std::vector<int>& sample) {
@@ -68,33 +75,48 @@ std::vector<Look> looks_of(const MeasuredVesicles& data, const std::vector<int>&
   for (const int k : sample)
     for (std::size_t i = vesicles[k].first; i < vesicles[k].second; ++i) {
       const Measurement& m = data.measurements[i];
-      const double t = m.time;
-      if (!(t > 0)) continue;  // what runs begin with is none of their doing
+      if (!(m.time > 0)) continue;  // what runs begin with is none of their doing
+      Look look{std::log(m.time), {}, {}};
       if (const auto& p = m.of(Quantity::perimeter); p && *p > 0)
-        looks.push_back(
-            {Quantity::perimeter, t, std::log(*p), square(m.sigma_of(Quantity::perimeter) / *p)});
+        look.perimeter = {std::log(*p), square(m.sigma_of(Quantity::perimeter) / *p)};
       if (const auto& n = m.of(Quantity::rafts); n && *n > 0)
-        looks.push_back({Quantity::rafts, t, std::log(*n),
-                         std::max(kRoundingVariance, square(m.sigma_of(Quantity::rafts)))});
+        look.rafts = {std::log(*n),
+                      std::max(kRoundingVariance, square(m.sigma_of(Quantity::rafts)))};
+      if (look.perimeter || look.rafts) looks.push_back(look);
     }
   return looks;
 }
 
+// Σ of −2 ln of normal densities.
+class Deviance {
+ public:
+  void add(const Logarithm& measured, double mean, double variance) {
+    squares_ += square(measured.value - mean) / variance;
+    variances_.multiply(variance);
+  }
+  double value() const { return squares_ + variances_.value(); }
+
+ private:
+  double squares_ = 0;
+  LogOfProduct variances_;
+};
+
 // −2 ln of the likelihood.
 double deviance_of(const std::vector<Look>& looks, const RunStatistics& runs,
                    double seconds_per_unit, double scatter) {
-  double sum = 0;
+  const double ln_unit = std::log(seconds_per_unit), scatter2 = scatter * scatter;
+  Deviance deviance;
   for (const Look& look : looks) {
-    const RunStatistics::Normal expected = runs.at(look.quantity, look.time / seconds_per_unit);
-    // Of rafts, by the number that is expected: by the one that was counted, small ones would count
-    // less.
-    const double own = look.quantity == Quantity::perimeter
-                           ? scatter * scatter + look.sigma2
-                           : look.sigma2 * std::exp(-2 * expected.mean);
-    const double variance = expected.variance + own;
-    sum += square(look.value - expected.mean) / variance + std::log(variance);
+    const RunStatistics::AtTime expected = runs.at(look.ln_time - ln_unit);
+    if (look.perimeter)
+      deviance.add(*look.perimeter, expected.ln_perimeter,
+                   expected.perimeter_variance + scatter2 + look.perimeter->sigma2);
+    // By the number that is expected: by the one that was counted, small ones would count less.
+    if (look.rafts)
+      deviance.add(*look.rafts, expected.ln_rafts,
+                   expected.rafts_variance + look.rafts->sigma2 / square(expected.rafts));
   }
-  return sum;
+  return deviance.value();
 }
 
 struct Steps {
@@ -177,15 +199,10 @@ RunStatistics RunStatistics::combined(const std::vector<RunStatistics>& all,
   return result;
 }
 
-RunStatistics::Normal RunStatistics::at(Quantity quantity, double t) const {
-  const double ln_t = std::log(t), ln_rafts = grid_.at(mean_.rafts, ln_t);
-  const double variance_of_rafts = variance(scatter_.rafts, ln_rafts);
-  if (quantity == Quantity::rafts) return {ln_rafts, variance_of_rafts};
-  return {grid_.at(mean_.perimeter, ln_t), variance(scatter_.perimeter, ln_rafts)};
-}
-
-double RunStatistics::variance(const ScatterLaw& law, double ln_rafts) const {
-  return of_mean_ * law.variance(std::exp(ln_rafts));
+RunStatistics::AtTime RunStatistics::at(double ln_t) const {
+  const double ln_rafts = grid_.at(mean_.rafts, ln_t), rafts = std::exp(ln_rafts);
+  return {grid_.at(mean_.perimeter, ln_t), of_mean_ * scatter_.perimeter.variance(rafts), ln_rafts,
+          of_mean_ * scatter_.rafts.variance(rafts), rafts};
 }
 
 double RunStatistics::fraction(double t) const {

@@ -45,18 +45,19 @@ class RunStatistics {
   static RunStatistics combined(const std::vector<RunStatistics>& all,
                                 const std::vector<double>& weights);
 
-  struct Normal {
-    double mean, variance;  // variance: of one vesicle, and of the mean itself
+  // Variances: of one vesicle's logarithms, and of their means themselves.
+  struct AtTime {
+    double ln_perimeter, perimeter_variance, ln_rafts, rafts_variance;
+    double rafts;  // exp(ln_rafts)
   };
-  // Constant beyond the ends. Perimeter or rafts only.
-  Normal at(Quantity quantity, double t) const;
+  // Constant beyond the ends.
+  AtTime at(double ln_t) const;
   double fraction(double t) const;
 
  private:
   struct Means {
     std::vector<double> perimeter, rafts, fraction;
   };
-  double variance(const ScatterLaw& law, double ln_rafts) const;
 
   LogTimes grid_;
   ScatterLaws scatter_;
