@@ -275,9 +275,15 @@ TEST_F(ProgramTest, RestartsFromAnotherRun) {
       2);
 }
 
+struct Refusal {
+  const char *arguments, *expected;
+};
+std::ostream& operator<<(std::ostream& out, const Refusal& refusal) {  // the name of its test
+  return out << "traceraft " << refusal.arguments;
+}
+
 // Bad input: exit 2, one line that names the place, and no folder.
-class BadInput : public ProgramTest,
-                 public ::testing::WithParamInterface<std::pair<const char*, const char*>> {};
+class BadInput : public ProgramTest, public ::testing::WithParamInterface<Refusal> {};
 
 TEST_P(BadInput, IsAnsweredInOneLineBeforeAnyFolderIsMade) {
   const auto [arguments, expected] = GetParam();
@@ -297,38 +303,38 @@ TEST_P(BadInput, IsAnsweredInOneLineBeforeAnyFolderIsMade) {
 INSTANTIATE_TEST_SUITE_P(
     All, BadInput,
     ::testing::Values(
-        std::pair{"run --cels 16", "unknown flag '--cels'; did you mean '--cells'?"},
-        std::pair{"run --cells=16 --seeed=3", "did you mean '--seed'?"},
-        std::pair{"run surplus", "unexpected 'surplus'"},
-        std::pair{"rum", "unknown command 'rum'; did you mean 'run'?"},
-        std::pair{"", "say what to do"}, std::pair{"resume", "needs the run folder"},
-        std::pair{"resume missing", "missing is no folder"}, std::pair{"resume .", "holds no run"},
-        std::pair{"run --cells", "--cells"}, std::pair{"run --cells abc", "--cells: 'abc'"},
-        std::pair{"run --cells 3", "allowed: 4 to 4096"},
-        std::pair{"run --epsilon nan", "--epsilon: 'nan'"},
-        std::pair{"fraction --composition 3:1:20 --temperature nan",
-                  "--temperature: 'nan' is not a finite number"},
-        std::pair{"report runs --detail nan", "--detail: 'nan'"},
-        std::pair{"run --epsilon -1", "--epsilon: -1 is out of range"},
-        std::pair{"run --case guv", "did you mean"},
-        std::pair{"run --cells 8 --surface biconcave", "too coarse"},
-        std::pair{"run --config missing.toml", "--config"},
-        std::pair{"run --config twice.toml", "twice.toml:2"},
-        std::pair{"run --config type.toml", "type.toml:1: cells"},
-        std::pair{"run --config huge.toml", "huge.toml"},
-        std::pair{"run --config binary.toml", "binary.toml"},
-        std::pair{"run --config .", "--config"}, std::pair{"run --cells 16 --cells 8", "--cells"},
-        std::pair{"run --seed 1.5", "--seed: '1.5' is not a whole number"},
-        std::pair{"run --fields=perhaps", "a flag takes no value"},
-        std::pair{"run --initial restart:", "restart needs the folder"},
-        std::pair{"run --ida-maxord 2.5", "not a whole number"},
-        std::pair{"run --ida-maxstep 1e-4 --min-step 0.01", "--ida-maxstep"},
-        std::pair{"run --initial noise --initial-caps '0 0 1 40'",
-                  "--initial-caps: it needs --initial caps"},
-        std::pair{"run --surface formula --surface-formula 1-x^2-y^2-z^2", "change its sign"},
-        std::pair{"run --linear-solver klu", "klu is for small systems"},
-        std::pair{"run --energy-guard reject --potential nodal", "--energy-guard"},
-        std::pair{"verify everything", "unknown study"}));
+        Refusal{"run --cels 16", "unknown flag '--cels'; did you mean '--cells'?"},
+        Refusal{"run --cells=16 --seeed=3", "did you mean '--seed'?"},
+        Refusal{"run surplus", "unexpected 'surplus'"},
+        Refusal{"rum", "unknown command 'rum'; did you mean 'run'?"}, Refusal{"", "say what to do"},
+        Refusal{"resume", "needs the run folder"},
+        Refusal{"resume missing", "missing is no folder"}, Refusal{"resume .", "holds no run"},
+        Refusal{"run --cells", "--cells"}, Refusal{"run --cells abc", "--cells: 'abc'"},
+        Refusal{"run --cells 3", "allowed: 4 to 4096"},
+        Refusal{"run --epsilon nan", "--epsilon: 'nan'"},
+        Refusal{"fraction --composition 3:1:20 --temperature nan",
+                "--temperature: 'nan' is not a finite number"},
+        Refusal{"report runs --detail nan", "--detail: 'nan'"},
+        Refusal{"run --epsilon -1", "--epsilon: -1 is out of range"},
+        Refusal{"run --case guv", "did you mean"},
+        Refusal{"run --cells 8 --surface biconcave", "too coarse"},
+        Refusal{"run --config missing.toml", "--config"},
+        Refusal{"run --config twice.toml", "twice.toml:2"},
+        Refusal{"run --config type.toml", "type.toml:1: cells"},
+        Refusal{"run --config huge.toml", "huge.toml"},
+        Refusal{"run --config binary.toml", "binary.toml"}, Refusal{"run --config .", "--config"},
+        Refusal{"run --cells 16 --cells 8", "--cells"},
+        Refusal{"run --seed 1.5", "--seed: '1.5' is not a whole number"},
+        Refusal{"run --fields=perhaps", "a flag takes no value"},
+        Refusal{"run --initial restart:", "restart needs the folder"},
+        Refusal{"run --ida-maxord 2.5", "not a whole number"},
+        Refusal{"run --ida-maxstep 1e-4 --min-step 0.01", "--ida-maxstep"},
+        Refusal{"run --initial noise --initial-caps '0 0 1 40'",
+                "--initial-caps: it needs --initial caps"},
+        Refusal{"run --surface formula --surface-formula 1-x^2-y^2-z^2", "change its sign"},
+        Refusal{"run --linear-solver klu", "klu is for small systems"},
+        Refusal{"run --energy-guard reject --potential nodal", "--energy-guard"},
+        Refusal{"verify everything", "unknown study"}));
 
 TEST_F(ProgramTest, ValidateStopsAfterChecking) {
   const Outcome run = traceraft("run --validate " + quick + "--out " + out("new"));
