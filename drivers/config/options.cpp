@@ -116,8 +116,8 @@ const std::vector<OptionSpec>& run_options() {
       {"checkpoint-interval", K::number, "30", "Output",
        "wall-clock seconds between checkpoints; 0: after every step", 0, 1e9, D::none, false},
       {"fields", K::flag, "true", "Output",
-       "write fields for ParaView at the output times (on unless --no-fields)", 0, 0, D::none,
-       false},
+       "write fields for ParaView and pictures at the output times (on unless --no-fields)", 0, 0,
+       D::none, false},
   });
   return table;
 }
