@@ -120,7 +120,8 @@ class ExplainPage {
 
   void add_where() {
     page_.heading("Where");
-    const bool both = !found_.found.hypothesis.parts.empty();
+    const bool both =
+        !found_.found.hypothesis.parts.empty() && !found_.found_maps.snapshots.empty();
     page_.paragraph(
         "Measured minus forecast near each place, in standard deviations of noise: orange where "
         "more raft was measured, blue where less. Noise alone surpasses " +

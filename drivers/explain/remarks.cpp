@@ -168,6 +168,10 @@ void add_rerun(const Explanation& found, std::vector<std::string>& all) {
     all.push_back(
         "On another mesh and by another integrator what was found foretells the measurements no "
         "better than the base model, within noise: repeat with more --cells or more snapshots.");
+  else if (is_named(found) && !found.rerun->heldout())
+    all.push_back(
+        "No snapshot is held out of fewer than four: that what was found foretells new ones was "
+        "not tested.");
   if (found.rerun->gap_p && found.finding != Finding::unnamed)
     all.push_back(
         "On the model's own mesh there is a gap that nothing explains; on another mesh and by "

@@ -87,10 +87,11 @@ Json rerun_json(const Explanation& found) {
   const Rerun& rerun = *found.rerun;
   const bool compared = !found.found.hypothesis.parts.empty();
   const auto text = [](const std::string& why) { return why.empty() ? Json() : Json(why); };
-  return {{"confirms", compared ? Json(rerun.confirms()) : Json()},
+  const bool told = compared && (rerun.heldout() || !rerun.failure.empty());
+  return {{"confirms", told ? Json(rerun.confirms()) : Json()},
           {"refutes", compared ? Json(rerun.refutes()) : Json()},
           {"failure", text(rerun.failure)},
-          {"gain", compared && rerun.failure.empty() ? Json(rerun.gain) : Json()},
+          {"gain", told && rerun.failure.empty() ? Json(rerun.gain) : Json()},
           {"gap_p", rerun.gap_p ? Json(*rerun.gap_p) : Json()},
           {"gap_failure", text(rerun.gap_failure)},
           {"cells", rerun.cells},

@@ -16,10 +16,11 @@ std::string in_words(const Hypothesis& hypothesis) {
   return words;
 }
 
-// A model that on another mesh foretells no better than the base may be none.
+// A model that on another mesh foretells no better than the base may be none, and so may one that
+// could not be looked at.
 std::string lacks(const Explanation& found) {
   const bool doubtful = found.rerun && found.rerun->failure.empty() && !found.rerun->confirms();
-  return doubtful ? "The model may lack " : "The model lacks ";
+  return doubtful || !found.stopped.empty() ? "The model may lack " : "The model lacks ";
 }
 
 std::string class_sentence(const Explanation& found) {

@@ -114,6 +114,28 @@ TEST(Judgement, TakesNothingThatNoiseAndTheMeshCouldBe) {
   EXPECT_EQ(judged(round).finding, Finding::named);
 }
 
+// What noise hides no finer mesh would show.
+TEST(Judgement, BlamesTheMeshForNothingThatIsNoise) {
+  Round round = first_round();
+  round.screening.mesh_error = 0;
+  round.refits.front().covariance *= 100 / (0.99 * kTelling);  // that certain
+  EXPECT_FALSE(judged(round).taken);
+  EXPECT_EQ(judged(round).finding, Finding::unnamed);
+  round.screening.gap_p = 0.5;
+  EXPECT_EQ(judged(round).finding, Finding::not_identifiable);
+  round.refits.front().covariance *= 0.99 / 1.01;
+  EXPECT_TRUE(judged(round).taken);
+}
+
+// Whatever the base model without any effect explains.
+TEST(Judgement, CountsNoEffectOfStrengthZero) {
+  Round round = first_round();
+  round.refits.push_back(no_worse(refit_with({"bulk-mobility"}, 1e9), refit_with({}, 901)));
+  EXPECT_EQ(judged(round).equivalent, std::vector<std::string>{"gravity"});
+  round.refits.back().hypothesis.parts.back().coefficients[0] = 1e-6;
+  EXPECT_EQ(judged(round).equivalent, (std::vector<std::string>{"gravity", "bulk-mobility"}));
+}
+
 // What counts is how strong the effect is that was refitted, and how certain.
 TEST(Judgement, HoldsRefittedStrengthsAgainstTheMesh) {
   Refit fit = refit_with({"exchange", "gravity"}, 900);

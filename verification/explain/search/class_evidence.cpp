@@ -54,17 +54,21 @@ std::size_t best_of(const std::vector<Member>& members, double values, const Sea
 }
 
 // What is no other hypothesis than the found one, of which it has a special case, but may be one
-// beside another best.
+// beside another best. Deviances of one round are in units of the same noise.
 std::vector<Refit> shadows(const Search& search, const Refit& best) {
   const Refit& found = search.result.found;
   const double limit = telling(search.values(), search.mesh_error());
   std::vector<Refit> result;
-  for (const Round& round : search.result.rounds)
+  for (const Round& round : search.result.rounds) {
+    const auto own = std::find_if(round.refits.begin(), round.refits.end(), [&](const Refit& fit) {
+      return fit.hypothesis.name() == found.hypothesis.name();
+    });
+    if (own == round.refits.end()) continue;
     for (const Refit& fit : round.refits)
-      if (fit.hypothesis.parts.size() == found.hypothesis.parts.size() && is_no_other(fit, found) &&
-          !is_among(class_of(search.result), fit) &&
+      if (is_no_other(fit, *own) && !is_among(class_of(search.result), fit) &&
           explains_as_well(fit, best, search.values(), limit))
         result.push_back(fit);
+  }
   return result;
 }
 
@@ -155,10 +159,13 @@ bool tell_apart(Search& search) {
   result.rivals.clear();
   for (std::size_t k = 0; k < members.size(); ++k) {
     const std::string name = members[k].fit.hypothesis.name();
-    // 0 where it is not known.
-    const double worse = members[k].all.failure.empty() ? criterion(members[k].all, values) -
-                                                              criterion(members[best].all, values)
-                                                        : 0;
+    if (!members[k].all.failure.empty()) {
+      search.tell("  " + name + " fails");
+      result.rounds.back().failures.push_back({name, members[k].all.failure});
+      result.rivals.push_back(members[k].fit);
+      continue;
+    }
+    const double worse = criterion(members[k].all, values) - criterion(members[best].all, values);
     const long less = std::lround(worse);
     search.tell("  " + name + (less < 0 ? " gains " : " loses ") + std::to_string(std::labs(less)));
     if (worse >= limit)

@@ -48,15 +48,18 @@ struct Rerun {
   std::string integrator;
   Gaps base, found, floor;  // in units of c
   std::string failure;      // why there is none, if it failed
-  // Of what is held out, if anything is: 2 ln of the likelihood ratio of found and base, with the
-  // covariance that innovations have if the found model is the truth; by how many standard
-  // deviations it is smaller than it would be then; and how many of them errors of the mesh may be.
+  // Of what is held out, or, if nothing is, of what was fitted: 2 ln of the likelihood ratio of
+  // found and base, with the covariance that innovations have if the found model is the truth; by
+  // how many standard deviations it is smaller than it would be then; and how many of them errors
+  // of the mesh may be.
   double gain = 0, shortfall = 0, doubt = 0;
   // That what is left of a gap which nothing explains is noise; looked at if there is one, and why
   // not, if that failed.
   std::optional<double> gap_p = {};
   std::string gap_failure = {};
 
+  bool heldout() const { return found.heldout > 0; }
+  // Does it foretell better than the base? Without anything held out next to any model does.
   bool confirms() const { return failure.empty() && gain > 0; }
   bool refutes() const;
 };

@@ -13,6 +13,15 @@ bool identifiable(const Screening& screening, double usual_change) {
       [&](const CandidateScore& score) { return kSeen * score.resolution <= usual_change; });
 }
 
+// An effect of strength 0 is none: without it this is another hypothesis.
+bool has_nothing(const Hypothesis& hypothesis) {
+  return std::any_of(hypothesis.parts.begin(), hypothesis.parts.end(),
+                     [](const Hypothesis::Part& part) {
+                       return std::all_of(part.coefficients.begin(), part.coefficients.end(),
+                                          [](double coefficient) { return coefficient == 0; });
+                     });
+}
+
 }  // namespace
 
 bool has_gap(const Screening& screening, double false_alarms) {
@@ -70,7 +79,8 @@ bool is_no_other(const Refit& fit, const Refit& best) {
 }
 
 bool explains_as_well(const Refit& fit, const Refit& best, double values, double limit) {
-  return !is_no_other(fit, best) && criterion(fit, values) < criterion(best, values) + limit;
+  return !has_nothing(fit.hypothesis) && !is_no_other(fit, best) &&
+         criterion(fit, values) < criterion(best, values) + limit;
 }
 
 Finding without_name(const Screening& screening, double false_alarms) {
@@ -90,9 +100,14 @@ Judgement judge(const Round& round, double values, double false_alarms, double u
   if (round.refits.empty()) return rest;
   const Refit& best = round.refits.front();
   if (criterion(round.without, values) < criterion(best, values)) return rest;
-  if (!resolved(best, best.hypothesis.parts.size() - 1, values, round.screening.mesh_error))
-    return first ? Judgement{false, Finding::below_resolution, Finding::below_resolution, {}}
-                 : rest;
+  const std::size_t last = best.hypothesis.parts.size() - 1;
+  if (!resolved(best, last, values, round.screening.mesh_error)) {
+    if (!first) return rest;
+    // No finer mesh would tell what noise hides.
+    if (certainty(best, last) < kTelling)
+      return {false, without_name(round.screening, false_alarms), Finding::not_identifiable, {}};
+    return {false, Finding::below_resolution, Finding::below_resolution, {}};
+  }
   Judgement taken{true, Finding::named, Finding::named, {best.hypothesis.name()}};
   const double limit = telling(values, round.screening.mesh_error);
   for (std::size_t k = 1; k < round.refits.size(); ++k)

@@ -1,5 +1,9 @@
 #include "verification/explain/search/replacements.hpp"
 
+#include <algorithm>
+#include <iterator>
+
+#include "verification/explain/search/drops.hpp"
 #include "verification/explain/search/neighbours.hpp"
 
 namespace traceraft {
@@ -8,11 +12,19 @@ namespace {
 // Effects that are replaced or dropped at once.
 constexpr int kMostMoves = 3;
 
+// Effects that may be taken.
+std::vector<Candidate> open_candidates(const Search& search) {
+  std::vector<Candidate> open;
+  std::copy_if(search.candidates.begin(), search.candidates.end(), std::back_inserter(open),
+               [&](const Candidate& c) { return !was_dropped(search.result, c.effect); });
+  return open;
+}
+
 std::vector<Refit> refit_neighbours(Search& search) {
   search.tell("in place of " + search.model.hypothesis.name());
   std::vector<FilterModel> trials;
-  for (Hypothesis& near :
-       neighbours(search.result.found, search.result.rounds, search.values(), search.candidates)) {
+  for (Hypothesis& near : neighbours(search.result.found, search.result.rounds, search.values(),
+                                     open_candidates(search))) {
     trials.push_back(search.model);
     trials.back().hypothesis = std::move(near);
   }

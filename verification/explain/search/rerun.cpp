@@ -79,7 +79,7 @@ Rerun compare_forecasts(const FilterResult& base, const FilterResult& found, dou
   result.base = gaps_of_pass(base);
   result.found = gaps_of_pass(found);
   result.floor = expected_gaps(found);
-  const bool held_out = result.found.heldout > 0;
+  const bool held_out = result.heldout();
   // If the found model is the truth, its innovations ν have the covariance S; νᵀ S⁻¹ d has the
   // variance dᵀ S⁻¹ d then, d being the difference of the forecasts.
   double along = 0, difference = 0, count = 0;

@@ -120,6 +120,16 @@ bool take(Search& search, const Round& round) {
   return true;
 }
 
+// Nothing was looked at beside what was found.
+void stop(Explanation& result, const std::string& why) {
+  result.stopped = why;
+  result.changes.clear();
+  result.found_maps = {};
+  if (!result.found.hypothesis.parts.empty()) return;
+  result.rivals.clear();
+  result.finding = result.without_gap = Finding::not_identifiable;
+}
+
 }  // namespace
 
 bool look_for_one(Search& search) {
@@ -134,7 +144,7 @@ bool look_for_one(Search& search) {
     throw;
   } catch (const std::runtime_error& error) {
     if (first) throw;
-    result.stopped = error.what();
+    stop(result, error.what());
     return false;
   }
   note_changes(search, pass);
