@@ -120,6 +120,7 @@ int calibrate_ensemble(const CalibrateRequest& request, const MeasuredVesicles& 
     throw InputError("--ensemble: its runs end long before the measurements do");
   // Runs that end before the measurements do cover these for a smaller D only.
   const Interval covered{seconds / fastest, seconds * kSlowest};
+  end_on_stop_signals(kInterrupted, "give the same command again");
   const Calibration result =
       calibrate(data, {}, {point}, {std::max(seconds, covered.low), covered});
   const fs::path out = folder_for(request);
@@ -178,6 +179,9 @@ int run_calibration(CalibrateRequest request) {
     if (!request.quiet) std::printf("to go on, give the same command with --out %s\n", out.c_str());
     return kInterrupted;
   }
+  end_on_stop_signals(
+      kInterrupted,
+      "all runs are there; to go on, give the same command with --out " + in_shell(out.string()));
   const double diffusion = model.units().diffusion_cm2_s;
   const std::string bound =
       formatted("D is looked for between %.3g and %.3g cm^2/s: begin with another --diffusion.",

@@ -111,7 +111,8 @@ bool explain_series_data(const ExplainCommand& command, const SeriesSetup& setup
   const SeriesEnsemblesRequest request{looks(data),         command.runs,
                                        command.jobs,        command.job.processors(),
                                        command.job.without, command.quiet};
-  const SeriesEnsembles ensembles = run_series_ensembles(out / "ensembles", model, request);
+  const SeriesEnsembles ensembles =
+      numerically([&] { return run_series_ensembles(out / "ensembles", model, request); });
   if (ensembles.stopped) return false;
   end_on_stop_signals(kInterrupted, go_on);
   SeriesRequest search{unit_range(model, command.job.diffusion_error)};

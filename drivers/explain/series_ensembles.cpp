@@ -10,6 +10,7 @@
 #include "drivers/explain/explain_run.hpp"
 #include "drivers/explain/found_parameters.hpp"
 #include "drivers/input/measured_units.hpp"
+#include "drivers/numerical_failure.hpp"
 #include "drivers/output/json_file.hpp"
 #include "drivers/run/physical_model.hpp"
 #include "kernel/core/error.hpp"
@@ -148,8 +149,8 @@ SeriesEnsembles run_series_ensembles(const fs::path& folder, const Configuration
   };
   PointEnd base = simulate("base", "", "no effect");
   if (!base.failures.empty())
-    throw InputError("the run of seed " + std::to_string(base.failures.front().seed) +
-                     " failed: " + base.failures.front().why);
+    throw NumericalFailure("the run of seed " + std::to_string(base.failures.front().seed) +
+                           " failed: " + base.failures.front().why);
   result.base = std::move(base.runs);
   result.stopped = base.stopped;
   for (const EffectTerm& sized : terms) {

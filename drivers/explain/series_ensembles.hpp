@@ -35,7 +35,7 @@ void refuse_series(const MeasuredVesicles& data, const Configuration& model);
 // Carries out, or goes on with, what is in the folder. Effects have the strength at which they
 // change c by 6 % of its standard deviation from one of five looks to the next, which a run on a
 // coarser mesh finds; from then on signals to stop are caught (process.hpp). Throws InputError if
-// no effect is left, or a run of the model fails.
+// no effect is left, NumericalFailure if a run of the model fails.
 SeriesEnsembles run_series_ensembles(const std::filesystem::path& folder,
                                      const Configuration& model,
                                      const SeriesEnsemblesRequest& request);

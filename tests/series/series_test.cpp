@@ -263,6 +263,15 @@ TEST(SeriesExplanation, KnowsHowWellItKnowsD) {
   }
 }
 
+// Of a D that is known to 2 % nothing that fits it is at the end.
+TEST(SeriesExplanation, LooksAroundADThatIsKnown) {
+  SeriesRequest request{{1, std::exp(0.04), 0, 2}};
+  request.replicates = 49;
+  const SeriesExplanation found =
+      explain_series(measured({}, 4, 0.1, 1), ensemble({}), candidates(), request);
+  EXPECT_FALSE(found.unit_at_end);
+}
+
 // Where nothing coarsens, series say nothing of it.
 TEST(SeriesExplanation, KnowsThatItDoesNotKnowD) {
   const Law rest{0};

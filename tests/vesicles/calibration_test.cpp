@@ -250,6 +250,20 @@ TEST(MeasuredFractions, AreHeldAgainstThoseAtTheSameTimes) {
   EXPECT_NEAR(best, 0.1, 0.002);
 }
 
+// Of vesicles that all have the same one, as far as it was written down.
+TEST(MeasuredFractions, CountIfTheyAreAllTheSame) {
+  const std::vector<History> runs = simulate(kEpsilon, true, 17, 5);
+  const std::vector<int> each = each_once(runs.size());
+  const RunStatistics statistics({runs, common_times(runs, kCurveTimes)}, each,
+                                 scatter_laws({runs}));
+  const auto deviance = [&](double fraction) {
+    MeasuredVesicles data = draw_from_runs(design(), runs, 5, 1);
+    for (Measurement& m : data.measurements) m.values[2] = fraction;
+    return MeasuredFractions(data).deviance(each, statistics, kSeconds);
+  };
+  EXPECT_GT(deviance(0.2), deviance(0.11) + 100);
+}
+
 TEST(Calibration, DeterminesNothingUnlessItConverges) {
   std::vector<CalibrationPoint> points;
   for (const auto& ln : design_around({std::log(kEpsilon)}, 0.25))

@@ -13,8 +13,8 @@
 namespace traceraft {
 namespace {
 
-// Of ln of the unit; and of its deviation, over what it was before.
-constexpr double kAtEnd = 0.1, kTold = 0.7;
+// Of the range of ln of the unit, and at most that much; of its deviation, over what it was before.
+constexpr double kAtEnd = 0.05, kMostAtEnd = 0.1, kTold = 0.7;
 
 void refuse(const MeasuredVesicles& data, const std::vector<History>& base,
             const std::vector<SeriesCandidate>& candidates) {
@@ -60,7 +60,8 @@ class SeriesSearch {
         std::sqrt((null_.ln_unit.array() - gains_.base.ln_unit).square().mean());
     const double from_end = std::min(gains_.base.ln_unit - request_.unit.lowest(),
                                      request_.unit.highest() - gains_.base.ln_unit);
-    result_.unit_at_end = from_end < kAtEnd;
+    const double range = request_.unit.highest() - request_.unit.lowest();
+    result_.unit_at_end = from_end < std::min(kMostAtEnd, kAtEnd * range);
     result_.unit_told = result_.unit_deviation < kTold * request_.unit.deviation();
     result_.offsets = gains_.offsets;
     for (SeriesOffset& offset : result_.offsets) {

@@ -21,12 +21,20 @@ TimeFit with_fractions(const Evidence& all, const RunStatistics& runs, TimeFit f
 
 }  // namespace
 
+namespace {
+
+// Shares are given in per cent, rounded; where all are the same that is what is known.
+constexpr double kRoundedFraction = 0.01 / 3.46;  // 1/√12 of it
+
+}  // namespace
+
 MeasuredFractions::MeasuredFractions(const MeasuredVesicles& data)
     : vesicles_(fractions_of_vesicles(data)) {
   std::vector<double> known;
   for (const auto& vesicle : vesicles_)
     if (vesicle) known.push_back(vesicle->mean);
-  if (known.size() > 1) variance_ = std::pow(moments(known).deviation, 2);
+  if (known.size() > 1)
+    variance_ = std::pow(std::max(moments(known).deviation, kRoundedFraction), 2);
 }
 
 double MeasuredFractions::deviance(const std::vector<int>& sample, const RunStatistics& runs,

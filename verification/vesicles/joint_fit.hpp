@@ -25,7 +25,7 @@ class MeasuredFractions {
 
  private:
   std::vector<std::optional<FractionOfVesicle>> vesicles_;
-  double variance_ = 0;  // 0: too few to say anything
+  double variance_ = 0;  // 0: of a single vesicle nobody knows how they scatter
 };
 
 // Everything that counts, of the vesicles of `sample`: `fractions` only where that of rafts is
