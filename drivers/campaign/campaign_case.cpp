@@ -74,13 +74,18 @@ double seconds_of(const fs::path& explained) {
   return from_json(file, [](const Json& json) { return json.at("seconds"); });
 }
 
-// One by another build, or that cannot be read, is none.
+// One by another build, or that is damaged, is none.
 void forget_if_unusable(const fs::path& explained, const ExplainSetup& setup) {
+  const auto forget = [&](const std::exception& why) {
+    std::printf("the search begins anew: %s\n", why.what());
+    for (const char* file : {"search.json", "time.json"}) fs::remove(explained / file);
+  };
   try {
     (void)SearchFile(explained, setup).load();
-  } catch (const std::runtime_error& error) {
-    std::printf("the search begins anew: %s\n", error.what());
-    for (const char* file : {"search.json", "time.json"}) fs::remove(explained / file);
+  } catch (const InputError& error) {
+    forget(error);
+  } catch (const DamagedFile& error) {
+    forget(error);
   }
 }
 
@@ -143,7 +148,8 @@ void carry_out_case(const CampaignFolder& folder, const CampaignPlan& plan, cons
   job.replicates = plan.replicates;
   job.effects = plan.effects;
   job.diffusion_error = settings.diffusion_error;
-  job.without = settings.without;
+  if (group.aim == Aim::unnamed)
+    job.without = effects_like(open_truth(path).effects.front().effect);
   ExplainSetup setup = read_explain_job(job);
   fs::create_directories(path / "explain");
   search(path / "explain", setup);

@@ -115,7 +115,7 @@ std::optional<std::vector<CaseFailure>> work_off(const CampaignFolder& folder,
                     folder.log_of(left[k]));
     if (end.exit_code == kSuccess) return true;
     if (end.was_stopped()) return false;
-    if (!end.telling()) throw IoError(left[k].name() + ": " + end.reason());
+    if (!end.is_its_own(folder.path())) throw IoError(left[k].name() + ": " + end.reason());
     const std::lock_guard lock(mutex);
     failures.push_back({left[k], end.reason()});
     return true;

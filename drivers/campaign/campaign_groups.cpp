@@ -15,8 +15,9 @@ CaseSettings with(const std::function<void(CaseSettings&)>& change) {
   return settings;
 }
 
-// An effect and those that data may not tell from it.
-std::vector<std::string> class_of(const std::string& effect) {
+}  // namespace
+
+std::vector<std::string> effects_like(const std::string& effect) {
   std::vector<std::string> result{effect};
   for (const std::string& other : effects().names()) {
     const auto names = [](const std::string& a, const std::string& b) {
@@ -27,8 +28,6 @@ std::vector<std::string> class_of(const std::string& effect) {
   }
   return result;
 }
-
-}  // namespace
 
 const NamedList<CampaignGroup>& campaign_groups() {
   static const NamedList<CampaignGroup> list(
@@ -66,7 +65,6 @@ CaseSettings settings_of(const CampaignGroup& group, int number, std::uint64_t s
     const auto further = static_cast<std::size_t>(u * static_cast<double>(all.size() - 1));
     settings.hidden.push_back(all[(first + 1 + further) % all.size()]);
   }
-  if (group.aim == Aim::unnamed) settings.without = class_of(settings.hidden.front());
   return settings;
 }
 

@@ -9,13 +9,12 @@
 namespace traceraft {
 
 struct CaseSettings {
-  std::vector<std::string> hidden;   // effects
-  std::vector<std::string> without;  // left out of those that are looked for
-  double noise = 0.1;                // standard deviation, in units of that of c
-  double stated = 0;                 // what the data state of it, over what it is; 0: nothing
-  int snapshots = 8;                 // effects are as strong as between eight
-  double diffusion_error = 0;        // of the model's D, that the search is told; 0: nothing
-  double coarser = 1;                // cells of the model's mesh, over what its interface needs
+  std::vector<std::string> hidden;  // effects
+  double noise = 0.1;               // standard deviation, in units of that of c
+  double stated = 0;                // what the data state of it, over what it is; 0: nothing
+  int snapshots = 8;                // effects are as strong as between eight
+  double diffusion_error = 0;       // of the model's D, that the search is told; 0: nothing
+  double coarser = 1;               // cells of the model's mesh, over what its interface needs
 };
 
 // What the verdict of a case has to be.
@@ -30,6 +29,9 @@ struct CampaignGroup {
 };
 
 const NamedList<CampaignGroup>& campaign_groups();
+
+// An effect and those that data may not tell from it.
+std::vector<std::string> effects_like(const std::string& effect);
 
 // The settings of case `number` of a group; `seed` decides what chance does.
 CaseSettings settings_of(const CampaignGroup& group, int number, std::uint64_t seed);

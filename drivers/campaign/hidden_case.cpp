@@ -70,6 +70,17 @@ void refuse_hiding(const Configuration& model, const BlindRequest& request) {
                      std::to_string(model.integer("cells")));
 }
 
+namespace {
+
+// Of an attempt that was killed: it may have had more.
+void forget_snapshots(const fs::path& data) {
+  const std::vector<fs::directory_entry> files(fs::directory_iterator(data), {});
+  for (const fs::path& file : files)
+    if (file.filename().string().rfind("snapshot_", 0) == 0) fs::remove(file);
+}
+
+}  // namespace
+
 void hide(const fs::path& folder, const GivenValues& model, BlindRequest request) {
   const Configuration configuration(model, {});
   refuse_hiding(configuration, request);
@@ -94,6 +105,7 @@ void hide(const fs::path& folder, const GivenValues& model, BlindRequest request
   data.radius_um = units.length();
   data.blur_um = request.blur * units.length();
   data.vesicles = std::move(drawn.vesicles);
+  forget_snapshots(folder / "data");
   write_field_dataset(folder / "data", data, "synthetic measurements");
   std::vector<std::string> names;
   for (const auto& [name, value] : model) names.push_back(name);

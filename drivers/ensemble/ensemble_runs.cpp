@@ -19,8 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kLeastSpace = 64 << 20;  // bytes that a disk has that is not full
-
 // What runs write about t and after it; progress is counted in ln t, over which work is spread.
 constexpr double kFirstShare = 1e-6;
 
@@ -49,9 +47,7 @@ class Ledger {
     const std::lock_guard lock(mutex_);
     if (end.exit_code == kSuccess) return true;
     if (end.was_stopped()) return false;
-    // A full disk stops all; damaged files of a member are its own.
-    if (!end.telling() && end.exit_code != kLocked &&
-        (end.exit_code != kInputOutput || fs::space(folder_).available < kLeastSpace))
+    if (!end.is_its_own(folder_) && end.exit_code != kLocked)
       throw IoError("the run of seed " + std::to_string(seed) + ": " + end.reason());
     add_failure({seed, end.reason(), end.exit_code == kLocked});
     return true;

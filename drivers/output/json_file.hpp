@@ -11,15 +11,15 @@ namespace traceraft {
 
 using Json = nlohmann::ordered_json;
 
-// use(content). Throws IoError if the file is not there, is too large or no JSON, or lacks what is
-// looked for.
+// use(content). Throws IoError if the file is not there or too large, DamagedFile if it is no JSON
+// or lacks what is looked for.
 template <class Use>
 auto from_json(const std::filesystem::path& path, const Use& use,
                std::uint64_t max_bytes = 1 << 24) {
   try {
     return use(Json::parse(read_file(path, max_bytes)));
   } catch (const nlohmann::json::exception& error) {
-    throw IoError(path.string() + " is damaged: " + error.what());
+    throw DamagedFile(path.string() + " is damaged: " + error.what());
   }
 }
 

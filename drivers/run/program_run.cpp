@@ -63,6 +63,12 @@ bool ProgramEnd::telling() const {
   }
 }
 
+bool ProgramEnd::is_its_own(const std::filesystem::path& folder) const {
+  constexpr std::uintmax_t kLeastSpace = 64 << 20;  // bytes that a disk has that is not full
+  return telling() ||
+         (exit_code == kInputOutput && std::filesystem::space(folder).available >= kLeastSpace);
+}
+
 ProgramEnd run_program(const std::vector<std::string>& arguments, const std::filesystem::path& log,
                        int ranks, double time_limit, const std::function<void()>& tick) {
   std::vector<std::string> command = program_on(ranks);

@@ -22,6 +22,9 @@ struct ProgramEnd {
   // mesh), numerical failure, too little memory and crashes do; a full disk, a folder in use or
   // somebody who stopped it do not.
   bool telling() const;
+  // Is it of no concern to others whose folders are on the same disk? So are telling ends, and
+  // damaged files unless the disk of `folder` is full.
+  bool is_its_own(const std::filesystem::path& folder) const;
 };
 
 // Runs this program to its end, under mpirun if on more than one rank. What it prints goes to

@@ -25,4 +25,9 @@ struct IoError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// It was read, and its content is not what it has to be.
+struct DamagedFile : IoError {
+  using IoError::IoError;
+};
+
 }  // namespace traceraft

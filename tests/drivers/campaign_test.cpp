@@ -52,7 +52,12 @@ TEST_F(HideTest, WritesMeasurementsAndSealsTheirTruth) {
 }
 
 TEST_F(HideTest, SeesAChangedTruth) {
+  // Of an attempt that was killed while it wrote more snapshots.
+  fs::create_directories(folder.path / "riddle" / "data");
+  write_durably(folder.path / "riddle" / "truth.json", "{}\n");
+  write_durably(folder.path / "riddle" / "data" / "snapshot_004.csv", "x,y,z,c\n");
   ASSERT_EQ(hide("--effects none --seed 5").code, 0);
+  EXPECT_FALSE(fs::exists(folder.path / "riddle" / "data" / "snapshot_004.csv"));
   const fs::path truth = folder.path / "riddle" / "truth.json";
   EXPECT_TRUE(open_truth(folder.path / "riddle").effects.empty());
   std::string text = testing::content(truth);
