@@ -274,7 +274,7 @@ TEST_F(CompareTest, GoesOnAfterAnInterruption) {
   int status = 0;
   waitpid(child, &status, 0);
   ASSERT_EQ(WEXITSTATUS(status), 5);
-  EXPECT_FALSE(fs::exists(folder.path / "c/runs/euler-block-0.0001-1.json"));
+  EXPECT_FALSE(fs::exists(folder.path / "c/runs/euler-block-1e-04-1.json"));
   const Outcome resumed = traceraft("compare " + out() + references());
   ASSERT_EQ(resumed.code, 0) << resumed.output;
   ASSERT_EQ(csv().size(), 7u);

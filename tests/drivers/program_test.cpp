@@ -7,11 +7,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "kernel/core/text.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace traceraft {
@@ -36,6 +38,12 @@ class ProgramTest : public ::testing::Test {
   pid_t start(const std::string& name, const std::string& more = "--threads 2") {
     return testing::start_traceraft("run " + quick + more +
                                     " --checkpoint-interval 0 --quiet --out " + out(name));
+  }
+  static void kill_running(pid_t child) {
+    kill(child, SIGKILL);
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_TRUE(WIFSIGNALED(status)) << "it had come to its end";
   }
   void wait_for_rows(const std::string& name, long rows) const {
     for (int i = 0; i < 6000 && lines_of(folder.path / name / "series.csv") < rows; ++i)
@@ -76,6 +84,57 @@ TEST_F(ProgramTest, RunsAndWritesWhatItPromises) {
   EXPECT_NE(content(folder.path / "a/fields.pvd").find("fields/field-0002.vtu"), std::string::npos);
 }
 
+TEST_F(ProgramTest, TakesTheSameStepsWhateverIsAskedFor) {
+  ASSERT_EQ(traceraft("run --quiet " + quick + "--out " + out("few")).code, 0);
+  ASSERT_EQ(
+      traceraft("run --quiet " + quick + "--output-times 0.01,0.02,0.0213,0.3 --out " + out("many"))
+          .code,
+      0);
+  EXPECT_EQ(content(folder.path / "few/series.csv"), content(folder.path / "many/series.csv"));
+}
+
+// The same vesicle in µm and s, and in units of R and R²/D.
+TEST_F(ProgramTest, WritesInTheUnitsOfItsModel) {
+  constexpr double kR = 5, kUnitOfTime = kR * kR * 1e-8 / 1e-5;  // of D = 1e-5 cm²/s
+  const std::string run = "run --quiet --case two-rafts --cells 16 --no-fields ";
+  ASSERT_EQ(traceraft(run + "--scaled --epsilon 0.16 --t-end 1 --out " + out("scaled")).code, 0);
+  ASSERT_EQ(traceraft(run +
+                      formatted("--radius %g --epsilon %g --t-end %.17g --out ", kR, 0.16 * kR,
+                                kUnitOfTime) +
+                      out("physical"))
+                .code,
+            0);
+  const auto row = [&](const std::string& name) {
+    return nlohmann::json::parse(content(folder.path / name / "summary.json"));
+  };
+  const auto scaled = row("scaled"), physical = row("physical");
+  for (const auto& [key, unit] : {std::pair("area", kR * kR),
+                                  {"mass", kR * kR},
+                                  {"energy", kR * kR},
+                                  {"perimeter", kR},
+                                  {"perimeter_level", kR},
+                                  {"t", kUnitOfTime},
+                                  {"h", kR},
+                                  {"raft_fraction", 1.0},
+                                  {"c_max", 1.0},
+                                  {"rafts", 1.0},
+                                  {"steps", 1.0}})
+    EXPECT_NEAR(physical.at(key).get<double>(), unit * scaled.at(key).get<double>(),
+                1e-6 * unit * std::fabs(scaled.at(key).get<double>()))
+        << key;
+}
+
+TEST_F(ProgramTest, AFailedClaimOfAStudyExitsWithOne) {
+  const std::string verify = "verify geometry --quick --out " + out("v");
+  const Outcome good = traceraft(verify);
+  ASSERT_EQ(good.code, 0) << good.output;
+  auto result = nlohmann::json::parse(content(folder.path / "v/geometry.json"));
+  result.at("claims").at(0).at("measured") = 7;
+  write_durably(folder.path / "v/geometry.json", result.dump());
+  const Outcome bad = traceraft(verify);  // which takes the study from there
+  EXPECT_EQ(bad.code, 1) << bad.output;
+}
+
 TEST_F(ProgramTest, TakesEffectsByOneFlagOrSeveral) {
   const std::string run = "run --quiet " + quick;
   ASSERT_EQ(
@@ -100,8 +159,7 @@ TEST_F(ProgramTest, ContinuesBitwiseAfterBeingKilledAtAnyMoment) {
     const std::string name = "killed" + std::to_string(rows);
     const pid_t child = start(name);
     wait_for_rows(name, rows);
-    kill(child, SIGKILL);
-    waitpid(child, nullptr, 0);
+    kill_running(child);
     const Outcome resumed = traceraft("resume --quiet " + out(name));
     ASSERT_EQ(resumed.code, 0) << resumed.output;
     expect_same_results("whole", name);
@@ -115,8 +173,7 @@ TEST_F(ProgramTest, ContinuesBitwiseWithOtherMethods) {
     ASSERT_EQ(traceraft("run --quiet " + quick + method + "--out " + out("whole" + name)).code, 0);
     const pid_t child = start("killed" + name, method);
     wait_for_rows("killed" + name, 12);
-    kill(child, SIGKILL);
-    waitpid(child, nullptr, 0);
+    kill_running(child);
     ASSERT_EQ(traceraft("resume --quiet " + out("killed" + name)).code, 0);
     expect_same_results("whole" + name, "killed" + name);
   }
@@ -171,8 +228,7 @@ TEST_F(ProgramTest, RefusesADamagedCheckpointAndUsesTheOneBefore) {
   ASSERT_EQ(traceraft("run --quiet " + quick + "--out " + out("whole")).code, 0);
   const pid_t child = start("a");
   wait_for_rows("a", 12);
-  kill(child, SIGKILL);
-  waitpid(child, nullptr, 0);
+  kill_running(child);
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder.path / "a/checkpoints"))
     if (entry.path().extension() == ".ckpt") files.push_back(entry.path());
@@ -202,8 +258,7 @@ TEST_F(ProgramTest, LocksItsFolder) {
   wait_for_rows("a", 3);
   EXPECT_EQ(traceraft("resume " + out("a")).code, 6);
   EXPECT_EQ(traceraft("run " + quick + "--out " + out("a")).code, 6);
-  kill(child, SIGKILL);
-  waitpid(child, nullptr, 0);
+  kill_running(child);
   const Outcome again = traceraft("run " + quick + "--out " + out("a"));
   EXPECT_EQ(again.code, 2);
   EXPECT_NE(again.output.find("traceraft resume"), std::string::npos);

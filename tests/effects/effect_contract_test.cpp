@@ -1,14 +1,14 @@
 // What every effect promises (kernel/problem/effect.hpp, kernel/effects/effects.hpp).
 #include <gtest/gtest.h>
 
-#include <map>
-
 #include "kernel/effects/effects.hpp"
 #include "tests/support/spaces.hpp"
+#include "tests/support/strong_effects.hpp"
 
 namespace traceraft {
 namespace {
 
+using testing::kStrong;
 using testing::make_model;
 using testing::make_space;
 using testing::random_state;
@@ -16,23 +16,6 @@ using testing::random_vector;
 
 constexpr Units kScaled{1, 1, true};
 constexpr double kTime = 0.37;
-
-// Strong enough to be seen beside the base model.
-const std::map<std::string, std::string> kStrong = {
-    {"allen-cahn", "rate=0.7"},
-    {"asymmetry", "strength=0.1"},
-    {"bulk-mobility", "strength=0.4"},
-    {"cooling", "rate=3,out=0.2,in=0.1,activation=0.3"},
-    {"curvature", "strength=0.8"},
-    {"exchange", "rate=0.9,target=0.3"},
-    {"gravity", "strength=0.6"},
-    {"line-tension", "excess=0.7"},
-    {"mobility-contrast", "strength=0.8"},
-    {"mobility-exponent", "excess=0.6"},
-    {"ohta-kawasaki", "strength=2,range=0.7"},
-    {"rotation", "rate=1.3,x=1,y=-1,z=0.5"},
-    {"thermal", "strength=0.01,time=0.1,seed=3"},
-    {"uptake", "rate=0.6"}};
 
 class EffectContract : public ::testing::TestWithParam<std::string> {
  protected:

@@ -58,6 +58,35 @@ TEST_F(EffectPhysics, SourcesChangeTheMassAsTheySay) {
               2 * (0.1 * (area - mass) - 0.05 * mass), 1e-10);
 }
 
+// Not on average only.
+TEST_F(EffectPhysics, SourcesActWhereTheyAre) {
+  const Vec v = nodal([](const Point& p) { return p[0] + 0.5 * p[1] * p[2]; });
+  const double c = space->inner(y.head(n), v), mu = space->inner(y.tail(n), v),
+               one = space->integral(v);
+  const auto rate = [&](const std::string& effect) {
+    return -contribution(space, effect, y).head(n).dot(v);
+  };
+  EXPECT_NEAR(rate("exchange:rate=2,target=0.3"), -2 * (c - 0.3 * one), 1e-10);
+  EXPECT_NEAR(rate("uptake:rate=2"), 2 * (one - c), 1e-10);
+  EXPECT_NEAR(rate("allen-cahn:rate=2"), -2 * mu, 1e-10);
+  EXPECT_NEAR(rate("cooling:rate=2,out=0.1,in=0.05,activation=0"), 2 * (0.1 * (one - c) - 0.05 * c),
+              1e-10);
+}
+
+TEST_F(EffectPhysics, AsymmetryAddsTheSlopeOfItsEnergy) {
+  const auto g = [](double c) {
+    const double side = c < 0 ? -1 : c > 1 ? 1 : 2 * c - 1;
+    return c * c * (1 - c) * (1 - c) * side;
+  };
+  for (const double c : {-0.1, 0.2, 0.3, 0.5, 0.9, 1.1}) {
+    const Vec uniform = Vec::Constant(2 * n, c);
+    const double slope = (g(c + 1e-6) - g(c - 1e-6)) / 2e-6;
+    EXPECT_NEAR(contribution(space, "asymmetry:strength=0.15", uniform).tail(n).sum(),
+                -0.15 * slope * space->area, 1e-8)
+        << c;
+  }
+}
+
 TEST_F(EffectPhysics, CoolingSlowsDiffusionDown) {
   const CahnHilliard base(space, make_model());
   Vec flux(2 * n);

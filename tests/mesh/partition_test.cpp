@@ -8,6 +8,7 @@
 #include <mutex>
 #include <set>
 
+#include "kernel/core/error.hpp"
 #include "kernel/mesh/active_mesh.hpp"
 #include "tests/support/rank_contract.hpp"
 #include "tests/support/thread_ranks.hpp"
@@ -86,6 +87,16 @@ TEST(Partition, SharesTheMeshEvenlyAndCompletely) {
 }
 
 // Ghosts are where the plan says, and in global order everything that adds to an owned row is here.
+TEST(Partition, RefusesMoreRanksThanItHasWorkFor) {
+  EXPECT_NO_THROW(Partition(*make_surface("sphere"), {8}, 7));
+  try {
+    Partition(*make_surface("sphere"), {8}, 5000);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("5000 ranks are too many"), std::string::npos);
+  }
+}
+
 TEST(Partition, EveryRankHasAllThatTouchesItsNodes) {
   const ActiveMesh whole = build_active_mesh(*make_surface("ellipsoid"), 48);
   std::map<std::int64_t, std::vector<Tet>> at_node;

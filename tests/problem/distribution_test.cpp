@@ -1,11 +1,13 @@
 // What must not depend on the number of ranks, and what may only to roundoff.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <map>
 #include <sstream>
 
 #include "kernel/core/checkpoint_stream.hpp"
+#include "kernel/effects/effects.hpp"
 #include "kernel/fem/trace.hpp"
 #include "kernel/linear/linear_solver.hpp"
 #include "kernel/observables/observables.hpp"
@@ -13,6 +15,7 @@
 #include "kernel/observables/surface_view.hpp"
 #include "kernel/problem/prescribed_density.hpp"
 #include "tests/support/spaces.hpp"
+#include "tests/support/strong_effects.hpp"
 #include "tests/support/thread_ranks.hpp"
 
 namespace traceraft {
@@ -133,6 +136,38 @@ TEST_P(Distribution, ResidualAndJacobianAreBitwiseThoseOfOneRank) {
         expect_rows_within(part.mm, expected.mm, "mm");
       });
     }
+  }
+}
+
+// Some solve systems of their own, or sum over the surface: to the accuracy of that.
+TEST_P(Distribution, EffectsAreThoseOfOneRank) {
+  const auto whole = make_space(kCells);
+  for (const auto& [name, parameters] : testing::kStrong) {
+    const auto evaluate = [&](const std::shared_ptr<const SurfaceSpace>& of) {
+      CahnHilliardModel model = make_model();  // ranks share nothing, as processes do
+      add_effects(name + ":" + parameters, {1, 1, true}, model);
+      const CahnHilliard p(of, model);
+      const SurfaceSpace& space = *of;
+      const Vec y = state_on(space, 5), ydot = state_on(space, 6), v = state_on(space, 7);
+      Vec r(p.size()), product(p.size());
+      EXPECT_TRUE(p.residual(0.3, y, ydot, r).ok());
+      EXPECT_TRUE(p.jacobian_product(0.3, y, ydot, 4.0, Tangent::exact, v, product).ok());
+      std::vector<std::map<std::int64_t, double>> all;
+      for (const Vec& both : {r, product})
+        for (const bool first : {true, false})
+          all.push_back(
+              entries_of(space, first ? both.head(p.block_size()) : both.tail(p.block_size())));
+      return std::pair(all, p.energy(y));
+    };
+    const auto expected = evaluate(whole);
+    run_on_ranks(GetParam(), [&](const auto& ranks) {
+      const auto part = evaluate(part_of(ranks));
+      EXPECT_NEAR(part.second, expected.second, 1e-9 * std::fabs(expected.second)) << name;
+      for (std::size_t k = 0; k < part.first.size(); ++k)
+        for (const auto& [id, value] : part.first[k])
+          EXPECT_NEAR(value, expected.first[k].at(id), 1e-9)
+              << name << ", " << k << ", node " << id;
+    });
   }
 }
 

@@ -53,7 +53,7 @@ Rises rises_of(const Bench& bench, const Setup& setup, const std::string& name, 
     // Roundoff of the terms, which cancel near equilibrium, is no rise.
     if (!(after <= before + 1e-12 * problem.energy_scale())) {
       ++rises.count;
-      rises.largest = std::max(rises.largest, (after - before) / initial);
+      rises.largest = larger(rises.largest, (after - before) / initial);
     }
     before = after;
   });

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "kernel/core/parameters.hpp"
+#include "kernel/core/text.hpp"
 #include "verification/measure/bench.hpp"
 #include "verification/studies/studies.hpp"
 
@@ -11,6 +12,7 @@ namespace traceraft {
 namespace {
 
 constexpr double kBound = 1e-12;  // relative
+constexpr double kEnough = 10;    // steps of a run
 constexpr int kCells = 24;
 constexpr double kEpsilon = 0.2, kFraction = 0.3, kTolerance = 1e-2;
 
@@ -84,8 +86,7 @@ Drift drift_of(const Bench& bench, const Combination& what) {
   const double mass = problem->mass(start.y);
   Drift drift;
   advance_to(*integrator, start, end_of_run(bench), [&] {
-    drift.largest =
-        std::max(drift.largest, std::fabs(problem->mass(integrator->state()) / mass - 1));
+    drift.largest = larger(drift.largest, std::fabs(problem->mass(integrator->state()) / mass - 1));
     ++drift.steps;
   });
   return drift;
@@ -96,7 +97,7 @@ StudyReport run(const Bench& bench) {
   Table table{"drift",
               {"surface", "mobility", "integrator", "solver", "ranks", "seed", "steps", "drift"},
               {}};
-  double largest = 0, largest_on_ranks = 0, steps = 0;
+  double largest = 0, largest_on_ranks = 0, steps = 0, fewest = HUGE_VAL;
   for (std::size_t k = 0; k < list.size(); ++k) {
     const Combination& what = list[k];
     const Drift drift = drift_of(bench, what);
@@ -104,18 +105,19 @@ StudyReport run(const Bench& bench) {
                           static_cast<double>(what.ranks), static_cast<double>(what.seed),
                           drift.steps, drift.largest});
     double& so_far = what.ranks > 1 ? largest_on_ranks : largest;
-    if (!(drift.largest <= so_far)) so_far = drift.largest;  // NaN is the largest of all
+    so_far = larger(so_far, drift.largest);
     steps += drift.steps;
+    fewest = std::min(fewest, drift.steps);
     bench.progress(static_cast<double>(k + 1) / static_cast<double>(list.size()));
   }
   StudyReport report;
   report.notes = {
       "Largest relative change of the mass over all accepted steps; 24 cells, 30 % rafts "
-      "from noise, width 0.2, tolerance 1e-2."};
+      "from noise, width 0.2, tolerance 1e-2.",
+      formatted("%zu runs, %.0f accepted steps.", list.size(), steps)};
   report.tables = {table};
   report.claims = {claim_at_most("largest relative drift of the mass", largest, kBound),
-                   claim_between("runs", static_cast<double>(list.size()), 1, 1e6),
-                   claim_between("accepted steps", steps, 1, 1e9)};
+                   claim_between("fewest accepted steps of a run", fewest, kEnough, 1e9)};
   if (!bench.linear_solvers_on_ranks().empty())
     report.claims.insert(report.claims.begin() + 1,
                          claim_at_most("the same on two ranks", largest_on_ranks, kBound));

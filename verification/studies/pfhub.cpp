@@ -109,7 +109,8 @@ double largest_difference(const Simulation& run, double Sample::*energy, double 
   double largest = 0;
   for (std::size_t k = 0; k < run.samples.size(); ++k)
     if (run.samples[k].t >= from && run.samples[k].t <= to)
-      largest = std::max(largest, std::fabs(relative(run.samples[k].*energy, k)));
+      largest = larger(largest, std::fabs(relative(run.samples[k].*energy, k)));
+  if (!(largest > 0)) throw std::runtime_error("no energy was sampled there");
   return largest;
 }
 
@@ -177,7 +178,7 @@ void measure_convergence(const Bench& bench, const Simulation& finest, StudyRepo
   for (std::size_t k = 0; k < coarse.samples.size(); ++k) {
     const double energy =
         (finest.samples[k].discrete - ratio * coarse.samples[k].discrete) / (1 - ratio);
-    extrapolated = std::max(extrapolated, std::fabs(relative(energy, k)));
+    extrapolated = larger(extrapolated, std::fabs(relative(energy, k)));
   }
   report.claims.push_back(claim_order("t = 0.1 to 100: order of the energy in h", levels, 2, 0.4));
   report.claims.push_back(claim_at_most(

@@ -58,7 +58,7 @@ void measure_bodies(const Bench& bench, StudyReport& report) {
       const double error = std::fabs(space->area / body.area - 1);
       const double curvature = angle_defects(space->surface);
       levels.emplace_back(space->h(), error);
-      worst = std::max(worst, std::fabs(curvature - body.curvature));
+      worst = larger(worst, std::fabs(curvature - body.curvature));
       table.rows.push_back(
           {body.surface, static_cast<double>(cells), space->area, error, curvature});
     }
@@ -80,13 +80,15 @@ SurfaceFunction moved(const SurfaceFunction& base, const Motion& motion) {
   };
 }
 
-// Largest over smallest eigenvalue of D^-½ A D^-½ with the diagonal D of A.
+// Largest over smallest eigenvalue of D^-½ A D^-½ with the diagonal D of A; infinite if A is not
+// positive definite.
 double scaled_condition(const SurfaceSpace& space, const CsrMatrix& A) {
   Eigen::MatrixXd dense = as_eigen(space, A);
   const Vec scale = dense.diagonal().cwiseSqrt().cwiseInverse();
   dense = scale.asDiagonal() * dense * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(dense, Eigen::EigenvaluesOnly);
-  return solver.eigenvalues()[dense.rows() - 1] / solver.eigenvalues()[0];
+  const double smallest = solver.eigenvalues()[0];
+  return smallest > 0 ? solver.eigenvalues()[dense.rows() - 1] / smallest : HUGE_VAL;
 }
 
 struct Cut {
@@ -127,7 +129,8 @@ void measure_cuts(const Bench& bench, StudyReport& report) {
   const double exact = ellipsoid_area(1.2, 1, 0.8);
   const std::string of = std::to_string(count) + " cuts: ";
   report.claims.push_back(claim_at_most(of + "spread of the area over its mean error",
-                                        (area.high - area.low) / (exact - area.mean), 0.25));
+                                        (area.high - area.low) / std::fabs(exact - area.mean),
+                                        0.25));
   report.claims.push_back(
       claim_at_most(of + "largest over mean error in L2", l2.high / l2.mean, 1.25));
   report.claims.push_back(

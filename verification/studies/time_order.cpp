@@ -69,8 +69,9 @@ void measure_orders(const Bench& bench, const Runs& runs, const Vec& reference,
   for (const Method& method : kMethods) {
     if (!chosen(bench, method)) continue;
     Points levels;
-    // The smallest errors of order 3, below 1e-10, are at the accuracy of the solves.
-    for (int steps = finest / 8; steps <= (method.order < 3 ? finest : finest / 2); steps *= 2) {
+    // The smallest errors of order 3, near 1e-10, are at the accuracy of the solves.
+    const int most = method.order < 3 ? finest : finest / 4;
+    for (int steps = most / (method.order < 3 ? 8 : 4); steps <= most; steps *= 2) {
       levels.emplace_back(kEnd / steps, runs.error(runs.with_steps(method, steps), reference));
       table.rows.push_back({method.name, static_cast<double>(steps), levels.back().second});
     }
@@ -92,7 +93,7 @@ void measure_tolerances(const Bench& bench, const Runs& runs, const Vec& referen
     for (double tolerance = 1e-2; tolerance > 0.9e-5; tolerance /= 10) {
       const double error = runs.error(runs.with_tolerance(integrator, tolerance), reference);
       levels.emplace_back(tolerance, error);
-      largest_ratio = std::max(largest_ratio, error / tolerance);
+      largest_ratio = larger(largest_ratio, error / tolerance);
       table.rows.push_back({integrator, tolerance, error});
     }
     report.claims.push_back(
