@@ -4,12 +4,16 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
+#include <fstream>
 #include <mutex>
+#include <sstream>
 #include <thread>
 
 namespace traceraft {
@@ -17,8 +21,33 @@ namespace {
 
 constexpr int kStopSignals[] = {SIGINT, SIGTERM, kParentDied};
 
+// When the process began, its libraries not yet loaded; now, where the system does not tell.
+std::chrono::steady_clock::time_point start_of_process() {
+  const auto now = std::chrono::steady_clock::now();
+  std::ifstream file("/proc/self/stat");
+  std::string text;
+  std::getline(file, text);
+  const std::size_t name_end = text.rfind(')');  // names may hold anything
+  if (name_end == std::string::npos) return now;
+  std::istringstream fields(text.substr(name_end + 1));
+  std::string skipped;
+  constexpr int kBetween = 19;  // from the state, field 3, to the start, field 22 (proc(5))
+  for (int i = 0; i < kBetween; ++i) fields >> skipped;
+  long long ticks = 0;
+  timespec since_boot{};
+  if (!(fields >> ticks) || clock_gettime(CLOCK_BOOTTIME, &since_boot) != 0) return now;
+  const double age = static_cast<double>(since_boot.tv_sec) +
+                     1e-9 * static_cast<double>(since_boot.tv_nsec) -
+                     static_cast<double>(ticks) / static_cast<double>(sysconf(_SC_CLK_TCK));
+  return now - std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                   std::chrono::duration<double>(std::max(0.0, age)));
+}
+
 std::atomic<bool> stop_flag = false;
-const auto process_start = std::chrono::steady_clock::now();
+// When SIGINT or SIGTERM came first. A terminal, a manager of scopes and the parent may each send
+// one: within that many seconds these are one request.
+std::atomic<std::int64_t> asked_at = 0;
+constexpr std::int64_t kOneRequest = 2;
 
 // What ends the process at once. Never freed: a signal may come at any time.
 struct End {
@@ -34,6 +63,14 @@ sigset_t stop_signals() {
   return set;
 }
 
+void install(void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  action.sa_flags = SA_RESTART;
+  sigemptyset(&action.sa_mask);
+  for (const int signal : kStopSignals) sigaction(signal, &action, nullptr);
+}
+
 // May interrupt anything: calls nothing but what POSIX allows there.
 void on_stop(int signal) {
   if (const End* end = end_at_once) {
@@ -42,8 +79,14 @@ void on_stop(int signal) {
         write(STDERR_FILENO, end->line.data(), end->line.size());
     _exit(end->code);
   }
-  const bool second = stop_flag.exchange(true);
-  if (!second || signal == kParentDied) return;
+  install(on_stop);  // METIS puts back what there was as if by signal() of System V: for one signal
+  stop_flag = true;
+  if (signal == kParentDied) return;
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  std::int64_t first = 0;
+  const std::int64_t seconds = now.tv_sec + 1;  // not 0
+  if (asked_at.compare_exchange_strong(first, seconds) || seconds - first < kOneRequest) return;
   default_stop_signals();
   std::raise(signal);
 }
@@ -53,11 +96,7 @@ void on_stop(int signal) {
 void watch_stop_signals() {
   static std::once_flag once;
   std::call_once(once, [] {
-    struct sigaction action {};  // for threads that are older than this
-    action.sa_handler = on_stop;
-    action.sa_flags = SA_RESTART;
-    sigemptyset(&action.sa_mask);
-    for (const int signal : kStopSignals) sigaction(signal, &action, nullptr);
+    install(on_stop);  // for threads that are older than this
     const sigset_t set = stop_signals();
     pthread_sigmask(SIG_BLOCK, &set, nullptr);
     std::thread([set] {
@@ -69,6 +108,7 @@ void watch_stop_signals() {
 }  // namespace
 
 double wall_seconds() {
+  static const auto process_start = start_of_process();
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - process_start).count();
 }
 

@@ -18,8 +18,9 @@ int terminal_columns();  // 80 if unknown
 // What a child gets when the process that started it dies (child.hpp), perhaps several times.
 inline constexpr int kParentDied = SIGUSR1;
 
-// From now on SIGINT, SIGTERM and kParentDied only set a flag; a second SIGINT or SIGTERM ends the
-// process at once.
+// From now on SIGINT, SIGTERM and kParentDied only set a flag; another SIGINT or SIGTERM, two
+// seconds or more after the first, ends the process at once. Threads that are older than this may
+// not run METIS, which puts a handler of its own.
 void catch_stop_signals();
 bool stop_requested();
 // From now on they end the process at once, with this exit code and a line on stderr: for work

@@ -35,7 +35,8 @@ std::string blas_description() {
 }
 
 std::vector<std::pair<std::string, std::string>> preferred_environment() {
-  std::vector<std::pair<std::string, std::string>> environment = {{"OMP_THREAD_LIMIT", "1"}};
+  std::vector<std::pair<std::string, std::string>> environment = {{"OMP_THREAD_LIMIT", "1"},
+                                                                  {"OPENBLAS_NUM_THREADS", "1"}};
   if (const std::string core = better_blas_core(); !core.empty())
     environment.emplace_back("OPENBLAS_CORETYPE", core);
   return environment;

@@ -5,11 +5,13 @@
 #include <cstring>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <stdexcept>
 
 #include "backends/suitesparse/blas.hpp"
 #include "backends/suitesparse/ordering.hpp"
 #include "backends/suitesparse/supernodal_factor.hpp"
+#include "kernel/core/error.hpp"
 
 namespace traceraft {
 namespace {
@@ -66,13 +68,17 @@ class CholmodSolver final : public SpdSolver {
     common->method[0].ordering = CHOLMOD_GIVEN;
     std::vector<int> permutation = ordering;
     factor_ = cholmod_analyze_p(matrix_, permutation.data(), nullptr, 0, common);
-    if (!factor_) throw std::runtime_error("CHOLMOD: symbolic analysis failed");
+    if (factor_) return;
+    const int status = common->status;
+    release();
+    if (status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
+    if (status == CHOLMOD_TOO_LARGE)
+      throw InputError(
+          "linear solver block: its factors have more than 2^31 entries on this mesh; use fewer "
+          "--cells, or --linear-solver teko");
+    throw std::runtime_error("CHOLMOD: symbolic analysis failed");
   }
-  ~CholmodSolver() override {
-    cholmod_common* common = &workspace_.common;
-    cholmod_free_factor(&factor_, common);
-    cholmod_free_sparse(&matrix_, common);
-  }
+  ~CholmodSolver() override { release(); }
 
   Status factorise(const CsrMatrix& A) override {
     double* values = static_cast<double*>(matrix_->x);
@@ -92,6 +98,11 @@ class CholmodSolver final : public SpdSolver {
   }
 
  private:
+  void release() {
+    cholmod_free_factor(&factor_, &workspace_.common);
+    cholmod_free_sparse(&matrix_, &workspace_.common);
+  }
+
   Workspace workspace_;
   cholmod_sparse* matrix_ = nullptr;
   cholmod_factor* factor_ = nullptr;

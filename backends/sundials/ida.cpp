@@ -75,12 +75,12 @@ class Ida final : public Integrator {
   double time() const override { return t_; }
   double step() const override {
     double h = 0;
-    IDAGetLastStep(memory_, &h);
+    if (memory_) IDAGetLastStep(memory_, &h);
     return h;
   }
   double next_step() const override {
     double h = 0;
-    IDAGetCurrentStep(memory_, &h);
+    if (memory_) IDAGetCurrentStep(memory_, &h);
     return h;
   }
   const Vec& state() const override { return y_; }
@@ -88,6 +88,7 @@ class Ida final : public Integrator {
 
   IntegratorStatistics statistics() const override {
     IntegratorStatistics result;
+    if (!memory_) return equations_.added_to(result);
     IDAGetNumSteps(memory_, &result.steps);
     IDAGetNumErrTestFails(memory_, &result.rejected);
     IDAGetNumNonlinSolvIters(memory_, &result.newton_iterations);
@@ -155,8 +156,9 @@ class Ida final : public Integrator {
     must(IDASetMaxErrTestFails(memory_, 100));
     must(IDASetMaxConvFails(memory_, 100));  // the smallest step ends a run, not their number
     must(IDASetInitStep(memory_, first_step_));
-    must(IDASetMinStep(memory_, settings_.min_step(span_)));
-    must(IDASetMaxStep(memory_, std::min(settings_.max_step(), problem_.longest_step())));
+    const double longest = std::min(settings_.max_step(), problem_.longest_step());
+    must(IDASetMinStep(memory_, std::min(settings_.min_step(span_), longest)));
+    must(IDASetMaxStep(memory_, longest));
     must(IDASetStopTime(memory_, t_end_));
   }
 

@@ -33,12 +33,12 @@ N_Vector clone(N_Vector v) {
   N_Vector copy = N_VNewEmpty(v->sunctx);
   if (!copy) return nullptr;
   N_VCopyOps(v, copy);
-  auto* fresh = new (std::nothrow) Content{Vec::Zero(content(v).data.size()), content(v).space};
-  if (!fresh) {
+  try {  // no exception may pass through the functions of C that ask for copies
+    copy->content = new Content{Vec::Zero(content(v).data.size()), content(v).space};
+  } catch (const std::bad_alloc&) {
     N_VFreeEmpty(copy);
     return nullptr;
   }
-  copy->content = fresh;
   return copy;
 }
 

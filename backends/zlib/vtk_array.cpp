@@ -40,7 +40,11 @@ std::string from_base64(const char* digits, std::size_t count) {
     table['='] = 0;
     return table;
   }();
-  if (count % 4 != 0) damaged();
+  std::size_t padding = 0;
+  while (padding < count && digits[count - 1 - padding] == '=') ++padding;
+  if (count % 4 != 0 || padding > 2 ||
+      std::find(digits, digits + count - padding, '=') != digits + count - padding)
+    damaged();
   std::string data;
   data.reserve(count / 4 * 3);
   for (std::size_t i = 0; i < count; i += 4) {
@@ -52,7 +56,7 @@ std::string from_base64(const char* digits, std::size_t count) {
     }
     for (int k = 0; k < 3; ++k) data += static_cast<char>(bits >> (16 - 8 * k) & 255);
   }
-  for (std::size_t i = count; i-- > 0 && digits[i] == '=';) data.pop_back();
+  data.resize(data.size() - padding);
   return data;
 }
 
@@ -94,20 +98,25 @@ std::string decoded_array(const std::string& text) {
   // The number of blocks is in the first 8 bytes; it gives the length of the header.
   if (text.size() < 12) damaged();
   std::uint64_t count = 0;
-  std::memcpy(&count, from_base64(text.data(), 12).data(), sizeof count);
+  const std::string first = from_base64(text.data(), 12);
+  if (first.size() < sizeof count) damaged();
+  std::memcpy(&count, first.data(), sizeof count);
   if (count > kLargest / kBlock) damaged();
   const std::size_t head_bytes = (3 + count) * sizeof(std::uint64_t);
   const std::size_t head_digits = base64_size(head_bytes);
   if (text.size() < head_digits) damaged();
   std::vector<std::uint64_t> header(3 + count);
-  std::memcpy(header.data(), from_base64(text.data(), head_digits).data(), head_bytes);
+  const std::string head = from_base64(text.data(), head_digits);
+  if (head.size() != head_bytes) damaged();
+  std::memcpy(header.data(), head.data(), head_bytes);
+  if (header[1] != kBlock) damaged();  // the only size that is written
   const std::string blocks = from_base64(text.data() + head_digits, text.size() - head_digits);
   std::string data;
   std::size_t begin = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const std::uint64_t packed = header[3 + k];
     uLongf size = k + 1 == count && header[2] != 0 ? header[2] : header[1];
-    if (header[1] > kLargest || size > header[1] || packed > blocks.size() - begin) damaged();
+    if (size > header[1] || packed > blocks.size() - begin) damaged();
     std::string block(size, '\0');
     if (uncompress(reinterpret_cast<Bytef*>(block.data()), &size,
                    reinterpret_cast<const Bytef*>(blocks.data()) + begin, packed) != Z_OK ||

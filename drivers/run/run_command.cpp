@@ -80,7 +80,8 @@ int carry_out(const Configuration& configuration, RunSetup& run, const RunFolder
     write_durably(folder.summary(), summary_json(configuration, run, state, result, cost, memory));
   if (!quiet) print_summary(configuration, run, state, result, cost, memory, folder);
   if (result.end == RunEnd::stopped && !quiet)
-    std::printf("  go on with             traceraft resume %s\n", folder.path.c_str());
+    std::printf("  go on with             traceraft resume %s\n",
+                in_shell(folder.path.string()).c_str());
   if (result.end == RunEnd::failed && root)
     std::fprintf(stderr, "traceraft: numerical failure at t = %g: %s\n",
                  state.row.t * run.units.time(), result.why.c_str());
@@ -104,10 +105,12 @@ std::optional<Checkpoint> last_checkpoint(const RunFolder& folder,
 int run(const RunRequest& request) {
   const GivenValues file = read_config_file(request.config_file);
   const Configuration configuration(file, request.flags);
+  end_on_stop_signals(kInterrupted, "");  // before there are threads
   RunSetup run = build_run(configuration, InitialState::build);
   const bool quiet = request.quiet || !run.ranks->root();
   if (!quiet) print_setup(configuration, run);
   if (request.validate) {
+    if (!request.out.empty()) refuse_files_of_a_run(request.out);
     if (run.ranks->root()) std::printf("everything is valid; nothing was run\n");
     return kSuccess;
   }
@@ -120,6 +123,7 @@ int run(const RunRequest& request) {
 int resume(const ResumeRequest& request) {
   if (request.folder.empty())
     throw InputError("resume: needs the run folder, as in: traceraft resume runs/guv-2to1-1");
+  end_on_stop_signals(kInterrupted, "");  // before there are threads
   const std::shared_ptr<const Communicator> ranks = world();
   const RunFolder folder = shared_folder(*ranks, [&] { return open_run_folder(request.folder); });
   const Configuration configuration(read_config_file(folder.config()), request.flags);

@@ -37,7 +37,7 @@ std::string format_number(double value) {
 double parse_number(std::string_view context, std::string_view text) {
   double value = 0;
   const char* end = text.data() + text.size();
-  const char* begin = text.data() + (text.size() > 1 && text[0] == '+' ? 1 : 0);
+  const char* begin = text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0);
   const auto result = std::from_chars(begin, end, value);
   if (text.empty() || result.ec != std::errc() || result.ptr != end || !std::isfinite(value))
     throw InputError(std::string(context) + ": '" + std::string(text.substr(0, 60)) +
@@ -75,6 +75,9 @@ Parameters parse_parameters(std::string_view context, std::string_view arguments
       throw InputError(where + ": " + key + "=" + format_number(values[i]) +
                        " is out of range (allowed: " + format_number(specs[i].min) + " to " +
                        format_number(specs[i].max) + ")");
+    if (specs[i].integer && values[i] != std::floor(values[i]))
+      throw InputError(where + ": " + key + "=" + format_number(values[i]) +
+                       " is not a whole number");
   }
   return Parameters(specs, values);
 }

@@ -24,6 +24,22 @@ TEST(VtuReader, ReadsWhatIsWritten) {
     EXPECT_LT((field.mesh.position[p] - 5 * space->surface.position[p]).norm(), 1e-5);
 }
 
+TEST(VtkArray, RefusesPaddingThatCannotBe) {
+  const std::string text = encoded_array("abcdefgh", 8);
+  EXPECT_EQ(decoded_array(text), "abcdefgh");
+  EXPECT_THROW((void)decoded_array(text.substr(0, 44) + "===="), IoError);
+  EXPECT_THROW((void)decoded_array(text + "===="), IoError);
+  EXPECT_THROW((void)decoded_array("============"), IoError);
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    std::string broken = text;
+    broken[at] = '=';
+    try {
+      EXPECT_EQ(decoded_array(broken).size(), 8u) << at;
+    } catch (const IoError&) {
+    }
+  }
+}
+
 TEST(VtuReader, RefusesWhatIsDamaged) {
   const auto space = testing::make_space(12);
   const Vec values = Vec::Ones(static_cast<Eigen::Index>(space->surface.points.size()));

@@ -8,7 +8,8 @@ namespace traceraft {
 namespace {
 
 const std::vector<ParameterSpec> kSpecs = {{"major", "R", 1.0, 0.2, 1.5, ""},
-                                           {"minor", "R", 0.4, 0.05, 0.8, ""}};
+                                           {"minor", "R", 0.4, 0.05, 0.8, ""},
+                                           {"seed", "", 1, 0, 9, "", true}};
 
 std::string complaint(const std::string& arguments) {
   try {
@@ -28,11 +29,13 @@ TEST(Parameters, TakesDefaultsAndValues) {
 
 TEST(Parameters, SaysWhatIsWrongAndWhatIsAllowed) {
   EXPECT_EQ(complaint("miner=1"),
-            "torus: unknown parameter 'miner'; did you mean 'minor'? Valid: major, minor");
+            "torus: unknown parameter 'miner'; did you mean 'minor'? Valid: major, minor, seed");
   EXPECT_EQ(complaint("minor=2"), "torus: minor=2 is out of range (allowed: 0.05 to 0.8)");
   EXPECT_EQ(complaint("minor=0.2,minor=0.3"), "torus: parameter 'minor' is given twice");
+  EXPECT_EQ(complaint("seed=1.7"), "torus: seed=1.7 is not a whole number");
   EXPECT_EQ(complaint("minor"), "torus: parameter 'minor' needs a value, as in minor=0.4");
-  for (const char* bad : {"minor=", "minor=abc", "minor=nan", "minor=inf", "minor=0.2x", "=1", ","})
+  for (const char* bad :
+       {"minor=", "minor=abc", "minor=nan", "minor=inf", "minor=0.2x", "minor=+-0.2", "=1", ","})
     EXPECT_NE(complaint(bad), "") << bad;
 }
 
