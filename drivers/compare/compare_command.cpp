@@ -100,7 +100,8 @@ int carry_out(const CompareRequest& request, const ComparisonFolder& folder,
   switch (work_off(plan, folder, reference, request.quiet, why)) {
     case WorkEnd::stopped:
       if (!request.quiet)
-        std::printf("go on with: traceraft compare --out %s\n", folder.path().c_str());
+        std::printf("go on with: traceraft compare --out %s\n",
+                    in_shell(folder.path().string()).c_str());
       return kInterrupted;
     case WorkEnd::reference_failed:
       std::fprintf(stderr, "traceraft: the reference failed: %s\n", why.c_str());
@@ -117,13 +118,17 @@ int carry_out(const CompareRequest& request, const ComparisonFolder& folder,
     std::printf("\n%s\n\nopen next: %s\n", advice.sentence.c_str(),
                 (folder.path() / "compare.html").c_str());
   }
-  return advice.cheapest.empty() ? kNumericalFailure : kSuccess;
+  const bool any =
+      std::any_of(points.begin(), points.end(), [](const WorkPoint& point) { return point.ok(); });
+  return any ? kSuccess : kNumericalFailure;
 }
 
 int compare(const CompareRequest& request) {
   catch_stop_signals();
-  const GivenValues file = read_config_file(request.config_file);
-  refuse_varied(file);
+  GivenValues file = read_config_file(request.config_file);
+  // Those that the program writes have them.
+  for (const char* varied : {"integrator", "linear-solver", "tolerance", "ida-rtol"})
+    file.erase(varied);
   refuse_varied(request.flags);
   if (!request.out.empty() && fs::exists(request.out) && !fs::is_directory(request.out))
     throw InputError("--out: " + request.out + " is a file");
@@ -149,6 +154,7 @@ int compare(const CompareRequest& request) {
 
   fs::create_directories(folder.path() / "runs");
   if (!lock) lock.emplace(folder.path());
+  if (!goes_on && folder.started()) refuse_begun(folder.path());
   if (!goes_on) write_durably(folder.config(), config_text(configuration));
   folder.save(plan);
   return carry_out(request, folder, plan, configuration, run);
@@ -173,8 +179,8 @@ Action define_compare(CLI::App& app) {
   app.add_option("--time-limit", request->time_limit, "seconds per run; 0: none")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--target-error", request->target_error,
-                 "error to recommend a method for; default: the smallest that all reach")
-      ->check(CLI::PositiveNumber);
+                 "error to recommend a method for; 0, the default: the smallest that all reach")
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--reference-tolerance", request->reference_tolerance,
                  "default: a hundredth of the smallest tolerance")
       ->check(CLI::Range(1e-12, 0.1));

@@ -86,11 +86,11 @@ ComparePlan extended_plan(const CompareRequest& request, const ComparePlan* befo
   if (plan.ranks.empty()) plan.ranks = {1};
   if (request.repeat > 0) plan.repeat = request.repeat;
   if (request.time_limit >= 0) plan.time_limit = request.time_limit;
-  if (request.target_error > 0) plan.target_error = request.target_error;
+  if (request.target_error >= 0) plan.target_error = request.target_error;
   if (request.reference_tolerance > 0) plan.reference_tolerance = request.reference_tolerance;
   const double most = fraction_of_smallest(plan.tolerances, kLeastReferenceFactor);
-  if (plan.reference_tolerance > most)
-    throw InputError("--reference-tolerance: " + format_number(plan.reference_tolerance) +
+  if (plan.reference() > most)
+    throw InputError("--reference-tolerance: " + format_number(plan.reference()) +
                      " says nothing of runs at " +
                      format_number(fraction_of_smallest(plan.tolerances, 1)) +
                      " (allowed: at most " + format_number(most) + ")");

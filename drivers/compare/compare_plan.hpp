@@ -19,7 +19,7 @@ struct CompareRequest {
   std::string integrators, linear_solvers, tolerances, ranks;
   // 0 or, for the time limit, negative: likewise.
   int repeat = 0;
-  double time_limit = -1, target_error = 0, reference_tolerance = 0;
+  double time_limit = -1, target_error = -1, reference_tolerance = 0;
   bool quiet = false;
 };
 

@@ -13,6 +13,7 @@
 #include "backends/zlib/checksum.hpp"
 #include "drivers/config/config_file.hpp"
 #include "drivers/exit_codes.hpp"
+#include "drivers/output/program_checksum.hpp"
 #include "drivers/output/status_line.hpp"
 #include "drivers/run/finished_run.hpp"
 #include "drivers/run/program_run.hpp"
@@ -106,7 +107,8 @@ Reference reference_of(const ComparePlan& plan, const ComparisonFolder& folder,
   const std::string identity =
       numerical_identity(Configuration(read_config_file(folder.config()), reference.options));
   char name[32];
-  std::snprintf(name, sizeof name, "%08x-%08x", crc32_of(identity), plan.initial_state);
+  std::snprintf(name, sizeof name, "%08x-%08x", crc32_of(identity + program_checksum()),
+                plan.initial_state);
   reference.folder = fs::path(cache) / name;
   if (fs::exists(reference.folder / "config.toml") &&
       numerical_identity(Configuration(read_config_file(reference.folder / "config.toml"), {})) !=

@@ -5,6 +5,7 @@
 
 #include "drivers/output/json_file.hpp"
 #include "drivers/run/finished_run.hpp"
+#include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 
 namespace traceraft {
@@ -42,7 +43,9 @@ void ComparisonFolder::save(const ComparePlan& plan) const {
 }
 
 ComparePlan ComparisonFolder::load() const {
-  return from_json(plan_file(), [](const Json& json) {
+  return from_json(plan_file(), [this](const Json& json) {
+    if (!json.contains("integrators"))
+      throw InputError(path_.string() + " holds no comparison, but something else with a plan");
     return ComparePlan{
         json.at("integrators"), json.at("linear_solvers"), json.at("tolerances"),
         json.at("ranks"),       json.at("repeat"),         json.at("reference_tolerance"),

@@ -101,7 +101,7 @@ std::string config_lines(const Configuration& configuration,
 std::string flags_text(const Configuration& configuration) {
   // What other defaults depend on.
   GivenValues deciding;
-  for (const char* name : {"case", "scaled", "integrator"})
+  for (const char* name : {"case", "scaled", "integrator", "radius", "diffusion"})
     deciding[name] = {configuration.text(name), ""};
   const Configuration usual({}, deciding);
   const Configuration nothing({}, {});

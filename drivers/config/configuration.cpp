@@ -111,7 +111,7 @@ void Configuration::set(const OptionSpec& spec, const GivenValue& value) {
     case OptionKind::text:
     case OptionKind::path:
       for (const char ch : value.text)
-        if (static_cast<unsigned char>(ch) < 32)
+        if (static_cast<unsigned char>(ch) < 32 || ch == 127)
           throw InputError(value.where + ": the text contains a control character");
       if (!is_utf8(value.text)) throw InputError(value.where + ": the text is not UTF-8");
       break;

@@ -55,7 +55,7 @@ Configuration known_configuration(const EnsembleFolder& folder, const EnsembleRe
                      "to go on with it");
   for (const GivenValues* given : {&file, &request.flags})
     for (const auto& [name, value] : *given)
-      if (name != "seed" && asked.text(name) != known.text(name))
+      if (name != "seed" && config_lines(asked, {name}) != config_lines(known, {name}))
         throw InputError(value.where + ": the runs in " + folder.path().string() + " have '" +
                          known.text(name) + "', and those that it grows by have it, too");
   return known;
@@ -143,6 +143,7 @@ int run_ensemble(const EnsembleRequest& request) {
   if (!goes_on) run = build_run(configuration, InitialState::build);  // or refuses it
   fs::create_directories(folder.path());
   const FolderLock lock(folder.path());
+  if (!goes_on && folder.started()) refuse_begun(folder.path());
   folder.save(plan);
   fs::create_directories(folder.path() / "runs");
   if (run && !request.quiet) std::printf("%s\n", resolution_text(*run).c_str());

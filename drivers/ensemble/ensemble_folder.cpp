@@ -26,14 +26,16 @@ void EnsembleFolder::refuse_other_plan() const {
   if (!std::filesystem::exists(plan_file())) return;
   try {
     (void)load();
-  } catch (const IoError&) {
+  } catch (const std::runtime_error&) {
     throw InputError("--out: " + plan_file().string() +
                      " is no plan of an ensemble; choose another folder");
   }
 }
 
 EnsemblePlan EnsembleFolder::load() const {
-  return from_json(plan_file(), [](const Json& json) {
+  return from_json(plan_file(), [this](const Json& json) {
+    if (!json.contains("first_seed"))
+      throw InputError(path_.string() + " holds no ensemble, but something else with a plan");
     return EnsemblePlan{json.at("runs"), json.at("first_seed")};
   });
 }

@@ -171,7 +171,10 @@ std::string draw_chart(const Chart& chart, const std::filesystem::path& stem) {
   if (result.exit_code != 0)
     throw IoError("gnuplot failed on " + with(".gp").string() + "; see " + with(".log").string());
   std::string svg = read_file(with(".svg"), 1 << 24);
-  return svg.substr(svg.find("<svg"));  // without the XML header: goes into pages
+  const std::size_t begin = svg.find("<svg");  // without the XML header: goes into pages
+  if (begin == std::string::npos)
+    throw IoError(with(".svg").string() + " is no picture; does another process write it, too?");
+  return svg.substr(begin);
 }
 
 void add_chart(Page& page, const Chart& chart, const std::filesystem::path& stem,

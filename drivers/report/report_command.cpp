@@ -74,7 +74,8 @@ int report(const ReportRequest& request) {
   const fs::path out =
       request.out.empty() ? fs::path(request.folder) / "report.html" : fs::path(request.out);
   const std::string missing = write_report_page(
-      request.folder, out, {request.frames, request.detail, out.parent_path() / "report-charts"});
+      request.folder, out,
+      {request.frames, request.detail, out.parent_path() / (out.stem().string() + "-charts")});
   write_pictures(request);
   if (!request.quiet) {
     if (!missing.empty()) std::printf("missing in the page: %s\n", missing.c_str());

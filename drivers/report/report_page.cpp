@@ -165,9 +165,11 @@ void fill_kept(Page& page, const fs::path& path, const PageRequest& request, Mis
                  configuration.text("case") + ".");
   add_all_runs(page, runs, true, request, missing);
   add_settings(page, configuration);
-  add_provenance(
-      page, path,
-      command_for(formatted("traceraft ensemble --runs %zu", runs.size()), configuration));
+  const std::string first = CsvTable::read(path / kHistoriesFile).text(0, "seed");
+  add_provenance(page, path,
+                 command_for(formatted("traceraft ensemble --runs %zu", runs.size()) +
+                                 (first == "1" ? "" : " --first-seed " + first),
+                             configuration));
 }
 
 void fill_ensemble(Page& page, const fs::path& path, const PageRequest& request, Missing& missing) {

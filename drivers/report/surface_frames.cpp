@@ -124,8 +124,13 @@ SurfaceFrames read_frames(const fs::path& run_folder, double detail, int most) {
   const fs::path collection = run_folder / "fields.pvd";
   if (!fs::exists(collection))
     throw InputError(run_folder.string() + " has no fields (it ran with --no-fields)");
-  const auto files = files_of_pvd(read_file(collection, kLargestFile));
-  if (files.empty()) throw InputError(collection.string() + " names no fields");
+  auto files = files_of_pvd(read_file(collection, kLargestFile));
+  // Who needs space may have removed some.
+  files.erase(
+      std::remove_if(files.begin(), files.end(),
+                     [&](const auto& file) { return !fs::exists(run_folder / file.second); }),
+      files.end());
+  if (files.empty()) throw InputError(collection.string() + " names no fields that are there");
   const auto count = static_cast<int>(files.size()), shown = std::min(count, std::max(most, 1));
   SurfaceFrames frames;
   std::optional<Grid> grid;

@@ -38,8 +38,9 @@ void refuse_files_of_a_run(const fs::path& path) {
         folder.table("observables.csv"), folder.table("rafts.csv")})
     if (fs::exists(ours))
       throw InputError("--out: " + path.string() + " already holds " + ours.filename().string() +
-                       (holds_runs(path) ? std::string(", of a set of runs")
-                                         : "; go on with: traceraft resume " + path.string()) +
+                       (holds_runs(path)
+                            ? std::string(", of a set of runs")
+                            : "; go on with: traceraft resume " + in_shell(path.string())) +
                        "; choose another folder");
   refuse_folder_of_others(path);
 }
@@ -51,6 +52,11 @@ void refuse_folder_of_others(const fs::path& path) {
     if (fs::exists(path / others))
       throw InputError("--out: " + path.string() + " holds " + others +
                        ", of another command; choose another folder");
+}
+
+void refuse_begun(const fs::path& path) {
+  throw InputError("another process has just begun something in " + path.string() +
+                   "; give the command again, or choose a folder by --out");
 }
 
 void refuse_foreign_folder(const fs::path& path, const std::vector<std::string>& own) {
@@ -120,7 +126,7 @@ RunFolder open_run_folder(const fs::path& path) {
     throw InputError(path.string() +
                      " holds a set of runs; to go on with it, give the command that made it again, "
                      "with --out " +
-                     path.string());
+                     in_shell(path.string()));
   folder.lock = std::make_unique<FolderLock>(path);
   create_sub_folders(folder);
   return folder;

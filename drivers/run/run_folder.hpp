@@ -32,6 +32,8 @@ void refuse_folder_of_others(const std::filesystem::path& path);
 
 // The same, and if it holds what a run writes.
 void refuse_files_of_a_run(const std::filesystem::path& path);
+// Throws InputError: another process has begun something there between choice and lock.
+[[noreturn]] void refuse_begun(const std::filesystem::path& path);
 
 // Throws InputError if a folder that is to be written to holds anything but none of `own`, the
 // files by which the command knows its folders: what is there may be somebody's. Locks do not

@@ -209,7 +209,7 @@ void print_summary(const Configuration& configuration, const RunSetup& run, cons
   if (std::filesystem::exists(folder.path / "view.png")) {
     line("open next",
          (folder.path / "view.png").string() + " (front and back at the latest output time)");
-    line("or", "paraview " + (folder.path / "fields.pvd").string());
+    line("or", "paraview " + in_shell((folder.path / "fields.pvd").string()));
     line("or", "traceraft report " + in_shell(folder.path.string()) + " (a page with charts)");
   }
 }

@@ -38,12 +38,21 @@ struct VerifyRequest {
   std::string document;                   // Markdown file to write; "" for none
 };
 
+bool holds(const std::vector<StudyEntry>& studies, const StudyEntry& study) {
+  return std::any_of(studies.begin(), studies.end(),
+                     [&](const StudyEntry& entry) { return entry.name == study.name; });
+}
+
 std::vector<StudyEntry> chosen_studies(const VerifyRequest& request) {
   std::vector<StudyEntry> chosen;
+  const auto choose = [&](const StudyEntry& study) {
+    if (!holds(chosen, study)) chosen.push_back(study);
+  };
   for (const std::string& name : request.studies) {
-    if (name != "all") chosen.push_back(studies().find(name, {"all", "list"}));
+    if (name == "list") throw InputError("verify: list stands alone");
+    if (name != "all") choose(studies().find(name, {"all", "list"}));
     for (const StudyEntry& study : studies())
-      if (name == "all" && !study.by_name_only) chosen.push_back(study);
+      if (name == "all" && !study.by_name_only) choose(study);
   }
   return chosen;
 }
@@ -90,7 +99,7 @@ VerificationContext context_of(const VerifyRequest& request, const BenchRequest&
   for (const std::string& name : request.studies) command += " " + name;
   for (const std::string& flag : flags_of(request, request.threads)) command += " " + flag;
   if (request.jobs > 0) command += " --jobs " + std::to_string(request.jobs);
-  if (!request.document.empty()) command += " --document " + request.document;
+  if (!request.document.empty()) command += " --document " + in_shell(request.document);
   // The program itself decides the numbers, and what was asked of it.
   const std::string threads = std::to_string(bench.threads) + " threads";
   return {command, "traceraft " + std::string(kVersion) + ", " + threads + ".",
@@ -122,11 +131,6 @@ std::vector<StudyEntry> not_measured(const std::vector<StudyEntry>& chosen, cons
   return left;
 }
 
-bool holds(const std::vector<StudyEntry>& studies, const StudyEntry& study) {
-  return std::any_of(studies.begin(), studies.end(),
-                     [&](const StudyEntry& entry) { return entry.name == study.name; });
-}
-
 void print_verdicts(const std::vector<StudyResult>& results) {
   for (const StudyResult& result : results)
     std::printf("  %-14s %s\n", result.study.name.c_str(), verdict_text(result.verdict()));
@@ -134,6 +138,10 @@ void print_verdicts(const std::vector<StudyResult>& results) {
 
 int verify(const VerifyRequest& request) {
   if (request.studies == std::vector<std::string>{"list"}) return list_studies();
+  if (!request.document.empty() && !fs::path(request.document).has_extension())
+    throw InputError(
+        "--document: " + request.document +
+        " needs an extension, as in report.md; its figures go into the folder without");
   const std::vector<StudyEntry> chosen = chosen_studies(request);
   const bool alone = chosen.size() == 1 || (request.jobs == 0 && !request.quick);
   const Jobs jobs = jobs_of(alone ? 1 : request.jobs, request.threads);
@@ -150,7 +158,8 @@ int verify(const VerifyRequest& request) {
   const StudyJobs side_by_side{sharing(left), flags_of(request, jobs.threads),
                                context.measured_with, jobs.at_a_time, request.quiet};
   const std::string go_on =
-      request.quiet ? "" : "to go on, give the same command with --out " + folder.string();
+      request.quiet ? ""
+                    : "to go on, give the same command with --out " + in_shell(folder.string());
   if (jobs.at_a_time > 1 && !carry_out_side_by_side(side_by_side, folder)) {
     if (!request.quiet) std::printf("%s\n", go_on.c_str());
     return kInterrupted;

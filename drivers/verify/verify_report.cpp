@@ -111,7 +111,9 @@ std::string write_verification(const fs::path& folder, const VerificationContext
   for (const StudyResult& result : results)
     studies.push_back(to_json(result, context.measured_with));
   all["studies"] = studies;
-  write_durably(folder / "verify.json", all.dump(2) + "\n");
+  // Folders may have names that are not UTF-8.
+  write_durably(folder / "verify.json",
+                all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 
   Page page("Verification");
   page.paragraph(context.conditions + " Repeat it with: " + context.command);

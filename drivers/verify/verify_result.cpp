@@ -65,6 +65,12 @@ Table table_of(const std::string& name, const Json& json) {
   return table;
 }
 
+Json numbers_or_null(const std::vector<double>& values) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(number_or_null(value));
+  return list;
+}
+
 Json to_json(const Chart& chart) {
   Json list = Json::array();
   for (const ChartSeries& series : chart.series) {
@@ -74,7 +80,7 @@ Json to_json(const Chart& chart) {
     list.push_back({{"name", series.name},
                     {"mark", kMarks[static_cast<int>(series.mark)]},
                     {"points", points},
-                    {"other", series.other}});
+                    {"other", numbers_or_null(series.other)}});
   }
   return {{"title", chart.title}, {"x_label", chart.x_label}, {"y_label", chart.y_label},
           {"log_x", chart.log_x}, {"log_y", chart.log_y},     {"series", list}};
@@ -89,7 +95,7 @@ Chart chart_of(const Json& json) {
       if (item.at("mark") == kMarks[static_cast<int>(mark)]) series.mark = mark;
     for (const Json& point : item.at("points"))
       series.points.emplace_back(number_or(point.at(0), kNaN), number_or(point.at(1), kNaN));
-    series.other = item.at("other").get<std::vector<double>>();
+    for (const Json& value : item.at("other")) series.other.push_back(number_or(value, kNaN));
     chart.series.push_back(series);
   }
   return chart;

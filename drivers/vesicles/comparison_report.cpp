@@ -57,7 +57,7 @@ class ComparisonReport {
     write_durably(
         request_.out / "comparison.json",
         Json{{"runs", runs_.size()}, {"missing_runs", ensemble_.missing}, {"data", data_.name}}
-                .dump(2) +
+                .dump(2, ' ', false, Json::error_handler_t::replace) +
             "\n");
     write_durably(request_.out / "comparison.csv", csv_text(agreement_table(agreements_)));
     write_durably(request_.out / "comparison.html", page().html());

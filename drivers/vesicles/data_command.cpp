@@ -60,7 +60,7 @@ int compare(const DataRequest& request) {
   if (!EnsembleFolder(out).started()) refuse_foreign_folder(out, {"comparison.json"});
   const std::string command = "traceraft data compare " + in_shell(request.folder) +
                               " --ensemble " + in_shell(request.ensemble) + " --window " +
-                              request.window +
+                              in_shell(request.window) +
                               (request.facts.empty() ? "" : " --facts " + in_shell(request.facts));
   ComparisonRequest comparison{request.ensemble,          out,          command,
                                window_of(request.window), std::nullopt, request.quiet};

@@ -82,7 +82,7 @@ TEST_F(CalibrateTest, GoesFromFilesToFiles) {
   EXPECT_NE(page.find(repeat), std::string::npos);
   EXPECT_EQ(traceraft(repeat + " --quiet --out " + out("c")).code, 0);
   EXPECT_EQ(content(folder.path / "c/calibration.json"), before);
-  const Outcome other = traceraft(command + " --cells 10");
+  const Outcome other = traceraft(command + " --stabilisation 2");
   EXPECT_EQ(other.code, 2);
   EXPECT_NE(other.output.find("holds a calibration of another model"), std::string::npos)
       << other.output;

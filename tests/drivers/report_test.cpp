@@ -108,6 +108,8 @@ TEST_F(ReportTest, SaysWhatItCannotShow) {
   const Outcome damaged = traceraft("report " + out("b"));
   EXPECT_EQ(damaged.code, 4);
   EXPECT_NE(damaged.output.find("field-0003.vtu"), std::string::npos) << damaged.output;
+  fs::remove(folder.path / "b/fields/field-0003.vtu");
+  EXPECT_EQ(traceraft("report --quiet " + out("b")).code, 0);
 }
 
 // A browser that a program steers, by the WebDriver protocol.

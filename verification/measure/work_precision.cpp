@@ -33,9 +33,10 @@ std::string describe(const WorkPoint& p) {
 }
 
 std::string sentence(const std::vector<WorkPoint>& points, const Recommendation& advice) {
+  const bool any =
+      std::any_of(points.begin(), points.end(), [](const WorkPoint& point) { return point.ok(); });
   if (advice.cheapest.empty())
-    return advice.target > 0
-               ? formatted("No method reached an error of %.1e: ask for tighter --tolerances.",
+    return any ? formatted("No method reached an error of %.1e: ask for tighter --tolerances.",
                            advice.target)
                : std::string("No combination gave a result.");
   const WorkPoint& best = points[advice.cheapest[0]];
