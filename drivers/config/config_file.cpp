@@ -99,17 +99,20 @@ std::string config_lines(const Configuration& configuration,
 }
 
 std::string flags_text(const Configuration& configuration) {
-  // What other defaults depend on.
-  GivenValues deciding;
-  for (const char* name : {"case", "scaled", "integrator", "radius", "diffusion"})
-    deciding[name] = {configuration.text(name), ""};
-  const Configuration usual({}, deciding);
-  const Configuration nothing({}, {});
+  // What other defaults depend on: first those of units, then the rest.
+  GivenValues first;
+  for (const char* name : {"case", "scaled", "integrator"})
+    first[name] = {configuration.text(name), ""};
+  GivenValues deciding = first;
+  for (const char* name : {"radius", "diffusion"}) deciding[name] = {configuration.text(name), ""};
+  const Configuration nothing({}, {}), of_case({}, first), usual({}, deciding);
   std::string text;
   for (const OptionSpec& spec : run_options()) {
-    const bool decides = deciding.count(spec.name) > 0;
+    const Configuration& defaults = first.count(spec.name) > 0      ? nothing
+                                    : deciding.count(spec.name) > 0 ? of_case
+                                                                    : usual;
     const std::string value = toml_value(spec, configuration);
-    if (!spec.numerical || value == toml_value(spec, decides ? nothing : usual)) continue;
+    if (!spec.numerical || value == toml_value(spec, defaults)) continue;
     text += text.empty() ? "--" : " --";
     if (spec.kind == OptionKind::flag)
       text += (configuration.flag(spec.name) ? "" : "no-") + spec.name;

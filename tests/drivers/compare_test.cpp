@@ -113,6 +113,11 @@ TEST_F(CompareTest, ErrorsTimesAndCountsAreThoseOfTheRuns) {
                                     "--repeat 2 --target-error 3e-3");
   ASSERT_EQ(outcome.code, 0) << outcome.output;
   EXPECT_NE(outcome.output.find("For an error of 3.0e-03"), std::string::npos) << outcome.output;
+  // That no method reached what was asked for is an answer; so is that nothing is asked for again.
+  const Outcome none = traceraft("compare " + out() + references() + "--target-error 1e-15");
+  EXPECT_EQ(none.code, 0);
+  EXPECT_NE(none.output.find("No method reached an error of 1.0e-15"), std::string::npos);
+  ASSERT_EQ(traceraft("compare " + out() + references() + "--target-error 0").code, 0);
   const auto space = testing::make_space(12);
   const auto concentration = [&](const fs::path& run) {
     return concentration_of(CheckpointStore(run / "checkpoints").newest(), run, space->nodes());

@@ -58,6 +58,12 @@ TEST(Configuration, KnowsTheFlagsThatRepeatIt) {
   EXPECT_EQ(flags_text(given),
             "--case guv-3to1 --cells 48 --initial formula --initial-formula 'sin(3*x)^2' "
             "--integrator euler");
+  // Defaults of a scaled model depend on what one unit is.
+  const Configuration scaled(
+      {}, flags({{"case", "guv-3to1"}, {"scaled", "true"}, {"radius", "10"}, {"epsilon", "0.01"}}));
+  const std::string text = flags_text(scaled);
+  EXPECT_NE(text.find("--epsilon 0.01"), std::string::npos) << text;
+  EXPECT_NE(text.find("--radius 10"), std::string::npos) << text;
 }
 
 TEST(Configuration, ConvertsDefaultsUnderScaled) {

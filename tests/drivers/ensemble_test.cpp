@@ -242,6 +242,12 @@ TEST_F(EnsembleTest, TakesAnyConfigurationAndNoOtherPlan) {
           .code,
       0);
   EXPECT_EQ(content(csv("a")), content(csv("b")));
+  // The same command goes on, however numbers are written.
+  const std::string same =
+      "ensemble --quiet --case guv-2to1 --cells 20 --epsilon 5e-1 --t-end 1e2 "
+      "--no-fields --checkpoint-interval 0.0 --runs 1 --out ";
+  const Outcome again = traceraft(same + out("a"));
+  EXPECT_EQ(again.code, 0) << again.output;
   fs::create_directories(folder.path / "c");
   std::ofstream(folder.path / "c/plan.json") << "{\"groups\": []}\n";
   const Outcome refused = traceraft("ensemble --quiet " + runs + "--runs 1 --out " + out("c"));

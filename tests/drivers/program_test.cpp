@@ -363,6 +363,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"run --cels 16", "unknown flag '--cels'; did you mean '--cells'?"},
         Refusal{"run --cells=16 --seeed=3", "did you mean '--seed'?"},
         Refusal{"run surplus", "unexpected 'surplus'"},
+        Refusal{"verify list mass", "list stands alone"},
+        Refusal{"verify geometry --quick --document report", "as in report.md"},
         Refusal{"rum", "unknown command 'rum'; did you mean 'run'?"}, Refusal{"", "say what to do"},
         Refusal{"resume", "needs the run folder"},
         Refusal{"resume missing", "missing is no folder"}, Refusal{"resume .", "holds no run"},
