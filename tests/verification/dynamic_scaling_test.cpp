@@ -40,18 +40,32 @@ TEST(DynamicScaling, SpectraInUnitsOfTheirMedianDegreeAreOneDistribution) {
       0.01);
 }
 
-// Of one distribution about one pair of samples in twenty differs by more.
-TEST(DynamicScaling, TheCriticalDifferenceTellsDistributionsApart) {
+// Of one distribution two in 32 differ by more than what 6 members can be exchanged to.
+TEST(DynamicScaling, TheDifferenceOfChanceTellsDistributionsApart) {
+  const auto members = [](std::uint64_t seed, int count, double least) {
+    std::vector<std::vector<double>> all;
+    for (std::uint64_t k = 0; k < 6; ++k)
+      all.push_back(areas_of_uniform_radii(10 * seed + k, count, least));
+    return all;
+  };
+  const auto difference = [](const std::vector<std::vector<double>>& a,
+                             const std::vector<std::vector<double>>& b) {
+    std::vector<double> first, second;
+    for (const auto& areas : a) first.insert(first.end(), areas.begin(), areas.end());
+    for (const auto& areas : b) second.insert(second.end(), areas.begin(), areas.end());
+    return largest_difference(cumulative_radii(first), cumulative_radii(second));
+  };
+  constexpr int kPairs = 400;
   int exceeded = 0;
-  for (std::uint64_t seed = 0; seed < 200; ++seed)
-    exceeded +=
-        largest_difference(cumulative_radii(areas_of_uniform_radii(2 * seed, 80, 0.2)),
-                           cumulative_radii(areas_of_uniform_radii(2 * seed + 1, 60, 0.2))) >
-        critical_difference(80, 60);
-  EXPECT_LE(exceeded, 20);  // radii over their own mean differ less than radii
-  EXPECT_GT(largest_difference(cumulative_radii(areas_of_uniform_radii(1, 80, 0.0)),
-                               cumulative_radii(areas_of_uniform_radii(2, 60, 0.8))),
-            critical_difference(80, 60));
+  for (std::uint64_t seed = 0; seed < kPairs; ++seed) {
+    const auto early = members(2 * seed, 13, 0.2), late = members(2 * seed + 1, 10, 0.2);
+    exceeded += difference(early, late) > chance_difference(early, late);
+  }
+  EXPECT_NEAR(exceeded, kPairs * 2 / 32.0, 3 * std::sqrt(kPairs * 2 / 32.0));
+  const auto narrow = members(1, 13, 0.8), wide = members(2, 10, 0.0);
+  // Where one member of six is exchanged two thirds of a difference are left.
+  EXPECT_GT(difference(narrow, wide), 1.2 * chance_difference(narrow, wide));
+  EXPECT_THROW((void)chance_difference(narrow, {}), std::invalid_argument);
 }
 
 }  // namespace

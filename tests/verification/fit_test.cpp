@@ -62,6 +62,30 @@ TEST(Fit, TheBootstrapKnowsHowFarAMeanIsOff) {
   EXPECT_GT(missed, 0.01 * kTrials);
 }
 
+// 95 % of the means of six numbers have to lie in their intervals.
+TEST(Bootstrap, IsWidenedForFew) {
+  EXPECT_NEAR(factor_for_few(6), 2.5706 / 1.96 * std::sqrt(6.0 / 5), 0.005);
+  EXPECT_NEAR(factor_for_few(4), 3.1824 / 1.96 * std::sqrt(4.0 / 3), 0.02);
+  EXPECT_NEAR(factor_for_few(1000), 1, 0.002);
+  constexpr int kTrials = 400, kCount = 6;
+  int missed = 0, missed_before = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    std::vector<double> values(kCount);
+    for (int k = 0; k < kCount; ++k)
+      values[k] = normal_random(7, trial, static_cast<std::uint64_t>(k));
+    const auto mean = [&](const std::vector<int>& sample) {
+      double sum = 0;
+      for (const int k : sample) sum += values[k];
+      return sum / kCount;
+    };
+    const Interval percentiles = bootstrap(kCount, 400, 0.95, trial, mean);
+    missed_before += percentiles.contains(0) ? 0 : 1;
+    missed += widened_for_few(percentiles, mean(each_once(kCount)), kCount).contains(0) ? 0 : 1;
+  }
+  EXPECT_GT(missed_before, 0.09 * kTrials);
+  EXPECT_NEAR(missed, 0.05 * kTrials, 0.03 * kTrials);
+}
+
 TEST(Fit, Moments) {
   const Moments m = moments({1, 2, 6});
   EXPECT_NEAR(m.mean, 3, 1e-14);

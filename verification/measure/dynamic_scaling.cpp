@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "kernel/core/types.hpp"
 #include "verification/measure/spherical_spectrum.hpp"
@@ -56,9 +57,45 @@ double largest_difference(const Cumulative& p, const Cumulative& q) {
   return largest;
 }
 
-double critical_difference(std::size_t p_count, std::size_t q_count) {
-  const double p = static_cast<double>(p_count), q = static_cast<double>(q_count);
-  return 1.358 * std::sqrt((p + q) / (p * q));
+namespace {
+
+using AreasOfMembers = std::vector<std::vector<double>>;
+
+// Of the radii of all members together, squared.
+AreasOfMembers in_units_of_their_mean(AreasOfMembers areas) {
+  double sum = 0, count = 0;
+  for (const std::vector<double>& own : areas)
+    for (const double area : own) {
+      sum += std::sqrt(area);
+      ++count;
+    }
+  for (std::vector<double>& own : areas)
+    for (double& area : own) area *= count * count / (sum * sum);
+  return areas;
+}
+
+}  // namespace
+
+double chance_difference(const AreasOfMembers& early_areas, const AreasOfMembers& late_areas) {
+  const std::size_t n = early_areas.size();
+  if (n < 2 || n > 16 || late_areas.size() != n)
+    throw std::invalid_argument("chance_difference: 2 to 16 members at both times");
+  const auto early = in_units_of_their_mean(early_areas), late = in_units_of_their_mean(late_areas);
+  std::vector<double> differences;
+  // The last one stays: to exchange all others and this one is the same.
+  for (std::size_t exchanged = 0; exchanged < std::size_t{1} << (n - 1); ++exchanged) {
+    std::vector<double> first, second;
+    for (std::size_t k = 0; k < n; ++k) {
+      const bool swap = (exchanged >> k & 1) != 0;
+      const auto &a = swap ? late[k] : early[k], &b = swap ? early[k] : late[k];
+      first.insert(first.end(), a.begin(), a.end());
+      second.insert(second.end(), b.begin(), b.end());
+    }
+    differences.push_back(largest_difference(cumulative_radii(first), cumulative_radii(second)));
+  }
+  std::sort(differences.begin(), differences.end());
+  return differences[static_cast<std::size_t>(0.95 * static_cast<double>(differences.size() - 1) +
+                                              0.5)];
 }
 
 }  // namespace traceraft

@@ -17,9 +17,12 @@ Cumulative cumulative_radii(const std::vector<double>& areas);
 // Of the power S_l, l > 0, over l in units of the median degree; a degree is spread over l ± ½.
 Cumulative cumulative_spectrum(const std::vector<double>& power);
 
-// The largest difference of two curves (Kolmogorov, Smirnov), and that of two independent samples
-// of one distribution which is exceeded with a probability of 5 %.
+// The largest difference of two curves (Kolmogorov, Smirnov).
 double largest_difference(const Cumulative& p, const Cumulative& q);
-double critical_difference(std::size_t p_count, std::size_t q_count);
+// What that of cumulative_radii, of all members' areas together, surpasses with a probability of 5
+// % if both times have one distribution: over all ways to exchange the times of some members, as
+// the rafts of one are not independent. At most 16 members.
+double chance_difference(const std::vector<std::vector<double>>& early,
+                         const std::vector<std::vector<double>>& late);
 
 }  // namespace traceraft

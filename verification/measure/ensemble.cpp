@@ -90,9 +90,10 @@ Exponent fit_exponent(const std::vector<Member>& members, std::vector<double> Me
     return {fit_power_law(points).slope, 0};
   };
   const ShiftedPowerLaw all = fit(everyone(members));
-  return {all.exponent, all.offset,
-          bootstrap(static_cast<int>(members.size()), 1000, 0.95, 1,
-                    [&](const std::vector<int>& sample) { return fit(sample).exponent; })};
+  const int count = static_cast<int>(members.size());
+  const Interval percentiles = bootstrap(
+      count, 1000, 0.95, 1, [&](const std::vector<int>& sample) { return fit(sample).exponent; });
+  return {all.exponent, all.offset, widened_for_few(percentiles, all.exponent, count)};
 }
 
 }  // namespace traceraft

@@ -41,7 +41,8 @@ std::vector<double> geometric_mean(const std::vector<Member>& members,
 std::vector<int> everyone(const std::vector<Member>& members);
 
 // The exponent b of quantity ~ t^b, or of (t + offset)^b with the offset fitted as well, over the
-// common times in [begin, end]; its 95 % interval by the bootstrap over members.
+// common times in [begin, end]; its 95 % interval by the bootstrap over members, which
+// are few.
 struct Exponent {
   double b, offset;
   Interval interval;
