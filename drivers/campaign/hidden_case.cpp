@@ -45,6 +45,13 @@ Json truth_json(const BlindCase& drawn, const BlindRequest& request, const Units
           {"tolerance", request.tolerance}};
 }
 
+// Of an attempt that was killed: it may have had more.
+void forget_snapshots(const fs::path& data) {
+  const std::vector<fs::directory_entry> files(fs::directory_iterator(data), {});
+  for (const fs::path& file : files)
+    if (file.filename().string().rfind("snapshot_", 0) == 0) fs::remove(file);
+}
+
 }  // namespace
 
 void add_small_vesicle(GivenValues& model, const std::string& source) {
@@ -69,17 +76,6 @@ void refuse_hiding(const Configuration& model, const BlindRequest& request) {
                      " has to be more than the model's cells, " +
                      std::to_string(model.integer("cells")));
 }
-
-namespace {
-
-// Of an attempt that was killed: it may have had more.
-void forget_snapshots(const fs::path& data) {
-  const std::vector<fs::directory_entry> files(fs::directory_iterator(data), {});
-  for (const fs::path& file : files)
-    if (file.filename().string().rfind("snapshot_", 0) == 0) fs::remove(file);
-}
-
-}  // namespace
 
 void hide(const fs::path& folder, const GivenValues& model, BlindRequest request) {
   const Configuration configuration(model, {});

@@ -118,9 +118,7 @@ int carry_out(const CompareRequest& request, const ComparisonFolder& folder,
     std::printf("\n%s\n\nopen next: %s\n", advice.sentence.c_str(),
                 (folder.path() / "compare.html").c_str());
   }
-  const bool any =
-      std::any_of(points.begin(), points.end(), [](const WorkPoint& point) { return point.ok(); });
-  return any ? kSuccess : kNumericalFailure;
+  return any_result(points) ? kSuccess : kNumericalFailure;
 }
 
 int compare(const CompareRequest& request) {

@@ -26,16 +26,18 @@ void EnsembleFolder::refuse_other_plan() const {
   if (!std::filesystem::exists(plan_file())) return;
   try {
     (void)load();
-  } catch (const std::runtime_error&) {
-    throw InputError("--out: " + plan_file().string() +
-                     " is no plan of an ensemble; choose another folder");
+  } catch (const IoError&) {
+    refuse_plan();
   }
+}
+
+void EnsembleFolder::refuse_plan() const {
+  throw InputError(plan_file().string() + " is no plan of an ensemble; choose another folder");
 }
 
 EnsemblePlan EnsembleFolder::load() const {
   return from_json(plan_file(), [this](const Json& json) {
-    if (!json.contains("first_seed"))
-      throw InputError(path_.string() + " holds no ensemble, but something else with a plan");
+    if (!json.contains("first_seed")) refuse_plan();
     return EnsemblePlan{json.at("runs"), json.at("first_seed")};
   });
 }

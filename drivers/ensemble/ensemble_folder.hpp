@@ -54,6 +54,8 @@ class EnsembleFolder {
   History history(std::uint64_t seed, double radius) const;
 
  private:
+  [[noreturn]] void refuse_plan() const;
+
   std::filesystem::path path_;
 };
 

@@ -20,6 +20,21 @@ double value_at(const Cumulative& curve, double x) {
   return left->second + share * (right->second - left->second);
 }
 
+using AreasOfMembers = std::vector<std::vector<double>>;
+
+// Of the radii of all members together, squared.
+AreasOfMembers in_units_of_their_mean(AreasOfMembers areas) {
+  double sum = 0, count = 0;
+  for (const std::vector<double>& own : areas)
+    for (const double area : own) {
+      sum += std::sqrt(area);
+      ++count;
+    }
+  for (std::vector<double>& own : areas)
+    for (double& area : own) area *= count * count / (sum * sum);
+  return areas;
+}
+
 }  // namespace
 
 Cumulative cumulative_radii(const std::vector<double>& areas) {
@@ -53,28 +68,9 @@ double largest_difference(const Cumulative& p, const Cumulative& q) {
   double largest = 0;
   for (const Cumulative* curve : {&p, &q})
     for (const auto& [x, share] : *curve)
-      largest = std::max(largest, std::fabs(value_at(p, x) - value_at(q, x)));
+      largest = larger(largest, std::fabs(value_at(p, x) - value_at(q, x)));
   return largest;
 }
-
-namespace {
-
-using AreasOfMembers = std::vector<std::vector<double>>;
-
-// Of the radii of all members together, squared.
-AreasOfMembers in_units_of_their_mean(AreasOfMembers areas) {
-  double sum = 0, count = 0;
-  for (const std::vector<double>& own : areas)
-    for (const double area : own) {
-      sum += std::sqrt(area);
-      ++count;
-    }
-  for (std::vector<double>& own : areas)
-    for (double& area : own) area *= count * count / (sum * sum);
-  return areas;
-}
-
-}  // namespace
 
 double chance_difference(const AreasOfMembers& early_areas, const AreasOfMembers& late_areas) {
   const std::size_t n = early_areas.size();

@@ -122,6 +122,10 @@ Interval widened_for_few(const Interval& interval, double centre, int count) {
   return {centre - factor * (centre - interval.low), centre + factor * (interval.high - centre)};
 }
 
+double larger(double a, double b) {
+  return std::isnan(a) || b <= a ? a : b;
+}
+
 Moments moments(const std::vector<double>& values) {
   const double count = static_cast<double>(values.size());
   double mean = 0, squares = 0;

@@ -62,6 +62,9 @@ std::vector<Interval> bootstrap_all(
 Interval widened_for_few(const Interval& interval, double centre, int count);
 double factor_for_few(int count);
 
+// Of errors, which have to be small: NaN is the largest of all.
+double larger(double a, double b);
+
 struct Moments {
   double mean, deviation;  // of the sample, with n − 1
   double low, high;

@@ -33,10 +33,9 @@ std::string describe(const WorkPoint& p) {
 }
 
 std::string sentence(const std::vector<WorkPoint>& points, const Recommendation& advice) {
-  const bool any =
-      std::any_of(points.begin(), points.end(), [](const WorkPoint& point) { return point.ok(); });
   if (advice.cheapest.empty())
-    return any ? formatted("No method reached an error of %.1e: ask for tighter --tolerances.",
+    return any_result(points)
+               ? formatted("No method reached an error of %.1e: ask for tighter --tolerances.",
                            advice.target)
                : std::string("No combination gave a result.");
   const WorkPoint& best = points[advice.cheapest[0]];
@@ -58,6 +57,11 @@ std::string sentence(const std::vector<WorkPoint>& points, const Recommendation&
 }
 
 }  // namespace
+
+bool any_result(const std::vector<WorkPoint>& points) {
+  return std::any_of(points.begin(), points.end(),
+                     [](const WorkPoint& point) { return point.ok(); });
+}
 
 Spread spread_of(std::vector<double> values) {
   std::sort(values.begin(), values.end());

@@ -25,6 +25,8 @@ struct WorkPoint {
   }
 };
 
+bool any_result(const std::vector<WorkPoint>& points);
+
 struct Spread {
   double median = 0, low = 0, high = 0;
 };

@@ -99,6 +99,17 @@ void compare_integrators(const Bench& bench, const Agreement& runs, StudyReport&
   report.charts.push_back(chart);
 }
 
+// What computations of one thing differ by; nothing is claimed of none.
+void claim_sameness(const std::string& what, double apart, const std::string& if_none,
+                    const Table& table, StudyReport& report) {
+  if (table.rows.empty()) {
+    report.notes.push_back(if_none);
+    return;
+  }
+  report.claims.push_back(claim_at_most(what, apart, kSame));
+  report.tables.push_back(table);
+}
+
 // With one integrator and one tolerance solvers differ by what their solves leave over.
 void compare_solvers(const Bench& bench, const Agreement& runs, StudyReport& report) {
   Table table{"solvers", {"integrator", "solver", "distance from direct"}, {}};
@@ -115,13 +126,8 @@ void compare_solvers(const Bench& bench, const Agreement& runs, StudyReport& rep
       apart = larger(apart, distance);
     }
   }
-  if (table.rows.empty()) {
-    report.notes.push_back("No solver was asked for that direct could be held against.");
-    return;
-  }
-  report.claims.push_back(claim_at_most(
-      "largest distance of two solvers at tolerance " + format_number(tolerance), apart, kSame));
-  report.tables.push_back(table);
+  claim_sameness("largest distance of two solvers at tolerance " + format_number(tolerance), apart,
+                 "No solver was asked for that direct could be held against.", table, report);
 }
 
 void compare_ranks(const Bench& bench, const Agreement& runs, StudyReport& report) {
@@ -135,13 +141,8 @@ void compare_ranks(const Bench& bench, const Agreement& runs, StudyReport& repor
       table.rows.push_back({name, solver, distance});
       apart = larger(apart, distance);
     }
-  if (table.rows.empty()) {
-    report.notes.push_back("This build has no solver that works on ranks.");
-    return;
-  }
-  report.claims.push_back(claim_at_most(
-      "largest distance of 2 ranks from 1 at t = " + format_number(end), apart, kSame));
-  report.tables.push_back(table);
+  claim_sameness("largest distance of 2 ranks from 1 at t = " + format_number(end), apart,
+                 "This build has no solver that works on ranks.", table, report);
 }
 
 StudyReport run(const Bench& bench) {

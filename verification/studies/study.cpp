@@ -1,6 +1,5 @@
 #include "verification/studies/study.hpp"
 
-#include <cmath>
 #include <limits>
 
 namespace traceraft {
@@ -15,10 +14,6 @@ Claim claim_order(std::string what, const Points& size_and_error, double expecte
                   double tolerance) {
   const ObservedOrder found = observed_order(size_and_error);
   return claim_near(std::move(what), found.order, expected, tolerance, found.change);
-}
-
-double larger(double a, double b) {
-  return std::isnan(a) || b <= a ? a : b;
 }
 
 Claim claim_at_most(std::string what, double measured, double bound) {

@@ -24,9 +24,6 @@ struct Claim {
   bool holds() const { return measured >= low && measured <= high; }  // false for NaN
 };
 
-// Of what is claimed to be small: NaN is the largest of all.
-double larger(double a, double b);
-
 Claim claim_near(std::string what, double measured, double expected, double tolerance,
                  double uncertainty = 0);
 // The observed order (fit.hpp) of errors e ~ h^p, its uncertainty the change from coarser levels.

@@ -12,6 +12,8 @@ namespace {
 constexpr double kStep = 0.1;  // of the logarithms, at first
 constexpr double kTolerance = 1e-3;
 constexpr int kMostEvaluations = 300;
+// Shares are given in per cent, rounded; where all are the same that is what is known.
+constexpr double kLeastFractionVariance = 0.01 * 0.01 / 12;
 
 TimeFit with_fractions(const Evidence& all, const RunStatistics& runs, TimeFit fit) {
   if (all.fractions)
@@ -21,20 +23,13 @@ TimeFit with_fractions(const Evidence& all, const RunStatistics& runs, TimeFit f
 
 }  // namespace
 
-namespace {
-
-// Shares are given in per cent, rounded; where all are the same that is what is known.
-constexpr double kRoundedFraction = 0.01 / 3.46;  // 1/√12 of it
-
-}  // namespace
-
 MeasuredFractions::MeasuredFractions(const MeasuredVesicles& data)
     : vesicles_(fractions_of_vesicles(data)) {
   std::vector<double> known;
   for (const auto& vesicle : vesicles_)
     if (vesicle) known.push_back(vesicle->mean);
   if (known.size() > 1)
-    variance_ = std::pow(std::max(moments(known).deviation, kRoundedFraction), 2);
+    variance_ = std::max(std::pow(moments(known).deviation, 2), kLeastFractionVariance);
 }
 
 double MeasuredFractions::deviance(const std::vector<int>& sample, const RunStatistics& runs,
