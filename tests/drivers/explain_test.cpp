@@ -66,8 +66,8 @@ class ExplainTest : public ::testing::Test {
   nlohmann::json verdict() const {
     return nlohmann::json::parse(testing::content(folder.path / "out" / "verdict.json"));
   }
-  nlohmann::json explain() const {
-    const auto end = testing::traceraft(command());
+  nlohmann::json explain(int cells = 15) const {
+    const auto end = testing::traceraft(command(cells));
     EXPECT_EQ(end.code, 0) << end.output;
     return verdict();
   }
@@ -115,7 +115,7 @@ TEST_F(ExplainTest, NamesWhatWasHidden) {
 
 TEST_F(ExplainTest, NamesNothingWhereNothingIsHidden) {
   draw("");
-  const nlohmann::json verdict = explain();
+  const nlohmann::json verdict = explain(13);
   EXPECT_EQ(verdict["verdict"], "none") << verdict.dump(2);
   EXPECT_TRUE(verdict["effect"].is_null());
   EXPECT_TRUE(verdict["gap"]["placebo"]["train"].is_null());
@@ -124,7 +124,7 @@ TEST_F(ExplainTest, NamesNothingWhereNothingIsHidden) {
 
 // A killed search goes on from its last refit and ends as if nothing had happened.
 TEST_F(ExplainTest, GoesOnWhereItWasKilled) {
-  constexpr int kCells = 11;
+  constexpr int kCells = 10;
   BlindRequest asked = request();
   asked.effects = {"uptake"};
   asked.gap = 0.2;
@@ -178,7 +178,7 @@ TEST_F(ExplainTest, JoinsWhatVesiclesSay) {
   ASSERT_EQ(drawn.vesicles.size(), 2u);
   EXPECT_NE(drawn.vesicles[0].snapshots[0].values[0], drawn.vesicles[1].snapshots[0].values[0]);
   write(drawn.vesicles);
-  ASSERT_EQ(testing::traceraft(command_of_few(13)).code, 0);
+  ASSERT_EQ(testing::traceraft(command_of_few(11)).code, 0);
   const nlohmann::json found = verdict();
   EXPECT_EQ(found["effect"], "uptake") << found.dump(2);
   const nlohmann::json& rate = found["parameters"]["uptake.rate"];
@@ -198,7 +198,7 @@ TEST_F(ExplainTest, SaysWhatIsOddAboutTheData) {
   for (int k = 0; k < 5; ++k) snapshots[1].values[100 * k] = 4;
   vesicles[0].vesicle = "7";
   write(vesicles);
-  const auto end = testing::traceraft(command_of_few(11));
+  const auto end = testing::traceraft(command_of_few(10));
   ASSERT_EQ(end.code, 0) << end.output;
   const std::string remarks = verdict()["remarks"].dump();
   EXPECT_NE(remarks.find("5 values that are far"), std::string::npos) << remarks;

@@ -28,8 +28,8 @@ class RivalsTest : public ::testing::Test {
   RivalsTest() {
     request_.base = testing::small_vesicle(4).base;
     request_.surface = make_surface("sphere");
-    request_.cells = 12;
-    request_.filter.rank = 40;
+    request_.cells = 10;
+    request_.filter.rank = 30;
     // The first look is right: with three that count uptake would be one with what it might lack.
     request_.filter.first_gain = request_.filter.first_offset = 0;
     request_.filter.replicates = 49;

@@ -15,13 +15,13 @@ TEST(FirstPace, IsFoundFromFarAway) {
   CahnHilliardModel base = asked.base;
   const BlindCase drawn = draw_blind_case(asked);
   FilterSettings few;
-  few.rank = 60;
+  few.rank = 40;
   few.replicates = 0;
   for (const double factor : {1e-3, 400.0}) {
     std::vector<FieldSeries> vesicles = drawn.vesicles;
     for (FieldSnapshot& snapshot : vesicles[0].snapshots) snapshot.time *= factor;
     const FilterProblems data =
-        make_filter_problems(vesicles, *make_surface("sphere"), base, 12, 2, true, few);
+        make_filter_problems(vesicles, *make_surface("sphere"), base, 10, 2, true, few);
     EXPECT_NEAR(std::log(first_pace(data, base, few) * factor), 0, 0.2) << factor;
   }
 }

@@ -11,7 +11,7 @@
 namespace traceraft {
 namespace {
 
-constexpr int kCells = 16;
+constexpr int kCells = 13;
 
 BlindRequest request() {
   return testing::small_vesicle(3);
@@ -22,7 +22,7 @@ BlindRequest request() {
 FilterSettings settings() {
   FilterSettings few;
   few.first_gain = few.first_offset = 0;
-  few.rank = 80;
+  few.rank = 60;
   few.replicates = 0;
   return few;
 }
