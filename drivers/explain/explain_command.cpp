@@ -211,7 +211,7 @@ Action define_explain(CLI::App& app) {
   app.add_flag("--quiet", command->quiet, "print nothing but errors");
   add_options(app, command->job.flags, [](const OptionSpec& spec) {
     return (spec.group == "Physics" || spec.group == "Surface" || spec.group == "Case") &&
-           spec.name != "radius" && spec.name != "scaled" && spec.name != "effect";
+           spec.name != "radius" && spec.name != "scaled";
   });
   app.footer("Example: traceraft explain --data my-vesicle --model model.toml --cells 40");
   return [command] { return explain(*command); };

@@ -99,7 +99,7 @@ class ExplainPage {
     page_.table(gap_rows(found_));
     Chart chart{"measured minus forecast", "time (s)", "root mean square, in c", false, false, {}};
     chart.series = {gap_series("base model", found_.base, false)};
-    if (!found_.found.hypothesis.parts.empty())
+    if (found_.found.hypothesis.added() > 0)
       chart.series.push_back(
           gap_series("with " + found_.found.hypothesis.name(), found_.found, false));
     chart.series.push_back(gap_series("to be expected if nothing is missing", found_.found, true));
@@ -120,8 +120,7 @@ class ExplainPage {
 
   void add_where() {
     page_.heading("Where");
-    const bool both =
-        !found_.found.hypothesis.parts.empty() && !found_.found_maps.snapshots.empty();
+    const bool both = found_.found.hypothesis.added() > 0 && !found_.found_maps.snapshots.empty();
     page_.paragraph(
         "Measured minus forecast near each place, in standard deviations of noise: orange where "
         "more raft was measured, blue where less. Noise alone surpasses " +

@@ -48,7 +48,9 @@ void write_explanation(const std::filesystem::path& folder, const Explanation& f
   if (has_model(found))
     write_extended_model(folder / "model.toml", setup.model_file, found_model(found, setup.model),
                          "found by traceraft explain: " + found.found.hypothesis.name() +
-                             ", with D refitted beside it");
+                             (setup.request.own.parts.empty()
+                                  ? ", with D refitted beside it"
+                                  : ", with D and the model's own effects refitted beside it"));
   write_durably(folder / "verdict.json", verdict_json(found, setup).dump(2) + "\n");
 }
 

@@ -8,6 +8,7 @@
 #include "drivers/input/field_dataset.hpp"
 #include "drivers/input/measured_units.hpp"
 #include "drivers/input/model_of_data.hpp"
+#include "drivers/run/checked_options.hpp"
 #include "drivers/run/physical_model.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
@@ -104,17 +105,29 @@ void refuse_leaving_out_all(const ExplainRequest& request,
     throw InputError("--without: no effect is left to look for");
 }
 
+// What data could not tell from the rest of the model is not fitted beside it.
+Hypothesis own_effects(const Configuration& model, const ExplainRequest& request,
+                       const std::vector<FieldSeries>& vesicles) {
+  const std::vector<Point>& places = vesicles.front().snapshots.front().points;
+  const std::vector<Candidate> able = candidates_for(request.base, *request.surface, places, {});
+  Hypothesis own;
+  for (const EffectTerm& term : effects_of(model)) {
+    own.parts.push_back(said_of(model, "effect", [&] { return part_of(term); }));
+    if (std::none_of(able.begin(), able.end(),
+                     [&](const Candidate& c) { return c.effect == term.effect; }))
+      throw InputError(model.where("effect") + ": effect " + term.effect +
+                       ": on this surface it does next to nothing, so that no data tell its "
+                       "strength; leave it out");
+  }
+  own.known = own.parts.size();
+  return own;
+}
+
 }  // namespace
 
 int ExplainJob::processors() const {
   return threads > 0 ? threads
                      : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-}
-
-void refuse_effects(const Configuration& model) {
-  if (!model.text("effect").empty())
-    throw InputError(model.where("effect") +
-                     ": the search starts from a model without effects; it finds them itself");
 }
 
 Configuration ExplainSetup::configuration() const {
@@ -154,8 +167,7 @@ ExplainSetup read_explain_job(const ExplainJob& job) {
   setup.synthetic = data.synthetic;
   const Configuration model = setup.configuration();
   refuse_scaled(model);
-  refuse_effects(model);
-  setup.request.base = physical_model(model);
+  setup.request.base = model_without_effects(model);
   const DoubleWell& well = setup.request.base.well;
   if (model.text("surface") == "sphere") refuse_points_off_the_sphere(data, job.data);
   if (const std::string note = note_on_scale(data, well.a, well.b); !note.empty())
@@ -180,6 +192,7 @@ ExplainSetup read_explain_job(const ExplainJob& job) {
   refuse_far_values(setup.series, request.base.well, job.data);
   refuse_uniform_values(setup.series, request.base.well, job.data);
   refuse_leaving_out_all(request, setup.series);
+  request.own = own_effects(model, request, setup.series);
   return setup;
 }
 

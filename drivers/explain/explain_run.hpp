@@ -36,9 +36,6 @@ struct ExplainSetup {
 // "my vesicle (SYNTHETIC): 1 vesicle, 8 snapshots, R = 5 um, blurred by 0.1 um"
 std::string data_text(const ExplainSetup& setup);
 
-// Throws InputError: the search finds effects itself.
-void refuse_effects(const Configuration& model);
-
 // Throws InputError for data and models that cannot be used.
 ExplainSetup read_explain_job(const ExplainJob& job);
 

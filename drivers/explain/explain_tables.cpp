@@ -52,7 +52,7 @@ std::vector<Row> gap_rows(const Explanation& found) {
     rows.push_back(
         {name, formatted("%.4g", g.train), g.heldout > 0 ? formatted("%.4g", g.heldout) : ""});
   };
-  const bool more = !found.found.hypothesis.parts.empty();
+  const bool more = found.found.hypothesis.added() > 0;
   const std::string name = is_named(found) ? "what was found" : "what comes closest";
   add("base model", found.base_gap);
   if (more) add(name, found.found_gap);

@@ -38,14 +38,29 @@ void add_failures(const Explanation& found, std::vector<std::string>& all) {
 // Of what was found, parameters that were not looked for.
 void add_assumptions(const Explanation& found, const Units& base, std::vector<std::string>& all) {
   std::map<std::string, std::vector<std::string>> assumed;  // of each effect
+  const Hypothesis& own = found.rounds.front().known.hypothesis;
   for (const FoundParameter& p : found_parameters(found.found, base))
-    if (!p.sigma)
+    if (!p.sigma && !own.has(p.effect))
       assumed[p.effect].push_back(p.name + formatted(" = %.4g", p.value) +
                                   (p.unit.empty() ? "" : " " + p.unit));
   for (const auto& [effect, values] : assumed)
     all.push_back(effect + " is looked for with " + joined(values, ", ") +
                   " alone: with other values its strength is another one, and what has them may be "
                   "taken for another effect.");
+}
+
+// Strengths that the model states and these data contradict.
+void add_own(const Explanation& found, const ExplainSetup& setup, std::vector<std::string>& all) {
+  const Units base = setup.configuration().units();
+  const std::vector<FoundParameter> fitted = found_parameters(fit_shown(found), base);
+  for (const EffectTerm& term : setup.request.own.terms())
+    for (const FoundParameter& stated : parameters_of(term, base))
+      for (const FoundParameter& p : fitted)
+        if (p.effect == stated.effect && p.name == stated.name && p.sigma &&
+            std::fabs(p.value - stated.value) > kSure * *p.sigma)
+          all.push_back("The model has " + p.effect + " with " + p.name +
+                        formatted(" = %.4g; these data say %.4g (standard error %.2g).",
+                                  stated.value, p.value, *p.sigma));
 }
 
 // A mistake in the unit of time looks like another D.
@@ -218,6 +233,7 @@ std::vector<std::string> remarks_on(const Explanation& found, const ExplainSetup
   std::vector<std::string> all = setup.notes;
   for (std::string& remark : remarks(found, setup.configuration().units()))
     all.push_back(std::move(remark));
+  add_own(found, setup, all);
   for (const FrameChange& change : found.changes) all.push_back(text_of(change, setup));
   if (const auto& without = setup.request.without; !without.empty())
     all.push_back("Not looked for, as asked: " + joined(without, ", ") + ".");

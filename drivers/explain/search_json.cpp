@@ -43,13 +43,18 @@ Candidate candidate_of(const std::string& effect) {
 Json json_of(const Hypothesis& hypothesis) {
   Json parts = Json::array();
   for (const auto& part : hypothesis.parts)
-    parts.push_back({{"effect", part.candidate.effect}, {"coefficients", part.coefficients}});
-  return parts;
+    parts.push_back({{"effect", part.candidate.effect},
+                     {"coefficients", part.coefficients},
+                     {"values", part.candidate.term(part.coefficients).values}});
+  return {{"parts", parts}, {"known", hypothesis.known}};
 }
 Hypothesis hypothesis_of(const Json& json) {
   Hypothesis hypothesis;
-  for (const Json& part : json)
-    hypothesis.parts.push_back({candidate_of(part.at("effect")), part.at("coefficients")});
+  hypothesis.known = json.at("known");
+  for (const Json& part : json.at("parts")) {
+    const EffectTerm term{candidate_of(part.at("effect")).effect, part.at("values")};
+    hypothesis.parts.push_back({part_of(term).candidate, part.at("coefficients")});
+  }
   return hypothesis;
 }
 

@@ -125,7 +125,10 @@ void refuse_series(const MeasuredVesicles& data, const Configuration& model) {
   refuse_scaled(model);
   if (model.text("surface") != "sphere")
     throw InputError(model.where("surface") + ": series are explained on spheres only");
-  refuse_effects(model);
+  if (!model.text("effect").empty())
+    throw InputError(model.where("effect") +
+                     ": series are held against a model without effects, one of which at a time is "
+                     "then added");
   refuse_without_noise(model);
   refuse_vesicles(data);
   if (const Window window = looks(data); !(window.begin < window.end))

@@ -49,7 +49,7 @@ Json gap_json(const Gaps& gaps) {
 }
 
 Json closed_json(const Explanation& found) {
-  if (found.found.hypothesis.parts.empty()) return {};
+  if (found.found.hypothesis.added() == 0) return {};
   const auto json = [](const std::optional<double>& share) {
     return share ? Json(*share) : Json();
   };
@@ -85,7 +85,7 @@ Json rounds_json(const Explanation& found) {
 Json rerun_json(const Explanation& found) {
   if (!found.rerun) return {};
   const Rerun& rerun = *found.rerun;
-  const bool compared = !found.found.hypothesis.parts.empty();
+  const bool compared = found.found.hypothesis.added() > 0;
   const auto text = [](const std::string& why) { return why.empty() ? Json() : Json(why); };
   const bool told = compared && (rerun.heldout() || !rerun.failure.empty());
   return {{"confirms", told ? Json(rerun.confirms()) : Json()},
@@ -120,7 +120,8 @@ std::vector<std::string> not_looked_for(const Explanation& found) {
   std::vector<std::string> names;
   for (const std::string& name : effects().names())
     if (std::none_of(looked_for.begin(), looked_for.end(),
-                     [&](const Candidate& candidate) { return candidate.effect == name; }))
+                     [&](const Candidate& candidate) { return candidate.effect == name; }) &&
+        !found.rounds.front().known.hypothesis.has(name))
       names.push_back(name);
   return names;
 }
@@ -165,6 +166,7 @@ Json verdict_json(const Explanation& found, const ExplainSetup& setup) {
           {"model",
            {{"epsilon_um", model.number("epsilon")},
             {"diffusion_cm2_s", base.diffusion_cm2_s},
+            {"effect", model.text("effect")},
             {"diffusion_error", found.pace_doubt},
             {"cells", setup.request.cells},
             {"h_over_epsilon", found.h_over_epsilon}}},

@@ -8,11 +8,12 @@
 namespace traceraft {
 namespace {
 
-// "rafts that repel each other over a distance; ..."
+// "rafts that repel each other over a distance; ...": of the effects that it adds.
 std::string in_words(const Hypothesis& hypothesis) {
   std::string words;
-  for (const EffectTerm& term : hypothesis.terms())
-    words += (words.empty() ? "" : "; ") + physics_of(term);
+  const std::vector<EffectTerm> terms = hypothesis.terms();
+  for (std::size_t k = hypothesis.known; k < terms.size(); ++k)
+    words += (words.empty() ? "" : "; ") + physics_of(terms[k]);
   return words;
 }
 

@@ -37,7 +37,7 @@ LevelSetPtr surface_of(const Configuration& configuration) {
   });
 }
 
-CahnHilliardModel physical_model(const Configuration& configuration) {
+CahnHilliardModel model_without_effects(const Configuration& configuration) {
   const Units units = configuration.units();
   CahnHilliardModel result;
   result.mobility = said_of(configuration, "mobility",
@@ -53,11 +53,18 @@ CahnHilliardModel physical_model(const Configuration& configuration) {
                     : PotentialRule::consistent;
   result.stabilisation = configuration.number("stabilisation");
   result.seed = static_cast<std::uint64_t>(configuration.integer("seed"));
-  said_of(configuration, "effect", [&] {
-    add_effects(configuration.text("effect"), units, result);
-    return 0;
-  });
   return result;
+}
+
+std::vector<EffectTerm> effects_of(const Configuration& configuration) {
+  return said_of(configuration, "effect",
+                 [&] { return read_effects(configuration.text("effect"), configuration.units()); });
+}
+
+CahnHilliardModel physical_model(const Configuration& configuration) {
+  const CahnHilliardModel model = model_without_effects(configuration);
+  return said_of(configuration, "effect",
+                 [&] { return with_effects(model, effects_of(configuration)); });
 }
 
 }  // namespace traceraft

@@ -37,21 +37,6 @@ EffectTerm read_term(const std::string& one, const Units& units) {
   return term;
 }
 
-std::vector<EffectTerm> read_terms(const std::string& specification, const Units& units) {
-  std::vector<EffectTerm> terms;
-  for (std::size_t begin = 0; begin <= specification.size();) {
-    const std::size_t end = std::min(specification.find(';', begin), specification.size());
-    const std::string one = trimmed(specification.substr(begin, end - begin));
-    begin = end + 1;
-    if (one.empty()) continue;
-    terms.push_back(read_term(one, units));
-    for (std::size_t k = 0; k + 1 < terms.size(); ++k)
-      if (terms[k].effect == terms.back().effect)
-        throw InputError("effect " + terms[k].effect + ": it is given twice");
-  }
-  return terms;
-}
-
 void add(const EffectTerm& term, CahnHilliardModel& model) {
   const EffectEntry& entry = effects().find(term.effect);
   if (entry.unit_wells && !has_unit_wells(model))
@@ -103,8 +88,23 @@ CahnHilliardModel with_effects(CahnHilliardModel model, const std::vector<Effect
   return model;
 }
 
+std::vector<EffectTerm> read_effects(const std::string& specification, const Units& units) {
+  std::vector<EffectTerm> terms;
+  for (std::size_t begin = 0; begin <= specification.size();) {
+    const std::size_t end = std::min(specification.find(';', begin), specification.size());
+    const std::string one = trimmed(specification.substr(begin, end - begin));
+    begin = end + 1;
+    if (one.empty()) continue;
+    terms.push_back(read_term(one, units));
+    for (std::size_t k = 0; k + 1 < terms.size(); ++k)
+      if (terms[k].effect == terms.back().effect)
+        throw InputError("effect " + terms[k].effect + ": it is given twice");
+  }
+  return terms;
+}
+
 void add_effects(const std::string& specification, const Units& units, CahnHilliardModel& model) {
-  model = with_effects(std::move(model), read_terms(specification, units));
+  model = with_effects(std::move(model), read_effects(specification, units));
 }
 
 }  // namespace traceraft

@@ -73,9 +73,11 @@ bool is_rate(const std::string& unit);
 // The factor from a parameter's unit to R and R²/D.
 double to_model_units(const std::string& unit, const Units& units);
 
-// "exchange:rate=1e-3,target=0.2; gravity:strength=0.1" -> added to the model, as by with_effects.
-// Throws InputError also for an unknown key, a value out of range, a strength that is not given,
-// and an effect that is given twice.
+// "exchange:rate=1e-3,target=0.2; gravity:strength=0.1", with parameters in their own units. Throws
+// InputError for an unknown name or key, a value out of range, a strength that is not given, and an
+// effect that is given twice.
+std::vector<EffectTerm> read_effects(const std::string& specification, const Units& units);
+// Added to the model, as by with_effects.
 void add_effects(const std::string& specification, const Units& units, CahnHilliardModel& model);
 
 }  // namespace traceraft

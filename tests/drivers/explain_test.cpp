@@ -56,12 +56,12 @@ class ExplainTest : public ::testing::Test {
            (folder.path / "out").string();
   }
   // Gravity, Ohta-Kawasaki and uptake, where it does not matter how many effects are looked for.
+  const std::string few =
+      " --without allen-cahn,asymmetry,bulk-mobility,cooling,exchange,line-tension,"
+      "mobility-contrast,mobility-exponent,thermal";
   std::string command_of_few(int cells, const std::string& also_without = "",
                              int replicates = 49) const {
-    return command(cells, replicates) +
-           " --without allen-cahn,asymmetry,bulk-mobility,cooling,exchange,line-tension,"
-           "mobility-contrast,mobility-exponent,thermal" +
-           also_without;
+    return command(cells, replicates) + few + also_without;
   }
   nlohmann::json verdict() const {
     return nlohmann::json::parse(testing::content(folder.path / "out" / "verdict.json"));
@@ -184,6 +184,23 @@ TEST_F(ExplainTest, JoinsWhatVesiclesSay) {
   const nlohmann::json& rate = found["parameters"]["uptake.rate"];
   EXPECT_NEAR(rate["value"], drawn.truth[0].values[0] / Units().time(),
               4 * rate["sigma"].get<double>());
+
+  // The model that has what was found lacks nothing; its rate is fitted once more.
+  const std::string out = (folder.path / "again").string();
+  const auto again = testing::traceraft("explain --data " + (folder.path / "data").string() +
+                                        " --model " + (folder.path / "out/model.toml").string() +
+                                        few + " --threads 1 --replicates 49 --out " + out);
+  ASSERT_EQ(again.code, 0) << again.output;
+  const auto whole = nlohmann::json::parse(testing::content(out + "/verdict.json"));
+  EXPECT_EQ(whole["verdict"], "none") << whole.dump(2);
+  EXPECT_TRUE(whole["effect"].is_null());
+  const nlohmann::json& same = whole["parameters"]["uptake.rate"];
+  EXPECT_NEAR(same["value"], rate["value"].get<double>(), 0.2 * rate["sigma"].get<double>());
+  EXPECT_NEAR(same["sigma"], rate["sigma"].get<double>(), 0.5 * rate["sigma"].get<double>());
+  EXPECT_FALSE(whole["bounds"].contains("uptake.rate"));
+  EXPECT_EQ(std::count(whole["not_looked_for"].begin(), whole["not_looked_for"].end(), "uptake"),
+            0);
+  EXPECT_NE(whole["model"]["effect"].get<std::string>().find("uptake:rate="), std::string::npos);
 }
 
 TEST_F(ExplainTest, SaysWhatIsOddAboutTheData) {
@@ -238,6 +255,10 @@ TEST_F(ExplainTest, RefusesWhatItCannotUse) {
           .find("holds the model"),
       std::string::npos);
   fs::remove(own);
+  EXPECT_NE(refusal(command(13) + " --effect thermal:strength=0.1,time=1").find("can be fitted"),
+            std::string::npos);
+  EXPECT_NE(refusal(command(13) + " --effect curvature:strength=0.1").find("on this surface"),
+            std::string::npos);
   // On a sphere there is no other one than curvature.
   std::string text = refusal(command(13) +
                              " --without allen-cahn,asymmetry,bulk-mobility,cooling,"

@@ -55,5 +55,21 @@ TEST(SearchJson, KeepsWhatARoundThatIsNotOverHas) {
   EXPECT_EQ(read.ahead.at(2).failure, "a step fails");
 }
 
+// With the parameters that the model has of it, which are not those that are looked for.
+TEST(SearchJson, KeepsEffectsOfTheModel) {
+  const EffectTerm own{"ohta-kawasaki", {12.5, 0.3}};
+  SearchState state;
+  state.so_far.found = fit_of("uptake", 100);
+  std::vector<Hypothesis::Part>& parts = state.so_far.found.hypothesis.parts;
+  parts.insert(parts.begin(), part_of(own));
+  state.so_far.found.hypothesis.known = 1;
+  const Json json = search_json(state);
+  const Hypothesis read = search_from(Json::parse(json.dump()), {}).so_far.found.hypothesis;
+  EXPECT_EQ(read.name(), "uptake");
+  ASSERT_EQ(read.terms().size(), 2u);
+  EXPECT_EQ(read.terms()[0].values, own.values);
+  EXPECT_NE(find_candidate("ohta-kawasaki")->term({12.5}).values, own.values);
+}
+
 }  // namespace
 }  // namespace traceraft

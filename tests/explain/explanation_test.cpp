@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -173,6 +174,36 @@ TEST_F(RivalsTest, EffectsThatTurnOutToBeNoneAreDropped) {
   const Explanation nothing = explain_fields(measured(), request_, state);
   EXPECT_FALSE(is_named(nothing));
   EXPECT_TRUE(nothing.found.hypothesis.parts.empty());
+}
+
+// The strengths of effects that the model has are fitted as D is; what they cannot do is missing.
+TEST_F(RivalsTest, EffectsOfTheModelAreFittedAndNotFound) {
+  const double truth = draw_blind_case(testing::small_vesicle(4)).truth[0].values[0];
+  request_.hold_out = false;  // two looks alone hardly show the uptake
+  request_.without.push_back("exchange");
+  const auto with = [&](const EffectTerm& own) {
+    request_.own.parts = {part_of(own)};
+    request_.own.known = 1;
+    return explain_fields(measured(), request_, {});
+  };
+  const Explanation whole = with({"uptake", {0.5 * truth}});
+  EXPECT_EQ(whole.finding, Finding::none);
+  EXPECT_TRUE(class_of(whole).empty());
+  ASSERT_EQ(whole.found.hypothesis.parts.size(), 1u);
+  const double rate = whole.found.pace * whole.found.hypothesis.parts[0].coefficients[0];
+  EXPECT_NEAR(rate, truth, 4 * std::sqrt(whole.found.covariance(0, 0)));
+  EXPECT_LT(std::sqrt(whole.found.covariance(0, 0)), 0.2 * std::fabs(truth));
+
+  // One that is none stays, and is no part of the name.
+  const Explanation lacking = with({"gravity", {0.3}});
+  EXPECT_EQ(lacking.finding, Finding::named);
+  EXPECT_EQ(class_of(lacking), std::vector<std::string>{"uptake"});
+  ASSERT_EQ(lacking.found.hypothesis.parts.size(), 2u);
+  EXPECT_EQ(lacking.found.hypothesis.parts[0].candidate.effect, "gravity");
+  EXPECT_NEAR(lacking.found.hypothesis.parts[0].coefficients[0], 0,
+              4 * std::sqrt(lacking.found.covariance(0, 0)));
+  EXPECT_NEAR(lacking.found_gap.train, whole.found_gap.train, 0.02 * whole.found_gap.train);
+  EXPECT_GT(lacking.base_gap.train, 1.02 * lacking.found_gap.train);
 }
 
 // An interrupted round goes on from its last refit, and ends with the same numbers.

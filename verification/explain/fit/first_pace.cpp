@@ -7,6 +7,7 @@
 #include <string>
 
 #include "verification/explain/filter/gaps.hpp"
+#include "verification/explain/fit/refit_unknowns.hpp"
 #include "verification/explain/fit/score_test.hpp"
 
 namespace traceraft {
@@ -28,31 +29,30 @@ struct Pass {
 
 class PaceSearch {
  public:
-  PaceSearch(const FilterProblems& data, const CahnHilliardModel& base,
-             const FilterSettings& settings)
-      : data_(data), base_(base), rough_(settings) {
+  PaceSearch(const FilterProblems& data, const FilterModel& model, const FilterSettings& settings)
+      : data_(data), model_(model), rough_(settings) {
     rough_.rank = kRank;
     rough_.replicates = 0;
     rough_.tangent_steps = kTangentSteps;
   }
 
-  double run() const {
+  FilterModel run() const {
     Pass pass = first_pass();
     double pace_of_maps = pass.model.pace;
     for (int k = 0; k < kMostSteps; ++k) {
-      const double change = screen(pass.result, {}, {}).pace_change;
+      const double change = pace_change(pass.result);
       double step = std::clamp(change, -kLargestStep, kLargestStep);
       while (std::fabs(step) >= kGoodEnough && !go_on(pass, step, pace_of_maps)) step /= 2;
-      if (std::fabs(step) < kGoodEnough) return pass.model.pace * std::exp(step);
+      if (std::fabs(step) < kGoodEnough)
+        return at_pace(pass.model, pass.model.pace * std::exp(step));
     }
-    return pass.model.pace;
+    return pass.model;
   }
 
  private:
   // False, and no change, where the model cannot be advanced.
   bool go_on(Pass& pass, double step, double& pace_of_maps) const {
-    Pass next{pass.model, pass.maps, {}};
-    next.model.pace *= std::exp(step);
+    Pass next{at_pace(pass.model, pass.model.pace * std::exp(step)), pass.maps, {}};
     const bool far = !maps_reach(next.model.pace, pace_of_maps);
     if (far) next.maps = {};
     try {
@@ -69,43 +69,57 @@ class PaceSearch {
   Pass first_pass() const {
     std::optional<Pass> best;
     std::string failure;
-    const auto consider = [&](double pace) {
+    const auto consider = [&](const FilterModel& model) {
       try {
-        Pass pass = pass_at(pace);
+        Pass pass = pass_of(model);
         if (!best || pass.result.deviance < best->result.deviance) best = std::move(pass);
       } catch (const std::runtime_error& error) {
         failure = error.what();
       }
     };
-    consider(1);
-    if (best && is_near(best->result)) return std::move(*best);
-    for (const double pace : kSlower) consider(pace);
+    std::vector<FilterModel> models{model_};
+    if (!model_.hypothesis.parts.empty()) models.push_back(without_strengths(model_));
+    for (const FilterModel& model : models) {
+      consider(model);
+      if (best && is_near(best->result)) return std::move(*best);
+    }
+    for (const FilterModel& model : models)
+      for (const double pace : kSlower) consider(at_pace(model, pace));
     if (!best) throw std::runtime_error(failure);
     return std::move(*best);
   }
 
-  static bool is_near(const FilterResult& pass) {
+  static FilterModel without_strengths(FilterModel model) {
+    for (auto& part : model.hypothesis.parts) part.coefficients.assign(part.coefficients.size(), 0);
+    return model;
+  }
+
+  double pace_change(const FilterResult& pass) const {
+    return screen(pass, {}, model_.hypothesis).pace_change;
+  }
+
+  bool is_near(const FilterResult& pass) const {
     constexpr double kFarGap = 2;  // measured minus forecast, over what noise makes of it
-    return std::fabs(screen(pass, {}, {}).pace_change) < kLargestStep &&
+    return std::fabs(pace_change(pass)) < kLargestStep &&
            gaps_of_pass(pass).train < kFarGap * expected_gaps(pass).train;
   }
 
-  Pass pass_at(double pace) const {
-    Pass pass{{base_, pace, {}, {}}, {}, {}};
-    pass.result = filter_fields(data_, pass.model, rough_, pass.maps);
+  Pass pass_of(const FilterModel& model) const {
+    Pass pass{model, {}, {}};
+    pass.result = filter_fields(data_, model, rough_, pass.maps);
     return pass;
   }
 
   const FilterProblems& data_;
-  const CahnHilliardModel& base_;
+  const FilterModel& model_;
   FilterSettings rough_;
 };
 
 }  // namespace
 
-double first_pace(const FilterProblems& data, const CahnHilliardModel& base,
-                  const FilterSettings& settings) {
-  return PaceSearch(data, base, settings).run();
+FilterModel with_first_pace(const FilterProblems& data, const FilterModel& model,
+                            const FilterSettings& settings) {
+  return PaceSearch(data, model, settings).run();
 }
 
 }  // namespace traceraft

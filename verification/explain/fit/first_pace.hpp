@@ -5,9 +5,10 @@
 
 namespace traceraft {
 
-// D over that of the base model, if nothing else is missing, to 2 % or so: from a filter of a few
-// directions.
-double first_pace(const FilterProblems& data, const CahnHilliardModel& base,
-                  const FilterSettings& settings);
+// The model, at the pace 1 with its own effects, with another one: that of the data if nothing else
+// is missing, to 2 % or so, from a filter of a few directions. Where it is far from the data as it
+// is, but not without its effects, their strengths are 0.
+FilterModel with_first_pace(const FilterProblems& data, const FilterModel& model,
+                            const FilterSettings& settings);
 
 }  // namespace traceraft

@@ -34,6 +34,13 @@ void set_unknowns(FilterModel& model, const Vec& x) {
     }
 }
 
+FilterModel at_pace(FilterModel model, double pace) {
+  for (auto& part : model.hypothesis.parts)
+    for (double& a : part.coefficients) a *= part.candidate.rate ? model.pace / pace : 1;
+  model.pace = pace;
+  return model;
+}
+
 Eigen::MatrixXd unknown_derivatives(const FilterModel& model) {
   const Vec x = unknowns(model);
   Eigen::MatrixXd J = unknown_factors(model.hypothesis, model.pace).asDiagonal();

@@ -12,6 +12,9 @@ Vec unknown_factors(const Hypothesis& hypothesis, double pace);
 Vec unknowns(const FilterModel& model);
 void set_unknowns(FilterModel& model, const Vec& x);  // coefficients within their ranges
 
+// With another pace, and rates as they are in units of time that do not change.
+FilterModel at_pace(FilterModel model, double pace);
+
 // Derivatives of the unknowns by ln pace and the coefficients.
 Eigen::MatrixXd unknown_derivatives(const FilterModel& model);
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "kernel/core/error.hpp"
+#include "kernel/core/text.hpp"
 #include "verification/explain/forecast/curvature_contrast.hpp"
 #include "verification/measure/bench.hpp"
 
@@ -15,7 +17,22 @@ constexpr double kLength = 1;
 // Contrast of the curvature, below which it sorts nothing.
 constexpr double kCurved = 0.05;
 
-// The strength is the only coefficient; the other parameters keep their defaults.
+// The strength is the only coefficient; the other parameters keep their values.
+std::function<EffectTerm(const std::vector<double>&)> strength_of(EffectTerm term) {
+  return [term = std::move(term)](const std::vector<double>& a) {
+    EffectTerm result = term;
+    result.values.front() = a[0];
+    return result;
+  };
+}
+
+EffectTerm by_default(const EffectEntry& entry) {
+  EffectTerm term{entry.name, {}};
+  for (const ParameterSpec& spec : entry.parameters)
+    term.values.push_back(spec.unit == "um" ? kLength : spec.default_value);
+  return term;
+}
+
 Candidate by_strength(const std::string& effect, double step, bool two_sided) {
   // Ranges of rates are there to catch slips of the pen, and have another unit.
   const ParameterSpec& strength = effects().find(effect).parameters.front();
@@ -24,13 +41,7 @@ Candidate by_strength(const std::string& effect, double step, bool two_sided) {
   const double least = pure ? strength.min : two_sided ? -any : 0, most = pure ? strength.max : any;
   return {effect,
           1,
-          [effect](const std::vector<double>& a) {
-            EffectTerm term{effect, {}};
-            for (const ParameterSpec& spec : effects().find(effect).parameters)
-              term.values.push_back(spec.unit == "um" ? kLength : spec.default_value);
-            term.values.front() = a[0];
-            return term;
-          },
+          strength_of(by_default(effects().find(effect))),
           step,
           is_rate(strength.unit),
           two_sided,
@@ -42,6 +53,10 @@ Candidate of_mobility(const std::string& effect, double step, bool two_sided) {
   Candidate candidate = by_strength(effect, step, two_sided);
   candidate.like_pace = true;
   return candidate;
+}
+
+std::vector<double> coefficients_of_exchange(double rate, double target) {
+  return {rate - rate * target, rate * target};
 }
 
 // k (c − c*) = a0 c + a1 (c − 1) with k = a0 + a1, c* = a1/k; uptake where a0 = 0.
@@ -59,6 +74,12 @@ Candidate exchange() {
           std::numeric_limits<double>::infinity(),
           false,
           "uptake"};
+}
+
+std::vector<std::string> names_of(const std::vector<Candidate>& some) {
+  std::vector<std::string> names;
+  for (const Candidate& candidate : some) names.push_back(candidate.effect);
+  return names;
 }
 
 }  // namespace
@@ -98,6 +119,19 @@ std::vector<Candidate> candidates_for(const CahnHilliardModel& base, const Level
   return result;
 }
 
+Hypothesis::Part part_of(const EffectTerm& term) {
+  const std::optional<Candidate> found = find_candidate(term.effect);
+  if (!found)
+    throw InputError("effect " + term.effect + ": it is none whose strength can be fitted (" +
+                     joined(names_of(candidates()), ", ") + ")");
+  Hypothesis::Part part{*found, {term.values.front()}};
+  if (found->directions == 1)
+    part.candidate.term = strength_of(term);
+  else
+    part.coefficients = coefficients_of_exchange(term.values[0], term.values[1]);
+  return part;
+}
+
 std::vector<EffectTerm> Hypothesis::terms() const {
   std::vector<EffectTerm> result;
   for (const Part& part : parts) result.push_back(part.candidate.term(part.coefficients));
@@ -112,7 +146,8 @@ Eigen::Index Hypothesis::coefficients() const {
 
 std::string Hypothesis::name() const {
   std::string text;
-  for (const Part& part : parts) text += (text.empty() ? "" : " + ") + part.candidate.effect;
+  for (std::size_t k = known; k < parts.size(); ++k)
+    text += (text.empty() ? "" : " + ") + parts[k].candidate.effect;
   return text;
 }
 

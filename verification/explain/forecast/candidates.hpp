@@ -41,21 +41,27 @@ std::vector<Candidate> candidates_for(const CahnHilliardModel& base, const Level
                                       const std::vector<Point>& places,
                                       const std::vector<std::string>& without);
 
-// Effects with coefficients: what is held to be missing in a model.
+// Effects with coefficients: those that a model has, and what is held to be missing in it.
 struct Hypothesis {
   struct Part {
     Candidate candidate;
     std::vector<double> coefficients;
   };
   std::vector<Part> parts;
+  std::size_t known = 0;  // so many of them, the first, are the model's own
 
+  std::size_t added() const { return parts.size() - known; }
   std::vector<EffectTerm> terms() const;
   Eigen::Index coefficients() const;
-  std::string name() const;  // of its effects
+  std::string name() const;  // of the effects that it adds
   bool has(const std::string& effect) const;
   // Is the other one this one at a limit of its coefficients?
   bool contains(const Hypothesis& other) const;
 };
+
+// One of a model's own: its strength is a coefficient, other parameters stay as they are. Throws
+// InputError for an effect that is none of the candidates.
+Hypothesis::Part part_of(const EffectTerm& term);
 
 // ∂F/∂coefficient: for all coefficients of a hypothesis, then for those of more candidates at 0.
 // By differences, which are exact where F is linear in a coefficient.

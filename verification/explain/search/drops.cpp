@@ -27,7 +27,7 @@ std::optional<Drop> what_is_none(Search& search, double mesh_error) {
   const Refit& found = search.result.found;
   std::vector<std::string> doubtful;
   std::vector<FilterModel> trials;
-  for (std::size_t k = 0; k < found.hypothesis.parts.size(); ++k) {
+  for (std::size_t k = found.hypothesis.known; k < found.hypothesis.parts.size(); ++k) {
     if (resolved(found, k, search.values(), mesh_error)) continue;
     doubtful.push_back(found.hypothesis.parts[k].candidate.effect);
     trials.push_back(search.model);

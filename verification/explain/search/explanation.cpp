@@ -15,8 +15,11 @@ namespace {
 
 void start(Search& search) {
   search.tell("pace of the base model");
+  const FilterModel model = with_first_pace(
+      search.data, {search.request.base, 1, search.request.own, {}}, search.request.filter);
   Refit base;
-  base.pace = first_pace(search.data, search.request.base, search.request.filter);
+  base.pace = model.pace;
+  base.hypothesis = model.hypothesis;
   search.set_found(base);
   const bool far = std::fabs(std::log(base.pace)) > std::log(kFarPace);
   search.tell(formatted("  D is about %.2g times the model's%s", base.pace,

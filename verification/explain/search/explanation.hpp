@@ -19,6 +19,7 @@ namespace traceraft {
 
 struct ExplainRequest {
   CahnHilliardModel base;
+  Hypothesis own = {};  // effects that the model has: fitted as D is, and none that is missing
   LevelSetPtr surface;
   int cells = 32;
   int threads = 2;

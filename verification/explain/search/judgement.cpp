@@ -15,7 +15,8 @@ bool identifiable(const Screening& screening, double usual_change) {
 
 // An effect of strength 0 is none: without it this is another hypothesis.
 bool has_nothing(const Hypothesis& hypothesis) {
-  return std::any_of(hypothesis.parts.begin(), hypothesis.parts.end(),
+  const auto known = static_cast<std::ptrdiff_t>(hypothesis.known);
+  return std::any_of(hypothesis.parts.begin() + known, hypothesis.parts.end(),
                      [](const Hypothesis::Part& part) {
                        return std::all_of(part.coefficients.begin(), part.coefficients.end(),
                                           [](double coefficient) { return coefficient == 0; });
@@ -64,7 +65,7 @@ bool resolved(const Refit& fit, std::size_t effect, double values, double mesh_e
 }
 
 bool all_resolved(const Refit& fit, double values, double mesh_error) {
-  for (std::size_t k = 0; k < fit.hypothesis.parts.size(); ++k)
+  for (std::size_t k = fit.hypothesis.known; k < fit.hypothesis.parts.size(); ++k)
     if (!resolved(fit, k, values, mesh_error)) return false;
   return true;
 }
@@ -88,7 +89,7 @@ Finding without_name(const Screening& screening, double false_alarms) {
 }
 
 Judgement judge(const Round& round, double values, double false_alarms, double usual_change) {
-  const bool first = round.known.hypothesis.parts.empty();
+  const bool first = round.known.hypothesis.added() == 0;
   const bool quiet = round.screening.p > false_alarms;
   // What follows if nothing is added.
   const Finding no_gap = !first ? Finding::named

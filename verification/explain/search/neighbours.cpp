@@ -37,9 +37,9 @@ std::vector<Hypothesis> neighbours(const Refit& fit, const std::vector<Round>& r
     return !here.has(effect) && std::any_of(allowed.begin(), allowed.end(),
                                             [&](const Candidate& c) { return c.effect == effect; });
   };
-  for (std::size_t k = 0; k < here.parts.size(); ++k) {
+  for (std::size_t k = here.known; k < here.parts.size(); ++k) {
     const Candidate& own = here.parts[k].candidate;
-    if (here.parts.size() > 1 && certainty(fit, k) < 2 * own.directions * std::log(values)) {
+    if (here.added() > 1 && certainty(fit, k) < 2 * own.directions * std::log(values)) {
       result.push_back(here);
       result.back().parts.erase(result.back().parts.begin() + static_cast<std::ptrdiff_t>(k));
     }

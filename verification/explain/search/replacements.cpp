@@ -56,7 +56,7 @@ void add_rivals(Search& search, const std::vector<Refit>& fits) {
 
 void improve(Search& search) {
   Explanation& result = search.result;
-  for (int move = 0; result.found.hypothesis.parts.size() > 1 || move > 0; ++move) {
+  for (int move = 0; result.found.hypothesis.added() > 1 || move > 0; ++move) {
     const std::vector<Refit> fits = refit_neighbours(search);
     Round& round = result.rounds.back();
     for (const Refit& fit : fits)

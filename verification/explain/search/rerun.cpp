@@ -30,6 +30,11 @@ FilterResult pass_of_model(const std::vector<FieldSeries>& series, const Explain
   return pass_of(series, alone, {with_effects(request.base, effects), pace, {}, {}}, noises);
 }
 
+FilterResult pass_of_model(const std::vector<FieldSeries>& series, const ExplainRequest& request,
+                           const Refit& fit, const std::vector<std::vector<double>>& noises) {
+  return pass_of_model(series, request, fit.pace, fit.hypothesis.terms(), noises);
+}
+
 // As the search asks it, of the model that it ended with.
 FilterResult what_is_left(const std::vector<FieldSeries>& series, const ExplainRequest& request,
                           const Explanation& found) {
@@ -44,9 +49,7 @@ Rerun compare_both(const std::vector<FieldSeries>& series, ExplainRequest other,
   std::array<FilterResult, 2> passes;
   ThreadTeam(lanes).run([&](int lane) {
     for (int k = lane; k < 2; k += lanes)
-      passes[k] = k == 0 ? pass_of_model(series, other, found.base.pace, {}, found.noises)
-                         : pass_of_model(series, other, found.found.pace,
-                                         found.found.hypothesis.terms(), found.noises);
+      passes[k] = pass_of_model(series, other, k == 0 ? found.base : found.found, found.noises);
   });
   return compare_forecasts(passes[0], passes[1], found.rounds.back().screening.mesh_error);
 }
@@ -56,7 +59,7 @@ void look_for_gap(const std::vector<FieldSeries>& series, const ExplainRequest& 
                   Explanation& found, Rerun& rerun) {
   try {
     const FilterResult pass = what_is_left(series, other, found);
-    if (found.found.hypothesis.parts.empty()) {
+    if (found.found.hypothesis.added() == 0) {
       rerun.base = rerun.found = gaps_of_pass(pass);
       rerun.floor = expected_gaps(pass);
     }
@@ -101,7 +104,7 @@ Rerun compare_forecasts(const FilterResult& base, const FilterResult& found, dou
 }
 
 bool is_to_run_again(const Explanation& found) {
-  return !found.found.hypothesis.parts.empty() || found.finding == Finding::unnamed;
+  return found.found.hypothesis.added() > 0 || found.finding == Finding::unnamed;
 }
 
 void run_again(const std::vector<FieldSeries>& series, const ExplainRequest& request,
@@ -111,7 +114,7 @@ void run_again(const std::vector<FieldSeries>& series, const ExplainRequest& req
   other.cells = static_cast<int>(std::lround(kOtherCells * request.cells));
   other.filter.integrator = kOtherIntegrator;
   Rerun result;
-  if (!found.found.hypothesis.parts.empty()) try {
+  if (found.found.hypothesis.added() > 0) try {
       result = compare_both(series, other, found);
     } catch (const std::runtime_error& error) {
       result.failure = error.what();

@@ -45,7 +45,7 @@ FilterResult Search::first_pass() {
     fit_noise(data, filter_fields(data, model, request.filter, maps));
     tell(formatted("  what %zu effects would change", model.screened.size()));
     pass = filter_fields(data, model, request.filter, maps);
-    tell("  D");
+    tell(model.hypothesis.parts.empty() ? "  D" : "  D, and the effects that the model has");
     set_found(refit(data, model, request.filter, maps));
     if (maps_reach(result.found.pace, pace)) break;
     tell(formatted("  D is rather %.2g times the model's", result.found.pace));
@@ -101,12 +101,12 @@ std::vector<Refit> Search::refit_all(const std::vector<FilterModel>& trials) {
 
 void Search::tell_gain(const Refit& fit) const {
   // With one effect more there is nothing to lose.
-  const bool more = fit.hypothesis.parts.size() > result.found.hypothesis.parts.size();
+  const bool more = fit.hypothesis.added() > result.found.hypothesis.added();
   const double difference = result.found.deviance - fit.deviance;
   const double gained = more ? std::max(0.0, difference) : difference;
   const std::string change = (gained < 0 ? std::string(" loses ") : std::string(" gains ")) +
                              std::to_string(std::labs(std::lround(gained)));
-  const std::string name = fit.hypothesis.parts.empty() ? "no effect" : fit.hypothesis.name();
+  const std::string name = fit.hypothesis.added() == 0 ? "no effect" : fit.hypothesis.name();
   tell("  " + name + (fit.failure.empty() ? change : " fails"));
 }
 

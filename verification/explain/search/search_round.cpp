@@ -125,7 +125,7 @@ void stop(Explanation& result, const std::string& why) {
   result.stopped = why;
   result.changes.clear();
   result.found_maps = {};
-  if (!result.found.hypothesis.parts.empty()) return;
+  if (result.found.hypothesis.added() > 0) return;
   result.rivals.clear();
   result.finding = result.without_gap = Finding::not_identifiable;
 }
@@ -152,8 +152,7 @@ bool look_for_one(Search& search) {
   const FilterModel& model = search.model;
   Round round{model, screen(pass, model.screened, model.hypothesis), result.found, {}, {}, {}};
   const auto most = static_cast<std::size_t>(search.request.most_effects);
-  const bool more =
-      model.hypothesis.parts.size() < most && result.rounds.size() < most + kMoreRounds;
+  const bool more = model.hypothesis.added() < most && result.rounds.size() < most + kMoreRounds;
   if (more && round.screening.p <= search.request.false_alarms) refit_shortlist(search, round);
   result.rounds.push_back(std::move(round));
   return take(search, result.rounds.back());
