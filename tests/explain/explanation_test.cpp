@@ -64,7 +64,9 @@ class RivalsTest : public ::testing::Test {
   }
 
   Explanation explained(const Refit& found, const std::vector<Refit>& rivals) const {
-    return explain_fields(measured(), request_, state_of(found, rivals));
+    Explanation result = explain_fields(measured(), request_, state_of(found, rivals));
+    result.base.hypothesis = {};  // that of a whole search
+    return result;
   }
 
   Explanation explained_by_gravity() const {
