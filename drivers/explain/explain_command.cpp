@@ -128,10 +128,22 @@ bool explain_series_data(const ExplainCommand& command, const SeriesSetup& setup
   return true;
 }
 
+// Series are held against models without any.
+bool has_effects(const ExplainJob& job) {
+  GivenValues given = job.flags;
+  given.merge(read_config_file(job.model, "--model"));
+  return !Configuration(given, {}).text("effect").empty();
+}
+
 // A folder for --data may hold fields, series or both.
 void find_series(ExplainCommand& command) {
   const std::string folder = command.job.data;
   if (folder.empty() || !holds_series(folder)) return;
+  if (holds_fields(folder) && has_effects(command.job)) {
+    if (!command.quiet)
+      std::printf("the series of %s are not looked at, as the model has effects\n", folder.c_str());
+    return;
+  }
   if (!command.series.empty())
     throw InputError("--series: " + folder + " of --data holds series as well; give one of them");
   command.series = folder;

@@ -98,18 +98,9 @@ void refuse_uniform_values(const std::vector<FieldSeries>& vesicles, const Doubl
   throw InputError(folder + ": c is the same everywhere; there is nothing to explain");
 }
 
-void refuse_leaving_out_all(const ExplainRequest& request,
-                            const std::vector<FieldSeries>& vesicles) {
-  const std::vector<Point>& places = vesicles.front().snapshots.front().points;
-  if (candidates_for(request.base, *request.surface, places, request.without).empty())
-    throw InputError("--without: no effect is left to look for");
-}
-
 // What data could not tell from the rest of the model is not fitted beside it.
-Hypothesis own_effects(const Configuration& model, const ExplainRequest& request,
-                       const std::vector<FieldSeries>& vesicles) {
-  const std::vector<Point>& places = vesicles.front().snapshots.front().points;
-  const std::vector<Candidate> able = candidates_for(request.base, *request.surface, places, {});
+Hypothesis own_effects(const Configuration& model, const std::vector<Candidate>& able,
+                       const std::vector<std::string>& without) {
   Hypothesis own;
   for (const EffectTerm& term : effects_of(model)) {
     own.parts.push_back(said_of(model, "effect", [&] { return part_of(term); }));
@@ -118,9 +109,29 @@ Hypothesis own_effects(const Configuration& model, const ExplainRequest& request
       throw InputError(model.where("effect") + ": effect " + term.effect +
                        ": on this surface it does next to nothing, so that no data tell its "
                        "strength; leave it out");
+    if (std::count(without.begin(), without.end(), term.effect) > 0)
+      throw InputError("--without: the model has " + term.effect +
+                       ", whose strength is fitted; take it out of the model instead");
   }
   own.known = own.parts.size();
   return own;
+}
+
+// Throws InputError if there is nothing to look for.
+void set_effects(const Configuration& model, ExplainSetup& setup) {
+  ExplainRequest& request = setup.request;
+  const std::vector<Point>& places = setup.series.front().snapshots.front().points;
+  const std::vector<Candidate> able = candidates_for(request.base, *request.surface, places, {});
+  request.own = own_effects(model, able, request.without);
+  const std::vector<Candidate> asked =
+      candidates_for(request.base, *request.surface, places, request.without);
+  if (candidates_beside(request.own, asked).empty())
+    throw InputError("--without: no effect is left to look for");
+  for (const Candidate& candidate : asked)
+    for (const Hypothesis::Part& part : request.own.parts)
+      if (are_one(candidate, part.candidate))
+        setup.notes.push_back(candidate.effect + " is not looked for: the model's " +
+                              part.candidate.effect + " is another form of it.");
 }
 
 }  // namespace
@@ -167,6 +178,7 @@ ExplainSetup read_explain_job(const ExplainJob& job) {
   setup.synthetic = data.synthetic;
   const Configuration model = setup.configuration();
   refuse_scaled(model);
+  (void)physical_model(model);  // with its effects it has to be one
   setup.request.base = model_without_effects(model);
   const DoubleWell& well = setup.request.base.well;
   if (model.text("surface") == "sphere") refuse_points_off_the_sphere(data, job.data);
@@ -191,8 +203,7 @@ ExplainSetup read_explain_job(const ExplainJob& job) {
   refuse_wide_boundaries(model, request.base);
   refuse_far_values(setup.series, request.base.well, job.data);
   refuse_uniform_values(setup.series, request.base.well, job.data);
-  refuse_leaving_out_all(request, setup.series);
-  request.own = own_effects(model, request, setup.series);
+  set_effects(model, setup);
   return setup;
 }
 

@@ -85,8 +85,10 @@ GivenValues found_model(const Explanation& found, GivenValues model) {
   const Units units = Configuration(model, {}).units();
   const Units now = found_units(units, found.found);
   model["diffusion"] = {format_number(now.diffusion_cm2_s), "--diffusion"};
-  if (!found.found.hypothesis.parts.empty())
-    model["effect"] = {effect_text(found.found.hypothesis.terms(), now), "--effect"};
+  std::vector<EffectTerm> terms = found.found.hypothesis.terms();
+  const auto is_none = [](const EffectTerm& term) { return term.values.front() == 0; };
+  terms.erase(std::remove_if(terms.begin(), terms.end(), is_none), terms.end());
+  if (!terms.empty()) model["effect"] = {effect_text(terms, now), "--effect"};
   return model;
 }
 

@@ -53,14 +53,20 @@ void add_assumptions(const Explanation& found, const Units& base, std::vector<st
 void add_own(const Explanation& found, const ExplainSetup& setup, std::vector<std::string>& all) {
   const Units base = setup.configuration().units();
   const std::vector<FoundParameter> fitted = found_parameters(fit_shown(found), base);
+  const auto contradicts = [](const FoundParameter& p, const FoundParameter& stated) {
+    return p.effect == stated.effect && p.name == stated.name && p.sigma &&
+           std::fabs(p.value - stated.value) > kSure * *p.sigma;
+  };
   for (const EffectTerm& term : setup.request.own.terms())
     for (const FoundParameter& stated : parameters_of(term, base))
       for (const FoundParameter& p : fitted)
-        if (p.effect == stated.effect && p.name == stated.name && p.sigma &&
-            std::fabs(p.value - stated.value) > kSure * *p.sigma)
+        if (contradicts(p, stated))
           all.push_back("The model has " + p.effect + " with " + p.name +
                         formatted(" = %.4g; these data say %.4g (standard error %.2g).",
                                   stated.value, p.value, *p.sigma));
+  for (const EffectTerm& term : fit_shown(found).hypothesis.terms())
+    if (term.values.front() == 0)
+      all.push_back("Of the model's " + term.effect + " these data show nothing.");
 }
 
 // A mistake in the unit of time looks like another D.

@@ -34,10 +34,13 @@ std::string class_sentence(const Explanation& found) {
 }
 
 std::string nothing_sentence(const Explanation& found) {
-  if (!changes_pace(found.found))
-    return "No significant disagreement: the model explains the data within their noise.";
-  return "No significant disagreement: with " + formatted("%.3g", found.found.pace) +
-         " times its D the model explains the data within their noise.";
+  std::vector<std::string> changes;
+  if (changes_pace(found.found)) changes.push_back(formatted("%.3g times its D", found.found.pace));
+  if (!found.found.hypothesis.parts.empty())
+    changes.push_back("the strengths of its effects as fitted");
+  return "No significant disagreement: " +
+         (changes.empty() ? "" : "with " + joined(changes, " and ") + " ") +
+         "the model explains the data within their noise.";
 }
 
 // Of single effects, refitted if any was.

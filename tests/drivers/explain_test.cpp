@@ -320,6 +320,11 @@ TEST(ExplainSeriesTest, SimulatesOnceAndSaysWhatSeriesTell) {
   ASSERT_EQ(testing::traceraft(command + model.string()).code, 0);
   EXPECT_EQ(fs::last_write_time(out / "ensembles/base/runs/seed-1"), before);
 
+  const auto extended =
+      testing::traceraft(command + model.string() + " --effect gravity:strength=0.1");
+  EXPECT_EQ(extended.code, 2);
+  EXPECT_NE(extended.output.find("a model without effects"), std::string::npos) << extended.output;
+
   const fs::path other = folder.path / "other.toml";
   write_durably(other, "epsilon = 0.8\ncells = 16\nraft-fraction = 0.4\n");
   const fs::path none = folder.path / "none";

@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "drivers/explain/remarks.hpp"
 #include "drivers/explain/verdict.hpp"
 #include "drivers/explain/verdict_sentence.hpp"
+#include "kernel/core/error.hpp"
+#include "kernel/core/text.hpp"
 #include "verification/explain/forecast/candidates.hpp"
 
 namespace traceraft {
@@ -115,6 +118,64 @@ Refit of_strength(const std::string& effect, double strength) {
   fit.hypothesis.parts = {{find_candidate(effect).value(), {strength}}};
   fit.covariance = Eigen::MatrixXd::Identity(1, 1);
   return fit;
+}
+
+// What the model states is held against what these data say; what is none is not written.
+TEST(OwnEffects, AreHeldAgainstTheData) {
+  ExplainSetup setup;
+  const EffectTerm gravity{"gravity", {0.3}};
+  setup.request.own.parts = {part_of(gravity)};
+  Explanation found;
+  found.rounds.resize(1);
+  found.rounds[0].known.hypothesis = setup.request.own;
+  for (const double strength : {0.29, 0.2, 0.0}) {
+    found.base = of_strength("gravity", strength);
+    found.base.hypothesis.known = 1;
+    found.base.covariance *= 4e-4;
+    found.found = found.base;
+    const std::vector<std::string> all = remarks_on(found, setup);
+    const std::string contradiction =
+        formatted("with strength = 0.3; these data say %.4g (standard error 0.02).", strength);
+    ASSERT_EQ(all.size(), strength == 0.29 ? 0u : strength == 0 ? 2u : 1u) << strength;
+    if (!all.empty()) {
+      EXPECT_NE(all[0].find(contradiction), std::string::npos) << all[0];
+    }
+    if (strength == 0) {
+      EXPECT_EQ(all[1], "Of the model's gravity these data show nothing.");
+    }
+    EXPECT_EQ(found_model(found, {}).count("effect"), strength == 0 ? 0u : 1u);
+    EXPECT_NE(verdict_sentence(found).find("with the strengths of its effects as fitted"),
+              std::string::npos);
+  }
+}
+
+TEST(OwnEffects, AreNotLookedForInAnotherForm) {
+  const auto beside = [](const EffectTerm& term) {
+    Hypothesis own;
+    own.parts = {part_of(term)};
+    std::vector<std::string> names;
+    for (const Candidate& candidate : candidates_beside(own, candidates()))
+      names.push_back(candidate.effect);
+    return names;
+  };
+  const auto has = [](const std::vector<std::string>& names, const char* name) {
+    return std::count(names.begin(), names.end(), name) > 0;
+  };
+  const auto uptake = beside({"uptake", {0.2}}), exchange = beside({"exchange", {0.2, 0.4}}),
+             gravity = beside({"gravity", {0.1}});
+  EXPECT_TRUE(!has(uptake, "uptake") && !has(uptake, "exchange") && has(uptake, "gravity"));
+  EXPECT_TRUE(!has(exchange, "uptake") && !has(exchange, "exchange"));
+  EXPECT_TRUE(!has(gravity, "gravity") && has(gravity, "uptake") && has(gravity, "exchange"));
+  EXPECT_EQ(gravity.size() + 1, candidates().size());
+}
+
+TEST(OwnEffects, KeepTheirParameters) {
+  const EffectTerm exchange{"exchange", {0.2, 0.4}};
+  const Hypothesis::Part part = part_of(exchange);
+  const EffectTerm same = part.candidate.term(part.coefficients);
+  EXPECT_NEAR(same.values[0], 0.2, 1e-15);
+  EXPECT_NEAR(same.values[1], 0.4, 1e-15);
+  EXPECT_THROW(part_of({"rotation", {1, 0, 0, 1}}), InputError);
 }
 
 TEST(Remarks, TellWhatTheSearchThoughtOfBefore) {

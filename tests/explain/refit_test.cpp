@@ -6,6 +6,7 @@
 #include "kernel/core/error.hpp"
 #include "tests/support/small_vesicle.hpp"
 #include "verification/explain/blind/effect_size.hpp"
+#include "verification/explain/fit/refit_unknowns.hpp"
 #include "verification/explain/forecast/candidates.hpp"
 
 namespace traceraft {
@@ -47,6 +48,17 @@ class RefitTest : public ::testing::Test {
   }
   double truth() const { return drawn().truth[0].values[0]; }
 };
+
+TEST(RefitUnknowns, RatesAreTheSameAtAnotherPace) {
+  FilterModel model{request().base, 2, {}, {}};
+  model.hypothesis.parts = {{find_candidate("uptake").value(), {0.3}},
+                            {find_candidate("gravity").value(), {0.3}}};
+  const FilterModel faster = at_pace(model, 6);
+  EXPECT_EQ(faster.pace, 6);
+  EXPECT_NEAR(faster.hypothesis.parts[0].coefficients[0], 0.1, 1e-15);
+  EXPECT_EQ(faster.hypothesis.parts[1].coefficients[0], 0.3);
+  EXPECT_LT((unknowns(faster) - unknowns(model)).tail(2).norm(), 1e-15);
+}
 
 TEST_F(RefitTest, FindsTheMostProbableRate) {
   const FilterProblems data = problems(drawn().vesicles);

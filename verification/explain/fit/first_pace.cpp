@@ -94,11 +94,10 @@ class PaceSearch {
     return model;
   }
 
-  double pace_change(const FilterResult& pass) const {
-    return screen(pass, {}, model_.hypothesis).pace_change;
-  }
+  // If strengths stay as they are.
+  static double pace_change(const FilterResult& pass) { return screen(pass, {}, {}).pace_change; }
 
-  bool is_near(const FilterResult& pass) const {
+  static bool is_near(const FilterResult& pass) {
     constexpr double kFarGap = 2;  // measured minus forecast, over what noise makes of it
     return std::fabs(pace_change(pass)) < kLargestStep &&
            gaps_of_pass(pass).train < kFarGap * expected_gaps(pass).train;

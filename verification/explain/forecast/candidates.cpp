@@ -132,6 +132,20 @@ Hypothesis::Part part_of(const EffectTerm& term) {
   return part;
 }
 
+bool are_one(const Candidate& a, const Candidate& b) {
+  return a.special_case == b.effect || b.special_case == a.effect;
+}
+
+std::vector<Candidate> candidates_beside(const Hypothesis& own, std::vector<Candidate> all) {
+  const auto taken = [&](const Candidate& candidate) {
+    return std::any_of(own.parts.begin(), own.parts.end(), [&](const Hypothesis::Part& part) {
+      return candidate.effect == part.candidate.effect || are_one(candidate, part.candidate);
+    });
+  };
+  all.erase(std::remove_if(all.begin(), all.end(), taken), all.end());
+  return all;
+}
+
 std::vector<EffectTerm> Hypothesis::terms() const {
   std::vector<EffectTerm> result;
   for (const Part& part : parts) result.push_back(part.candidate.term(part.coefficients));

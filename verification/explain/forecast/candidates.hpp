@@ -59,6 +59,11 @@ struct Hypothesis {
   bool contains(const Hypothesis& other) const;
 };
 
+// Is one a special case of the other? Beside each other data do not tell their strengths.
+bool are_one(const Candidate& a, const Candidate& b);
+// Without what a model has, and what is one with that.
+std::vector<Candidate> candidates_beside(const Hypothesis& own, std::vector<Candidate> all);
+
 // One of a model's own: its strength is a coefficient, other parameters stay as they are. Throws
 // InputError for an effect that is none of the candidates.
 Hypothesis::Part part_of(const EffectTerm& term);

@@ -12,14 +12,17 @@ namespace {
 
 // A refit that ends beyond kMapsReach is none of the noise and the errors that it began with.
 constexpr int kMostPasses = 4;
+// Of strengths that a model cannot be advanced with; then they are 0.
+constexpr int kMostHalvings = 3;
 
 }  // namespace
 
 Search::Search(const std::vector<FieldSeries>& series, const ExplainRequest& explain_request)
     : request(explain_request),
       data(problems_of(series, request)),
-      candidates(candidates_for(request.base, *request.surface,
-                                data.front().space->surface.position, request.without)),
+      candidates(candidates_beside(
+          request.own, candidates_for(request.base, *request.surface,
+                                      data.front().space->surface.position, request.without))),
       model{request.base, 1, {}, candidates} {}
 
 void Search::tell(const std::string& step) const {
@@ -36,13 +39,26 @@ void Search::set_found(const Refit& fit) {
                [&](const Candidate& c) { return !fit.hypothesis.has(c.effect); });
 }
 
+FilterResult Search::pass_with_own_effects() {
+  for (int half = 0;; ++half) {
+    maps = {};
+    try {
+      return filter_fields(data, model, request.filter, maps);
+    } catch (const std::runtime_error&) {
+      if (model.hypothesis.parts.empty() || half > kMostHalvings) throw;
+    }
+    tell("  cannot be forecast with effects as strong as the model has them");
+    for (Hypothesis::Part& part : model.hypothesis.parts)
+      for (double& a : part.coefficients) a *= half < kMostHalvings ? 0.5 : 0;
+  }
+}
+
 FilterResult Search::first_pass() {
   FilterResult pass;
   for (int k = 0; k < kMostPasses; ++k) {
     const double pace = model.pace;
-    maps = {};
     tell("  forecasts, and errors of states and of the mesh");
-    fit_noise(data, filter_fields(data, model, request.filter, maps));
+    fit_noise(data, pass_with_own_effects());
     tell(formatted("  what %zu effects would change", model.screened.size()));
     pass = filter_fields(data, model, request.filter, maps);
     tell(model.hypothesis.parts.empty() ? "  D" : "  D, and the effects that the model has");
@@ -50,9 +66,13 @@ FilterResult Search::first_pass() {
     if (maps_reach(result.found.pace, pace)) break;
     tell(formatted("  D is rather %.2g times the model's", result.found.pace));
   }
+  // Strengths may have gone further than first orders reach; D has not.
+  if (request.own.parts.empty())
+    bootstrap(pass, model, result.found);
+  else
+    pass = next_pass();
   result.disagreements = disagreements(data, pass, request.base.well);
   result.disagreements.resize(significant(result.disagreements, request.false_alarms));
-  bootstrap(pass, model, result.found);
   result.base = result.found;
   return pass;
 }
@@ -63,7 +83,7 @@ FilterResult Search::next_pass() {
     maps = {};
     tell("  forecasts, and errors of states and of the mesh");
     fit_noise(data, filter_fields(data, model, request.filter, maps));
-    tell("  D, and what was found");
+    tell("  D, and its effects");
     set_found(refit(data, model, request.filter, maps));
     if (maps_reach(result.found.pace, pace)) break;
   }

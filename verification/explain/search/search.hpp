@@ -47,6 +47,8 @@ struct Search {
 
  private:
   void tell_gain(const Refit& fit) const;
+  // Weakens effects that the model has until it can be advanced.
+  FilterResult pass_with_own_effects();
 
   SearchState before_;        // the round, with the refits that it has had
   std::size_t numbered_ = 0;  // refits of the round
