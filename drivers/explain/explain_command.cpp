@@ -88,11 +88,16 @@ struct SeriesSetup {
   Configuration model;
 };
 
+GivenValues model_of(const ExplainJob& job) {
+  GivenValues given = job.flags;
+  given.merge(read_config_file(job.model, "--model"));
+  return given;
+}
+
 SeriesSetup read_series_job(const ExplainCommand& command) {
   MeasuredVesicles data = read_dataset(command.series);
   refuse_without_model(data.composition, command.job.model, command.job.flags);
-  GivenValues given = command.job.flags;
-  given.merge(read_config_file(command.job.model, "--model"));
+  const GivenValues given = model_of(command.job);
   SeriesSetup setup{std::move(data), given, {given, {}}};
   if (const std::string other = other_membrane(setup.data.composition, setup.model); !other.empty())
     throw InputError(setup.model.where("case") + ": the model is of " + other);
@@ -130,9 +135,7 @@ bool explain_series_data(const ExplainCommand& command, const SeriesSetup& setup
 
 // Series are held against models without any.
 bool has_effects(const ExplainJob& job) {
-  GivenValues given = job.flags;
-  given.merge(read_config_file(job.model, "--model"));
-  return !Configuration(given, {}).text("effect").empty();
+  return !Configuration(model_of(job), {}).text("effect").empty();
 }
 
 // A folder for --data may hold fields, series or both.

@@ -99,21 +99,20 @@ void refuse_uniform_values(const std::vector<FieldSeries>& vesicles, const Doubl
 }
 
 // What data could not tell from the rest of the model is not fitted beside it.
-Hypothesis own_effects(const Configuration& model, const std::vector<Candidate>& able,
+Hypothesis own_effects(const Configuration& model, const std::vector<Candidate>& asked,
                        const std::vector<std::string>& without) {
-  Hypothesis own;
-  for (const EffectTerm& term : effects_of(model)) {
-    own.parts.push_back(said_of(model, "effect", [&] { return part_of(term); }));
-    if (std::none_of(able.begin(), able.end(),
+  const std::vector<EffectTerm> terms = effects_of(model);
+  const Hypothesis own = said_of(model, "effect", [&] { return of_model(terms); });
+  for (const EffectTerm& term : terms) {
+    if (std::count(without.begin(), without.end(), term.effect) > 0)
+      throw InputError("--without: the model has " + term.effect +
+                       ", whose strength is fitted; take it out of the model instead");
+    if (std::none_of(asked.begin(), asked.end(),
                      [&](const Candidate& c) { return c.effect == term.effect; }))
       throw InputError(model.where("effect") + ": effect " + term.effect +
                        ": on this surface it does next to nothing, so that no data tell its "
                        "strength; leave it out");
-    if (std::count(without.begin(), without.end(), term.effect) > 0)
-      throw InputError("--without: the model has " + term.effect +
-                       ", whose strength is fitted; take it out of the model instead");
   }
-  own.known = own.parts.size();
   return own;
 }
 
@@ -121,10 +120,9 @@ Hypothesis own_effects(const Configuration& model, const std::vector<Candidate>&
 void set_effects(const Configuration& model, ExplainSetup& setup) {
   ExplainRequest& request = setup.request;
   const std::vector<Point>& places = setup.series.front().snapshots.front().points;
-  const std::vector<Candidate> able = candidates_for(request.base, *request.surface, places, {});
-  request.own = own_effects(model, able, request.without);
   const std::vector<Candidate> asked =
       candidates_for(request.base, *request.surface, places, request.without);
+  request.own = own_effects(model, asked, request.without);
   if (candidates_beside(request.own, asked).empty())
     throw InputError("--without: no effect is left to look for");
   for (const Candidate& candidate : asked)

@@ -64,9 +64,11 @@ void add_own(const Explanation& found, const ExplainSetup& setup, std::vector<st
           all.push_back("The model has " + p.effect + " with " + p.name +
                         formatted(" = %.4g; these data say %.4g (standard error %.2g).",
                                   stated.value, p.value, *p.sigma));
-  for (const EffectTerm& term : fit_shown(found).hypothesis.terms())
-    if (term.values.front() == 0)
-      all.push_back("Of the model's " + term.effect + " these data show nothing.");
+  const Hypothesis& shown = fit_shown(found).hypothesis;
+  const std::vector<EffectTerm> terms = shown.terms();
+  for (std::size_t k = 0; k < shown.known; ++k)
+    if (terms[k].values.front() == 0)
+      all.push_back("Of the model's " + terms[k].effect + " these data show nothing.");
 }
 
 // A mistake in the unit of time looks like another D.

@@ -62,9 +62,12 @@ std::vector<EffectTerm> effects_of(const Configuration& configuration) {
 }
 
 CahnHilliardModel physical_model(const Configuration& configuration) {
-  const CahnHilliardModel model = model_without_effects(configuration);
-  return said_of(configuration, "effect",
-                 [&] { return with_effects(model, effects_of(configuration)); });
+  CahnHilliardModel result = model_without_effects(configuration);
+  said_of(configuration, "effect", [&] {
+    add_effects(configuration.text("effect"), configuration.units(), result);
+    return 0;
+  });
+  return result;
 }
 
 }  // namespace traceraft

@@ -124,7 +124,7 @@ Refit of_strength(const std::string& effect, double strength) {
 TEST(OwnEffects, AreHeldAgainstTheData) {
   ExplainSetup setup;
   const EffectTerm gravity{"gravity", {0.3}};
-  setup.request.own.parts = {part_of(gravity)};
+  setup.request.own = of_model({gravity});
   Explanation found;
   found.rounds.resize(1);
   found.rounds[0].known.hypothesis = setup.request.own;
@@ -151,10 +151,8 @@ TEST(OwnEffects, AreHeldAgainstTheData) {
 
 TEST(OwnEffects, AreNotLookedForInAnotherForm) {
   const auto beside = [](const EffectTerm& term) {
-    Hypothesis own;
-    own.parts = {part_of(term)};
     std::vector<std::string> names;
-    for (const Candidate& candidate : candidates_beside(own, candidates()))
+    for (const Candidate& candidate : candidates_beside(of_model({term}), candidates()))
       names.push_back(candidate.effect);
     return names;
   };

@@ -187,8 +187,7 @@ class OwnEffectsTest : public RivalsTest {
     asked_.noise = 0.15;
   }
   Explanation explained_with(const EffectTerm& own) {
-    request_.own.parts = {part_of(own)};
-    request_.own.known = 1;
+    request_.own = of_model({own});
     return explain_fields(draw_blind_case(asked_).vesicles, request_, {});
   }
   static double deviation(const Explanation& found) {

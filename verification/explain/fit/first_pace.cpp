@@ -78,7 +78,7 @@ class PaceSearch {
       }
     };
     std::vector<FilterModel> models{model_};
-    if (!model_.hypothesis.parts.empty()) models.push_back(without_strengths(model_));
+    if (!model_.hypothesis.parts.empty()) models.push_back(with_strengths(0, model_));
     for (const FilterModel& model : models) {
       consider(model);
       if (best && is_near(best->result)) return std::move(*best);
@@ -87,11 +87,6 @@ class PaceSearch {
       for (const double pace : kSlower) consider(at_pace(model, pace));
     if (!best) throw std::runtime_error(failure);
     return std::move(*best);
-  }
-
-  static FilterModel without_strengths(FilterModel model) {
-    for (auto& part : model.hypothesis.parts) part.coefficients.assign(part.coefficients.size(), 0);
-    return model;
   }
 
   // If strengths stay as they are.

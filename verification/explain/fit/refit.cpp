@@ -124,12 +124,10 @@ class NewtonSearch {
 
   // Where the model to start from cannot be advanced, its effects are weakened until one can.
   void begin() {
-    Vec x = unknowns(model_);
-    set_unknowns(model_, x);
+    set_unknowns(model_, unknowns(model_));
     here_ = evaluated(model_);
     for (int half = 0; half <= kMostHalvings && !here_.fit.failure.empty(); ++half) {
-      x.tail(x.size() - 1) *= 0.5;
-      set_unknowns(model_, x);
+      model_ = with_strengths(0.5, model_);
       here_ = evaluated(model_);
     }
   }

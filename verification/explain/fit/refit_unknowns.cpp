@@ -41,6 +41,12 @@ FilterModel at_pace(FilterModel model, double pace) {
   return model;
 }
 
+FilterModel with_strengths(double factor, FilterModel model) {
+  for (auto& part : model.hypothesis.parts)
+    for (double& a : part.coefficients) a *= factor;
+  return model;
+}
+
 Eigen::MatrixXd unknown_derivatives(const FilterModel& model) {
   const Vec x = unknowns(model);
   Eigen::MatrixXd J = unknown_factors(model.hypothesis, model.pace).asDiagonal();

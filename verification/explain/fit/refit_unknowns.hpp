@@ -14,6 +14,8 @@ void set_unknowns(FilterModel& model, const Vec& x);  // coefficients within the
 
 // With another pace, and rates as they are in units of time that do not change.
 FilterModel at_pace(FilterModel model, double pace);
+// With its effects so many times as strong.
+FilterModel with_strengths(double factor, FilterModel model);
 
 // Derivatives of the unknowns by ln pace and the coefficients.
 Eigen::MatrixXd unknown_derivatives(const FilterModel& model);

@@ -132,6 +132,13 @@ Hypothesis::Part part_of(const EffectTerm& term) {
   return part;
 }
 
+Hypothesis of_model(const std::vector<EffectTerm>& own) {
+  Hypothesis result;
+  for (const EffectTerm& term : own) result.parts.push_back(part_of(term));
+  result.known = result.parts.size();
+  return result;
+}
+
 bool are_one(const Candidate& a, const Candidate& b) {
   return a.special_case == b.effect || b.special_case == a.effect;
 }

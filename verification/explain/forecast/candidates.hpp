@@ -67,6 +67,7 @@ std::vector<Candidate> candidates_beside(const Hypothesis& own, std::vector<Cand
 // One of a model's own: its strength is a coefficient, other parameters stay as they are. Throws
 // InputError for an effect that is none of the candidates.
 Hypothesis::Part part_of(const EffectTerm& term);
+Hypothesis of_model(const std::vector<EffectTerm>& own);  // all of them known
 
 // ∂F/∂coefficient: for all coefficients of a hypothesis, then for those of more candidates at 0.
 // By differences, which are exact where F is linear in a coefficient.

@@ -6,6 +6,7 @@
 
 #include "kernel/core/text.hpp"
 #include "verification/explain/filter/noise_levels.hpp"
+#include "verification/explain/fit/refit_unknowns.hpp"
 
 namespace traceraft {
 namespace {
@@ -44,12 +45,11 @@ FilterResult Search::pass_with_own_effects() {
     maps = {};
     try {
       return filter_fields(data, model, request.filter, maps);
-    } catch (const std::runtime_error&) {
+    } catch (const std::runtime_error& error) {
       if (model.hypothesis.parts.empty() || half > kMostHalvings) throw;
+      tell(std::string("  fails with effects as strong as the model has them: ") + error.what());
     }
-    tell("  cannot be forecast with effects as strong as the model has them");
-    for (Hypothesis::Part& part : model.hypothesis.parts)
-      for (double& a : part.coefficients) a *= half < kMostHalvings ? 0.5 : 0;
+    model = with_strengths(half < kMostHalvings ? 0.5 : 0, model);
   }
 }
 
@@ -59,9 +59,11 @@ FilterResult Search::first_pass() {
     const double pace = model.pace;
     tell("  forecasts, and errors of states and of the mesh");
     fit_noise(data, pass_with_own_effects());
-    tell(formatted("  what %zu effects would change", model.screened.size()));
-    pass = filter_fields(data, model, request.filter, maps);
-    tell(model.hypothesis.parts.empty() ? "  D" : "  D, and the effects that the model has");
+    if (request.own.parts.empty()) {
+      tell(formatted("  what %zu effects would change", model.screened.size()));
+      pass = filter_fields(data, model, request.filter, maps);
+    }
+    tell(request.own.parts.empty() ? "  D" : "  D, and its effects");
     set_found(refit(data, model, request.filter, maps));
     if (maps_reach(result.found.pace, pace)) break;
     tell(formatted("  D is rather %.2g times the model's", result.found.pace));
