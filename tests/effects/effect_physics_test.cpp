@@ -127,6 +127,25 @@ TEST_F(EffectPhysics, OhtaKawasakiSolvesItsEquation) {
   }
 }
 
+// One model serves several meshes, and outlives them.
+TEST_F(EffectPhysics, OhtaKawasakiKnowsOnWhichMeshItIs) {
+  CahnHilliardModel shared = make_model();
+  add_effects("ohta-kawasaki:strength=3,range=0.5", kUnits, shared);
+  const auto check_on = [&](const std::shared_ptr<const SurfaceSpace>& mesh) {
+    const Vec state = random_vector(2 * mesh->nodes(), 5, 0.1, 0.9),
+              still = Vec::Zero(state.size());
+    CahnHilliardModel own = make_model();
+    add_effects("ohta-kawasaki:strength=3,range=0.5", kUnits, own);
+    Vec with_shared(state.size()), with_own(state.size());
+    ASSERT_TRUE(CahnHilliard(mesh, shared).residual(0, state, still, with_shared).ok());
+    ASSERT_TRUE(CahnHilliard(mesh, own).residual(0, state, still, with_own).ok());
+    EXPECT_EQ((with_shared - with_own).lpNorm<Eigen::Infinity>(), 0);
+  };
+  const auto coarse = make_space(12);
+  for (const auto& mesh : {coarse, space, coarse}) check_on(mesh);
+  for (const std::int64_t cells : {12, 14, 16}) check_on(make_space(cells));
+}
+
 TEST_F(EffectPhysics, CurvatureIsThatOfTheSurface) {
   // Of an ellipsoid of revolution with half axes 1 and c: H = (1 + c²)/(2 c) · … = at the poles
   // c (both principal curvatures are c/1), at the equator (1 + 1/c²)/2.

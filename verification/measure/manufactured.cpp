@@ -3,8 +3,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "kernel/fem/sparse_view.hpp"
 #include "kernel/problem/prescribed_density.hpp"
-#include "verification/measure/sparse_view.hpp"
 #include "verification/measure/surface_calculus.hpp"
 
 namespace traceraft {

@@ -6,9 +6,9 @@
 #include <stdexcept>
 
 #include "kernel/core/text.hpp"
+#include "kernel/fem/sparse_view.hpp"
 #include "verification/measure/bench.hpp"
 #include "verification/measure/fit.hpp"
-#include "verification/measure/sparse_view.hpp"
 #include "verification/studies/studies.hpp"
 
 namespace traceraft {

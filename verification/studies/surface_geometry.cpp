@@ -3,11 +3,11 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "kernel/fem/sparse_view.hpp"
 #include "verification/measure/bench.hpp"
 #include "verification/measure/fit.hpp"
 #include "verification/measure/manufactured.hpp"
 #include "verification/measure/motion.hpp"
-#include "verification/measure/sparse_view.hpp"
 #include "verification/studies/studies.hpp"
 
 namespace traceraft {

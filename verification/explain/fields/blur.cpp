@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "verification/measure/sparse_view.hpp"
+#include "kernel/fem/sparse_view.hpp"
 
 namespace traceraft {
 namespace {

@@ -7,7 +7,7 @@
 #include "backends/nlopt/minimise.hpp"
 #include "backends/openblas/dense_algebra.hpp"
 #include "kernel/core/random.hpp"
-#include "verification/measure/sparse_view.hpp"
+#include "kernel/fem/sparse_view.hpp"
 
 namespace traceraft {
 namespace {

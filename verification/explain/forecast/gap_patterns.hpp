@@ -1,10 +1,10 @@
 // What a gap between a forecast and the measurements is sought as.
 #pragma once
 
+#include "kernel/fem/sparse_view.hpp"
 #include "kernel/fem/surface_space.hpp"
 #include "kernel/physics/double_well.hpp"
 #include "verification/explain/forecast/tangent_flow.hpp"
-#include "verification/measure/sparse_view.hpp"
 
 namespace traceraft {
 

@@ -1,4 +1,4 @@
-// A matrix of the program as Eigen sees it: for solvers that are independent of the program's own.
+// A matrix of one rank as Eigen sees it: for factorisations.
 #pragma once
 
 #include <Eigen/Sparse>
