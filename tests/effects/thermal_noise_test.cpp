@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "backends/list.hpp"
+#include "backends/openblas/dense_algebra.hpp"
 #include "kernel/effects/effects.hpp"
 #include "tests/support/dense.hpp"
 #include "tests/support/spaces.hpp"
@@ -27,30 +28,31 @@ Eigen::MatrixXd harmonics(const SurfaceSpace& space) {
     values.row(i) << x[0], x[1], x[2], x[0] * x[1], x[1] * x[2], x[2] * x[0],
         x[0] * x[0] - x[1] * x[1], 3 * x[2] * x[2] - x.squaredNorm();
   }
-  return dense(space.mass) * values;
+  return product(dense(space.mass), values);
 }
 
-// Around a uniform phase M̃ ċ = −A μ + η with M̃ μ = B c and ⟨η ηᵀ⟩ = 2 kT K_M δ(t − t'). In the
-// eigenvectors of B^½ M̃⁻¹ A M̃⁻¹ B^½, with its eigenvalues λ, z = B^½ c has the covariance
-// Q_ij/(λ_i + λ_j), Q = 2 kT B^½ M̃⁻¹ K_M M̃⁻¹ B^½.
+// Around a uniform phase M̃ ċ = −A μ + η with M̃ μ = B c, B = L Lᵀ and ⟨η ηᵀ⟩ = 2 kT K_M δ(t − t').
+// In the eigenvectors of Lᵀ M̃⁻¹ A M̃⁻¹ L, with its eigenvalues λ, z = Lᵀ c has the covariance
+// Q_ij/(λ_i + λ_j), Q = 2 kT Lᵀ M̃⁻¹ K_M M̃⁻¹ L.
 Vec variances(const CahnHilliard& base, const Vec& y, const Eigen::MatrixXd& of) {
   BlockJacobian J = base.make_jacobian();
   EXPECT_TRUE(base.jacobian(0, y, Vec::Zero(y.size()), 0, Tangent::exact, J).ok());
   const SurfaceSpace& space = base.space();
   const Eigen::MatrixXd M = dense(J.mm), A = dense(J.cm);
   const Eigen::MatrixXd K = A - space.h() * base.model().mobility->scale() * dense(space.normal);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> B(-dense(J.mc));
-  const Eigen::MatrixXd half = M.llt().solve(B.operatorSqrt());
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> rates(half.transpose() * A * half);
-  const Vec& rate = rates.eigenvalues();
-  Eigen::MatrixXd covariance = 2 * kT * rates.eigenvectors().transpose() * half.transpose() * K *
-                               half * rates.eigenvectors();
+  const SymmetricEigen B = symmetric_eigen(-dense(J.mc));
+  const Vec root = B.values.cwiseSqrt();
+  const Eigen::MatrixXd L = B.vectors * root.asDiagonal(), half = M.llt().solve(L);
+  const auto [rate, vectors] = symmetric_eigen(transposed_product(half, product(A, half)));
+  const Eigen::MatrixXd modes = product(half, vectors);
+  Eigen::MatrixXd covariance = 2 * kT * transposed_product(modes, product(K, modes));
   for (int i = 0; i < rate.size(); ++i)
     for (int j = 0; j < rate.size(); ++j)
       // The mean has no rate, and no noise.
       covariance(i, j) = i == 0 || j == 0 ? 0 : covariance(i, j) / (rate[i] + rate[j]);
-  const Eigen::MatrixXd to_z = rates.eigenvectors().transpose() * B.operatorInverseSqrt() * of;
-  return (to_z.transpose() * covariance * to_z).diagonal();
+  const Eigen::MatrixXd inverse = B.vectors * root.cwiseInverse().asDiagonal(),
+                        to_z = transposed_product(product(inverse, vectors), of);
+  return transposed_product(to_z, product(covariance, to_z)).diagonal();
 }
 
 class ThermalNoiseTest : public ::testing::TestWithParam<const char*> {};
