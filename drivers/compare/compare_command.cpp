@@ -12,6 +12,7 @@
 #include "drivers/config/config_file.hpp"
 #include "drivers/config/option_flags.hpp"
 #include "drivers/exit_codes.hpp"
+#include "drivers/output/program_checksum.hpp"
 #include "drivers/run/finished_run.hpp"
 #include "drivers/run/run_folder.hpp"
 #include "drivers/run/run_setup.hpp"
@@ -149,6 +150,11 @@ int compare(const CompareRequest& request) {
     throw InputError("--out: " + folder.path().string() +
                      " holds a comparison of runs from another initial state; choose another "
                      "folder");
+
+  plan.program = program_checksum();
+  if (before && before->program != plan.program)
+    throw InputError("--out: " + folder.path().string() +
+                     " holds runs of another build of traceraft; choose another folder");
 
   fs::create_directories(folder.path() / "runs");
   if (!lock) lock.emplace(folder.path());

@@ -32,6 +32,7 @@ struct ComparePlan {
   double time_limit = 0;            // seconds per run; 0: none
   double target_error = 0;          // 0: the smallest that all methods reach
   std::uint32_t initial_state = 0;  // its checksum: of runs that restart from others
+  std::string program;              // checksum of the one that makes the runs
 
   double reference() const;  // the tolerance of the reference
 };

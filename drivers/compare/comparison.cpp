@@ -38,7 +38,8 @@ void ComparisonFolder::save(const ComparePlan& plan) const {
                                        {"reference_tolerance", plan.reference_tolerance},
                                        {"time_limit", plan.time_limit},
                                        {"target_error", plan.target_error},
-                                       {"initial_state", plan.initial_state}};
+                                       {"initial_state", plan.initial_state},
+                                       {"program", plan.program}};
   write_durably(plan_file(), json.dump(2) + "\n");
 }
 
@@ -46,10 +47,11 @@ ComparePlan ComparisonFolder::load() const {
   return from_json(plan_file(), [this](const Json& json) {
     if (!json.contains("integrators"))
       throw InputError(path_.string() + " holds no comparison, but something else with a plan");
-    return ComparePlan{
-        json.at("integrators"), json.at("linear_solvers"), json.at("tolerances"),
-        json.at("ranks"),       json.at("repeat"),         json.at("reference_tolerance"),
-        json.at("time_limit"),  json.at("target_error"),   json.at("initial_state")};
+    return ComparePlan{json.at("integrators"),   json.at("linear_solvers"),
+                       json.at("tolerances"),    json.at("ranks"),
+                       json.at("repeat"),        json.at("reference_tolerance"),
+                       json.at("time_limit"),    json.at("target_error"),
+                       json.at("initial_state"), json.value("program", "")};
   });
 }
 

@@ -233,6 +233,22 @@ TEST_F(CompareTest, OneAtATimeWorksOnAFolder) {
   EXPECT_EQ(traceraft("compare --quiet " + out() + references()).code, 6);
 }
 
+TEST_F(CompareTest, DoesNotMixBuildsOfTheProgram) {
+  const auto compare = [&](const std::string& arguments) {
+    return traceraft("compare --quiet " + out() + references() + arguments);
+  };
+  ASSERT_EQ(compare(runs + "--integrators ida --tolerances 1e-2 --repeat 1").code, 0);
+  ASSERT_EQ(compare("").code, 0);
+  const fs::path file = folder.path / "c/plan.json";
+  nlohmann::json plan = nlohmann::json::parse(content(file));
+  plan["program"] = "00000000";
+  write_durably(file, plan.dump());
+  const Outcome outcome = compare("--repeat 2");
+  EXPECT_EQ(outcome.code, 2) << outcome.output;
+  EXPECT_NE(outcome.output.find("another build"), std::string::npos) << outcome.output;
+  EXPECT_EQ(content(file), plan.dump());
+}
+
 TEST_F(CompareTest, NoticesThatTheInitialStateHasChanged) {
   const std::string source = (folder.path / "source").string();
   const auto make_source = [&](const char* angle) {
