@@ -19,9 +19,13 @@ class ScreenedPotential {
     const Vec deviation = c.array() - space.integral(c) / space.area;
     Vec load = Vec::Zero(space.nodes()), potential(space.nodes()), buffer;
     space.stabilised_mass.multiply_add(1, space.with_ghosts(deviation, buffer), load, *space.team);
-    if (space.communicator->size() == 1) return factors(space)->solve(load);
-    if (const Status status = space.solve_spd(matrix(space), load, potential, 1e-13); !status.ok())
+    if (space.communicator->size() == 1)
+      potential = factors(space)->solve(load);
+    else if (const Status status = space.solve_spd(matrix(space), load, potential, 1e-13);
+             !status.ok())
       throw std::runtime_error("the potential of Ohta and Kawasaki: " + status.why);
+    // Its mean is 0, of which a small κ² leaves what roundoff makes of it.
+    potential.array() -= space.integral(potential) / space.area;
     return potential;
   }
 

@@ -120,10 +120,12 @@ TEST_F(EffectPhysics, OhtaKawasakiSolvesItsEquation) {
   Vec state = Vec::Zero(2 * nodes), z(nodes);
   for (int i = 0; i < nodes; ++i) z[i] = fine->mesh.position(i).normalized()[2];
   state.head(nodes) = z.array() + 0.4;
-  for (const auto& [range, rate] : {std::pair("0.5", 4.0 + 2), {"1e3", 1e-6 + 2}}) {
+  for (const auto& [range, rate] :
+       {std::pair("0.5", 4.0 + 2), {"1e3", 1e-6 + 2}, {"1e6", 1e-12 + 2}}) {
     const Vec change =
         contribution(fine, std::string("ohta-kawasaki:strength=3,range=") + range, state);
     EXPECT_NEAR(change.tail(nodes).dot(z) / (-3 * fine->inner(z, z) / rate), 1, 2e-3);
+    EXPECT_NEAR(change.tail(nodes).sum(), 0, 1e-11);  // its mean is 0
   }
 }
 
