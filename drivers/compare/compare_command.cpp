@@ -144,17 +144,16 @@ int compare(const CompareRequest& request) {
   std::optional<ComparePlan> before;
   if (goes_on) before = folder.load();
   ComparePlan plan = extended_plan(request, before ? &*before : nullptr);
+  plan.program = program_checksum();
+  if (before && before->program != plan.program)
+    throw InputError("--out: " + folder.path().string() +
+                     " holds runs of another build of traceraft; choose another folder");
   const RunSetup run = build_run(configuration, InitialState::build);
   plan.initial_state = checksum(run.initial);
   if (before && before->initial_state != plan.initial_state)
     throw InputError("--out: " + folder.path().string() +
                      " holds a comparison of runs from another initial state; choose another "
                      "folder");
-
-  plan.program = program_checksum();
-  if (before && before->program != plan.program)
-    throw InputError("--out: " + folder.path().string() +
-                     " holds runs of another build of traceraft; choose another folder");
 
   fs::create_directories(folder.path() / "runs");
   if (!lock) lock.emplace(folder.path());

@@ -13,7 +13,6 @@
 #include "backends/zlib/checksum.hpp"
 #include "drivers/config/config_file.hpp"
 #include "drivers/exit_codes.hpp"
-#include "drivers/output/program_checksum.hpp"
 #include "drivers/output/status_line.hpp"
 #include "drivers/run/finished_run.hpp"
 #include "drivers/run/program_run.hpp"
@@ -107,7 +106,7 @@ Reference reference_of(const ComparePlan& plan, const ComparisonFolder& folder,
   const std::string identity =
       numerical_identity(Configuration(read_config_file(folder.config()), reference.options));
   char name[32];
-  std::snprintf(name, sizeof name, "%08x-%08x", crc32_of(identity + program_checksum()),
+  std::snprintf(name, sizeof name, "%08x-%08x", crc32_of(identity + plan.program),
                 plan.initial_state);
   reference.folder = fs::path(cache) / name;
   if (fs::exists(reference.folder / "config.toml") &&

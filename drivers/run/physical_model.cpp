@@ -63,10 +63,8 @@ std::vector<EffectTerm> effects_of(const Configuration& configuration) {
 
 CahnHilliardModel physical_model(const Configuration& configuration) {
   CahnHilliardModel result = model_without_effects(configuration);
-  said_of(configuration, "effect", [&] {
-    add_effects(configuration.text("effect"), configuration.units(), result);
-    return 0;
-  });
+  said_of(configuration, "effect",
+          [&] { add_effects(configuration.text("effect"), configuration.units(), result); });
   return result;
 }
 

@@ -1,10 +1,8 @@
-#include <map>
-#include <mutex>
 #include <stdexcept>
-#include <tuple>
 
 #include "kernel/effects/effects.hpp"
 #include "kernel/effects/nodal_potential.hpp"
+#include "kernel/effects/per_space.hpp"
 
 namespace traceraft {
 namespace {
@@ -50,42 +48,27 @@ Vec mean_curvature(const SurfaceSpace& space) {
   return curvature.cwiseQuotient(squares.cwiseSqrt().cwiseMax(0.1));
 }
 
-// Computed once for each space. A later one may have the address of one that is gone, but hardly
-// its nodes and its area.
-class Curvature {
- public:
-  Vec operator()(const SurfaceSpace& space, ConstVec) {
-    const std::lock_guard lock(mutex_);
-    Vec& value = values_[{&space, space.nodes(), space.area}];
-    if (value.size() == 0) value = mean_curvature(space);
-    return value;
-  }
-
- private:
-  std::mutex mutex_;
-  std::map<std::tuple<const SurfaceSpace*, int, double>, Vec> values_;
-};
-
 }  // namespace
 
 // Rafts that prefer to be curved: μ = … − Λ H. On a sphere it changes nothing.
 EffectEntry curvature_effect() {
-  return {"curvature",
-          "rafts that prefer strongly curved places; nothing on a sphere",
-          "rafts that avoid strongly curved places; nothing on a sphere",
-          {{"strength", "", 0, -10, 10, "Lambda of Lambda H R"}},
-          MassClass::conserves,
-          EnergyClass::dissipates,
-          "rafts sorted by curvature",
-          {"gravity"},
-          [](const Parameters& p, CahnHilliardModel& model) {
-            const auto curvature = std::make_shared<Curvature>();
-            model.effects.push_back(
-                nodal_potential({"curvature", -p["strength"], false,
-                                 [curvature](const SurfaceSpace& space, ConstVec c) {
-                                   return (*curvature)(space, c);
-                                 }}));
-          }};
+  return {
+      "curvature",
+      "rafts that prefer strongly curved places; nothing on a sphere",
+      "rafts that avoid strongly curved places; nothing on a sphere",
+      {{"strength", "", 0, -10, 10, "Lambda of Lambda H R"}},
+      MassClass::conserves,
+      EnergyClass::dissipates,
+      "rafts sorted by curvature",
+      {"gravity"},
+      [](const Parameters& p, CahnHilliardModel& model) {
+        const auto curvature = std::make_shared<PerSpace<Vec>>([](const SurfaceSpace& space) {
+          return std::make_shared<const Vec>(mean_curvature(space));
+        });
+        model.effects.push_back(nodal_potential(
+            {"curvature", -p["strength"], false,
+             [curvature](const SurfaceSpace& space, ConstVec) { return *curvature->on(space); }}));
+      }};
 }
 
 }  // namespace traceraft

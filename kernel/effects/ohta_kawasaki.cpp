@@ -1,60 +1,47 @@
 #include <Eigen/SparseCholesky>
-#include <map>
-#include <mutex>
 #include <stdexcept>
 
 #include "kernel/effects/effects.hpp"
 #include "kernel/effects/nodal_potential.hpp"
+#include "kernel/effects/per_space.hpp"
 #include "kernel/fem/sparse_view.hpp"
 
 namespace traceraft {
 namespace {
 
-// φ with (κ² − Δ_Γ) φ = c − mean(c), to roundoff.
-class ScreenedPotential {
- public:
-  explicit ScreenedPotential(double kappa) : kappa_(kappa) {}
+using Factors = Eigen::SimplicialLLT<EigenMatrix>;
 
-  Vec of(const SurfaceSpace& space, ConstVec c) {
-    const Vec deviation = c.array() - space.integral(c) / space.area;
-    Vec load = Vec::Zero(space.nodes()), potential(space.nodes()), buffer;
-    space.stabilised_mass.multiply_add(1, space.with_ghosts(deviation, buffer), load, *space.team);
-    if (space.communicator->size() == 1)
-      potential = factors(space)->solve(load);
-    else if (const Status status = space.solve_spd(matrix(space), load, potential, 1e-13);
-             !status.ok())
-      throw std::runtime_error("the potential of Ohta and Kawasaki: " + status.why);
-    // Its mean is 0, of which a small κ² leaves what roundoff makes of it.
-    potential.array() -= space.integral(potential) / space.area;
-    return potential;
-  }
+CsrMatrix screened_stiffness(const SurfaceSpace& space, double kappa) {
+  return combine(1, combine(1, space.stiffness, space.h(), space.normal), kappa * kappa,
+                 space.stabilised_mass);
+}
 
- private:
-  using Factors = Eigen::SimplicialLLT<EigenMatrix>;
+// Worth keeping: each product with the Jacobian needs them, and conjugate gradients take some 30/h
+// iterations.
+std::shared_ptr<const Factors> factors_of(const SurfaceSpace& space, double kappa) {
+  const auto result =
+      std::make_shared<const Factors>(as_eigen(space, screened_stiffness(space, kappa)));
+  if (result->info() != Eigen::Success)
+    throw std::runtime_error("the potential of Ohta and Kawasaki cannot be factorised");
+  return result;
+}
 
-  CsrMatrix matrix(const SurfaceSpace& space) const {
-    return combine(1, combine(1, space.stiffness, space.h(), space.normal), kappa_ * kappa_,
-                   space.stabilised_mass);
-  }
-  // Kept, as each product with the Jacobian needs them and conjugate gradients take some 30/h
-  // iterations. Spaces are told apart by their patterns, which they do not share.
-  std::shared_ptr<const Factors> factors(const SurfaceSpace& space) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (const auto known = factors_.find(space.pattern); known != factors_.end())
-      return known->second;
-    for (auto it = factors_.begin(); it != factors_.end();)
-      it = it->first.expired() ? factors_.erase(it) : std::next(it);
-    const auto computed = std::make_shared<const Factors>(as_eigen(space, matrix(space)));
-    if (computed->info() != Eigen::Success)
-      throw std::runtime_error("the potential of Ohta and Kawasaki cannot be factorised");
-    return factors_[space.pattern] = computed;
-  }
-
-  const double kappa_;
-  std::mutex mutex_;
-  std::map<std::weak_ptr<const SparsityPattern>, std::shared_ptr<const Factors>, std::owner_less<>>
-      factors_;
-};
+// φ with (κ² − Δ_Γ) φ = c − mean(c), to roundoff. `factors`: on one rank.
+Vec screened_potential(const SurfaceSpace& space, double kappa, PerSpace<Factors>& factors,
+                       ConstVec c) {
+  const Vec deviation = c.array() - space.integral(c) / space.area;
+  Vec load = Vec::Zero(space.nodes()), potential(space.nodes()), buffer;
+  space.stabilised_mass.multiply_add(1, space.with_ghosts(deviation, buffer), load, *space.team);
+  if (space.communicator->size() == 1)
+    potential = factors.on(space)->solve(load);
+  else if (const Status status =
+               space.solve_spd(screened_stiffness(space, kappa), load, potential, 1e-13);
+           !status.ok())
+    throw std::runtime_error("the potential of Ohta and Kawasaki: " + status.why);
+  // Its mean is 0, of which a small κ² leaves what roundoff makes of it.
+  potential.array() -= space.integral(potential) / space.area;
+  return potential;
+}
 
 }  // namespace
 
@@ -71,11 +58,13 @@ EffectEntry ohta_kawasaki_effect() {
           "rafts that stop growing",
           {"exchange"},
           [](const Parameters& p, CahnHilliardModel& model) {
-            const auto potential = std::make_shared<ScreenedPotential>(1 / p["range"]);
+            const double kappa = 1 / p["range"];
+            const auto factors = std::make_shared<PerSpace<Factors>>(
+                [kappa](const SurfaceSpace& space) { return factors_of(space, kappa); });
             model.effects.push_back(
                 nodal_potential({"ohta-kawasaki", p["strength"], true,
-                                 [potential](const SurfaceSpace& space, ConstVec c) {
-                                   return potential->of(space, c);
+                                 [kappa, factors](const SurfaceSpace& space, ConstVec c) {
+                                   return screened_potential(space, kappa, *factors, c);
                                  }}));
           }};
 }

@@ -15,10 +15,4 @@ inline EigenMatrix as_eigen(const SurfaceSpace& space, const CsrMatrix& A) {
       space.pattern->column.data(), A.values.data());
 }
 
-// Of fields that are constant along normals, since nothing is known off the surface: with the
-// largest weight of S that keeps the order.
-inline EigenMatrix stiffness_along_normals(const SurfaceSpace& space) {
-  return as_eigen(space, combine(1, space.stiffness, 1 / space.h(), space.normal));
-}
-
 }  // namespace traceraft

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "backends/posix/durable_file.hpp"
 #include "backends/posix/folder_lock.hpp"
 #include "drivers/run/checkpoint_store.hpp"
 #include "tests/support/program.hpp"

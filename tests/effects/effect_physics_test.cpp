@@ -16,18 +16,26 @@ using testing::random_vector;
 
 constexpr Units kUnits{1, 1, true};
 
-// F with the effect minus F without it.
-Vec contribution(const std::shared_ptr<const SurfaceSpace>& space, const std::string& effect,
-                 const Vec& y, double t = 0) {
+CahnHilliardModel model_with(const std::string& effect) {
   CahnHilliardModel model = make_model();
-  const CahnHilliard base(space, model);
   add_effects(effect, kUnits, model);
-  const CahnHilliard problem(space, model);
+  return model;
+}
+
+// F with the model's effects minus F without them.
+Vec contribution(const std::shared_ptr<const SurfaceSpace>& space, const CahnHilliardModel& model,
+                 const Vec& y, double t = 0) {
+  const CahnHilliard base(space, make_model()), problem(space, model);
   const Vec still = Vec::Zero(y.size());
   Vec with(y.size()), without(y.size());
   EXPECT_TRUE(problem.residual(t, y, still, with).ok());
   EXPECT_TRUE(base.residual(t, y, still, without).ok());
   return with - without;
+}
+
+Vec contribution(const std::shared_ptr<const SurfaceSpace>& space, const std::string& effect,
+                 const Vec& y, double t = 0) {
+  return contribution(space, model_with(effect), y, t);
 }
 
 class EffectPhysics : public ::testing::Test {
@@ -131,17 +139,13 @@ TEST_F(EffectPhysics, OhtaKawasakiSolvesItsEquation) {
 
 // One model serves several meshes, and outlives them.
 TEST_F(EffectPhysics, OhtaKawasakiKnowsOnWhichMeshItIs) {
-  CahnHilliardModel shared = make_model();
-  add_effects("ohta-kawasaki:strength=3,range=0.5", kUnits, shared);
+  const std::string effect = "ohta-kawasaki:strength=3,range=0.5";
+  const CahnHilliardModel shared = model_with(effect);
   const auto check_on = [&](const std::shared_ptr<const SurfaceSpace>& mesh) {
-    const Vec state = random_vector(2 * mesh->nodes(), 5, 0.1, 0.9),
-              still = Vec::Zero(state.size());
-    CahnHilliardModel own = make_model();
-    add_effects("ohta-kawasaki:strength=3,range=0.5", kUnits, own);
-    Vec with_shared(state.size()), with_own(state.size());
-    ASSERT_TRUE(CahnHilliard(mesh, shared).residual(0, state, still, with_shared).ok());
-    ASSERT_TRUE(CahnHilliard(mesh, own).residual(0, state, still, with_own).ok());
-    EXPECT_EQ((with_shared - with_own).lpNorm<Eigen::Infinity>(), 0);
+    const Vec state = random_vector(2 * mesh->nodes(), 5, 0.1, 0.9);
+    EXPECT_EQ((contribution(mesh, shared, state) - contribution(mesh, effect, state))
+                  .lpNorm<Eigen::Infinity>(),
+              0);
   };
   const auto coarse = make_space(12);
   for (const auto& mesh : {coarse, space, coarse}) check_on(mesh);

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "kernel/fem/sparse_view.hpp"
+#include "verification/explain/fields/stiffness_along_normals.hpp"
 
 namespace traceraft {
 namespace {

@@ -7,7 +7,7 @@
 #include "backends/nlopt/minimise.hpp"
 #include "backends/openblas/dense_algebra.hpp"
 #include "kernel/core/random.hpp"
-#include "kernel/fem/sparse_view.hpp"
+#include "verification/explain/fields/stiffness_along_normals.hpp"
 
 namespace traceraft {
 namespace {
