@@ -9,6 +9,7 @@
 #include "drivers/explain/resumable_search.hpp"
 #include "drivers/explain/search_file.hpp"
 #include "drivers/output/json_file.hpp"
+#include "drivers/output/program_checksum.hpp"
 #include "drivers/output/status_line.hpp"
 #include "kernel/core/random.hpp"
 #include "kernel/core/stopwatch.hpp"
@@ -123,7 +124,8 @@ void write_score(const CampaignFolder& folder, const CampaignGroup& group, const
                    {"named", heldout("named")},
                    {"placebo", heldout("placebo")},
                    {"floor", floor.heldout > 0 ? Json(floor.heldout) : Json()}}},
-                 {"seconds", seconds_of(folder.of(id) / "explain")}};
+                 {"seconds", seconds_of(folder.of(id) / "explain")},
+                 {"program", program_checksum()}};
     const auto strength = strength_error(truth, Configuration(setup.model, {}).units(), v);
     json["error"] = strength ? Json(strength->relative) : Json();
     json["deviations"] = strength ? Json(strength->deviations) : Json();
@@ -174,7 +176,8 @@ CaseScore read_score(const CampaignFolder& folder, const CaseId& id) {
                      number(heldout.at("named")),
                      number(heldout.at("placebo")),
                      number(heldout.at("floor")),
-                     number(json.at("seconds"))};
+                     number(json.at("seconds")),
+                     json.value("program", "")};
   });
 }
 

@@ -16,6 +16,7 @@ struct CaseScore {
   double p;                            // of the most telling candidate, first round
   double base, named, placebo, floor;  // held-out gaps; floor: of the truth
   double seconds;
+  std::string program = "";  // checksum of the build that explained it; "" if not known
 };
 
 // Does what the case still lacks and writes its score. Throws what drawing and explaining throw.

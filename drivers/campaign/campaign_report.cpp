@@ -9,6 +9,7 @@
 #include "drivers/input/csv_table.hpp"
 #include "drivers/output/text_table.hpp"
 #include "kernel/core/error.hpp"
+#include "kernel/core/text.hpp"
 #include "verification/explain/fit/refit.hpp"
 
 namespace traceraft {
@@ -59,16 +60,29 @@ double closed(const CaseScore& score) {
       .value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
+constexpr char kProgram[] = "program";  // earlier tables have no such column
+
 Table cases_table(const Scores& scores) {
   Table table{"cases",
               {"case", "hidden", "verdict", "found", "outcome", "error", "deviations", "p",
-               "base gap", "named gap", "placebo gap", "floor", "seconds"},
+               "base gap", "named gap", "placebo gap", "floor", "seconds", kProgram},
               {}};
   for (const CaseScore& s : scores)
     table.rows.push_back({s.id.name(), s.hidden, s.verdict, s.effect, word_for(s.outcome),
                           cell(s.error), cell(s.deviations), cell(s.p), cell(s.base), cell(s.named),
-                          cell(s.placebo), cell(s.floor), s.seconds});
+                          cell(s.placebo), cell(s.floor), s.seconds, s.program});
   return table;
+}
+
+// One build may explain better than another.
+std::string builds_of(const Scores& scores) {
+  std::map<std::string, int> cases;
+  for (const CaseScore& score : scores) ++cases[score.program];
+  if (cases.size() < 2) return "";
+  std::string text = "\nBuilds of the program that explained them:\n\n";
+  for (const auto& [program, count] : cases)
+    text += formatted("- %s: %d\n", program.empty() ? "not known" : program.c_str(), count);
+  return text;
 }
 
 }  // namespace
@@ -142,6 +156,7 @@ void write_campaign(const CampaignFolder& campaign, const Scores& scores,
     if (const Table alone = confusion_of(own); !alone.rows.empty())
       text += "\n" + group + ": " + campaign_groups().find(group).summary + "\n\n" +
               markdown_table(table_rows(alone));
+  text += builds_of(scores);
   if (!failures.empty()) text += "\nNo verdict:\n\n";
   for (const CaseFailure& failure : failures)
     text += "- " + failure.id.name() + ": " + failure.why + "\n";
@@ -150,7 +165,8 @@ void write_campaign(const CampaignFolder& campaign, const Scores& scores,
 
 Scores read_cases(const std::filesystem::path& csv) {
   const CsvTable table = CsvTable::read(csv);
-  for (const std::string& column : cases_table({}).columns) table.require(column);
+  for (const std::string& column : cases_table({}).columns)
+    if (column != kProgram) table.require(column);
   Scores scores;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const auto text = [&](const char* column) { return table.text(row, column); };
@@ -168,7 +184,7 @@ Scores read_cases(const std::filesystem::path& csv) {
     scores.push_back({ended.first, text("hidden"), text("verdict"), text("found"), ended.second,
                       number("error"), number("deviations"), number("p"), number("base gap"),
                       number("named gap"), number("placebo gap"), number("floor"),
-                      number("seconds")});
+                      number("seconds"), table.has(kProgram) ? text(kProgram) : ""});
   }
   return scores;
 }

@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "backends/posix/durable_file.hpp"
 #include "drivers/output/text_table.hpp"
 
 namespace traceraft {
 namespace {
+
+namespace fs = std::filesystem;
 
 CaseScore score(int number, const std::string& hidden, const std::string& found,
                 CaseOutcome outcome, double deviations) {
@@ -19,7 +22,9 @@ CaseScore score(int number, const std::string& hidden, const std::string& found,
           10.0 * number};
 }
 
-std::vector<CaseScore> scores() {
+using Scores = std::vector<CaseScore>;
+
+Scores scores() {
   return {score(1, "gravity", "gravity", CaseOutcome::right, 1.9),
           score(2, "uptake", "exchange", CaseOutcome::in_class, std::nan("")),
           score(3, "uptake", "gravity", CaseOutcome::wrong, -2.1),
@@ -82,6 +87,38 @@ TEST(CampaignReport, CountsPairsOnceInWhateverOrder) {
   EXPECT_EQ(rows[0], (std::vector<std::string>{"hidden \\ found", "gravity + uptake"}));
   EXPECT_EQ(rows[1][0], "gravity + uptake");
   EXPECT_EQ(std::stod(rows[1][1]), 2);
+}
+
+// Cases that are kept, and carried on by another build.
+TEST(CampaignReport, TellsWhichBuildsExplained) {
+  const fs::path folder = fs::path(testing::TempDir()) / "campaign-of-builds";
+  fs::create_directories(folder);
+  const CampaignFolder campaign(folder);
+  Scores all = scores();
+  for (CaseScore& one : all) one.program = "0000000a";
+  write_campaign(campaign, all);
+  EXPECT_EQ(read_file(folder / "campaign.md", 1 << 20).find("Builds"), std::string::npos);
+  all[2].program = "0000000b";
+  all[3].program = "";
+  write_campaign(campaign, all);
+  const std::string text = read_file(folder / "campaign.md", 1 << 20);
+  for (const char* line : {"- 0000000a: 2\n", "- 0000000b: 1\n", "- not known: 1\n"})
+    EXPECT_NE(text.find(line), std::string::npos) << line << text;
+  const Scores again = read_cases(campaign.cases());
+  ASSERT_EQ(again.size(), all.size());
+  for (std::size_t k = 0; k < all.size(); ++k) EXPECT_EQ(again[k].program, all[k].program);
+}
+
+// Earlier tables do not say it.
+TEST(CampaignReport, ReadsCasesOfNoKnownBuild) {
+  const fs::path csv = fs::path(testing::TempDir()) / "cases-of-no-build.csv";
+  write_durably(csv,
+                "case,hidden,verdict,found,outcome,error,deviations,p,base gap,named gap,placebo "
+                "gap,floor,seconds\nnull-000,,none,,right,,,0.9,0.3,0.3,,0.3,36\n");
+  const Scores cases = read_cases(csv);
+  ASSERT_EQ(cases.size(), 1u);
+  EXPECT_EQ(cases[0].program, "");
+  EXPECT_EQ(cases[0].seconds, 36);
 }
 
 }  // namespace
