@@ -148,7 +148,8 @@ int compare(const CompareRequest& request) {
   if (before && before->program != plan.program)
     throw InputError("--out: " + folder.path().string() +
                      " holds runs of another build of traceraft; choose another folder");
-  const RunSetup run = build_run(configuration, InitialState::build);
+  const RunSetup run =
+      build_run(configuration, InitialState::build, {plan.integrators, plan.linear_solvers});
   plan.initial_state = checksum(run.initial);
   if (before && before->initial_state != plan.initial_state)
     throw InputError("--out: " + folder.path().string() +

@@ -1,8 +1,36 @@
 #include "drivers/run/numerical_methods.hpp"
 
+#include <algorithm>
+
 #include "drivers/run/checked_options.hpp"
 
 namespace traceraft {
+namespace {
+
+void refuse_without(const std::vector<std::string>& chosen, const Configuration& configuration,
+                    const std::string& option, const char* kind, const std::string& name) {
+  if (from_flag(configuration, option) &&
+      std::find(chosen.begin(), chosen.end(), name) == chosen.end())
+    throw InputError(configuration.where(option) + ": it needs the " + kind + " " + name);
+}
+
+}  // namespace
+
+NumericalMethods methods_of_run(const Configuration& configuration) {
+  return {{configuration.text("integrator")}, {configuration.text("linear-solver")}};
+}
+
+void refuse_options_of_others(const Configuration& configuration, const NumericalMethods& methods) {
+  refuse_without(methods.integrators, configuration, "keep", "integrator", "euler");
+  for (const IntegratorEntry& integrator : integrators())
+    for (const ParameterSpec& parameter : integrator.parameters)
+      refuse_without(methods.integrators, configuration, integrator_option(integrator, parameter),
+                     "integrator", integrator.name);
+  for (const LinearSolverEntry& solver : linear_solvers())
+    for (const WordOption& option : solver.options)
+      refuse_without(methods.linear_solvers, configuration, linear_solver_option(solver, option),
+                     "linear solver", solver.name);
+}
 
 IntegratorSettings integrator_settings(const Configuration& configuration,
                                        const IntegratorEntry& integrator, const Units& units) {
@@ -29,14 +57,8 @@ IntegratorSettings integrator_settings(const Configuration& configuration,
 LinearSolverChoice linear_solver(const Configuration& configuration, const SurfaceSpace& space) {
   const LinearSolverEntry& solver = linear_solvers().find(configuration.text("linear-solver"));
   WordOptions options;
-  for (const LinearSolverEntry& other : linear_solvers())
-    for (const WordOption& option : other.options) {
-      const std::string name = linear_solver_option(other, option);
-      if (other.name == solver.name)
-        options[option.name] = configuration.text(name);
-      else if (from_flag(configuration, name))
-        throw InputError(configuration.where(name) + ": it needs --linear-solver " + other.name);
-    }
+  for (const WordOption& option : solver.options)
+    options[option.name] = configuration.text(linear_solver_option(solver, option));
   try {
     return choose_linear_solver(solver.name, space, options);
   } catch (const OptionError& error) {

@@ -9,7 +9,6 @@
 #include "backends/ranks.hpp"
 #include "drivers/run/checked_options.hpp"
 #include "drivers/run/initial_state.hpp"
-#include "drivers/run/numerical_methods.hpp"
 #include "drivers/run/physical_model.hpp"
 #include "kernel/core/text.hpp"
 
@@ -62,6 +61,11 @@ std::vector<double> output_labels(const Configuration& configuration) {
 }  // namespace
 
 RunSetup build_run(const Configuration& configuration, InitialState initial) {
+  return build_run(configuration, initial, methods_of_run(configuration));
+}
+
+RunSetup build_run(const Configuration& configuration, InitialState initial,
+                   const NumericalMethods& compared) {
   RunSetup run;
   run.units = configuration.units();
   run.t_end = configuration.number("t-end") / run.units.time();
@@ -75,6 +79,7 @@ RunSetup build_run(const Configuration& configuration, InitialState initial) {
   const IntegratorSettings settings = integrator_settings(configuration, integrator, run.units);
   said_of(configuration, "linear-solver",
           [&] { return linear_solvers().find(configuration.text("linear-solver")).name; });
+  refuse_options_of_others(configuration, compared);
 
   run.ranks = world();
   run.team = std::make_shared<ThreadTeam>(thread_count(configuration, *run.ranks));

@@ -84,7 +84,8 @@ class CompareTest : public ::testing::Test {
 
 TEST_F(CompareTest, MeasuresRecommendsAndIsExtendedWithoutRepeatingItself) {
   const Outcome first = traceraft("compare " + out() + references() + runs +
-                                  "--integrators euler,ida --tolerances 1e-2,1e-3 --repeat 2");
+                                  "--integrators euler,ida --keep first --tolerances 1e-2,1e-3 "
+                                  "--repeat 2");
   ASSERT_EQ(first.code, 0) << first.output;
   EXPECT_NE(first.output.find("For an error of"), std::string::npos) << first.output;
   ASSERT_EQ(csv().size(), 5u);
@@ -316,6 +317,8 @@ TEST_F(CompareTest, RefusesWhatDoesNotFit) {
   EXPECT_NE(complaint(out() + runs + "--tolerances 7").find("out of range"), std::string::npos);
   EXPECT_NE(complaint(out() + runs + "--cels 7").find("did you mean '--cells'"), std::string::npos);
   EXPECT_NE(complaint(out() + runs + "--ida-rtol 1e-3").find("--tolerances"), std::string::npos);
+  EXPECT_NE(complaint(out() + runs + "--integrators ida --keep first").find("integrator euler"),
+            std::string::npos);
   EXPECT_NE(complaint(out() + runs + "--target-error nan").find("finite"), std::string::npos);
   EXPECT_NE(complaint(out() + runs + "--tolerances 1e-3 --reference-tolerance 1e-3")
                 .find("at most 1e-04"),

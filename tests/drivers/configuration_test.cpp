@@ -174,6 +174,12 @@ TEST(RunSetup, ChecksEverythingBeforeAnythingRuns) {
   EXPECT_EQ(of({{"initial", "restart:/nonexistent"}}).find("--initial: restart: "), 0u);
   EXPECT_EQ(of({{"noise-cells", "99"}}).find("--noise-cells: "), 0u);
   EXPECT_EQ(of({{"initial-caps", "0 0 1 20"}}).find("--initial-caps: it needs --initial caps"), 0u);
+  EXPECT_EQ(of({{"initial", "caps"}, {"initial-caps", "0 0 1 20"}, {"raft-fraction", "0.2"}})
+                .find("--raft-fraction: it needs --initial noise or band-limited"),
+            0u);
+  EXPECT_EQ(of({{"initial", "band-limited"}, {"noise-cells", "8"}})
+                .find("--noise-cells: it needs --initial noise"),
+            0u);
   EXPECT_NE(of({{"surface", "formla"}}).find("did you mean 'formula'"), std::string::npos);
   EXPECT_EQ(of({{"integrator", "eular"}}).find("--integrator: unknown integrator"), 0u);
   EXPECT_EQ(of({{"linear-solver", "blok"}}).find("--linear-solver: unknown linear solver"), 0u);
@@ -181,6 +187,25 @@ TEST(RunSetup, ChecksEverythingBeforeAnythingRuns) {
   EXPECT_EQ(of({{"potential", "x"}}).find("--potential: "), 0u);
   EXPECT_EQ(of({{"output-times", "1,1e9"}}).find("--output-times: "), 0u);
   EXPECT_EQ(of({{"min-step", "2"}, {"max-step", "1"}}).find("--min-step: "), 0u);
+}
+
+TEST(RunSetup, RefusesOptionsOfMethodsThatAreNotChosen) {
+  GivenValues given = flags({{"cells", "8"}, {"ida-maxord", "2"}});
+  const auto of = [&](const auto&... compared) {
+    return complaint(
+        [&] { build_run(Configuration({}, given), InitialState::from_checkpoint, compared...); });
+  };
+  EXPECT_EQ(of(), "");
+  given["keep"] = {"first", "--keep"};
+  EXPECT_EQ(of().find("--keep: it needs the integrator euler"), 0u);
+  given["integrator"] = {"euler", "--integrator"};
+  EXPECT_EQ(of().find("--ida-maxord: it needs the integrator ida"), 0u);
+  EXPECT_EQ(of(NumericalMethods{{"euler", "ida"}, {"block"}}), "");
+  given["ida-maxord"].where = "run.toml:4: ida-maxord";
+  EXPECT_EQ(of(), "");
+  given["teko-inverse"] = {"ifpack2", "--teko-inverse"};
+  EXPECT_EQ(of().find("--teko-inverse: it needs the linear solver teko"), 0u);
+  EXPECT_EQ(of(NumericalMethods{{"euler"}, {"teko", "block"}}), "");
 }
 
 }  // namespace
