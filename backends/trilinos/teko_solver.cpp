@@ -2,26 +2,20 @@
 
 #include <Teko_PreconditionerInverseFactory.hpp>
 #include <Teko_RequestHandler.hpp>
-#include <Teuchos_XMLParameterListHelpers.hpp>
 #include <Thyra_DefaultProductVector.hpp>
 #include <Thyra_DefaultProductVectorSpace.hpp>
 #include <Thyra_VectorStdOps.hpp>
-#include <algorithm>
-#include <cerrno>
-#include <cstring>
+#include <array>
 #include <exception>
-#include <fstream>
-#include <functional>
 #include <mutex>
-#include <sstream>
 #include <stdexcept>
 
 #include "backends/trilinos/belos_method.hpp"
 #include "backends/trilinos/inverse_library.hpp"
 #include "backends/trilinos/runtime.hpp"
+#include "backends/trilinos/teko_parameters.hpp"
 #include "backends/trilinos/two_solve_factory.hpp"
 #include "kernel/core/error.hpp"
-#include "kernel/core/named_list.hpp"
 #include "kernel/core/stopwatch.hpp"
 #include "kernel/linear/setup_policy.hpp"
 #include "kernel/linear/two_solve_preconditioner.hpp"
@@ -29,7 +23,6 @@
 namespace traceraft {
 namespace {
 
-using Teuchos::ParameterList;
 using Teuchos::RCP;
 using Teuchos::rcp;
 
@@ -42,11 +35,8 @@ constexpr double kSlack = 1.01;
 struct Setting {
   PatternPtr pattern;
   TpetraSpace space;
-  std::string preconditioner, method;
-  ParameterList belos;
+  TekoParameters chosen;
   RCP<Teko::InverseLibrary> library;
-  bool always_new = false;
-  std::size_t file_checksum = 0;  // of the parameter file
 };
 
 // With the exact tangent B + sM must be positive definite, which no approximate inverse notices.
@@ -72,9 +62,9 @@ class TekoSolver final : public LinearSolver {
     handler_ = rcp(new Teko::RequestHandler);
     handler_->addRequestCallback(rcp(new TwoSolveCallback(request_)));
     setting_->library->setRequestHandler(handler_);
-    factory_ = setting_->library->getInverseFactory(setting_->preconditioner);
+    factory_ = setting_->library->getInverseFactory(setting_->chosen.preconditioner);
     for (Lane& lane : lanes_) {
-      lane.method = make_belos_method(setting_->method, setting_->belos);
+      lane.method = make_belos_method(setting_->chosen.method, setting_->chosen.belos);
       lane.b = Thyra::createMember(A_->range());
       lane.x = Thyra::createMember(A_->domain());
     }
@@ -106,7 +96,7 @@ class TekoSolver final : public LinearSolver {
   }
 
   bool wants_setup(const BlockJacobian& J, int) const override {
-    return setting_->always_new || shared_.worn(J.shift);
+    return setting_->chosen.always_new || shared_.worn(J.shift);
   }
 
   SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance,
@@ -141,7 +131,7 @@ class TekoSolver final : public LinearSolver {
 
   LinearStatistics statistics() const override { return shared_.statistics(); }
   void save(CheckpointOut out) const override {
-    write_binary(out, setting_->file_checksum);
+    write_binary(out, setting_->chosen.checksum);
     shared_.save(out);
     // What a method has recycled is not saved: the run goes on like one that is resumed here.
     for (const Lane& lane : lanes_) lane.method->forget();
@@ -149,7 +139,7 @@ class TekoSolver final : public LinearSolver {
   void load(CheckpointIn in) override {
     std::size_t checksum = 0;
     read_binary(in, checksum);
-    if (checksum != setting_->file_checksum)
+    if (checksum != setting_->chosen.checksum)
       throw IoError("the file of --teko-parameters is not the one that the run was started with");
     shared_.load(in);
   }
@@ -217,93 +207,19 @@ class TekoSolver final : public LinearSolver {
   double row_scale_ = 1;
 };
 
-std::string option(const TekoOptions& options, const char* name, const char* otherwise) {
-  const auto found = options.find(name);
-  return found == options.end() ? otherwise : found->second;
-}
-
-// What is wrong with one of the options.
-[[noreturn]] void refuse(const char* option, const std::string& why) {
-  throw OptionError(option, why);
-}
-
-// A name of ours or of a sublist of the user's.
-std::string one_of(const TekoOptions& options, const char* name, const char* otherwise,
-                   std::vector<std::string> names, const ParameterList& own = ParameterList()) {
-  const std::string word = option(options, name, otherwise);
-  for (auto entry = own.begin(); entry != own.end(); ++entry) names.push_back(own.name(entry));
-  if (std::find(names.begin(), names.end(), word) == names.end())
-    refuse(name, unknown_name_message(name, word, names));
-  return word;
-}
-
-// The lists of a parameter file, and a checksum of it.
-struct ParameterFile {
-  ParameterList lists;
-  std::size_t checksum = 0;
-};
-
-ParameterFile read_parameters(const std::string& path) {
-  ParameterFile file;
-  if (path.empty()) return file;
-  std::ifstream stream(path);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream || text.str().empty())
-    refuse("parameters", path + ": cannot be read: " + std::strerror(errno ? errno : ENODATA));
-  file.checksum = std::hash<std::string>()(text.str());
-  try {
-    Teuchos::updateParametersFromXmlString(text.str(), Teuchos::ptrFromRef(file.lists));
-  } catch (const std::exception& error) {
-    const std::string why = error.what();
-    refuse("parameters", path + ": no Teuchos parameter list: " + why.substr(0, why.find('\n')));
-  }
-  for (auto entry = file.lists.begin(); entry != file.lists.end(); ++entry) {
-    const std::string& name = file.lists.name(entry);
-    if (name != "Inverse Library" && name != "Belos")
-      refuse("parameters",
-             path + ": " + unknown_name_message("sublist", name, {"Inverse Library", "Belos"}));
-    if (!file.lists.isSublist(name)) refuse("parameters", path + ": " + name + " is no sublist");
-  }
-  const ParameterList& inverses = file.lists.sublist("Inverse Library");
-  for (auto entry = inverses.begin(); entry != inverses.end(); ++entry)
-    if (!inverses.isSublist(inverses.name(entry)) ||
-        !inverses.sublist(inverses.name(entry)).isParameter("Type"))
-      refuse("parameters", path + ": the inverse " + inverses.name(entry) +
-                               " needs a sublist with the parameter Type");
-  return file;
-}
-
-// What Trilinos does not know of a user's lists is the file's fault.
-template <class Make>
-auto said_of_file(const std::string& path, const Make& make) {
-  try {
-    return make();
-  } catch (const std::exception& error) {
-    if (path.empty()) throw;
-    const std::string complaint = teko_complaints(), why = error.what();
-    refuse("parameters", path + ": " + (complaint.empty() ? why : complaint));
-  }
-}
-
 }  // namespace
 
 LinearSolverFactory make_teko_solver(const PatternPtr& pattern, const TekoOptions& options) {
   start_trilinos();
-  const std::string path = option(options, "parameters", "");
-  ParameterFile file = read_parameters(path);
-  const ParameterList& own = file.lists.sublist("Inverse Library");
-  const ParameterList belos = file.lists.sublist("Belos");
-  const std::string inverse = one_of(options, "inverse", "muelu", kTekoInverses, own);
-  if (inverse == "direct" && pattern->halo.ranks->size() > 1)
-    refuse("inverse", "direct works on one rank only; choose muelu or ifpack2");
-  const std::string method = one_of(options, "method", "fgmres", kBelosMethods);
-  (void)said_of_file(path, [&] { return make_belos_method(method, belos); });
-  const auto setting = std::make_shared<Setting>(
-      Setting{pattern, TpetraSpace(*pattern),
-              one_of(options, "preconditioner", "two-solve", kTekoPreconditioners, own), method,
-              belos, said_of_file(path, [&] { return make_inverse_library(inverse, own); }),
-              one_of(options, "renewal", "worn", {"worn", "always"}) == "always", file.checksum});
+  const auto setting =
+      std::make_shared<Setting>(Setting{pattern,
+                                        TpetraSpace(*pattern),
+                                        read_teko_parameters(options, pattern->halo.ranks->size()),
+                                        {}});
+  const TekoParameters& chosen = setting->chosen;
+  (void)said_of_lists(chosen, [&] { return make_belos_method(chosen.method, chosen.belos); });
+  setting->library =
+      said_of_lists(chosen, [&] { return make_inverse_library(chosen.inverse, chosen.inverses); });
   return [setting](int lanes) { return std::make_unique<TekoSolver>(setting, lanes); };
 }
 
