@@ -10,8 +10,8 @@
 #include "backends/posix/process.hpp"
 #include "drivers/campaign/campaign_report.hpp"
 #include "drivers/campaign/hidden_case.hpp"
+#include "drivers/campaign/vesicle_flags.hpp"
 #include "drivers/commands.hpp"
-#include "drivers/config/option_flags.hpp"
 #include "drivers/ensemble/ensemble_runs.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/output/status_line.hpp"
@@ -219,10 +219,7 @@ Action define_campaign(CLI::App& app) {
   app.add_option("--most-effects", request->plan.effects, "how many a search may name")
       ->check(CLI::Range(1, 5))
       ->capture_default_str();
-  add_options(app, request->plan.model, [](const OptionSpec& spec) {
-    return (spec.group == "Physics" || spec.name == "cells" || spec.name == "raft-fraction") &&
-           spec.name != "scaled" && spec.name != "effect";
-  });
+  add_vesicle_options(app, request->plan.model);
   const auto all = std::as_const(app).get_options();
   request->planned.assign(all.begin() + static_cast<std::ptrdiff_t>(changing), all.end());
   std::string groups = "Groups:\n";

@@ -6,9 +6,9 @@
 #include "backends/posix/process.hpp"
 #include "backends/sodium/seal.hpp"
 #include "drivers/campaign/hidden_case.hpp"
+#include "drivers/campaign/vesicle_flags.hpp"
 #include "drivers/commands.hpp"
 #include "drivers/config/config_file.hpp"
-#include "drivers/config/option_flags.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/input/field_dataset.hpp"
 #include "drivers/run/run_folder.hpp"
@@ -137,13 +137,10 @@ Action define_hide(CLI::App& app) {
       ->check(CLI::Range(8, 512));
   app.add_option("--seed", command->seed, "what chance does; default: nobody knows")
       ->check(CLI::NonNegativeNumber);
-  add_options(app, command->flags, [](const OptionSpec& spec) {
-    return (spec.group == "Physics" || spec.name == "cells" || spec.name == "raft-fraction") &&
-           spec.name != "scaled" && spec.name != "effect";
-  });
+  add_vesicle_options(app, command->flags);
   app.footer(
-      "Without --model: epsilon 0.6, cells 24, raft-fraction 0.5, a vesicle that explain takes "
-      "some minutes for.\nExample: traceraft hide --out riddle");
+      "The defaults are those of a vesicle that explain takes some minutes for; with --model they "
+      "are its own.\nExample: traceraft hide --out riddle");
   return [command] { return hide_effects(*command); };
 }
 

@@ -8,9 +8,12 @@
 namespace traceraft {
 
 // Adds every option that `wanted` accepts as a flag whose text goes to `values`, which has to live
-// as long as the command.
+// as long as the command. The help shows what a run has without flags: the values of the default
+// case, unless `others` says otherwise.
 template <class Wanted>
-void add_options(CLI::App& command, GivenValues& values, const Wanted& wanted) {
+void add_options(CLI::App& command, GivenValues& values, const Wanted& wanted,
+                 const GivenValues& others = {}) {
+  const Configuration defaults(others, {});
   for (const OptionSpec& spec : run_options()) {
     if (!wanted(spec)) continue;
     const std::string flag = "--" + spec.name;
@@ -25,8 +28,9 @@ void add_options(CLI::App& command, GivenValues& values, const Wanted& wanted) {
             : command.add_option_function<std::string>(flag, store, spec.help);
     option->group(spec.group);
     if (spec.list) option->join(';');
-    if (!spec.default_text.empty() && spec.kind != OptionKind::flag)
-      option->default_str(spec.default_text)->run_callback_for_default(false);
+    if (const std::string text = defaults.text(spec.name);
+        !text.empty() && spec.kind != OptionKind::flag)
+      option->default_str(text)->run_callback_for_default(false);
   }
 }
 

@@ -41,7 +41,8 @@ const std::vector<OptionSpec>& run_options() {
   using K = OptionKind;
   using D = Dimension;
   static const std::vector<OptionSpec> table = with_own_options({
-      {"case", K::text, "guv-2to1", "Case", "named set of defaults (see: traceraft list)"},
+      {"case", K::text, "guv-2to1", "Case",
+       "named set of defaults, which may differ from those below (see: traceraft list)"},
       {"scaled", K::flag, "false", "Case",
        "all inputs and outputs in units of R and R^2/D instead of um and s"},
 
