@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "drivers/config/config_file.hpp"
+#include "drivers/input/csv_table.hpp"
 #include "drivers/input/field_dataset.hpp"
 #include "drivers/input/measured_units.hpp"
 #include "drivers/input/model_of_data.hpp"
@@ -40,6 +41,13 @@ std::vector<std::string> notes_on(const GivenValues& model, const FieldDataset& 
   return notes;
 }
 
+// "snapshot_002.csv:9: column 'c'": of a row that is known by its number.
+std::string place_of(const std::string& folder, std::size_t snapshot, std::size_t row,
+                     const std::string& column) {
+  const CsvTable table = CsvTable::read(std::filesystem::path(folder) / snapshot_file(snapshot));
+  return column.empty() ? table.where(row) : table.where(row, column);
+}
+
 // Only spheres are simple enough to say where before the mesh is there.
 void refuse_points_off_the_sphere(const FieldDataset& data, const std::string& folder) {
   std::size_t number = 0;
@@ -50,7 +58,7 @@ void refuse_points_off_the_sphere(const FieldDataset& data, const std::string& f
         const Point x = data.radius_um * snapshot.points[i];
         const double distance = snapshot.points[i].norm() - 1;
         if (std::fabs(distance) <= kOffSurface) continue;
-        throw InputError(folder + "/" + snapshot_file(number) + ", point " + std::to_string(i + 1) +
+        throw InputError(place_of(folder, number, i, "") +
                          formatted(": (%.4g, %.4g, %.4g) um is %.2g R off the sphere, further than "
                                    "%g R: are radius and length_unit right, and the centre at 0?",
                                    x[0], x[1], x[2], std::fabs(distance), kOffSurface));
@@ -69,10 +77,9 @@ void refuse_far_values(const std::vector<FieldSeries>& vesicles, const DoubleWel
       for (Eigen::Index i = 0; i < snapshot.values.size(); ++i) {
         const double c = snapshot.values[i];
         if (c >= well.a - kFarFromWells * width && c <= well.b + kFarFromWells * width) continue;
-        throw InputError(folder + "/" + snapshot_file(number) + ", value " + std::to_string(i + 1) +
-                         ", column c: " + formatted("%.6g", c) +
-                         " is far from the phases of the model, " + format_number(well.a) +
-                         " and " + format_number(well.b) +
+        throw InputError(place_of(folder, number, static_cast<std::size_t>(i), "c") + ": " +
+                         formatted("%.6g", c) + " is far from the phases of the model, " +
+                         format_number(well.a) + " and " + format_number(well.b) +
                          "; leave out what is missing, and put c on their scale");
       }
     }

@@ -276,12 +276,12 @@ TEST_F(ExplainTest, RefusesWhatItCannotUse) {
   text = checked();
   EXPECT_NE(text.find("NOTE: snapshot_002.csv: a point is 0.3 R off"), std::string::npos) << text;
   text = refusal(command(13));
-  EXPECT_NE(text.find("snapshot_002.csv, point 8: ("), std::string::npos) << text;
+  EXPECT_NE(text.find("snapshot_002.csv:9: ("), std::string::npos) << text;
   vesicles[0].snapshots[1].points[7] /= 1.3;
   vesicles[0].snapshots[1].values[7] = -9999;
   write(vesicles);
   text = refusal(command(13));
-  EXPECT_NE(text.find("snapshot_002.csv, value 8, column c: -9999"), std::string::npos) << text;
+  EXPECT_NE(text.find("snapshot_002.csv:9: column 'c': -9999"), std::string::npos) << text;
   text = checked();
   EXPECT_NE(text.find("NOTE: snapshot_002.csv: c is from -9999"), std::string::npos) << text;
   fs::remove(folder.path / "data" / "snapshot_003.csv");
