@@ -125,6 +125,16 @@ TEST_F(RivalsTest, AreNotIfTheyLeaveOneToo) {
   EXPECT_EQ(left.found.hypothesis.name(), "gravity");
 }
 
+// What the mesh could be is a doubt only where it would explain what is missing.
+TEST_F(RivalsTest, AGapIsLookedForBesideWhatTheMeshCouldBe) {
+  Search search(measured(), request_);
+  search.go_on_from(state_of({}, {}));
+  EXPECT_TRUE(leaves_gap(search, fit_of("gravity")));
+  EXPECT_FALSE(leaves_gap(search, fit_of("uptake")));
+  EXPECT_TRUE(search.model.hypothesis.parts.empty());
+  EXPECT_TRUE(search.result.found.hypothesis.parts.empty());
+}
+
 // Of those that leave no gap, too; what is as good stays, and what is better comes first.
 TEST_F(RivalsTest, AreToldApartByAllThatWasMeasured) {
   request_.false_alarms = -1;  // no gap is one

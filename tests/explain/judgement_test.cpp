@@ -35,8 +35,12 @@ Round first_round() {
   return round;
 }
 
-Judgement judged(const Round& round) {
-  return judge(round, kMeasuredValues, kLevel, kUsual);
+// `gap_beside`: is there a gap beside the best candidate, too?
+Judgement judged(const Round& round, bool gap_beside = false) {
+  return judge(round, kMeasuredValues, kLevel, kUsual, [&](const Refit& fit) {
+    EXPECT_EQ(fit.hypothesis.name(), round.refits.front().hypothesis.name());
+    return gap_beside;
+  });
 }
 
 TEST(Judgement, TakesWhatExplainsTheDataBest) {
@@ -112,6 +116,20 @@ TEST(Judgement, TakesNothingThatNoiseAndTheMeshCouldBe) {
   for (Refit& fit : round.refits) fit = refit_with({"cooling", "gravity"}, fit.deviance);
   EXPECT_FALSE(judged(round).taken);
   EXPECT_EQ(judged(round).finding, Finding::named);
+}
+
+// The mesh is to blame only if what it could be would explain what is missing.
+TEST(Judgement, SeesAGapBesideWhatTheMeshCouldBe) {
+  Round round = first_round();
+  round.screening.mesh_error = 0.152;
+  EXPECT_EQ(judged(round, true).finding, Finding::unnamed);
+  EXPECT_EQ(judged(round, true).without_gap, Finding::below_resolution);
+  EXPECT_FALSE(judged(round, true).taken);
+  round.screening.gap_p = 0.3;  // and none without it
+  EXPECT_EQ(judged(round, true).finding, Finding::below_resolution);
+  round.screening.gap_p = 0.001;
+  round.screening.mesh_error = 0.150;
+  EXPECT_TRUE(judged(round, true).taken);
 }
 
 // What noise hides no finer mesh would show.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "kernel/core/error.hpp"
@@ -92,6 +93,28 @@ std::vector<Member> members_of(const FilterProblems& all, const Search& search) 
   return members;
 }
 
+// What a hypothesis leaves, with the noise and the errors that it has.
+struct Beside {
+  Refit fit;
+  bool gap;
+};
+
+// Nothing if it cannot be forecast with.
+std::optional<Beside> beside_it(Search& search, const SearchState& before, const Refit& fit) {
+  search.go_on_from(before);
+  search.set_found(fit);
+  try {
+    const FilterResult pass = search.next_pass();
+    const Screening left = screen(pass, search.model.screened, search.model.hypothesis);
+    return Beside{search.result.found, has_gap(left, search.request.false_alarms)};
+  } catch (const IoError&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    search.tell("  fails: " + std::string(error.what()));
+    return {};
+  }
+}
+
 }  // namespace
 
 Refit refit_of(const FilterProblems& data, const CahnHilliardModel& base, const Refit& member,
@@ -118,22 +141,21 @@ bool is_as_probable(const Search& search, const Refit& one, const Refit& other) 
          criterion(first, values) <= criterion(second, values);
 }
 
+bool leaves_gap(Search& search, const Refit& fit) {
+  const SearchState before = search.state(true);
+  search.tell("what is lacking beside " + fit.hypothesis.name());
+  const std::optional<Beside> beside = beside_it(search, before, fit);
+  search.go_on_from(before);
+  return beside && beside->gap;
+}
+
 bool leave_to_rivals(Search& search) {
   const SearchState before = search.state(true);
   std::vector<Refit> without_gap;
   for (const Refit& rival : before.so_far.rivals) {
     search.tell("instead " + rival.hypothesis.name());
-    search.go_on_from(before);
-    search.set_found(rival);
-    try {
-      const FilterResult pass = search.next_pass();
-      const Screening left = screen(pass, search.model.screened, search.model.hypothesis);
-      if (!has_gap(left, search.request.false_alarms)) without_gap.push_back(search.result.found);
-    } catch (const IoError&) {
-      throw;
-    } catch (const std::runtime_error& error) {
-      search.tell("  fails: " + std::string(error.what()));
-    }
+    const std::optional<Beside> beside = beside_it(search, before, rival);
+    if (beside && !beside->gap) without_gap.push_back(beside->fit);
   }
   search.go_on_from(before);
   if (without_gap.empty()) return false;

@@ -8,6 +8,10 @@
 
 namespace traceraft {
 
+// Is there a gap of any shape beside that one, too, with the noise and the errors that it has? Not
+// if it cannot be forecast with. The search stays what it was.
+bool leaves_gap(Search& search, const Refit& fit);
+
 // Of hypotheses that explain what counts as well as each other some may foretell what is held out
 // worse: the class is left to those that leave no gap, in their order. False if there is none.
 bool leave_to_rivals(Search& search);

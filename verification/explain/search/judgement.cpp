@@ -88,7 +88,8 @@ Finding without_name(const Screening& screening, double false_alarms) {
   return has_gap(screening, false_alarms) ? Finding::unnamed : Finding::not_identifiable;
 }
 
-Judgement judge(const Round& round, double values, double false_alarms, double usual_change) {
+Judgement judge(const Round& round, double values, double false_alarms, double usual_change,
+                const std::function<bool(const Refit&)>& leaves_gap) {
   const bool first = round.known.hypothesis.added() == 0;
   const bool quiet = round.screening.p > false_alarms;
   // What follows if nothing is added.
@@ -107,7 +108,9 @@ Judgement judge(const Round& round, double values, double false_alarms, double u
     // No finer mesh would tell what noise hides.
     if (certainty(best, last) < kTelling)
       return {false, without_name(round.screening, false_alarms), Finding::not_identifiable, {}};
-    return {false, Finding::below_resolution, Finding::below_resolution, {}};
+    const bool more = has_gap(round.screening, false_alarms) && leaves_gap(best);
+    return {
+        false, more ? Finding::unnamed : Finding::below_resolution, Finding::below_resolution, {}};
   }
   Judgement taken{true, Finding::named, Finding::named, {best.hypothesis.name()}};
   const double limit = telling(values, round.screening.mesh_error);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -95,7 +96,10 @@ struct Judgement {
   std::vector<std::string> equivalent;  // hypotheses that explain the data as well, best first
 };
 // `false_alarms`: the share of data sets with nothing missing that may seem to lack something;
-// `usual_change`: of c that an effect makes, in units of the noise.
-Judgement judge(const Round& round, double values, double false_alarms, double usual_change);
+// `usual_change`: of c that an effect makes, in units of the noise; `leaves_gap`: is there a gap
+// beside that model, too? It is asked where there is one beside what is known, and the best
+// candidate could be the mesh: that is to be doubted only if it would explain what is missing.
+Judgement judge(const Round& round, double values, double false_alarms, double usual_change,
+                const std::function<bool(const Refit&)>& leaves_gap);
 
 }  // namespace traceraft

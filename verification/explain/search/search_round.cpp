@@ -108,7 +108,8 @@ bool leave(Search& search, const Judgement& judgement) {
 bool take(Search& search, const Round& round) {
   const double usual_change = kUsualChange * contrast_of(search.data) / noise_of(search.data);
   const Judgement judgement =
-      judge(round, search.values(), search.request.false_alarms, usual_change);
+      judge(round, search.values(), search.request.false_alarms, usual_change,
+            [&](const Refit& fit) { return leaves_gap(search, fit); });
   if (!judgement.taken) return leave(search, judgement);
   Explanation& result = search.result;
   result.finding = judgement.finding;
