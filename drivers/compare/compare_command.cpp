@@ -149,7 +149,8 @@ int compare(const CompareRequest& request) {
     throw InputError("--out: " + folder.path().string() +
                      " holds runs of another build of traceraft; choose another folder");
   const RunSetup run =
-      build_run(configuration, InitialState::build, {plan.integrators, plan.linear_solvers});
+      build_run(configuration, InitialState::build,
+                {{"integrator", plan.integrators}, {"linear-solver", plan.linear_solvers}});
   plan.initial_state = checksum(run.initial);
   if (before && before->initial_state != plan.initial_state)
     throw InputError("--out: " + folder.path().string() +

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "drivers/config/option_needs.hpp"
 #include "drivers/config/toml_table.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
@@ -112,7 +113,8 @@ std::string flags_text(const Configuration& configuration) {
                                     : deciding.count(spec.name) > 0 ? of_case
                                                                     : usual;
     const std::string value = toml_value(spec, configuration);
-    if (!spec.numerical || value == toml_value(spec, defaults)) continue;
+    if (!spec.numerical || value == toml_value(spec, defaults) || is_idle(configuration, spec.name))
+      continue;
     text += text.empty() ? "--" : " --";
     if (spec.kind == OptionKind::flag)
       text += (configuration.flag(spec.name) ? "" : "no-") + spec.name;

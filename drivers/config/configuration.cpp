@@ -95,6 +95,10 @@ Configuration::Configuration(const GivenValues& file, const GivenValues& flags) 
     values_["noise-cells"].text = text("cells");
 }
 
+bool Configuration::from_flag(const std::string& name) const {
+  return given(name) && where(name).compare(0, 2, "--") == 0;
+}
+
 long long Configuration::noise_cells() const {
   const long long own = integer("noise-cells");
   return own > 0 ? own : std::max(1LL, integer("cells") / 4);

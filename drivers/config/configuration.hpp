@@ -37,6 +37,8 @@ class Configuration {
 
   // Was it given by the user rather than by a case or a default?
   bool given(const std::string& name) const { return given_.count(name) != 0; }
+  // And on the command line? A configuration file holds every option.
+  bool from_flag(const std::string& name) const;
 
   Units units() const;
   long long noise_cells() const;  // with 0 resolved

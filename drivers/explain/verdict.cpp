@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "drivers/explain/remarks.hpp"
+#include "drivers/explain/verdict_sentence.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/effects/effects.hpp"
 
@@ -141,7 +142,7 @@ Json verdict_json(const Explanation& found, const ExplainSetup& setup) {
   return {{"verdict", word_for(found.finding)},
           {"effect", is_named(found) ? Json(name) : Json()},
           {"class", class_of(found)},
-          {"closest", found.finding == Finding::unnamed && !name.empty() ? Json(name) : Json()},
+          {"closest", comes_closest(found).empty() ? Json() : Json(comes_closest(found))},
           {"parameters", parameters_json(found_parameters(fit_shown(found), base))},
           {"rivals", rivals_json(found, base)},
           {"told_apart", told_apart_json(found)},

@@ -44,7 +44,7 @@ std::string nothing_sentence(const Explanation& found) {
 }
 
 // Of single effects, refitted if any was.
-std::string closest(const Explanation& found) {
+std::string likeliest(const Explanation& found) {
   const Round& first = found.rounds.front();
   return first.refits.empty() ? first.screening.scores.front().effect
                               : first.refits.front().hypothesis.name();
@@ -56,13 +56,22 @@ std::string doubt_sentence(const Explanation& found) {
     return "Something seems to be missing, and what seemed to explain it does not: " +
            found.found.hypothesis.name() + ", as another mesh and integrator show.";
   if (first.p <= found.false_alarms)
-    return "Something seems to be missing, too little of it to say what: " + closest(found) +
+    return "Something seems to be missing, too little of it to say what: " + likeliest(found) +
            " would explain most of it. More points, less noise or more snapshots would tell.";
   return "No significant disagreement, but these data would hardly show an effect: they need "
          "more points, less noise, or snapshots that are further apart.";
 }
 
 }  // namespace
+
+std::string comes_closest(const Explanation& found) {
+  if (found.finding != Finding::unnamed) return "";
+  if (found.found.hypothesis.added() > 0) return found.found.hypothesis.name();
+  const Round& first = found.rounds.front();
+  if (first.refits.empty()) return "";
+  const Refit& best = first.refits.front();
+  return first.without.deviance - best.deviance > kTelling ? best.hypothesis.name() : "";
+}
 
 bool changes_pace(const Refit& fit) {
   constexpr double kLeast = 0.01;  // of D: what no mesh is better than
@@ -85,7 +94,7 @@ std::string verdict_sentence(const Explanation& found) {
       return doubt_sentence(found);
     case Finding::unnamed:
       return "There is a disagreement that none of the effects that were looked for explains" +
-             (name.empty() ? std::string(".") : "; " + name + " comes closest.");
+             (comes_closest(found).empty() ? "." : "; " + comes_closest(found) + " comes closest.");
   }
   return "";
 }

@@ -13,6 +13,10 @@ inline constexpr double kSure = 3;
 // Does the fit ask for another D than the model has?
 bool changes_pace(const Refit& fit);
 
+// If the verdict is unnamed: the effects of the model that the search ended with, or the best of
+// the single ones, if the data tell it from nothing. "" otherwise.
+std::string comes_closest(const Explanation& found);
+
 std::string verdict_sentence(const Explanation& found);
 
 }  // namespace traceraft

@@ -14,8 +14,4 @@ std::string one_of(const Configuration& configuration, const char* option, const
   return word;
 }
 
-bool from_flag(const Configuration& configuration, const std::string& option) {
-  return configuration.given(option) && configuration.where(option).compare(0, 2, "--") == 0;
-}
-
 }  // namespace traceraft

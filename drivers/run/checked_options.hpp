@@ -24,7 +24,4 @@ auto said_of(const Configuration& configuration, const char* option, const Make&
 std::string one_of(const Configuration& configuration, const char* option, const char* kind,
                    const std::vector<std::string>& words);
 
-// Given on the command line? A configuration file holds every option.
-bool from_flag(const Configuration& configuration, const std::string& option);
-
 }  // namespace traceraft

@@ -1,13 +1,11 @@
 #include "drivers/run/initial_state.hpp"
 
-#include <algorithm>
 #include <sstream>
 
 #include "backends/muparser/formula.hpp"
 #include "drivers/config/config_file.hpp"
 #include "drivers/run/checked_options.hpp"
 #include "drivers/run/checkpoint_store.hpp"
-#include "kernel/core/text.hpp"
 #include "kernel/problem/initial_data.hpp"
 
 namespace traceraft {
@@ -33,16 +31,6 @@ std::vector<CapRaft> parse_caps(const Configuration& configuration) {
   return caps;
 }
 
-// Data for another kind of initial state than the case's are a mistake, not something to ignore.
-void require_kind(const Configuration& configuration, const char* option,
-                  const std::vector<std::string>& kinds) {
-  const std::string own = split_named_arguments(configuration.text("initial")).name;
-  if (configuration.given(option) &&
-      (from_flag(configuration, option) || !configuration.given("initial")) &&
-      std::find(kinds.begin(), kinds.end(), own) == kinds.end())
-    throw InputError(configuration.where(option) + ": it needs --initial " + joined(kinds, " or "));
-}
-
 InitialRequest initial_request(const Configuration& configuration, const CahnHilliardModel& model) {
   InitialRequest request;
   const long long cells = configuration.integer("cells");
@@ -66,10 +54,6 @@ InitialRequest initial_request(const Configuration& configuration, const CahnHil
 Vec initial_field(const Configuration& configuration, const CahnHilliardModel& model,
                   const SurfaceSpace& space) {
   const std::string kind = configuration.text("initial");
-  require_kind(configuration, "initial-formula", {"formula"});
-  require_kind(configuration, "initial-caps", {"caps"});
-  require_kind(configuration, "raft-fraction", {"noise", "band-limited"});
-  require_kind(configuration, "noise-cells", {"noise"});
   const InitialRequest request = initial_request(configuration, model);
   return said_of(configuration, "initial", [&] {
     const auto [name, folder] = split_named_arguments(kind);

@@ -1,37 +1,8 @@
 #include "drivers/run/numerical_methods.hpp"
 
-#include <algorithm>
-
 #include "drivers/run/checked_options.hpp"
 
 namespace traceraft {
-namespace {
-
-void refuse_without(const std::vector<std::string>& chosen, const Configuration& configuration,
-                    const std::string& option, const char* kind, const std::string& name) {
-  if (from_flag(configuration, option) &&
-      std::find(chosen.begin(), chosen.end(), name) == chosen.end())
-    throw InputError(configuration.where(option) + ": it needs the " + kind + " " + name);
-}
-
-}  // namespace
-
-NumericalMethods methods_of_run(const Configuration& configuration) {
-  return {{configuration.text("integrator")}, {configuration.text("linear-solver")}};
-}
-
-void refuse_options_of_others(const Configuration& configuration, const NumericalMethods& methods) {
-  refuse_without(methods.integrators, configuration, "keep", "integrator", "euler");
-  for (const IntegratorEntry& integrator : integrators())
-    for (const ParameterSpec& parameter : integrator.parameters)
-      refuse_without(methods.integrators, configuration, integrator_option(integrator, parameter),
-                     "integrator", integrator.name);
-  for (const LinearSolverEntry& solver : linear_solvers())
-    for (const WordOption& option : solver.options)
-      refuse_without(methods.linear_solvers, configuration, linear_solver_option(solver, option),
-                     "linear solver", solver.name);
-}
-
 IntegratorSettings integrator_settings(const Configuration& configuration,
                                        const IntegratorEntry& integrator, const Units& units) {
   IntegratorSettings settings;

@@ -9,6 +9,7 @@
 #include "backends/ranks.hpp"
 #include "drivers/run/checked_options.hpp"
 #include "drivers/run/initial_state.hpp"
+#include "drivers/run/numerical_methods.hpp"
 #include "drivers/run/physical_model.hpp"
 #include "kernel/core/text.hpp"
 
@@ -19,7 +20,7 @@ int thread_count(const Configuration& configuration, const Communicator& ranks) 
   const int asked = static_cast<int>(configuration.integer("threads"));
   if (ranks.size() > 1) {
     // A run of one rank may have had two, and goes on with more ranks.
-    if (asked > 1 && from_flag(configuration, "threads"))
+    if (asked > 1 && configuration.from_flag("threads"))
       throw InputError(configuration.where("threads") +
                        ": several ranks have one thread each; start more ranks instead");
     return 1;
@@ -60,12 +61,8 @@ std::vector<double> output_labels(const Configuration& configuration) {
 
 }  // namespace
 
-RunSetup build_run(const Configuration& configuration, InitialState initial) {
-  return build_run(configuration, initial, methods_of_run(configuration));
-}
-
 RunSetup build_run(const Configuration& configuration, InitialState initial,
-                   const NumericalMethods& compared) {
+                   const Compared& compared) {
   RunSetup run;
   run.units = configuration.units();
   run.t_end = configuration.number("t-end") / run.units.time();
@@ -79,7 +76,7 @@ RunSetup build_run(const Configuration& configuration, InitialState initial,
   const IntegratorSettings settings = integrator_settings(configuration, integrator, run.units);
   said_of(configuration, "linear-solver",
           [&] { return linear_solvers().find(configuration.text("linear-solver")).name; });
-  refuse_options_of_others(configuration, compared);
+  refuse_idle_options(configuration, compared);
 
   run.ranks = world();
   run.team = std::make_shared<ThreadTeam>(thread_count(configuration, *run.ranks));

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "drivers/config/configuration.hpp"
-#include "drivers/run/numerical_methods.hpp"
+#include "drivers/config/option_needs.hpp"
 #include "kernel/observables/observables.hpp"
 #include "kernel/observables/perimeter_calibration.hpp"
 #include "kernel/problem/cahn_hilliard.hpp"
@@ -35,10 +35,9 @@ enum class InitialState { build, from_checkpoint /* leaves RunSetup::initial emp
 
 // On all ranks of the program. Throws InputError for anything a run could not start with; creates
 // no files.
-RunSetup build_run(const Configuration& configuration, InitialState initial);
-// Of several that differ in their methods, whose own options may all be there.
+// `compared`: of several runs, by which they differ.
 RunSetup build_run(const Configuration& configuration, InitialState initial,
-                   const NumericalMethods& compared);
+                   const Compared& compared = {});
 
 // Computes the consistent state and hands it to the integrator.
 Status start_run(RunSetup& setup);

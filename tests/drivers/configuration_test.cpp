@@ -58,6 +58,13 @@ TEST(Configuration, KnowsTheFlagsThatRepeatIt) {
   EXPECT_EQ(flags_text(given),
             "--case guv-3to1 --cells 48 --initial formula --initial-formula 'sin(3*x)^2' "
             "--integrator euler");
+  // What does nothing is not repeated: it would be refused.
+  const Configuration idle({}, flags({{"case", "spinodal"},
+                                      {"cells", "8"},
+                                      {"initial", "caps"},
+                                      {"initial-caps", "0 0 1 40"},
+                                      {"keep", "first"}}));
+  EXPECT_EQ(flags_text(idle), "--case spinodal --cells 8 --initial caps --initial-caps '0 0 1 40'");
   // Defaults of a scaled model depend on what one unit is.
   const Configuration scaled(
       {}, flags({{"case", "guv-3to1"}, {"scaled", "true"}, {"radius", "10"}, {"epsilon", "0.01"}}));
@@ -197,15 +204,15 @@ TEST(RunSetup, RefusesOptionsOfMethodsThatAreNotChosen) {
   };
   EXPECT_EQ(of(), "");
   given["keep"] = {"first", "--keep"};
-  EXPECT_EQ(of().find("--keep: it needs the integrator euler"), 0u);
+  EXPECT_EQ(of().find("--keep: it needs --integrator euler"), 0u);
   given["integrator"] = {"euler", "--integrator"};
-  EXPECT_EQ(of().find("--ida-maxord: it needs the integrator ida"), 0u);
-  EXPECT_EQ(of(NumericalMethods{{"euler", "ida"}, {"block"}}), "");
+  EXPECT_EQ(of().find("--ida-maxord: it needs --integrator ida"), 0u);
+  EXPECT_EQ(of(Compared{{"integrator", {"euler", "ida"}}}), "");
   given["ida-maxord"].where = "run.toml:4: ida-maxord";
   EXPECT_EQ(of(), "");
   given["teko-inverse"] = {"ifpack2", "--teko-inverse"};
-  EXPECT_EQ(of().find("--teko-inverse: it needs the linear solver teko"), 0u);
-  EXPECT_EQ(of(NumericalMethods{{"euler"}, {"teko", "block"}}), "");
+  EXPECT_EQ(of().find("--teko-inverse: it needs --linear-solver teko"), 0u);
+  EXPECT_EQ(of(Compared{{"linear-solver", {"teko", "block"}}}), "");
 }
 
 }  // namespace

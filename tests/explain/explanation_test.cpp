@@ -128,11 +128,43 @@ TEST_F(RivalsTest, AreNotIfTheyLeaveOneToo) {
 // What the mesh could be is a doubt only where it would explain what is missing.
 TEST_F(RivalsTest, AGapIsLookedForBesideWhatTheMeshCouldBe) {
   Search search(measured(), request_);
-  search.go_on_from(state_of({}, {}));
-  EXPECT_TRUE(leaves_gap(search, fit_of("gravity")));
-  EXPECT_FALSE(leaves_gap(search, fit_of("uptake")));
+  SearchState state = state_of({}, {fit_of("line-tension")});
+  state.so_far.rounds = {
+      Round{{request_.base, 1, {}, {}}, {}, {}, {fit_of("gravity"), fit_of("uptake")}, {}, {}}};
+  state.noise[0][1] *= 3;
+  search.go_on_from(state);
+  const std::vector<Refit>& refits = search.result.rounds[0].refits;
+  EXPECT_TRUE(leaves_gap(search, refits[0]));
+  EXPECT_FALSE(leaves_gap(search, refits[1]));
+  // What the search had is there again.
   EXPECT_TRUE(search.model.hypothesis.parts.empty());
   EXPECT_TRUE(search.result.found.hypothesis.parts.empty());
+  EXPECT_EQ(search.result.rivals.size(), 1u);
+  EXPECT_EQ(search.result.rounds.size(), 1u);
+  EXPECT_EQ(search.data[0].noise, state.noise[0]);
+}
+
+// An interrupted round knows a refit that the mesh could be: less than it would be told from.
+TEST_F(RivalsTest, MoreIsMissingThanWhatTheMeshCouldBe) {
+  request_.false_alarms = 1;  // whatever looks best is refitted
+  request_.without.insert(request_.without.end(), {"exchange", "line-tension", "uptake"});
+  const Explanation weak = explain_fields(measured(), request_, state_of({}, {}));
+  const Round& round = weak.rounds[0];
+  ASSERT_EQ(round.refits.size(), 1u);
+  Refit strong = round.refits[0];
+  constexpr double kGain = 40;
+  strong.deviance = round.without.deviance - kGain;
+  strong.hypothesis.parts[0].coefficients = {std::sqrt(kGain * strong.covariance(0, 0))};
+  const double values = count_values(problems_of(measured(), request_));
+  ASSERT_LT(criterion(strong, values), criterion(round.without, values));
+  ASSERT_GT(certainty(strong, 0), kTelling);
+  ASSERT_FALSE(all_resolved(strong, values, round.screening.mesh_error));
+  SearchState state = state_of({}, {});
+  state.ahead[0] = strong;
+  const Explanation found = explain_fields(measured(), request_, state);
+  EXPECT_EQ(found.finding, Finding::unnamed);
+  EXPECT_EQ(found.without_gap, Finding::below_resolution);
+  EXPECT_TRUE(found.found.hypothesis.parts.empty());
 }
 
 // Of those that leave no gap, too; what is as good stays, and what is better comes first.

@@ -141,7 +141,7 @@ bool is_as_probable(const Search& search, const Refit& one, const Refit& other) 
          criterion(first, values) <= criterion(second, values);
 }
 
-bool leaves_gap(Search& search, const Refit& fit) {
+bool leaves_gap(Search& search, Refit fit) {
   const SearchState before = search.state(true);
   search.tell("what is lacking beside " + fit.hypothesis.name());
   const std::optional<Beside> beside = beside_it(search, before, fit);

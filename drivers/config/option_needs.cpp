@@ -1,0 +1,65 @@
+#include "drivers/config/option_needs.hpp"
+
+#include <algorithm>
+
+#include "backends/list.hpp"
+#include "drivers/config/options.hpp"
+#include "kernel/core/error.hpp"
+#include "kernel/core/parameters.hpp"
+#include "kernel/core/text.hpp"
+
+namespace traceraft {
+namespace {
+
+std::vector<OptionNeed> all_needs() {
+  std::vector<OptionNeed> needs = {
+      {"initial-formula", "initial", {"formula"}},
+      {"initial-caps", "initial", {"caps"}},
+      {"raft-fraction", "initial", {"noise", "band-limited"}},
+      {"noise-cells", "initial", {"noise"}},
+      {"keep", "integrator", {"euler"}},
+  };
+  for (const IntegratorEntry& integrator : integrators())
+    for (const ParameterSpec& parameter : integrator.parameters)
+      needs.push_back({integrator_option(integrator, parameter), "integrator", {integrator.name}});
+  for (const LinearSolverEntry& solver : linear_solvers())
+    for (const WordOption& option : solver.options)
+      needs.push_back({linear_solver_option(solver, option), "linear-solver", {solver.name}});
+  return needs;
+}
+
+bool met(const OptionNeed& need, const std::vector<std::string>& chosen) {
+  return std::find_first_of(chosen.begin(), chosen.end(), need.choices.begin(),
+                            need.choices.end()) != chosen.end();
+}
+
+std::vector<std::string> chosen(const Configuration& configuration, const std::string& chooser) {
+  return {split_named_arguments(configuration.text(chooser)).name};
+}
+
+}  // namespace
+
+const std::vector<OptionNeed>& option_needs() {
+  static const std::vector<OptionNeed> needs = all_needs();
+  return needs;
+}
+
+bool is_idle(const Configuration& configuration, const std::string& option) {
+  return std::any_of(option_needs().begin(), option_needs().end(), [&](const OptionNeed& need) {
+    return need.option == option && !met(need, chosen(configuration, need.chooser));
+  });
+}
+
+void refuse_idle_options(const Configuration& configuration, const Compared& compared) {
+  for (const OptionNeed& need : option_needs()) {
+    if (!configuration.given(need.option)) continue;
+    const auto several = compared.find(need.chooser);
+    const bool one = several == compared.end();
+    if (met(need, one ? chosen(configuration, need.chooser) : several->second)) continue;
+    if (configuration.from_flag(need.option) || (one && !configuration.given(need.chooser)))
+      throw InputError(configuration.where(need.option) + ": it needs --" + need.chooser +
+                       (one ? " " : "s ") + joined(need.choices, " or "));
+  }
+}
+
+}  // namespace traceraft

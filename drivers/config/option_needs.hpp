@@ -1,0 +1,28 @@
+// Options that count only where another one is chosen.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "drivers/config/configuration.hpp"
+
+namespace traceraft {
+
+struct OptionNeed {
+  std::string option, chooser;       // "noise-cells", "initial"
+  std::vector<std::string> choices;  // any of them makes it count
+};
+const std::vector<OptionNeed>& option_needs();
+
+// Where runs are compared, all that some option chooses in them.
+using Compared = std::map<std::string, std::vector<std::string>>;
+
+// Does the option nothing?
+bool is_idle(const Configuration& configuration, const std::string& option);
+
+// What does nothing is a mistake, not something to ignore; files may hold it beside another choice.
+// Throws InputError.
+void refuse_idle_options(const Configuration& configuration, const Compared& compared = {});
+
+}  // namespace traceraft
