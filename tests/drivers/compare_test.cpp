@@ -317,8 +317,9 @@ TEST_F(CompareTest, RefusesWhatDoesNotFit) {
   EXPECT_NE(complaint(out() + runs + "--tolerances 7").find("out of range"), std::string::npos);
   EXPECT_NE(complaint(out() + runs + "--cels 7").find("did you mean '--cells'"), std::string::npos);
   EXPECT_NE(complaint(out() + runs + "--ida-rtol 1e-3").find("--tolerances"), std::string::npos);
-  EXPECT_NE(complaint(out() + runs + "--integrators ida --keep first").find("needs --integrators euler"),
-            std::string::npos);
+  EXPECT_NE(
+      complaint(out() + runs + "--integrators ida --keep first").find("needs --integrators euler"),
+      std::string::npos);
   EXPECT_NE(complaint(out() + runs + "--target-error nan").find("finite"), std::string::npos);
   EXPECT_NE(complaint(out() + runs + "--tolerances 1e-3 --reference-tolerance 1e-3")
                 .find("at most 1e-04"),
