@@ -11,6 +11,11 @@
 namespace traceraft {
 namespace {
 
+struct OptionNeed {
+  std::string option, chooser;       // "noise-cells", "initial"
+  std::vector<std::string> choices;  // any of them makes it count
+};
+
 std::vector<OptionNeed> all_needs() {
   std::vector<OptionNeed> needs = {
       {"initial-formula", "initial", {"formula"}},
@@ -28,6 +33,11 @@ std::vector<OptionNeed> all_needs() {
   return needs;
 }
 
+const std::vector<OptionNeed>& option_needs() {
+  static const std::vector<OptionNeed> needs = all_needs();
+  return needs;
+}
+
 bool met(const OptionNeed& need, const std::vector<std::string>& chosen) {
   return std::find_first_of(chosen.begin(), chosen.end(), need.choices.begin(),
                             need.choices.end()) != chosen.end();
@@ -38,11 +48,6 @@ std::vector<std::string> chosen(const Configuration& configuration, const std::s
 }
 
 }  // namespace
-
-const std::vector<OptionNeed>& option_needs() {
-  static const std::vector<OptionNeed> needs = all_needs();
-  return needs;
-}
 
 bool is_idle(const Configuration& configuration, const std::string& option) {
   return std::any_of(option_needs().begin(), option_needs().end(), [&](const OptionNeed& need) {

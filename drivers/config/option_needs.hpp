@@ -9,12 +9,6 @@
 
 namespace traceraft {
 
-struct OptionNeed {
-  std::string option, chooser;       // "noise-cells", "initial"
-  std::vector<std::string> choices;  // any of them makes it count
-};
-const std::vector<OptionNeed>& option_needs();
-
 // Where runs are compared, all that some option chooses in them.
 using Compared = std::map<std::string, std::vector<std::string>>;
 

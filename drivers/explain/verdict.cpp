@@ -136,13 +136,13 @@ Json parameters_json(const std::vector<FoundParameter>& found) {
 }
 
 Json verdict_json(const Explanation& found, const ExplainSetup& setup) {
-  const std::string name = found.found.hypothesis.name();
+  const std::string name = found.found.hypothesis.name(), closest = comes_closest(found);
   const Configuration model = setup.configuration();
   const Units base = model.units();
   return {{"verdict", word_for(found.finding)},
           {"effect", is_named(found) ? Json(name) : Json()},
           {"class", class_of(found)},
-          {"closest", comes_closest(found).empty() ? Json() : Json(comes_closest(found))},
+          {"closest", closest.empty() ? Json() : Json(closest)},
           {"parameters", parameters_json(found_parameters(fit_shown(found), base))},
           {"rivals", rivals_json(found, base)},
           {"told_apart", told_apart_json(found)},

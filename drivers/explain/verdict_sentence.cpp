@@ -79,7 +79,7 @@ bool changes_pace(const Refit& fit) {
 }
 
 std::string verdict_sentence(const Explanation& found) {
-  const std::string name = found.found.hypothesis.name();
+  const std::string name = found.found.hypothesis.name(), closest = comes_closest(found);
   switch (found.finding) {
     case Finding::none:
       return nothing_sentence(found);
@@ -94,7 +94,7 @@ std::string verdict_sentence(const Explanation& found) {
       return doubt_sentence(found);
     case Finding::unnamed:
       return "There is a disagreement that none of the effects that were looked for explains" +
-             (comes_closest(found).empty() ? "." : "; " + comes_closest(found) + " comes closest.");
+             (closest.empty() ? "." : "; " + closest + " comes closest.");
   }
   return "";
 }

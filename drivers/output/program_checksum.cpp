@@ -11,7 +11,9 @@ namespace traceraft {
 
 std::string program_checksum() {
   constexpr std::uint64_t kLargest = std::uint64_t{1} << 32;
-  return formatted("%08x", crc32_of(read_file(own_program(), kLargest)));
+  static const std::string checksum =
+      formatted("%08x", crc32_of(read_file(own_program(), kLargest)));
+  return checksum;
 }
 
 }  // namespace traceraft

@@ -3,6 +3,7 @@
 #include "drivers/run/checked_options.hpp"
 
 namespace traceraft {
+
 IntegratorSettings integrator_settings(const Configuration& configuration,
                                        const IntegratorEntry& integrator, const Units& units) {
   IntegratorSettings settings;

@@ -99,20 +99,23 @@ struct Beside {
   bool gap;
 };
 
-// Nothing if it cannot be forecast with.
-std::optional<Beside> beside_it(Search& search, const SearchState& before, const Refit& fit) {
-  search.go_on_from(before);
+// Nothing if it cannot be forecast with. The search is then what it was, but for the maps of its
+// forecasts.
+std::optional<Beside> beside_it(Search& search, const Refit& fit) {
+  const SearchState before = search.state(true);
+  std::optional<Beside> beside;
   search.set_found(fit);
   try {
     const FilterResult pass = search.next_pass();
     const Screening left = screen(pass, search.model.screened, search.model.hypothesis);
-    return Beside{search.result.found, has_gap(left, search.request.false_alarms)};
+    beside = {search.result.found, has_gap(left, search.request.false_alarms)};
   } catch (const IoError&) {
     throw;
   } catch (const std::runtime_error& error) {
     search.tell("  fails: " + std::string(error.what()));
-    return {};
   }
+  search.go_on_from(before);
+  return beside;
 }
 
 }  // namespace
@@ -141,23 +144,19 @@ bool is_as_probable(const Search& search, const Refit& one, const Refit& other) 
          criterion(first, values) <= criterion(second, values);
 }
 
-bool leaves_gap(Search& search, Refit fit) {
-  const SearchState before = search.state(true);
+bool leaves_gap(Search& search, const Refit& fit) {
   search.tell("what is lacking beside " + fit.hypothesis.name());
-  const std::optional<Beside> beside = beside_it(search, before, fit);
-  search.go_on_from(before);
+  const std::optional<Beside> beside = beside_it(search, fit);
   return beside && beside->gap;
 }
 
 bool leave_to_rivals(Search& search) {
-  const SearchState before = search.state(true);
   std::vector<Refit> without_gap;
-  for (const Refit& rival : before.so_far.rivals) {
+  for (const Refit& rival : std::vector<Refit>(search.result.rivals)) {
     search.tell("instead " + rival.hypothesis.name());
-    const std::optional<Beside> beside = beside_it(search, before, rival);
+    const std::optional<Beside> beside = beside_it(search, rival);
     if (beside && !beside->gap) without_gap.push_back(beside->fit);
   }
-  search.go_on_from(before);
   if (without_gap.empty()) return false;
   Explanation& result = search.result;
   result.turns.push_back(

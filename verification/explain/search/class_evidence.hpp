@@ -10,7 +10,7 @@ namespace traceraft {
 
 // Is there a gap of any shape beside that one, too, with the noise and the errors that it has? Not
 // if it cannot be forecast with. The search is then what it was, but for the maps of its forecasts.
-bool leaves_gap(Search& search, Refit fit);
+bool leaves_gap(Search& search, const Refit& fit);
 
 // Of hypotheses that explain what counts as well as each other some may foretell what is held out
 // worse: the class is left to those that leave no gap, in their order. False if there is none.
