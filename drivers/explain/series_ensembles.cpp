@@ -81,8 +81,8 @@ Json saved_strengths(const fs::path& file, const std::string& identity) {
 std::vector<EffectTerm> sizes(const fs::path& folder, const Configuration& model,
                               const SeriesEnsemblesRequest& request) {
   const fs::path file = folder / "strengths.json";
-  const std::string identity = config_text(ensemble_model(model, "", request.looks.end)) +
-                               format_number(request.looks.begin);
+  const std::string identity = numerical_identity(ensemble_model(model, "", request.looks.end)) +
+                               "first look = " + format_number(request.looks.begin) + "\n";
   const BlindRequest asked = sizing_request(model, request);
   Json strengths = saved_strengths(file, identity);
   std::optional<EffectSizing> sizing;

@@ -92,6 +92,47 @@ TEST(SeriesFit, FindsUnitAndStrength) {
   EXPECT_NEAR(fit.deviance, metric.product(r, r) + metric.log_determinant() + known, 1e-8);
 }
 
+// One raft and two, where as many are expected: what was counted says nothing of how well.
+TEST(SeriesMetric, CountsAreKnownByTheNumberExpected) {
+  const RunCurves base(ensemble({}), each_once(10));
+  MeasuredVesicles data;
+  for (const double count : {1.0, 2.0, 2.0}) {
+    Measurement m;
+    m.vesicle = std::to_string(data.measurements.size());
+    m.time = 30;
+    m.radius = 5;
+    m.values[static_cast<std::size_t>(Quantity::rafts)] = count;
+    data.measurements.push_back(m);
+  }
+  data.measurements.back().sigma[static_cast<std::size_t>(Quantity::rafts)] = 0.5;
+  const Vec known = known_variance(blocks_of(data), base, 0);
+  const double ln_t = std::log(30.0), expected = std::exp(base.mean(Quantity::rafts, ln_t));
+  const double runs = base.variance(Quantity::rafts, ln_t);
+  EXPECT_NEAR(known[0] - runs, 1 / 12.0 / (expected * expected), 1e-12);
+  EXPECT_NEAR(known[1], known[0], 1e-12);
+  EXPECT_NEAR(known[2] - runs, 0.25 / (expected * expected), 1e-12);  // a stated error, if larger
+}
+
+// One more run scatters about the mean of n with a variance of 1 + 1/n.
+TEST(RunCurves, KnowHowOneMoreRunScatters) {
+  History low = vesicle({}, 1), high = low;
+  for (double& p : high.of(Quantity::perimeter)) p *= std::exp(0.2);
+  const RunCurves curves({low, high}, each_once(2));
+  EXPECT_NEAR(curves.variance(Quantity::perimeter, 1), 1.5 * 0.2 * 0.2 / 2, 1e-12);
+}
+
+// A run that has lost its rafts for a moment does not outweigh the others.
+TEST(RunCurves, RunsWithoutRaftsCountAsHalfARaft) {
+  const History some = vesicle({}, 1);
+  History none = some;
+  for (const Quantity quantity : kQuantities)
+    for (double& value : none.of(quantity)) value = 0;
+  const RunCurves curves({some, none}, each_once(2));
+  EXPECT_NEAR(curves.mean(Quantity::rafts, 0),
+              0.5 * (std::log(some.at(Quantity::rafts, 1)) + std::log(0.5)), 1e-9);
+  EXPECT_GT(curves.mean(Quantity::fraction, 0), 0.5 * (std::log(0.1) + std::log(1e-3)));
+}
+
 TEST(SeriesMetric, IsThatOfTheDenseCovariance) {
   const RunCurves base(ensemble({}), each_once(10));
   std::vector<SeriesBlock> blocks = blocks_of(measured({}, 3, 0.1, 1));
@@ -104,9 +145,14 @@ TEST(SeriesMetric, IsThatOfTheDenseCovariance) {
     const Eigen::Index first = b == 0 ? 0 : n, count = blocks[b].values.size();
     const auto q = static_cast<std::size_t>(blocks[b].quantity);
     S.block(first, first, count, count).setConstant(scatter.vesicle[q] * scatter.vesicle[q]);
-    for (Eigen::Index i = 0; i < count; ++i)
-      S(first + i, first + i) += blocks[b].variance[i] + scatter.look[q] * scatter.look[q] +
-                                 base.variance(blocks[b].quantity, blocks[b].ln_t[i] - 0.1);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const double t = blocks[b].ln_t[i] - 0.1;
+      const double expected =
+          blocks[b].quantity == Quantity::rafts ? std::exp(base.mean(Quantity::rafts, t)) : 1;
+      S(first + i, first + i) += blocks[b].variance[i] / (expected * expected) +
+                                 scatter.look[q] * scatter.look[q] +
+                                 base.variance(blocks[b].quantity, t);
+    }
   }
   const Vec u = Vec::LinSpaced(all, -1, 2), v = u.array().square();
   EXPECT_NEAR(metric.product(u, v), u.dot(S.ldlt().solve(v)), 1e-9);

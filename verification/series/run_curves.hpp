@@ -18,6 +18,7 @@ class RunCurves {
   double mean(Quantity quantity, double ln_t) const {
     return grid_.at(mean_[static_cast<std::size_t>(quantity)], ln_t);
   }
+  // Of one more run beside the mean of these.
   double variance(Quantity quantity, double ln_t) const {
     return grid_.at(variance_[static_cast<std::size_t>(quantity)], ln_t);
   }
@@ -28,8 +29,5 @@ class RunCurves {
   LogTimes grid_;
   std::array<std::vector<double>, 3> mean_, variance_;
 };
-
-// What is compared of a quantity: its logarithm. There may be no rafts for a moment.
-double logarithm_of(Quantity quantity, double value);
 
 }  // namespace traceraft

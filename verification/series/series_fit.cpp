@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "backends/nlopt/minimise.hpp"
+#include "verification/measure/fit.hpp"
 
 namespace traceraft {
 namespace {
@@ -116,8 +117,7 @@ class Fitter {
 }  // namespace
 
 double UnitRange::deviation() const {
-  constexpr double k95 = 2;
-  return std::log(factor) / k95;
+  return std::log(factor) / kNormal95;
 }
 double UnitRange::lowest() const {
   return std::max(std::log(start) - reach * std::log(factor), std::log(least));

@@ -34,14 +34,15 @@ MeasuredVesicles draw_base(const MeasuredVesicles& data, const std::vector<Histo
         const double measured = data.measurements[i].of(quantity).value_or(0);
         if (!(measured > 0)) continue;  // it says nothing
         const double t = data.measurements[i].time / std::exp(fit.ln_unit);
+        double& value = drawn_data.measurements[i].values[q].emplace(0);
+        if (run.at(Quantity::rafts, t) < 1) continue;
         const double stated = data.measurements[i].sigma_of(quantity) / measured;
         const double own =
             stated * normal_random(replicate, kStated, look) +
             fit.scatter.vesicle[q] * normal_random(replicate, kVesicle, 3 * vesicle + q) +
             fit.scatter.look[q] * normal_random(replicate, kLook, look);
-        const double value = std::exp(logarithm_of(quantity, run.at(quantity, t)) + own);
-        drawn_data.measurements[i].values[q] =
-            quantity == Quantity::rafts ? std::max(1.0, std::round(value)) : value;
+        value = std::exp(logarithm_of(quantity, run.at(quantity, t)) + own);
+        if (quantity == Quantity::rafts) value = std::max(1.0, std::round(value));
       }
     ++vesicle;
   }

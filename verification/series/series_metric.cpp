@@ -1,5 +1,6 @@
 #include "verification/series/series_metric.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "verification/measure/log_of_product.hpp"
@@ -20,11 +21,11 @@ std::vector<SeriesBlock> blocks_of(const MeasuredVesicles& data) {
         const Measurement& m = data.measurements[i];
         const double value = m.of(quantity).value_or(0);
         if (!(value > 0) || !(m.time > 0)) continue;
-        const double sigma2 = std::pow(m.sigma_of(quantity), 2) +
-                              (quantity == Quantity::rafts ? kRoundingVariance : 0.0);
         t.push_back(std::log(m.time));
         y.push_back(logarithm_of(quantity, value));
-        variance.push_back(sigma2 / (value * value));
+        const double sigma2 = std::pow(m.sigma_of(quantity), 2);
+        variance.push_back(quantity == Quantity::rafts ? std::max(sigma2, kRoundingVariance)
+                                                       : sigma2 / (value * value));
       }
       const auto vec = [](const std::vector<double>& v) {
         return Vec(Eigen::Map<const Vec>(v.data(), static_cast<Eigen::Index>(v.size())));
@@ -36,7 +37,10 @@ std::vector<SeriesBlock> blocks_of(const MeasuredVesicles& data) {
 
 Vec known_variance(const std::vector<SeriesBlock>& blocks, const RunCurves& base, double ln_unit) {
   return per_look(blocks, [&](const SeriesBlock& block, Eigen::Index i) {
-    return block.variance[i] + base.variance(block.quantity, block.ln_t[i] - ln_unit);
+    const double t = block.ln_t[i] - ln_unit;
+    const double expected =
+        block.quantity == Quantity::rafts ? std::exp(base.mean(block.quantity, t)) : 1.0;
+    return block.variance[i] / (expected * expected) + base.variance(block.quantity, t);
   });
 }
 

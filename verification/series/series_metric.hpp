@@ -16,7 +16,8 @@ struct SeriesBlock {
   Quantity quantity;
   Vec ln_t;      // of seconds
   Vec values;    // logarithms
-  Vec variance;  // that is known: of rounding, and of what the data state
+  Vec variance;  // of what the data state: of counts that of rounding at least, and not of
+                 // logarithms
 };
 // Values that are not positive say nothing.
 std::vector<SeriesBlock> blocks_of(const MeasuredVesicles& data);
@@ -38,8 +39,10 @@ Vec per_look(const std::vector<SeriesBlock>& blocks, const Value& value) {
   return result;
 }
 
-// With an entry per look: the variance without the scatter that is fitted, what is known and that
-// of the mean of the runs.
+// With an entry per look: the variance without the scatter that is fitted, that of what the data
+// state and that between runs, of which each vesicle is one. (What looks at one vesicle share of
+// the latter is left to the fitted scatter.) Counts have it by the number that is expected: by the
+// one that was counted small ones would weigh less.
 Vec known_variance(const std::vector<SeriesBlock>& blocks, const RunCurves& base, double ln_unit);
 
 // The inner product in which looks are independent and of variance 1, of vectors with an entry per

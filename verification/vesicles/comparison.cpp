@@ -16,8 +16,6 @@ bool relative(Quantity quantity) {
   return quantity != Quantity::fraction;
 }
 
-// Of a count or a perimeter of a run, whose logarithm is taken: there may be no raft.
-constexpr double kLeast = 0.5;
 // Rounding to whole rafts alone has this deviation.
 const double kRoundingDeviation = 1 / std::sqrt(12.0);
 
@@ -42,7 +40,7 @@ Deviation deviation_of(const Measurement& m, Quantity quantity,
   double sigma =
       std::max(m.sigma_of(quantity), quantity == Quantity::rafts ? kRoundingDeviation : 0.0);
   if (relative(quantity))
-    for (double& value : values) value = std::log(std::max(value, kLeast));
+    for (double& value : values) value = logarithm_of(quantity, value);
   const Moments runs_here = moments(values);
   // By the count that was seen small ones would weigh less than large ones.
   if (quantity == Quantity::rafts) sigma /= std::exp(runs_here.mean);

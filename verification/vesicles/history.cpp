@@ -28,6 +28,11 @@ double History::at(Quantity quantity, double t) const {
   return y[i] + (y[i + 1] - y[i]) * (t - time[i]) / (time[i + 1] - time[i]);
 }
 
+double logarithm_of(Quantity quantity, double value) {
+  constexpr std::array<double, 3> kLeast = {0.5, 0.5, 0.0016};
+  return std::log(std::max(value, kLeast[static_cast<std::size_t>(quantity)]));
+}
+
 std::vector<double> common_times(const std::vector<History>& histories, int per_decade) {
   double begin = 0, end = HUGE_VAL;
   for (const History& history : histories) {

@@ -32,6 +32,13 @@ struct History {
   double at(Quantity quantity, double t) const;
 };
 
+// What is compared of quantities that scatter in proportion. There may be no raft for a moment;
+// half a one, or one of a perimeter of R/2, is the least that is told from that.
+double logarithm_of(Quantity quantity, double value);
+
+// Times per decade at which curves are known.
+inline constexpr int kCurveTimes = 20;
+
 // Evenly spaced in ln t, `per_decade` of them, within what all histories cover (their first
 // positive times, their last ones). Empty if that is nothing.
 std::vector<double> common_times(const std::vector<History>& histories, int per_decade);

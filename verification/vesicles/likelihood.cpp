@@ -11,17 +11,11 @@
 namespace traceraft {
 namespace {
 
-constexpr double kLeastCount = 0.5;             // of rafts: there may be none for a moment
 constexpr double kRoundingVariance = 1 / 12.0;  // of a whole number
 constexpr double kUsualScatter = 0.1, kLargestScatter = 1;
 
 double square(double x) {
   return x * x;
-}
-
-// There may be no raft.
-double logarithm(const History& run, Quantity quantity, double t) {
-  return std::log(std::max(run.at(quantity, t), kLeastCount));
 }
 
 struct MeanAndVariance {
@@ -30,7 +24,7 @@ struct MeanAndVariance {
 
 MeanAndVariance of_logarithms(const std::vector<History>& runs, Quantity quantity, double t) {
   std::vector<double> logarithms;
-  for (const History& run : runs) logarithms.push_back(logarithm(run, quantity, t));
+  for (const History& run : runs) logarithms.push_back(logarithm_of(quantity, run.at(quantity, t)));
   const Moments m = moments(logarithms);
   return {m.mean, m.deviation * m.deviation};
 }
@@ -166,8 +160,8 @@ SampledRuns::SampledRuns(const std::vector<History>& runs, std::vector<double> a
     for (Eigen::Index i = 0; i < rows; ++i) {
       const History& run = runs[static_cast<std::size_t>(j)];
       const double t = times[static_cast<std::size_t>(i)];
-      perimeter(i, j) = logarithm(run, Quantity::perimeter, t);
-      rafts(i, j) = logarithm(run, Quantity::rafts, t);
+      perimeter(i, j) = logarithm_of(Quantity::perimeter, run.at(Quantity::perimeter, t));
+      rafts(i, j) = logarithm_of(Quantity::rafts, run.at(Quantity::rafts, t));
       fraction(i, j) = run.at(Quantity::fraction, t);
     }
 }

@@ -23,9 +23,6 @@ struct ScatterLaws {
 // From the runs at all choices of parameters together: a few runs alone know it badly.
 ScatterLaws scatter_laws(const std::vector<std::vector<History>>& ensembles);
 
-// Times per decade at which curves are known.
-inline constexpr int kCurveTimes = 20;
-
 // Runs at times evenly spaced in ln t, in any unit: the logarithms of perimeter and number of
 // rafts, and the raft fraction; a row for each of the times, a column for each run.
 struct SampledRuns {
