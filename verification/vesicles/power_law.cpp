@@ -20,6 +20,7 @@ double earliest_start(const Points& points) {
   return -10 * first_time(points);
 }
 
+constexpr double kLatest = 1e-3;  // t0 is that much before the first time, in units of it
 constexpr int kResampled = 400;
 constexpr double kConfidence = 0.95;
 constexpr std::size_t kLeastPoints = 4;
@@ -45,7 +46,12 @@ bool enough(const Points& points) {
   return points.size() >= kLeastPoints && times.size() >= 3;
 }
 
-// The intervals of all three parameters from the same samples.
+Interval exponential(const Interval& logarithms) {
+  return {std::exp(logarithms.low), std::exp(logarithms.high)};
+}
+
+// The intervals of all three parameters from the same samples; t0 by how long before the first look
+// it is, which is positive, as c is.
 template <class Sample>
 FittedLaw with_intervals(const Sample& points_of, int count) {
   std::vector<int> all;
@@ -53,16 +59,25 @@ FittedLaw with_intervals(const Sample& points_of, int count) {
   const Points points = points_of(all);
   FittedLaw fitted{fit_power_law_from(points),      {},   {}, {}, false,
                    static_cast<int>(points.size()), count};
+  const double first = first_time(points);
+  const auto parameters_of = [&](const PowerLaw& law) {
+    const double before = std::max(first - law.t0, kLatest * first);  // others may be seen later
+    return std::vector<double>{std::log(law.c), std::log(before), law.b};
+  };
+  const std::vector<double> centre = parameters_of(fitted.law);
   const std::vector<Interval> intervals =
       bootstrap_all(count, kResampled, kConfidence, 1, [&](const std::vector<int>& sample) {
         const Points drawn = points_of(sample);
-        const PowerLaw law = enough(drawn) ? fit_power_law_from(drawn) : fitted.law;
-        return std::vector<double>{law.c, law.t0, law.b};
+        return enough(drawn) ? parameters_of(fit_power_law_from(drawn)) : centre;
       });
-  fitted.c = intervals[0];
-  fitted.t0 = intervals[1];
+  const auto widened = [&](std::size_t k) {
+    return widened_for_few(intervals[k], centre[k], count);
+  };
+  fitted.c = exponential(widened(0));
+  const Interval before = exponential(widened(1));
+  fitted.t0 = {std::max(first - before.high, earliest_start(points)), first - before.low};
   fitted.t0_open = fitted.t0.low < 0.99 * earliest_start(points);
-  fitted.b = intervals[2];
+  fitted.b = widened(2);
   return fitted;
 }
 
@@ -74,7 +89,7 @@ double PowerLaw::at(double t) const {
 
 PowerLaw fit_power_law_from(const Points& points) {
   const double first = first_time(points), lower = earliest_start(points),
-               upper = first * (1 - 1e-3);
+               upper = first * (1 - kLatest);
   // Two valleys are possible: one where t0 explains the first points alone.
   PowerLaw best = law_from(points, 0);
   for (const double start : {-first, 0.0, 0.5 * first}) {

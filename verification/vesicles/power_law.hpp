@@ -18,7 +18,7 @@ struct PowerLaw {
 // with t, y > 0.
 PowerLaw fit_power_law_from(const Points& points);
 
-// The law with its 95 % intervals by the bootstrap over vesicles, or over runs.
+// The law with its 95 % intervals by the bootstrap over vesicles, or over runs, widened for few.
 struct FittedLaw {
   PowerLaw law;
   Interval c, t0, b;
