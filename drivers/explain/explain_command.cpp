@@ -24,6 +24,7 @@
 #include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/effects/effects.hpp"
+#include "verification/measure/fit.hpp"
 
 namespace traceraft {
 namespace {
@@ -34,10 +35,10 @@ namespace fs = std::filesystem;
 constexpr double kTimeRange = 8;
 
 UnitRange unit_range(const Configuration& model, double diffusion_error) {
-  constexpr double k95 = 2, kReach = 2;
+  constexpr double kReach = 2;
   UnitRange range{model.units().seconds_per_unit(), kTimeRange};
   if (diffusion_error > 0) {
-    range.factor = std::exp(k95 * diffusion_error);
+    range.factor = std::exp(kNormal95 * diffusion_error);
     range.reach = kReach;
   }
   return range;
@@ -128,7 +129,8 @@ bool explain_series_data(const ExplainCommand& command, const SeriesSetup& setup
   if (command.job.data.empty())
     write_series_verdict(out, command.job.model, given, ensembles, found, search);
   write_series_explanation(out, data, model, ensembles, found, search, command.quiet);
-  if (!command.quiet && !is_named(found.finding) && fs::exists(out / "model.toml"))
+  if (!command.quiet && command.job.data.empty() && !is_named(found.finding) &&
+      fs::exists(out / "model.toml"))
     print_earlier_model(out);
   return true;
 }

@@ -3,19 +3,19 @@
 #include <cmath>
 
 #include "kernel/core/text.hpp"
+#include "verification/measure/fit.hpp"
 
 namespace traceraft {
 namespace {
 
 // Two-sided 95 % of a normal distribution.
-constexpr double kInterval = 1.96;
 
 // D is known by its logarithm: far from certain, it is so within a factor.
 std::string interval_of(const FoundParameter& p) {
   constexpr double kLinear = 0.3, kHopeless = 1000;
   if (!p.sigma) return "assumed";
-  const double relative = kInterval * *p.sigma / std::fabs(p.value);
-  if (!p.effect.empty() || relative < kLinear) return formatted("%.2g", kInterval * *p.sigma);
+  const double relative = kNormal95 * *p.sigma / std::fabs(p.value);
+  if (!p.effect.empty() || relative < kLinear) return formatted("%.2g", kNormal95 * *p.sigma);
   const double factor = std::exp(relative);
   return factor < kHopeless ? formatted("a factor of %.2g", factor) : "not determined";
 }

@@ -205,9 +205,9 @@ TEST(Judgement, AdmitsAGapThatNothingExplains) {
 TEST(Judgement, IsSlowToAdmitAGap) {
   Round round = first_round();
   round.refits.clear();
-  round.screening.gap_p = 0.99 * kGapLevel * kLevel;
+  round.screening.gap_p = 0.0019;
   EXPECT_EQ(judged(round).finding, Finding::unnamed);
-  round.screening.gap_p = 0.0051;
+  round.screening.gap_p = 0.0021;
   EXPECT_EQ(judged(round).finding, Finding::not_identifiable);
 }
 

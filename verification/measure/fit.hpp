@@ -10,6 +10,9 @@ namespace traceraft {
 
 using Points = std::vector<std::pair<double, double>>;
 
+// 95 % of normally distributed values are within so many standard deviations.
+inline constexpr double kNormal95 = 1.96;
+
 // A stretch of times, both ends included.
 struct Window {
   double begin, end;

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "verification/measure/fit.hpp"
+
 namespace traceraft {
 namespace {
 
-// 95 % of normally distributed values are below, or within.
-constexpr double kOneSided = 1.645, kTwoSided = 1.96;
+// 95 % of normally distributed values are below.
+constexpr double kOneSided = 1.645;
 
 // Derivatives of the first parameter by the coefficients.
 Vec slopes(const Candidate& candidate) {
@@ -37,7 +39,7 @@ Bound bound_of(const CandidateScore& score, const Candidate& candidate) {
 double bound_width(double deviation, int directions, bool two_sided, double null_mean) {
   // What noise gains on average: 1 per coefficient, half of it if one sign is excluded.
   const double expected = directions * (two_sided ? 1.0 : 0.5);
-  return (two_sided ? kTwoSided : kOneSided) * deviation *
+  return (two_sided ? kNormal95 : kOneSided) * deviation *
          std::sqrt(std::max(1.0, null_mean / expected));
 }
 

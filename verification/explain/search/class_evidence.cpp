@@ -54,20 +54,25 @@ std::size_t best_of(const std::vector<Member>& members, double values, const Sea
   return best;
 }
 
+const Refit* refit_in(const Round& round, const Refit& fit) {
+  for (const std::vector<Refit>* fits : {&round.refits, &round.moves})
+    for (const Refit& one : *fits)
+      if (one.hypothesis.name() == fit.hypothesis.name()) return &one;
+  return nullptr;
+}
+
 // What is no other hypothesis than the found one, of which it has a special case, but may be one
-// beside another best. Deviances of one round are in units of the same noise.
+// beside another best. Only deviances of one round are in units of the same noise.
 std::vector<Refit> shadows(const Search& search, const Refit& best) {
   const Refit& found = search.result.found;
   const double limit = telling(search.values(), search.mesh_error());
   std::vector<Refit> result;
   for (const Round& round : search.result.rounds) {
-    const auto own = std::find_if(round.refits.begin(), round.refits.end(), [&](const Refit& fit) {
-      return fit.hypothesis.name() == found.hypothesis.name();
-    });
-    if (own == round.refits.end()) continue;
+    const Refit *own = refit_in(round, found), *other = refit_in(round, best);
+    if (own == nullptr || other == nullptr) continue;
     for (const Refit& fit : round.refits)
       if (is_no_other(fit, *own) && !is_among(class_of(search.result), fit) &&
-          explains_as_well(fit, best, search.values(), limit))
+          explains_as_well(fit, *other, search.values(), limit))
         result.push_back(fit);
   }
   return result;

@@ -32,15 +32,15 @@ bool has_found(const Hypothesis& hypothesis, const Hypothesis& found) {
                      [&](const auto& part) { return hypothesis.has(part.candidate.effect); });
 }
 
-// The best rival, or the best of the last round that had others than the found one.
-std::optional<Gaps> placebo_of(const Search& search) {
-  const Explanation& result = search.result;
+// Of the best rival, or of the best of the last round that had others than the found one: by their
+// gaps, as deviances of different rounds are in units of different noise.
+std::optional<Gaps> placebo_of(const Explanation& result) {
   const Refit* best = nullptr;
   const auto consider = [&](const std::vector<Refit>& fits) {
     for (const Refit& fit : fits)
       if (!has_found(fit.hypothesis, result.found.hypothesis) &&
-          !fit.hypothesis.contains(result.found.hypothesis) &&
-          (best == nullptr || criterion(fit, search.values()) < criterion(*best, search.values())))
+          !fit.hypothesis.contains(result.found.hypothesis) && fit.failure.empty() &&
+          (best == nullptr || fit.gap.train < best->gap.train))
         best = &fit;
   };
   consider(result.rivals);
@@ -69,7 +69,7 @@ Explanation conclusion(Search search) {
   result.h_over_epsilon = search.h_over_epsilon();
   result.base_gap = result.base.gap;
   result.found_gap = result.found.gap;
-  result.placebo_gap = placebo_of(search);
+  result.placebo_gap = placebo_of(result);
   result.floor = result.found.expected;
   // Beside what was found; where the search had to stop nothing was looked for beside it.
   if (result.stopped.empty())

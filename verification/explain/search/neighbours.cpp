@@ -8,6 +8,8 @@ namespace {
 
 // Of the deviance that an effect gained when it was taken, what one that came near it gained.
 constexpr double kNear = 0.5;
+// Over what the criterion asks. Certainties are of the linearised model, and it is not linear.
+constexpr double kCertain = 2;
 
 // What was refitted in the round in which this effect was.
 std::vector<Hypothesis::Part> rivals(const std::string& effect, const std::vector<Round>& rounds) {
@@ -39,7 +41,7 @@ std::vector<Hypothesis> neighbours(const Refit& fit, const std::vector<Round>& r
   };
   for (std::size_t k = here.known; k < here.parts.size(); ++k) {
     const Candidate& own = here.parts[k].candidate;
-    if (here.added() > 1 && certainty(fit, k) < 2 * own.directions * std::log(values)) {
+    if (here.added() > 1 && certainty(fit, k) < kCertain * own.directions * std::log(values)) {
       result.push_back(here);
       result.back().parts.erase(result.back().parts.begin() + static_cast<std::ptrdiff_t>(k));
     }

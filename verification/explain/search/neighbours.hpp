@@ -8,9 +8,10 @@
 
 namespace traceraft {
 
-// Of a model with `fit`'s hypothesis: without each effect that is no more certain than the
-// criterion asks, and with each effect replaced by those that came near it in its round.
-// `values`: how many have been measured; `allowed`: effects that may be taken.
+// Of a model with `fit`'s hypothesis: without each effect that is not twice as certain as the
+// criterion asks (one that is may stay: a refit without it would be for nothing), and with each
+// effect replaced by those that came near it in its round. `values`: how many have been measured;
+// `allowed`: effects that may be taken.
 std::vector<Hypothesis> neighbours(const Refit& fit, const std::vector<Round>& rounds,
                                    double values, const std::vector<Candidate>& allowed);
 
