@@ -9,7 +9,7 @@
 #include "drivers/explain/resumable_search.hpp"
 #include "drivers/explain/search_file.hpp"
 #include "drivers/output/json_file.hpp"
-#include "drivers/output/program_checksum.hpp"
+#include "drivers/output/program.hpp"
 #include "drivers/output/status_line.hpp"
 #include "kernel/core/random.hpp"
 #include "kernel/core/stopwatch.hpp"
@@ -43,6 +43,7 @@ void draw(const fs::path& folder, const CampaignPlan& plan, const CaseSettings& 
   const Configuration model(plan.model, {});
   BlindRequest request;
   request.effects = settings.hidden;
+  request.gap = settings.gap;
   request.noise = settings.noise;
   request.stated = settings.stated;
   request.snapshots = settings.snapshots;

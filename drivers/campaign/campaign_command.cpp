@@ -12,6 +12,7 @@
 #include "drivers/campaign/hidden_case.hpp"
 #include "drivers/campaign/vesicle_flags.hpp"
 #include "drivers/commands.hpp"
+#include "drivers/config/config_file.hpp"
 #include "drivers/ensemble/ensemble_runs.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/output/status_line.hpp"
@@ -97,17 +98,20 @@ int one_case(const CampaignFolder& folder, const std::string& name) {
   throw InputError("--case: this campaign has no case '" + name + "'");
 }
 
-// Returns the cases that failed; nothing if there is more to do.
-std::optional<std::vector<CaseFailure>> work_off(const CampaignFolder& folder,
-                                                 const std::vector<CaseId>& cases, int jobs,
-                                                 bool quiet) {
+struct WorkEnd {
+  std::vector<CaseFailure> failures;
+  bool stopped = false;  // there is more to do
+};
+
+WorkEnd work_off(const CampaignFolder& folder, const std::vector<CaseId>& cases, int jobs,
+                 bool quiet) {
   std::vector<CaseId> left;
   for (const CaseId& id : cases)
     if (!fs::exists(folder.score_of(id))) left.push_back(id);
   const std::size_t before = cases.size() - left.size();
   std::mutex mutex;
-  std::vector<CaseFailure> failures;
-  if (left.empty()) return failures;
+  WorkEnd end_of_work;
+  if (left.empty()) return end_of_work;
   JobPool pool(left.size(), [&](std::size_t k) {
     fs::create_directories(folder.of(left[k]));
     const ProgramEnd end =
@@ -117,7 +121,7 @@ std::optional<std::vector<CaseFailure>> work_off(const CampaignFolder& folder,
     if (end.was_stopped()) return false;
     if (!end.is_its_own(folder.path())) throw IoError(left[k].name() + ": " + end.reason());
     const std::lock_guard lock(mutex);
-    failures.push_back({left[k], end.reason()});
+    end_of_work.failures.push_back({left[k], end.reason()});
     return true;
   });
   StatusLine line(quiet);
@@ -134,10 +138,9 @@ std::optional<std::vector<CaseFailure>> work_off(const CampaignFolder& folder,
                   (ended > 0 ? "  ~" + clock_text(watch.seconds() * (all - ended) / ended) + " left"
                              : ""));
   } while (pool.busy());
-  const bool all_done = pool.finish();
+  end_of_work.stopped = !pool.finish();
   line.finish();
-  if (!all_done) return {};
-  return failures;
+  return end_of_work;
 }
 
 void report(const CampaignFolder& folder, std::vector<CaseScore> scores,
@@ -153,6 +156,12 @@ void report(const CampaignFolder& folder, std::vector<CaseScore> scores,
     print_rows(table_rows(confusion));
   }
   std::printf("\nwritten: %s\n", (folder.path() / "campaign.md").c_str());
+}
+
+std::string command_to_go_on(const CampaignFolder& folder, const CampaignRequest& request) {
+  std::string command = "traceraft campaign --out " + in_shell(folder.path().string());
+  for (const std::string& path : request.elsewhere) command += " --elsewhere " + in_shell(path);
+  return command;
 }
 
 int run_campaign(const CampaignRequest& request) {
@@ -178,18 +187,17 @@ int run_campaign(const CampaignRequest& request) {
   std::vector<CaseId> cases;
   for (const CaseId& id : cases_of(plan))
     if (done.count(id.name()) == 0) cases.push_back(id);
-  const auto failures = work_off(folder, cases, jobs_of(request.jobs, 1).at_a_time, request.quiet);
+  const WorkEnd end = work_off(folder, cases, jobs_of(request.jobs, 1).at_a_time, request.quiet);
   for (const CaseId& id : cases)
     if (fs::exists(folder.score_of(id))) scores.push_back(read_score(folder, id));
-  report(folder, scores, failures.value_or(std::vector<CaseFailure>{}), request.quiet);
-  if (!failures) {
-    if (!request.quiet)
-      std::printf("go on with: traceraft campaign --out %s\n", folder.path().c_str());
+  report(folder, scores, end.failures, request.quiet);
+  for (const CaseFailure& failure : end.failures)
+    std::fprintf(stderr, "traceraft: %s: %s\n", failure.id.name().c_str(), failure.why.c_str());
+  if (end.stopped) {
+    if (!request.quiet) std::printf("go on with: %s\n", command_to_go_on(folder, request).c_str());
     return kInterrupted;
   }
-  for (const CaseFailure& failure : *failures)
-    std::fprintf(stderr, "traceraft: %s: %s\n", failure.id.name().c_str(), failure.why.c_str());
-  return failures->empty() ? kSuccess : kNumericalFailure;
+  return end.failures.empty() ? kSuccess : kNumericalFailure;
 }
 
 Action define_campaign(CLI::App& app) {

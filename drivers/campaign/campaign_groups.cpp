@@ -33,6 +33,10 @@ const NamedList<CampaignGroup>& campaign_groups() {
   static const NamedList<CampaignGroup> list(
       "group",
       {{"naming", "one effect, 10 % noise, 8 snapshots", Aim::name, {}, 1},
+       {"naming-weak", "one effect, half as strong", Aim::name,
+        with([](CaseSettings& s) { s.gap = 0.03; }), 1},
+       {"naming-strong", "one effect, twice as strong", Aim::name,
+        with([](CaseSettings& s) { s.gap = 0.12; }), 1},
        {"naming-noisy", "one effect, 20 % noise", Aim::name,
         with([](CaseSettings& s) { s.noise = 0.2; }), 1},
        {"naming-short", "one effect, as strong as with 8 snapshots, 3 of them", Aim::name,

@@ -10,6 +10,7 @@ namespace traceraft {
 
 struct CaseSettings {
   std::vector<std::string> hidden;  // effects
+  double gap = 0.06;                // change of c by each from one snapshot to the next, of eight
   double noise = 0.1;               // standard deviation, in units of that of c
   double stated = 0;                // what the data state of it, over what it is; 0: nothing
   int snapshots = 8;                // effects are as strong as between eight

@@ -11,6 +11,7 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/text.hpp"
 #include "verification/explain/fit/refit.hpp"
+#include "verification/measure/fit.hpp"
 
 namespace traceraft {
 namespace {
@@ -38,12 +39,12 @@ Cell cell(double value) {
   return std::isfinite(value) ? Cell(value) : Cell("");
 }
 
-// Within 1.96 standard deviations.
+// Of 95 % intervals, the share that holds the truth.
 Cell coverage(const Scores& scores) {
   double known = 0, within = 0;
   for (const CaseScore& score : scores) {
     known += std::isfinite(score.deviations);
-    within += std::fabs(score.deviations) <= 1.96;
+    within += std::fabs(score.deviations) <= kNormal95;
   }
   return known > 0 ? Cell(within / known) : Cell("");
 }
@@ -90,7 +91,8 @@ std::string builds_of(const Scores& scores) {
 Table summary_of(const Scores& scores, const std::vector<CaseFailure>& failures) {
   Table table{"summary",
               {"group", "cases", "right", "in class", "missed", "wrong", "failed", "wrong names",
-               "median error", "coverage", "held-out gap / floor", "closed", "s per case"},
+               "median error", "coverage", "held-out gap / floor", "placebo / named", "closed",
+               "s per case"},
               {}};
   for (const CampaignGroup& group : campaign_groups()) {
     const Scores own = by_group(scores)[group.name];
@@ -114,6 +116,8 @@ Table summary_of(const Scores& scores, const std::vector<CaseFailure>& failures)
                                            })),
          cell(median_of(own, [](const CaseScore& s) { return s.error; })), coverage(own),
          cell(median_of(own, [](const CaseScore& s) { return s.named / s.floor; })),
+         names ? cell(median_of(own, [](const CaseScore& s) { return s.placebo / s.named; }))
+               : Cell(""),
          names ? cell(median_of(own, closed)) : Cell(""),
          cell(median_of(own, [](const CaseScore& s) { return s.seconds; }))});
   }
@@ -124,12 +128,11 @@ Table confusion_of(const Scores& scores) {
   std::map<std::string, std::map<std::string, int>> counts;
   std::map<std::string, int> found;
   for (const CaseScore& score : scores) {
-    if (campaign_groups().find(score.id.group).aim != Aim::name) continue;
     const std::string verdict =
         score.effect.empty() ? score.verdict
                              : in_order(score.effect) +
                                    (score.outcome == CaseOutcome::in_class ? " (in class)" : "");
-    ++counts[in_order(score.hidden)][verdict];
+    ++counts[score.hidden.empty() ? "nothing" : in_order(score.hidden)][verdict];
     ++found[verdict];
   }
   Table table{"confusion", {"hidden \\ found"}, {}};

@@ -48,6 +48,7 @@ TEST(CampaignReport, SumsUpGroups) {
   EXPECT_NEAR(std::stod(of("median error")), 0.025, 1e-4);
   EXPECT_NEAR(std::stod(of("coverage")), 2 / 3.0, 1e-3);
   EXPECT_NEAR(std::stod(of("held-out gap / floor")), 4 / 3.0, 1e-3);
+  EXPECT_NEAR(std::stod(of("placebo / named")), 5 / 4.0, 1e-4);
   EXPECT_NEAR(std::stod(of("closed")), 9 / 16.0, 1e-4);
   EXPECT_NEAR(std::stod(of("s per case")), 25, 1e-9);
 }
@@ -77,6 +78,17 @@ TEST(CampaignReport, TellsClassesFromConfusion) {
   EXPECT_EQ(rows[3][1], "");
   EXPECT_EQ(std::stod(rows[3][2]), 1);
   EXPECT_EQ(std::stod(rows[3][3]), 1);
+}
+
+TEST(CampaignReport, ShowsWhatIsSeenWhereNothingIs) {
+  CaseScore none = score(1, "", "", CaseOutcome::right, std::nan(""));
+  none.id.group = "null";
+  none.verdict = "none";
+  const auto rows = table_rows(confusion_of({none, none}));
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0][1], "none");
+  EXPECT_EQ(rows[1][0], "nothing");
+  EXPECT_EQ(std::stod(rows[1][1]), 2);
 }
 
 TEST(CampaignReport, CountsPairsOnceInWhateverOrder) {
