@@ -4,11 +4,11 @@
 
 #include "drivers/ensemble/ensemble_point.hpp"
 #include "kernel/core/parameters.hpp"
+#include "kernel/mesh/cube_mesh.hpp"
 
 namespace traceraft {
 namespace {
 
-constexpr double kBoxWidth = 10.0 / 3;  // of the mesh, in R
 constexpr double kFewestNoiseCells = 4;
 constexpr double kRounding = 5e-4;  // of values that are written with four digits
 constexpr Interval kFractions = {0.02, 0.9};
@@ -20,8 +20,8 @@ int cells_for(const Configuration& model, double epsilon) {
   return 4 * static_cast<int>(std::ceil(needed / 4 * (1 - kRounding)));
 }
 
-double noise_length(const Configuration& model) {
-  return kBoxWidth * model.units().length() / static_cast<double>(model.noise_cells());
+double box_width(const Configuration& model) {
+  return 2 * kBoxHalfWidth * model.units().length();
 }
 
 }  // namespace
@@ -36,7 +36,7 @@ const NamedList<CalibratedOption>& calibrated_options() {
 }
 
 Interval range_of(const Configuration& model, const std::string& parameter, int most_cells) {
-  const double box = kBoxWidth * model.units().length(), cells = model.number("cells");
+  const double box = box_width(model), cells = model.number("cells");
   if (parameter == "noise-length") return {box / cells, box / kFewestNoiseCells};
   if (parameter == "fraction") return kFractions;
   return {model.number("epsilon") * cells / most_cells, 0.5 * model.units().length()};
@@ -46,7 +46,7 @@ std::vector<double> values_of(const Configuration& model,
                               const std::vector<std::string>& parameters) {
   std::vector<double> values;
   for (const std::string& name : parameters)
-    values.push_back(name == "noise-length" ? noise_length(model)
+    values.push_back(name == "noise-length" ? model.noise_length()
                                             : model.number(calibrated_options().find(name).option));
   return values;
 }
@@ -58,7 +58,7 @@ Configuration configuration_at(const Configuration& model,
   const auto set = [&](const std::string& option, const std::string& text) {
     given[option] = {text, "--" + option};
   };
-  double length = noise_length(model), epsilon = model.number("epsilon");
+  double length = model.noise_length(), epsilon = model.number("epsilon");
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     if (parameters[i] == "noise-length")
       length = values[i];
@@ -67,7 +67,7 @@ Configuration configuration_at(const Configuration& model,
     if (parameters[i] == "epsilon") epsilon = values[i];
   }
   const int cells = cells_for(model, epsilon);
-  const auto noise = static_cast<int>(std::lround(kBoxWidth * model.units().length() / length));
+  const auto noise = static_cast<int>(std::lround(box_width(model) / length));
   set("cells", std::to_string(cells));
   set("noise-cells", std::to_string(std::min(noise, cells)));
   return {{}, given};

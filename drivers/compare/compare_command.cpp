@@ -12,7 +12,7 @@
 #include "drivers/config/config_file.hpp"
 #include "drivers/config/option_flags.hpp"
 #include "drivers/exit_codes.hpp"
-#include "drivers/output/program_checksum.hpp"
+#include "drivers/output/program.hpp"
 #include "drivers/run/finished_run.hpp"
 #include "drivers/run/run_folder.hpp"
 #include "drivers/run/run_setup.hpp"

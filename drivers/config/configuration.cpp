@@ -9,6 +9,7 @@
 #include "drivers/config/utf8.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
+#include "kernel/mesh/cube_mesh.hpp"
 
 namespace traceraft {
 namespace {
@@ -102,6 +103,10 @@ bool Configuration::from_flag(const std::string& name) const {
 long long Configuration::noise_cells() const {
   const long long own = integer("noise-cells");
   return own > 0 ? own : std::max(1LL, integer("cells") / 4);
+}
+
+double Configuration::noise_length() const {
+  return CubeMesh{noise_cells()}.h() * units().length();
 }
 
 void Configuration::set(const OptionSpec& spec, const GivenValue& value) {

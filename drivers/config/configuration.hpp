@@ -42,6 +42,7 @@ class Configuration {
 
   Units units() const;
   long long noise_cells() const;  // with 0 resolved
+  double noise_length() const;    // of its mesh, um
 
  private:
   void set(const OptionSpec& spec, const GivenValue& value);

@@ -11,8 +11,8 @@
 #include "drivers/explain/verdict_sentence.hpp"
 #include "drivers/output/chart.hpp"
 #include "drivers/output/page.hpp"
+#include "drivers/output/program.hpp"
 #include "drivers/report/viewer.hpp"
-#include "drivers/version.hpp"
 #include "kernel/core/text.hpp"
 
 namespace traceraft {
@@ -54,9 +54,8 @@ class ExplainPage {
                          ? "."
                          : ", curvature sorts nothing where it is the same everywhere."));
     page_.heading("Where this comes from");
-    page_.paragraph("traceraft " + std::string(kVersion) + ". Noise " +
-                    formatted("%.3g of c, ", found_.noise) + std::to_string(found_.replicates) +
-                    " replicates of noise alone, " +
+    page_.paragraph(program_text() + ". Noise " + formatted("%.3g of c, ", found_.noise) +
+                    std::to_string(found_.replicates) + " replicates of noise alone, " +
                     formatted("h/epsilon = %.2f.", found_.h_over_epsilon) + " The model:");
     page_.code(flags_text(setup_.configuration()));
     if (const std::string run = command_for_found(folder_, found_, setup_); !run.empty()) {

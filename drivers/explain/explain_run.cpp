@@ -41,13 +41,6 @@ std::vector<std::string> notes_on(const GivenValues& model, const FieldDataset& 
   return notes;
 }
 
-// "snapshot_002.csv:9: column 'c'": of a row that is known by its number.
-std::string place_of(const std::string& folder, std::size_t snapshot, std::size_t row,
-                     const std::string& column) {
-  const CsvTable table = CsvTable::read(std::filesystem::path(folder) / snapshot_file(snapshot));
-  return column.empty() ? table.where(row) : table.where(row, column);
-}
-
 // Only spheres are simple enough to say where before the mesh is there.
 void refuse_points_off_the_sphere(const FieldDataset& data, const std::string& folder) {
   std::size_t number = 0;

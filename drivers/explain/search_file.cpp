@@ -3,7 +3,7 @@
 #include "backends/sodium/seal.hpp"
 #include "drivers/config/config_file.hpp"
 #include "drivers/explain/search_json.hpp"
-#include "drivers/output/program_checksum.hpp"
+#include "drivers/output/program.hpp"
 #include "kernel/core/error.hpp"
 
 namespace traceraft {

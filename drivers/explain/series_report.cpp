@@ -8,11 +8,12 @@
 #include "drivers/explain/series_verdict.hpp"
 #include "drivers/output/chart.hpp"
 #include "drivers/output/page.hpp"
+#include "drivers/output/program.hpp"
 #include "drivers/output/text_table.hpp"
-#include "drivers/version.hpp"
 #include "drivers/vesicles/agreement_report.hpp"
 #include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/text.hpp"
+#include "verification/measure/fit.hpp"
 #include "verification/vesicles/differences.hpp"
 
 namespace traceraft {
@@ -20,7 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double k95 = 1.96;
 constexpr int kOfCharts = 10;  // of the curves of charts and power laws
 
 std::string vesicles_text(double count) {
@@ -188,7 +188,7 @@ std::string diffusion_sentence(const Configuration& model, const SeriesExplanati
         "D is not determined: the best one, %.3g cm^2/s, is at the end of what is looked at.", D);
   const std::string range =
       formatted("%.3g cm^2/s, within a factor of %.2g (95 %%, by scatter alone)", D,
-                std::exp(k95 * found.unit_deviation));
+                std::exp(kNormal95 * found.unit_deviation));
   if (!found.unit_told)
     return "These series tell hardly more of D than was known before: " + range + ".";
   return "D is " + range +
@@ -234,7 +234,7 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
     const Chart chart = curve_chart(quantity, data, simulated, found);
     add_chart(page, chart, folder / (std::string("series-") + name_of(quantity).id), missing);
   }
-  page.paragraph("traceraft " + std::string(kVersion) + ".");
+  page.paragraph(program_text() + ".");
   write_durably(folder / "series.html", page.html());
   write_durably(folder / "series.json", series_json(model, simulated, found, laws).dump(2) + "\n");
   if (quiet) return;

@@ -5,6 +5,7 @@
 
 #include "drivers/explain/extended_model.hpp"
 #include "drivers/explain/verdict.hpp"
+#include "drivers/output/program.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/effects/effects.hpp"
 
@@ -153,7 +154,8 @@ Json series_json(const Configuration& model, const SeriesEnsembles& ensembles,
           {"scores", scores_json(model, ensembles, found)},
           {"classes", found.classes},
           {"ties", ties},
-          {"exponents", exponents}};
+          {"exponents", exponents},
+          {"program", program_text()}};
 }
 
 Json series_verdict_json(const Configuration& model, const SeriesEnsembles& ensembles,
@@ -175,7 +177,8 @@ Json series_verdict_json(const Configuration& model, const SeriesEnsembles& ense
            {{"replicates", request.replicates},
             {"false_alarm_level", request.false_alarms},
             {"p", found.p},
-            {"trend_p", found.trend_p}}}};
+            {"trend_p", found.trend_p}}},
+          {"program", program_text()}};
 }
 
 void write_series_verdict(const std::filesystem::path& folder,

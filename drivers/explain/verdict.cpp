@@ -4,6 +4,7 @@
 
 #include "drivers/explain/remarks.hpp"
 #include "drivers/explain/verdict_sentence.hpp"
+#include "drivers/output/program.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/effects/effects.hpp"
 
@@ -171,7 +172,8 @@ Json verdict_json(const Explanation& found, const ExplainSetup& setup) {
             {"diffusion_error", found.pace_doubt},
             {"cells", setup.request.cells},
             {"h_over_epsilon", found.h_over_epsilon}}},
-          {"remarks", remarks_on(found, setup)}};
+          {"remarks", remarks_on(found, setup)},
+          {"program", program_text()}};
 }
 
 }  // namespace traceraft

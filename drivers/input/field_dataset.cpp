@@ -112,6 +112,12 @@ void refuse_incomplete(const fs::path& folder, const TomlTable& toml, std::size_
 
 }  // namespace
 
+std::string place_of(const fs::path& folder, std::size_t snapshot, std::size_t row,
+                     const std::string& column) {
+  const CsvTable table = CsvTable::read(folder / snapshot_file(snapshot));
+  return column.empty() ? table.where(row) : table.where(row, column);
+}
+
 FieldDataset read_field_dataset(const fs::path& folder) {
   if (!holds_fields(folder) && holds_series(folder))
     throw InputError(folder.string() + " holds series of vesicles, not fields");

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "drivers/input/measured_folder.hpp"
 #include "verification/explain/fields/field_series.hpp"
@@ -25,6 +26,11 @@ struct FieldDataset {
 // Checks everything and converts units. Throws InputError with file, line and column for what is
 // missing, unknown or impossible.
 FieldDataset read_field_dataset(const std::filesystem::path& folder);
+
+// "snapshot_002.csv:9: column 'c'" of a row of the second snapshot, 0 being the first one; without
+// a column the line alone.
+std::string place_of(const std::filesystem::path& folder, std::size_t snapshot, std::size_t row,
+                     const std::string& column = "");
 
 // If half of the points are further from the sphere of that radius, on the same side, than any
 // measurement is off by chance: a sentence, else "".

@@ -1,7 +1,7 @@
 #include "drivers/output/provenance.hpp"
 
 #include "drivers/config/config_file.hpp"
-#include "drivers/version.hpp"
+#include "drivers/output/program.hpp"
 
 namespace traceraft {
 
@@ -23,7 +23,7 @@ std::string command_for(const std::string& command, const Configuration& configu
 
 void add_provenance(Page& page, const std::filesystem::path& folder, const std::string& command) {
   page.heading("Where this comes from");
-  page.paragraph("traceraft " + std::string(kVersion) + ", from the files in " +
+  page.paragraph(program_text() + ", from the files in " +
                  std::filesystem::absolute(folder).lexically_normal().string() + ". To repeat it:");
   page.code(command);
 }

@@ -6,6 +6,7 @@
 #include "backends/posix/process.hpp"
 #include "backends/suitesparse/blas.hpp"
 #include "drivers/config/config_file.hpp"
+#include "drivers/output/program.hpp"
 #include "drivers/run/progress.hpp"
 #include "drivers/version.hpp"
 #include "kernel/core/text.hpp"
@@ -60,6 +61,7 @@ std::string summary_json(const Configuration& configuration, const RunSetup& run
   json["end"] = end_name(result.end);
   if (!result.why.empty()) json["why"] = result.why;
   json["version"] = kVersion;
+  json["build"] = program_checksum();
   json["case"] = configuration.text("case");
   json["effects"] = configuration.text("effect");
   json["seed"] = configuration.integer("seed");
@@ -129,9 +131,9 @@ std::string resolution_text(const RunSetup& run) {
 std::string initial_text(const Configuration& configuration, const RunSetup& run) {
   const std::string kind = configuration.text("initial");
   if (kind != "noise") return kind;
-  const double length = 2 * kBoxHalfWidth / static_cast<double>(configuration.noise_cells());
-  return formatted("noise of %.3g um = %.3g epsilon", length * run.units.radius_um,
-                   length / run.problem->model().epsilon);
+  const double length = configuration.noise_length();
+  return formatted("noise of %.3g um = %.3g epsilon", length,
+                   length / (run.problem->model().epsilon * run.units.radius_um));
 }
 
 void print_setup(const Configuration& configuration, const RunSetup& run) {

@@ -10,13 +10,12 @@
 #include "drivers/commands.hpp"
 #include "drivers/ensemble/ensemble_runs.hpp"
 #include "drivers/exit_codes.hpp"
-#include "drivers/output/program_checksum.hpp"
+#include "drivers/output/program.hpp"
 #include "drivers/output/status_line.hpp"
 #include "drivers/run/program_run.hpp"
 #include "drivers/run/run_folder.hpp"
 #include "drivers/verify/verify_jobs.hpp"
 #include "drivers/verify/verify_report.hpp"
-#include "drivers/version.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/stopwatch.hpp"
 #include "kernel/core/text.hpp"
@@ -102,7 +101,7 @@ VerificationContext context_of(const VerifyRequest& request, const BenchRequest&
   if (!request.document.empty()) command += " --document " + in_shell(request.document);
   // The program itself decides the numbers, and what was asked of it.
   const std::string threads = std::to_string(bench.threads) + " threads";
-  return {command, "traceraft " + std::string(kVersion) + ", " + threads + ".",
+  return {command, program_text() + ", " + threads + ".",
           "program " + program_checksum() + (request.quick ? ", quick" : "") + ", integrator " +
               or_default(request.integrator) + ", linear solver " +
               or_default(request.linear_solver) + ", " + threads};

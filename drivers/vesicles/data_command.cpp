@@ -41,7 +41,7 @@ Window window_of(const std::string& text) {
 int check(const DataRequest& request) {
   if (holds_fields(request.folder)) {
     const FieldDataset fields = read_field_dataset(request.folder);
-    if (!request.quiet) print_fields(fields);
+    if (!request.quiet) print_fields(request.folder, fields);
     if (!holds_series(request.folder)) return kSuccess;
   }
   const MeasuredVesicles data = read_dataset(request.folder);

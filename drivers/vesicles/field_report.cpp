@@ -44,29 +44,34 @@ std::vector<Cell> row_of(const FieldSeries& vesicle, const FieldSnapshot& snapsh
 }
 
 // What `explain` would refuse, with a sphere and the usual wells: of each kind the first.
-std::vector<std::string> notes_on(const FieldDataset& data) {
+std::vector<std::string> notes_on(const std::filesystem::path& folder, const FieldDataset& data) {
   std::string off_sphere, off_scale;
   std::size_t number = 0;
   for (const FieldSeries& vesicle : data.vesicles)
     for (const FieldSnapshot& snapshot : vesicle.snapshots) {
-      const std::string file = snapshot_file(++number);
+      ++number;
       const auto distance = [](const Point& x) { return std::fabs(x.norm() - 1); };
       const auto far = std::max_element(
           snapshot.points.begin(), snapshot.points.end(),
           [&](const Point& a, const Point& b) { return distance(a) < distance(b); });
       if (off_sphere.empty() && distance(*far) > kOffSurface)
-        off_sphere = file + formatted(
-                                ": a point is %.2g R off the sphere of that radius, and "
-                                "explain refuses more than %g R from the model's surface: "
-                                "are radius and length_unit right, and the centre at 0?",
-                                distance(*far), kOffSurface);
-      const double least = snapshot.values.minCoeff(), most = snapshot.values.maxCoeff();
-      if (off_scale.empty() && (least < -kFarFromWells || most > 1 + kFarFromWells))
-        off_scale = file + formatted(
-                               ": c is from %g to %g; explain takes it to be about 0 outside "
-                               "rafts and 1 inside (but for another --well): leave out what "
-                               "is missing, and put c on that scale",
-                               least, most);
+        off_sphere =
+            place_of(folder, number, static_cast<std::size_t>(far - snapshot.points.begin())) +
+            formatted(
+                ": a point is %.2g R off the sphere of that radius, and "
+                "explain refuses more than %g R from the model's surface: "
+                "are radius and length_unit right, and the centre at 0?",
+                distance(*far), kOffSurface);
+      Eigen::Index row = 0;
+      (snapshot.values.array() - 0.5).abs().maxCoeff(&row);
+      const double c = snapshot.values[row];
+      if (off_scale.empty() && (c < -kFarFromWells || c > 1 + kFarFromWells))
+        off_scale = place_of(folder, number, static_cast<std::size_t>(row), "c") +
+                    formatted(
+                        ": %g; explain takes it to be about 0 outside "
+                        "rafts and 1 inside (but for another --well): leave out what "
+                        "is missing, and put c on that scale",
+                        c);
     }
   std::vector<std::string> notes;
   for (std::string* note : {&off_sphere, &off_scale})
@@ -81,7 +86,7 @@ std::vector<std::string> notes_on(const FieldDataset& data) {
 
 }  // namespace
 
-void print_fields(const FieldDataset& data) {
+void print_fields(const std::filesystem::path& folder, const FieldDataset& data) {
   std::printf("%s%s: measured fields of %zu vesicle%s, R = %g um%s%s\n", data.name.c_str(),
               data.synthetic ? " (SYNTHETIC)" : "", data.vesicles.size(),
               data.vesicles.size() == 1 ? "" : "s", data.radius_um, data.origin.empty() ? "" : "; ",
@@ -95,7 +100,7 @@ void print_fields(const FieldDataset& data) {
     for (const FieldSnapshot& snapshot : vesicle.snapshots)
       table.rows.push_back(row_of(vesicle, snapshot));
   print_rows(table_rows(table));
-  for (const std::string& note : notes_on(data)) std::printf("NOTE: %s\n", note.c_str());
+  for (const std::string& note : notes_on(folder, data)) std::printf("NOTE: %s\n", note.c_str());
 }
 
 }  // namespace traceraft

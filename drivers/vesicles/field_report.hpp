@@ -5,6 +5,7 @@
 
 namespace traceraft {
 
-void print_fields(const FieldDataset& data);
+// `folder`: that they were read from.
+void print_fields(const std::filesystem::path& folder, const FieldDataset& data);
 
 }  // namespace traceraft

@@ -274,7 +274,7 @@ TEST_F(ExplainTest, RefusesWhatItCannotUse) {
   vesicles[0].snapshots[1].points[7] *= 1.3;
   write(vesicles);
   text = checked();
-  EXPECT_NE(text.find("NOTE: snapshot_002.csv: a point is 0.3 R off"), std::string::npos) << text;
+  EXPECT_NE(text.find("snapshot_002.csv:9: a point is 0.3 R off"), std::string::npos) << text;
   text = refusal(command(13));
   EXPECT_NE(text.find("snapshot_002.csv:9: ("), std::string::npos) << text;
   vesicles[0].snapshots[1].points[7] /= 1.3;
@@ -283,7 +283,7 @@ TEST_F(ExplainTest, RefusesWhatItCannotUse) {
   text = refusal(command(13));
   EXPECT_NE(text.find("snapshot_002.csv:9: column 'c': -9999"), std::string::npos) << text;
   text = checked();
-  EXPECT_NE(text.find("NOTE: snapshot_002.csv: c is from -9999"), std::string::npos) << text;
+  EXPECT_NE(text.find("snapshot_002.csv:9: column 'c': -9999; explain"), std::string::npos) << text;
   fs::remove(folder.path / "data" / "snapshot_003.csv");
   text = refusal(command(13));
   EXPECT_NE(text.find("3 times, but there is no snapshot_003.csv"), std::string::npos) << text;

@@ -1,10 +1,11 @@
-#include "drivers/output/program_checksum.hpp"
+#include "drivers/output/program.hpp"
 
 #include <cstdint>
 
 #include "backends/posix/child.hpp"
 #include "backends/posix/durable_file.hpp"
 #include "backends/zlib/checksum.hpp"
+#include "drivers/version.hpp"
 #include "kernel/core/text.hpp"
 
 namespace traceraft {
@@ -14,6 +15,10 @@ std::string program_checksum() {
   static const std::string checksum =
       formatted("%08x", crc32_of(read_file(own_program(), kLargest)));
   return checksum;
+}
+
+std::string program_text() {
+  return "traceraft " + std::string(kVersion) + ", build " + program_checksum();
 }
 
 }  // namespace traceraft
