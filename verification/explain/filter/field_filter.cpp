@@ -6,40 +6,13 @@
 
 #include "backends/openblas/dense_algebra.hpp"
 #include "kernel/core/random.hpp"
-#include "kernel/effects/effects.hpp"
+#include "verification/explain/filter/field_comparison.hpp"
 
 namespace traceraft {
 namespace {
 
-// −(ω × x)·∇_Γ c for turns about the three axes.
-Columns turns(const CahnHilliard& problem, const Vec& c) {
-  const EffectEntry& rotation = effects().find("rotation");
-  const SurfaceSpace& space = problem.space();
-  Columns result(c.size(), 3);
-  for (int axis = 0; axis < 3; ++axis) {
-    CahnHilliardModel model = problem.model();
-    std::vector<double> values{1, 0, 0, 0};
-    values[1 + axis] = 1;
-    model.effects.clear();
-    rotation.add(Parameters(rotation.parameters, values), model);
-    Vec first = Vec::Zero(c.size()), second = Vec::Zero(c.size()), rate(c.size());
-    model.effects.front()->add_residual(space, 0, c, Vec::Zero(c.size()), first, second);
-    require(space.solve_mass(-first, rate));
-    result.col(axis) = rate;
-  }
-  return result;
-}
-
 // In forecasts that lack something, of the distance of the phases: what a gap is looked for as.
 constexpr double kUsualGap = 0.02;
-
-// The state of the filter between two snapshots.
-struct Belief {
-  Vec c;
-  Columns errors;      // L: covariance L Lᵀ
-  Columns parameters;  // ∂c/∂θ
-  Columns replicates;  // errors of the replicates
-};
 
 class Filter {
  public:
@@ -138,70 +111,22 @@ class Filter {
   }
 
   void compare(std::size_t k) {
-    const NoisyValues& measured = data_.snapshots[k + 1];
-    const Vec noise = data_.noise[k + 1] * measured.deviation, scale = noise.cwiseInverse();
-    const auto seen = [&](const Columns& X) {
-      return Columns(scale.asDiagonal() * (measured.trace * X));
-    };
-    const DoubleWell& well = problem_.model().well;
-    const double distance = well.b - well.a;
-    const Columns patterns = distance * data_.patterns->at(well, belief_.c);
-    const Columns turned = settings_.turn * turns(problem_, belief_.c);
-
-    Innovation in{};
-    in.vesicle = data_.vesicle;
-    in.snapshot = k + 1;
-    in.held_out = k + 1 >= data_.train;
-    const ResolvedForecast::End& mesh = maps_.mesh_error[k];
-    // What the traces of the forecast on this mesh lack, beyond what its nodes do.
-    in.forecast = measured.trace * (belief_.c - mesh.field) + mesh.values;
-    in.values = scale.cwiseProduct(measured.values - in.forecast);
-    Columns frame(scale.size(), 2);
-    frame << settings_.gain * seen(belief_.c), settings_.offset * distance * scale;
-    // The model's boundaries are as wide as ever: it is the images that are blurred, each of them.
-    if (data_.blur) frame = side_by_side(frame, seen(data_.blur->blurred(belief_.c) - belief_.c));
-    const Columns errors = side_by_side(belief_.errors, turned), error_values = seen(errors);
-    const Columns state = side_by_side(error_values, frame);
-    in.directions = side_by_side(state, seen(patterns));
-    in.state_directions = state.cols();
-    in.gram = gram(in.directions);
-    in.parameters = seen(belief_.parameters);
-    in.parameters.col(kMeshError) +=
-        scale.cwiseProduct(mesh.values_doubt - measured.trace * mesh.doubt);
-    in.replicates = seen(belief_.replicates);
-    add_noise(k, in.replicates);
-    in.model_error = most_probable_error(in);
-    in.noise = noise;
-    // What the first snapshot's scale and zero make of the forecast is taken out as that of others.
-    const Eigen::Index known = belief_.errors.cols(), frames = turned.cols() + frame.cols(),
-                       first = k == 0 ? kFirstFrame : 0;
-    in.first_frame = first;
-    in.expected_squares =
-        noise.squaredNorm() +
-        (noise.asDiagonal() * error_values.middleCols(first, known - first)).squaredNorm();
-
+    FieldComparison comparison =
+        compare_field(data_, problem_, settings_, belief_, k + 1, maps_.mesh_error[k]);
+    Innovation& in = comparison.in;
     const InnovationCovariance weight(in, in.model_error);
     const Vec found = weight.amplitudes(in.values);
-    in.frame = found.segment(known, frames);
-    in.gap = in.values - in.directions.middleCols(known, frames) * in.frame -
-             in.directions.leftCols(first) * found.head(first);
+    in.frame = found.segment(comparison.known, comparison.frames);
+    in.gap = in.values - in.directions.middleCols(comparison.known, comparison.frames) * in.frame -
+             in.directions.leftCols(in.first_frame) * found.head(in.first_frame);
     in.weighted_squares = in.values.dot(weight.solve(in.values).col(0));
     if (!in.held_out) account(in, weight);
     if (in.replicates.cols() > 0)
       (in.held_out ? result_.heldout_gap_parts : result_.gap_parts)
           .push_back(explained_parts(
               in, kUsualGap, side_by_side(side_by_side(in.values, in.parameters), in.replicates)));
-    const Columns no_share = Columns::Zero(belief_.c.size(), frame.cols());
-    correct(in, weight, found, side_by_side(side_by_side(errors, no_share), patterns));
+    correct(in, weight, found, comparison.fields);
     result_.innovations.push_back(std::move(in));
-  }
-
-  void add_noise(std::size_t k, Columns& values) const {
-    const std::uint64_t snapshot = 1000 * data_.vesicle + k + 1;
-    for (Eigen::Index j = 0; j < values.cols(); ++j)
-      for (Eigen::Index i = 0; i < values.rows(); ++i)
-        values(i, j) += normal_random(7, 10000 * snapshot + static_cast<std::uint64_t>(j),
-                                      static_cast<std::uint64_t>(i));
   }
 
   void account(const Innovation& in, const InnovationCovariance& weight) {

@@ -51,9 +51,6 @@ struct FilterModel {
   std::vector<Candidate> screened;  // effects it might have: derivatives at 0
 };
 
-// Parameters: ln D first, second what extrapolation to finer meshes gets wrong of its last part,
-// then the coefficients of the hypothesis and those of the screened candidates.
-inline constexpr int kPace = 0, kMeshError = 1, kFirstParameter = 2;
 // Standard deviation of the share by which extrapolation to infinitely fine meshes is wrong.
 inline constexpr double kMeshDoubt = 0.5;
 

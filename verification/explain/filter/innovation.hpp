@@ -8,6 +8,10 @@
 
 namespace traceraft {
 
+// Parameters: ln D first, second what extrapolation to finer meshes gets wrong of its last part,
+// then the coefficients of the hypothesis and those of the screened candidates.
+inline constexpr int kPace = 0, kMeshError = 1, kFirstParameter = 2;
+
 struct Innovation {
   std::size_t vesicle, snapshot;  // of the data
   bool held_out;                  // it counts for nothing, but between members of a class
