@@ -67,14 +67,17 @@ fs::path folder_for(const CalibrateRequest& request) {
 void remember(const fs::path& out, const std::string& what, const std::string& data,
               const Configuration& model) {
   const fs::path file = out / kIdentityFile;
-  const std::string identity = "# " + what + "\n# of the measurements in " +
-                               fs::absolute(data).lexically_normal().string() + "\n" +
-                               config_text(model);
-  if (fs::exists(file) && read_file(file, 1 << 20) != identity)
+  const std::string heading = "# " + what + "\n# of the measurements in " +
+                              fs::absolute(data).lexically_normal().string() + "\n";
+  const auto is_same = [&] {
+    return read_file(file, 1 << 20).compare(0, heading.size(), heading) == 0 &&
+           numerical_identity({read_config_file(file), {}}) == numerical_identity(model);
+  };
+  if (fs::exists(file) && !is_same())
     throw InputError("--out: " + out.string() +
                      " holds a calibration of another model, or with other measurements; "
                      "choose another folder");
-  write_durably(file, identity);
+  write_durably(file, heading + config_text(model));
 }
 
 // D shifts the axis of time only if nothing else in the model has a unit of time.

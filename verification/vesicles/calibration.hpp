@@ -20,8 +20,9 @@ struct SoughtParameter {
 struct CalibratedParameter {
   std::string name;
   double value;
-  Interval interval;  // 95 %, by the bootstrap over vesicles and over runs; value: its median
-  bool determined;    // the interval is narrower than a factor of 2 and within what was explored
+  // 95 %, by the bootstrap over vesicles and over runs, widened for few; value: the median of that.
+  Interval interval;
+  bool determined;  // the interval is narrower than a factor of 2 and within what was explored
 };
 
 struct Calibration {

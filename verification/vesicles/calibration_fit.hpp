@@ -1,6 +1,8 @@
 // The parameters that fit measurements best, and how they would scatter if these were made again.
 #pragma once
 
+#include <algorithm>
+
 #include "verification/vesicles/calibration.hpp"
 #include "verification/vesicles/joint_fit.hpp"
 
@@ -23,6 +25,8 @@ class CalibrationFit {
   const JointFit& found() const { return found_; }
   // Units of time that are about as probable as that found, with the parameters found.
   Interval units() const;
+  // Vesicles, or seeds if those are fewer: how much estimates scatter is known from so many.
+  int samples() const { return std::min(static_cast<int>(vesicles_.size()), count_); }
   // Estimates of other vesicles and other runs of the same kind.
   std::vector<std::vector<double>> replicates() const;
 
