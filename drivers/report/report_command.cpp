@@ -7,6 +7,7 @@
 #include "backends/posix/durable_file.hpp"
 #include "drivers/commands.hpp"
 #include "drivers/exit_codes.hpp"
+#include "drivers/input/dataset.hpp"
 #include "drivers/report/report_page.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
@@ -18,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ReportRequest {
-  std::string folder, out, snapshots, animation;
+  std::string folder, data, out, snapshots, animation;
   int frames = 60, pixels = 480;
   double detail = 0.015;
   int pause = 20;
@@ -75,7 +76,8 @@ int report(const ReportRequest& request) {
       request.out.empty() ? fs::path(request.folder) / "report.html" : fs::path(request.out);
   const std::string missing = write_report_page(
       request.folder, out,
-      {request.frames, request.detail, out.parent_path() / (out.stem().string() + "-charts")});
+      {request.frames, request.detail, out.parent_path() / (out.stem().string() + "-charts"),
+       request.data.empty() ? std::nullopt : std::optional(read_dataset(request.data))});
   write_pictures(request);
   if (!request.quiet) {
     if (!missing.empty()) std::printf("missing in the page: %s\n", missing.c_str());
@@ -89,6 +91,8 @@ Action define_report(CLI::App& app) {
   app.add_option("folder", request->folder,
                  "of a run, ensemble, comparison, calibration, verification, ...")
       ->required();
+  app.add_option("--data", request->data,
+                 "folder of series of vesicles, to be shown beside a run or an ensemble");
   app.add_option("--out", request->out, "page to write; default: report.html in the folder");
   app.add_option("--frames", request->frames, "at most so many times of the fields")
       ->check(CLI::Range(1, 100000))

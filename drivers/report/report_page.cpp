@@ -60,12 +60,13 @@ std::string unit_of(const std::string& key, const std::string& length, const std
 struct Curve {
   std::string column, title;
   bool log_y;
+  std::optional<Quantity> measured = {};
 };
 
 std::vector<Curve> curves() {
-  return {{"perimeter", "perimeter", true},
-          {"rafts", "number of rafts", true},
-          {"raft_fraction", "raft area fraction", false},
+  return {{"perimeter", "perimeter", true, Quantity::perimeter},
+          {"rafts", "number of rafts", true, Quantity::rafts},
+          {"raft_fraction", "raft area fraction", false, Quantity::fraction},
           {"energy", "energy", false},
           {"dt", "step size", true}};
 }
@@ -121,10 +122,19 @@ void fill_run(Page& page, const fs::path& folder, const PageRequest& request, Mi
                  configuration.text("seed") + ".");
   add_surface(page, folder, request, missing);
   page.heading("In time");
+  if (request.data)
+    page.paragraph("Beside " + about_data(*request.data) +
+                   "; their perimeters over radius are those of a vesicle of this one's radius.");
   const CsvTable series = CsvTable::read(folder / "series.csv");
-  for (const Curve& curve : curves())
-    add_chart(page, series_chart(series, curve, length, time), request.charts / curve.column,
-              missing);
+  for (const Curve& curve : curves()) {
+    Chart chart = series_chart(series, curve, length, time);
+    if (request.data && curve.measured) {
+      const double unit =
+          *curve.measured == Quantity::perimeter ? configuration.units().length() : 1;
+      chart.series.push_back(measured_points(*request.data, *curve.measured, unit));
+    }
+    add_chart(page, chart, request.charts / curve.column, missing);
+  }
   add_summary(page, folder, length, time);
   add_settings(page, configuration);
   add_provenance(page, folder, command_for("traceraft run", configuration));
@@ -150,8 +160,11 @@ void add_all_runs(Page& page, const std::vector<History>& runs, bool physical,
                   const PageRequest& request, Missing& missing) {
   const EnsembleSummary summary = summarise(runs);
   page.heading("All runs");
+  if (request.data) page.paragraph("Beside " + about_data(*request.data) + ".");
   for (const Quantity quantity : kQuantities)
-    add_chart(page, ensemble_chart(summary, quantity, physical),
+    add_chart(page,
+              request.data ? comparison_chart(*request.data, summary, quantity)
+                           : ensemble_chart(summary, quantity, physical),
               request.charts / name_of(quantity).id, missing);
   page.heading("Numbers");
   page.table(ensemble_rows(summary, physical));
@@ -227,6 +240,9 @@ std::string write_report_page(const fs::path& folder, const fs::path& out,
     if (!path.empty()) fs::create_directories(path);
   };
   if (const std::string page = finished_page(folder); !page.empty()) {
+    if (request.data)
+      throw InputError("--data: the page of " + folder.string() +
+                       " is made; measurements are shown beside runs and ensembles");
     make_folder(out.parent_path());
     write_durably(out, page);
     return "";
@@ -235,6 +251,8 @@ std::string write_report_page(const fs::path& folder, const fs::path& out,
   if (!is_run(folder) && !is_ensemble(folder) && !kept)
     throw InputError(folder.string() +
                      " holds no run, ensemble, comparison or verification of traceraft");
+  if (request.data && Configuration(read_config_file(folder / "config.toml"), {}).units().scaled)
+    throw InputError("--data: times of " + folder.string() + " are in units of R^2/D, not in s");
   make_folder(out.parent_path());
   make_folder(request.charts);
   Page page("traceraft: " + fs::absolute(folder).lexically_normal().filename().string());

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "drivers/report/surface_frames.hpp"
+#include "verification/vesicles/measurements.hpp"
 
 namespace traceraft {
 
@@ -24,10 +26,12 @@ struct PageRequest {
   int frames;
   double detail;
   std::filesystem::path charts;  // folder for the charts' files; made if there is something to show
+  std::optional<MeasuredVesicles> data;  // shown beside a run or an ensemble
 };
 // Writes the page of a run or an ensemble: surface, charts, numbers, settings; those of a
 // comparison and a verification have been written by their commands and are copied. Returns what is
-// missing, "" if nothing. Throws InputError if the folder is none of these.
+// missing, "" if nothing. Throws InputError if the folder is none of these, and for measurements
+// beside what is not in seconds, or has its page already.
 std::string write_report_page(const std::filesystem::path& folder, const std::filesystem::path& out,
                               const PageRequest& request);
 

@@ -62,6 +62,16 @@ std::string missing_of(const EnsembleFolder& folder, const FinishedMembers& fini
 
 }  // namespace
 
+ChartSeries measured_points(const MeasuredVesicles& data, Quantity quantity, double unit) {
+  ChartSeries measured{origin_of(data), {}, Mark::bars};
+  for (const Measurement& m : data.measurements) {
+    if (!m.of(quantity)) continue;
+    measured.points.emplace_back(m.time, unit * *m.of(quantity));
+    measured.other.push_back(unit * m.sigma_of(quantity));
+  }
+  return measured;
+}
+
 Chart comparison_chart(const MeasuredVesicles& data, const EnsembleSummary& summary,
                        Quantity quantity) {
   Chart chart = ensemble_chart(summary, quantity, true);
@@ -74,13 +84,7 @@ Chart comparison_chart(const MeasuredVesicles& data, const EnsembleSummary& summ
     if (!series.other.empty())
       series.other.erase(series.other.begin(), series.other.begin() + early);
   }
-  ChartSeries measured{origin_of(data), {}, Mark::bars};
-  for (const Measurement& m : data.measurements) {
-    if (!m.of(quantity)) continue;
-    measured.points.emplace_back(m.time, *m.of(quantity));
-    measured.other.push_back(m.sigma_of(quantity));
-  }
-  chart.series.push_back(measured);
+  chart.series.push_back(measured_points(data, quantity));
   return chart;
 }
 

@@ -32,6 +32,9 @@ struct EnsembleRuns {
 // kept of them. Throws InputError as model_of.
 EnsembleRuns runs_of(const std::filesystem::path& ensemble);
 
+// The measurements over time (s), times `unit`.
+ChartSeries measured_points(const MeasuredVesicles& data, Quantity quantity, double unit = 1);
+
 // Simulations, in s and R, and the measurements in them, from a tenth of the first measured time
 // on.
 Chart comparison_chart(const MeasuredVesicles& data, const EnsembleSummary& summary,

@@ -57,6 +57,29 @@ TEST_F(ReportTest, MakesAPagePicturesAndAnAnimation) {
   EXPECT_EQ(content(folder.path / "a.gif").substr(0, 6), "GIF89a");
 }
 
+TEST_F(ReportTest, ShowsMeasurementsBesideWhatIsInSeconds) {
+  const std::string data = " --data " TRACERAFT_ROOT "/verification/data/synthetic/guv-2to1";
+  run("a");
+  ASSERT_EQ(traceraft("report --quiet " + out("a") + data).code, 0);
+  const std::string page = content(folder.path / "a/report.html");
+  EXPECT_NE(page.find("16 vesicles, 56 measurements"), std::string::npos);
+  // 43.31925 um around 4.015831 um are 53.9356 um around the 5 um of the run.
+  EXPECT_NE(content(folder.path / "a/report-charts/perimeter.gp").find(" 53.9356"),
+            std::string::npos);
+  const std::string kept = TRACERAFT_ROOT "/verification/data/ensembles/guv-2to1";
+  ASSERT_EQ(traceraft("report --quiet " + kept + " --out " + out("kept.html") + data).code, 0);
+  EXPECT_NE(content(folder.path / "kept.html").find("synthetic measurements"), std::string::npos);
+  ASSERT_EQ(
+      traceraft("run --case two-rafts --cells 20 --epsilon 0.12 --scaled --t-end 0.001 --quiet "
+                "--out " +
+                out("s"))
+          .code,
+      0);
+  const Outcome refused = traceraft("report " + out("s") + data);
+  EXPECT_EQ(refused.code, 2) << refused.output;
+  EXPECT_NE(refused.output.find("--data: times of"), std::string::npos) << refused.output;
+}
+
 TEST_F(ReportTest, ShowsEnsemblesAndCopiesFinishedPages) {
   ASSERT_EQ(
       traceraft(
