@@ -89,16 +89,10 @@ struct SeriesSetup {
   Configuration model;
 };
 
-GivenValues model_of(const ExplainJob& job) {
-  GivenValues given = job.flags;
-  given.merge(read_config_file(job.model, "--model"));
-  return given;
-}
-
 SeriesSetup read_series_job(const ExplainCommand& command) {
   MeasuredVesicles data = read_dataset(command.series);
   refuse_without_model(data.composition, command.job.model, command.job.flags);
-  const GivenValues given = model_of(command.job);
+  const GivenValues given = model_said(command.job);
   SeriesSetup setup{std::move(data), given, {given, {}}};
   if (const std::string other = other_membrane(setup.data.composition, setup.model); !other.empty())
     throw InputError(setup.model.where("case") + ": the model is of " + other);
@@ -137,7 +131,7 @@ bool explain_series_data(const ExplainCommand& command, const SeriesSetup& setup
 
 // Series are held against models without any.
 bool has_effects(const ExplainJob& job) {
-  return !Configuration(model_of(job), {}).text("effect").empty();
+  return !Configuration(model_said(job), {}).text("effect").empty();
 }
 
 // A folder for --data may hold fields, series or both.
@@ -228,7 +222,7 @@ Action define_explain(CLI::App& app) {
   app.add_flag("--quiet", command->quiet, "print nothing but errors");
   add_options(app, command->job.flags, [](const OptionSpec& spec) {
     return (spec.group == "Physics" || spec.group == "Surface" || spec.group == "Case") &&
-           spec.name != "radius" && spec.name != "scaled";
+           spec.name != "scaled";
   });
   app.footer("Example: traceraft explain --data my-vesicle --model model.toml --cells 40");
   return [command] { return explain(*command); };

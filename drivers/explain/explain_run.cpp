@@ -19,10 +19,9 @@
 namespace traceraft {
 namespace {
 
-GivenValues given_model(GivenValues given, const ExplainJob& job, double radius_um) {
-  for (const auto& [name, value] : job.flags) given[name] = value;
-  given["radius"] = {format_number(radius_um), "dataset.toml: radius"};
-  return given;
+GivenValues with_radius(GivenValues model, double radius_um) {
+  model["radius"] = {format_number(radius_um), "dataset.toml: radius"};
+  return model;
 }
 
 // Of a model that says another radius than the data, and of data that are not where they say.
@@ -163,15 +162,21 @@ std::string data_text(const ExplainSetup& setup) {
                                      : "not blurred");
 }
 
+GivenValues model_said(const ExplainJob& job) {
+  GivenValues said = job.flags;
+  said.merge(read_config_file(job.model, "--model"));
+  return said;
+}
+
 ExplainSetup read_explain_job(const ExplainJob& job) {
   FieldDataset data = read_field_dataset(job.data);
   // A width of the boundaries says that a model is meant; other values may be those of any.
   if (job.flags.count("epsilon") == 0) refuse_without_model(data.composition, job.model, job.flags);
-  const GivenValues own = read_config_file(job.model, "--model");
+  const GivenValues said = model_said(job);
   ExplainSetup setup;
   setup.model_file = job.model;
-  setup.model = given_model(own, job, data.radius_um);
-  setup.notes = notes_on(own, data);
+  setup.model = with_radius(said, data.radius_um);
+  setup.notes = notes_on(said, data);
   setup.name = data.name;
   setup.synthetic = data.synthetic;
   const Configuration model = setup.configuration();
