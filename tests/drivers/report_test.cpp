@@ -211,10 +211,29 @@ TEST_F(ReportTest, WorksInABrowser) {
   EXPECT_NE(browser.evaluate("document.getElementById('time-label').textContent"), label);
   // Two rafts instead of one.
   EXPECT_NE(browser.evaluate("document.querySelector('canvas').toDataURL()"), picture);
-  for (const json& entry : browser.complaints())
-    EXPECT_NE(entry["level"], "SEVERE") << entry["message"];
+  const auto expect_no_complaint = [&browser] {
+    for (const json& entry : browser.complaints())
+      EXPECT_NE(entry["level"], "SEVERE") << entry["message"];
+  };
+  expect_no_complaint();
   RecordProperty("milliseconds_to_open",
                  static_cast<int>(browser.evaluate("performance.now()").get<double>()));
+  // Pages without a surface have their charts.
+  const std::string data = TRACERAFT_ROOT "/verification/data/";
+  const std::string kept = data + "ensembles/guv-2to1", measured = data + "synthetic/guv-2to1";
+  ASSERT_EQ(traceraft("report --quiet " + kept + " --out " + out("kept.html")).code, 0);
+  ASSERT_EQ(
+      traceraft("data compare " + measured + " --ensemble " + kept + " --out " + out("c")).code, 0);
+  for (const char* page : {"kept.html", "c/comparison.html"}) {
+    browser.open(folder.path / page);
+    EXPECT_GE(browser
+                  .evaluate("Array.from(document.querySelectorAll('svg, img')).filter(e => "
+                            "e.getBoundingClientRect().width > 300).length")
+                  .get<int>(),
+              3)
+        << page;
+    expect_no_complaint();
+  }
 }
 
 }  // namespace
