@@ -46,7 +46,7 @@ UnitRange unit_range(const Configuration& model, double diffusion_error) {
 
 struct ExplainCommand {
   ExplainJob job;
-  std::string series, out;
+  std::string series, ensembles, out;
   int runs = 8, jobs = 0;
   bool quiet = false;
 };
@@ -108,11 +108,16 @@ bool explain_series_data(const ExplainCommand& command, const SeriesSetup& setup
     std::printf("%s\nthe model: %s\n", title_of(data).c_str(), flags_text(model).c_str());
     std::fflush(stdout);
   }
-  const SeriesEnsemblesRequest request{looks(data),         command.runs,
-                                       command.jobs,        command.job.processors(),
-                                       command.job.without, command.quiet};
+  const bool own = command.ensembles.empty();
+  const fs::path simulations = own ? out / "ensembles" : fs::path(command.ensembles);
+  const SeriesEnsemblesRequest request{own ? looks(data) : looks_of_ensembles(simulations),
+                                       command.runs,
+                                       command.jobs,
+                                       command.job.processors(),
+                                       command.job.without,
+                                       command.quiet};
   const SeriesEnsembles ensembles =
-      numerically([&] { return run_series_ensembles(out / "ensembles", model, request); });
+      numerically([&] { return run_series_ensembles(simulations, model, request); });
   if (ensembles.stopped) return false;
   end_on_stop_signals(kInterrupted, go_on);
   SeriesRequest search{unit_range(model, command.job.diffusion_error)};
@@ -199,6 +204,9 @@ Action define_explain(CLI::App& app) {
   app.add_option("--runs", command->runs, "for --series: seeds of the model, and of each effect")
       ->check(CLI::Range(3, 1000))
       ->capture_default_str();
+  app.add_option("--ensembles", command->ensembles,
+                 "for --series: folder 'ensembles' of an earlier explanation of other series by "
+                 "the same model, whose simulations are used, and completed");
   app.add_option("--jobs", command->jobs,
                  "for --series: runs at a time; default: one for each processor")
       ->check(CLI::Range(1, 1024));

@@ -65,11 +65,13 @@ EffectTerm sized_term(const EffectSizing& sizing, const std::string& effect, std
   return sizing.term(effect, {candidate.step * (1 - mean), candidate.step * mean});
 }
 
+constexpr char kStrengths[] = "strengths.json";
+
 // What was found before; empty if that is nothing.
-Json saved_strengths(const fs::path& file, const std::string& identity) {
+Json saved_strengths(const fs::path& file, const std::string& identity, const Json& looks) {
   if (!fs::exists(file)) return Json::object();
   return from_json(file, [&](const Json& json) {
-    if (json.at("identity") != identity)
+    if (json.at("identity") != identity || json.at("looks") != looks)
       throw InputError("--out: " + file.parent_path().parent_path().string() +
                        " holds an explanation of another model, or of looks at other times; "
                        "choose another folder");
@@ -80,11 +82,11 @@ Json saved_strengths(const fs::path& file, const std::string& identity) {
 // The strengths of all effects, each found once.
 std::vector<EffectTerm> sizes(const fs::path& folder, const Configuration& model,
                               const SeriesEnsemblesRequest& request) {
-  const fs::path file = folder / "strengths.json";
-  const std::string identity = numerical_identity(ensemble_model(model, "", request.looks.end)) +
-                               "first look = " + format_number(request.looks.begin) + "\n";
+  const fs::path file = folder / kStrengths;
+  const std::string identity = numerical_identity(ensemble_model(model, "", request.looks.end));
+  const Json looks{request.looks.begin, request.looks.end};
   const BlindRequest asked = sizing_request(model, request);
-  Json strengths = saved_strengths(file, identity);
+  Json strengths = saved_strengths(file, identity, looks);
   std::optional<EffectSizing> sizing;
   std::vector<EffectTerm> terms;
   const std::vector<std::string> known = effects_to_hide();
@@ -97,7 +99,9 @@ std::vector<EffectTerm> sizes(const fs::path& folder, const Configuration& model
       tell(request, "how strong " + effect + " has to be");
       if (!sizing) sizing.emplace(asked);
       strengths[effect] = sized_term(*sizing, effect, k, asked.raft_fraction).values;
-      write_durably(file, Json{{"identity", identity}, {"strengths", strengths}}.dump(2) + "\n");
+      write_durably(
+          file,
+          Json{{"identity", identity}, {"looks", looks}, {"strengths", strengths}}.dump(2) + "\n");
     }
     terms.push_back({effect, strengths.at(effect)});
   }
@@ -119,6 +123,16 @@ EffectTerm within_range(EffectTerm term, const Units& units) {
   const double factor = to_model_units(spec.unit, units);
   term.values.front() = std::clamp(term.values.front(), factor * spec.min, factor * spec.max);
   return term;
+}
+
+Window looks_of_ensembles(const fs::path& folder) {
+  const fs::path file = folder / kStrengths;
+  if (!fs::exists(file))
+    throw InputError("--ensembles: " + folder.string() +
+                     " holds no simulations; it is the folder 'ensembles' of an explanation");
+  return from_json(file, [](const Json& json) {
+    return Window{json.at("looks").at(0), json.at("looks").at(1)};
+  });
 }
 
 void refuse_series(const MeasuredVesicles& data, const Configuration& model) {

@@ -26,6 +26,9 @@ struct SeriesEnsembles {
   std::vector<std::string> notes;  // effects whose runs failed
 };
 
+// The looks that the simulations in a folder are for. Throws InputError if there are none.
+Window looks_of_ensembles(const std::filesystem::path& folder);
+
 // As strong as the effect may be, if it would have to be stronger.
 EffectTerm within_range(EffectTerm term, const Units& units);
 

@@ -320,6 +320,24 @@ TEST(ExplainSeriesTest, SimulatesOnceAndSaysWhatSeriesTell) {
   ASSERT_EQ(testing::traceraft(command + model.string()).code, 0);
   EXPECT_EQ(fs::last_write_time(out / "ensembles/base/runs/seed-1"), before);
 
+  // Other vesicles are held against the same simulations.
+  const fs::path others = folder.path / "others", second = folder.path / "second";
+  ASSERT_EQ(testing::traceraft("data draw " + others.string() +
+                               " --seed 2 --facts " TRACERAFT_ROOT
+                               "/verification/data/published/guv-3to1.toml")
+                .code,
+            0);
+  const std::string of_others =
+      "explain --series " + others.string() + " --out " + second.string() +
+      command.substr(command.find(" --runs"), command.find(" --out") - command.find(" --runs")) +
+      " --model " + model.string() + " --ensembles ";
+  const auto compared = testing::traceraft(of_others + (out / "ensembles").string());
+  ASSERT_EQ(compared.code, 0) << compared.output;
+  EXPECT_NE(testing::content(second / "series.json"), testing::content(out / "series.json"));
+  EXPECT_FALSE(fs::exists(second / "ensembles"));
+  EXPECT_EQ(fs::last_write_time(out / "ensembles/base/runs/seed-1"), before);
+  EXPECT_EQ(testing::traceraft(of_others + others.string()).code, 2);
+
   const auto extended =
       testing::traceraft(command + model.string() + " --effect gravity:strength=0.1");
   EXPECT_EQ(extended.code, 2);
