@@ -110,14 +110,14 @@ bool explain_series_data(const ExplainCommand& command, const SeriesSetup& setup
   }
   const bool own = command.ensembles.empty();
   const fs::path simulations = own ? out / "ensembles" : fs::path(command.ensembles);
-  const SeriesEnsemblesRequest request{own ? looks(data) : looks_of_ensembles(simulations),
-                                       command.runs,
-                                       command.jobs,
-                                       command.job.processors(),
-                                       command.job.without,
-                                       command.quiet};
-  const SeriesEnsembles ensembles =
+  SeriesEnsemblesRequest request{looks(data),         command.runs,
+                                 command.jobs,        command.job.processors(),
+                                 command.job.without, command.quiet};
+  if (!own) take_over_ensembles(simulations, request);
+  SeriesEnsembles ensembles =
       numerically([&] { return run_series_ensembles(simulations, model, request); });
+  if (const std::string note = note_on_looks(request.looks, looks(data)); !note.empty())
+    ensembles.notes.push_back(note);
   if (ensembles.stopped) return false;
   end_on_stop_signals(kInterrupted, go_on);
   SeriesRequest search{unit_range(model, command.job.diffusion_error)};
@@ -171,6 +171,8 @@ int explain(ExplainCommand command) {
   if (command.job.data.empty() && command.series.empty())
     throw InputError("--data or --series: say which measurements to explain");
   find_series(command);
+  if (command.series.empty() && !command.ensembles.empty())
+    throw InputError("--ensembles: there are no series to hold against them");
   for (const std::string& effect : command.job.without) (void)effects().find(effect);
   std::optional<ExplainSetup> fields;
   std::optional<SeriesSetup> series;
@@ -178,7 +180,7 @@ int explain(ExplainCommand command) {
   if (!command.job.data.empty()) fields = read_explain_job(command.job);
   const fs::path out = command.out.empty() ? first_free_folder("explain") : command.out;
   refuse_to_overwrite(command, out);
-  refuse_foreign_folder(out, {"search.json", "ensembles"});
+  refuse_foreign_folder(out, {"search.json", "ensembles", "series.json"});
   fs::create_directories(out);
   const FolderLock lock(out);
   // The search is on disk after every refit.
@@ -206,7 +208,8 @@ Action define_explain(CLI::App& app) {
       ->capture_default_str();
   app.add_option("--ensembles", command->ensembles,
                  "for --series: folder 'ensembles' of an earlier explanation of other series by "
-                 "the same model, whose simulations are used, and completed");
+                 "the same model, whose simulations are used, and completed")
+      ->excludes("--runs");
   app.add_option("--jobs", command->jobs,
                  "for --series: runs at a time; default: one for each processor")
       ->check(CLI::Range(1, 1024));

@@ -8,8 +8,6 @@
 namespace traceraft {
 namespace {
 
-// Two-sided 95 % of a normal distribution.
-
 // D is known by its logarithm: far from certain, it is so within a factor.
 std::string interval_of(const FoundParameter& p) {
   constexpr double kLinear = 0.3, kHopeless = 1000;

@@ -6,6 +6,7 @@
 
 #include "backends/posix/process.hpp"
 #include "drivers/config/config_file.hpp"
+#include "drivers/ensemble/ensemble_folder.hpp"
 #include "drivers/ensemble/ensemble_point.hpp"
 #include "drivers/explain/explain_run.hpp"
 #include "drivers/explain/found_parameters.hpp"
@@ -71,10 +72,10 @@ constexpr char kStrengths[] = "strengths.json";
 Json saved_strengths(const fs::path& file, const std::string& identity, const Json& looks) {
   if (!fs::exists(file)) return Json::object();
   return from_json(file, [&](const Json& json) {
-    if (json.at("identity") != identity || json.at("looks") != looks)
-      throw InputError("--out: " + file.parent_path().parent_path().string() +
-                       " holds an explanation of another model, or of looks at other times; "
-                       "choose another folder");
+    if (json.value("identity", "") != identity || json.value("looks", Json()) != looks)
+      throw InputError(file.parent_path().string() +
+                       " holds simulations of another model, by an earlier version, or for looks "
+                       "at other times; choose another --out or --ensembles");
     return json.at("strengths");
   });
 }
@@ -125,14 +126,27 @@ EffectTerm within_range(EffectTerm term, const Units& units) {
   return term;
 }
 
-Window looks_of_ensembles(const fs::path& folder) {
+void take_over_ensembles(const fs::path& folder, SeriesEnsemblesRequest& request) {
   const fs::path file = folder / kStrengths;
-  if (!fs::exists(file))
+  const EnsembleFolder base(folder / "base");
+  if (!fs::exists(file) || !base.started())
     throw InputError("--ensembles: " + folder.string() +
                      " holds no simulations; it is the folder 'ensembles' of an explanation");
-  return from_json(file, [](const Json& json) {
+  request.runs = base.load().runs;
+  request.looks = from_json(file, [&](const Json& json) {
+    if (!json.contains("looks"))
+      throw InputError("--ensembles: " + folder.string() + " is by an earlier version");
     return Window{json.at("looks").at(0), json.at("looks").at(1)};
   });
+}
+
+std::string note_on_looks(const Window& simulated, const Window& measured) {
+  constexpr double kFar = 3;
+  if (measured.end < kFar * simulated.end && measured.end > simulated.end / kFar) return "";
+  return formatted(
+      "The effects are as strong as looks from %.3g to %.3g s would show them, the measurements "
+      "are from %.3g to %.3g s.",
+      simulated.begin, simulated.end, measured.begin, measured.end);
 }
 
 void refuse_series(const MeasuredVesicles& data, const Configuration& model) {
@@ -156,6 +170,7 @@ SeriesEnsembles run_series_ensembles(const fs::path& folder, const Configuration
   catch_stop_signals();
   const Units units = model.units();
   SeriesEnsembles result;
+  result.folder = fs::absolute(folder).lexically_normal();
   std::size_t ensembles = 0;
   const auto simulate = [&](const std::string& name, const std::string& effect,
                             const std::string& label) {

@@ -19,6 +19,7 @@ struct SeriesEnsemblesRequest {
 };
 
 struct SeriesEnsembles {
+  std::filesystem::path folder;
   bool stopped = false;  // there is more to do
   std::vector<History> base;
   std::vector<SeriesCandidate> candidates;
@@ -26,8 +27,12 @@ struct SeriesEnsembles {
   std::vector<std::string> notes;  // effects whose runs failed
 };
 
-// The looks that the simulations in a folder are for. Throws InputError if there are none.
-Window looks_of_ensembles(const std::filesystem::path& folder);
+// What the simulations of an earlier explanation are, for other data: the looks that they are for,
+// and how many runs. Throws InputError if there are none.
+void take_over_ensembles(const std::filesystem::path& folder, SeriesEnsemblesRequest& request);
+
+// If data are looked at when those effects had no time to act, or too much: a sentence, else "".
+std::string note_on_looks(const Window& simulated, const Window& measured);
 
 // As strong as the effect may be, if it would have to be stronger.
 EffectTerm within_range(EffectTerm term, const Units& units);

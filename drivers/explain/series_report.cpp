@@ -234,7 +234,7 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
     const Chart chart = curve_chart(quantity, data, simulated, found);
     add_chart(page, chart, folder / (std::string("series-") + name_of(quantity).id), missing);
   }
-  page.paragraph(program_text() + ".");
+  page.paragraph(program_text() + "; simulations in " + simulated.folder.string() + ".");
   write_durably(folder / "series.html", page.html());
   write_durably(folder / "series.json", series_json(model, simulated, found, laws).dump(2) + "\n");
   if (quiet) return;

@@ -154,6 +154,7 @@ Json series_json(const Configuration& model, const SeriesEnsembles& ensembles,
           {"scores", scores_json(model, ensembles, found)},
           {"classes", found.classes},
           {"ties", ties},
+          {"simulations", ensembles.folder.string()},
           {"exponents", exponents},
           {"program", program_text()}};
 }

@@ -7,6 +7,7 @@
 #include "drivers/ensemble/ensemble_report.hpp"
 #include "drivers/ensemble/histories_file.hpp"
 #include "drivers/input/csv_table.hpp"
+#include "drivers/input/model_of_data.hpp"
 #include "drivers/output/chart.hpp"
 #include "drivers/output/json_file.hpp"
 #include "drivers/output/page.hpp"
@@ -123,8 +124,7 @@ void fill_run(Page& page, const fs::path& folder, const PageRequest& request, Mi
   add_surface(page, folder, request, missing);
   page.heading("In time");
   if (request.data)
-    page.paragraph("Beside " + about_data(*request.data) +
-                   "; their perimeters over radius are those of a vesicle of this one's radius.");
+    page.paragraph("Perimeters that were measured are drawn for a vesicle of this one's radius.");
   const CsvTable series = CsvTable::read(folder / "series.csv");
   for (const Curve& curve : curves()) {
     Chart chart = series_chart(series, curve, length, time);
@@ -160,12 +160,11 @@ void add_all_runs(Page& page, const std::vector<History>& runs, bool physical,
                   const PageRequest& request, Missing& missing) {
   const EnsembleSummary summary = summarise(runs);
   page.heading("All runs");
-  if (request.data) page.paragraph("Beside " + about_data(*request.data) + ".");
-  for (const Quantity quantity : kQuantities)
-    add_chart(page,
-              request.data ? comparison_chart(*request.data, summary, quantity)
-                           : ensemble_chart(summary, quantity, physical),
-              request.charts / name_of(quantity).id, missing);
+  for (const Quantity quantity : kQuantities) {
+    Chart chart = ensemble_chart(summary, quantity, physical);
+    if (request.data) chart.series.push_back(measured_points(*request.data, quantity));
+    add_chart(page, chart, request.charts / name_of(quantity).id, missing);
+  }
   page.heading("Numbers");
   page.table(ensemble_rows(summary, physical));
 }
@@ -206,6 +205,13 @@ void fill_ensemble(Page& page, const fs::path& path, const PageRequest& request,
   add_all_runs(page, runs, !units.scaled, request, missing);
   add_comparison(page, path, runs.size());
   add_ensemble_origin(page, folder, configuration);
+}
+
+void introduce(const MeasuredVesicles& data, const fs::path& folder, Page& page) {
+  page.paragraph("Beside " + about_data(data) + ".");
+  const Configuration model(read_config_file(folder / "config.toml"), {});
+  if (const std::string other = other_membrane(data.composition, model); !other.empty())
+    page.paragraph("ANOTHER MEMBRANE: the simulations are of " + other + ".");
 }
 
 }  // namespace
@@ -257,6 +263,7 @@ std::string write_report_page(const fs::path& folder, const fs::path& out,
   make_folder(request.charts);
   Page page("traceraft: " + fs::absolute(folder).lexically_normal().filename().string());
   Missing missing;
+  if (request.data) introduce(*request.data, folder, page);
   if (is_run(folder))
     fill_run(page, folder, request, missing);
   else if (kept)

@@ -327,16 +327,28 @@ TEST(ExplainSeriesTest, SimulatesOnceAndSaysWhatSeriesTell) {
                                "/verification/data/published/guv-3to1.toml")
                 .code,
             0);
-  const std::string of_others =
-      "explain --series " + others.string() + " --out " + second.string() +
-      command.substr(command.find(" --runs"), command.find(" --out") - command.find(" --runs")) +
-      " --model " + model.string() + " --ensembles ";
+  const std::size_t without = command.find("--without"), end_of_without = command.find(" --out");
+  const std::string of_others = "explain --series " + others.string() + " --replicates 49 --out " +
+                                second.string() + " " +
+                                command.substr(without, end_of_without - without) + " --model " +
+                                model.string() + " --ensembles ";
   const auto compared = testing::traceraft(of_others + (out / "ensembles").string());
   ASSERT_EQ(compared.code, 0) << compared.output;
   EXPECT_NE(testing::content(second / "series.json"), testing::content(out / "series.json"));
   EXPECT_FALSE(fs::exists(second / "ensembles"));
   EXPECT_EQ(fs::last_write_time(out / "ensembles/base/runs/seed-1"), before);
-  EXPECT_EQ(testing::traceraft(of_others + others.string()).code, 2);
+  ASSERT_EQ(testing::traceraft(of_others + (out / "ensembles").string()).code, 0) << "once more";
+  const auto nothing = testing::traceraft(of_others + others.string());
+  EXPECT_EQ(nothing.code, 2);
+  EXPECT_NE(nothing.output.find("--ensembles: "), std::string::npos) << nothing.output;
+  const auto older = nlohmann::json::parse(testing::content(out / "ensembles/strengths.json"));
+  write_durably(
+      out / "ensembles/strengths.json",
+      nlohmann::json{{"identity", older["identity"]}, {"strengths", older["strengths"]}}.dump());
+  const auto earlier = testing::traceraft(of_others + (out / "ensembles").string());
+  EXPECT_EQ(earlier.code, 2);
+  EXPECT_NE(earlier.output.find("by an earlier version"), std::string::npos) << earlier.output;
+  write_durably(out / "ensembles/strengths.json", older.dump());
 
   const auto extended =
       testing::traceraft(command + model.string() + " --effect gravity:strength=0.1");

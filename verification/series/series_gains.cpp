@@ -36,7 +36,9 @@ MeasuredVesicles draw_base(const MeasuredVesicles& data, const std::vector<Histo
         const double t = data.measurements[i].time / std::exp(fit.ln_unit);
         double& value = drawn_data.measurements[i].values[q].emplace(0);
         if (run.at(Quantity::rafts, t) < 1) continue;
-        const double stated = data.measurements[i].sigma_of(quantity) / measured;
+        // As it is known in SeriesMetric: of counts by the number that is expected.
+        const double expected = quantity == Quantity::rafts ? run.at(quantity, t) : measured;
+        const double stated = data.measurements[i].sigma_of(quantity) / expected;
         const double own =
             stated * normal_random(replicate, kStated, look) +
             fit.scatter.vesicle[q] * normal_random(replicate, kVesicle, 3 * vesicle + q) +

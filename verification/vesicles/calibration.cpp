@@ -54,14 +54,16 @@ CalibratedParameter parameter(const std::string& name, const std::vector<double>
               high < searched.high - edge};
 }
 
-void set_best_powers(const Eigen::MatrixXd& spread, Calibration& result) {
+// The variance of resamples of n is (n − 1)/n of what it has to be.
+void set_best_powers(const Eigen::MatrixXd& spread, double samples, Calibration& result) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> directions(spread);
   Vec powers = directions.eigenvectors().col(0);
   powers[0] = -powers[0];  // of D, not of R²/D
   Eigen::Index largest = 0;
   powers.cwiseAbs().maxCoeff(&largest);
   result.best_deviation =
-      std::sqrt(std::max(0.0, directions.eigenvalues()[0])) / std::fabs(powers[largest]);
+      std::sqrt(std::max(0.0, directions.eigenvalues()[0]) * samples / (samples - 1)) /
+      std::fabs(powers[largest]);
   powers /= powers[largest];
   result.best_powers.assign(powers.data(), powers.data() + powers.size());
 }
@@ -105,7 +107,7 @@ Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtPara
   result.correlation =
       deviation.cwiseInverse().asDiagonal() * spread * deviation.cwiseInverse().asDiagonal();
   result.correlation.diagonal().setOnes();  // also of what did not vary at all
-  set_best_powers(spread, result);
+  set_best_powers(spread, fit.samples(), result);
   for (const JointFit& point : fit.at_points()) result.at_points.push_back(point.time);
   result.best = fit.found().time;
   result.at_bound = count_at_bound(result.at_points, unit.allowed);

@@ -25,7 +25,7 @@ constexpr int kResampled = 400;
 constexpr double kConfidence = 0.95;
 constexpr std::size_t kLeastPoints = 4;
 constexpr int kLeastVesicles = 3;
-constexpr double kLeastPerimeter = 1e-3;  // a run may have no raft for a moment
+constexpr double kLeastPerimeter = 1e-3;  // of rafts, over the radius
 
 // For a given t0 the rest is a line through logarithms.
 PowerLaw law_from(const Points& points, double t0) {
@@ -147,7 +147,7 @@ std::optional<FittedLaw> fit_runs(const std::vector<History>& runs,
         for (const double t : within) {
           double sum = 0;
           for (const int k : sample)
-            sum += std::log(std::max(runs[k].at(Quantity::perimeter, t), kLeastPerimeter));
+            sum += logarithm_of(Quantity::perimeter, runs[k].at(Quantity::perimeter, t));
           points.emplace_back(t, std::exp(sum / static_cast<double>(sample.size())));
         }
         return points;
