@@ -208,8 +208,10 @@ void fill_ensemble(Page& page, const fs::path& path, const PageRequest& request,
 }
 
 void introduce(const MeasuredVesicles& data, const fs::path& folder, Page& page) {
-  page.paragraph("Beside " + about_data(data) + ".");
   const Configuration model(read_config_file(folder / "config.toml"), {});
+  if (model.units().scaled)
+    throw InputError("--data: times of " + folder.string() + " are in units of R^2/D, not in s");
+  page.paragraph("Beside " + about_data(data) + ".");
   if (const std::string other = other_membrane(data.composition, model); !other.empty())
     page.paragraph("ANOTHER MEMBRANE: the simulations are of " + other + ".");
 }
@@ -257,13 +259,11 @@ std::string write_report_page(const fs::path& folder, const fs::path& out,
   if (!is_run(folder) && !is_ensemble(folder) && !kept)
     throw InputError(folder.string() +
                      " holds no run, ensemble, comparison or verification of traceraft");
-  if (request.data && Configuration(read_config_file(folder / "config.toml"), {}).units().scaled)
-    throw InputError("--data: times of " + folder.string() + " are in units of R^2/D, not in s");
+  Page page("traceraft: " + fs::absolute(folder).lexically_normal().filename().string());
+  if (request.data) introduce(*request.data, folder, page);
   make_folder(out.parent_path());
   make_folder(request.charts);
-  Page page("traceraft: " + fs::absolute(folder).lexically_normal().filename().string());
   Missing missing;
-  if (request.data) introduce(*request.data, folder, page);
   if (is_run(folder))
     fill_run(page, folder, request, missing);
   else if (kept)

@@ -1,16 +1,10 @@
 #include "verification/series/series_metric.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "verification/measure/log_of_product.hpp"
 
 namespace traceraft {
-namespace {
-
-constexpr double kRoundingVariance = 1 / 12.0;  // of a whole number
-
-}  // namespace
 
 std::vector<SeriesBlock> blocks_of(const MeasuredVesicles& data) {
   std::vector<SeriesBlock> blocks;
@@ -23,9 +17,8 @@ std::vector<SeriesBlock> blocks_of(const MeasuredVesicles& data) {
         if (!(value > 0) || !(m.time > 0)) continue;
         t.push_back(std::log(m.time));
         y.push_back(logarithm_of(quantity, value));
-        const double sigma2 = std::pow(m.sigma_of(quantity), 2);
-        variance.push_back(quantity == Quantity::rafts ? std::max(sigma2, kRoundingVariance)
-                                                       : sigma2 / (value * value));
+        variance.push_back(m.variance_of(quantity) /
+                           (quantity == Quantity::rafts ? 1 : value * value));
       }
       const auto vec = [](const std::vector<double>& v) {
         return Vec(Eigen::Map<const Vec>(v.data(), static_cast<Eigen::Index>(v.size())));

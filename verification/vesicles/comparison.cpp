@@ -16,9 +16,6 @@ bool relative(Quantity quantity) {
   return quantity != Quantity::fraction;
 }
 
-// Rounding to whole rafts alone has this deviation.
-const double kRoundingDeviation = 1 / std::sqrt(12.0);
-
 struct Deviation {
   std::string vesicle;
   double ln_time;
@@ -37,8 +34,7 @@ Deviation deviation_of(const Measurement& m, Quantity quantity,
   for (const History* run : runs) values.push_back(run->at(quantity, m.time));
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   const bool within = y >= *low && y <= *high;
-  double sigma =
-      std::max(m.sigma_of(quantity), quantity == Quantity::rafts ? kRoundingDeviation : 0.0);
+  double sigma = std::sqrt(m.variance_of(quantity));
   if (relative(quantity))
     for (double& value : values) value = logarithm_of(quantity, value);
   const Moments runs_here = moments(values);

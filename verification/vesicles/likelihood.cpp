@@ -11,7 +11,6 @@
 namespace traceraft {
 namespace {
 
-constexpr double kRoundingVariance = 1 / 12.0;  // of a whole number
 constexpr double kUsualScatter = 0.1, kLargestScatter = 1;
 
 double square(double x) {
@@ -74,8 +73,7 @@ std::vector<Look> looks_of(const MeasuredVesicles& data, const std::vector<int>&
       if (const auto& p = m.of(Quantity::perimeter); p && *p > 0)
         look.perimeter = {std::log(*p), square(m.sigma_of(Quantity::perimeter) / *p)};
       if (const auto& n = m.of(Quantity::rafts); n && *n > 0)
-        look.rafts = {std::log(*n),
-                      std::max(kRoundingVariance, square(m.sigma_of(Quantity::rafts)))};
+        look.rafts = {std::log(*n), m.variance_of(Quantity::rafts)};
       if (look.perimeter || look.rafts) looks.push_back(look);
     }
   return looks;

@@ -25,6 +25,12 @@ struct Measurement {
   double sigma_of(Quantity quantity) const {
     return sigma[static_cast<std::size_t>(quantity)].value_or(0);
   }
+  // Of counts, that of rounding to whole numbers at least.
+  double variance_of(Quantity quantity) const {
+    constexpr double kRounding = 1 / 12.0;
+    const double stated = sigma_of(quantity) * sigma_of(quantity);
+    return quantity == Quantity::rafts && stated < kRounding ? kRounding : stated;
+  }
   // Rafts whose perimeter or number was measured.
   bool shows_rafts() const {
     return of(Quantity::perimeter).value_or(0) > 0 || of(Quantity::rafts).value_or(0) > 0;
