@@ -23,8 +23,9 @@ namespace fs = std::filesystem;
 
 constexpr int kOfCharts = 10;  // of the curves of charts and power laws
 
-std::string vesicles_text(double count) {
-  return count < 1e4 ? formatted("%.0f", std::ceil(count)) : "more than 10000";
+std::string vesicles_text(double count, const SeriesExplanation& found) {
+  return std::isfinite(count) ? formatted("%.0f", std::ceil(count))
+                              : formatted("more than %.0f", found.most_vesicles);
 }
 
 std::string sentence(const SeriesExplanation& found) {
@@ -74,8 +75,8 @@ std::vector<Row> offset_rows(const SeriesExplanation& found) {
   return rows;
 }
 
-std::string advice(const SeriesTie& tie) {
-  return vesicles_text(tie.vesicles) + " vesicles like these would tell " + tie.effect + " from " +
+std::string advice(const SeriesTie& tie, const SeriesExplanation& found) {
+  return vesicles_text(tie.vesicles, found) + " vesicles like these would tell " + tie.effect + " from " +
          tie.other + ", above all by their " + name_of(tie.telling).label +
          "; one vesicle with fields at 8 times tells more (traceraft explain --data).";
 }
@@ -89,7 +90,7 @@ std::vector<Row> score_rows(const Configuration& model, const SeriesExplanation&
                     formatted("%.3f", s.p), scale.parameter,
                     s.bounded ? formatted("%.3g", scale.factor * s.low) : "",
                     s.bounded ? formatted("%.3g", scale.factor * s.high) : "not determined",
-                    scale.unit, vesicles_text(s.vesicles), name_of(s.telling).label});
+                    scale.unit, vesicles_text(s.vesicles, found), name_of(s.telling).label});
   }
   return rows;
 }
@@ -207,7 +208,7 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
   std::vector<std::string> words{title_of(data) + ": " + std::to_string(found.vesicles) +
                                      " vesicles, " + std::to_string(found.looks) + " looks.",
                                  sentence(found), ground(found, simulated, request)};
-  for (const SeriesTie& tie : found.ties) words.push_back(advice(tie));
+  for (const SeriesTie& tie : found.ties) words.push_back(advice(tie, found));
   words.push_back(diffusion_sentence(model, found));
   if (const std::string onset = onset_note(data, ensembles.base); !onset.empty())
     words.push_back(onset);

@@ -103,7 +103,7 @@ TEST(CampaignReport, CountsPairsOnceInWhateverOrder) {
 
 // Cases that are kept, and carried on by another build.
 TEST(CampaignReport, TellsWhichBuildsExplained) {
-  const fs::path folder = fs::path(testing::TempDir()) / "campaign-of-builds";
+  const fs::path folder = fs::path(::testing::TempDir()) / "campaign-of-builds";
   fs::create_directories(folder);
   const CampaignFolder campaign(folder);
   Scores all = scores();
@@ -123,7 +123,7 @@ TEST(CampaignReport, TellsWhichBuildsExplained) {
 
 // Earlier tables do not say it.
 TEST(CampaignReport, ReadsCasesOfNoKnownBuild) {
-  const fs::path csv = fs::path(testing::TempDir()) / "cases-of-no-build.csv";
+  const fs::path csv = fs::path(::testing::TempDir()) / "cases-of-no-build.csv";
   write_durably(csv,
                 "case,hidden,verdict,found,outcome,error,deviations,p,base gap,named gap,placebo "
                 "gap,floor,seconds\nnull-000,,none,,right,,,0.9,0.3,0.3,,0.3,36\n");

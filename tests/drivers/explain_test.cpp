@@ -307,7 +307,8 @@ TEST(ExplainSeriesTest, SimulatesOnceAndSaysWhatSeriesTell) {
   EXPECT_EQ(series["verdict"], "unnamed") << series.dump(2);
   ASSERT_EQ(series["scores"].size(), 2u);
   EXPECT_EQ(series["vesicles"], 17);
-  for (const auto& score : series["scores"]) EXPECT_GT(score["vesicles_needed"], 0);
+  for (const auto& score : series["scores"])
+    EXPECT_TRUE(score["vesicles_needed"].is_null() || score["vesicles_needed"] > 0) << score;
   EXPECT_EQ(series["exponents"][0]["model"], "synthetic data");
   EXPECT_NEAR(series["exponents"][0]["b"], -0.37, 0.1);  // as published
   const auto verdict = nlohmann::json::parse(testing::content(out / "verdict.json"));

@@ -8,6 +8,7 @@
 #include "verification/explain/fit/score_test.hpp"
 #include "verification/explain/search/bounds.hpp"
 #include "verification/measure/fit.hpp"
+#include "verification/series/series_need.hpp"
 #include "verification/series/series_responses.hpp"
 
 namespace traceraft {
@@ -50,10 +51,12 @@ class SeriesSearch {
         gains_(gains_of(data, curves_, candidates, request.unit)),
         responses_(blocks_of(data), curves_, gains_.base, request.unit),
         classes_(classes_of(responses_, candidates.size())),
-        null_(null_of(data, base, candidates, gains_.base, request.unit, request.replicates)) {}
+        null_(null_of(data, base, candidates, gains_.base, request.unit, request.replicates)),
+        noise_(noise_of_more(data, base, candidates, gains_.base, request.unit, null_)) {}
 
   SeriesExplanation run() {
     result_.vesicles = static_cast<int>(data_.vesicles().size());
+    result_.most_vesicles = kMostTimes * result_.vesicles;
     result_.looks = static_cast<int>(data_.measurements.size());
     result_.base = gains_.base;
     result_.unit_deviation =
@@ -99,14 +102,13 @@ class SeriesSearch {
             std::min(least * candidate.strength, most * candidate.strength),
             std::max(least * candidate.strength, most * candidate.strength),
             most <= kLargestAmplitude && least >= -kLargestAmplitude,
-            needed(responses_.of(k), noise),
+            needed(responses_.of(k), k),
             responses_.telling(responses_.of(k))};
   }
 
-  // Vesicles like these that show it, noise being as it is.
-  double needed(const SeriesResponse& response, double noise) const {
-    return static_cast<double>(data_.vesicles().size()) *
-           responses_.times_needed(response, kSeen * kSeen * std::max(1.0, noise));
+  // Vesicles like these that show it beside what noise gains by effect k.
+  double needed(const SeriesResponse& response, std::size_t k) const {
+    return result_.vesicles * times_needed(responses_.products(response), noise_[k]);
   }
 
   std::vector<std::string> names_of(const std::vector<std::size_t>& members) const {
@@ -173,7 +175,7 @@ class SeriesSearch {
         const SeriesResponse difference =
             gains_.fits[best].amplitude * responses_.beyond(best, other);
         result_.ties.push_back({candidates_[best].effect, candidates_[other].effect,
-                                needed(difference, noise), responses_.telling(difference)});
+                                needed(difference, best), responses_.telling(difference)});
       }
     }
   }
@@ -186,6 +188,7 @@ class SeriesSearch {
   const SeriesResponses responses_;
   const SeriesClasses classes_;
   const SeriesNull null_;
+  const std::vector<SeriesNoise> noise_;  // per candidate
   SeriesExplanation result_;
 };
 

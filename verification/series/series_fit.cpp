@@ -25,8 +25,8 @@ class Fitter {
          const SeriesFit& start)
       : blocks_(blocks),
         model_(model),
-        centre_(std::log(unit.start)),
-        least_(std::min(unit.lowest(), unit.highest())),  // the runs may end before what is drawn
+        centre_(std::log(unit.start) + unit.drawn),
+        least_(unit.lowest()),
         most_(unit.highest()),
         weight_(1 / (unit.deviation() * unit.deviation())),
         fit_(start) {

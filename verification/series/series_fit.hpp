@@ -34,6 +34,7 @@ struct UnitRange {
   double start, factor;
   double least = 0;
   double reach = 1;  // of the fit, beyond the factor if larger than 1: a power of it
+  double drawn = 0;  // in data that are drawn: ln of what is said to be known, over start
 
   double deviation() const;  // of ln of the unit, before
   // Of ln of the unit, where a fit may end.

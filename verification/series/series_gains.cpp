@@ -23,6 +23,7 @@ enum SeriesStream : std::uint64_t {
 MeasuredVesicles draw_base(const MeasuredVesicles& data, const std::vector<History>& runs,
                            const SeriesFit& fit, std::uint64_t replicate) {
   MeasuredVesicles drawn_data = data;
+  const StatedErrors errors(data);
   std::uint64_t vesicle = 0, look = 0;
   for (const auto& [first, last] : data.vesicles()) {
     const History& run = runs[static_cast<std::size_t>(
@@ -36,25 +37,29 @@ MeasuredVesicles draw_base(const MeasuredVesicles& data, const std::vector<Histo
         const double t = data.measurements[i].time / std::exp(fit.ln_unit);
         double& value = drawn_data.measurements[i].values[q].emplace(0);
         if (run.at(Quantity::rafts, t) < 1) continue;
-        // As it is known in SeriesMetric: of counts by the number that is expected.
-        const double expected = quantity == Quantity::rafts ? run.at(quantity, t) : measured;
-        const double stated = data.measurements[i].sigma_of(quantity) / expected;
+        const Measurement& m = data.measurements[i];
+        const double expected = logarithm_of(quantity, run.at(quantity, t));
+        const double stated = std::sqrt(errors.of(m, quantity).stated(expected));
         const double own =
             stated * normal_random(replicate, kStated, look) +
             fit.scatter.vesicle[q] * normal_random(replicate, kVesicle, 3 * vesicle + q) +
             fit.scatter.look[q] * normal_random(replicate, kLook, look);
-        value = std::exp(logarithm_of(quantity, run.at(quantity, t)) + own);
+        value = std::exp(expected + own);
         if (quantity == Quantity::rafts) value = std::max(1.0, std::round(value));
+        drawn_data.measurements[i].sigma[q] =
+            m.sigma_of(quantity) * std::pow(value / measured, errors.power(quantity));
       }
     ++vesicle;
   }
   return drawn_data;
 }
 
-// What is known of D before is a measurement, too.
+// What is known of D before is a measurement, too. The fit ends where it did: with other ends the
+// data of some sets would lie beyond them.
 UnitRange draw_unit(const SeriesFit& fit, const UnitRange& unit, std::uint64_t replicate) {
   UnitRange drawn = unit;
-  drawn.start = std::exp(fit.ln_unit + unit.deviation() * normal_random(replicate, kUnit, 0));
+  drawn.drawn =
+      fit.ln_unit - std::log(unit.start) + unit.deviation() * normal_random(replicate, kUnit, 0);
   return drawn;
 }
 

@@ -8,22 +8,23 @@ namespace traceraft {
 
 std::vector<SeriesBlock> blocks_of(const MeasuredVesicles& data) {
   std::vector<SeriesBlock> blocks;
+  const StatedErrors errors(data);
   for (const auto& [first, last] : data.vesicles())
     for (const Quantity quantity : kQuantities) {
-      std::vector<double> t, y, variance;
+      std::vector<double> t, y;
+      std::vector<StatedError> stated;
       for (std::size_t i = first; i < last; ++i) {
         const Measurement& m = data.measurements[i];
         const double value = m.of(quantity).value_or(0);
         if (!(value > 0) || !(m.time > 0)) continue;
         t.push_back(std::log(m.time));
         y.push_back(logarithm_of(quantity, value));
-        variance.push_back(m.variance_of(quantity) /
-                           (quantity == Quantity::rafts ? 1 : value * value));
+        stated.push_back(errors.of(m, quantity));
       }
       const auto vec = [](const std::vector<double>& v) {
         return Vec(Eigen::Map<const Vec>(v.data(), static_cast<Eigen::Index>(v.size())));
       };
-      if (!t.empty()) blocks.push_back({quantity, vec(t), vec(y), vec(variance)});
+      if (!t.empty()) blocks.push_back({quantity, vec(t), vec(y), std::move(stated)});
     }
   return blocks;
 }
@@ -31,9 +32,8 @@ std::vector<SeriesBlock> blocks_of(const MeasuredVesicles& data) {
 Vec known_variance(const std::vector<SeriesBlock>& blocks, const RunCurves& base, double ln_unit) {
   return per_look(blocks, [&](const SeriesBlock& block, Eigen::Index i) {
     const double t = block.ln_t[i] - ln_unit;
-    const double expected =
-        block.quantity == Quantity::rafts ? std::exp(base.mean(block.quantity, t)) : 1.0;
-    return block.variance[i] / (expected * expected) + base.variance(block.quantity, t);
+    return block.stated[static_cast<std::size_t>(i)].of_logarithm(base.mean(block.quantity, t)) +
+           base.variance(block.quantity, t);
   });
 }
 

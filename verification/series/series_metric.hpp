@@ -8,16 +8,16 @@
 #include "kernel/core/types.hpp"
 #include "verification/series/run_curves.hpp"
 #include "verification/vesicles/measurements.hpp"
+#include "verification/vesicles/stated_errors.hpp"
 
 namespace traceraft {
 
 // Looks at one quantity of one vesicle.
 struct SeriesBlock {
   Quantity quantity;
-  Vec ln_t;      // of seconds
-  Vec values;    // logarithms
-  Vec variance;  // of what the data state: of counts that of rounding at least, and not of
-                 // logarithms
+  Vec ln_t;    // of seconds
+  Vec values;  // logarithms
+  std::vector<StatedError> stated;
 };
 // Values that are not positive say nothing.
 std::vector<SeriesBlock> blocks_of(const MeasuredVesicles& data);
@@ -41,8 +41,7 @@ Vec per_look(const std::vector<SeriesBlock>& blocks, const Value& value) {
 
 // With an entry per look: the variance without the scatter that is fitted, that of what the data
 // state and that between runs, of which each vesicle is one. (What looks at one vesicle share of
-// the latter is left to the fitted scatter.) Counts have it by the number that is expected: by the
-// one that was counted small ones would weigh less.
+// the latter is left to the fitted scatter.)
 Vec known_variance(const std::vector<SeriesBlock>& blocks, const RunCurves& base, double ln_unit);
 
 // The inner product in which looks are independent and of variance 1, of vectors with an entry per

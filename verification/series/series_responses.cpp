@@ -44,19 +44,11 @@ double SeriesResponses::correlation(std::size_t j, std::size_t k) const {
   return norm > 0 ? product(own_[j], own_[k]) / norm : 0;
 }
 
-// Of f times as many vesicles the looks' products are f times as large: f ee − f² ue²/(f uu + w)
-// with what the effect does, e, what another D does, u, and what is known of D, w.
-double SeriesResponses::times_needed(const SeriesResponse& response, double square) const {
+SeriesProducts SeriesResponses::products(const SeriesResponse& own) const {
   const Vec& u = by_unit_.looks;
-  const double w = by_unit_.unit * by_unit_.unit;
-  const Vec e = response.looks - response.unit / by_unit_.unit * u;
-  const double ee = metric_.product(e, e), ue = metric_.product(u, e), uu = metric_.product(u, u);
-  const double a = std::max(ee * uu - ue * ue, 0.0), b = ee * w - square * uu, c = square * w;
-  const double root = std::sqrt(b * b + 4 * a * c);
-  // Of the two ways to write the positive root of a f² + b f = c the one without cancellation.
-  const double f =
-      b >= 0 ? 2 * c / std::max(b + root, 1e-300) : (root - b) / std::max(2 * a, 1e-300);
-  return std::min(f, 1e12);
+  const Vec e = own.looks - own.unit / by_unit_.unit * u;
+  return {metric_.product(e, e), metric_.product(u, e), metric_.product(u, u),
+          by_unit_.unit * by_unit_.unit};
 }
 
 Quantity SeriesResponses::telling(const SeriesResponse& e) const {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "verification/series/series_gains.hpp"
+#include "verification/series/series_need.hpp"
 
 namespace traceraft {
 
@@ -24,9 +25,8 @@ class SeriesResponses {
   // What effect k does of which no amount of effect j is capable.
   SeriesResponse beyond(std::size_t k, std::size_t j) const;
   double correlation(std::size_t j, std::size_t k) const;
-  // How many times as many vesicles would make its square that large, no more being known of D
-  // before.
-  double times_needed(const SeriesResponse& e, double square) const;
+  // Without what was known of D before.
+  SeriesProducts products(const SeriesResponse& e) const;
   // The quantity that shows most of it.
   Quantity telling(const SeriesResponse& e) const;
 

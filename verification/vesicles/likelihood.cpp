@@ -7,6 +7,7 @@
 #include "backends/nlopt/minimise.hpp"
 #include "verification/measure/fit.hpp"
 #include "verification/measure/log_of_product.hpp"
+#include "verification/vesicles/stated_errors.hpp"
 
 namespace traceraft {
 namespace {
@@ -53,7 +54,7 @@ ScatterLaw fitted_scatter(const Points& points) {
 // A measured logarithm.
 struct Logarithm {
   double value;
-  double sigma2;  // variance that is stated; of a number of rafts, absolute
+  StatedError error;
 };
 
 // At one time of one vesicle.
@@ -64,6 +65,7 @@ struct Look {
 
 std::vector<Look> looks_of(const MeasuredVesicles& data, const std::vector<int>& sample) {
   const auto vesicles = data.vesicles();
+  const StatedErrors errors(data);
   std::vector<Look> looks;
   for (const int k : sample)
     for (std::size_t i = vesicles[k].first; i < vesicles[k].second; ++i) {
@@ -71,9 +73,9 @@ std::vector<Look> looks_of(const MeasuredVesicles& data, const std::vector<int>&
       if (!(m.time > 0)) continue;  // what runs begin with is none of their doing
       Look look{std::log(m.time), {}, {}};
       if (const auto& p = m.of(Quantity::perimeter); p && *p > 0)
-        look.perimeter = {std::log(*p), square(m.sigma_of(Quantity::perimeter) / *p)};
+        look.perimeter = {std::log(*p), errors.of(m, Quantity::perimeter)};
       if (const auto& n = m.of(Quantity::rafts); n && *n > 0)
-        look.rafts = {std::log(*n), m.variance_of(Quantity::rafts)};
+        look.rafts = {std::log(*n), errors.of(m, Quantity::rafts)};
       if (look.perimeter || look.rafts) looks.push_back(look);
     }
   return looks;
@@ -102,11 +104,11 @@ double deviance_of(const std::vector<Look>& looks, const RunStatistics& runs,
     const RunStatistics::AtTime expected = runs.at(look.ln_time - ln_unit);
     if (look.perimeter)
       deviance.add(*look.perimeter, expected.ln_perimeter,
-                   expected.perimeter_variance + scatter2 + look.perimeter->sigma2);
-    // By the number that is expected: by the one that was counted, small ones would count less.
+                   expected.perimeter_variance + scatter2 +
+                       look.perimeter->error.of_logarithm(expected.ln_perimeter));
     if (look.rafts)
       deviance.add(*look.rafts, expected.ln_rafts,
-                   expected.rafts_variance + look.rafts->sigma2 / square(expected.rafts));
+                   expected.rafts_variance + look.rafts->error.of_logarithm(expected.ln_rafts));
   }
   return deviance.value();
 }

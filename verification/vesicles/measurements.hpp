@@ -11,6 +11,9 @@
 
 namespace traceraft {
 
+// Of whole numbers.
+inline constexpr double kRoundingVariance = 1 / 12.0;
+
 // One look at one vesicle.
 struct Measurement {
   std::string vesicle;
@@ -27,9 +30,8 @@ struct Measurement {
   }
   // Of counts, that of rounding to whole numbers at least.
   double variance_of(Quantity quantity) const {
-    constexpr double kRounding = 1 / 12.0;
     const double stated = sigma_of(quantity) * sigma_of(quantity);
-    return quantity == Quantity::rafts && stated < kRounding ? kRounding : stated;
+    return quantity == Quantity::rafts && stated < kRoundingVariance ? kRoundingVariance : stated;
   }
   // Rafts whose perimeter or number was measured.
   bool shows_rafts() const {

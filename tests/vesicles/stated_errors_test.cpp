@@ -1,0 +1,78 @@
+#include "verification/vesicles/stated_errors.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace traceraft {
+namespace {
+
+constexpr double kValues[] = {2, 5, 3, 8};
+
+MeasuredVesicles data_with(Quantity quantity, double power) {
+  MeasuredVesicles data;
+  for (const double value : kValues) {
+    Measurement m{"a", data.measurements.size() + 1.0, 5, {}, {}};
+    m.values[static_cast<std::size_t>(quantity)] = value;
+    m.sigma[static_cast<std::size_t>(quantity)] = 0.1 * std::pow(value, power);
+    data.measurements.push_back(m);
+  }
+  return data;
+}
+
+double variance(const StatedErrors& errors, const Measurement& m, double expected) {
+  return errors.of(m, Quantity::perimeter).of_logarithm(std::log(expected));
+}
+
+// Whatever noise has made of a value, its error is that of the value that is expected.
+TEST(StatedErrors, AreThoseOfWhatIsExpected) {
+  for (const double power : {0.0, 0.5, 1.0}) {
+    const MeasuredVesicles data = data_with(Quantity::perimeter, power);
+    const StatedErrors errors(data);
+    EXPECT_NEAR(errors.power(Quantity::perimeter), power, 1e-12);
+    for (const Measurement& m : data.measurements)
+      EXPECT_NEAR(variance(errors, m, 4), std::pow(0.1 * std::pow(4, power) / 4, 2), 1e-12);
+  }
+}
+
+TEST(StatedErrors, AreAbsoluteOrRelativeAtMost) {
+  const auto power = [](const MeasuredVesicles& data) {
+    return StatedErrors(data).power(Quantity::perimeter);
+  };
+  EXPECT_EQ(power(data_with(Quantity::perimeter, 2)), 1);
+  EXPECT_EQ(power(data_with(Quantity::perimeter, -1)), 0);
+  EXPECT_EQ(power({}), 0);
+  MeasuredVesicles alike = data_with(Quantity::perimeter, 1);
+  for (Measurement& m : alike.measurements) m.values[0] = 3;
+  EXPECT_EQ(power(alike), 0);
+}
+
+// By the truth, of which noise in a value knows nothing: such differences are left alone.
+TEST(StatedErrors, DoNotFollowTheNoiseOfValues) {
+  MeasuredVesicles data = data_with(Quantity::perimeter, 0);
+  for (Measurement& m : data.measurements) {
+    m.sigma[0] = 0.2 * *m.values[0];
+    m.values[0] = *m.values[0] * (m.time == 2 ? 1.2 : 0.9);
+  }
+  const StatedErrors errors(data);
+  const double usual = variance(errors, data.measurements[0], 4);
+  for (const Measurement& m : data.measurements) EXPECT_NEAR(variance(errors, m, 4), usual, 1e-12);
+  // One that is ten times as large is no noise.
+  Measurement other = data.measurements[0];
+  *other.sigma[0] *= 10;
+  EXPECT_GT(variance(errors, other, 4), 10 * usual);
+}
+
+TEST(StatedErrors, OfCountsAreThoseOfRoundingAtLeast) {
+  for (const Quantity quantity : {Quantity::rafts, Quantity::perimeter}) {
+    MeasuredVesicles data = data_with(quantity, 0);
+    for (Measurement& m : data.measurements) m.sigma = {};
+    const StatedError error = StatedErrors(data).of(data.measurements[0], quantity);
+    EXPECT_EQ(error.stated(std::log(4)), 0);
+    EXPECT_NEAR(error.of_logarithm(std::log(4)), quantity == Quantity::rafts ? 1 / 12.0 / 16 : 0,
+                1e-15);
+  }
+}
+
+}  // namespace
+}  // namespace traceraft

@@ -1,0 +1,67 @@
+#include "verification/series/series_need.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "verification/explain/search/judgement.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr int kReplicates = 32;  // of sets with more vesicles: means are asked for, no tails
+constexpr double kLeast = 1e-6;
+constexpr int kHalvings = 40;
+
+MeasuredVesicles repeated(const MeasuredVesicles& data, int times) {
+  MeasuredVesicles more = data;
+  for (int k = 1; k < times; ++k)
+    for (Measurement m : data.measurements) {
+      m.vesicle += " " + std::to_string(k);
+      more.measurements.push_back(m);
+    }
+  return more;
+}
+
+// The square of what vesicles have in common, over its error.
+double noise_at(const SeriesNoise& noise, double f) {
+  const double share = std::max(0.0, (f - 1) / (kMostTimes - 1));
+  return std::max(1.0, noise.now + share * (noise.most - noise.now));
+}
+
+// Of f times as many vesicles the looks' products are f times as large. What is left of e beyond u
+// has the square f ee − f² ue²/(f uu + w), w being what is known of D before; here without
+// cancellation.
+double square(const SeriesProducts& p, double f) {
+  const double alike = p.uu > 0 ? p.ue * p.ue / p.uu : 0;
+  return f * std::max(p.ee - alike, 0.0) + f * alike * p.known / (f * p.uu + p.known);
+}
+
+}  // namespace
+
+std::vector<SeriesNoise> noise_of_more(const MeasuredVesicles& data,
+                                       const std::vector<History>& runs,
+                                       const std::vector<SeriesCandidate>& candidates,
+                                       const SeriesFit& fit, const UnitRange& unit,
+                                       const SeriesNull& null) {
+  const Vec most =
+      null_of(repeated(data, kMostTimes), runs, candidates, fit, unit, kReplicates).mean;
+  std::vector<SeriesNoise> noise;
+  for (Eigen::Index k = 0; k < most.size(); ++k) noise.push_back({null.mean[k], most[k]});
+  return noise;
+}
+
+double times_needed(const SeriesProducts& products, const SeriesNoise& noise) {
+  const auto seen = [&](double f) {
+    return square(products, f) >= kSeen * kSeen * noise_at(noise, f);
+  };
+  if (!seen(kMostTimes)) return std::numeric_limits<double>::infinity();
+  double low = std::log(kLeast), high = std::log(double{kMostTimes});
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle = 0.5 * (low + high);
+    (seen(std::exp(middle)) ? high : low) = middle;
+  }
+  return std::exp(high);
+}
+
+}  // namespace traceraft

@@ -1,0 +1,63 @@
+#include "verification/vesicles/stated_errors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "verification/measure/fit.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr double kLeastSpread = 1e-6;  // of ln of the values
+constexpr double kByNoise = 2;         // standard deviations that noise makes of a value
+
+// What is left of x beyond ±least.
+double beyond(double x, double least) {
+  return std::copysign(std::max(0.0, std::fabs(x) - least), x);
+}
+
+}  // namespace
+
+StatedErrors::StatedErrors(const MeasuredVesicles& data) {
+  for (const Quantity quantity : kQuantities)
+    laws_[static_cast<std::size_t>(quantity)] = law_of(data, quantity);
+}
+
+StatedErrors::Law StatedErrors::law_of(const MeasuredVesicles& data, Quantity quantity) {
+  Points points;
+  std::vector<double> ln_values, ln_sigmas;
+  for (const Measurement& m : data.measurements) {
+    const double value = m.of(quantity).value_or(0), sigma = m.sigma_of(quantity);
+    if (!(value > 0) || !(sigma > 0)) continue;
+    ln_values.push_back(std::log(value));
+    ln_sigmas.push_back(std::log(sigma));
+    points.emplace_back(ln_values.back(), ln_sigmas.back());
+  }
+  if (points.empty()) return {};
+  const Moments values = moments(ln_values);
+  const double power =
+      values.deviation < kLeastSpread ? 0.0 : std::clamp(fit_line(points).slope, 0.0, 1.0);
+  return {power, moments(ln_sigmas).mean - power * values.mean};
+}
+
+StatedError StatedErrors::of(const Measurement& m, Quantity quantity) const {
+  const auto& [power, ln_scale] = law(quantity);
+  const double least = quantity == Quantity::rafts ? kRoundingVariance : 0;
+  const double value = m.of(quantity).value_or(0), sigma = m.sigma_of(quantity);
+  if (!(sigma > 0)) return {-std::numeric_limits<double>::infinity(), power, least};
+  const double usual = ln_scale + power * std::log(value);
+  const double by_noise = kByNoise * std::exp(usual) / value;
+  return {ln_scale + beyond(std::log(sigma) - usual, by_noise), power, least};
+}
+
+double StatedError::stated(double ln_expected) const {
+  return std::exp(2 * (ln_sigma + (power - 1) * ln_expected));
+}
+
+double StatedError::of_logarithm(double ln_expected) const {
+  return least > 0 ? std::max(stated(ln_expected), least * std::exp(-2 * ln_expected))
+                   : stated(ln_expected);
+}
+
+}  // namespace traceraft

@@ -1,0 +1,43 @@
+// Errors that data state, as those of what is expected instead of what was measured: by the latter,
+// looks that noise has made large would weigh more than others, or less, and pull with them.
+#pragma once
+
+#include <array>
+
+#include "verification/vesicles/measurements.hpp"
+
+namespace traceraft {
+
+// Of one value: σ goes with the power of what is expected.
+struct StatedError {
+  double ln_sigma;  // where 1 is expected; −inf if nothing is stated
+  double power;
+  double least;  // variance, of rounding
+
+  // Variances of ln of the value: what is stated, and with that of rounding.
+  double stated(double ln_expected) const;
+  double of_logarithm(double ln_expected) const;
+};
+
+// Of each quantity, the law σ = s value^b that fits what all looks state: 0 <= b <= 1, absolute
+// errors or relative ones. Looks that state another error than that have it as far as noise in
+// their values cannot be the reason.
+class StatedErrors {
+ public:
+  explicit StatedErrors(const MeasuredVesicles& data);
+
+  double power(Quantity quantity) const { return law(quantity).power; }
+  // Where it is > 0.
+  StatedError of(const Measurement& m, Quantity quantity) const;
+
+ private:
+  struct Law {
+    double power = 0, ln_scale = 0;
+  };
+  const Law& law(Quantity quantity) const { return laws_[static_cast<std::size_t>(quantity)]; }
+  static Law law_of(const MeasuredVesicles& data, Quantity quantity);
+
+  std::array<Law, kQuantities.size()> laws_{};
+};
+
+}  // namespace traceraft
