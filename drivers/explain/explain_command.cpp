@@ -87,33 +87,33 @@ struct SeriesSetup {
   MeasuredVesicles data;
   GivenValues given;  // the model, as its file and the flags say
   Configuration model;
+  SeriesEnsemblesRequest request;  // as that of the ensembles that are taken over, if any are
 };
 
 SeriesSetup read_series_job(const ExplainCommand& command) {
   MeasuredVesicles data = read_dataset(command.series);
   refuse_without_model(data.composition, command.job.model, command.job.flags);
   const GivenValues given = model_said(command.job);
-  SeriesSetup setup{std::move(data), given, {given, {}}};
+  SeriesSetup setup{std::move(data), given, {given, {}}, {}};
   if (const std::string other = other_membrane(setup.data.composition, setup.model); !other.empty())
     throw InputError(setup.model.where("case") + ": the model is of " + other);
   refuse_series(setup.data, setup.model);
+  setup.request = {looks(setup.data),        command.runs,        command.jobs,
+                   command.job.processors(), command.job.without, command.quiet};
+  if (!command.ensembles.empty()) take_over_ensembles(command.ensembles, setup.request);
   return setup;
 }
 
 // False if it was stopped.
 bool explain_series_data(const ExplainCommand& command, const SeriesSetup& setup,
                          const fs::path& out, const std::string& go_on) {
-  const auto& [data, given, model] = setup;
+  const auto& [data, given, model, request] = setup;
   if (!command.quiet) {
     std::printf("%s\nthe model: %s\n", title_of(data).c_str(), flags_text(model).c_str());
     std::fflush(stdout);
   }
-  const bool own = command.ensembles.empty();
-  const fs::path simulations = own ? out / "ensembles" : fs::path(command.ensembles);
-  SeriesEnsemblesRequest request{looks(data),         command.runs,
-                                 command.jobs,        command.job.processors(),
-                                 command.job.without, command.quiet};
-  if (!own) take_over_ensembles(simulations, request);
+  const fs::path simulations =
+      command.ensembles.empty() ? out / "ensembles" : fs::path(command.ensembles);
   SeriesEnsembles ensembles =
       numerically([&] { return run_series_ensembles(simulations, model, request); });
   if (const std::string note = note_on_looks(request.looks, looks(data)); !note.empty())

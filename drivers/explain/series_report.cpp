@@ -76,8 +76,8 @@ std::vector<Row> offset_rows(const SeriesExplanation& found) {
 }
 
 std::string advice(const SeriesTie& tie, const SeriesExplanation& found) {
-  return vesicles_text(tie.vesicles, found) + " vesicles like these would tell " + tie.effect + " from " +
-         tie.other + ", above all by their " + name_of(tie.telling).label +
+  return vesicles_text(tie.vesicles, found) + " vesicles like these would tell " + tie.effect +
+         " from " + tie.other + ", above all by their " + name_of(tie.telling).label +
          "; one vesicle with fields at 8 times tells more (traceraft explain --data).";
 }
 
