@@ -60,7 +60,42 @@ TEST(StatedErrors, DoNotFollowTheNoiseOfValues) {
   // One that is ten times as large is no noise.
   Measurement other = data.measurements[0];
   *other.sigma[0] *= 10;
-  EXPECT_GT(variance(errors, other, 4), 10 * usual);
+  EXPECT_NEAR(variance(errors, other, 4), 100 * usual, 60 * usual);
+}
+
+// What was measured before anything could happen says nothing of the others.
+TEST(StatedErrors, LeaveLooksOfTimeZeroOut) {
+  MeasuredVesicles data = data_with(Quantity::perimeter, 0);
+  Measurement first = data.measurements[0];
+  first.time = 0;
+  first.values[0] = 60;
+  first.sigma[0] = 10;
+  data.measurements.insert(data.measurements.begin(), first);
+  EXPECT_EQ(StatedErrors(data).power(Quantity::perimeter), 0);
+}
+
+// Half of the looks state 10 %, the others 40 %: noise is not the reason.
+TEST(StatedErrors, DifferAsTheyAreStated) {
+  MeasuredVesicles data;
+  for (int k = 0; k < 8; ++k) {
+    Measurement m{"a", k + 1.0, 5, {}, {}};
+    m.values[0] = 2 + k / 2;
+    m.sigma[0] = (k % 2 ? 0.4 : 0.1) * *m.values[0];
+    data.measurements.push_back(m);
+  }
+  const StatedErrors errors(data);
+  for (int k = 0; k < 8; ++k)
+    EXPECT_NEAR(std::sqrt(variance(errors, data.measurements[static_cast<std::size_t>(k)], 3)),
+                k % 2 ? 0.4 : 0.1, 1e-9);
+}
+
+// ln(4 + z) of normal z of a tenth of it; relative errors are normal in the logarithm.
+TEST(StatedErrors, KnowTheMeanOfTheLogarithm) {
+  for (const double power : {0.0, 1.0}) {
+    const MeasuredVesicles data = data_with(Quantity::perimeter, power);
+    const StatedError error = StatedErrors(data).of(data.measurements[0], Quantity::perimeter);
+    EXPECT_NEAR(error.bias(std::log(4)), power == 0 ? -0.5 * std::pow(0.1 / 4, 2) : 0, 1e-12);
+  }
 }
 
 TEST(StatedErrors, OfCountsAreThoseOfRoundingAtLeast) {

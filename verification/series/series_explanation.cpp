@@ -59,8 +59,7 @@ class SeriesSearch {
     result_.most_vesicles = kMostTimes * result_.vesicles;
     result_.looks = static_cast<int>(data_.measurements.size());
     result_.base = gains_.base;
-    result_.unit_deviation =
-        std::sqrt((null_.ln_unit.array() - gains_.base.ln_unit).square().mean());
+    result_.unit_deviation = unit_deviation();
     const double from_end = std::min(gains_.base.ln_unit - request_.unit.lowest(),
                                      request_.unit.highest() - gains_.base.ln_unit);
     const double range = request_.unit.highest() - request_.unit.lowest();
@@ -82,6 +81,20 @@ class SeriesSearch {
   }
 
  private:
+  // From drawn data, on the side where the fit may go further.
+  double unit_deviation() const {
+    const double ln_unit = gains_.base.ln_unit;
+    const double side =
+        request_.unit.highest() - ln_unit > ln_unit - request_.unit.lowest() ? 1 : -1;
+    double squares = 0, count = 0;
+    for (const double drawn : null_.ln_unit)
+      if (side * (drawn - ln_unit) > 0) {
+        squares += std::pow(drawn - ln_unit, 2);
+        ++count;
+      }
+    return std::sqrt(squares / std::max(count, 1.0));
+  }
+
   SeriesScore score_of(std::size_t k) {
     const SeriesFit& fit = gains_.fits[k];
     const SeriesCandidate& candidate = candidates_[k];

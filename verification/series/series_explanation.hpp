@@ -44,7 +44,7 @@ struct SeriesTie {
 struct SeriesExplanation {
   Finding finding;
   int vesicles, looks;
-  double most_vesicles;                           // more are not thought of: infinite
+  double most_vesicles;                           // what needs more is infinite
   double p;                                       // that the best score is noise
   double trend_p;                                 // that what is left of the best model is
   SeriesFit base;                                 // without any effect

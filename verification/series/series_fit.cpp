@@ -47,8 +47,7 @@ class Fitter {
 
   // A step of Gauss and Newton, halved until it is none backwards.
   void improve_mean() {
-    const SeriesMetric metric(blocks_, known_variance(blocks_, *model_.base, fit_.ln_unit),
-                              fit_.scatter);
+    const SeriesMetric metric = metric_of(blocks_, model_, fit_);
     const Vec r = residual(), u = unit_response(blocks_, *model_.base, fit_.ln_unit);
     const double uu = metric.product(u, u) + weight_;
     const double ur = metric.product(u, r) + weight_ * (centre_ - fit_.ln_unit);
@@ -80,7 +79,9 @@ class Fitter {
 
   // That of each quantity by itself: those of others are independent of it.
   void improve_scatter() {
-    const Vec r = residual(), known = known_variance(blocks_, *model_.base, fit_.ln_unit);
+    const Vec r = residual();
+    const Vec known =
+        known_variance(blocks_, *model_.base, fit_.ln_unit, expected(blocks_, model_, fit_));
     fit_.deviance = penalty();
     for (const Quantity quantity : kQuantities) {
       if (!measured_[index(quantity)]) continue;
@@ -145,14 +146,30 @@ SeriesFit fit_series(const std::vector<SeriesBlock>& blocks, const SeriesModel& 
   return Fitter(blocks, model, unit, near).run();
 }
 
-Vec residual(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
+Vec expected(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
              const SeriesFit& fit) {
   return per_look(blocks, [&](const SeriesBlock& block, Eigen::Index i) {
     const double t = block.ln_t[i] - fit.ln_unit;
     const double mean = model.base->mean(block.quantity, t);
     const double change =
         model.changed != nullptr ? model.changed->mean(block.quantity, t) - mean : 0.0;
-    return block.values[i] - mean - fit.amplitude * change;
+    return mean + fit.amplitude * change;
+  });
+}
+
+SeriesMetric metric_of(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
+                       const SeriesFit& fit) {
+  return {blocks, known_variance(blocks, *model.base, fit.ln_unit, expected(blocks, model, fit)),
+          fit.scatter};
+}
+
+Vec residual(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
+             const SeriesFit& fit) {
+  const Vec mean = expected(blocks, model, fit);
+  Eigen::Index look = 0;
+  return per_look(blocks, [&](const SeriesBlock& block, Eigen::Index i) {
+    const double ln = mean[look++];
+    return block.values[i] - ln - block.stated[static_cast<std::size_t>(i)].bias(ln);
   });
 }
 

@@ -47,7 +47,14 @@ SeriesFit fit_series(const std::vector<SeriesBlock>& blocks, const SeriesModel& 
 SeriesFit fit_series(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
                      const UnitRange& unit, const SeriesFit& near);
 
-// With an entry per look: measured minus model.
+// With an entry per look: the model.
+Vec expected(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
+             const SeriesFit& fit);
+// In which looks scatter around it.
+SeriesMetric metric_of(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
+                       const SeriesFit& fit);
+// With an entry per look: measured minus what the model and errors like the stated ones make of it
+// on average.
 Vec residual(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
              const SeriesFit& fit);
 // With an entry per look: changed − mean, or the derivative of the mean by ln of the unit of time.

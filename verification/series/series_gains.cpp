@@ -39,9 +39,10 @@ MeasuredVesicles draw_base(const MeasuredVesicles& data, const std::vector<Histo
         if (run.at(Quantity::rafts, t) < 1) continue;
         const Measurement& m = data.measurements[i];
         const double expected = logarithm_of(quantity, run.at(quantity, t));
-        const double stated = std::sqrt(errors.of(m, quantity).stated(expected));
+        const StatedError error = errors.of(m, quantity);
         const double own =
-            stated * normal_random(replicate, kStated, look) +
+            error.bias(expected) +
+            std::sqrt(error.stated(expected)) * normal_random(replicate, kStated, look) +
             fit.scatter.vesicle[q] * normal_random(replicate, kVesicle, 3 * vesicle + q) +
             fit.scatter.look[q] * normal_random(replicate, kLook, look);
         value = std::exp(expected + own);

@@ -29,11 +29,12 @@ std::vector<SeriesBlock> blocks_of(const MeasuredVesicles& data) {
   return blocks;
 }
 
-Vec known_variance(const std::vector<SeriesBlock>& blocks, const RunCurves& base, double ln_unit) {
+Vec known_variance(const std::vector<SeriesBlock>& blocks, const RunCurves& base, double ln_unit,
+                   const Vec& expected) {
+  Eigen::Index look = 0;
   return per_look(blocks, [&](const SeriesBlock& block, Eigen::Index i) {
-    const double t = block.ln_t[i] - ln_unit;
-    return block.stated[static_cast<std::size_t>(i)].of_logarithm(base.mean(block.quantity, t)) +
-           base.variance(block.quantity, t);
+    return block.stated[static_cast<std::size_t>(i)].of_logarithm(expected[look++]) +
+           base.variance(block.quantity, block.ln_t[i] - ln_unit);
   });
 }
 

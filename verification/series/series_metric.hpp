@@ -42,7 +42,9 @@ Vec per_look(const std::vector<SeriesBlock>& blocks, const Value& value) {
 // With an entry per look: the variance without the scatter that is fitted, that of what the data
 // state and that between runs, of which each vesicle is one. (What looks at one vesicle share of
 // the latter is left to the fitted scatter.)
-Vec known_variance(const std::vector<SeriesBlock>& blocks, const RunCurves& base, double ln_unit);
+// `expected`: logarithms.
+Vec known_variance(const std::vector<SeriesBlock>& blocks, const RunCurves& base, double ln_unit,
+                   const Vec& expected);
 
 // The inner product in which looks are independent and of variance 1, of vectors with an entry per
 // look.

@@ -24,7 +24,7 @@ Vec power_of_time(const std::vector<SeriesBlock>& blocks, Quantity quantity, int
 
 double trend_left(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
                   const SeriesFit& fit) {
-  const SeriesMetric metric(blocks, known_variance(blocks, *model.base, fit.ln_unit), fit.scatter);
+  const SeriesMetric metric = metric_of(blocks, model, fit);
   std::vector<Vec> trends;
   for (const Quantity quantity : kQuantities)
     for (int power = 0; power <= kTrendDegree; ++power) {
@@ -41,7 +41,7 @@ double trend_left(const std::vector<SeriesBlock>& blocks, const SeriesModel& mod
 
 std::vector<SeriesOffset> offsets(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
                                   const SeriesFit& fit) {
-  const SeriesMetric metric(blocks, known_variance(blocks, *model.base, fit.ln_unit), fit.scatter);
+  const SeriesMetric metric = metric_of(blocks, model, fit);
   const Vec r = residual(blocks, model, fit);
   std::vector<SeriesOffset> all;
   for (const Quantity quantity : kQuantities) {

@@ -9,15 +9,15 @@
 namespace traceraft {
 namespace {
 
-constexpr int kReplicates = 32;  // of sets with more vesicles: means are asked for, no tails
-constexpr double kLeast = 1e-6;
-constexpr int kHalvings = 40;
+constexpr int kLeastReplicates = 32;           // of sets with more vesicles: means are asked for
+constexpr double kLeast = 1e-4, kStep = 0.01;  // of f, and of its logarithm
 
 MeasuredVesicles repeated(const MeasuredVesicles& data, int times) {
   MeasuredVesicles more = data;
-  for (int k = 1; k < times; ++k)
+  more.measurements.clear();
+  for (int k = 0; k < times; ++k)
     for (Measurement m : data.measurements) {
-      m.vesicle += " " + std::to_string(k);
+      m.vesicle = std::to_string(k) + "/" + m.vesicle;
       more.measurements.push_back(m);
     }
   return more;
@@ -45,23 +45,20 @@ std::vector<SeriesNoise> noise_of_more(const MeasuredVesicles& data,
                                        const SeriesFit& fit, const UnitRange& unit,
                                        const SeriesNull& null) {
   const Vec most =
-      null_of(repeated(data, kMostTimes), runs, candidates, fit, unit, kReplicates).mean;
+      null_of(repeated(data, kMostTimes), runs, candidates, fit, unit,
+              std::max(kLeastReplicates, static_cast<int>(null.ln_unit.size()) / kMostTimes))
+          .mean;
   std::vector<SeriesNoise> noise;
   for (Eigen::Index k = 0; k < most.size(); ++k) noise.push_back({null.mean[k], most[k]});
   return noise;
 }
 
+// Upwards from few: what another D does as well saturates, and noise does not.
 double times_needed(const SeriesProducts& products, const SeriesNoise& noise) {
-  const auto seen = [&](double f) {
-    return square(products, f) >= kSeen * kSeen * noise_at(noise, f);
-  };
-  if (!seen(kMostTimes)) return std::numeric_limits<double>::infinity();
-  double low = std::log(kLeast), high = std::log(double{kMostTimes});
-  for (int k = 0; k < kHalvings; ++k) {
-    const double middle = 0.5 * (low + high);
-    (seen(std::exp(middle)) ? high : low) = middle;
-  }
-  return std::exp(high);
+  for (double ln_f = std::log(kLeast); ln_f < std::log(double{kMostTimes}); ln_f += kStep)
+    if (square(products, std::exp(ln_f)) >= kSeen * kSeen * noise_at(noise, std::exp(ln_f)))
+      return std::exp(ln_f);
+  return std::numeric_limits<double>::infinity();
 }
 
 }  // namespace traceraft

@@ -1,8 +1,6 @@
 // How many vesicles it takes to see an effect in series.
 #pragma once
 
-#include <array>
-
 #include "verification/series/series_gains.hpp"
 
 namespace traceraft {
@@ -31,8 +29,9 @@ struct SeriesProducts {
   double known;  // of D before: the inverse of the variance of ln D
 };
 
-// How many times as many vesicles make the square of the effect kSeen² times what noise gains, no
-// more being known of D before; infinite: more than kMostTimes.
+// How many times as many vesicles make the square of the effect kSeen² times what noise gains, and
+// that at least 1, no more being known of D before, to 1 %; infinite: more than kMostTimes, or
+// none.
 double times_needed(const SeriesProducts& products, const SeriesNoise& noise);
 
 }  // namespace traceraft

@@ -21,7 +21,7 @@ SeriesResponse operator*(double factor, const SeriesResponse& response) {
 
 SeriesResponses::SeriesResponses(const std::vector<SeriesBlock>& blocks, const SeriesCurves& curves,
                                  const SeriesFit& fit, const UnitRange& unit)
-    : metric_(blocks, known_variance(blocks, curves.base, fit.ln_unit), fit.scatter),
+    : metric_(metric_of(blocks, {&curves.base}, fit)),
       by_unit_{unit_response(blocks, curves.base, fit.ln_unit), 1 / unit.deviation()} {
   const double squares = product(by_unit_, by_unit_);
   for (const RunCurves& changed : curves.changed) {

@@ -8,6 +8,7 @@
 
 #include "kernel/core/error.hpp"
 #include "verification/measure/fit.hpp"
+#include "verification/vesicles/stated_errors.hpp"
 
 namespace traceraft {
 namespace {
@@ -28,19 +29,19 @@ struct Deviation {
 
 // Of one measurement, of logarithms where scatter is relative.
 Deviation deviation_of(const Measurement& m, Quantity quantity,
-                       const std::vector<const History*>& runs) {
+                       const std::vector<const History*>& runs, const StatedErrors& errors) {
   const double y = *m.of(quantity);
   std::vector<double> values;
   for (const History* run : runs) values.push_back(run->at(quantity, m.time));
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   const bool within = y >= *low && y <= *high;
-  double sigma = std::sqrt(m.variance_of(quantity));
   if (relative(quantity))
     for (double& value : values) value = logarithm_of(quantity, value);
   const Moments runs_here = moments(values);
-  // By the count that was seen small ones would weigh less than large ones.
-  if (quantity == Quantity::rafts) sigma /= std::exp(runs_here.mean);
-  if (quantity == Quantity::perimeter) sigma /= y;
+  const double ln_expected =
+      relative(quantity) ? runs_here.mean : logarithm_of(quantity, runs_here.mean);
+  const double sigma = std::sqrt(errors.of(m, quantity).of_logarithm(ln_expected)) *
+                       (relative(quantity) ? 1 : std::exp(ln_expected));
   const double measured = relative(quantity) ? std::log(y) : y;
   const double of_mean = 1 + 1 / static_cast<double>(runs.size());
   const double deviation = std::hypot(runs_here.deviation * std::sqrt(of_mean), sigma);
@@ -84,7 +85,7 @@ Slope slope_of(const std::vector<Deviation>& all) {
 class Comparison {
  public:
   Comparison(const MeasuredVesicles& data, const std::vector<History>& runs, Quantity quantity)
-      : runs_(pointers(runs)) {
+      : runs_(pointers(runs)), errors_(data) {
     result_.quantity = quantity;
     constexpr double kRoundoff = 1e-9;  // of times
     double first = 0, last = HUGE_VAL;
@@ -123,7 +124,8 @@ class Comparison {
  private:
   std::vector<Deviation> deviations(const std::vector<const History*>& runs) const {
     std::vector<Deviation> all;
-    for (const Measurement* m : compared_) all.push_back(deviation_of(*m, result_.quantity, runs));
+    for (const Measurement* m : compared_)
+      all.push_back(deviation_of(*m, result_.quantity, runs, errors_));
     return all;
   }
 
@@ -149,6 +151,7 @@ class Comparison {
   }
 
   const std::vector<const History*> runs_;
+  const StatedErrors errors_;
   std::vector<const Measurement*> compared_;
   Agreement result_{};
 };

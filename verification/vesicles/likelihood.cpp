@@ -84,8 +84,9 @@ std::vector<Look> looks_of(const MeasuredVesicles& data, const std::vector<int>&
 // Σ of −2 ln of normal densities.
 class Deviance {
  public:
-  void add(const Logarithm& measured, double mean, double variance) {
-    squares_ += square(measured.value - mean) / variance;
+  void add(const Logarithm& measured, double mean, double scatter2) {
+    const double variance = scatter2 + measured.error.of_logarithm(mean);
+    squares_ += square(measured.value - mean - measured.error.bias(mean)) / variance;
     variances_.multiply(variance);
   }
   double value() const { return squares_ + variances_.value(); }
@@ -103,12 +104,8 @@ double deviance_of(const std::vector<Look>& looks, const RunStatistics& runs,
   for (const Look& look : looks) {
     const RunStatistics::AtTime expected = runs.at(look.ln_time - ln_unit);
     if (look.perimeter)
-      deviance.add(*look.perimeter, expected.ln_perimeter,
-                   expected.perimeter_variance + scatter2 +
-                       look.perimeter->error.of_logarithm(expected.ln_perimeter));
-    if (look.rafts)
-      deviance.add(*look.rafts, expected.ln_rafts,
-                   expected.rafts_variance + look.rafts->error.of_logarithm(expected.ln_rafts));
+      deviance.add(*look.perimeter, expected.ln_perimeter, expected.perimeter_variance + scatter2);
+    if (look.rafts) deviance.add(*look.rafts, expected.ln_rafts, expected.rafts_variance);
   }
   return deviance.value();
 }
@@ -196,7 +193,7 @@ RunStatistics RunStatistics::combined(const std::vector<RunStatistics>& all,
 RunStatistics::AtTime RunStatistics::at(double ln_t) const {
   const double ln_rafts = grid_.at(mean_.rafts, ln_t), rafts = std::exp(ln_rafts);
   return {grid_.at(mean_.perimeter, ln_t), of_mean_ * scatter_.perimeter.variance(rafts), ln_rafts,
-          of_mean_ * scatter_.rafts.variance(rafts), rafts};
+          of_mean_ * scatter_.rafts.variance(rafts)};
 }
 
 double RunStatistics::fraction(double t) const {

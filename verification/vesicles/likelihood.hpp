@@ -45,7 +45,6 @@ class RunStatistics {
   // Variances: of one vesicle's logarithms, and of their means themselves.
   struct AtTime {
     double ln_perimeter, perimeter_variance, ln_rafts, rafts_variance;
-    double rafts;  // exp(ln_rafts)
   };
   // Constant beyond the ends.
   AtTime at(double ln_t) const;

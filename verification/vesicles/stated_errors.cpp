@@ -10,12 +10,8 @@ namespace traceraft {
 namespace {
 
 constexpr double kLeastSpread = 1e-6;  // of ln of the values
-constexpr double kByNoise = 2;         // standard deviations that noise makes of a value
-
-// What is left of x beyond ±least.
-double beyond(double x, double least) {
-  return std::copysign(std::max(0.0, std::fabs(x) - least), x);
-}
+// What noise makes of ln of a value: that many standard deviations, and at most a factor of two.
+constexpr double kByNoise = 2, kMostByNoise = 0.7;
 
 }  // namespace
 
@@ -29,7 +25,7 @@ StatedErrors::Law StatedErrors::law_of(const MeasuredVesicles& data, Quantity qu
   std::vector<double> ln_values, ln_sigmas;
   for (const Measurement& m : data.measurements) {
     const double value = m.of(quantity).value_or(0), sigma = m.sigma_of(quantity);
-    if (!(value > 0) || !(sigma > 0)) continue;
+    if (!(m.time > 0) || !(value > 0) || !(sigma > 0)) continue;
     ln_values.push_back(std::log(value));
     ln_sigmas.push_back(std::log(sigma));
     points.emplace_back(ln_values.back(), ln_sigmas.back());
@@ -46,9 +42,11 @@ StatedError StatedErrors::of(const Measurement& m, Quantity quantity) const {
   const double least = quantity == Quantity::rafts ? kRoundingVariance : 0;
   const double value = m.of(quantity).value_or(0), sigma = m.sigma_of(quantity);
   if (!(sigma > 0)) return {-std::numeric_limits<double>::infinity(), power, least};
+  if (!(value > 0)) return {std::log(sigma), 0, least};
   const double usual = ln_scale + power * std::log(value);
-  const double by_noise = kByNoise * std::exp(usual) / value;
-  return {ln_scale + beyond(std::log(sigma) - usual, by_noise), power, least};
+  const double by_noise = std::min(kByNoise * std::exp(usual) / value, kMostByNoise);
+  const double other = std::log(sigma) - usual;
+  return {ln_scale + (std::fabs(other) > by_noise ? other : 0), power, least};
 }
 
 double StatedError::stated(double ln_expected) const {
@@ -58,6 +56,10 @@ double StatedError::stated(double ln_expected) const {
 double StatedError::of_logarithm(double ln_expected) const {
   return least > 0 ? std::max(stated(ln_expected), least * std::exp(-2 * ln_expected))
                    : stated(ln_expected);
+}
+
+double StatedError::bias(double ln_expected) const {
+  return -0.5 * (1 - power) * stated(ln_expected);
 }
 
 }  // namespace traceraft

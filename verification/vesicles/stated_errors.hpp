@@ -17,17 +17,20 @@ struct StatedError {
   // Variances of ln of the value: what is stated, and with that of rounding.
   double stated(double ln_expected) const;
   double of_logarithm(double ln_expected) const;
+  // Mean of ln of the value minus ln of its mean: −s²/2 of an absolute error that is s of the
+  // value, to second order; 0 of relative ones, which are taken as normal in the logarithm.
+  double bias(double ln_expected) const;
 };
 
-// Of each quantity, the law σ = s value^b that fits what all looks state: 0 <= b <= 1, absolute
-// errors or relative ones. Looks that state another error than that have it as far as noise in
-// their values cannot be the reason.
+// Of each quantity, the law σ = s value^b that fits what the looks after time zero state: absolute
+// errors or relative ones, 0 <= b <= 1. A look that states another error has that, unless noise in
+// its value may be the reason.
 class StatedErrors {
  public:
   explicit StatedErrors(const MeasuredVesicles& data);
 
   double power(Quantity quantity) const { return law(quantity).power; }
-  // Where it is > 0.
+  // Of a value that is not positive, which the law does not know: as it is stated.
   StatedError of(const Measurement& m, Quantity quantity) const;
 
  private:
