@@ -77,6 +77,35 @@ class RivalsTest : public ::testing::Test {
   ExplainRequest request_;
 };
 
+// The second best: not what was found with something more, nor what failed; by what it leaves, and
+// of the last round that had another one.
+TEST(Placebo, IsTheBestThatIsAnother) {
+  const auto fit = [](const std::vector<std::string>& effects, double gap, double deviance) {
+    Refit result;
+    for (const std::string& effect : effects)
+      result.hypothesis.parts.push_back({find_candidate(effect).value(), {0.0}});
+    result.gap = {gap, 2 * gap};
+    result.deviance = deviance;
+    return result;
+  };
+  Explanation found;
+  found.found = fit({"gravity", "uptake"}, 0.03, 10);
+  EXPECT_FALSE(placebo_of(found));
+  Round first, last;
+  first.refits = {fit({"line-tension"}, 0.01, 0)};
+  last.refits = {fit({"gravity", "uptake", "cooling"}, 0.02, 1), fit({"gravity"}, 0.045, 2),
+                 fit({"cooling"}, 0.05, 3), fit({"gravity", "cooling"}, 0.04, 4)};
+  last.moves = {fit({"asymmetry"}, 0.01, 5)};
+  last.moves[0].failure = "it did not converge";
+  found.rounds = {first, last};
+  ASSERT_TRUE(placebo_of(found));
+  EXPECT_EQ(placebo_of(found)->train, 0.04);
+  found.rounds[1].refits.resize(1);
+  EXPECT_EQ(placebo_of(found)->train, 0.01);  // of the first round
+  found.rivals = {fit({"cooling"}, 0.06, 11)};
+  EXPECT_EQ(placebo_of(found)->heldout, 0.12);
+}
+
 TEST_F(RivalsTest, AreTakenIfTheyLeaveNoGap) {
   const Explanation alone = explained_by_gravity();
   EXPECT_EQ(alone.finding, Finding::unnamed);

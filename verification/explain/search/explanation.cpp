@@ -32,26 +32,6 @@ bool has_found(const Hypothesis& hypothesis, const Hypothesis& found) {
                      [&](const auto& part) { return hypothesis.has(part.candidate.effect); });
 }
 
-// Of the best rival, or of the best of the last round that had others than the found one: by their
-// gaps, as deviances of different rounds are in units of different noise.
-std::optional<Gaps> placebo_of(const Explanation& result) {
-  const Refit* best = nullptr;
-  const auto consider = [&](const std::vector<Refit>& fits) {
-    for (const Refit& fit : fits)
-      if (!has_found(fit.hypothesis, result.found.hypothesis) &&
-          !fit.hypothesis.contains(result.found.hypothesis) && fit.failure.empty() &&
-          (best == nullptr || fit.gap.train < best->gap.train))
-        best = &fit;
-  };
-  consider(result.rivals);
-  for (auto round = result.rounds.rbegin(); round != result.rounds.rend() && best == nullptr;
-       ++round) {
-    consider(round->refits);
-    consider(round->moves);
-  }
-  return best != nullptr ? std::optional(best->gap) : std::nullopt;
-}
-
 Explanation conclusion(Search search) {
   Explanation& result = search.result;
   const ExplainRequest& request = search.request;
@@ -78,6 +58,24 @@ Explanation conclusion(Search search) {
 }
 
 }  // namespace
+
+std::optional<Gaps> placebo_of(const Explanation& result) {
+  const Refit* best = nullptr;
+  const auto consider = [&](const std::vector<Refit>& fits) {
+    for (const Refit& fit : fits)
+      if (!has_found(fit.hypothesis, result.found.hypothesis) &&
+          !fit.hypothesis.contains(result.found.hypothesis) && fit.failure.empty() &&
+          (best == nullptr || fit.gap.train < best->gap.train))
+        best = &fit;
+  };
+  consider(result.rivals);
+  for (auto round = result.rounds.rbegin(); round != result.rounds.rend() && best == nullptr;
+       ++round) {
+    consider(round->refits);
+    consider(round->moves);
+  }
+  return best != nullptr ? std::optional(best->gap) : std::nullopt;
+}
 
 bool is_named(const Explanation& found) {
   return is_named(found.finding);

@@ -121,6 +121,10 @@ inline constexpr double kCoarse = 1.5;
 
 // Did the search find effects that belong to the model?
 bool is_named(const Explanation& found);
+// The gaps of the best rival, or of the best of the last round that had others than the found one
+// or that with something more: by their gaps, as deviances of different rounds are in units of
+// different noise.
+std::optional<Gaps> placebo_of(const Explanation& found);
 // Names of the hypotheses that explain the data as well as each other, the found one first; none if
 // nothing is named.
 std::vector<std::string> class_of(const Explanation& found);
