@@ -14,6 +14,7 @@
 #include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/text.hpp"
 #include "verification/measure/fit.hpp"
+#include "verification/series/series_need.hpp"
 #include "verification/vesicles/differences.hpp"
 
 namespace traceraft {
@@ -25,7 +26,7 @@ constexpr int kOfCharts = 10;  // of the curves of charts and power laws
 
 std::string vesicles_text(double count, const SeriesExplanation& found) {
   return std::isfinite(count) ? formatted("%.0f", std::ceil(count))
-                              : formatted("more than %.0f", found.most_vesicles);
+                              : formatted("more than %d", kMostTimes * found.vesicles);
 }
 
 std::string sentence(const SeriesExplanation& found) {

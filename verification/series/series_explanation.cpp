@@ -56,7 +56,6 @@ class SeriesSearch {
 
   SeriesExplanation run() {
     result_.vesicles = static_cast<int>(data_.vesicles().size());
-    result_.most_vesicles = kMostTimes * result_.vesicles;
     result_.looks = static_cast<int>(data_.measurements.size());
     result_.base = gains_.base;
     result_.unit_deviation = unit_deviation();

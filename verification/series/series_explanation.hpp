@@ -30,7 +30,7 @@ struct SeriesScore {
   double value, sigma;  // of the strength, in units of the parameter of the ensemble
   double low, high;     // its 95 % bounds
   bool bounded;         // they are within what has been simulated
-  double vesicles;      // so many as these would show the effect at the ensemble's strength
+  double vesicles;      // so many as these show it at the ensemble's strength; see times_needed
   Quantity telling;     // what shows it best
 };
 
@@ -44,7 +44,6 @@ struct SeriesTie {
 struct SeriesExplanation {
   Finding finding;
   int vesicles, looks;
-  double most_vesicles;                           // what needs more is infinite
   double p;                                       // that the best score is noise
   double trend_p;                                 // that what is left of the best model is
   SeriesFit base;                                 // without any effect

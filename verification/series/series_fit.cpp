@@ -165,12 +165,11 @@ SeriesMetric metric_of(const std::vector<SeriesBlock>& blocks, const SeriesModel
 
 Vec residual(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
              const SeriesFit& fit) {
-  const Vec mean = expected(blocks, model, fit);
-  Eigen::Index look = 0;
-  return per_look(blocks, [&](const SeriesBlock& block, Eigen::Index i) {
-    const double ln = mean[look++];
-    return block.values[i] - ln - block.stated[static_cast<std::size_t>(i)].bias(ln);
-  });
+  return per_look(blocks, expected(blocks, model, fit),
+                  [](const SeriesBlock& block, Eigen::Index i, double mean) {
+                    return block.values[i] - mean -
+                           block.stated[static_cast<std::size_t>(i)].bias(mean);
+                  });
 }
 
 Vec response(const std::vector<SeriesBlock>& blocks, const RunCurves& base,

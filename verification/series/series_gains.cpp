@@ -20,10 +20,10 @@ enum SeriesStream : std::uint64_t {
 };
 
 // The same looks at vesicles of the base model, one run each.
-MeasuredVesicles draw_base(const MeasuredVesicles& data, const std::vector<History>& runs,
-                           const SeriesFit& fit, std::uint64_t replicate) {
+MeasuredVesicles draw_base(const MeasuredVesicles& data, const StatedErrors& errors,
+                           const std::vector<History>& runs, const SeriesFit& fit,
+                           std::uint64_t replicate) {
   MeasuredVesicles drawn_data = data;
-  const StatedErrors errors(data);
   std::uint64_t vesicle = 0, look = 0;
   for (const auto& [first, last] : data.vesicles()) {
     const History& run = runs[static_cast<std::size_t>(
@@ -96,6 +96,7 @@ SeriesNull null_of(const MeasuredVesicles& data, const std::vector<History>& run
                    const std::vector<SeriesCandidate>& candidates, const SeriesFit& fit,
                    const UnitRange& unit, int replicates) {
   SeriesNull result;
+  const StatedErrors errors(data);
   const auto count = static_cast<Eigen::Index>(candidates.size());
   Eigen::MatrixXd gained(replicates, count);
   result.trend.resize(replicates);
@@ -104,8 +105,8 @@ SeriesNull null_of(const MeasuredVesicles& data, const std::vector<History>& run
     const auto replicate = static_cast<std::uint64_t>(r + 1);
     const std::vector<int> sample = resample(static_cast<int>(runs.size()), replicate, kSample);
     const SeriesGains gains =
-        gains_of(draw_base(data, runs, fit, replicate), {runs, candidates, sample}, candidates,
-                 draw_unit(fit, unit, replicate));
+        gains_of(draw_base(data, errors, runs, fit, replicate), {runs, candidates, sample},
+                 candidates, draw_unit(fit, unit, replicate));
     gained.row(r) = gains.values.transpose();
     result.trend[r] = gains.trend;
     result.ln_unit[r] = gains.base.ln_unit;

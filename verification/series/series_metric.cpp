@@ -31,9 +31,8 @@ std::vector<SeriesBlock> blocks_of(const MeasuredVesicles& data) {
 
 Vec known_variance(const std::vector<SeriesBlock>& blocks, const RunCurves& base, double ln_unit,
                    const Vec& expected) {
-  Eigen::Index look = 0;
-  return per_look(blocks, [&](const SeriesBlock& block, Eigen::Index i) {
-    return block.stated[static_cast<std::size_t>(i)].of_logarithm(expected[look++]) +
+  return per_look(blocks, expected, [&](const SeriesBlock& block, Eigen::Index i, double mean) {
+    return block.stated[static_cast<std::size_t>(i)].of_logarithm(mean) +
            base.variance(block.quantity, block.ln_t[i] - ln_unit);
   });
 }

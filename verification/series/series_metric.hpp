@@ -39,6 +39,15 @@ Vec per_look(const std::vector<SeriesBlock>& blocks, const Value& value) {
   return result;
 }
 
+// The same of another such vector's entries: value(block, i, entry).
+template <class Value>
+Vec per_look(const std::vector<SeriesBlock>& blocks, const Vec& entries, const Value& value) {
+  Eigen::Index next = 0;
+  return per_look(blocks, [&](const SeriesBlock& block, Eigen::Index i) {
+    return value(block, i, entries[next++]);
+  });
+}
+
 // With an entry per look: the variance without the scatter that is fitted, that of what the data
 // state and that between runs, of which each vesicle is one. (What looks at one vesicle share of
 // the latter is left to the fitted scatter.)

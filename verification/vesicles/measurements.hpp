@@ -11,9 +11,6 @@
 
 namespace traceraft {
 
-// Of whole numbers.
-inline constexpr double kRoundingVariance = 1 / 12.0;
-
 // One look at one vesicle.
 struct Measurement {
   std::string vesicle;
@@ -27,11 +24,6 @@ struct Measurement {
   }
   double sigma_of(Quantity quantity) const {
     return sigma[static_cast<std::size_t>(quantity)].value_or(0);
-  }
-  // Of counts, that of rounding to whole numbers at least.
-  double variance_of(Quantity quantity) const {
-    const double stated = sigma_of(quantity) * sigma_of(quantity);
-    return quantity == Quantity::rafts && stated < kRoundingVariance ? kRoundingVariance : stated;
   }
   // Rafts whose perimeter or number was measured.
   bool shows_rafts() const {
