@@ -4,44 +4,25 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <mutex>
-#include <sstream>
 #include <thread>
 
 namespace traceraft {
 namespace {
 
-constexpr int kStopSignals[] = {SIGINT, SIGTERM, kParentDied};
+// Since then, and what it had taken: the system knows when a process began, but that may be hours
+// ago where a shell, or a scheduler, has become this program (exec), and not when it became that.
+// Loading libraries is work of a processor.
+const std::chrono::steady_clock::time_point kLoaded = std::chrono::steady_clock::now();
+const double kLoading = cpu_seconds();
 
-// When the process began, its libraries not yet loaded; now, where the system does not tell.
-std::chrono::steady_clock::time_point start_of_process() {
-  const auto now = std::chrono::steady_clock::now();
-  std::ifstream file("/proc/self/stat");
-  std::string text;
-  std::getline(file, text);
-  const std::size_t name_end = text.rfind(')');  // names may hold anything
-  if (name_end == std::string::npos) return now;
-  std::istringstream fields(text.substr(name_end + 1));
-  std::string skipped;
-  constexpr int kBetween = 19;  // from the state, field 3, to the start, field 22 (proc(5))
-  for (int i = 0; i < kBetween; ++i) fields >> skipped;
-  long long ticks = 0;
-  timespec since_boot{};
-  if (!(fields >> ticks) || clock_gettime(CLOCK_BOOTTIME, &since_boot) != 0) return now;
-  const double age = static_cast<double>(since_boot.tv_sec) +
-                     1e-9 * static_cast<double>(since_boot.tv_nsec) -
-                     static_cast<double>(ticks) / static_cast<double>(sysconf(_SC_CLK_TCK));
-  return now - std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                   std::chrono::duration<double>(std::max(0.0, age)));
-}
+constexpr int kStopSignals[] = {SIGINT, SIGTERM, kParentDied};
 
 std::atomic<bool> stop_flag = false;
 // When SIGINT or SIGTERM came first. A terminal, a manager of scopes and the parent may each send
@@ -108,8 +89,8 @@ void watch_stop_signals() {
 }  // namespace
 
 double wall_seconds() {
-  static const auto process_start = start_of_process();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - process_start).count();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - kLoaded).count() +
+         kLoading;
 }
 
 double cpu_seconds() {

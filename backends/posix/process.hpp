@@ -8,7 +8,7 @@
 
 namespace traceraft {
 
-double wall_seconds();    // since this process started
+double wall_seconds();    // since this program was started, libraries still to be loaded
 double cpu_seconds();     // user and system time of all threads
 double peak_memory_mb();  // largest resident set so far
 bool is_superuser();
