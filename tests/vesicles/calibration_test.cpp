@@ -295,6 +295,32 @@ TEST(Calibration, DeterminesNothingUnlessItConverges) {
   EXPECT_FALSE(found.converged);
 }
 
+// Perimeters known to four tenths of what is expected: by the mean of their logarithms, which is
+// 0.096 lower, they would be 1.33 times as old.
+TEST(TimeFit, IsNotPulledByErrorsThatAreAbsolute) {
+  History run;
+  for (double t = 1; t < 1000; t *= 1.1) {
+    run.time.push_back(t);
+    run.of(Quantity::perimeter).push_back(30 * std::pow(t, -1 / 3.0));
+    run.of(Quantity::rafts).push_back(5);
+    run.of(Quantity::fraction).push_back(0.1);
+  }
+  const std::vector<History> runs(3, run);
+  MeasuredVesicles data;
+  constexpr int kVesicles = 1000;
+  std::vector<int> all;
+  std::uint64_t k = 0;
+  for (int v = 0; v < kVesicles; ++v) {
+    double value = 0;
+    while (!(value > 0)) value = 10 * (1 + 0.4 * normal(3, k++));
+    data.measurements.push_back({std::to_string(v), 27, 5, {value}, {4.0}});
+    all.push_back(v);
+  }
+  const RunStatistics means({runs, run.time}, each_once(3), scatter_laws({runs}));
+  const TimeFit found = fit_time(data, all, means, {1, {0.3, 3}});
+  EXPECT_NEAR(std::log(found.seconds_per_unit), 0, 2.5 * 3 * 0.4 / std::sqrt(1.0 * kVesicles));
+}
+
 // At time zero there is the initial noise, of which the model foretells nothing.
 TEST(Calibration, LeavesLooksOfTimeZeroOut) {
   const std::vector<CalibrationPoint> points = {{{}, simulate(kEpsilon, true, 20, 77)}};

@@ -264,6 +264,21 @@ History steady(double perimeter, double rafts, double t_end) {
   return run;
 }
 
+// Runs that are all alike, a look at what they foretell and one at half of that, both known to 2
+// µm: of the logarithm's deviation, a quarter, and its mean, 0.0351 lower.
+TEST(Comparison, ErrorsAreThoseOfWhatIsExpected) {
+  MeasuredVesicles data;
+  for (const double perimeter : {8.0, 4.0})
+    data.measurements.push_back(
+        {"v", 100, 5, {perimeter, std::nullopt, 0.5 * perimeter / 8}, {2.0, std::nullopt, 0.1}});
+  const auto agreements = compare_with_runs(data, {steady(8, 4, 500), steady(8, 4, 500)});
+  const double right = 4 * 0.0351, half = 4 * (0.0351 - std::log(2.0));
+  EXPECT_NEAR(agreements[0].bias, 0.5 * (right + half), 1e-2);
+  EXPECT_NEAR(agreements[0].misfit, std::sqrt(0.5 * (right * right + half * half)), 1e-2);
+  // Raft fractions as they are.
+  EXPECT_NEAR(agreements[2].bias, 0.5 * (4 + 1.5), 1e-6);
+}
+
 // Half as many rafts are as far off as twice as many.
 TEST(Comparison, WeighsSmallCountsAsLargeOnes) {
   const auto bias_of = [](double rafts) {

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "kernel/core/random.hpp"
+
 namespace traceraft {
 namespace {
 
@@ -89,13 +91,50 @@ TEST(StatedErrors, DifferAsTheyAreStated) {
                 k % 2 ? 0.4 : 0.1, 1e-9);
 }
 
-// ln(4 + z) of normal z of a tenth of it; relative errors are normal in the logarithm.
-TEST(StatedErrors, KnowTheMeanOfTheLogarithm) {
-  for (const double power : {0.0, 1.0}) {
-    const MeasuredVesicles data = data_with(Quantity::perimeter, power);
-    const StatedError error = StatedErrors(data).of(data.measurements[0], Quantity::perimeter);
-    EXPECT_NEAR(error.bias(std::log(4)), power == 0 ? -0.5 * std::pow(0.1 / 4, 2) : 0, 1e-12);
+// Half of the looks are by an instrument twice as bad, absolutely: noise in their values is none of
+// the reasons.
+TEST(StatedErrors, OfTwoInstrumentsDifferAsTheyAreStated) {
+  MeasuredVesicles data;
+  for (int k = 0; k < 8; ++k) {
+    Measurement m{"a", k + 1.0, 5, {}, {}};
+    m.values[0] = 2 + k / 2;
+    m.sigma[0] = k % 2 ? 1.0 : 0.5;
+    data.measurements.push_back(m);
   }
+  const StatedErrors errors(data);
+  for (const Measurement& m : data.measurements)
+    EXPECT_NEAR(std::sqrt(variance(errors, m, 4)), *m.sigma[0] / 4, 1e-9);
+}
+
+// By a trapezoidal rule in ln x, elsewhere.
+TEST(StatedErrors, KnowTheMeanOfTheLogarithm) {
+  const std::pair<double, double> known[] = {{0, 0},
+                                             {0.1, -0.00507764},
+                                             {0.3, -0.05331620},
+                                             {0.5, -0.12557756},
+                                             {0.7, -0.12394375},
+                                             {1, -0.03521329},
+                                             {2, 0.34807784}};
+  for (const auto& [s, mean] : known) EXPECT_NEAR(mean_of_logarithm(s), mean, 2e-5) << s;
+  EXPECT_EQ(mean_of_logarithm(30), mean_of_logarithm(2));
+}
+
+// Relative errors are normal in the logarithm, absolute ones in the value: as they are drawn.
+TEST(StatedErrors, AreDrawnAsTheMeanOfTheLogarithmSays) {
+  constexpr int kDrawn = 40000;
+  for (const double size : {0.3, 2.0, 4.0})
+    for (const double power : {0.0, 0.5, 1.0}) {
+      const StatedError error{std::log(size) - power * std::log(4), power, 0};
+      double mean = 0, squares = 0;
+      for (std::uint64_t i = 0; i < kDrawn; ++i) {
+        const double drawn =
+            error.drawn(std::log(4), [i](std::uint64_t k) { return normal_random(1, k, i); });
+        mean += (drawn - std::log(4)) / kDrawn;
+        squares += std::pow(drawn - std::log(4), 2) / kDrawn;
+      }
+      EXPECT_NEAR(mean, error.bias(std::log(4)), 4 * std::sqrt(squares / kDrawn))
+          << size << " " << power;
+    }
 }
 
 TEST(StatedErrors, OfCountsAreThoseOfRoundingAtLeast) {

@@ -18,6 +18,7 @@ enum SeriesStream : std::uint64_t {
   kStated = 5,
   kUnit = 6
 };
+constexpr std::uint64_t kNext = 1ull << 32;  // number of one look
 
 // The same looks at vesicles of the base model, one run each.
 MeasuredVesicles draw_base(const MeasuredVesicles& data, const StatedErrors& errors,
@@ -38,14 +39,13 @@ MeasuredVesicles draw_base(const MeasuredVesicles& data, const StatedErrors& err
         double& value = drawn_data.measurements[i].values[q].emplace(0);
         if (run.at(Quantity::rafts, t) < 1) continue;
         const Measurement& m = data.measurements[i];
-        const double expected = logarithm_of(quantity, run.at(quantity, t));
-        const StatedError error = errors.of(m, quantity);
         const double own =
-            error.bias(expected) +
-            std::sqrt(error.stated(expected)) * normal_random(replicate, kStated, look) +
+            logarithm_of(quantity, run.at(quantity, t)) +
             fit.scatter.vesicle[q] * normal_random(replicate, kVesicle, 3 * vesicle + q) +
             fit.scatter.look[q] * normal_random(replicate, kLook, look);
-        value = std::exp(expected + own);
+        value = std::exp(errors.of(m, quantity).drawn(own, [&](std::uint64_t k) {
+          return normal_random(replicate, kStated, look + k * kNext);
+        }));
         if (quantity == Quantity::rafts) value = std::max(1.0, std::round(value));
         drawn_data.measurements[i].sigma[q] =
             m.sigma_of(quantity) * std::pow(value / measured, errors.power(quantity));

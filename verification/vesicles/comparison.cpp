@@ -40,9 +40,10 @@ Deviation deviation_of(const Measurement& m, Quantity quantity,
   const Moments runs_here = moments(values);
   const double ln_expected =
       relative(quantity) ? runs_here.mean : logarithm_of(quantity, runs_here.mean);
-  const double sigma = std::sqrt(errors.of(m, quantity).of_logarithm(ln_expected)) *
-                       (relative(quantity) ? 1 : std::exp(ln_expected));
-  const double measured = relative(quantity) ? std::log(y) : y;
+  const StatedError error = errors.of(m, quantity);
+  const double sigma =
+      std::sqrt(error.of_logarithm(ln_expected)) * (relative(quantity) ? 1 : std::exp(ln_expected));
+  const double measured = relative(quantity) ? std::log(y) - error.bias(ln_expected) : y;
   const double of_mean = 1 + 1 / static_cast<double>(runs.size());
   const double deviation = std::hypot(runs_here.deviation * std::sqrt(of_mean), sigma);
   const double unit = relative(quantity) ? 1 : std::max(runs_here.mean, 1e-6);

@@ -26,9 +26,8 @@ struct Agreement {
 };
 
 // deviation²: the variance between n runs, times 1 + 1/n as their mean scatters, too, and sigma² of
-// the measurement; logarithms of perimeters and counts, whose scatter is relative, the errors of
-// counts to what is expected of them. Throws
-// InputError if there are fewer than two runs.
+// the measurement, as that of what is expected (stated_errors.hpp); logarithms of perimeters and
+// counts, whose scatter is relative. Throws InputError if there are fewer than two runs.
 std::vector<Agreement> compare_with_runs(const MeasuredVesicles& data,
                                          const std::vector<History>& runs);
 
