@@ -16,6 +16,8 @@ namespace {
 
 // Of the range of ln of the unit, and at most that much; of its deviation, over what it was before.
 constexpr double kAtEnd = 0.05, kMostAtEnd = 0.1, kTold = 0.7;
+// Deviations from an end at which it does not matter.
+constexpr double kFree = 2;
 
 void refuse(const MeasuredVesicles& data, const std::vector<History>& base,
             const std::vector<SeriesCandidate>& candidates) {
@@ -39,6 +41,13 @@ double shortest_unit(const MeasuredVesicles& data, const std::vector<History>& b
   for (const Measurement& m : data.measurements) last = std::max(last, m.time);
   return last / end;
 }
+
+struct Squares {
+  double sum = 0, count = 0;
+
+  void add(double x) { sum += x * x, ++count; }
+  double mean() const { return count > 0 ? sum / count : 0; }
+};
 
 class SeriesSearch {
  public:
@@ -80,18 +89,22 @@ class SeriesSearch {
   }
 
  private:
-  // From drawn data, on the side where the fit may go further.
+  // From drawn data, whose fits end where that of the measurements does: near an end the larger of
+  // both sides. 1.96 times it is the half of a 95 % interval, as the runs are few.
   double unit_deviation() const {
     const double ln_unit = gains_.base.ln_unit;
-    const double side =
-        request_.unit.highest() - ln_unit > ln_unit - request_.unit.lowest() ? 1 : -1;
-    double squares = 0, count = 0;
+    const double below = ln_unit - request_.unit.lowest();
+    const double above = request_.unit.highest() - ln_unit;
+    const double side = above > below ? 1 : -1;
+    Squares away, back;
     for (const double drawn : null_.ln_unit)
-      if (side * (drawn - ln_unit) > 0) {
-        squares += std::pow(drawn - ln_unit, 2);
-        ++count;
-      }
-    return std::sqrt(squares / std::max(count, 1.0));
+      (side * (drawn - ln_unit) > 0 ? away : back).add(drawn - ln_unit);
+    if (away.count == 0) return request_.unit.deviation();  // all of them lie towards the end
+    const double both = std::sqrt((away.sum + back.sum) / (away.count + back.count));
+    const double own = std::min(above, below) > kFree * both
+                           ? both
+                           : std::sqrt(std::max(away.mean(), back.mean()));
+    return factor_for_few(static_cast<int>(candidates_.front().runs.size())) * own;
   }
 
   SeriesScore score_of(std::size_t k) {
