@@ -18,19 +18,32 @@ bool are_alike(const std::vector<Agreement>& agreements, std::size_t runs) {
   });
 }
 
+// Why the fit does not determine it, if it does not.
+std::vector<std::string> undetermined(const CalibratedParameter& p, const Calibration& result) {
+  if (p.determined) return {};
+  if (!result.converged) return {"the search did not converge"};
+  if (result.unit_at_bound) return {"D lies at the end of the search"};
+  const double span = p.interval.high / p.interval.low;
+  if (span > kDetermined) return {formatted("95 %% span a factor of %.2g", span)};
+  return {"it reaches the end of what was simulated"};
+}
+
 std::vector<CalibrationFinding> parameters_of(const MeasuredVesicles& data,
                                               const Configuration& model, bool alike,
                                               const Calibration& result) {
   const double factor = factor_of_size(data, model.units().length());
   std::vector<CalibrationFinding> found;
   for (const CalibratedParameter& p : result.parameters) {
-    if (p.name == "seconds_per_unit")
+    std::vector<std::string> open = undetermined(p, result);
+    if (p.name == "seconds_per_unit") {
+      if (!size_is_told(factor, p.interval)) open.push_back("the vesicles have another size");
+      if (!alike) open.push_back("the runs do not coarsen as the vesicles do");
       found.push_back({"mobility", "cm^2/s", diffusion(model, p.value),
-                       diffusion(model, p.interval.high), diffusion(model, p.interval.low),
-                       p.determined && size_is_told(factor, p.interval) && alike});
-    else
+                       diffusion(model, p.interval.high), diffusion(model, p.interval.low), open});
+    } else {
       found.push_back({p.name, p.name == "fraction" ? "1" : "um", p.value, p.interval.low,
-                       p.interval.high, p.determined});
+                       p.interval.high, open});
+    }
   }
   return found;
 }
@@ -96,7 +109,8 @@ std::string calibration_json(const std::vector<CalibrationFinding>& parameters,
     json["parameters"][found.name] = {{"value", found.value},
                                       {"interval_95", {found.low, found.high}},
                                       {"unit", found.unit},
-                                      {"determined", found.determined}};
+                                      {"determined", found.determined()},
+                                      {"undetermined_because", found.open}};
   json["best_known"] = best_known(result);
   json["scatter_of_ln_perimeter"] = result.best.scatter;
   json["points_at_bound_of_mobility"] = result.at_bound;

@@ -24,8 +24,10 @@ struct CalibrationRuns {
 
 struct CalibrationFinding {
   std::string name, unit;
-  double value, low, high;  // the interval of 95 %
-  bool determined;          // by the data
+  double value, low, high;        // the interval of 95 %
+  std::vector<std::string> open;  // why the data do not determine it, if they do not
+
+  bool determined() const { return open.empty(); }
 };
 
 struct CalibrationFindings {

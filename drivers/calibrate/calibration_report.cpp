@@ -23,7 +23,7 @@ std::vector<Row> rows_of(const std::vector<CalibrationFinding>& parameters) {
   for (const CalibrationFinding& found : parameters)
     rows.push_back({found.name, formatted("%.3g", found.value),
                     formatted("%.3g to %.3g", found.low, found.high), found.unit,
-                    found.determined ? "yes" : "NO"});
+                    found.determined() ? "yes" : "NO: " + joined(found.open, "; ")});
   return rows;
 }
 

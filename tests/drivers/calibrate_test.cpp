@@ -145,6 +145,8 @@ TEST_F(CalibrateTest, DoesNotTakeOneVesicleForAnother) {
   const auto& mobility = json["parameters"]["mobility"];
   EXPECT_LT(mobility["interval_95"][1], 2 * mobility["interval_95"][0].get<double>());
   EXPECT_EQ(mobility["determined"], false);
+  EXPECT_NE(made.output.find("NO: the vesicles have another size"), std::string::npos)
+      << made.output;
   EXPECT_NE(made.output.find("would make D 2.8 times as large"), std::string::npos) << made.output;
 
   const std::string other = "calibrate --data " + kept + "synthetic/guv-3to1";
@@ -181,6 +183,7 @@ TEST_F(CalibrateTest, LooksForTheMobilityWithinItsRuns) {
   const auto& mobility = json["parameters"]["mobility"];
   EXPECT_LT(mobility["value"], 2.5e-5);
   EXPECT_EQ(mobility["determined"], false);  // it ends where the runs do
+  EXPECT_EQ(mobility["undetermined_because"][0], "D lies at the end of the search");
   EXPECT_EQ(json["mobility_at_bound"], true);
   EXPECT_NE(made.output.find("take an ensemble with a larger --t-end"), std::string::npos);
   for (const char* words : {"The data know best", "run it with"})

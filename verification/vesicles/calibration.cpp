@@ -9,7 +9,6 @@
 namespace traceraft {
 namespace {
 
-constexpr double kDetermined = 2;  // factor between the ends of an interval
 // How close to the end of what was looked at counts as its end, in ln: the range of R²/D is wide.
 constexpr double kUnitEdge = 0.1, kSimulatedEdge = 1e-3;
 

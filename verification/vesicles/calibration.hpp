@@ -17,12 +17,15 @@ struct SoughtParameter {
   Interval allowed;
 };
 
+// Factor between the ends of an interval, below which a parameter is determined.
+inline constexpr double kDetermined = 2;
+
 struct CalibratedParameter {
   std::string name;
   double value;
   // 95 %, by the bootstrap over vesicles and over runs, widened for few; value: the median of that.
   Interval interval;
-  bool determined;  // the interval is narrower than a factor of 2 and within what was explored
+  bool determined;  // the interval is narrower than that and within what was explored
 };
 
 struct Calibration {
