@@ -1,10 +1,13 @@
 #include "drivers/explain/search_file.hpp"
 
+#include <cmath>
+
 #include "backends/sodium/seal.hpp"
 #include "drivers/config/config_file.hpp"
 #include "drivers/explain/search_json.hpp"
 #include "drivers/output/program.hpp"
 #include "kernel/core/error.hpp"
+#include "kernel/core/text.hpp"
 
 namespace traceraft {
 namespace {
@@ -16,40 +19,54 @@ std::vector<double> numbers_of(const Vec& values) {
 // Maps of many snapshots.
 constexpr std::uint64_t kMaxSearchBytes = 1 << 30;
 
-// Of everything that the search depends on.
-std::string fingerprint_of(const ExplainSetup& setup) {
-  const ExplainRequest& request = setup.request;
-  Json all = {{"program", program_checksum()},
-              {"model", config_text(Configuration(setup.model, {}))},
-              {"without", request.without},
-              {"effects", request.most_effects},
-              {"replicates", request.filter.replicates},
-              {"pace_doubt", request.filter.pace_doubt},
-              {"blur", request.blur_stated ? Json(request.filter.blur) : Json()}};
-  for (const FieldSeries& series : setup.series)
+std::string checksum_of(const std::vector<FieldSeries>& data) {
+  Json all = Json::array();
+  for (const FieldSeries& series : data)
     for (const FieldSnapshot& snapshot : series.snapshots) {
       Json points = Json::array();
       for (const Point& x : snapshot.points) points.push_back(numbers_of(x));
-      all["data"].push_back({series.vesicle, snapshot.time, points, numbers_of(snapshot.values),
-                             numbers_of(snapshot.deviation)});
+      all.push_back({series.vesicle, snapshot.time, points, numbers_of(snapshot.values),
+                     numbers_of(snapshot.deviation)});
     }
   return sha256(all.dump());
+}
+
+// Everything that the search depends on, by the words for it.
+Json subject_of(const ExplainSetup& setup) {
+  const ExplainRequest& request = setup.request;
+  return {{"the build of the program", program_checksum()},
+          {"the model", config_text(Configuration(setup.model, {}))},
+          {"the data", checksum_of(setup.series)},
+          {"the blur of the data", request.blur_stated ? Json(request.filter.blur) : Json()},
+          {"--without", request.without},
+          {"--most-effects", request.most_effects},
+          {"--replicates", request.filter.replicates},
+          {"--diffusion-error",
+           std::isfinite(request.filter.pace_doubt) ? Json(request.filter.pace_doubt) : Json()}};
+}
+
+std::string differences(const Json& saved, const Json& subject) {
+  std::vector<std::string> words;
+  for (const auto& [word, value] : subject.items())
+    if (saved.at(word) != value) words.push_back(word);
+  return joined(words, ", ");
 }
 
 }  // namespace
 
 SearchFile::SearchFile(const std::filesystem::path& folder, const ExplainSetup& setup)
-    : path_(folder / "search.json"), setup_(setup), fingerprint_(fingerprint_of(setup)) {}
+    : path_(folder / "search.json"), setup_(setup), subject_(subject_of(setup)) {}
 
 std::optional<SearchState> SearchFile::load() const {
   if (!std::filesystem::exists(path_)) return {};
   return from_json(
       path_,
       [this](const Json& json) {
-        if (json.at("fingerprint") != fingerprint_)
+        const std::string words = json.contains("subject") ? differences(json["subject"], subject_)
+                                                           : "the version of the program";
+        if (!words.empty())
           throw InputError("--out: " + path_.parent_path().string() +
-                           " holds a search of other data, another model or other settings, or by "
-                           "another build of the program; choose another folder");
+                           " holds a search that differs in " + words + "; choose another folder");
         return std::optional(search_from(json, setup_.request.base));
       },
       kMaxSearchBytes);
@@ -57,7 +74,7 @@ std::optional<SearchState> SearchFile::load() const {
 
 void SearchFile::save(const SearchState& state) const {
   Json json = search_json(state);
-  json["fingerprint"] = fingerprint_;
+  json["subject"] = subject_;
   write_durably(path_, json.dump() + "\n");
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "drivers/explain/explain_run.hpp"
+#include "drivers/output/json_file.hpp"
 
 namespace traceraft {
 
@@ -20,7 +21,7 @@ class SearchFile {
  private:
   const std::filesystem::path path_;
   const ExplainSetup& setup_;
-  const std::string fingerprint_;
+  const Json subject_;  // of the search
 };
 
 }  // namespace traceraft

@@ -68,11 +68,18 @@ EffectTerm sized_term(const EffectSizing& sizing, const std::string& effect, std
 
 constexpr char kStrengths[] = "strengths.json";
 
+// Which simulations they are for.
+Json header_of(const Configuration& model, const Window& looks) {
+  return {{"identity", numerical_identity(ensemble_model(model, "", looks.end))},
+          {"looks", {looks.begin, looks.end}}};
+}
+
 // What was found before; empty if that is nothing.
-Json saved_strengths(const fs::path& file, const std::string& identity, const Json& looks) {
+Json saved_strengths(const fs::path& file, const Json& header) {
   if (!fs::exists(file)) return Json::object();
   return from_json(file, [&](const Json& json) {
-    if (json.value("identity", "") != identity || json.value("looks", Json()) != looks)
+    if (json.value("identity", "") != header["identity"] ||
+        json.value("looks", Json()) != header["looks"])
       throw InputError(file.parent_path().string() +
                        " holds simulations of another model, by an earlier version, or for looks "
                        "at other times; choose another --out or --ensembles");
@@ -84,10 +91,9 @@ Json saved_strengths(const fs::path& file, const std::string& identity, const Js
 std::vector<EffectTerm> sizes(const fs::path& folder, const Configuration& model,
                               const SeriesEnsemblesRequest& request) {
   const fs::path file = folder / kStrengths;
-  const std::string identity = numerical_identity(ensemble_model(model, "", request.looks.end));
-  const Json looks{request.looks.begin, request.looks.end};
+  Json saved = header_of(model, request.looks);
+  Json& strengths = saved["strengths"] = saved_strengths(file, saved);
   const BlindRequest asked = sizing_request(model, request);
-  Json strengths = saved_strengths(file, identity, looks);
   std::optional<EffectSizing> sizing;
   std::vector<EffectTerm> terms;
   const std::vector<std::string> known = effects_to_hide();
@@ -100,9 +106,7 @@ std::vector<EffectTerm> sizes(const fs::path& folder, const Configuration& model
       tell(request, "how strong " + effect + " has to be");
       if (!sizing) sizing.emplace(asked);
       strengths[effect] = sized_term(*sizing, effect, k, asked.raft_fraction).values;
-      write_durably(
-          file,
-          Json{{"identity", identity}, {"looks", looks}, {"strengths", strengths}}.dump(2) + "\n");
+      write_durably(file, saved.dump(2) + "\n");
     }
     terms.push_back({effect, strengths.at(effect)});
   }
@@ -126,7 +130,8 @@ EffectTerm within_range(EffectTerm term, const Units& units) {
   return term;
 }
 
-void take_over_ensembles(const fs::path& folder, SeriesEnsemblesRequest& request) {
+void take_over_ensembles(const fs::path& folder, const Configuration& model,
+                         SeriesEnsemblesRequest& request) {
   const fs::path file = folder / kStrengths;
   const EnsembleFolder base(folder / "base");
   if (!fs::exists(file) || !base.started())
@@ -138,6 +143,7 @@ void take_over_ensembles(const fs::path& folder, SeriesEnsemblesRequest& request
       throw InputError("--ensembles: " + folder.string() + " is by an earlier version");
     return Window{json.at("looks").at(0), json.at("looks").at(1)};
   });
+  (void)saved_strengths(file, header_of(model, request.looks));
 }
 
 std::string note_on_looks(const Window& simulated, const Window& measured) {

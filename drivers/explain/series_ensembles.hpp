@@ -28,8 +28,9 @@ struct SeriesEnsembles {
 };
 
 // What the simulations of an earlier explanation are, for other data: the looks that they are for,
-// and how many runs. Throws InputError if there are none.
-void take_over_ensembles(const std::filesystem::path& folder, SeriesEnsemblesRequest& request);
+// and how many runs. Throws InputError if there are none, or of another model.
+void take_over_ensembles(const std::filesystem::path& folder, const Configuration& model,
+                         SeriesEnsemblesRequest& request);
 
 // If data are looked at when those effects had no time to act, or too much: a sentence, else "".
 std::string note_on_looks(const Window& simulated, const Window& measured);

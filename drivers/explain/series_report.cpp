@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "drivers/explain/series_verdict.hpp"
+#include "drivers/explain/verdict_sentence.hpp"
 #include "drivers/output/chart.hpp"
 #include "drivers/output/page.hpp"
 #include "drivers/output/program.hpp"
@@ -206,6 +207,7 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
                               bool quiet) {
   const SeriesEnsembles ensembles = in_seconds(simulated, found);
   const std::vector<PerimeterExponent> laws = exponents(data, ensembles);
+  const std::string verdict = verdict_line(found.finding, class_of(found));
   std::vector<std::string> words{title_of(data) + ": " + std::to_string(found.vesicles) +
                                      " vesicles, " + std::to_string(found.looks) + " looks.",
                                  sentence(found), ground(found, simulated, request)};
@@ -225,6 +227,7 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
                          exponent = exponent_rows(laws);
 
   Page page("What series of vesicles say of the model");
+  page.heading(verdict);
   for (const std::string& line : words) page.paragraph(line);
   page.table(offset);
   page.table(scores);
@@ -240,7 +243,7 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
   write_durably(folder / "series.html", page.html());
   write_durably(folder / "series.json", series_json(model, simulated, found, laws).dump(2) + "\n");
   if (quiet) return;
-  std::printf("\n");
+  std::printf("\n%s\n", verdict.c_str());
   for (const std::string& line : words) std::printf("%s\n", line.c_str());
   std::printf("\n");
   print_rows(offset);

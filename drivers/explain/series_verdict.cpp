@@ -87,18 +87,6 @@ std::vector<FoundParameter> found_parameters(const Configuration& model,
   return result;
 }
 
-// `effect` first.
-std::vector<std::string> class_of(const SeriesExplanation& found) {
-  std::vector<std::string> members;
-  if (!is_named(found.finding)) return members;
-  const std::string& best = found.scores.front().effect;
-  members.push_back(best);
-  for (const auto& some : found.named)
-    for (const std::string& effect : some)
-      if (effect != best) members.push_back(effect);
-  return members;
-}
-
 GivenValues named_model(GivenValues model, const SeriesEnsembles& ensembles,
                         const SeriesExplanation& found) {
   const SeriesScore& best = found.scores.front();
@@ -111,6 +99,17 @@ GivenValues named_model(GivenValues model, const SeriesEnsembles& ensembles,
 }
 
 }  // namespace
+
+std::vector<std::string> class_of(const SeriesExplanation& found) {
+  std::vector<std::string> members;
+  if (!is_named(found.finding)) return members;
+  const std::string& best = found.scores.front().effect;
+  members.push_back(best);
+  for (const auto& some : found.named)
+    for (const std::string& effect : some)
+      if (effect != best) members.push_back(effect);
+  return members;
+}
 
 Units found_units(const Configuration& model, const SeriesExplanation& found) {
   return units_of(model, found.base.ln_unit);

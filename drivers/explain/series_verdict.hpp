@@ -15,6 +15,9 @@ namespace traceraft {
 // With the D that the series say if nothing is missing.
 Units found_units(const Configuration& model, const SeriesExplanation& found);
 
+// Effects that explain the data, the best first; none if nothing was named.
+std::vector<std::string> class_of(const SeriesExplanation& found);
+
 // The parameter that was looked for, and its unit over that of the model with the D of this fit.
 struct StrengthScale {
   std::string parameter, unit;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "verification/explain/search/explanation.hpp"
 
@@ -16,6 +17,9 @@ bool changes_pace(const Refit& fit);
 // If the verdict is unnamed: the effects of the model that the search ended with, or the best of
 // the single ones, if the data tell it from nothing. "" otherwise.
 std::string comes_closest(const Explanation& found);
+
+// "Verdict: ambiguous (cooling, uptake)": the word of verdict.json, and what explains the data.
+std::string verdict_line(Finding finding, const std::vector<std::string>& effects);
 
 std::string verdict_sentence(const Explanation& found);
 

@@ -106,6 +106,7 @@ TEST_F(ExplainTest, NamesWhatWasHidden) {
   EXPECT_FALSE(verdict["bounds"].contains("uptake.rate"));
   const std::string page = testing::content(folder.path / "out" / "explain.html");
   EXPECT_NE(page.find("The model lacks uptake: "), std::string::npos) << verdict.dump(2);
+  EXPECT_NE(page.find("Verdict: named (uptake)"), std::string::npos);
   // The model that it has written is one.
   const auto end =
       testing::traceraft("run --config " + (folder.path / "out" / "model.toml").string() +
@@ -158,12 +159,15 @@ TEST_F(ExplainTest, GoesOnWhereItWasKilled) {
   EXPECT_EQ(whole["effect"], "uptake");
   EXPECT_EQ(resumed.dump(2), whole.dump(2));
   // Another search does not take its place.
-  for (const std::string& changed :
-       {command_of_few(kCells, ",gravity"), command_of_few(kCells, "", 59),
-        command_of_few(kCells) + " --diffusion-error 0.1"}) {
+  for (const auto& [changed, what] :
+       {std::pair(command_of_few(kCells, ",gravity"), "--without;"),
+        std::pair(command_of_few(kCells, "", 59), "--replicates;"),
+        std::pair(command_of_few(kCells) + " --diffusion-error 0.1", "--diffusion-error;")}) {
     const auto other = testing::traceraft(changed);
     EXPECT_EQ(other.code, 2) << changed;
-    EXPECT_NE(other.output.find("holds a search of other data"), std::string::npos) << other.output;
+    EXPECT_NE(other.output.find(std::string("holds a search that differs in ") + what),
+              std::string::npos)
+        << other.output;
   }
 }
 
@@ -303,6 +307,7 @@ TEST(ExplainSeriesTest, SimulatesOnceAndSaysWhatSeriesTell) {
   const auto end = testing::traceraft(command + model.string());
   ASSERT_EQ(end.code, 0) << end.output;
   EXPECT_NE(end.output.find("simulations with no effect"), std::string::npos) << end.output;
+  EXPECT_NE(end.output.find("\nVerdict: unnamed\n"), std::string::npos) << end.output;
   const auto series = nlohmann::json::parse(testing::content(out / "series.json"));
   EXPECT_EQ(series["verdict"], "unnamed") << series.dump(2);
   ASSERT_EQ(series["scores"].size(), 2u);
@@ -350,6 +355,16 @@ TEST(ExplainSeriesTest, SimulatesOnceAndSaysWhatSeriesTell) {
   const auto earlier = testing::traceraft(of_others + (out / "ensembles").string());
   EXPECT_EQ(earlier.code, 2);
   EXPECT_NE(earlier.output.find("by an earlier version"), std::string::npos) << earlier.output;
+  nlohmann::json foreign = older;
+  foreign["identity"] = "another";
+  write_durably(out / "ensembles/strengths.json", foreign.dump());
+  const fs::path third = folder.path / "third";
+  const auto another = testing::traceraft("explain --series " + others.string() + " --out " +
+                                          third.string() + " --model " + model.string() +
+                                          " --ensembles " + (out / "ensembles").string());
+  EXPECT_EQ(another.code, 2);
+  EXPECT_NE(another.output.find("another model"), std::string::npos) << another.output;
+  EXPECT_FALSE(fs::exists(third));
   write_durably(out / "ensembles/strengths.json", older.dump());
 
   const auto extended =
