@@ -74,6 +74,14 @@ TEST_F(HideTest, RefusesWhatCannotBeHidden) {
   EXPECT_NE(hide("--effects thermal").output.find("none that explain looks for"),
             std::string::npos);
   EXPECT_EQ(hide("--effects none,gravity").code, 2);
+  for (const char* effects : {"none", "gravity"}) {
+    const auto end = testing::traceraft(
+        "hide --epsilon 1 --raft-fraction 0.16 --cells 14 --truth-cells 16 --snapshots 3 --points "
+        "300 --effects " +
+        std::string(effects) + " --out " + (folder.path / "dissolved").string());
+    EXPECT_EQ(end.code, 2);
+    EXPECT_NE(end.output.find("the base model has no rafts"), std::string::npos) << end.output;
+  }
   EXPECT_EQ(testing::traceraft("hide --cells 40 --truth-cells 40 --out " +
                                (folder.path / "coarse").string())
                 .code,

@@ -33,6 +33,10 @@ class Vesicle {
     return sum / static_cast<double>(states.size());
   }
 
+  void refuse_without_rafts(const std::vector<Vec>& states) const {
+    for (const Vec& c : states) traceraft::refuse_without_rafts(spread(*space_, c));
+  }
+
   std::vector<FieldSnapshot> measure(const std::vector<Vec>& states, double noise) const {
     std::optional<Blur> blur;
     if (request_.blur > 0) blur.emplace(*space_, request_.blur);
@@ -78,6 +82,7 @@ BlindCase draw_blind_case(const BlindRequest& request) {
     if (v == 0) result.truth = size_effects(own);
     const Vesicle vesicle(own);
     const std::vector<Vec> states = vesicle.states(result.truth);
+    if (result.truth.empty()) vesicle.refuse_without_rafts(states);
     if (v == 0) result.noise = request.noise * vesicle.contrast(states);
     result.vesicles.push_back({std::to_string(v + 1), vesicle.measure(states, result.noise)});
   }

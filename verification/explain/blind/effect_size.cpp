@@ -32,10 +32,7 @@ EffectSizing::EffectSizing(const BlindRequest& request)
   for (std::size_t k = 0; k + 1 < snapshots_.size(); ++k)
     next_.push_back(base.advance(snapshots_[k], looks_.times[k], looks_.times[k + 1]));
   for (std::size_t k = 0; k < next_.size(); ++k)
-    if (!(spread(*method_.space, snapshots_[k]) > kLeastContrast))
-      throw InputError(
-          "the base model has no rafts at these times: c is the same everywhere; take "
-          "a larger raft fraction (smooth noise of less than 0.21 dissolves), or other times");
+    refuse_without_rafts(spread(*method_.space, snapshots_[k]));
 }
 
 EffectTerm EffectSizing::term(const std::string& effect, std::uint64_t number) const {
@@ -90,6 +87,13 @@ std::vector<std::string> effects_to_hide() {
   for (const Candidate& candidate : candidates())
     if (candidate.effect != "curvature") names.push_back(candidate.effect);
   return names;
+}
+
+void refuse_without_rafts(double contrast) {
+  if (contrast > kLeastContrast) return;
+  throw InputError(
+      "the base model has no rafts at these times: c is the same everywhere; take "
+      "a larger raft fraction (smooth noise of less than 0.21 dissolves), or other times");
 }
 
 std::vector<EffectTerm> size_effects(const BlindRequest& request) {

@@ -42,6 +42,9 @@ class EffectSizing {
   std::vector<Vec> snapshots_, next_;  // of the base; what becomes of each until the next time
 };
 
+// Throws InputError where the standard deviation of c is not that of rafts.
+void refuse_without_rafts(double contrast);
+
 // The request's effects.
 std::vector<EffectTerm> size_effects(const BlindRequest& request);
 
