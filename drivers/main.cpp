@@ -1,7 +1,6 @@
 // traceraft: the command line, and what becomes of exceptions.
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
@@ -10,6 +9,7 @@
 #include "backends/ranks.hpp"
 #include "backends/suitesparse/blas.hpp"
 #include "drivers/commands.hpp"
+#include "drivers/config/number_checks.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/numerical_failure.hpp"
 #include "drivers/version.hpp"
@@ -33,20 +33,6 @@ void refuse_unknown(const CLI::App& command) {
     throw InputError(
         unknown_name_message("flag", word.substr(0, word.find('=')), flags_of(command)));
   }
-}
-
-// CLI11's ranges let "nan" pass, since it compares false with both ends.
-void refuse_no_numbers(CLI::App& command) {
-  const CLI::Validator finite(
-      [](std::string& text) {
-        double value = 0;
-        const bool number = CLI::detail::lexical_cast(text, value);
-        return !number || std::isfinite(value) ? std::string()
-                                               : "'" + text + "' is not a finite number";
-      },
-      "");
-  for (CLI::Option* option : command.get_options())
-    if (option->get_type_name().compare(0, 5, "FLOAT") == 0) option->check(finite);
 }
 
 // "a, b or c"
@@ -76,7 +62,7 @@ int dispatch(int argc, char** argv) {
     CLI::App* sub = app.add_subcommand(command.name, command.summary);
     sub->allow_extras();
     defined.emplace_back(sub, command.define(*sub));
-    refuse_no_numbers(*sub);
+    check_numbers_first(*sub);
   }
 
   try {

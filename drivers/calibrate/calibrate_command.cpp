@@ -11,6 +11,7 @@
 #include "drivers/calibrate/calibrator.hpp"
 #include "drivers/commands.hpp"
 #include "drivers/config/config_file.hpp"
+#include "drivers/config/number_checks.hpp"
 #include "drivers/config/option_flags.hpp"
 #include "drivers/config/options.hpp"
 #include "drivers/exit_codes.hpp"
@@ -219,7 +220,7 @@ Action define_calibrate(CLI::App& app) {
                  "cells that meshes of a smaller epsilon may have, and so how small it may be; "
                  "default: 1.65 times the model's, 128 at least")
       ->excludes(ensemble)
-      ->check(CLI::Range(4.0, run_option("cells").max));
+      ->check(between(4, run_option("cells").max));
   app.add_option("--jobs", request->jobs, "runs at a time; default: one for each processor")
       ->excludes(ensemble)
       ->check(CLI::Range(1, 1024));

@@ -13,6 +13,7 @@
 #include "drivers/campaign/vesicle_flags.hpp"
 #include "drivers/commands.hpp"
 #include "drivers/config/config_file.hpp"
+#include "drivers/config/number_checks.hpp"
 #include "drivers/ensemble/ensemble_runs.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/output/status_line.hpp"
@@ -58,8 +59,8 @@ CampaignPlan grown_plan(const CampaignRequest& request, const CampaignFolder& fo
     const CampaignPlan wanted = new_plan(request);
     if (wanted.groups != plan.groups || !same_but_for_cases(wanted, plan))
       throw InputError(flag + ": " + folder.path().string() +
-                       " holds a campaign of another plan; choose another folder, or give only "
-                       "--out to go on with it, and --cases for more of them");
+                       " holds a campaign of another plan; choose another folder, or leave away "
+                       "--groups, --seed and what else belongs to a plan, to go on with it");
   }
   plan.cases = std::max(plan.cases, request.cases);
   return plan;
@@ -187,7 +188,11 @@ int run_campaign(const CampaignRequest& request) {
   std::vector<CaseId> cases;
   for (const CaseId& id : cases_of(plan))
     if (done.count(id.name()) == 0) cases.push_back(id);
-  const WorkEnd end = work_off(folder, cases, jobs_of(request.jobs, 1).at_a_time, request.quiet);
+  const int jobs = jobs_of(request.jobs, 1).at_a_time;
+  if (!request.quiet && !cases.empty())
+    std::printf("%zu cases, %d at a time; most take minutes\nfolder %s\n", cases.size(), jobs,
+                folder.path().c_str());
+  const WorkEnd end = work_off(folder, cases, jobs, request.quiet);
   for (const CaseId& id : cases)
     if (fs::exists(folder.score_of(id))) scores.push_back(read_score(folder, id));
   report(folder, scores, end.failures, request.quiet);
@@ -217,7 +222,9 @@ Action define_campaign(CLI::App& app) {
   const std::size_t changing = app.get_options().size();
   app.add_option("--groups", request->plan.groups, "what is tried; default: all of them")
       ->delimiter(',');
-  app.add_option("--seed", request->plan.seed, "what chance does")->capture_default_str();
+  app.add_option("--seed", request->plan.seed, "what chance does")
+      ->check(between(0, kLargestSeed))
+      ->capture_default_str();
   app.add_option("--points", request->plan.points, "of each snapshot")
       ->check(CLI::Range(100, 1000000))
       ->capture_default_str();

@@ -9,6 +9,7 @@
 #include "drivers/campaign/vesicle_flags.hpp"
 #include "drivers/commands.hpp"
 #include "drivers/config/config_file.hpp"
+#include "drivers/config/number_checks.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/input/field_dataset.hpp"
 #include "drivers/run/run_folder.hpp"
@@ -101,20 +102,20 @@ Action define_hide(CLI::App& app) {
   app.add_option("--gap", request.gap,
                  "change of c that each makes from one snapshot to the next, over the standard "
                  "deviation of c")
-      ->check(CLI::Range(1e-3, 0.5))
+      ->check(between(1e-3, 0.5))
       ->capture_default_str();
   app.add_option("--noise", request.noise, "of a value, over the standard deviation of c")
-      ->check(CLI::Range(1e-3, 2.0))
+      ->check(between(1e-3, 2))
       ->capture_default_str();
   app.add_option("--stated", request.stated,
                  "write a column sigma, the noise, and in every second snapshot this times the "
                  "noise; 0: no "
                  "such column")
-      ->check(CLI::Range(0.0, 100.0))
+      ->check(between(0, 100))
       ->capture_default_str();
   app.add_option("--blur", command->blur_um,
                  "of the images, standard deviation of the point spread function in um")
-      ->check(CLI::NonNegativeNumber)
+      ->check(at_least(0))
       ->capture_default_str();
   app.add_option("--vesicles", request.vesicles, "how many, of one membrane and one radius")
       ->check(CLI::Range(1, 100))
@@ -126,17 +127,17 @@ Action define_hide(CLI::App& app) {
       ->check(CLI::Range(100, 1000000))
       ->capture_default_str();
   app.add_option("--first", command->first_s, "time of the first snapshot in s; default: 20 R^2/D")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   app.add_option("--last", command->last_s, "time of the last one in s; default: 90 R^2/D")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   app.add_option("--pace", request.pace, "D of the truth over that of the model")
-      ->check(CLI::Range(0.1, 10.0))
+      ->check(between(0.1, 10))
       ->capture_default_str();
   app.add_option("--truth-cells", command->truth_cells,
                  "of the mesh that the truth is computed on; default: 4 times --cells")
       ->check(CLI::Range(8, 512));
   app.add_option("--seed", command->seed, "what chance does; default: nobody knows")
-      ->check(CLI::NonNegativeNumber);
+      ->check(between(0, kLargestSeed));
   add_vesicle_options(app, command->flags);
   app.footer(
       "The defaults are those of a vesicle that explain takes some minutes for; with --model they "

@@ -10,6 +10,7 @@
 #include "drivers/compare/compare_report.hpp"
 #include "drivers/compare/compare_runs.hpp"
 #include "drivers/config/config_file.hpp"
+#include "drivers/config/number_checks.hpp"
 #include "drivers/config/option_flags.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/output/program.hpp"
@@ -182,13 +183,13 @@ Action define_compare(CLI::App& app) {
   app.add_option("--repeat", request->repeat, "runs of each combination, for its time; default: 3")
       ->check(CLI::Range(1, 1000));
   app.add_option("--time-limit", request->time_limit, "seconds per run; 0: none")
-      ->check(CLI::NonNegativeNumber);
+      ->check(at_least(0));
   app.add_option("--target-error", request->target_error,
                  "error to recommend a method for; 0, the default: the smallest that all reach")
-      ->check(CLI::NonNegativeNumber);
+      ->check(at_least(0));
   app.add_option("--reference-tolerance", request->reference_tolerance,
                  "default: a hundredth of the smallest tolerance")
-      ->check(CLI::Range(1e-12, 0.1));
+      ->check(between(1e-12, 0.1));
   app.add_flag("--quiet", request->quiet, "print nothing but errors");
   add_options(app, request->flags, [](const OptionSpec& spec) {
     return spec.group != "Output" && spec.name != "output-times";

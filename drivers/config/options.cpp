@@ -84,7 +84,7 @@ const std::vector<OptionSpec>& run_options() {
        "cells per edge of the mesh on which noise is drawn, at most --cells; 0: a quarter of "
        "--cells",
        0, 4096},
-      {"seed", K::integer, "1", "Initial state", "seed of the noise", 0, 9007199254740992.0},
+      {"seed", K::integer, "1", "Initial state", "seed of the noise", 0, kLargestSeed},
 
       {"t-end", K::number, "25000", "Time", "end of the run (s)", 1e-300, 1e300, D::time},
       {"output-times", K::numbers, "", "Time",

@@ -11,6 +11,9 @@ enum class OptionKind { text, path, number, integer, flag, numbers /* comma-sepa
 // What an option measures: under --scaled, lengths are in R and times in R²/D.
 enum class Dimension { none, length, time };
 
+// Whole numbers up to it are exact in files that other programs read (2^53).
+inline constexpr double kLargestSeed = 9007199254740992;
+
 struct OptionSpec {
   std::string name;
   OptionKind kind;

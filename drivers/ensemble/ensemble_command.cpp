@@ -7,6 +7,7 @@
 #include "backends/posix/process.hpp"
 #include "drivers/commands.hpp"
 #include "drivers/config/config_file.hpp"
+#include "drivers/config/number_checks.hpp"
 #include "drivers/config/option_flags.hpp"
 #include "drivers/ensemble/array_job.hpp"
 #include "drivers/ensemble/ensemble_report.hpp"
@@ -129,6 +130,9 @@ int run_ensemble(const EnsembleRequest& request) {
     return one_member(request, EnsembleFolder(request.out), EnsembleFolder(request.out).load());
   }
   if (!goes_on && !request.out.empty()) {
+    if (file.empty() && request.flags.empty())  // a folder that is mistyped would take hours
+      throw InputError("--out: " + request.out +
+                       " holds no ensemble; say which model to run, as in --case guv-3to1");
     refuse_foreign_folder(request.out, {EnsembleFolder(request.out).plan_file().filename()});
     EnsembleFolder(request.out).refuse_other_plan();
   }
@@ -146,7 +150,8 @@ int run_ensemble(const EnsembleRequest& request) {
   if (!goes_on && folder.started()) refuse_begun(folder.path());
   folder.save(plan);
   fs::create_directories(folder.path() / "runs");
-  if (run && !request.quiet) std::printf("%s\n", resolution_text(*run).c_str());
+  if (run && !request.quiet)
+    std::printf("case %s, %s\n", configuration.text("case").c_str(), resolution_text(*run).c_str());
   if (!goes_on) write_durably(folder.config(), config_text(configuration));
   if (!request.array_job) return carry_out(request, folder, plan, configuration);
   const fs::path script = folder.path() / "array-job.sh";
@@ -168,7 +173,7 @@ Action define_ensemble(CLI::App& app) {
                  "runs/ensemble-<case>-<number>");
   app.add_option("--runs", request->runs, "how many; default: 10")->check(CLI::Range(1, 100000));
   app.add_option("--first-seed", request->first_seed, "seed of the first run; default: 1")
-      ->check(CLI::Range(0.0, 9007199254740992.0));
+      ->check(between(0, kLargestSeed));
   app.add_option("--jobs", request->jobs, "runs at a time; default: one for each processor")
       ->check(CLI::Range(1, 1024));
   app.add_option("--threads", request->threads, "of each run; default: what the jobs leave")
@@ -176,7 +181,7 @@ Action define_ensemble(CLI::App& app) {
   app.add_flag("--array-job", request->array_job,
                "run nothing, write a script for SLURM's sbatch with a task per run");
   app.add_option("--member", request->member, "carry out the run of this seed alone (array jobs)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(between(0, kLargestSeed));
   app.add_flag("--quiet", request->quiet, "print nothing but errors");
   add_options(app, request->flags,
               [](const OptionSpec& spec) { return spec.name != "seed" && spec.name != "threads"; });

@@ -7,6 +7,7 @@
 #include "backends/posix/process.hpp"
 #include "drivers/commands.hpp"
 #include "drivers/config/config_file.hpp"
+#include "drivers/config/number_checks.hpp"
 #include "drivers/config/option_flags.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/explain/explain_page.hpp"
@@ -100,7 +101,8 @@ SeriesSetup read_series_job(const ExplainCommand& command) {
   refuse_series(setup.data, setup.model);
   setup.request = {looks(setup.data),        command.runs,        command.jobs,
                    command.job.processors(), command.job.without, command.quiet};
-  if (!command.ensembles.empty()) take_over_ensembles(command.ensembles, setup.request);
+  if (!command.ensembles.empty())
+    take_over_ensembles(command.ensembles, setup.model, setup.request);
   return setup;
 }
 
@@ -225,7 +227,7 @@ Action define_explain(CLI::App& app) {
   app.add_option("--diffusion-error", command->job.diffusion_error,
                  "relative standard error of the model's D, if it was measured; default: D is not "
                  "known, and fitted freely")
-      ->check(CLI::Range(0.001, 1.0));
+      ->check(between(0.001, 1));
   app.add_option("--threads", command->job.threads, "default: one for each processor")
       ->check(CLI::Range(1, 256));
   app.add_option("--without", command->job.without, "effects that are not looked for")

@@ -6,6 +6,7 @@
 #include "backends/png/png_writer.hpp"
 #include "backends/posix/durable_file.hpp"
 #include "drivers/commands.hpp"
+#include "drivers/config/number_checks.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/input/dataset.hpp"
 #include "drivers/report/report_page.hpp"
@@ -99,7 +100,7 @@ Action define_report(CLI::App& app) {
       ->capture_default_str();
   app.add_option("--detail", request->detail,
                  "smallest detail of the surface shown, in units of its size")
-      ->check(CLI::Range(1e-4, 0.2))
+      ->check(between(1e-4, 0.2))
       ->capture_default_str();
   app.add_option("--snapshots", request->snapshots, "folder for pictures (PNG) of all frames");
   app.add_option("--animation", request->animation, "animation (GIF) of all frames");

@@ -135,8 +135,11 @@ int resume(const ResumeRequest& request) {
   const bool quiet = request.quiet || !ranks->root();
   if (!quiet) {
     print_setup(configuration, run);
-    std::printf("  %-22s %s from step %ld\n\n", "resumed", folder.path.c_str(),
-                checkpoint ? checkpoint->step : 0L);
+    if (checkpoint)
+      std::printf("  %-22s %s from step %ld\n\n", "resumed", folder.path.c_str(), checkpoint->step);
+    else
+      std::printf("  %-22s %s, which has no checkpoint: its steps are taken again\n\n",
+                  "begun anew", folder.path.c_str());
   }
   return carry_out(configuration, run, folder, checkpoint, quiet);
 }

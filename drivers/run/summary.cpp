@@ -121,10 +121,13 @@ std::string summary_json(const Configuration& configuration, const RunSetup& run
 
 std::string resolution_text(const RunSetup& run) {
   constexpr double kCoarse = 4;  // h/epsilon beyond which the mesh shapes the boundaries
+  constexpr double kWide = 0.5;  // epsilon/R beyond which nothing separates
   const double epsilon = run.problem->model().epsilon, ratio = run.space->h() / epsilon;
   return formatted("epsilon = %g um = %g R, h/epsilon = %.2f, %.1f %% of its energy resolved%s",
                    epsilon * run.units.radius_um, epsilon, ratio, 100 * run.perimeter.resolved,
-                   ratio > kCoarse ? "; TOO COARSE: take more --cells" : "");
+                   epsilon > kWide   ? "; AS WIDE AS THE VESICLE: take a smaller --epsilon"
+                   : ratio > kCoarse ? "; TOO COARSE: take more --cells"
+                                     : "");
 }
 
 // The length of the noise decides how many rafts survive (docs/guide.md).
@@ -209,8 +212,8 @@ void print_summary(const Configuration& configuration, const RunSetup& run, cons
                  clock_text(cost.cpu_seconds).c_str(), memory_mb));
   line("tables", folder.table("series.csv").string());
   if (std::filesystem::exists(folder.path / "view.png")) {
-    line("open next",
-         (folder.path / "view.png").string() + " (front and back at the latest output time)");
+    line("open next", (folder.path / "view.png").string() +
+                          " (front and back at the latest output time; rafts are yellow)");
     line("or", "paraview " + in_shell((folder.path / "fields.pvd").string()));
     line("or", "traceraft report " + in_shell(folder.path.string()) + " (a page with charts)");
   }

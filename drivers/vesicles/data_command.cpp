@@ -5,6 +5,7 @@
 #include "drivers/commands.hpp"
 #include "drivers/config/config_file.hpp"
 #include "drivers/config/configuration.hpp"
+#include "drivers/config/number_checks.hpp"
 #include "drivers/ensemble/ensemble_folder.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/input/dataset.hpp"
@@ -130,7 +131,7 @@ Action define_data(CLI::App& app) {
   app.add_option("--facts", request->facts,
                  "TOML file of what is published: to draw from, or to show in a comparison");
   app.add_option("--seed", request->seed, "of what is drawn")
-      ->check(CLI::Range(0.0, 9007199254740992.0))
+      ->check(between(0, kLargestSeed))
       ->capture_default_str();
   app.add_flag("--quiet", request->quiet, "print nothing but errors");
   app.footer(

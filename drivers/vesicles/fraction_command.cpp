@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "drivers/commands.hpp"
+#include "drivers/config/number_checks.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/input/model_of_data.hpp"
 #include "kernel/core/error.hpp"
@@ -67,7 +68,7 @@ Action define_fraction(CLI::App& app) {
                  "parts of DOPC : DPPC : mol % of cholesterol, such as 3:1:20; the area of DPPC is "
                  "fitted to what is published of such membranes");
   app.add_option("--temperature", request->celsius, "in degrees Celsius")
-      ->check(CLI::Range(-10.0, 60.0))
+      ->check(between(-10, 60))
       ->capture_default_str();
   app.add_option("--ordered", request->ordered,
                  "mol % of DOPC:DPPC:cholesterol in rafts, such as 22:43:35");

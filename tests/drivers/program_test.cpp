@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "kernel/core/stopwatch.hpp"
 #include "kernel/core/text.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -82,6 +83,18 @@ TEST_F(ProgramTest, RunsAndWritesWhatItPromises) {
   EXPECT_NE(observables.find(",0.1,"), std::string::npos);
   EXPECT_TRUE(fs::exists(folder.path / "a/fields/field-0002.vtu"));
   EXPECT_NE(content(folder.path / "a/fields.pvd").find("fields/field-0002.vtu"), std::string::npos);
+}
+
+// ./run becomes the program once it has built it, minutes after the process began.
+TEST_F(ProgramTest, TimeBeforeTheProgramWasStartedIsNotCounted) {
+  const Stopwatch watch;
+  const Outcome end = shell("sh -c 'sleep 2; exec " + std::string(TRACERAFT_PROGRAM) + " run " +
+                            quick + "--quiet --out " + out("run") + "'");
+  const double all = watch.seconds();
+  ASSERT_EQ(end.code, 0) << end.output;
+  const auto summary = nlohmann::json::parse(content(folder.path / "run/summary.json"));
+  EXPECT_GT(summary["wall_s"], 0);
+  EXPECT_LT(summary["wall_s"], all - 1.9);
 }
 
 TEST_F(ProgramTest, TakesTheSameStepsWhateverIsAskedFor) {
@@ -184,7 +197,9 @@ TEST_F(ProgramTest, StartsAgainWhenKilledBeforeTheFirstCheckpoint) {
   // As a kill right after the configuration was written leaves it.
   fs::create_directory(folder.path / "early");
   write_durably(folder.path / "early/config.toml", content(folder.path / "whole/config.toml"));
-  ASSERT_EQ(traceraft("resume --quiet " + out("early")).code, 0);
+  const Outcome resumed = traceraft("resume " + out("early"));
+  ASSERT_EQ(resumed.code, 0);
+  EXPECT_NE(resumed.output.find("begun anew"), std::string::npos) << resumed.output;
   expect_same_results("whole", "early");
 }
 
@@ -374,6 +389,11 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"fraction --composition 3:1:20 --temperature nan",
                 "--temperature: 'nan' is not a finite number"},
         Refusal{"report runs --detail nan", "--detail: 'nan'"},
+        Refusal{"campaign --seed -3", "--seed: -3 is not between 0 and 9007199254740992"},
+        Refusal{"hide --blur -1", "--blur: -1 is less than 0"},
+        Refusal{"hide --first 0", "--first: 0 is not positive"},
+        Refusal{"hide --points 1e4", "--points: '1e4' is not a whole number in digits"},
+        Refusal{"ensemble --out new", "new holds no ensemble; say which model to run"},
         Refusal{"run --epsilon -1", "--epsilon: -1 is out of range"},
         Refusal{"run --case guv", "did you mean"},
         Refusal{"run --cells 8 --surface biconcave", "too coarse"},
@@ -394,6 +414,13 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"run --linear-solver klu", "klu is for small systems"},
         Refusal{"run --energy-guard reject --potential nodal", "--energy-guard"},
         Refusal{"verify everything", "unknown study"}));
+
+// µm for nm: everything is valid, and nothing can separate.
+TEST_F(ProgramTest, SaysThatBoundariesAreAsWideAsTheVesicle) {
+  const Outcome run = traceraft("run --validate --case two-rafts --cells 16 --epsilon 100");
+  EXPECT_EQ(run.code, 0) << run.output;
+  EXPECT_NE(run.output.find("AS WIDE AS THE VESICLE"), std::string::npos) << run.output;
+}
 
 TEST_F(ProgramTest, ValidateStopsAfterChecking) {
   const Outcome run = traceraft("run --validate " + quick + "--out " + out("new"));
