@@ -16,6 +16,9 @@ struct EnsemblePlan {
 
   std::uint64_t last_seed() const { return first_seed + static_cast<std::uint64_t>(runs) - 1; }
   std::vector<std::uint64_t> seeds() const;  // ascending
+  bool operator==(const EnsemblePlan& other) const {
+    return runs == other.runs && first_seed == other.first_seed;
+  }
 };
 
 enum class MemberEnd { missing, begun, finished, failed };

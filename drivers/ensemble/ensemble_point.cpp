@@ -34,7 +34,8 @@ PointEnd run_point(const std::filesystem::path& path, const Configuration& confi
   EnsemblePlan plan;
   plan.runs = request.runs;
   std::filesystem::create_directories(path / "runs");
-  folder.save(plan);
+  // Others may read what is there already.
+  if (!folder.started() || !(folder.load() == plan)) folder.save(plan);
   if (!std::filesystem::exists(folder.config()))
     write_durably(folder.config(), config_text(configuration));
   const double t_end = configuration.number("t-end");

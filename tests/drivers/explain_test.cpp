@@ -342,10 +342,12 @@ TEST(ExplainSeriesTest, SimulatesOnceAndSaysWhatSeriesTell) {
   EXPECT_EQ(nothing.code, 2);
   EXPECT_NE(nothing.output.find("--ensembles: "), std::string::npos) << nothing.output;
   EXPECT_FALSE(fs::exists(second));
+  const auto planned = fs::last_write_time(out / "ensembles/base/plan.json");
   const auto compared = testing::traceraft(of_others + (out / "ensembles").string());
   ASSERT_EQ(compared.code, 0) << compared.output;
   EXPECT_NE(testing::content(second / "series.json"), testing::content(out / "series.json"));
   EXPECT_FALSE(fs::exists(second / "ensembles"));
+  EXPECT_EQ(fs::last_write_time(out / "ensembles/base/plan.json"), planned) << "others may read it";
   EXPECT_EQ(fs::last_write_time(out / "ensembles/base/runs/seed-1"), before);
   ASSERT_EQ(testing::traceraft(of_others + (out / "ensembles").string()).code, 0) << "once more";
   const auto older = nlohmann::json::parse(testing::content(out / "ensembles/strengths.json"));
