@@ -113,6 +113,9 @@ WorkEnd work_off(const CampaignFolder& folder, const std::vector<CaseId>& cases,
   std::mutex mutex;
   WorkEnd end_of_work;
   if (left.empty()) return end_of_work;
+  if (!quiet)
+    std::printf("%zu cases, %d at a time; most take minutes\nfolder %s\n", left.size(), jobs,
+                folder.path().c_str());
   JobPool pool(left.size(), [&](std::size_t k) {
     fs::create_directories(folder.of(left[k]));
     const ProgramEnd end =
@@ -188,11 +191,7 @@ int run_campaign(const CampaignRequest& request) {
   std::vector<CaseId> cases;
   for (const CaseId& id : cases_of(plan))
     if (done.count(id.name()) == 0) cases.push_back(id);
-  const int jobs = jobs_of(request.jobs, 1).at_a_time;
-  if (!request.quiet && !cases.empty())
-    std::printf("%zu cases, %d at a time; most take minutes\nfolder %s\n", cases.size(), jobs,
-                folder.path().c_str());
-  const WorkEnd end = work_off(folder, cases, jobs, request.quiet);
+  const WorkEnd end = work_off(folder, cases, jobs_of(request.jobs, 1).at_a_time, request.quiet);
   for (const CaseId& id : cases)
     if (fs::exists(folder.score_of(id))) scores.push_back(read_score(folder, id));
   report(folder, scores, end.failures, request.quiet);

@@ -1,7 +1,7 @@
 #include "drivers/config/number_checks.hpp"
 
 #include <cmath>
-#include <limits>
+#include <functional>
 #include <string>
 
 #include "kernel/core/text.hpp"
@@ -27,34 +27,32 @@ std::string whole_number(const std::string& text) {
   return not_finite.empty() ? "'" + text + "' is not a whole number in digits" : not_finite;
 }
 
-}  // namespace
-
-CLI::Validator between(double low, double high) {
-  const std::string range = std::isfinite(high)
-                                ? "in [" + as_number(low) + " - " + as_number(high) + "]"
-                                : ">= " + as_number(low);
+// `range`: for the help; `complaint`: after the number, where `holds` is false.
+CLI::Validator checked(const std::string& range, const std::string& complaint,
+                       const std::function<bool(double)>& holds) {
   return {[=](std::string& text) {
             double value = 0;
             CLI::detail::lexical_cast(text, value);
-            if (value >= low && value <= high) return std::string();
-            return text + (std::isfinite(high)
-                               ? " is not between " + as_number(low) + " and " + as_number(high)
-                               : " is less than " + as_number(low));
+            return holds(value) ? std::string() : text + " is " + complaint;
           },
           range};
 }
 
+}  // namespace
+
+CLI::Validator between(double low, double high) {
+  const std::string from = as_number(low), to = as_number(high);
+  return checked("in [" + from + " - " + to + "]", "not between " + from + " and " + to,
+                 [=](double value) { return value >= low && value <= high; });
+}
+
 CLI::Validator at_least(double low) {
-  return between(low, std::numeric_limits<double>::infinity());
+  return checked(">= " + as_number(low), "less than " + as_number(low),
+                 [=](double value) { return value >= low; });
 }
 
 CLI::Validator positive() {
-  return {[](std::string& text) {
-            double value = 0;
-            CLI::detail::lexical_cast(text, value);
-            return value > 0 ? std::string() : text + " is not positive";
-          },
-          "> 0"};
+  return checked("> 0", "not positive", [](double value) { return value > 0; });
 }
 
 void check_numbers_first(CLI::App& command) {
@@ -62,9 +60,7 @@ void check_numbers_first(CLI::App& command) {
     const std::string type = option->get_type_name();
     const bool whole = type.compare(0, 3, "INT") == 0 || type.compare(0, 4, "UINT") == 0;
     if (!whole && type.compare(0, 5, "FLOAT") != 0) continue;
-    option->transform(CLI::Validator(
-        [check = whole ? whole_number : finite_number](std::string& text) { return check(text); },
-        ""));
+    option->transform(CLI::Validator(whole ? whole_number : finite_number, ""));
   }
 }
 

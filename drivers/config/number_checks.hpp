@@ -5,8 +5,7 @@
 
 namespace traceraft {
 
-// Both ends are allowed; `high` infinite: any from `low` on.
-CLI::Validator between(double low, double high);
+CLI::Validator between(double low, double high);  // both ends are allowed
 CLI::Validator at_least(double low);
 CLI::Validator positive();
 

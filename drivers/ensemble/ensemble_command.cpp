@@ -130,11 +130,11 @@ int run_ensemble(const EnsembleRequest& request) {
     return one_member(request, EnsembleFolder(request.out), EnsembleFolder(request.out).load());
   }
   if (!goes_on && !request.out.empty()) {
+    refuse_foreign_folder(request.out, {EnsembleFolder(request.out).plan_file().filename()});
+    EnsembleFolder(request.out).refuse_other_plan();
     if (file.empty() && request.flags.empty())  // a folder that is mistyped would take hours
       throw InputError("--out: " + request.out +
                        " holds no ensemble; say which model to run, as in --case guv-3to1");
-    refuse_foreign_folder(request.out, {EnsembleFolder(request.out).plan_file().filename()});
-    EnsembleFolder(request.out).refuse_other_plan();
   }
   const Configuration configuration =
       goes_on ? known_configuration(EnsembleFolder(request.out), request, file)
