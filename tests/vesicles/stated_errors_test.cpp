@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "kernel/core/random.hpp"
+#include "verification/vesicles/mean_of_logarithm.hpp"
 
 namespace traceraft {
 namespace {
@@ -114,27 +117,63 @@ TEST(StatedErrors, KnowTheMeanOfTheLogarithm) {
                                              {0.5, -0.12557756},
                                              {0.7, -0.12394375},
                                              {1, -0.03521329},
-                                             {2, 0.34807784}};
+                                             {2, 0.34807784},
+                                             {4, 0.89293144},
+                                             {30, 2.78451603}};
   for (const auto& [s, mean] : known) EXPECT_NEAR(mean_of_logarithm(s), mean, 2e-5) << s;
-  EXPECT_EQ(mean_of_logarithm(30), mean_of_logarithm(2));
+}
+
+struct Errors {
+  double mean, of_mean;
+};
+
+// What an error makes of ln of a value on average, beside ln of it.
+Errors drawn_mean(const StatedError& error, double value, const std::function<double(double)>& f) {
+  constexpr int kDrawn = 40000;
+  double mean = 0, squares = 0;
+  for (std::uint64_t i = 0; i < kDrawn; ++i) {
+    const double drawn =
+        error.drawn(std::log(value), [i](std::uint64_t k) { return normal_random(1, k, i); });
+    const double away = f(drawn) - std::log(value);
+    mean += away / kDrawn;
+    squares += away * away / kDrawn;
+  }
+  return {mean, std::sqrt(squares / kDrawn)};
 }
 
 // Relative errors are normal in the logarithm, absolute ones in the value: as they are drawn.
 TEST(StatedErrors, AreDrawnAsTheMeanOfTheLogarithmSays) {
-  constexpr int kDrawn = 40000;
-  for (const double size : {0.3, 2.0, 4.0})
+  for (const double size : {0.3, 2.0, 4.0, 16.0})
     for (const double power : {0.0, 0.5, 1.0}) {
       const StatedError error{std::log(size) - power * std::log(4), power, 0};
-      double mean = 0, squares = 0;
-      for (std::uint64_t i = 0; i < kDrawn; ++i) {
-        const double drawn =
-            error.drawn(std::log(4), [i](std::uint64_t k) { return normal_random(1, k, i); });
-        mean += (drawn - std::log(4)) / kDrawn;
-        squares += std::pow(drawn - std::log(4), 2) / kDrawn;
-      }
-      EXPECT_NEAR(mean, error.bias(std::log(4)), 4 * std::sqrt(squares / kDrawn))
-          << size << " " << power;
+      const Errors drawn = drawn_mean(error, 4, [](double ln_value) { return ln_value; });
+      EXPECT_NEAR(drawn.mean, error.bias(std::log(4)), 4 * drawn.of_mean) << size << " " << power;
     }
+}
+
+// What is counted is a whole number, and 1 at least.
+TEST(StatedErrors, OfCountsAreDrawnAsTheMeanOfTheLogarithmSays) {
+  const auto counted = [](double ln_value) {
+    return std::log(std::max(1.0, std::round(std::exp(ln_value))));
+  };
+  for (const double count : {1, 2, 5, 10, 40})
+    for (const double relative : {0.1, 0.3, 0.5, 1.5, 6.0}) {
+      const StatedError error{std::log(relative * count), 0, 1 / 12.0};
+      const Errors drawn = drawn_mean(error, count, counted);
+      EXPECT_NEAR(drawn.mean, error.bias(std::log(count)), 4 * drawn.of_mean + 2e-5)
+          << count << " " << relative;
+    }
+}
+
+TEST(StatedErrors, KnowTheSlopeOfTheMean) {
+  for (const double least : {0.0, 1 / 12.0}) {
+    const StatedError absolute{std::log(2.0), 0, least};
+    const double x = std::log(7.3), step = 0.1;
+    EXPECT_NEAR(absolute.bias_slope(x),
+                (absolute.bias(x + step) - absolute.bias(x - step)) / (2 * step), 0.01);
+    EXPECT_GT(absolute.bias_slope(x), 0.05);  // of −s²/2 it is s²
+  }
+  EXPECT_EQ((StatedError{std::log(0.3), 1, 0}).bias_slope(1), 0);
 }
 
 TEST(StatedErrors, OfCountsAreThoseOfRoundingAtLeast) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "verification/measure/fit.hpp"
+#include "verification/vesicles/mean_of_logarithm.hpp"
 
 namespace traceraft {
 namespace {
@@ -15,24 +16,6 @@ constexpr double kLeastSpread = 1e-6;           // of ln of the values
 // What noise makes of ln of a value: that many standard deviations, and at most a factor of two.
 constexpr double kByNoise = 2, kMostByNoise = 0.7;
 constexpr double kRelative = 1e-6;  // of 1 − power
-// Of the table of means of logarithms.
-constexpr double kLargest = 2;
-constexpr int kSteps = 200;
-
-// By the midpoint rule, x = 1 + s z = u², as ln has a pole at 0.
-double integrated_mean(double s) {
-  constexpr int kPoints = 1000;
-  constexpr double kTail = 8;
-  const double end = std::sqrt(1 + kTail * s);
-  double mean = 0, weights = 0;
-  for (int i = 0; i < kPoints; ++i) {
-    const double u = end * (i + 0.5) / kPoints, z = (u * u - 1) / s;
-    const double weight = u * std::exp(-0.5 * z * z);
-    mean += weight * 2 * std::log(u);
-    weights += weight;
-  }
-  return mean / weights;
-}
 
 }  // namespace
 
@@ -79,31 +62,31 @@ double StatedError::of_logarithm(double ln_expected) const {
                    : stated(ln_expected);
 }
 
-// An error that goes with v^b is that of a normal v^(1 − b).
+// An error that goes with v^b is that of a normal v^(1 − b), which is taken for whole if counted.
 double StatedError::bias(double ln_expected) const {
-  const double absolute = 1 - power;
-  if (least > 0 || !(absolute > kRelative)) return 0;
-  return mean_of_logarithm(absolute * std::sqrt(stated(ln_expected))) / absolute;
+  if (!has_bias()) return 0;
+  const double absolute = 1 - power, s = absolute * std::sqrt(stated(ln_expected));
+  return (least > 0 ? mean_of_count_logarithm(std::exp(absolute * ln_expected), s)
+                    : mean_of_logarithm(s)) /
+         absolute;
+}
+
+double StatedError::bias_slope(double ln_expected) const {
+  constexpr double kStep = 0.01;
+  return (bias(ln_expected + kStep) - bias(ln_expected - kStep)) / (2 * kStep);
+}
+
+bool StatedError::has_bias() const {
+  return std::isfinite(ln_sigma) && 1 - power > kRelative;
 }
 
 double StatedError::drawn(double ln_value,
                           const std::function<double(std::uint64_t)>& normal) const {
   const double absolute = 1 - power, s = std::sqrt(stated(ln_value));
-  if (!(absolute > kRelative)) return ln_value + s * normal(0);
+  if (!has_bias()) return ln_value + s * normal(0);
   for (std::uint64_t k = 0;; ++k)
     if (const double error = absolute * s * normal(k); error > -1)
       return ln_value + std::log1p(error) / absolute;
-}
-
-double mean_of_logarithm(double s) {
-  static const std::vector<double> means = [] {
-    std::vector<double> table{0};
-    for (int k = 1; k <= kSteps; ++k) table.push_back(integrated_mean(kLargest * k / kSteps));
-    return table;
-  }();
-  const double place = kSteps * std::clamp(s / kLargest, 0.0, 1.0);
-  const auto k = std::min(static_cast<std::size_t>(place), means.size() - 2);
-  return means[k] + (place - static_cast<double>(k)) * (means[k + 1] - means[k]);
 }
 
 }  // namespace traceraft

@@ -20,15 +20,15 @@ struct StatedError {
   double stated(double ln_expected) const;
   double of_logarithm(double ln_expected) const;
   // Mean of ln of the value minus ln of what is expected: of absolute errors, where values that are
-  // not positive are not looked at; 0 of relative ones, which are taken as normal in the logarithm,
-  // and of counts, which are 1 at least.
+  // not positive are not looked at; 0 of relative ones, which are taken as normal in the logarithm.
   double bias(double ln_expected) const;
+  double bias_slope(double ln_expected) const;  // its derivative
   // ln of a value with such an error; `normal`: the k-th of its normal numbers.
   double drawn(double ln_value, const std::function<double(std::uint64_t)>& normal) const;
-};
 
-// Of 1 + s z with a normal z, where that is positive: −s²/2 to second order. Of s > 2: as of 2.
-double mean_of_logarithm(double s);
+ private:
+  bool has_bias() const;  // some is stated, and not relative
+};
 
 // Of each quantity, the law σ = s value^b that fits what the looks after time zero state: absolute
 // errors or relative ones, 0 <= b <= 1. A look that states another error has that, unless noise in
