@@ -9,6 +9,7 @@
 #include "kernel/core/random.hpp"
 #include "verification/measure/fit.hpp"
 #include "verification/series/series_explanation.hpp"
+#include "verification/series/series_misfit.hpp"
 
 namespace traceraft {
 namespace {
@@ -75,6 +76,17 @@ SeriesExplanation explained(const MeasuredVesicles& data) {
   return explain_series(data, ensemble({}), candidates(), request);
 }
 
+// Where it does not matter what effects do.
+SeriesExplanation compared(const MeasuredVesicles& data, const SeriesRequest& request) {
+  return explain_series(data, ensemble({}), {candidates()[0]}, request);
+}
+
+void keep_only(Quantity kept, MeasuredVesicles& data) {
+  for (Measurement& m : data.measurements)
+    for (const Quantity quantity : kQuantities)
+      if (quantity != kept) m.values[static_cast<std::size_t>(quantity)].reset();
+}
+
 TEST(SeriesFit, FindsUnitAndStrength) {
   const RunCurves base(ensemble({}), each_once(10));
   const RunCurves changed(ensemble({-1 / 3.0, 0, 0.05}), each_once(10));
@@ -126,7 +138,10 @@ TEST(SeriesFit, IsNotPulledByErrorsThatAreAbsolute) {
     while (!(value > 0)) value = 0.1 * (1 + 0.4 * normal_random(50, 1, k++));
     m.sigma[fraction] = 0.04;
   }
-  const SeriesOffset offset = explained(data).offsets.at(2);
+  const RunCurves base(ensemble({}), each_once(10));
+  const auto blocks = blocks_of(data);
+  const SeriesFit fit = fit_series(blocks, {&base}, {1, 8});
+  const SeriesOffset offset = offsets(blocks, {&base}, fit).at(2);
   EXPECT_NEAR(offset.level, 0, 2.5 * 0.4 / std::sqrt(360));
 }
 
@@ -352,8 +367,9 @@ TEST(SeriesFit, CountsDeviationsWithTheScatterOfTheRuns) {
     std::vector<History> runs;
     for (std::uint64_t k = 0; k < 10; ++k) runs.push_back(vesicle({}, 1000 * set + k));
     const std::vector<SeriesCandidate> alone{{"uptake", 2, true, runs}};
-    const SeriesExplanation found =
-        explain_series(measured({}, 40, 0.02, 1, 1000 * set + 100), runs, alone, request);
+    MeasuredVesicles data = measured({}, 40, 0.02, 1, 1000 * set + 100);
+    keep_only(Quantity::perimeter, data);
+    const SeriesExplanation found = explain_series(data, runs, alone, request);
     squares += std::pow(found.offsets[0].level_deviations, 2);
   }
   EXPECT_LT(std::sqrt(squares / kSets), 1.6);
@@ -397,12 +413,13 @@ TEST(SeriesExplanation, KnowsHowWellItKnowsDNearAnEnd) {
   looks.erase(
       std::remove_if(looks.begin(), looks.end(), [](const Measurement& m) { return m.time > 150; }),
       looks.end());
-  const SeriesExplanation open = explained(data);
+  SeriesRequest request{{1, 8}};
+  request.replicates = 199;
+  const SeriesExplanation open = compared(data, request);
   const double best = std::exp(open.base.ln_unit);
   for (const double further : {1.02, 10.0}) {
-    SeriesRequest request{{best * further / 8, 8}};
-    request.replicates = 199;
-    const SeriesExplanation found = explain_series(data, ensemble({}), candidates(), request);
+    request.unit = {best * further / 8, 8};
+    const SeriesExplanation found = compared(data, request);
     EXPECT_NEAR(found.unit_deviation, open.unit_deviation, 0.2 * open.unit_deviation) << further;
   }
 }
@@ -449,6 +466,14 @@ TEST(SeriesExplanation, KnowsThatItDoesNotKnowD) {
   EXPECT_FALSE(found.unit_told);
   EXPECT_FALSE(found.unit_at_end);
   EXPECT_NEAR(found.unit_deviation, std::log(8.0) / 2, 0.25 * std::log(8.0) / 2);
+  // Three runs say even less, but what was known before is known.
+  std::vector<History> few = ensemble(rest);
+  few.resize(3);
+  more_rafts[0].runs.resize(3);
+  const double of_few =
+      explain_series(measured(rest, 10, 0.1, 1), few, more_rafts, request).unit_deviation;
+  EXPECT_LE(of_few, std::log(8.0) / kNormal95);
+  EXPECT_GT(of_few, 0.75 * std::log(8.0) / kNormal95);
   const SeriesExplanation told = explained(measured({}, 10, 0.1, 1));
   EXPECT_TRUE(told.unit_told);
   const SeriesExplanation far = explained(measured({}, 10, 0.1, 1 / 30.0));

@@ -90,7 +90,8 @@ class SeriesSearch {
 
  private:
   // From drawn data, whose fits end where that of the measurements does: near an end the larger of
-  // both sides. 1.96 times it is the half of a 95 % interval, as the runs are few.
+  // both sides. 1.96 times it is the half of a 95 % interval, as the runs are few, which is no
+  // wider than what was known of D before.
   double unit_deviation() const {
     const double ln_unit = gains_.base.ln_unit;
     const double below = ln_unit - request_.unit.lowest();
@@ -99,12 +100,14 @@ class SeriesSearch {
     Squares away, back;
     for (const double drawn : null_.ln_unit)
       (side * (drawn - ln_unit) > 0 ? away : back).add(drawn - ln_unit);
-    if (away.count == 0) return request_.unit.deviation();  // all of them lie towards the end
+    const double known = request_.unit.deviation();
+    if (away.count == 0) return known;  // all of them lie towards the end
     const double both = std::sqrt((away.sum + back.sum) / (away.count + back.count));
     const double own = std::min(above, below) > kFree * both
                            ? both
                            : std::sqrt(std::max(away.mean(), back.mean()));
-    return factor_for_few(static_cast<int>(candidates_.front().runs.size())) * own;
+    const int runs = static_cast<int>(candidates_.front().runs.size());
+    return std::min(factor_for_few(runs) * own, known);
   }
 
   SeriesScore score_of(std::size_t k) {
