@@ -28,6 +28,19 @@ void refuse_without_noise(const Configuration& model) {
     throw InputError(model.where("initial") + ": vesicles differ in the noise they start from");
 }
 
+namespace {
+
+// A plan that cannot be read says nothing that the one at hand does not.
+bool holds(const EnsembleFolder& folder, const EnsemblePlan& plan) {
+  try {
+    return folder.started() && folder.load() == plan;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+}  // namespace
+
 PointEnd run_point(const std::filesystem::path& path, const Configuration& configuration,
                    const PointRequest& request) {
   const EnsembleFolder folder(path);
@@ -35,7 +48,7 @@ PointEnd run_point(const std::filesystem::path& path, const Configuration& confi
   plan.runs = request.runs;
   std::filesystem::create_directories(path / "runs");
   // Others may read what is there already.
-  if (!folder.started() || !(folder.load() == plan)) folder.save(plan);
+  if (!holds(folder, plan)) folder.save(plan);
   if (!std::filesystem::exists(folder.config()))
     write_durably(folder.config(), config_text(configuration));
   const double t_end = configuration.number("t-end");

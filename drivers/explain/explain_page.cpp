@@ -37,7 +37,7 @@ class ExplainPage {
 
   std::string write() {
     page_.paragraph(data_text(setup_));
-    page_.heading(verdict_line(found_.finding, class_of(found_)));
+    page_.heading("Verdict: " + verdict_words(found_.finding, class_of(found_)));
     page_.paragraph(verdict_sentence(found_));
     page_.table(parameter_rows(found_, units_));
     for (const std::string& remark : remarks_on(found_, setup_)) page_.paragraph(remark);

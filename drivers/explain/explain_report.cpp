@@ -63,8 +63,8 @@ std::string command_for_found(const std::filesystem::path& folder, const Explana
 
 void print_explanation(const Explanation& found, const ExplainSetup& setup) {
   const Units units = setup.configuration().units();
-  std::printf("\n%s\n\n%s\n%s\n\n", data_text(setup).c_str(),
-              verdict_line(found.finding, class_of(found)).c_str(),
+  std::printf("\n%s\n\nVerdict: %s\n%s\n\n", data_text(setup).c_str(),
+              verdict_words(found.finding, class_of(found)).c_str(),
               verdict_sentence(found).c_str());
   print_rows(parameter_rows(found, units));
   std::printf("\n");

@@ -74,12 +74,15 @@ Json header_of(const Configuration& model, const Window& looks) {
           {"looks", {looks.begin, looks.end}}};
 }
 
+bool is_for(const Json& json, const Json& header, const char* key) {
+  return json.value(key, Json()) == header[key];
+}
+
 // What was found before; empty if that is nothing.
 Json saved_strengths(const fs::path& file, const Json& header) {
   if (!fs::exists(file)) return Json::object();
   return from_json(file, [&](const Json& json) {
-    if (json.value("identity", "") != header["identity"] ||
-        json.value("looks", Json()) != header["looks"])
+    if (!is_for(json, header, "identity") || !is_for(json, header, "looks"))
       throw InputError(file.parent_path().string() +
                        " holds simulations of another model, by an earlier version, or for looks "
                        "at other times; choose another --out or --ensembles");
@@ -141,9 +144,12 @@ void take_over_ensembles(const fs::path& folder, const Configuration& model,
   request.looks = from_json(file, [&](const Json& json) {
     if (!json.contains("looks"))
       throw InputError("--ensembles: " + folder.string() + " is by an earlier version");
-    return Window{json.at("looks").at(0), json.at("looks").at(1)};
+    const Window looks{json.at("looks").at(0), json.at("looks").at(1)};
+    if (!is_for(json, header_of(model, looks), "identity"))
+      throw InputError("--ensembles: " + folder.string() +
+                       " holds simulations of another model, or by an earlier version");
+    return looks;
   });
-  (void)saved_strengths(file, header_of(model, request.looks));
 }
 
 std::string note_on_looks(const Window& simulated, const Window& measured) {

@@ -190,7 +190,7 @@ std::string diffusion_sentence(const Configuration& model, const SeriesExplanati
     return formatted(
         "D is not determined: the best one, %.3g cm^2/s, is at the end of what is looked at.", D);
   const std::string range =
-      formatted("%.3g cm^2/s, within a factor of %.2g (95 %%, by scatter alone)", D,
+      formatted("%.3g cm^2/s, within a factor of %.3g (95 %%, by scatter alone)", D,
                 std::exp(kNormal95 * found.unit_deviation));
   if (!found.unit_told)
     return "These series tell hardly more of D than was known before: " + range + ".";
@@ -207,7 +207,8 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
                               bool quiet) {
   const SeriesEnsembles ensembles = in_seconds(simulated, found);
   const std::vector<PerimeterExponent> laws = exponents(data, ensembles);
-  const std::string verdict = verdict_line(found.finding, class_of(found));
+  const std::string verdict =
+      "Verdict of the series: " + verdict_words(found.finding, class_of(found));
   std::vector<std::string> words{title_of(data) + ": " + std::to_string(found.vesicles) +
                                      " vesicles, " + std::to_string(found.looks) + " looks.",
                                  sentence(found), ground(found, simulated, request)};

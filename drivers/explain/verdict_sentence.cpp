@@ -78,9 +78,8 @@ bool changes_pace(const Refit& fit) {
   return std::fabs(std::log(fit.pace)) > std::max(kLeast, kSure * fit.pace_deviation);
 }
 
-std::string verdict_line(Finding finding, const std::vector<std::string>& effects) {
-  return "Verdict: " + word_for(finding) +
-         (effects.empty() ? "" : " (" + joined(effects, ", ") + ")");
+std::string verdict_words(Finding finding, const std::vector<std::string>& effects) {
+  return word_for(finding) + (effects.empty() ? "" : " (" + joined(effects, ", ") + ")");
 }
 
 std::string verdict_sentence(const Explanation& found) {

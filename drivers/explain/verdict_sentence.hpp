@@ -18,8 +18,8 @@ bool changes_pace(const Refit& fit);
 // the single ones, if the data tell it from nothing. "" otherwise.
 std::string comes_closest(const Explanation& found);
 
-// "Verdict: ambiguous (cooling, uptake)": the word of verdict.json, and what explains the data.
-std::string verdict_line(Finding finding, const std::vector<std::string>& effects);
+// "ambiguous (cooling, uptake)": the finding as in the files, and what explains the data.
+std::string verdict_words(Finding finding, const std::vector<std::string>& effects);
 
 std::string verdict_sentence(const Explanation& found);
 

@@ -307,7 +307,7 @@ TEST(ExplainSeriesTest, SimulatesOnceAndSaysWhatSeriesTell) {
   const auto end = testing::traceraft(command + model.string());
   ASSERT_EQ(end.code, 0) << end.output;
   EXPECT_NE(end.output.find("simulations with no effect"), std::string::npos) << end.output;
-  EXPECT_NE(end.output.find("\nVerdict: unnamed\n"), std::string::npos) << end.output;
+  EXPECT_NE(end.output.find("\nVerdict of the series: unnamed\n"), std::string::npos) << end.output;
   const auto series = nlohmann::json::parse(testing::content(out / "series.json"));
   EXPECT_EQ(series["verdict"], "unnamed") << series.dump(2);
   ASSERT_EQ(series["scores"].size(), 2u);
@@ -323,7 +323,11 @@ TEST(ExplainSeriesTest, SimulatesOnceAndSaysWhatSeriesTell) {
   EXPECT_NE(testing::content(out / "series.html").find("SYNTHETIC"), std::string::npos);
 
   const fs::file_time_type before = fs::last_write_time(out / "ensembles/base/runs/seed-1");
+  const fs::path plan = out / "ensembles/base/plan.json";
+  const std::string planned_before = testing::content(plan);
+  write_durably(plan, "{");  // which is written anew
   ASSERT_EQ(testing::traceraft(command + model.string()).code, 0);
+  EXPECT_EQ(testing::content(plan), planned_before);
   EXPECT_EQ(fs::last_write_time(out / "ensembles/base/runs/seed-1"), before);
 
   // Other vesicles are held against the same simulations.
@@ -342,12 +346,12 @@ TEST(ExplainSeriesTest, SimulatesOnceAndSaysWhatSeriesTell) {
   EXPECT_EQ(nothing.code, 2);
   EXPECT_NE(nothing.output.find("--ensembles: "), std::string::npos) << nothing.output;
   EXPECT_FALSE(fs::exists(second));
-  const auto planned = fs::last_write_time(out / "ensembles/base/plan.json");
+  const auto planned = fs::last_write_time(plan);
   const auto compared = testing::traceraft(of_others + (out / "ensembles").string());
   ASSERT_EQ(compared.code, 0) << compared.output;
   EXPECT_NE(testing::content(second / "series.json"), testing::content(out / "series.json"));
   EXPECT_FALSE(fs::exists(second / "ensembles"));
-  EXPECT_EQ(fs::last_write_time(out / "ensembles/base/plan.json"), planned) << "others may read it";
+  EXPECT_EQ(fs::last_write_time(plan), planned) << "others may read it";
   EXPECT_EQ(fs::last_write_time(out / "ensembles/base/runs/seed-1"), before);
   ASSERT_EQ(testing::traceraft(of_others + (out / "ensembles").string()).code, 0) << "once more";
   const auto older = nlohmann::json::parse(testing::content(out / "ensembles/strengths.json"));
@@ -365,7 +369,10 @@ TEST(ExplainSeriesTest, SimulatesOnceAndSaysWhatSeriesTell) {
                                           third.string() + " --model " + model.string() +
                                           " --ensembles " + (out / "ensembles").string());
   EXPECT_EQ(another.code, 2);
-  EXPECT_NE(another.output.find("another model"), std::string::npos) << another.output;
+  EXPECT_NE(another.output.find("--ensembles: " + (out / "ensembles").string() +
+                                " holds simulations of another model"),
+            std::string::npos)
+      << another.output;
   EXPECT_FALSE(fs::exists(third));
   write_durably(out / "ensembles/strengths.json", older.dump());
 
