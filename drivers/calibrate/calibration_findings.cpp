@@ -20,12 +20,14 @@ bool are_alike(const std::vector<Agreement>& agreements, std::size_t runs) {
 
 // Why the fit does not determine it, if it does not.
 std::vector<std::string> undetermined(const CalibratedParameter& p, const Calibration& result) {
-  if (p.determined) return {};
-  if (!result.converged) return {"the search did not converge"};
-  if (result.unit_at_bound) return {"D lies at the end of the search"};
+  std::vector<std::string> why;
+  if (p.determined) return why;
   const double span = p.interval.high / p.interval.low;
-  if (span > kDetermined) return {formatted("95 %% span a factor of %.2g", span)};
-  return {"it reaches the end of what was simulated"};
+  if (!result.converged) why.push_back("the search did not converge");
+  if (result.unit_at_bound) why.push_back("D lies at the end of the search");
+  if (span > kDetermined) why.push_back(formatted("95 %% span a factor of %.3g", span));
+  if (why.empty()) why.push_back("it reaches the end of what was simulated");
+  return why;
 }
 
 std::vector<CalibrationFinding> parameters_of(const MeasuredVesicles& data,

@@ -121,11 +121,14 @@ std::string summary_json(const Configuration& configuration, const RunSetup& run
 
 std::string resolution_text(const RunSetup& run) {
   constexpr double kCoarse = 4;  // h/epsilon beyond which the mesh shapes the boundaries
-  constexpr double kWide = 0.5;  // epsilon/R beyond which nothing separates
-  const double epsilon = run.problem->model().epsilon, ratio = run.space->h() / epsilon;
+  const CahnHilliardModel& model = run.problem->model();
+  const double epsilon = model.epsilon, ratio = run.space->h() / epsilon;
+  // Of a sphere nothing separates where f0'' + ε² l(l + 1)/R² > 0 even for c halfway and l = 1.
+  const double unstable = -model.well.second(0.5 * (model.well.a + model.well.b));
   return formatted("epsilon = %g um = %g R, h/epsilon = %.2f, %.1f %% of its energy resolved%s",
                    epsilon * run.units.radius_um, epsilon, ratio, 100 * run.perimeter.resolved,
-                   epsilon > kWide   ? "; AS WIDE AS THE VESICLE: take a smaller --epsilon"
+                   2 * epsilon * epsilon > unstable
+                       ? "; AS WIDE AS THE VESICLE: take a smaller --epsilon"
                    : ratio > kCoarse ? "; TOO COARSE: take more --cells"
                                      : "");
 }

@@ -415,11 +415,15 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"run --energy-guard reject --potential nodal", "--energy-guard"},
         Refusal{"verify everything", "unknown study"}));
 
-// µm for nm: everything is valid, and nothing can separate.
+// Everything is valid, and nothing can separate: of the usual well on a sphere that is where
+// epsilon > R/√8, in units of R.
 TEST_F(ProgramTest, SaysThatBoundariesAreAsWideAsTheVesicle) {
-  const Outcome run = traceraft("run --validate --case two-rafts --cells 16 --epsilon 100");
-  EXPECT_EQ(run.code, 0) << run.output;
-  EXPECT_NE(run.output.find("AS WIDE AS THE VESICLE"), std::string::npos) << run.output;
+  for (const auto& [epsilon, wide] : {std::pair("0.36", true), std::pair("0.35", false)}) {
+    const Outcome run = traceraft(
+        std::string("run --validate --scaled --case two-rafts --cells 16 --epsilon ") + epsilon);
+    EXPECT_EQ(run.code, 0) << run.output;
+    EXPECT_EQ(run.output.find("AS WIDE AS THE VESICLE") != std::string::npos, wide) << run.output;
+  }
 }
 
 TEST_F(ProgramTest, ValidateStopsAfterChecking) {
