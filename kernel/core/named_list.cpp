@@ -42,7 +42,7 @@ std::string unknown_name_message(std::string_view kind, std::string_view name,
   const std::size_t letters = shown.size() - std::min(shown.size(), shown.find_first_not_of('-'));
   const std::string nearest = nearest_name(shown, valid);
   const bool begun = !shown.empty() && nearest.compare(0, shown.size(), shown) == 0;
-  const bool near = begun || (!valid.empty() && 2 * edit_distance(shown, nearest) <= letters + 1);
+  const bool near = begun || (!valid.empty() && 2 * edit_distance(shown, nearest) < letters);
   if (near) message += "; did you mean '" + nearest + "'?";
   if (!near || valid.size() <= 12) {
     message += near ? " Valid:" : "; valid:";

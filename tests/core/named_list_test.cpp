@@ -29,6 +29,8 @@ TEST(NamedList, ProposesWhatIsNear) {
   EXPECT_FALSE(proposes("operator", "temperature"));
   EXPECT_FALSE(proposes("D", "epsilon"));
   EXPECT_FALSE(proposes("--effect", "--quiet"));
+  EXPECT_FALSE(proposes("--cells", "--help"));
+  EXPECT_FALSE(proposes("--seed", "--keep"));
   EXPECT_TRUE(proposes("--cels", "--cells"));
   EXPECT_TRUE(proposes("guv", "guv-2to1"));
   EXPECT_TRUE(proposes("radius_um", "radius"));
