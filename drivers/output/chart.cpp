@@ -38,12 +38,13 @@ std::string quoted(const std::string& text) {
   return result + "'";
 }
 
-// Logarithms have no place for what is not positive.
+// Logarithms have no place for what is not positive. Bands end at the axis then.
 bool drawable(const Chart& chart, const ChartSeries& series, std::size_t k) {
   const auto& [x, y] = series.points[k];
   const bool band = series.mark == Mark::band;
+  const double highest = band ? std::max(y, series.other[k]) : y;
   return std::isfinite(x) && std::isfinite(y) && (x > 0 || !chart.log_x) &&
-         (y > 0 || !chart.log_y) && (!band || std::isfinite(series.other[k]));
+         (highest > 0 || !chart.log_y) && (!band || std::isfinite(series.other[k]));
 }
 
 bool has_something(const Chart& chart, const ChartSeries& series) {
@@ -60,19 +61,28 @@ struct Extent {
   }
 };
 
-// Of what is drawn along x and along y.
-std::pair<Extent, Extent> extents(const Chart& chart) {
-  Extent x, y;
+// Of what is drawn, and along x of all there is: what has fallen to 0 leaves a logarithmic chart
+// empty.
+struct Extents {
+  Extent x, y, all_x;
+};
+
+Extents extents(const Chart& chart) {
+  Extents result;
+  const auto add = [&](double y) {
+    if (y > 0 || !chart.log_y) result.y.add(y);
+  };
   for (const ChartSeries& series : chart.series)
     for (std::size_t k = 0; k < series.points.size(); ++k) {
+      const auto& [x, y] = series.points[k];
+      if (std::isfinite(x) && (x > 0 || !chart.log_x)) result.all_x.add(x);
       if (!drawable(chart, series, k)) continue;
-      x.add(series.points[k].first);
-      y.add(series.points[k].second);
-      if (series.mark == Mark::band && (series.other[k] > 0 || !chart.log_y))
-        y.add(series.other[k]);
-      if (series.mark == Mark::bars) y.add(series.points[k].second + series.other[k]);
+      result.x.add(x);
+      add(y);
+      if (series.mark == Mark::band) add(series.other[k]);
+      if (series.mark == Mark::bars) add(y + series.other[k]);
     }
-  return {x, y};
+  return result;
 }
 
 // The largest of 1, 2 and 5 times a power of ten that is no larger.
@@ -122,12 +132,16 @@ std::string script(const Chart& chart, const std::string& svg) {
   text += "set output " + quoted(svg) + "\n";
   text += "set title " + quoted(chart.title) + "\n";
   text += "set xlabel " + quoted(chart.x_label) + "\nset ylabel " + quoted(chart.y_label) + "\n";
-  const auto [x, y] = extents(chart);
-  if (chart.log_x) text += log_axis("x", x);
+  const auto [x, y, all_x] = extents(chart);
+  if (chart.log_x) text += log_axis("x", all_x);
+  if (all_x.least < x.least || all_x.most > x.most)
+    text += "set xrange [" + format_number(all_x.least) + ":" + format_number(all_x.most) + "]\n";
+  double lowest = -HUGE_VAL;
   if (chart.log_y) {
     // What is 1 all the time does not lie on the axis then.
     constexpr double kMargin = 1.18;
     const Extent shown{y.least / kMargin, y.most * kMargin};
+    lowest = shown.least;
     text += log_axis("y", shown) + "set yrange [" + format_number(shown.least) + ":" +
             format_number(shown.most) + "]\n";
   }
@@ -142,7 +156,8 @@ std::string script(const Chart& chart, const std::string& svg) {
     text += block + " << END\n";
     for (std::size_t k = 0; k < series.points.size(); ++k) {
       if (!drawable(chart, series, k)) continue;
-      text += format_number(series.points[k].first) + " " + format_number(series.points[k].second);
+      text += format_number(series.points[k].first) + " " +
+              format_number(std::max(series.points[k].second, lowest));
       if (!series.other.empty()) text += " " + format_number(series.other[k]);
       text += "\n";
     }

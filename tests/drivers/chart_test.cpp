@@ -28,5 +28,17 @@ TEST(Chart, HasAFewLabelsOnALogarithmicAxisOfAnyLength) {
   EXPECT_NE(tics_of({3, 300}).find("10, 20, '' 30 1, '' 40 1, 50, "), std::string::npos);
 }
 
+// What falls to 0 goes down to the edge of a logarithmic chart, whose times are those there are.
+TEST(Chart, EndsBandsAtTheAxis) {
+  const testing::TemporaryFolder folder;
+  const Chart chart{"a chart", "t",  "y",
+                    true,      true, {{"runs", {{1, 4}, {2, 0}, {8, 0}}, Mark::band, {5, 3, 0}}}};
+  (void)draw_chart(chart, folder.path / "chart");
+  const std::string script = read_file(folder.path / "chart.gp", 1 << 20);
+  EXPECT_NE(script.find("set xrange [1:8]"), std::string::npos) << script;
+  EXPECT_NE(script.find("END\n1 4 5\n2 2.5"), std::string::npos) << script;  // 3/1.18
+  EXPECT_EQ(script.find("\n8 "), std::string::npos) << script;
+}
+
 }  // namespace
 }  // namespace traceraft
