@@ -26,7 +26,7 @@ std::vector<std::string> undetermined(const CalibratedParameter& p, const Calibr
   if (!result.converged) why.push_back("the search did not converge");
   if (result.unit_at_bound) why.push_back("D lies at the end of the search");
   if (span > kDetermined) why.push_back(formatted("95 %% span a factor of %.3g", span));
-  if (why.empty()) why.push_back("it reaches the end of what was simulated");
+  if (!p.within) why.push_back("it reaches the end of what was simulated");
   return why;
 }
 
@@ -78,6 +78,11 @@ std::vector<History> runs_in_seconds(const CalibrationRuns& all, const Calibrati
   return runs;
 }
 
+bool ends_within(const Calibration& result) {
+  return result.converged && std::all_of(result.parameters.begin(), result.parameters.end(),
+                                         [](const CalibratedParameter& p) { return p.within; });
+}
+
 std::string best_known(const Calibration& result) {
   std::string text;
   for (std::size_t i = 0; i < result.best_powers.size(); ++i) {
@@ -87,7 +92,7 @@ std::string best_known(const Calibration& result) {
             (i == 0 ? std::string("mobility") : result.parameters[i].name) +
             (std::fabs(power - 1) < 0.02 ? "" : formatted("^%.2f", power));
   }
-  return text + formatted(" to %.0f %%", 100 * result.best_deviation);
+  return text + formatted(" to %.0f %% (one standard error)", 100 * result.best_deviation);
 }
 
 Configuration found_model(const CalibrationRuns& runs,
@@ -113,7 +118,7 @@ std::string calibration_json(const std::vector<CalibrationFinding>& parameters,
                                       {"unit", found.unit},
                                       {"determined", found.determined()},
                                       {"undetermined_because", found.open}};
-  json["best_known"] = best_known(result);
+  json["best_known"] = ends_within(result) ? Json(best_known(result)) : Json();
   json["scatter_of_ln_perimeter"] = result.best.scatter;
   json["points_at_bound_of_mobility"] = result.at_bound;
   json["mobility_at_bound"] = result.unit_at_bound;

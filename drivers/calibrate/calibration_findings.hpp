@@ -50,7 +50,10 @@ bool size_is_told(double factor, const Interval& seconds_per_unit);
 std::vector<History> runs_in_seconds(const CalibrationRuns& all, const Calibration& result,
                                      std::size_t choice);
 
-// The product of powers of D and the parameters that the data know best.
+// Do all intervals end within what was looked at? What does not is known no better than that.
+bool ends_within(const Calibration& result);
+
+// The product of powers of D and the parameters that the data know best, if they do.
 std::string best_known(const Calibration& result);
 
 // The model as a configuration, with the parameters that were found.

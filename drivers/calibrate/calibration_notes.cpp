@@ -90,8 +90,7 @@ void add_size(const MeasuredVesicles& data, const CalibrationRuns& runs, const C
 
 // For readers: what was found beyond the table.
 void add_findings(const Calibration& result, Notes& notes) {
-  if (result.converged && !result.unit_at_bound)
-    notes.push_back("The data know best " + best_known(result) + ".");
+  if (ends_within(result)) notes.push_back("The data know best " + best_known(result) + ".");
   notes.push_back(result.best.scatter > kAtEnd * kLeastScatter
                       ? formatted("Perimeters scatter by %.0f %% beyond what runs do.",
                                   100 * result.best.scatter)

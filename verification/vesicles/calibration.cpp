@@ -46,11 +46,12 @@ CalibratedParameter parameter(const std::string& name, const std::vector<double>
       std::max(std::min(wide.low, probable.low), std::min(percentiles.low, searched.low));
   const double high =
       std::min(std::max(wide.high, probable.high), std::max(percentiles.high, searched.high));
+  const bool within = low > searched.low + edge && high < searched.high - edge;
   return {name,
           std::exp(middle),
           {std::exp(low), std::exp(high)},
-          high - low < std::log(kDetermined) && low > searched.low + edge &&
-              high < searched.high - edge};
+          within,
+          within && high - low < std::log(kDetermined)};
 }
 
 // The variance of resamples of n is (n − 1)/n of what it has to be.

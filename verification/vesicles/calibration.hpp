@@ -25,7 +25,8 @@ struct CalibratedParameter {
   double value;
   // 95 %, by the bootstrap over vesicles and over runs, widened for few; value: the median of that.
   Interval interval;
-  bool determined;  // the interval is narrower than that and within what was explored
+  bool within;      // the interval ends within what was explored
+  bool determined;  // it does, and spans less than kDetermined
 };
 
 struct Calibration {
