@@ -173,9 +173,9 @@ class Ida final : public Integrator {
       case IDA_CONV_FAIL:
       case IDA_REP_RES_ERR:
       case IDA_FIRST_RES_FAIL:
-        return Status::fatal(
-            "no step size: " + (reason.empty() ? "Newton's method does not converge" : reason) +
-            " down to the smallest step");
+        return Status::fatal("no step size down to the smallest one" +
+                             (reason.empty() ? "; Newton's method does not converge"
+                                             : ": " + reason + " (its times are in R^2/D)"));
       default:
         return Status::fatal("IDA code " + std::to_string(flag) + ": " + reason +
                              " (its times are in R^2/D)");

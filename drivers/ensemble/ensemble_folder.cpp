@@ -61,7 +61,8 @@ EnsembleFolder::Member EnsembleFolder::member(std::uint64_t seed) const {
       return {end == "finished" ? MemberEnd::finished : MemberEnd::begun, ""};
     });
   } catch (const IoError& error) {
-    return {MemberEnd::failed, error.what()};
+    return {MemberEnd::failed,
+            std::string(error.what()) + "; delete " + run.string() + " to have it repeated"};
   }
 }
 

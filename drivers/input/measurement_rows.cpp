@@ -80,7 +80,7 @@ void refuse_contradictions(const CsvTable& table, std::size_t row, const Measure
     throw InputError(table.where(row, "perimeter") + ": " + format_number(*perimeter * m.radius) +
                      " um is too short: the shortest boundary of a raft fraction of " +
                      format_number(*fraction) + " has " + format_number(shortest * m.radius) +
-                     " um");
+                     " um; was it divided by the radius already?");
 }
 
 // The column `name`_sigma as a standard deviation, in the unit of the table; nothing if the cell is

@@ -194,7 +194,9 @@ void print_summary(const Configuration& configuration, const RunSetup& run, cons
   line("perimeter", formatted("%.5g %s (level curve %.5g %s)", row.perimeter * units.length(),
                               length, row.perimeter_level * units.length(), length));
   line("energy", energy_text(configuration, run, state));
-  line("mass drift", formatted("%.1e relative", state.monitor.mass_drift()));
+  line("mass drift",
+       formatted("%.1e relative%s", state.monitor.mass_drift(),
+                 run.problem->conserves_mass() ? "" : " (the model need not conserve mass)"));
   line("c on the surface", formatted("%.3f to %.3f", row.c_min, row.c_max));
   const std::string first_order =
       steps.first_order > 0 ? formatted(" (%ld with the first-order solution)", steps.first_order)

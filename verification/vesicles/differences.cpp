@@ -21,7 +21,7 @@ std::string difference_of_radii(const MeasuredVesicles& data, double radius) {
       "The vesicles have radii of %.3g to %.3g um (median %.3g), the simulated one %.3g um: at the "
       "same time larger vesicles have more rafts and a larger perimeter over radius, so that part "
       "of a deviation may be due to their size. As far as coarsening takes times that go with R^4, "
-      "simulations of their size (--radius %.2g, with as many more --cells) would make D "
+      "simulations of their size (--radius %.3g, with as many more --cells) would make D "
       "%.2g times as large.",
       d.min, d.max, d.median, radius, radius * std::pow(factor, 0.25), factor);
 }

@@ -53,7 +53,7 @@ const PublishedMembrane& published(const LipidMixture& membrane) {
     known += (known.empty() ? "" : " and ") + std::string(entry.name);
   }
   throw InputError("--composition: phase diagrams are known of " + known +
-                   "; give the phases of another with --ordered and --disordered");
+                   "; traceraft fraction takes the phases of another, --ordered and --disordered");
 }
 
 // Of the lipids of one phase, per lipid of the membrane.
@@ -70,6 +70,9 @@ LipidMixture membrane_mixture(const std::string& context, const std::string& tex
       context, text, "parts of DOPC : parts of DPPC : mol % of cholesterol, such as 3:1:20");
   if (!(dopc + dppc > 0) || percent >= 100)
     throw InputError(context + ": '" + text + "' has no phospholipid");
+  if (percent > 0 && percent < 1)
+    throw InputError(context + ": '" + text + "' has " + format_number(percent) +
+                     " mol % of cholesterol; is that a fraction, and 100 times as much meant?");
   const double rest = (1 - percent / 100) / (dopc + dppc);
   return {rest * dopc, rest * dppc, percent / 100};
 }
