@@ -165,17 +165,6 @@ TEST(StatedErrors, OfCountsAreDrawnAsTheMeanOfTheLogarithmSays) {
     }
 }
 
-TEST(StatedErrors, KnowTheSlopeOfTheMean) {
-  for (const double least : {0.0, 1 / 12.0}) {
-    const StatedError absolute{std::log(2.0), 0, least};
-    const double x = std::log(7.3), step = 0.1;
-    EXPECT_NEAR(absolute.bias_slope(x),
-                (absolute.bias(x + step) - absolute.bias(x - step)) / (2 * step), 0.01);
-    EXPECT_GT(absolute.bias_slope(x), 0.05);  // of −s²/2 it is s²
-  }
-  EXPECT_EQ((StatedError{std::log(0.3), 1, 0}).bias_slope(1), 0);
-}
-
 TEST(StatedErrors, OfCountsAreThoseOfRoundingAtLeast) {
   for (const Quantity quantity : {Quantity::rafts, Quantity::perimeter}) {
     MeasuredVesicles data = data_with(quantity, 0);

@@ -48,14 +48,12 @@ class Fitter {
   // A step of Gauss and Newton, halved until it is none backwards.
   void improve_mean() {
     const SeriesMetric metric = metric_of(blocks_, model_, fit_);
-    const Vec r = residual(), seen = seen_of_changes(blocks_, expected(blocks_, model_, fit_));
-    const Vec u = unit_response(blocks_, *model_.base, fit_.ln_unit).cwiseProduct(seen);
+    const Vec r = residual(), u = unit_response(blocks_, *model_.base, fit_.ln_unit);
     const double uu = metric.product(u, u) + weight_;
     const double ur = metric.product(u, r) + weight_ * (centre_ - fit_.ln_unit);
     double step_a = 0, step_u = ur / uu;
     if (model_.changed != nullptr) {
-      const Vec e =
-          response(blocks_, *model_.base, *model_.changed, fit_.ln_unit).cwiseProduct(seen);
+      const Vec e = response(blocks_, *model_.base, *model_.changed, fit_.ln_unit);
       const double ue = metric.product(u, e), er = metric.product(e, r);
       const double own = metric.product(e, e) + 1e-9 - ue * ue / uu;
       fit_.deviation = 1 / std::sqrt(own);
@@ -172,12 +170,6 @@ Vec residual(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
                     return block.values[i] - mean -
                            block.stated[static_cast<std::size_t>(i)].bias(mean);
                   });
-}
-
-Vec seen_of_changes(const std::vector<SeriesBlock>& blocks, const Vec& expected) {
-  return per_look(blocks, expected, [](const SeriesBlock& block, Eigen::Index i, double mean) {
-    return 1 + block.stated[static_cast<std::size_t>(i)].bias_slope(mean);
-  });
 }
 
 Vec response(const std::vector<SeriesBlock>& blocks, const RunCurves& base,

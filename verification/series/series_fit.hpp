@@ -61,8 +61,5 @@ Vec residual(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
 Vec response(const std::vector<SeriesBlock>& blocks, const RunCurves& base,
              const RunCurves& changed, double ln_unit);
 Vec unit_response(const std::vector<SeriesBlock>& blocks, const RunCurves& base, double ln_unit);
-// With an entry per look: what the mean of measurements shows of a small change of what is expected
-// (logarithms), as errors like the stated ones have a mean, too, if they are absolute.
-Vec seen_of_changes(const std::vector<SeriesBlock>& blocks, const Vec& expected);
 
 }  // namespace traceraft

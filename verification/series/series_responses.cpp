@@ -21,13 +21,11 @@ SeriesResponse operator*(double factor, const SeriesResponse& response) {
 
 SeriesResponses::SeriesResponses(const std::vector<SeriesBlock>& blocks, const SeriesCurves& curves,
                                  const SeriesFit& fit, const UnitRange& unit)
-    : metric_(metric_of(blocks, {&curves.base}, fit)) {
-  const Vec seen = seen_of_changes(blocks, expected(blocks, {&curves.base}, fit));
-  by_unit_ = {unit_response(blocks, curves.base, fit.ln_unit).cwiseProduct(seen),
-              1 / unit.deviation()};
+    : metric_(metric_of(blocks, {&curves.base}, fit)),
+      by_unit_{unit_response(blocks, curves.base, fit.ln_unit), 1 / unit.deviation()} {
   const double squares = product(by_unit_, by_unit_);
   for (const RunCurves& changed : curves.changed) {
-    const SeriesResponse e{response(blocks, curves.base, changed, fit.ln_unit).cwiseProduct(seen)};
+    const SeriesResponse e{response(blocks, curves.base, changed, fit.ln_unit)};
     own_.push_back(minus(e, product(by_unit_, e) / squares * by_unit_));
   }
 }

@@ -71,11 +71,6 @@ double StatedError::bias(double ln_expected) const {
          absolute;
 }
 
-double StatedError::bias_slope(double ln_expected) const {
-  constexpr double kStep = 0.01;
-  return (bias(ln_expected + kStep) - bias(ln_expected - kStep)) / (2 * kStep);
-}
-
 bool StatedError::has_bias() const {
   return std::isfinite(ln_sigma) && 1 - power > kRelative;
 }

@@ -22,7 +22,6 @@ struct StatedError {
   // Mean of ln of the value minus ln of what is expected: of absolute errors, where values that are
   // not positive are not looked at; 0 of relative ones, which are taken as normal in the logarithm.
   double bias(double ln_expected) const;
-  double bias_slope(double ln_expected) const;  // its derivative
   // ln of a value with such an error; `normal`: the k-th of its normal numbers.
   double drawn(double ln_value, const std::function<double(std::uint64_t)>& normal) const;
 
