@@ -36,6 +36,8 @@ bool holds(const EnsembleFolder& folder, const EnsemblePlan& plan) {
     return folder.started() && folder.load() == plan;
   } catch (const InputError&) {
     return false;
+  } catch (const DamagedFile&) {
+    return false;
   }
 }
 
