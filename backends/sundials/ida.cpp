@@ -163,7 +163,7 @@ class Ida final : public Integrator {
   }
 
   Status failure(int flag) const {
-    const std::string reason = equations_.complaint();
+    const std::string reason = equations_.complaint(), told = reason + " (its times are in R^2/D)";
     switch (flag) {
       case IDA_ERR_FAIL:
         return Status::fatal(
@@ -173,12 +173,11 @@ class Ida final : public Integrator {
       case IDA_CONV_FAIL:
       case IDA_REP_RES_ERR:
       case IDA_FIRST_RES_FAIL:
-        return Status::fatal("no step size down to the smallest one" +
-                             (reason.empty() ? "; Newton's method does not converge"
-                                             : ": " + reason + " (its times are in R^2/D)"));
+        return Status::fatal(
+            "no step size down to the smallest one" +
+            (reason.empty() ? "; Newton's method does not converge" : ": " + told));
       default:
-        return Status::fatal("IDA code " + std::to_string(flag) + ": " + reason +
-                             " (its times are in R^2/D)");
+        return Status::fatal("IDA code " + std::to_string(flag) + ": " + told);
     }
   }
 

@@ -58,6 +58,12 @@ std::vector<History> best_runs(const CalibrationRuns& all, const Calibration& re
   return runs_in_seconds(all, result, static_cast<std::size_t>(best - fits.begin()));
 }
 
+// Do all intervals end within what was looked at? What does not is known no better than that.
+bool ends_within(const Calibration& result) {
+  return result.converged && std::all_of(result.parameters.begin(), result.parameters.end(),
+                                         [](const CalibratedParameter& p) { return p.within; });
+}
+
 }  // namespace
 
 double diffusion(const Configuration& model, double seconds_per_unit) {
@@ -78,12 +84,8 @@ std::vector<History> runs_in_seconds(const CalibrationRuns& all, const Calibrati
   return runs;
 }
 
-bool ends_within(const Calibration& result) {
-  return result.converged && std::all_of(result.parameters.begin(), result.parameters.end(),
-                                         [](const CalibratedParameter& p) { return p.within; });
-}
-
 std::string best_known(const Calibration& result) {
+  if (!ends_within(result)) return "";
   std::string text;
   for (std::size_t i = 0; i < result.best_powers.size(); ++i) {
     const double power = result.best_powers[i];
@@ -118,7 +120,8 @@ std::string calibration_json(const std::vector<CalibrationFinding>& parameters,
                                       {"unit", found.unit},
                                       {"determined", found.determined()},
                                       {"undetermined_because", found.open}};
-  json["best_known"] = ends_within(result) ? Json(best_known(result)) : Json();
+  const std::string best = best_known(result);
+  json["best_known"] = best.empty() ? Json() : Json(best);
   json["scatter_of_ln_perimeter"] = result.best.scatter;
   json["points_at_bound_of_mobility"] = result.at_bound;
   json["mobility_at_bound"] = result.unit_at_bound;

@@ -50,10 +50,8 @@ bool size_is_told(double factor, const Interval& seconds_per_unit);
 std::vector<History> runs_in_seconds(const CalibrationRuns& all, const Calibration& result,
                                      std::size_t choice);
 
-// Do all intervals end within what was looked at? What does not is known no better than that.
-bool ends_within(const Calibration& result);
-
-// The product of powers of D and the parameters that the data know best, if they do.
+// The product of powers of D and the parameters that the data know best; "" where the search did
+// not converge or an interval reaches its end, as what does is known no better than that.
 std::string best_known(const Calibration& result);
 
 // The model as a configuration, with the parameters that were found.

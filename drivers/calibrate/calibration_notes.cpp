@@ -90,7 +90,8 @@ void add_size(const MeasuredVesicles& data, const CalibrationRuns& runs, const C
 
 // For readers: what was found beyond the table.
 void add_findings(const Calibration& result, Notes& notes) {
-  if (ends_within(result)) notes.push_back("The data know best " + best_known(result) + ".");
+  if (const std::string best = best_known(result); !best.empty())
+    notes.push_back("The data know best " + best + ".");
   notes.push_back(result.best.scatter > kAtEnd * kLeastScatter
                       ? formatted("Perimeters scatter by %.0f %% beyond what runs do.",
                                   100 * result.best.scatter)

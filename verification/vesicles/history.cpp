@@ -5,6 +5,7 @@
 
 #include "kernel/core/error.hpp"
 #include "verification/measure/fit.hpp"
+#include "verification/measure/interpolation.hpp"
 
 namespace traceraft {
 
@@ -55,19 +56,15 @@ LogTimes::LogTimes(const std::vector<double>& times) {
 }
 
 double LogTimes::at(const std::vector<double>& values, double ln_t) const {
-  const double place =
-      std::clamp((ln_t - begin_) / step_, 0.0, static_cast<double>(values.size() - 1));
-  const auto below = std::min(static_cast<std::size_t>(place), values.size() - 2);
-  const double share = place - static_cast<double>(below);
-  return values[below] + share * (values[below + 1] - values[below]);
+  return interpolated(
+      values, std::clamp((ln_t - begin_) / step_, 0.0, static_cast<double>(values.size() - 1)));
 }
 
 double quantile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
   const double place = share * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  if (below + 1 >= values.size()) return values.back();
-  return values[below] + (place - static_cast<double>(below)) * (values[below + 1] - values[below]);
+  if (place >= static_cast<double>(values.size() - 1)) return values.back();
+  return interpolated(values, place);
 }
 
 Distribution distribution(const std::vector<double>& values) {

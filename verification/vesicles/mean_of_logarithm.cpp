@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "verification/measure/interpolation.hpp"
+
 namespace traceraft {
 namespace {
 
@@ -65,12 +67,6 @@ std::vector<std::vector<double>> table_of_counts() {
     table.push_back(std::move(row));
   }
   return table;
-}
-
-// `place`: from 0 to the last of the values.
-double interpolated(const std::vector<double>& values, double place) {
-  const auto k = std::min(static_cast<std::size_t>(place), values.size() - 2);
-  return values[k] + (place - static_cast<double>(k)) * (values[k + 1] - values[k]);
 }
 
 }  // namespace
