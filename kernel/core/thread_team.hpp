@@ -1,6 +1,7 @@
 // A fixed team of threads that run the same function on different blocks of work.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstddef>
 #include <exception>
@@ -42,13 +43,15 @@ class ThreadTeam {
   void stop_all();
   void guarded(const std::function<void(int)>& task, int part) const noexcept;
 
+  // What changes `round_`, `stop_` or `pending_` to 0 holds the mutex, so that nobody who falls
+  // asleep misses it.
   mutable std::mutex mutex_;
   mutable std::condition_variable start_, done_;
   mutable const std::function<void(int)>* task_ = nullptr;
-  mutable unsigned long round_ = 0;
-  mutable int pending_ = 0;
+  mutable std::atomic<unsigned long> round_{0};
+  mutable std::atomic<int> pending_{0};
   mutable std::exception_ptr thrown_;
-  bool stop_ = false;
+  std::atomic<bool> stop_{false};
   std::vector<std::thread> workers_;
 };
 
