@@ -138,7 +138,7 @@ int run_with_ranks(int argc, char** argv) {
 }  // namespace traceraft
 
 int main(int argc, char** argv) {
-  // Read by OpenBLAS and by CHOLMOD's OpenMP when they are loaded, hence before anything else.
+  // Read by OpenBLAS when it is loaded, hence before anything else.
   traceraft::restart_with_environment(traceraft::preferred_environment(), argv);
   return traceraft::run_with_ranks(argc, argv);
 }

@@ -4,6 +4,8 @@ extern "C" {
 void openblas_set_num_threads(int);
 char* openblas_get_config();
 char* openblas_get_corename();
+// Of OpenMP, which is there if CHOLMOD was built with it.
+void omp_set_max_active_levels(int) __attribute__((weak));
 }
 
 namespace traceraft {
@@ -28,6 +30,10 @@ void use_one_blas_thread() {
   openblas_set_num_threads(1);
 }
 
+void use_one_openmp_thread() {
+  if (omp_set_max_active_levels) omp_set_max_active_levels(0);
+}
+
 std::string blas_description() {
   const std::string config = openblas_get_config();  // "OpenBLAS 0.3.21 NO_LAPACKE …"
   const std::size_t end = config.find(' ', config.find(' ') + 1);
@@ -35,11 +41,9 @@ std::string blas_description() {
 }
 
 std::vector<std::pair<std::string, std::string>> preferred_environment() {
-  std::vector<std::pair<std::string, std::string>> environment = {{"OMP_THREAD_LIMIT", "1"},
-                                                                  {"OPENBLAS_NUM_THREADS", "1"}};
-  if (const std::string core = better_blas_core(); !core.empty())
-    environment.emplace_back("OPENBLAS_CORETYPE", core);
-  return environment;
+  const std::string core = better_blas_core();
+  if (core.empty()) return {};
+  return {{"OPENBLAS_CORETYPE", core}};
 }
 
 }  // namespace traceraft

@@ -10,15 +10,17 @@ namespace traceraft {
 
 void use_one_blas_thread();
 
+// CHOLMOD starts OpenMP threads for loops that are too short for them (a factorisation at n = 128:
+// 135 ms with, 105 ms without). From now on none are started by the thread that calls this.
+void use_one_openmp_thread();
+
 // E.g. "OpenBLAS 0.3.21 (SkylakeX)".
 std::string blas_description();
 
-// What the environment should hold before OpenBLAS and CHOLMOD are loaded:
-// - OPENBLAS_CORETYPE: OpenBLAS picks its kernels by processor model and falls back to those of the
-//   1990s (Prescott) on models newer than itself, which makes factorisations about twice as slow.
-//   Set to what the processor can do in that case only.
-// - OMP_THREAD_LIMIT=1: CHOLMOD starts OpenMP threads for loops that are too short for them (a
-//   factorisation at n = 128: 135 ms with, 105 ms without).
+// What the environment should hold before OpenBLAS is loaded: OPENBLAS_CORETYPE. It picks its
+// kernels by processor model and falls back to those of the 1990s (Prescott) on models newer than
+// itself, which makes factorisations about twice as slow. Set to what the processor can do in that
+// case only: loading all libraries once more takes 0.13 s.
 std::vector<std::pair<std::string, std::string>> preferred_environment();
 
 }  // namespace traceraft

@@ -84,6 +84,7 @@ class CholmodSolver final : public SpdSolver {
     double* values = static_cast<double*>(matrix_->x);
     for (std::size_t k = 0; k < source_.size(); ++k) values[k] = A.values[source_[k]];
     workspace_.common.status = CHOLMOD_OK;
+    use_one_openmp_thread();
     cholmod_factorize(matrix_, factor_, &workspace_.common);
     if (workspace_.common.status == CHOLMOD_NOT_POSDEF || factor_->minor < factor_->n)
       return Status::retry("CHOLMOD: the matrix is not positive definite");
