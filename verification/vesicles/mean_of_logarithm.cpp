@@ -1,6 +1,7 @@
 #include "verification/vesicles/mean_of_logarithm.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -9,21 +10,30 @@
 namespace traceraft {
 namespace {
 
-// The table of means, in s/(1 + s) up to that of the largest s, as which larger ones are taken.
-constexpr int kSteps = 400;
+// Tables are in s/(1 + s), up to that of the largest s, as which larger ones are taken.
+constexpr int kSteps = 400, kCountSteps = 100;
 constexpr double kLargest = 1000, kMostShare = kLargest / (1 + kLargest);
-// That of counts, in s; more than that many are like any number.
-constexpr int kCountSteps = 400, kMany = 32;
-constexpr double kWidest = 4;
+constexpr double kLeastAbsolute = 1e-6;  // of 1 − power
+constexpr double kTail = 8;              // of a normal distribution
+// Counts of which the mean is known, for so many powers.
+constexpr int kMany = 32, kPowers = 10;
 
 double normal_above(double z) {
   return 0.5 * std::erfc(z / std::sqrt(2.0));
 }
 
-// By the midpoint rule, x = 1 + s z = u², as ln has a pole at 0.
+double share_of(double s) {
+  const double within = std::min(s, kLargest);
+  return std::min(within / (1 + within) / kMostShare, 1.0);
+}
+
+double at_share(double share) {
+  return kMostShare * share / (1 - kMostShare * share);
+}
+
+// Of 1 + s z by the midpoint rule, 1 + s z = u², as ln has a pole at 0.
 double integrated_mean(double s) {
   constexpr int kPoints = 1000;
-  constexpr double kTail = 8;
   const double end = std::sqrt(1 + kTail * s);
   double mean = 0, weights = 0;
   for (int i = 0; i < kPoints; ++i) {
@@ -35,58 +45,104 @@ double integrated_mean(double s) {
   return mean / weights;
 }
 
-// Σ ln(k/(k − 1)) P(n + s n z > k − ½), k = 2, 3, ..., of positive n + s n z.
-double summed_count_mean(int n, double s) {
-  constexpr double kTail = 8;
-  const double deviation = s * n;
-  double mean = 0;
-  for (int k = 2; k < n + kTail * deviation + 1; ++k)
-    mean += std::log(k / (k - 1.0)) * normal_above((k - 0.5 - n) / deviation);
-  return mean / normal_above(-1 / s) - std::log(n);
-}
-
-// Mean of ln(1 + s z) beside ln(1 + s), which it goes with where s is large.
+// Of n + n s z beside ln(1 + s), which it goes with where s is large.
 std::vector<double> table_of_means() {
   std::vector<double> table{0};
   for (int k = 1; k <= kSteps; ++k) {
-    const double share = kMostShare * k / kSteps, s = share / (1 - share);
+    const double s = at_share(static_cast<double>(k) / kSteps);
     table.push_back(integrated_mean(s) - std::log1p(s));
   }
   return table;
 }
 
-// Of n = 1, 2, ... and s = 0 to kWidest: what counts have beside other numbers.
-std::vector<std::vector<double>> table_of_counts() {
-  std::vector<std::vector<double>> table;
-  for (int n = 1; n <= kMany; ++n) {
-    std::vector<double> row{0};
-    for (int k = 1; k <= kCountSteps; ++k) {
-      const double s = kWidest * k / kCountSteps;
-      row.push_back(summed_count_mean(n, s) - mean_of_logarithm(s));
+// The distribution of v = n (1 + a s z)^(1/a).
+class Scattered {
+ public:
+  Scattered(double n, double s, double power)
+      : relative_(is_relative(power)), ln_n_(std::log(n)), s_(s), a_(1 - power) {}
+
+  double above(double v) const {
+    const double y = std::log(v) - ln_n_;
+    return normal_above((relative_ ? y : std::expm1(a_ * y) / a_) / s_) /
+           (relative_ ? 1 : normal_above(-1 / (a_ * s_)));
+  }
+  double ln_end() const {
+    return ln_n_ + (relative_ ? kTail * s_ : std::log1p(kTail * a_ * s_) / a_);
+  }
+
+ private:
+  bool relative_;
+  double ln_n_, s_, a_;
+};
+
+// Σ ln(k/(k − 1)) P(v > k − ½), k = 2, 3, ..., which is ∫ P(v > x) dx/x where k is large.
+double summed_count_mean(int n, double s, double power) {
+  constexpr int kPoints = 64, kWhole = 2 * kMany;
+  const Scattered v(n, s, power);
+  double mean = 0;
+  for (int k = 2; k <= kWhole && std::log(k - 0.5) < v.ln_end(); ++k)
+    mean += std::log(k / (k - 1.0)) * v.above(k - 0.5);
+  const double from = std::log(kWhole), step = std::max(v.ln_end() - from, 0.0) / kPoints;
+  for (int i = 0; i < kPoints && step > 0; ++i)
+    mean += step * v.above(std::exp(from + (i + 0.5) * step));
+  return mean - std::log(n);
+}
+
+// Of each power and of n = 1, 2, ...: what counts have beside other numbers, by 1 + s.
+using CountTable = std::array<std::vector<std::vector<double>>, kPowers + 1>;
+
+CountTable table_of_counts() {
+  CountTable table;
+  for (int b = 0; b <= kPowers; ++b) {
+    const double power = static_cast<double>(b) / kPowers;
+    for (int n = 1; n <= kMany; ++n) {
+      std::vector<double> row{0};
+      for (int k = 1; k <= kCountSteps; ++k) {
+        const double s = at_share(static_cast<double>(k) / kCountSteps);
+        row.push_back((summed_count_mean(n, s, power) - mean_of_logarithm(s, power)) / (1 + s));
+      }
+      table[static_cast<std::size_t>(b)].push_back(std::move(row));
     }
-    table.push_back(std::move(row));
   }
   return table;
 }
 
-}  // namespace
-
-double mean_of_logarithm(double s) {
-  static const std::vector<double> table = table_of_means();
-  const double within = std::min(s, kLargest);
-  const double share = within / (1 + within) / kMostShare;
-  return std::log1p(within) + interpolated(table, kSteps * std::min(share, 1.0));
+double between(double share, double from, double to) {
+  return from + share * (to - from);
 }
 
-double mean_of_count_logarithm(double n, double s) {
-  static const std::vector<std::vector<double>> table = table_of_counts();
-  if (n >= kMany) return mean_of_logarithm(s);
-  const double place = kCountSteps * std::min(s / kWidest, 1.0);
-  const auto below = static_cast<std::size_t>(std::max(n, 1.0)) - 1;
-  const double from = interpolated(table[below], place), to = interpolated(table[below + 1], place);
-  const double beside = from + (std::max(n, 1.0) - static_cast<double>(below + 1)) * (to - from);
-  // What is whole and what is 1 at least matters the less the wider values scatter.
-  return mean_of_logarithm(s) + beside * std::min(kWidest / s, 1.0);
+// Of n from 1 to kMany.
+double from_table(double n, double share, double power) {
+  static const CountTable table = table_of_counts();
+  const auto row = std::min(static_cast<std::size_t>(n), static_cast<std::size_t>(kMany) - 1) - 1;
+  const auto of_power = [&](std::size_t b) {
+    return between(n - static_cast<double>(row + 1), interpolated(table[b][row], share),
+                   interpolated(table[b][row + 1], share));
+  };
+  const auto b = std::min(static_cast<std::size_t>(kPowers * power), std::size_t{kPowers - 1});
+  return between(kPowers * power - static_cast<double>(b), of_power(b), of_power(b + 1));
+}
+
+}  // namespace
+
+bool is_relative(double power) {
+  return 1 - power < kLeastAbsolute;
+}
+
+double mean_of_logarithm(double s, double power) {
+  static const std::vector<double> table = table_of_means();
+  if (is_relative(power)) return 0;
+  const double absolute = 1 - power;
+  const double within = std::min(absolute * s, kLargest);
+  return (std::log1p(within) + interpolated(table, kSteps * share_of(within))) / absolute;
+}
+
+double mean_of_count_logarithm(double n, double s, double power) {
+  const double within = std::min(s, kLargest), most = kMany;
+  const double beside =
+      (1 + within) * from_table(std::clamp(n, 1.0, most), kCountSteps * share_of(within), power);
+  // What is whole and what is 1 at least matters the less the more there are.
+  return mean_of_logarithm(s, power) + beside * std::min(most / n, 1.0);
 }
 
 }  // namespace traceraft

@@ -1,13 +1,18 @@
-// What errors that are absolute do to logarithms, in which they are not normal.
+// What errors do to logarithms, in which only relative ones are normal.
 #pragma once
 
 namespace traceraft {
 
-// Mean of ln(1 + s z) with a normal z, where 1 + s z is positive: −s²/2 to second order. s >= 0.
-double mean_of_logarithm(double s);
+// Whether errors that go with this power of the value are normal in its logarithm.
+bool is_relative(double power);
 
-// The same of a count, which is a whole number and 1 at least: mean of ln max(1, round(n + s n z))
-// minus ln n, where n + s n z is positive. Between whole numbers n >= 1: between theirs.
-double mean_of_count_logarithm(double n, double s);
+// Of a positive value v = n (1 + a s z)^(1/a), with a normal z and a = 1 − power: n + n s z where
+// the error is absolute (power 0), n exp(s z) where it is relative (1). s >= 0, 0 <= power <= 1.
+// Mean of ln v minus ln n, where 1 + a s z is positive: −(1 − power) s²/2 to second order.
+double mean_of_logarithm(double s, double power);
+
+// The same of a count, which is a whole number and 1 at least: of ln max(1, round(v)). Between
+// whole numbers n >= 1: between theirs. Of more than 32 within 0.03 where s <= 1.5.
+double mean_of_count_logarithm(double n, double s, double power);
 
 }  // namespace traceraft

@@ -15,7 +15,6 @@ constexpr double kRoundingVariance = 1 / 12.0;  // of whole numbers
 constexpr double kLeastSpread = 1e-6;           // of ln of the values
 // What noise makes of ln of a value: that many standard deviations, and at most a factor of two.
 constexpr double kByNoise = 2, kMostByNoise = 0.7;
-constexpr double kRelative = 1e-6;  // of 1 − power
 
 }  // namespace
 
@@ -43,14 +42,14 @@ StatedErrors::Law StatedErrors::law_of(const MeasuredVesicles& data, Quantity qu
 
 StatedError StatedErrors::of(const Measurement& m, Quantity quantity) const {
   const auto& [power, ln_scale] = law(quantity);
-  const double least = quantity == Quantity::rafts ? kRoundingVariance : 0;
+  const bool counted = quantity == Quantity::rafts;
   const double value = m.of(quantity).value_or(0), sigma = m.sigma_of(quantity);
-  if (!(sigma > 0)) return {-std::numeric_limits<double>::infinity(), power, least};
-  if (!(value > 0)) return {std::log(sigma), 0, least};
+  if (!(sigma > 0)) return {-std::numeric_limits<double>::infinity(), power, counted};
+  if (!(value > 0)) return {std::log(sigma), 0, counted};
   const double usual = ln_scale + power * std::log(value);
   const double by_noise = power * std::min(kByNoise * std::exp(usual) / value, kMostByNoise);
   const double other = std::log(sigma) - usual;
-  return {ln_scale + (std::fabs(other) > by_noise ? other : 0), power, least};
+  return {ln_scale + (std::fabs(other) > by_noise ? other : 0), power, counted};
 }
 
 double StatedError::stated(double ln_expected) const {
@@ -58,27 +57,22 @@ double StatedError::stated(double ln_expected) const {
 }
 
 double StatedError::of_logarithm(double ln_expected) const {
-  return least > 0 ? std::max(stated(ln_expected), least * std::exp(-2 * ln_expected))
-                   : stated(ln_expected);
+  return counted ? std::max(stated(ln_expected), kRoundingVariance * std::exp(-2 * ln_expected))
+                 : stated(ln_expected);
 }
 
-// An error that goes with v^b is that of a normal v^(1 − b), which is taken for whole if counted.
 double StatedError::bias(double ln_expected) const {
-  if (!has_bias()) return 0;
-  const double absolute = 1 - power, s = absolute * std::sqrt(stated(ln_expected));
-  return (least > 0 ? mean_of_count_logarithm(std::exp(absolute * ln_expected), s)
-                    : mean_of_logarithm(s)) /
-         absolute;
+  if (!std::isfinite(ln_sigma)) return 0;
+  const double s = std::sqrt(stated(ln_expected));
+  return counted ? mean_of_count_logarithm(std::exp(ln_expected), s, power)
+                 : mean_of_logarithm(s, power);
 }
 
-bool StatedError::has_bias() const {
-  return std::isfinite(ln_sigma) && 1 - power > kRelative;
-}
-
+// An error that goes with v^b is that of a normal v^(1 − b), or of a normal ln v.
 double StatedError::drawn(double ln_value,
                           const std::function<double(std::uint64_t)>& normal) const {
   const double absolute = 1 - power, s = std::sqrt(stated(ln_value));
-  if (!has_bias()) return ln_value + s * normal(0);
+  if (is_relative(power)) return ln_value + s * normal(0);
   for (std::uint64_t k = 0;; ++k)
     if (const double error = absolute * s * normal(k); error > -1)
       return ln_value + std::log1p(error) / absolute;

@@ -14,19 +14,17 @@ namespace traceraft {
 struct StatedError {
   double ln_sigma;  // where 1 is expected; −inf if nothing is stated
   double power;
-  double least;  // variance, of rounding
+  bool counted;  // a whole number, and 1 at least
 
   // Variances of ln of the value: what is stated, and with that of rounding.
   double stated(double ln_expected) const;
   double of_logarithm(double ln_expected) const;
-  // Mean of ln of the value minus ln of what is expected: of absolute errors, where values that are
-  // not positive are not looked at; 0 of relative ones, which are taken as normal in the logarithm.
+  // Mean of ln of the value minus ln of what is expected, where values that are not positive are
+  // not looked at. 0 of relative errors unless of counts: they are taken as normal in the
+  // logarithm.
   double bias(double ln_expected) const;
   // ln of a value with such an error; `normal`: the k-th of its normal numbers.
   double drawn(double ln_value, const std::function<double(std::uint64_t)>& normal) const;
-
- private:
-  bool has_bias() const;  // some is stated, and not relative
 };
 
 // Of each quantity, the law σ = s value^b that fits what the looks after time zero state: absolute
