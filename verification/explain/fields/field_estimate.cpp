@@ -2,21 +2,15 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <stdexcept>
 
 #include "backends/nlopt/minimise.hpp"
 #include "backends/openblas/dense_algebra.hpp"
+#include "backends/suitesparse/sparse_cholesky.hpp"
 #include "kernel/core/random.hpp"
 #include "verification/explain/fields/stiffness_along_normals.hpp"
 
 namespace traceraft {
 namespace {
-
-using SparseFactors = Eigen::SimplicialLLT<EigenMatrix>;
-
-double log_determinant(const SparseFactors& factors) {
-  return 2 * factors.matrixL().nestedExpression().diagonal().array().log().sum();
-}
 
 // −2 ln of the marginal likelihood as a function of the prior; everything scaled by the noise.
 class FieldRegression {
@@ -39,10 +33,10 @@ class FieldRegression {
   // Factors of the precision of the field given the values.
   void compute(const FieldPrior& prior) {
     const EigenMatrix B = mass_ / (prior.length * prior.length) + stiffness_;
-    const EigenMatrix precision =
+    precision_ =
         prior.smoothing * EigenMatrix(B * inverse_diagonal_.asDiagonal() * B) + information_;
-    factorise(prior_factors_, B);
-    factorise(factors_, precision);
+    prior_factors_.factorise(B);
+    factors_.factorise(precision_);
     field_ = factors_.solve(load_);
   }
   double noise() const {
@@ -50,10 +44,10 @@ class FieldRegression {
   }
   double deviance(const FieldPrior& prior) {
     compute(prior);
-    const double log_prior = 2 * log_determinant(prior_factors_) +
+    const double log_prior = 2 * prior_factors_.log_determinant() +
                              inverse_diagonal_.array().log().sum() +
                              static_cast<double>(field_.size()) * std::log(prior.smoothing);
-    return 2 * static_cast<double>(count_) * std::log(noise()) + log_determinant(factors_) -
+    return 2 * static_cast<double>(count_) * std::log(noise()) + factors_.log_determinant() -
            log_prior - log_weights_;
   }
 
@@ -61,7 +55,7 @@ class FieldRegression {
 
   // M̃ Y = M X, as initial data of a run: off the surface nothing is known.
   Eigen::MatrixXd projected(const Eigen::MatrixXd& X) const {
-    return SparseFactors(mass_).solve(trace_mass_ * X);
+    return SparseCholesky(mass_).solve(trace_mass_ * X);
   }
 
   // The directions of the covariance Σ that matter most for smooth parts of the field: eigenvectors
@@ -70,7 +64,7 @@ class FieldRegression {
   Eigen::MatrixXd errors(double length, int rank) const {
     constexpr int kIterations = 4, kExtra = 16;
     const EigenMatrix smoother = mass_ + length * length * stiffness_;
-    const SparseFactors smoothing(smoother);
+    const SparseCholesky smoothing(smoother);
     const auto weighted = [&](const Eigen::MatrixXd& X) -> Eigen::MatrixXd {
       return mass_ * smoothing.solve(trace_mass_ * smoothing.solve(mass_ * X));
     };
@@ -94,21 +88,16 @@ class FieldRegression {
     Eigen::MatrixXd z(field_.size(), count);
     for (Eigen::Index i = 0; i < z.size(); ++i)
       z.data()[i] = normal_random(2, stream, static_cast<std::uint64_t>(i));
-    return factors_.permutationPinv() * factors_.matrixU().solve(z);
+    const Eigen::SimplicialLLT<EigenMatrix> factors(precision_);
+    return factors.permutationPinv() * factors.matrixU().solve(z);
   }
 
  private:
-  void factorise(SparseFactors& factors, const EigenMatrix& A) {
-    if (!factors.rows()) factors.analyzePattern(A);
-    factors.factorize(A);
-    if (factors.info() != Eigen::Success)
-      throw std::runtime_error("the precision of a field is not positive definite");
-  }
-  EigenMatrix mass_, trace_mass_, stiffness_, information_;
+  EigenMatrix mass_, trace_mass_, stiffness_, information_, precision_;
   Eigen::Index count_;
   double mean_, squares_, log_weights_;
   Vec load_, inverse_diagonal_, field_;
-  SparseFactors prior_factors_, factors_;
+  SparseCholesky prior_factors_, factors_;
 };
 
 FieldEstimate result_of(FieldRegression& regression, const FieldPrior& prior,

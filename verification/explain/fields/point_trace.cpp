@@ -74,7 +74,10 @@ class TriangleFinder {
     const auto shells = static_cast<int>(std::ceil(reach / h)) + 1;
     Nearest nearest;
     for (int shell = 0; shell <= shells && nearest.distance > (shell - 1) * h; ++shell)
-      for_shell(centre, shell, [&](std::int64_t cell) { look(cell, x, nearest); });
+      for_shell(centre, shell, [&](const Lattice& cell) {
+        if (distance_to(cell, x) <= nearest.distance)
+          look(space_.mesh.cube.cell_id(cell), x, nearest);
+      });
     return nearest;
   }
 
@@ -104,8 +107,20 @@ class TriangleFinder {
           const Lattice cell{centre[0] + i, centre[1] + j, centre[2] + k};
           if (std::all_of(cell.begin(), cell.end(),
                           [cells](std::int64_t c) { return c >= 0 && c < cells; }))
-            action(space_.mesh.cube.cell_id(cell));
+            action(cell);
         }
+  }
+
+  // Triangles lie in their cells, but for roundoff: nothing in one is nearer than that.
+  double distance_to(const Lattice& cell, const Point& x) const {
+    constexpr double kRoundoff = 1e-12;
+    double squares = 0;
+    for (int d = 0; d < 3; ++d) {
+      const double low = -kBoxHalfWidth + static_cast<double>(cell[d]) * space_.h();
+      const double beside = std::max({low - x[d], x[d] - low - space_.h(), 0.0});
+      squares += beside * beside;
+    }
+    return std::sqrt(squares) - kRoundoff;
   }
 
   void look(std::int64_t cell, const Point& x, Nearest& nearest) const {

@@ -13,61 +13,66 @@ constexpr char kOtherIntegrator[] = "rosenbrock";
 // Standard deviations, beyond which one in a hundred truths falls short.
 constexpr double kRefuted = 2.33;
 
-FilterResult pass_of(const std::vector<FieldSeries>& series, const ExplainRequest& request,
-                     const FilterModel& model, const std::vector<std::vector<double>>& noises) {
+FilterProblems problems_with(const std::vector<std::vector<double>>& noises,
+                             const std::vector<FieldSeries>& series,
+                             const ExplainRequest& request) {
   FilterProblems data = problems_of(series, request);
   if (!noises.empty())
     for (FilterProblem& vesicle : data) vesicle.noise = noises[vesicle.vesicle];
+  return data;
+}
+
+FilterResult pass_of_model(const FilterProblems& data, const ExplainRequest& request, double pace,
+                           const std::vector<EffectTerm>& effects) {
+  FilterSettings alone = request.filter;
+  alone.replicates = 0;
   std::vector<ErrorMaps> maps;
-  return filter_fields(data, model, request.filter, maps);
+  return filter_fields(data, {with_effects(request.base, effects), pace, {}, {}}, alone, maps);
 }
 
-FilterResult pass_of_model(const std::vector<FieldSeries>& series, const ExplainRequest& request,
-                           double pace, const std::vector<EffectTerm>& effects,
-                           const std::vector<std::vector<double>>& noises) {
-  ExplainRequest alone = request;
-  alone.filter.replicates = 0;
-  return pass_of(series, alone, {with_effects(request.base, effects), pace, {}, {}}, noises);
-}
-
-FilterResult pass_of_model(const std::vector<FieldSeries>& series, const ExplainRequest& request,
-                           const Refit& fit, const std::vector<std::vector<double>>& noises) {
-  return pass_of_model(series, request, fit.pace, fit.hypothesis.terms(), noises);
+FilterResult pass_of_model(const FilterProblems& data, const ExplainRequest& request,
+                           const Refit& fit) {
+  return pass_of_model(data, request, fit.pace, fit.hypothesis.terms());
 }
 
 // As the search asks it, of the model that it ended with.
-FilterResult what_is_left(const std::vector<FieldSeries>& series, const ExplainRequest& request,
-                          const Explanation& found) {
-  const Refit& end = found.found;
-  return pass_of(series, request, {request.base, end.pace, end.hypothesis, {}}, found.noises);
+FilterResult what_is_left(const FilterProblems& data, const ExplainRequest& request,
+                          const Refit& end) {
+  std::vector<ErrorMaps> maps;
+  return filter_fields(data, {request.base, end.pace, end.hypothesis, {}}, request.filter, maps);
 }
 
-Rerun compare_both(const std::vector<FieldSeries>& series, ExplainRequest other,
+Rerun compare_both(const FilterProblems& data, const ExplainRequest& other,
                    const Explanation& found) {
   const int lanes = std::min(other.threads, 2);
-  other.threads = 1;
   std::array<FilterResult, 2> passes;
   ThreadTeam(lanes).run([&](int lane) {
     for (int k = lane; k < 2; k += lanes)
-      passes[k] = pass_of_model(series, other, k == 0 ? found.base : found.found, found.noises);
+      passes[k] = pass_of_model(data, other, k == 0 ? found.base : found.found);
   });
   return compare_forecasts(passes[0], passes[1], found.rounds.back().screening.mesh_error);
 }
 
 // Is what nothing explains there on the other mesh, too?
-void look_for_gap(const std::vector<FieldSeries>& series, const ExplainRequest& other,
-                  Explanation& found, Rerun& rerun) {
+void look_for_gap(const FilterProblems& data, const ExplainRequest& other, Explanation& found,
+                  Rerun& rerun) {
+  const FilterResult pass = what_is_left(data, other, found.found);
+  if (found.found.hypothesis.added() == 0) {
+    rerun.base = rerun.found = gaps_of_pass(pass);
+    rerun.floor = expected_gaps(pass);
+  }
+  const Screening left = screen(pass, {}, found.found.hypothesis);
+  rerun.gap_p = left.gap_p;
+  if (!has_gap(left, found.false_alarms)) found.finding = found.without_gap;
+}
+
+// What fails says why.
+template <class Action>
+void attempt(std::string& why, const Action& action) {
   try {
-    const FilterResult pass = what_is_left(series, other, found);
-    if (found.found.hypothesis.added() == 0) {
-      rerun.base = rerun.found = gaps_of_pass(pass);
-      rerun.floor = expected_gaps(pass);
-    }
-    const Screening left = screen(pass, {}, found.found.hypothesis);
-    rerun.gap_p = left.gap_p;
-    if (!has_gap(left, found.false_alarms)) found.finding = found.without_gap;
+    action();
   } catch (const std::runtime_error& error) {
-    rerun.gap_failure = error.what();
+    why = error.what();
   }
 }
 
@@ -114,12 +119,19 @@ void run_again(const std::vector<FieldSeries>& series, const ExplainRequest& req
   other.cells = static_cast<int>(std::lround(kOtherCells * request.cells));
   other.filter.integrator = kOtherIntegrator;
   Rerun result;
-  if (found.found.hypothesis.added() > 0) try {
-      result = compare_both(series, other, found);
-    } catch (const std::runtime_error& error) {
-      result.failure = error.what();
-    }
-  if (found.finding == Finding::unnamed) look_for_gap(series, other, found, result);
+  FilterProblems data;
+  std::string no_data;
+  attempt(no_data, [&] { data = problems_with(found.noises, series, other); });
+  if (found.found.hypothesis.added() > 0) {
+    result.failure = no_data;
+    if (no_data.empty())
+      attempt(result.failure, [&] { result = compare_both(data, other, found); });
+  }
+  if (found.finding == Finding::unnamed) {
+    result.gap_failure = no_data;
+    if (no_data.empty())
+      attempt(result.gap_failure, [&] { look_for_gap(data, other, found, result); });
+  }
   result.cells = other.cells;
   result.integrator = kOtherIntegrator;
   if (is_named(found) && result.refutes())
@@ -130,7 +142,10 @@ void run_again(const std::vector<FieldSeries>& series, const ExplainRequest& req
 ModelGaps gaps_of_model(const std::vector<FieldSeries>& series, const ExplainRequest& request,
                         double pace, const std::vector<EffectTerm>& effects,
                         const std::vector<std::vector<double>>& noises) {
-  const FilterResult pass = pass_of_model(series, request, pace, effects, noises);
+  ExplainRequest alone = request;
+  alone.filter.replicates = 0;
+  const FilterResult pass =
+      pass_of_model(problems_with(noises, series, alone), alone, pace, effects);
   return {gaps_of_pass(pass), expected_gaps(pass)};
 }
 

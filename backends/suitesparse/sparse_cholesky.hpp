@@ -1,0 +1,32 @@
+// Cholesky factors in double precision of matrices that come from statistics: precisions of fields.
+#pragma once
+
+#include <Eigen/Sparse>
+#include <memory>
+
+namespace traceraft {
+
+// By CHOLMOD's supernodes: of the precisions of fields several times as fast as Eigen's own. Not
+// for several threads at once.
+class SparseCholesky {
+ public:
+  SparseCholesky();
+  explicit SparseCholesky(const Eigen::SparseMatrix<double>& A) : SparseCholesky() { factorise(A); }
+  ~SparseCholesky();
+  SparseCholesky(SparseCholesky&&) noexcept;
+  SparseCholesky& operator=(SparseCholesky&&) noexcept;
+
+  // A: n × n, symmetric, compressed, all entries stored; ordered once, so that all matrices have
+  // the pattern of the first. Throws std::runtime_error if it is not positive definite.
+  void factorise(const Eigen::SparseMatrix<double>& A);
+
+  // A⁻¹ B. Of factors that there are, as below.
+  Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const;
+  double log_determinant() const;  // of A
+
+ private:
+  struct Factors;
+  std::unique_ptr<Factors> factors_;
+};
+
+}  // namespace traceraft
