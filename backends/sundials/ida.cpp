@@ -163,7 +163,7 @@ class Ida final : public Integrator {
   }
 
   Status failure(int flag) const {
-    const std::string reason = equations_.complaint(), told = reason + " (its times are in R^2/D)";
+    const std::string reason = equations_.complaint();
     switch (flag) {
       case IDA_ERR_FAIL:
         return Status::fatal(
@@ -175,9 +175,10 @@ class Ida final : public Integrator {
       case IDA_FIRST_RES_FAIL:
         return Status::fatal(
             "no step size down to the smallest one" +
-            (reason.empty() ? "; Newton's method does not converge" : ": " + told));
+            (reason.empty() ? "; Newton's method does not converge" : ": " + reason));
       default:
-        return Status::fatal("IDA code " + std::to_string(flag) + ": " + told);
+        return Status::fatal("IDA code " + std::to_string(flag) +
+                             (reason.empty() ? "" : ": " + reason));
     }
   }
 

@@ -33,8 +33,10 @@ class IdaEquations {
   // Before a step of IDA and after it: what a callback threw is thrown again.
   void forget_complaints();
   void throw_again();
-  // What made a callback fail, or IDA's own complaint.
-  std::string complaint() const { return why_.empty() ? message_ : why_; }
+  // What made a callback fail, or IDA's own complaint, "" if there is none.
+  std::string complaint() const {
+    return why_.empty() && !message_.empty() ? message_ + " (its times are in R^2/D)" : why_;
+  }
   const std::string& message() const { return message_; }
 
   // Of the energy guard: y begins the run; the state judged last is accepted.

@@ -2,23 +2,25 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace traceraft {
 namespace {
 
+// Letters inserted, left out, replaced, or swapped with their neighbour (optimal string alignment).
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0);
+  std::vector<std::size_t> earlier, before(b.size() + 1), row;
+  std::iota(before.begin(), before.end(), 0);
   for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
+    row = {i + 1};
     for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t substituted = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({substituted, row[j] + 1, row[j + 1] + 1});
+      row.push_back(std::min({before[j] + (a[i] != b[j]), row[j] + 1, before[j + 1] + 1}));
+      if (i > 0 && j > 0 && a[i] == b[j - 1] && a[i - 1] == b[j])
+        row.back() = std::min(row.back(), earlier[j - 1] + 1);
     }
+    earlier = std::exchange(before, row);
   }
-  return row.back();
+  return before.back();
 }
 
 }  // namespace

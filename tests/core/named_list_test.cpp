@@ -33,6 +33,9 @@ TEST(NamedList, ProposesWhatIsNear) {
   EXPECT_FALSE(proposes("--seed", "--keep"));
   EXPECT_TRUE(proposes("--cels", "--cells"));
   EXPECT_TRUE(proposes("guv", "guv-2to1"));
+  EXPECT_TRUE(proposes("lsit", "list"));
+  EXPECT_TRUE(proposes("rnu", "run"));
+  EXPECT_TRUE(proposes("--sede", "--seed"));
   EXPECT_TRUE(proposes("radius_um", "radius"));
   EXPECT_EQ(unknown_name_message("unit", "micron", {"um", "nm"}),
             "unknown unit 'micron'; valid: um, nm");
@@ -51,6 +54,8 @@ TEST(NamedList, KeepsAMessageToOneReadableLine) {
 TEST(NearestName, CountsEdits) {
   EXPECT_EQ(nearest_name("--cels", {"--case", "--cells", "--seed"}), "--cells");
   EXPECT_EQ(nearest_name("x", {}), "");
+  // A swap is one edit, wherever it is.
+  EXPECT_EQ(nearest_name("abdc", {"abxy", "abcd"}), "abcd");
 }
 
 }  // namespace
