@@ -18,25 +18,13 @@ bool are_alike(const std::vector<Agreement>& agreements, std::size_t runs) {
   });
 }
 
-// Why the fit does not determine it, if it does not.
-std::vector<std::string> undetermined(const CalibratedParameter& p, const Calibration& result) {
-  std::vector<std::string> why;
-  if (p.determined) return why;
-  const double span = p.interval.high / p.interval.low;
-  if (!result.converged) why.push_back("the search did not converge");
-  if (result.unit_at_bound) why.push_back("D lies at the end of the search");
-  if (span > kDetermined) why.push_back(formatted("95 %% span a factor of %.3g", span));
-  if (!p.within) why.push_back("it reaches the end of what was simulated");
-  return why;
-}
-
 std::vector<CalibrationFinding> parameters_of(const MeasuredVesicles& data,
                                               const Configuration& model, bool alike,
                                               const Calibration& result) {
   const double factor = factor_of_size(data, model.units().length());
   std::vector<CalibrationFinding> found;
   for (const CalibratedParameter& p : result.parameters) {
-    std::vector<std::string> open = undetermined(p, result);
+    std::vector<std::string> open = why_undetermined(p, result);
     if (p.name == "seconds_per_unit") {
       if (!size_is_told(factor, p.interval)) open.push_back("the vesicles have another size");
       if (!alike) open.push_back("the runs do not coarsen as the vesicles do");
@@ -58,8 +46,9 @@ std::vector<History> best_runs(const CalibrationRuns& all, const Calibration& re
   return runs_in_seconds(all, result, static_cast<std::size_t>(best - fits.begin()));
 }
 
-// Do all intervals end within what was looked at? What does not is known no better than that.
-bool ends_within(const Calibration& result) {
+// Did the search converge, and do all intervals end within what was looked at? What does not is
+// known no better than that.
+bool is_within(const Calibration& result) {
   return result.converged && std::all_of(result.parameters.begin(), result.parameters.end(),
                                          [](const CalibratedParameter& p) { return p.within; });
 }
@@ -68,6 +57,21 @@ bool ends_within(const Calibration& result) {
 
 double diffusion(const Configuration& model, double seconds_per_unit) {
   return model.units().with_seconds_per_unit(seconds_per_unit).diffusion_cm2_s;
+}
+
+std::vector<std::string> why_undetermined(const CalibratedParameter& p, const Calibration& result) {
+  std::vector<std::string> why;
+  if (p.determined) return why;
+  const double span = p.interval.high / p.interval.low;
+  if (!result.converged) why.push_back("the search did not converge");
+  if (result.unit_at_bound) why.push_back("D lies at the end of the search");
+  const bool is_unit = &p == &result.parameters.front();
+  if (!p.within && !is_unit) why.push_back("it reaches the end of what was simulated");
+  if (!p.within && is_unit && !result.unit_at_bound)
+    why.push_back("it reaches the end of the search");
+  if (span >= kDetermined || why.empty())
+    why.push_back(formatted("95 %% span a factor of %.3g", span));
+  return why;
 }
 
 bool size_is_told(double factor, const Interval& seconds_per_unit) {
@@ -85,7 +89,7 @@ std::vector<History> runs_in_seconds(const CalibrationRuns& all, const Calibrati
 }
 
 std::string best_known(const Calibration& result) {
-  if (!ends_within(result)) return "";
+  if (!is_within(result)) return "";
   std::string text;
   for (std::size_t i = 0; i < result.best_powers.size(); ++i) {
     const double power = result.best_powers[i];

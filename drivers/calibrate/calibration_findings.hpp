@@ -50,6 +50,11 @@ bool size_is_told(double factor, const Interval& seconds_per_unit);
 std::vector<History> runs_in_seconds(const CalibrationRuns& all, const Calibration& result,
                                      std::size_t choice);
 
+// Why the fit to the data does not determine the parameter, which is one of `result`; empty if it
+// does. What findings_of() adds for D needs the data.
+std::vector<std::string> why_undetermined(const CalibratedParameter& parameter,
+                                          const Calibration& result);
+
 // The product of powers of D and the parameters that the data know best; "" where the search did
 // not converge or an interval reaches its end, as what does is known no better than that.
 std::string best_known(const Calibration& result);
