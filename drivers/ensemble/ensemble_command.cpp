@@ -151,7 +151,8 @@ int run_ensemble(const EnsembleRequest& request) {
   folder.save(plan);
   fs::create_directories(folder.path() / "runs");
   if (run && !request.quiet)
-    std::printf("case %s, %s\n", configuration.text("case").c_str(), resolution_text(*run).c_str());
+    std::printf("case %s, %s\n", configuration.text("case").c_str(),
+                resolution_text(configuration, *run).c_str());
   if (!goes_on) write_durably(folder.config(), config_text(configuration));
   if (!request.array_job) return carry_out(request, folder, plan, configuration);
   const fs::path script = folder.path() / "array-job.sh";

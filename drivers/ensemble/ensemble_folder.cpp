@@ -11,6 +11,15 @@
 #include "kernel/core/parameters.hpp"
 
 namespace traceraft {
+namespace {
+
+// What may only be unreadable for the moment is not to be deleted.
+std::string with_advice(const std::string& why, const std::filesystem::path& run) {
+  return why + "; delete " + run.string() + " to have it repeated";
+}
+
+}  // namespace
+
 std::vector<std::uint64_t> EnsemblePlan::seeds() const {
   std::vector<std::uint64_t> all(static_cast<std::size_t>(runs));
   std::iota(all.begin(), all.end(), first_seed);
@@ -60,9 +69,10 @@ EnsembleFolder::Member EnsembleFolder::member(std::uint64_t seed) const {
       if (end == "failed") return {MemberEnd::failed, json.value("why", std::string())};
       return {end == "finished" ? MemberEnd::finished : MemberEnd::begun, ""};
     });
+  } catch (const DamagedFile& error) {
+    return {MemberEnd::failed, with_advice(error.what(), run)};
   } catch (const IoError& error) {
-    return {MemberEnd::failed,
-            std::string(error.what()) + "; delete " + run.string() + " to have it repeated"};
+    return {MemberEnd::failed, error.what()};
   }
 }
 
@@ -97,8 +107,7 @@ FinishedMembers finished_members(const EnsembleFolder& folder, double radius, do
   constexpr double kRoundoff = 1e-9;
   FinishedMembers result;
   const auto damaged = [&](std::uint64_t seed, const std::string& why) {
-    result.damaged.push_back(
-        {seed, why + "; delete " + folder.run_of(seed).string() + " to have it repeated"});
+    result.damaged.push_back({seed, with_advice(why, folder.run_of(seed))});
   };
   for (const std::uint64_t seed : folder.load().seeds()) {
     if (folder.member(seed).end != MemberEnd::finished) continue;
@@ -115,7 +124,10 @@ FinishedMembers finished_members(const EnsembleFolder& folder, double radius, do
     } catch (const InputError& error) {
       damaged(seed, error.what());
     } catch (const IoError& error) {
-      damaged(seed, error.what());
+      if (std::filesystem::exists(folder.run_of(seed) / "series.csv"))
+        result.damaged.push_back({seed, error.what()});
+      else
+        damaged(seed, error.what());
     }
   }
   return result;

@@ -158,7 +158,9 @@ std::string script(const Chart& chart, const std::string& svg) {
       if (!drawable(chart, series, k)) continue;
       text += format_number(series.points[k].first) + " " +
               format_number(std::max(series.points[k].second, lowest));
-      if (!series.other.empty()) text += " " + format_number(series.other[k]);
+      if (!series.other.empty())
+        text += " " + format_number(series.mark == Mark::band ? std::max(series.other[k], lowest)
+                                                              : series.other[k]);
       text += "\n";
     }
     text += "END\n";

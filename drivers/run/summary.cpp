@@ -119,15 +119,21 @@ std::string summary_json(const Configuration& configuration, const RunSetup& run
   return json.dump(2) + "\n";
 }
 
-std::string resolution_text(const RunSetup& run) {
+// Of a sphere nothing separates where f0'' + ε² l(l + 1)/R² > 0 even for c halfway and l = 1. Other
+// surfaces are longer than wide.
+bool is_as_wide_as(const std::string& surface, const CahnHilliardModel& model) {
+  constexpr double kWide = 0.5;
+  const double unstable = -model.well.second(0.5 * (model.well.a + model.well.b));
+  return surface == "sphere" ? 2 * model.epsilon * model.epsilon > unstable : model.epsilon > kWide;
+}
+
+std::string resolution_text(const Configuration& configuration, const RunSetup& run) {
   constexpr double kCoarse = 4;  // h/epsilon beyond which the mesh shapes the boundaries
   const CahnHilliardModel& model = run.problem->model();
   const double epsilon = model.epsilon, ratio = run.space->h() / epsilon;
-  // Of a sphere nothing separates where f0'' + ε² l(l + 1)/R² > 0 even for c halfway and l = 1.
-  const double unstable = -model.well.second(0.5 * (model.well.a + model.well.b));
   return formatted("epsilon = %g um = %g R, h/epsilon = %.2f, %.1f %% of its energy resolved%s",
                    epsilon * run.units.radius_um, epsilon, ratio, 100 * run.perimeter.resolved,
-                   2 * epsilon * epsilon > unstable
+                   is_as_wide_as(configuration.text("surface"), model)
                        ? "; AS WIDE AS THE VESICLE: take a smaller --epsilon"
                    : ratio > kCoarse ? "; TOO COARSE: take more --cells"
                                      : "");
@@ -154,7 +160,7 @@ void print_setup(const Configuration& configuration, const RunSetup& run) {
        formatted("%lld cells per edge, %lld cut tetrahedra, %lld nodes, %lld unknowns",
                  configuration.integer("cells"), static_cast<long long>(totals.elements),
                  static_cast<long long>(totals.nodes), static_cast<long long>(2 * totals.nodes)));
-  line("phase boundary", resolution_text(run));
+  line("phase boundary", resolution_text(configuration, run));
   line("mobility", formatted("%s, D = %g cm^2/s", configuration.text("mobility").c_str(),
                              units.diffusion_cm2_s));
   if (!configuration.text("effect").empty()) line("effects", configuration.text("effect"));

@@ -16,7 +16,7 @@ std::string summary_json(const Configuration& configuration, const RunSetup& run
                          double memory_mb);
 
 // How well the mesh resolves the phase boundary, and a warning if it does not.
-std::string resolution_text(const RunSetup& run);
+std::string resolution_text(const Configuration& configuration, const RunSetup& run);
 
 void print_setup(const Configuration& configuration, const RunSetup& run);
 void print_summary(const Configuration& configuration, const RunSetup& run, const RunState& state,

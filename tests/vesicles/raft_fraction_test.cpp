@@ -20,7 +20,10 @@ TEST(RaftFraction, ReadsMixtures) {
   EXPECT_DOUBLE_EQ(membrane.dppc, 0.2);
   EXPECT_DOUBLE_EQ(membrane.cholesterol, 0.2);
   EXPECT_DOUBLE_EQ(phase_mixture("x", "22:43:35").dppc, 0.43);
-  for (const char* wrong : {"", "3", "3:1", "3:1:20:4", "a:1:20", "3:-1:20", "3:1:100", "0:0:20"})
+  EXPECT_DOUBLE_EQ(membrane_mixture("x", "3:1:0.2 %").cholesterol, 0.002);
+  EXPECT_DOUBLE_EQ(membrane_mixture("x", "3:1:0").cholesterol, 0);
+  for (const char* wrong :
+       {"", "3", "3:1", "3:1:20:4", "a:1:20", "3:-1:20", "3:1:100", "0:0:20", "3:1:0.2"})
     EXPECT_THROW(membrane_mixture("x", wrong), InputError) << wrong;
   EXPECT_THROW(phase_mixture("x", "22:43:30"), InputError);
 }

@@ -70,9 +70,10 @@ LipidMixture membrane_mixture(const std::string& context, const std::string& tex
       context, text, "parts of DOPC : parts of DPPC : mol % of cholesterol, such as 3:1:20");
   if (!(dopc + dppc > 0) || percent >= 100)
     throw InputError(context + ": '" + text + "' has no phospholipid");
-  if (percent > 0 && percent < 1)
+  if (percent > 0 && percent < 1 && text.find('%') == std::string::npos)
     throw InputError(context + ": '" + text + "' has " + format_number(percent) +
-                     " mol % of cholesterol; is that a fraction, and 100 times as much meant?");
+                     " mol % of cholesterol; for a fraction give " + format_number(100 * percent) +
+                     " instead, or write '" + text + "%' if that is meant");
   const double rest = (1 - percent / 100) / (dopc + dppc);
   return {rest * dopc, rest * dppc, percent / 100};
 }
