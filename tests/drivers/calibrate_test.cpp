@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::content;
 using testing::lines_of;
-using testing::Outcome;
+using testing::ProgramEnd;
 using testing::TemporaryFolder;
 using testing::traceraft;
 
@@ -44,7 +44,7 @@ class CalibrateTest : public ::testing::Test {
 TEST_F(CalibrateTest, GoesFromFilesToFiles) {
   const std::string command =
       "calibrate --data " + out("data") + " " + model + "--runs 2 --out " + out("c");
-  const Outcome made = traceraft(command);
+  const ProgramEnd made = traceraft(command);
   ASSERT_EQ(made.code, 0) << made.output;
   const auto json = nlohmann::json::parse(content(folder.path / "c/calibration.json"));
   EXPECT_EQ(made.output.find("The data know best") != std::string::npos,
@@ -66,7 +66,7 @@ TEST_F(CalibrateTest, GoesFromFilesToFiles) {
   EXPECT_NE(made.output.find("initial noise is as long as the model's"), std::string::npos);
   EXPECT_EQ(made.output.find("NOT CONVERGED") == std::string::npos, json["converged"]);
   // The model that was found can be run.
-  const Outcome valid = traceraft("run --validate --config " + out("c/calibrated.toml"));
+  const ProgramEnd valid = traceraft("run --validate --config " + out("c/calibrated.toml"));
   EXPECT_EQ(valid.code, 0) << valid.output;
   EXPECT_NE(made.output.find("3 to 6 rounds of simulations, 3 choices in each, 2 runs of each"),
             std::string::npos);
@@ -85,7 +85,7 @@ TEST_F(CalibrateTest, GoesFromFilesToFiles) {
   EXPECT_NE(page.find(repeat), std::string::npos);
   EXPECT_EQ(traceraft(repeat + " --quiet --out " + out("c")).code, 0);
   EXPECT_EQ(content(folder.path / "c/calibration.json"), before);
-  const Outcome other = traceraft(command + " --stabilisation 2");
+  const ProgramEnd other = traceraft(command + " --stabilisation 2");
   EXPECT_EQ(other.code, 2);
   EXPECT_NE(other.output.find("holds a calibration of another model"), std::string::npos)
       << other.output;
@@ -112,7 +112,7 @@ TEST_F(CalibrateTest, FindsTheMobilityOfAnEnsemble) {
   const std::string kept = TRACERAFT_ROOT "/verification/data/";
   const std::string command = "calibrate --data " + kept + "synthetic/guv-2to1 --ensemble " + kept +
                               "ensembles/guv-2to1 --out " + out("c");
-  const Outcome made = traceraft(command);
+  const ProgramEnd made = traceraft(command);
   ASSERT_EQ(made.code, 0) << made.output;
   const auto json = nlohmann::json::parse(content(folder.path / "c/calibration.json"));
   const auto& mobility = json["parameters"]["mobility"];
@@ -131,7 +131,7 @@ TEST_F(CalibrateTest, FindsTheMobilityOfAnEnsemble) {
         {" --parameters mobility,epsilon", "the mobility alone"},
         {" --model " + out("m.toml"), "the model is that of --ensemble"},
         {" --parameters ''", "--parameters"}}) {
-    const Outcome refused = traceraft(command + flags);
+    const ProgramEnd refused = traceraft(command + flags);
     EXPECT_EQ(refused.code, 2) << flags;
     EXPECT_NE(refused.output.find(complaint), std::string::npos) << refused.output;
   }
@@ -141,7 +141,7 @@ TEST_F(CalibrateTest, FindsTheMobilityOfAnEnsemble) {
 TEST_F(CalibrateTest, DoesNotTakeOneVesicleForAnother) {
   const std::string kept = TRACERAFT_ROOT "/verification/data/";
   const std::string of_runs = " --ensemble " + kept + "ensembles/guv-2to1 --out ";
-  const Outcome made =
+  const ProgramEnd made =
       traceraft("calibrate --data " + kept + "synthetic/guv-2to1" + of_runs + out("c"));
   ASSERT_EQ(made.code, 0) << made.output;
   const auto json = nlohmann::json::parse(content(folder.path / "c/calibration.json"));
@@ -154,13 +154,13 @@ TEST_F(CalibrateTest, DoesNotTakeOneVesicleForAnother) {
 
   const std::string other = "calibrate --data " + kept + "synthetic/guv-3to1";
   for (const std::string& model : {of_runs + out("d"), " --case guv-2to1 --out " + out("d")}) {
-    const Outcome refused = traceraft(other + model);
+    const ProgramEnd refused = traceraft(other + model);
     EXPECT_EQ(refused.code, 2);
     EXPECT_NE(refused.output.find("2:1:20 (case guv-2to1), the measurements of 3:1:20"),
               std::string::npos)
         << refused.output;
   }
-  const Outcome compared =
+  const ProgramEnd compared =
       traceraft("data compare " + kept + "synthetic/guv-3to1" + of_runs + out("e"));
   EXPECT_EQ(compared.code, 0);
   EXPECT_NE(compared.output.find("ANOTHER MEMBRANE"), std::string::npos) << compared.output;
@@ -179,8 +179,8 @@ TEST_F(CalibrateTest, LooksForTheMobilityWithinItsRuns) {
     if (line[0] == 's' || std::stod(line.substr(comma + 1)) < kEnd) cut << line << "\n";
   }
   cut.close();
-  const Outcome made = traceraft("calibrate --data " + kept + "synthetic/guv-2to1 --ensemble " +
-                                 out("short") + " --out " + out("c"));
+  const ProgramEnd made = traceraft("calibrate --data " + kept + "synthetic/guv-2to1 --ensemble " +
+                                    out("short") + " --out " + out("c"));
   ASSERT_EQ(made.code, 0) << made.output;
   const auto json = nlohmann::json::parse(content(folder.path / "c/calibration.json"));
   const auto& mobility = json["parameters"]["mobility"];
@@ -200,7 +200,7 @@ TEST_F(CalibrateTest, LooksForTheMobilityWithinItsRuns) {
         {out("short"), "c"}}) {
     // The last: of the same runs, but with other data.
     const std::string data = with == out("short") ? out("data") : kept + "synthetic/guv-2to1";
-    const Outcome refused =
+    const ProgramEnd refused =
         traceraft("calibrate --data " + data + " --ensemble " + with + " --out " + out(to));
     EXPECT_EQ(refused.code, 2) << refused.output;
     EXPECT_NE(refused.output.find("choose another folder"), std::string::npos) << refused.output;
@@ -212,7 +212,7 @@ TEST_F(CalibrateTest, LooksForTheMobilityWithinItsRuns) {
 TEST_F(CalibrateTest, SaysWhatItDoesNotUse) {
   const std::string kept = TRACERAFT_ROOT "/verification/data/ensembles/guv-2to1";
   std::ofstream(folder.path / "data/measurements.csv", std::ios::app) << "e,300,0,0\ne,400,0,0\n";
-  const Outcome made =
+  const ProgramEnd made =
       traceraft("calibrate --data " + out("data") + " --ensemble " + kept + " --out " + out("c"));
   EXPECT_EQ(made.code, 0) << made.output;
   EXPECT_NE(made.output.find("2 of 7 measurements are of time zero, of no raft"), std::string::npos)
@@ -263,7 +263,7 @@ TEST_F(CalibrateTest, RefusesWhatItCannotCalibrate) {
         {"--data " + out("data") + " --case guv-2to1 --most-cells 64", "the model's own 128"},
         {"--data " + out("one"), "three vesicles at least"},
         {"--data " + out("data") + " --case guv-2to1 --scaled", "measurements are in seconds"}}) {
-    const Outcome refused = traceraft("calibrate " + flags + " --out " + out("c"));
+    const ProgramEnd refused = traceraft("calibrate " + flags + " --out " + out("c"));
     EXPECT_EQ(refused.code, 2) << flags;
     EXPECT_NE(refused.output.find(complaint), std::string::npos) << refused.output;
     EXPECT_FALSE(fs::exists(folder.path / "c"));

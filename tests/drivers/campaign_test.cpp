@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 class HideTest : public ::testing::Test {
  protected:
-  testing::Outcome hide(const std::string& options) const {
+  testing::ProgramEnd hide(const std::string& options) const {
     return testing::traceraft("hide --epsilon 1 --raft-fraction 0.5 --cells 14 --truth-cells 16 " +
                               options + " --snapshots 3 --points 300 --out " +
                               (folder.path / "riddle").string());

@@ -18,7 +18,7 @@ namespace {
 
 using testing::content;
 using testing::lines_of;
-using testing::Outcome;
+using testing::ProgramEnd;
 using testing::TemporaryFolder;
 using testing::traceraft;
 namespace fs = std::filesystem;
@@ -83,9 +83,9 @@ class CompareTest : public ::testing::Test {
 };
 
 TEST_F(CompareTest, MeasuresRecommendsAndIsExtendedWithoutRepeatingItself) {
-  const Outcome first = traceraft("compare " + out() + references() + runs +
-                                  "--integrators euler,ida --keep first --tolerances 1e-2,1e-3 "
-                                  "--repeat 2");
+  const ProgramEnd first = traceraft("compare " + out() + references() + runs +
+                                     "--integrators euler,ida --keep first --tolerances 1e-2,1e-3 "
+                                     "--repeat 2");
   ASSERT_EQ(first.code, 0) << first.output;
   EXPECT_NE(first.output.find("For an error of"), std::string::npos) << first.output;
   ASSERT_EQ(csv().size(), 5u);
@@ -100,7 +100,7 @@ TEST_F(CompareTest, MeasuresRecommendsAndIsExtendedWithoutRepeatingItself) {
   const auto run_time = fs::last_write_time(done);
   const auto reference_time = fs::last_write_time(reference / "summary.json");
   const std::string ida = csv()[4];
-  const Outcome second =
+  const ProgramEnd second =
       traceraft("compare " + out() + references() + "--integrators euler,ida,rosenbrock");
   ASSERT_EQ(second.code, 0) << second.output;
   ASSERT_EQ(csv().size(), 7u);
@@ -110,13 +110,13 @@ TEST_F(CompareTest, MeasuresRecommendsAndIsExtendedWithoutRepeatingItself) {
 }
 
 TEST_F(CompareTest, ErrorsTimesAndCountsAreThoseOfTheRuns) {
-  const Outcome outcome = traceraft("compare " + out() + references() + runs +
-                                    "--integrators ida,rosenbrock --tolerances 1e-2,1e-4 "
-                                    "--repeat 2 --target-error 3e-3");
+  const ProgramEnd outcome = traceraft("compare " + out() + references() + runs +
+                                       "--integrators ida,rosenbrock --tolerances 1e-2,1e-4 "
+                                       "--repeat 2 --target-error 3e-3");
   ASSERT_EQ(outcome.code, 0) << outcome.output;
   EXPECT_NE(outcome.output.find("For an error of 3.0e-03"), std::string::npos) << outcome.output;
   // That no method reached what was asked for is an answer; so is that nothing is asked for again.
-  const Outcome none = traceraft("compare " + out() + references() + "--target-error 1e-15");
+  const ProgramEnd none = traceraft("compare " + out() + references() + "--target-error 1e-15");
   EXPECT_EQ(none.code, 0);
   EXPECT_NE(none.output.find("No method reached an error of 1.0e-15"), std::string::npos);
   ASSERT_EQ(traceraft("compare " + out() + references() + "--target-error 0").code, 0);
@@ -164,14 +164,14 @@ TEST_F(CompareTest, ATighterToleranceBringsATighterReference) {
 }
 
 TEST_F(CompareTest, RunsThatTakeTooLongAreRowsUntilTheyMayTakeLonger) {
-  const Outcome impatient =
+  const ProgramEnd impatient =
       traceraft("compare " + out() + references() +
                 "--case spinodal --cells 16 --integrators euler --tolerances 1e-4 --repeat 2 "
                 "--reference-tolerance 1e-5 --time-limit 0.1");
   EXPECT_EQ(impatient.code, 3) << impatient.output;
   EXPECT_EQ(row(1).at("failure"), "\"stopped after 0.1 s\"");
   EXPECT_FALSE(fs::exists(folder.path / "c/runs/euler-block-1e-04-2"));
-  const Outcome patient = traceraft("compare " + out() + references() + "--time-limit 60");
+  const ProgramEnd patient = traceraft("compare " + out() + references() + "--time-limit 60");
   EXPECT_EQ(patient.code, 0) << patient.output;
   EXPECT_EQ(row(1).at("failure"), "");
   EXPECT_EQ(number(1, "repetitions"), 2);
@@ -188,7 +188,7 @@ TEST_F(CompareTest, BelievesNoDamagedResult) {
     fs::remove_all(kept);
     fs::copy(broken, kept, fs::copy_options::recursive);
     damage_newest_checkpoint(broken);
-    const Outcome outcome = traceraft("compare --quiet " + out() + references());
+    const ProgramEnd outcome = traceraft("compare --quiet " + out() + references());
     EXPECT_EQ(outcome.code, 4) << outcome.output;
     EXPECT_NE(outcome.output.find("lost its last checkpoint"), std::string::npos) << outcome.output;
     fs::remove_all(broken);
@@ -196,7 +196,7 @@ TEST_F(CompareTest, BelievesNoDamagedResult) {
   }
   for (const char* nonsense : {"[1]", "{\"failure\": null}", "{"}) {
     std::ofstream(folder.path / "c/runs/ida-block-0.01-1.json") << nonsense;
-    const Outcome outcome = traceraft("compare --quiet " + out() + references());
+    const ProgramEnd outcome = traceraft("compare --quiet " + out() + references());
     EXPECT_EQ(outcome.code, 4) << outcome.output;
     EXPECT_NE(outcome.output.find("is damaged"), std::string::npos) << outcome.output;
   }
@@ -245,7 +245,7 @@ TEST_F(CompareTest, DoesNotMixBuildsOfTheProgram) {
   nlohmann::json plan = nlohmann::json::parse(content(file));
   plan["program"] = "00000000";
   write_durably(file, plan.dump());
-  const Outcome outcome = compare("--repeat 2");
+  const ProgramEnd outcome = compare("--repeat 2");
   EXPECT_EQ(outcome.code, 2) << outcome.output;
   EXPECT_NE(outcome.output.find("another build"), std::string::npos) << outcome.output;
   EXPECT_EQ(content(file), plan.dump());
@@ -262,20 +262,20 @@ TEST_F(CompareTest, NoticesThatTheInitialStateHasChanged) {
               0);
   };
   make_source("60");
-  const Outcome first =
+  const ProgramEnd first =
       traceraft("compare " + out() + references() +
                 "--case spinodal --cells 12 --t-end 0.1 --initial restart:" + source +
                 " --integrators ida --tolerances 1e-2 --repeat 1");
   ASSERT_EQ(first.code, 0) << first.output;
   make_source("80");
-  const Outcome outcome = traceraft("compare " + out() + references());
+  const ProgramEnd outcome = traceraft("compare " + out() + references());
   EXPECT_EQ(outcome.code, 2) << outcome.output;
   EXPECT_NE(outcome.output.find("another initial state"), std::string::npos);
 }
 
 TEST_F(CompareTest, AFailingCombinationIsARowWithItsReason) {
   // 22,000 unknowns at most for klu: refused; the block solver goes on.
-  const Outcome outcome = traceraft(
+  const ProgramEnd outcome = traceraft(
       "compare " + out() + references() +
       "--case two-rafts --cells 72 --epsilon 0.3 --t-end 1e-4 --integrators ida "
       "--linear-solvers block,klu --tolerances 1e-2 --reference-tolerance 1e-3 --repeat 2");
@@ -298,7 +298,7 @@ TEST_F(CompareTest, GoesOnAfterAnInterruption) {
   waitpid(child, &status, 0);
   ASSERT_EQ(WEXITSTATUS(status), 5);
   EXPECT_FALSE(fs::exists(folder.path / "c/runs/euler-block-1e-04-1.json"));
-  const Outcome resumed = traceraft("compare " + out() + references());
+  const ProgramEnd resumed = traceraft("compare " + out() + references());
   ASSERT_EQ(resumed.code, 0) << resumed.output;
   ASSERT_EQ(csv().size(), 7u);
   for (std::size_t k = 1; k < 7; ++k) EXPECT_EQ(row(k).at("failure"), "") << k;
@@ -306,7 +306,7 @@ TEST_F(CompareTest, GoesOnAfterAnInterruption) {
 
 TEST_F(CompareTest, RefusesWhatDoesNotFit) {
   const auto complaint = [&](const std::string& arguments) {
-    const Outcome outcome = traceraft("compare " + references() + arguments);
+    const ProgramEnd outcome = traceraft("compare " + references() + arguments);
     EXPECT_EQ(outcome.code, 2) << outcome.output;
     EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1);
     return outcome.output;

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::content;
-using testing::Outcome;
+using testing::ProgramEnd;
 using testing::traceraft;
 
 const std::string kFacts = TRACERAFT_ROOT "/verification/data/published/guv-3to1.toml";
@@ -31,7 +31,7 @@ TEST(DataTest, DrawsWhatWasPublishedAndChecksIt) {
   EXPECT_EQ(table, content(folder.path / "again/measurements.csv"));
   EXPECT_NE(table, content(folder.path / "other/measurements.csv"));
   EXPECT_EQ(table.rfind("# SYNTHETIC", 0), 0u);
-  const Outcome check = traceraft("data check " + drawn);
+  const ProgramEnd check = traceraft("data check " + drawn);
   ASSERT_EQ(check.code, 0);
   EXPECT_NE(check.output.find("SYNTHETIC: 17 vesicles, 62 measurements"), std::string::npos)
       << check.output;
@@ -48,7 +48,7 @@ TEST(DataTest, ComparesNothingWithoutSayingSo) {
       << "name = \"late\"\nkind = \"measured\"\ntime_zero = \"start\"\nlength_unit = "
          "\"um\"\ntime_unit = \"h\"\nradius = 5\n";
   std::ofstream(folder.path / "measurements.csv") << "vesicle,time,rafts\na,10,1\nb,11,1\n";
-  const Outcome made =
+  const ProgramEnd made =
       traceraft("data compare " + folder.path.string() +
                 " --ensemble " TRACERAFT_ROOT "/verification/data/ensembles/guv-2to1 --out " +
                 (folder.path / "c").string());
@@ -62,7 +62,7 @@ TEST(DataTest, ComparesNothingWithoutSayingSo) {
                 folder.path / "kept/config.toml");
   std::ofstream(folder.path / "kept/histories.csv")
       << "seed,t,perimeter,rafts,fraction\n1,1,5,1,0.1\n1,2,5,1,0.1\n2,3,5,1,0.1\n2,4,5,1,0.1\n";
-  const Outcome apart =
+  const ProgramEnd apart =
       traceraft("data compare " + folder.path.string() + " --ensemble " +
                 (folder.path / "kept").string() + " --out " + (folder.path / "d").string());
   EXPECT_EQ(apart.code, 2);
@@ -83,7 +83,7 @@ TEST(DataTest, SaysWhichOffsetWouldRemoveATrend) {
     table << m.vesicle << "," << m.time / 60 + 0.5 << "," << m.radius << ","
           << *m.of(Quantity::perimeter) * m.radius << "," << *m.of(Quantity::rafts) << "\n";
   table.close();
-  const Outcome compared =
+  const ProgramEnd compared =
       traceraft("data compare " + folder.path.string() +
                 " --ensemble " TRACERAFT_ROOT "/verification/data/ensembles/guv-3to1 --out " +
                 (folder.path / "c").string());
@@ -95,7 +95,7 @@ TEST(DataTest, SaysWhichOffsetWouldRemoveATrend) {
 }
 
 TEST(DataTest, RefusesWhatWouldDoNothing) {
-  const Outcome made =
+  const ProgramEnd made =
       traceraft("data check " TRACERAFT_ROOT "/verification/data/synthetic/guv-3to1 --seed 3");
   EXPECT_EQ(made.code, 2);
   EXPECT_NE(made.output.find("--seed: data check does not use it"), std::string::npos)
@@ -137,7 +137,7 @@ TEST(DataTest, ChecksMeasuredFields) {
             << k % 2 << "\n";
     }
   }
-  const Outcome check = traceraft("data check " + folder.path.string());
+  const ProgramEnd check = traceraft("data check " + folder.path.string());
   ASSERT_EQ(check.code, 0) << check.output;
   for (const char* part :
        {"half: measured fields of 1 vesicle, R = 4 um", "120", "200", "not stated"})
@@ -145,7 +145,7 @@ TEST(DataTest, ChecksMeasuredFields) {
   // Of the icosahedron's corners eight have z >= 0.
   EXPECT_NE(check.output.find(" 8 "), std::string::npos) << check.output;
   std::ofstream(folder.path / "snapshot_002.csv") << "x,y,z,c\n1,2,3,0.5\n";
-  const Outcome few = traceraft("data check " + folder.path.string());
+  const ProgramEnd few = traceraft("data check " + folder.path.string());
   EXPECT_EQ(few.code, 2);
   EXPECT_NE(few.output.find("snapshot_002.csv: 1 points are too few"), std::string::npos)
       << few.output;
@@ -158,7 +158,7 @@ TEST(DataTest, SaysWhereATableIsWrong) {
          "\"um\"\ntime_unit = \"s\"\n";
   std::ofstream(folder.path / "measurements.csv")
       << "vesicle,time,radius,perimeter\na,10,5,30\na,20,five,28\n";
-  const Outcome check = traceraft("data check " + folder.path.string());
+  const ProgramEnd check = traceraft("data check " + folder.path.string());
   EXPECT_EQ(check.code, 2);
   EXPECT_NE(check.output.find("measurements.csv:3"), std::string::npos) << check.output;
   EXPECT_NE(check.output.find("radius"), std::string::npos) << check.output;

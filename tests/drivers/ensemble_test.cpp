@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::content;
 using testing::lines_of;
-using testing::Outcome;
+using testing::ProgramEnd;
 using testing::shell;
 using testing::TemporaryFolder;
 using testing::traceraft;
@@ -34,7 +34,7 @@ class EnsembleTest : public ::testing::Test {
 };
 
 TEST_F(EnsembleTest, GathersRunsThatDifferInTheirSeed) {
-  const Outcome made = traceraft("ensemble " + runs + "--runs 3 --out " + out("a"));
+  const ProgramEnd made = traceraft("ensemble " + runs + "--runs 3 --out " + out("a"));
   ASSERT_EQ(made.code, 0) << made.output;
   EXPECT_NE(made.output.find("open next"), std::string::npos);
   EXPECT_TRUE(fs::exists(folder.path / "a/ensemble.html"));
@@ -94,7 +94,7 @@ TEST_F(EnsembleTest, GoesOnAfterItWasKilled) {
   waitpid(child, nullptr, 0);
   ASSERT_FALSE(fs::exists(csv("cut")));
   // Its runs end by themselves when it has died; until then they hold their folders.
-  Outcome again{6, ""};
+  ProgramEnd again{6, ""};
   for (int i = 0; i < 100 && again.code != 0; ++i) {
     usleep(100000);
     again = traceraft("ensemble --quiet --out " + out("cut"));
@@ -106,12 +106,12 @@ TEST_F(EnsembleTest, GoesOnAfterItWasKilled) {
 // A simulation of its own among its runs would be nobody's.
 TEST_F(EnsembleTest, IsNoRunToResume) {
   ASSERT_EQ(traceraft("ensemble --quiet " + runs + "--runs 2 --out " + out("a")).code, 0);
-  const Outcome resumed = traceraft("resume " + out("a"));
+  const ProgramEnd resumed = traceraft("resume " + out("a"));
   EXPECT_EQ(resumed.code, 2);
   EXPECT_NE(resumed.output.find("holds a set of runs"), std::string::npos) << resumed.output;
   EXPECT_FALSE(fs::exists(folder.path / "a/series.csv"));
   fs::remove(folder.path / "a/plan.json");
-  const Outcome again = traceraft("ensemble --quiet " + runs + "--runs 2 --out " + out("a"));
+  const ProgramEnd again = traceraft("ensemble --quiet " + runs + "--runs 2 --out " + out("a"));
   EXPECT_EQ(again.code, 2);
   EXPECT_EQ(again.output.find("traceraft resume"), std::string::npos) << again.output;
 }
@@ -162,7 +162,7 @@ TEST_F(EnsembleTest, IsolatesARunThatFails) {
   fs::create_directories(folder.path / "a/runs");
   std::ofstream(folder.path / "a/plan.json") << "{\"runs\": 3, \"first_seed\": 1}\n";
   std::ofstream(folder.path / "a/runs/seed-2") << "in the way";
-  const Outcome made = traceraft("ensemble " + runs + "--runs 3 --out " + out("a"));
+  const ProgramEnd made = traceraft("ensemble " + runs + "--runs 3 --out " + out("a"));
   EXPECT_EQ(made.code, 3) << made.output;
   EXPECT_NE(made.output.find("seed 2 failed"), std::string::npos) << made.output;
   EXPECT_NE(content(folder.path / "a/ensemble.html").find("2 of 3 runs"), std::string::npos);
@@ -177,7 +177,7 @@ TEST_F(EnsembleTest, GathersTheOthersOfADamagedRun) {
       "data compare " TRACERAFT_ROOT "/verification/data/synthetic/guv-2to1 --ensemble " + out("a");
   EXPECT_EQ(traceraft(compare).output.find("OF 4 RUNS"), std::string::npos);
   fs::rename(folder.path / "a/runs/seed-4", folder.path / "seed-4");
-  const Outcome incomplete = traceraft(compare);
+  const ProgramEnd incomplete = traceraft(compare);
   EXPECT_NE(incomplete.output.find("ONLY 3 OF 4 RUNS"), std::string::npos) << incomplete.output;
   fs::rename(folder.path / "seed-4", folder.path / "a/runs/seed-4");
   const fs::path first = folder.path / "a/runs/seed-1/series.csv";
@@ -186,12 +186,19 @@ TEST_F(EnsembleTest, GathersTheOthersOfADamagedRun) {
   std::ofstream(first) << series;
   std::ofstream(folder.path / "a/runs/seed-2/series.csv") << "step,t,mass\n1,2,3\n";
   std::ofstream(folder.path / "a/runs/seed-3/summary.json") << "{";
-  const Outcome made = traceraft("ensemble --out " + out("a"));
+  const ProgramEnd made = traceraft("ensemble --out " + out("a"));
   EXPECT_EQ(made.code, 3) << made.output;
-  for (const char* words : {"seed 1 failed: its series.csv ends at t = ",
-                            "there is no column 'perimeter'", "seed 3 failed"})
+  for (const char* words :
+       {"seed 1 failed: its series.csv ends at t = ", "there is no column 'perimeter'",
+        "seed 3 failed", "seed-1 to have it", "seed-2 to have it", "seed-3 to have it"})
     EXPECT_NE(made.output.find(words), std::string::npos) << made.output;
   EXPECT_NE(content(folder.path / "a/ensemble.html").find("1 of 4 runs"), std::string::npos);
+  // What is there but cannot be read is not to be deleted.
+  fs::remove(folder.path / "a/runs/seed-3/summary.json");
+  fs::create_directory(folder.path / "a/runs/seed-3/summary.json");
+  const ProgramEnd unread = traceraft("ensemble --out " + out("a"));
+  EXPECT_NE(unread.output.find("seed 3 failed"), std::string::npos) << unread.output;
+  EXPECT_EQ(unread.output.find("seed-3 to have it"), std::string::npos) << unread.output;
   ASSERT_EQ(traceraft("report " + out("a")).code, 0);
   const std::string page = content(folder.path / "a/report.html");
   EXPECT_NE(page.find("Shown is seed-4"), std::string::npos);
@@ -204,20 +211,20 @@ TEST_F(EnsembleTest, IsAnArrayJobToo) {
   ASSERT_EQ(
       traceraft("ensemble --quiet " + runs + "--runs 2 --first-seed 7 --out " + out("here")).code,
       0);
-  const Outcome script =
+  const ProgramEnd script =
       traceraft("ensemble " + runs + "--runs 2 --first-seed 7 --array-job --out '" +
                 out("there it is") + "'");
   ASSERT_EQ(script.code, 0) << script.output;
   const fs::path job = folder.path / "there it is/array-job.sh";
   EXPECT_NE(content(job).find("#SBATCH --array=0-1\n"), std::string::npos);
-  const Outcome finer =
+  const ProgramEnd finer =
       traceraft("ensemble --case guv-2to1 --cells 256 --runs 1 --array-job --out " + out("finer"));
   EXPECT_NE(finer.output.find("2 processors, 8 GB and at most 8 h"), std::string::npos)
       << finer.output;
   for (const char* line : {"#SBATCH --mem=2G\n", "#SBATCH --time=1:00:00\n"})
     EXPECT_NE(content(job).find(line), std::string::npos) << line;
   for (const char* task : {"0", "1"}) {
-    const Outcome done =
+    const ProgramEnd done =
         shell("SLURM_ARRAY_TASK_ID=" + std::string(task) + " sh '" + job.string() + "'");
     ASSERT_EQ(done.code, 0);
     const std::string seed = task == std::string("0") ? "seed 7: " : "seed 8: ";
@@ -246,11 +253,11 @@ TEST_F(EnsembleTest, TakesAnyConfigurationAndNoOtherPlan) {
   const std::string same =
       "ensemble --quiet --case guv-2to1 --cells 20 --epsilon 5e-1 --t-end 1e2 "
       "--no-fields --checkpoint-interval 0.0 --runs 1 --out ";
-  const Outcome again = traceraft(same + out("a"));
+  const ProgramEnd again = traceraft(same + out("a"));
   EXPECT_EQ(again.code, 0) << again.output;
   fs::create_directories(folder.path / "c");
   std::ofstream(folder.path / "c/plan.json") << "{\"groups\": []}\n";
-  const Outcome refused = traceraft("ensemble --quiet " + runs + "--runs 1 --out " + out("c"));
+  const ProgramEnd refused = traceraft("ensemble --quiet " + runs + "--runs 1 --out " + out("c"));
   EXPECT_EQ(refused.code, 2);
   EXPECT_NE(refused.output.find("no plan of an ensemble"), std::string::npos) << refused.output;
   EXPECT_EQ(content(folder.path / "c/plan.json"), "{\"groups\": []}\n");
@@ -259,7 +266,7 @@ TEST_F(EnsembleTest, TakesAnyConfigurationAndNoOtherPlan) {
 TEST_F(EnsembleTest, LeavesFoldersOfOthersAlone) {
   fs::create_directories(folder.path / "mine");
   std::ofstream(folder.path / "mine/histories.csv") << "mine\n";
-  const Outcome refused = traceraft("ensemble " + runs + "--runs 1 --out " + out("mine"));
+  const ProgramEnd refused = traceraft("ensemble " + runs + "--runs 1 --out " + out("mine"));
   EXPECT_EQ(refused.code, 2);
   EXPECT_NE(refused.output.find("mine holds histories.csv"), std::string::npos) << refused.output;
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path / "mine"), {}), 1);
@@ -285,7 +292,7 @@ TEST_F(EnsembleTest, RefusesWhatMakesNoEnsemble) {
         std::pair("--member 9 --out " + out("a"), "allowed: 1 to 1"),
         std::pair("--member 1 --out " + out("c"), "has to name an ensemble"),
         std::pair(runs + "--seed 3 --out " + out("d"), "unknown flag '--seed'")}) {
-    const Outcome refused = traceraft("ensemble " + flags);
+    const ProgramEnd refused = traceraft("ensemble " + flags);
     EXPECT_EQ(refused.code, 2) << flags;
     EXPECT_NE(refused.output.find(complaint), std::string::npos) << refused.output;
   }

@@ -211,6 +211,7 @@ TEST_F(ExplainTest, SaysWhatIsOddAboutTheData) {
   BlindRequest asked = request();
   asked.snapshots = 4;
   asked.points = 600;
+  asked.last = 90;
   std::vector<FieldSeries> vesicles = draw_blind_case(asked).vesicles;
   std::vector<FieldSnapshot>& snapshots = vesicles[0].snapshots;
   for (Point& x : snapshots[2].points)

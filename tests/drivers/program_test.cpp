@@ -22,7 +22,7 @@ namespace {
 
 using testing::content;
 using testing::lines_of;
-using testing::Outcome;
+using testing::ProgramEnd;
 using testing::shell;
 using testing::TemporaryFolder;
 using testing::traceraft;
@@ -61,7 +61,7 @@ class ProgramTest : public ::testing::Test {
 };
 
 TEST_F(ProgramTest, RunsAndWritesWhatItPromises) {
-  const Outcome run = traceraft("run " + quick + "--output-times 0,0.1,0.5 --out " + out("a"));
+  const ProgramEnd run = traceraft("run " + quick + "--output-times 0,0.1,0.5 --out " + out("a"));
   ASSERT_EQ(run.code, 0) << run.output;
   for (const char* word :
        {"rafts", "perimeter", "raft fraction", "mass drift", "energy", "open next", "R^2/D"})
@@ -88,8 +88,8 @@ TEST_F(ProgramTest, RunsAndWritesWhatItPromises) {
 // ./run becomes the program once it has built it, minutes after the process began.
 TEST_F(ProgramTest, TimeBeforeTheProgramWasStartedIsNotCounted) {
   const Stopwatch watch;
-  const Outcome end = shell("sh -c 'sleep 2; exec " + std::string(TRACERAFT_PROGRAM) + " run " +
-                            quick + "--quiet --out " + out("run") + "'");
+  const ProgramEnd end = shell("sh -c 'sleep 2; exec " + std::string(TRACERAFT_PROGRAM) + " run " +
+                               quick + "--quiet --out " + out("run") + "'");
   const double all = watch.seconds();
   ASSERT_EQ(end.code, 0) << end.output;
   const auto summary = nlohmann::json::parse(content(folder.path / "run/summary.json"));
@@ -139,12 +139,12 @@ TEST_F(ProgramTest, WritesInTheUnitsOfItsModel) {
 
 TEST_F(ProgramTest, AFailedClaimOfAStudyExitsWithOne) {
   const std::string verify = "verify geometry --quick --out " + out("v");
-  const Outcome good = traceraft(verify);
+  const ProgramEnd good = traceraft(verify);
   ASSERT_EQ(good.code, 0) << good.output;
   auto result = nlohmann::json::parse(content(folder.path / "v/geometry.json"));
   result.at("claims").at(0).at("measured") = 7;
   write_durably(folder.path / "v/geometry.json", result.dump());
-  const Outcome bad = traceraft(verify);  // which takes the study from there
+  const ProgramEnd bad = traceraft(verify);  // which takes the study from there
   EXPECT_EQ(bad.code, 1) << bad.output;
 }
 
@@ -173,7 +173,7 @@ TEST_F(ProgramTest, ContinuesBitwiseAfterBeingKilledAtAnyMoment) {
     const pid_t child = start(name);
     wait_for_rows(name, rows);
     kill_running(child);
-    const Outcome resumed = traceraft("resume --quiet " + out(name));
+    const ProgramEnd resumed = traceraft("resume --quiet " + out(name));
     ASSERT_EQ(resumed.code, 0) << resumed.output;
     expect_same_results("whole", name);
   }
@@ -197,7 +197,7 @@ TEST_F(ProgramTest, StartsAgainWhenKilledBeforeTheFirstCheckpoint) {
   // As a kill right after the configuration was written leaves it.
   fs::create_directory(folder.path / "early");
   write_durably(folder.path / "early/config.toml", content(folder.path / "whole/config.toml"));
-  const Outcome resumed = traceraft("resume " + out("early"));
+  const ProgramEnd resumed = traceraft("resume " + out("early"));
   ASSERT_EQ(resumed.code, 0);
   EXPECT_NE(resumed.output.find("begun anew"), std::string::npos) << resumed.output;
   expect_same_results("whole", "early");
@@ -255,7 +255,7 @@ TEST_F(ProgramTest, RefusesADamagedCheckpointAndUsesTheOneBefore) {
   std::string data = content(files.back());
   data[data.size() / 2] ^= 1;
   write_durably(files.back(), data);
-  const Outcome resumed = traceraft("resume --quiet " + out("a"));
+  const ProgramEnd resumed = traceraft("resume --quiet " + out("a"));
   EXPECT_EQ(resumed.code, 0);
   EXPECT_NE(resumed.output.find("refused " + files.back().string() + ": it is damaged"),
             std::string::npos)
@@ -276,7 +276,7 @@ TEST_F(ProgramTest, LocksItsFolder) {
   EXPECT_EQ(traceraft("resume " + out("a")).code, 6);
   EXPECT_EQ(traceraft("run " + quick + "--out " + out("a")).code, 6);
   kill_running(child);
-  const Outcome again = traceraft("run " + quick + "--out " + out("a"));
+  const ProgramEnd again = traceraft("run " + quick + "--out " + out("a"));
   EXPECT_EQ(again.code, 2);
   EXPECT_NE(again.output.find("traceraft resume"), std::string::npos);
 }
@@ -291,7 +291,7 @@ TEST_F(ProgramTest, LeavesForeignFilesAlone) {
   // Folders of other commands are no place for a run.
   fs::create_directories(folder.path / "measured");
   write_durably(folder.path / "measured/dataset.toml", "mine");
-  const Outcome beside = traceraft("run --quiet " + quick + "--out " + out("measured"));
+  const ProgramEnd beside = traceraft("run --quiet " + quick + "--out " + out("measured"));
   EXPECT_EQ(beside.code, 2);
   EXPECT_NE(beside.output.find("holds dataset.toml, of another command"), std::string::npos)
       << beside.output;
@@ -303,15 +303,15 @@ TEST_F(ProgramTest, LeavesForeignFilesAlone) {
 
 TEST_F(ProgramTest, AFullDiskIsAnInputOutputErrorAndKeepsTheOldCheckpoint) {
   // A limit on file sizes (in blocks of 512 bytes), reached by the growing table in mid-run.
-  const Outcome run = shell("ulimit -f 100; exec " + std::string(TRACERAFT_PROGRAM) +
-                            " run --quiet --checkpoint-interval 0 --no-fields --case two-rafts "
-                            "--cells 8 --epsilon 1.5 --mobility constant:value=0.01 "
-                            "--integrator euler --tolerance 1e-5 --out " +
-                            out("a"));
+  const ProgramEnd run = shell("ulimit -f 100; exec " + std::string(TRACERAFT_PROGRAM) +
+                               " run --quiet --checkpoint-interval 0 --no-fields --case two-rafts "
+                               "--cells 8 --epsilon 1.5 --mobility constant:value=0.01 "
+                               "--integrator euler --tolerance 1e-5 --out " +
+                               out("a"));
   ASSERT_EQ(run.code, 4) << run.output;
   EXPECT_NE(run.output.find("cannot write"), std::string::npos);
   // With room again it goes on, as if nothing had happened.
-  const Outcome resumed = traceraft("resume --quiet " + out("a"));
+  const ProgramEnd resumed = traceraft("resume --quiet " + out("a"));
   EXPECT_EQ(resumed.code, 0) << resumed.output;
   ASSERT_EQ(traceraft("run --quiet --no-fields --case two-rafts --cells 8 --epsilon 1.5 "
                       "--mobility constant:value=0.01 --integrator euler --tolerance 1e-5 --out " +
@@ -322,7 +322,7 @@ TEST_F(ProgramTest, AFullDiskIsAnInputOutputErrorAndKeepsTheOldCheckpoint) {
 }
 
 TEST_F(ProgramTest, NumericalFailureExitsWithThree) {
-  const Outcome run =
+  const ProgramEnd run =
       traceraft("run " + quick + "--tolerance 1e-9 --min-step 0.01 --out " + out("a"));
   EXPECT_EQ(run.code, 3);
   EXPECT_NE(run.output.find("no step size"), std::string::npos);
@@ -332,7 +332,7 @@ TEST_F(ProgramTest, NumericalFailureExitsWithThree) {
 TEST_F(ProgramTest, RestartsFromAnotherRun) {
   ASSERT_EQ(traceraft("run --quiet " + quick + "--out " + out("a")).code, 0);
   const std::string same_mesh = "run --quiet --case two-rafts --epsilon 0.8 --t-end 0.01 ";
-  const Outcome next =
+  const ProgramEnd next =
       traceraft(same_mesh + "--cells 16 --initial restart:" + out("a") + " --out " + out("b"));
   ASSERT_EQ(next.code, 0) << next.output;
   const auto first = nlohmann::json::parse(content(folder.path / "a/summary.json"));
@@ -359,7 +359,7 @@ class BadInput : public ProgramTest, public ::testing::WithParamInterface<Refusa
 
 TEST_P(BadInput, IsAnsweredInOneLineBeforeAnyFolderIsMade) {
   const auto [arguments, expected] = GetParam();
-  const Outcome run =
+  const ProgramEnd run =
       shell("cd " + folder.path.string() +
             " && printf 'cells = 16\\ncells = 8\\n' > "
             "twice.toml && printf 'cells = \"x\"\\n' > type.toml && head -c 3000000 "
@@ -418,16 +418,21 @@ INSTANTIATE_TEST_SUITE_P(
 // Everything is valid, and nothing can separate: of the usual well on a sphere that is where
 // epsilon > R/√8, in units of R.
 TEST_F(ProgramTest, SaysThatBoundariesAreAsWideAsTheVesicle) {
-  for (const auto& [epsilon, wide] : {std::pair("0.36", true), std::pair("0.35", false)}) {
-    const Outcome run = traceraft(
-        std::string("run --validate --scaled --case two-rafts --cells 16 --epsilon ") + epsilon);
+  // R/√8; with a well that is 25 times as deep, five times as much; and a torus is longer than
+  // that.
+  for (const auto& [model, wide] :
+       {std::pair("0.36", true), std::pair("0.35", false), std::pair("1.75 --well rho=6.25", false),
+        std::pair("1.78 --well rho=6.25", true), std::pair("0.4 --surface torus", false),
+        std::pair("0.51 --surface torus", true)}) {
+    const ProgramEnd run = traceraft(
+        std::string("run --validate --scaled --case two-rafts --cells 16 --epsilon ") + model);
     EXPECT_EQ(run.code, 0) << run.output;
     EXPECT_EQ(run.output.find("AS WIDE AS THE VESICLE") != std::string::npos, wide) << run.output;
   }
 }
 
 TEST_F(ProgramTest, ValidateStopsAfterChecking) {
-  const Outcome run = traceraft("run --validate " + quick + "--out " + out("new"));
+  const ProgramEnd run = traceraft("run --validate " + quick + "--out " + out("new"));
   EXPECT_EQ(run.code, 0);
   EXPECT_NE(run.output.find("everything is valid"), std::string::npos);
   EXPECT_FALSE(fs::exists(folder.path / "new"));
@@ -443,18 +448,18 @@ TEST_F(ProgramTest, HelpAndListNameEverything) {
 }
 
 TEST(FractionCommand, SaysWhatToSimulate) {
-  const Outcome known = traceraft("fraction --composition 2:1:20% --temperature 19.2");
+  const ProgramEnd known = traceraft("fraction --composition 2:1:20% --temperature 19.2");
   EXPECT_EQ(known.code, 0) << known.output;
   EXPECT_NE(known.output.find("run --case guv-2to1 --raft-fraction 0.156"), std::string::npos)
       << known.output;
-  const Outcome given = traceraft(
+  const ProgramEnd given = traceraft(
       "fraction --composition 3:1:20 --temperature 15 --ordered 22:43:35 --disordered 66:16:18");
   EXPECT_NE(given.output.find("run --case guv-3to1 --raft-fraction 0.108"), std::string::npos)
       << given.output;
   for (const char* wrong :
        {"", "--composition 3:1", "--composition 1:1:20", "--composition 2:1:20 --temperature 99",
         "--composition 2:1:20 --ordered 22:43:35"}) {
-    const Outcome refused = traceraft(std::string("fraction ") + wrong);
+    const ProgramEnd refused = traceraft(std::string("fraction ") + wrong);
     EXPECT_EQ(refused.code, 2) << wrong << refused.output;
     EXPECT_EQ(std::count(refused.output.begin(), refused.output.end(), '\n'), 1) << refused.output;
   }

@@ -13,7 +13,7 @@ namespace traceraft {
 namespace {
 
 using testing::content;
-using testing::Outcome;
+using testing::ProgramEnd;
 using testing::shell;
 using testing::TemporaryFolder;
 namespace fs = std::filesystem;
@@ -27,7 +27,7 @@ class RanksTest : public ::testing::Test {
  protected:
   TemporaryFolder folder;
   std::string at(const std::string& name) const { return (folder.path / name).string(); }
-  static Outcome on(int ranks, const std::string& arguments) {
+  static ProgramEnd on(int ranks, const std::string& arguments) {
     return shell(kEnvironment + kMpirun + "-np " + std::to_string(ranks) +
                  " " TRACERAFT_PROGRAM " " + arguments);
   }
@@ -76,7 +76,7 @@ class RanksTest : public ::testing::Test {
 
 TEST_F(RanksTest, ARunOnRanksIsTheRunOfOne) {
   ASSERT_EQ(testing::traceraft("run --quiet " + runs + "--out " + at("one")).code, 0);
-  const Outcome two = on(2, "run " + runs + "--out " + at("two"));
+  const ProgramEnd two = on(2, "run " + runs + "--out " + at("two"));
   ASSERT_EQ(two.code, 0) << two.output;
   EXPECT_NE(two.output.find("2 ranks"), std::string::npos) << two.output;
   const std::size_t said = two.output.find("finished at t");
@@ -98,13 +98,13 @@ TEST_F(RanksTest, ARunOnRanksIsTheRunOfOne) {
 }
 
 TEST_F(RanksTest, GoesOnWithMoreAndFewerRanks) {
-  const Outcome whole = on(2, "run --quiet " + runs + "--out " + at("whole"));
+  const ProgramEnd whole = on(2, "run --quiet " + runs + "--out " + at("whole"));
   ASSERT_EQ(whole.code, 0) << whole.output;
   for (const int ranks : {1, 3}) {
     const std::string name = "part" + std::to_string(ranks);
     stop_early(2, "run --quiet --checkpoint-interval 0 " + runs + "--out " + at(name), name);
     EXPECT_EQ(summary(name).at("end"), "stopped");
-    const Outcome resumed = on(ranks, "resume --quiet " + at(name));
+    const ProgramEnd resumed = on(ranks, "resume --quiet " + at(name));
     ASSERT_EQ(resumed.code, 0) << resumed.output;
     EXPECT_EQ(summary(name).at("end"), "finished");
     EXPECT_EQ(summary(name).at("ranks"), ranks);
@@ -141,7 +141,7 @@ TEST_F(RanksTest, FieldsAreThoseOfTheLastWriter) {
   waitpid(child, nullptr, 0);
   ASSERT_TRUE(fs::exists(fields + "field-0001.vtu"));
   ASSERT_FALSE(fs::exists(at("run") + "/summary.json"));
-  const Outcome resumed = on(2, "resume --quiet " + at("run"));
+  const ProgramEnd resumed = on(2, "resume --quiet " + at("run"));
   ASSERT_EQ(resumed.code, 0) << resumed.output;
   EXPECT_FALSE(fs::exists(fields + "field-0001.vtu"));
   for (const char* name : {"field-0001.pvtu", "field-0001-0000.vtu", "field-0001-0001.vtu"})
@@ -153,35 +153,35 @@ using RanksEndTest = RanksTest;
 
 TEST_F(RanksEndTest, TheFirstRankSpeaksForAll) {
   fs::create_directories(at("taken") + "/fields");
-  const Outcome taken = on(2, "run " + runs + "--out " + at("taken"));
+  const ProgramEnd taken = on(2, "run " + runs + "--out " + at("taken"));
   EXPECT_EQ(taken.code, 2);
   // Before or after the heading: mpirun passes on two streams, in any order.
   EXPECT_NE(("\n" + taken.output).find("\ntraceraft: --out: "), std::string::npos) << taken.output;
-  const Outcome missing = on(2, "resume " + at("nothing"));
+  const ProgramEnd missing = on(2, "resume " + at("nothing"));
   EXPECT_EQ(missing.code, 2);
   EXPECT_EQ(missing.output, "traceraft: " + at("nothing") + " is no folder\n");
-  const Outcome compare = on(1, "compare --case two-rafts --ranks 1,2");
+  const ProgramEnd compare = on(1, "compare --case two-rafts --ranks 1,2");
   EXPECT_EQ(compare.code, 2);
   EXPECT_NE(compare.output.find("start it without mpirun"), std::string::npos) << compare.output;
 }
 
 TEST_F(RanksEndTest, SaysWhatIsWrongOnce) {
-  const Outcome flag = on(3, "run --cels 7");
+  const ProgramEnd flag = on(3, "run --cels 7");
   EXPECT_EQ(flag.code, 2);
   EXPECT_EQ(flag.output, "traceraft: unknown flag '--cels'; did you mean '--cells'?\n");
-  const Outcome solver = on(2, "run --case two-rafts --cells 12 --linear-solver block");
+  const ProgramEnd solver = on(2, "run --case two-rafts --cells 12 --linear-solver block");
   EXPECT_EQ(solver.code, 2);
   EXPECT_NE(solver.output.find("choose --linear-solver teko"), std::string::npos) << solver.output;
-  const Outcome threads = on(2, "run " + runs + "--threads 2");
+  const ProgramEnd threads = on(2, "run " + runs + "--threads 2");
   EXPECT_EQ(threads.code, 2);
   EXPECT_NE(threads.output.find("more ranks"), std::string::npos) << threads.output;
-  const Outcome verify = on(2, "verify mass --quick");
+  const ProgramEnd verify = on(2, "verify mass --quick");
   EXPECT_EQ(verify.code, 2);
   EXPECT_NE(verify.output.find("without mpirun"), std::string::npos) << verify.output;
 }
 
 TEST_F(RanksTest, AreAnAxisOfComparisons) {
-  const Outcome outcome = shell(
+  const ProgramEnd outcome = shell(
       kEnvironment + TRACERAFT_PROGRAM " compare --out " + at("c") + " --references " + at("r") +
       " --case two-rafts --cells 12 --epsilon 1 --t-end 0.1 --integrators ida --tolerances 1e-2 "
       "--threads 2 "  // ranks have one each
@@ -197,11 +197,12 @@ TEST_F(RanksTest, AreAnAxisOfComparisons) {
 
 // The solver of MPI has worked in the very process that starts the ranks.
 TEST_F(RanksTest, AreMeasuredByVerifications) {
-  const Outcome outcome = shell(kEnvironment +
-                                TRACERAFT_PROGRAM
-                                " verify agreement --quick --linear-solver teko --integrator ida "
-                                "--out " +
-                                at("v"));
+  const ProgramEnd outcome =
+      shell(kEnvironment +
+            TRACERAFT_PROGRAM
+            " verify agreement --quick --linear-solver teko --integrator ida "
+            "--out " +
+            at("v"));
   ASSERT_EQ(outcome.code, 0) << outcome.output;
   EXPECT_EQ(testing::lines_of(at("v") + "/agreement-ranks.csv"), 2);
   EXPECT_FALSE(fs::exists(at("v") + "/ranks"));
@@ -211,7 +212,7 @@ TEST_F(RanksTest, OneThatFailsEndsAll) {
   stop_early(2, "run --quiet --checkpoint-interval 0 " + runs + "--out " + at("run"), "run");
   // Where the second rank wants to write its piece of the last field there is a folder already.
   fs::create_directories(at("run") + "/fields/field-0016-0001.vtu");
-  const Outcome outcome = on(2, "resume --quiet " + at("run"));
+  const ProgramEnd outcome = on(2, "resume --quiet " + at("run"));
   EXPECT_EQ(outcome.code, 4) << outcome.output;
   EXPECT_NE(outcome.output.find("traceraft: rank 1: "), std::string::npos) << outcome.output;
   EXPECT_NE(outcome.output.find("field-0016-0001.vtu"), std::string::npos) << outcome.output;

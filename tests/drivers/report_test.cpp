@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::content;
-using testing::Outcome;
+using testing::ProgramEnd;
 using testing::shell;
 using testing::TemporaryFolder;
 using testing::traceraft;
@@ -26,7 +26,7 @@ class ReportTest : public ::testing::Test {
   TemporaryFolder folder;
   std::string out(const std::string& name) const { return (folder.path / name).string(); }
   void run(const std::string& name) const {
-    const Outcome made =
+    const ProgramEnd made =
         traceraft("run --case two-rafts --cells 20 --epsilon 0.6 --quiet --out " + out(name));
     ASSERT_EQ(made.code, 0) << made.output;
   }
@@ -34,8 +34,9 @@ class ReportTest : public ::testing::Test {
 
 TEST_F(ReportTest, MakesAPagePicturesAndAnAnimation) {
   run("a");
-  const Outcome made = traceraft("report " + out("a") + " --frames 5 --snapshots " +
-                                 out("pictures") + " --animation " + out("a.gif") + " --pixels 64");
+  const ProgramEnd made =
+      traceraft("report " + out("a") + " --frames 5 --snapshots " + out("pictures") +
+                " --animation " + out("a.gif") + " --pixels 64");
   ASSERT_EQ(made.code, 0) << made.output;
   const std::string page = content(folder.path / "a/report.html");
   for (const char* part : {"id=\"viewer\"", "raft area fraction", "energy-guard", "mass_drift"})
@@ -75,7 +76,7 @@ TEST_F(ReportTest, ShowsMeasurementsBesideWhatIsInSeconds) {
                 out("s"))
           .code,
       0);
-  const Outcome refused = traceraft("report " + out("s") + data);
+  const ProgramEnd refused = traceraft("report " + out("s") + data);
   EXPECT_EQ(refused.code, 2) << refused.output;
   EXPECT_NE(refused.output.find("--data: times of"), std::string::npos) << refused.output;
 }
@@ -104,7 +105,7 @@ TEST_F(ReportTest, ShowsEnsemblesAndCopiesFinishedPages) {
   EXPECT_TRUE(fs::exists(folder.path / "v/geometry.json"));
   EXPECT_TRUE(fs::exists(folder.path / "v/energy.json"));
   EXPECT_FALSE(fs::exists(folder.path / "v/job-energy"));
-  const Outcome again = traceraft("verify geometry energy --quick --jobs 2 --out " + out("v"));
+  const ProgramEnd again = traceraft("verify geometry energy --quick --jobs 2 --out " + out("v"));
   EXPECT_EQ(again.code, 0);
   EXPECT_NE(again.output.find("measured before"), std::string::npos) << again.output;
 }
@@ -118,7 +119,7 @@ TEST_F(ReportTest, SaysWhatItCannotShow) {
           out("a"))
           .code,
       0);
-  const Outcome made = traceraft("report " + out("a"));
+  const ProgramEnd made = traceraft("report " + out("a"));
   EXPECT_EQ(made.code, 0);
   EXPECT_NE(made.output.find("has written no fields"), std::string::npos);
   EXPECT_EQ(traceraft("report --quiet " + out("a") + " --animation " + out("a.gif")).code, 2);
@@ -128,7 +129,7 @@ TEST_F(ReportTest, SaysWhatItCannotShow) {
   EXPECT_EQ(content(folder.path / "a/config.toml"), config);
   run("b");
   std::ofstream(folder.path / "b/fields/field-0003.vtu") << "damaged";
-  const Outcome damaged = traceraft("report " + out("b"));
+  const ProgramEnd damaged = traceraft("report " + out("b"));
   EXPECT_EQ(damaged.code, 4);
   EXPECT_NE(damaged.output.find("field-0003.vtu"), std::string::npos) << damaged.output;
   fs::remove(folder.path / "b/fields/field-0003.vtu");
@@ -179,8 +180,9 @@ class Browser {
   json send(const std::string& path, const json& body) const {
     const fs::path file = scratch_.path / "body.json";
     std::ofstream(file) << body.dump();
-    const Outcome answer = shell("curl -s --max-time 60 -H 'Content-Type: application/json' -d @" +
-                                 file.string() + " http://127.0.0.1:" + port_ + path);
+    const ProgramEnd answer =
+        shell("curl -s --max-time 60 -H 'Content-Type: application/json' -d @" + file.string() +
+              " http://127.0.0.1:" + port_ + path);
     return json::parse(answer.output, nullptr, false);
   }
   TemporaryFolder scratch_;

@@ -13,12 +13,12 @@
 
 namespace traceraft::testing {
 
-struct Outcome {
+struct ProgramEnd {
   int code;
   std::string output;  // stdout and stderr
 };
 
-inline Outcome shell(const std::string& command) {
+inline ProgramEnd shell(const std::string& command) {
   FILE* pipe = popen((command + " 2>&1").c_str(), "r");
   std::string output;
   char buffer[4096];
@@ -28,7 +28,7 @@ inline Outcome shell(const std::string& command) {
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), output};
 }
 
-inline Outcome traceraft(const std::string& arguments) {
+inline ProgramEnd traceraft(const std::string& arguments) {
   return shell(std::string(TRACERAFT_PROGRAM) + " " + arguments);
 }
 
