@@ -18,8 +18,8 @@ namespace {
 
 // Since then, and what it had taken: the system knows when a process began, but that may be hours
 // ago where a shell, or a scheduler, has become this program (exec), and not when it became that.
-// Loading libraries is work of a processor. What a shell has computed before counts as well: next to
-// nothing as a rule.
+// Loading libraries is work of a processor. What a shell has computed before counts as well: next
+// to nothing as a rule.
 const std::chrono::steady_clock::time_point kLoaded = std::chrono::steady_clock::now();
 const double kLoading = cpu_seconds();
 

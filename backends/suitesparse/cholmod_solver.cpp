@@ -1,7 +1,5 @@
 #include "backends/suitesparse/cholmod_solver.hpp"
 
-#include <suitesparse/cholmod.h>
-
 #include <cstring>
 #include <memory>
 #include <mutex>
@@ -9,33 +7,13 @@
 #include <stdexcept>
 
 #include "backends/suitesparse/blas.hpp"
+#include "backends/suitesparse/cholmod_workspace.hpp"
 #include "backends/suitesparse/ordering.hpp"
 #include "backends/suitesparse/supernodal_factor.hpp"
 #include "kernel/core/error.hpp"
 
 namespace traceraft {
 namespace {
-
-struct Workspace {
-  cholmod_common common;
-  Workspace() {
-    cholmod_start(&common);
-    common.print = 0;
-    common.supernodal = CHOLMOD_SUPERNODAL;
-    common.nmethods = 1;
-    common.postorder = 1;
-    // Larger relaxed supernodes than by default: factorisation 20 % faster, solves as fast.
-    constexpr std::size_t columns[3] = {16, 32, 64};
-    constexpr double zeros[3] = {0.8, 0.3, 0.1};
-    for (int i = 0; i < 3; ++i) {
-      common.nrelax[i] = columns[i];
-      common.zrelax[i] = zeros[i];
-    }
-  }
-  ~Workspace() { cholmod_finish(&common); }
-  Workspace(const Workspace&) = delete;
-  Workspace& operator=(const Workspace&) = delete;
-};
 
 // The upper triangle of the pattern in compressed columns: the lower triangle of the CSR rows, as
 // the matrix is symmetric.
@@ -104,7 +82,7 @@ class CholmodSolver final : public SpdSolver {
     cholmod_free_sparse(&matrix_, &workspace_.common);
   }
 
-  Workspace workspace_;
+  CholmodWorkspace workspace_;
   cholmod_sparse* matrix_ = nullptr;
   cholmod_factor* factor_ = nullptr;
   std::vector<int> source_;
@@ -118,7 +96,7 @@ std::vector<int> metis_ordering(const SparsityPattern& pattern) {
   // METIS seeds and draws from the C library's random numbers, which all threads share.
   static std::mutex one_at_a_time;
   const std::lock_guard<std::mutex> lock(one_at_a_time);
-  Workspace workspace;
+  CholmodWorkspace workspace;
   cholmod_sparse* A = upper_triangle(pattern, nullptr, &workspace.common);
   std::vector<int> ordering(pattern.rows());
   const int ok = cholmod_metis(A, nullptr, 0, 1, ordering.data(), &workspace.common);

@@ -1,32 +1,21 @@
 #include "backends/suitesparse/sparse_cholesky.hpp"
 
-#include <suitesparse/cholmod.h>
-
 #include <cmath>
 #include <new>
 #include <stdexcept>
 
 #include "backends/suitesparse/blas.hpp"
+#include "backends/suitesparse/cholmod_workspace.hpp"
 
 namespace traceraft {
 
 struct SparseCholesky::Factors {
-  cholmod_common common;
+  CholmodWorkspace workspace;
   cholmod_factor* factor = nullptr;
 
-  Factors() {
-    cholmod_start(&common);
-    common.print = 0;
-    common.supernodal = CHOLMOD_SUPERNODAL;
-    // Not METIS, which draws from the random numbers that all threads share.
-    common.nmethods = 1;
-    common.method[0].ordering = CHOLMOD_AMD;
-    common.postorder = 1;
-  }
-  ~Factors() {
-    cholmod_free_factor(&factor, &common);
-    cholmod_finish(&common);
-  }
+  // Not METIS, which draws from the random numbers that all threads share.
+  Factors() { workspace.common.method[0].ordering = CHOLMOD_AMD; }
+  ~Factors() { cholmod_free_factor(&factor, &workspace.common); }
   Factors(const Factors&) = delete;
   Factors& operator=(const Factors&) = delete;
 };
@@ -72,7 +61,7 @@ SparseCholesky& SparseCholesky::operator=(SparseCholesky&&) noexcept = default;
 
 void SparseCholesky::factorise(const Eigen::SparseMatrix<double>& A) {
   cholmod_sparse view = view_of(A);
-  cholmod_common* common = &factors_->common;
+  cholmod_common* common = &factors_->workspace.common;
   if (!factors_->factor) factors_->factor = cholmod_analyze(&view, common);
   common->status = CHOLMOD_OK;
   if (factors_->factor) {
@@ -86,11 +75,11 @@ void SparseCholesky::factorise(const Eigen::SparseMatrix<double>& A) {
 
 Eigen::MatrixXd SparseCholesky::solve(const Eigen::MatrixXd& B) const {
   cholmod_dense view = view_of(B);
-  cholmod_dense* x = cholmod_solve(CHOLMOD_A, factors_->factor, &view, &factors_->common);
+  cholmod_dense* x = cholmod_solve(CHOLMOD_A, factors_->factor, &view, &factors_->workspace.common);
   if (!x) throw std::bad_alloc();
   const Eigen::MatrixXd result =
       Eigen::Map<const Eigen::MatrixXd>(static_cast<const double*>(x->x), B.rows(), B.cols());
-  cholmod_free_dense(&x, &factors_->common);
+  cholmod_free_dense(&x, &factors_->workspace.common);
   return result;
 }
 

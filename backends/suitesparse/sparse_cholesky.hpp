@@ -6,8 +6,7 @@
 
 namespace traceraft {
 
-// By CHOLMOD's supernodes: of the precisions of fields several times as fast as Eigen's own. Not
-// for several threads at once.
+// By CHOLMOD's supernodes, as the factors of such precisions fill. Not for several threads at once.
 class SparseCholesky {
  public:
   SparseCholesky();

@@ -65,10 +65,10 @@ std::vector<std::string> why_undetermined(const CalibratedParameter& p, const Ca
   const double span = p.interval.high / p.interval.low;
   if (!result.converged) why.push_back("the search did not converge");
   if (result.unit_at_bound) why.push_back("D lies at the end of the search");
-  const bool is_unit = &p == &result.parameters.front();
-  if (!p.within && !is_unit) why.push_back("it reaches the end of what was simulated");
-  if (!p.within && is_unit && !result.unit_at_bound)
-    why.push_back("it reaches the end of the search");
+  const bool is_unit = p.name == "seconds_per_unit";
+  if (!p.within && !(is_unit && result.unit_at_bound))
+    why.push_back(std::string("it reaches the end of ") +
+                  (is_unit ? "the search" : "what was simulated"));
   if (span >= kDetermined || why.empty())
     why.push_back(formatted("95 %% span a factor of %.3g", span));
   return why;

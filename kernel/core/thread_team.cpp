@@ -13,13 +13,9 @@ thread_local bool inside_task = false;
 constexpr std::chrono::microseconds kLook{100};
 
 template <class Condition>
-bool comes_soon(const Condition& condition) {
+void look_for(const Condition& condition) {
   const auto end = std::chrono::steady_clock::now() + kLook;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::yield();
-  }
-  return true;
+  while (!condition() && std::chrono::steady_clock::now() < end) std::this_thread::yield();
 }
 
 }  // namespace
@@ -62,7 +58,7 @@ void ThreadTeam::run(const std::function<void(int)>& task) const {
   guarded(task, 0);
   inside_task = false;
   const auto done = [this] { return pending_ == 0; };
-  comes_soon(done);
+  look_for(done);
   std::unique_lock<std::mutex> lock(mutex_);
   done_.wait(lock, done);
   if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
@@ -82,7 +78,7 @@ void ThreadTeam::work(int part) {
   unsigned long seen = 0;
   const auto called = [&] { return stop_ || round_ != seen; };
   while (true) {
-    comes_soon(called);
+    look_for(called);
     std::unique_lock<std::mutex> lock(mutex_);
     start_.wait(lock, called);
     if (stop_) return;

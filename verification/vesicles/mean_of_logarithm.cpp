@@ -59,12 +59,15 @@ std::vector<double> table_of_means() {
 class Scattered {
  public:
   Scattered(double n, double s, double power)
-      : relative_(is_relative(power)), ln_n_(std::log(n)), s_(s), a_(1 - power) {}
+      : relative_(is_relative(power)),
+        ln_n_(std::log(n)),
+        s_(s),
+        a_(1 - power),
+        positive_(relative_ ? 1 : normal_above(-1 / (a_ * s_))) {}
 
   double above(double v) const {
     const double y = std::log(v) - ln_n_;
-    return normal_above((relative_ ? y : std::expm1(a_ * y) / a_) / s_) /
-           (relative_ ? 1 : normal_above(-1 / (a_ * s_)));
+    return normal_above((relative_ ? y : std::expm1(a_ * y) / a_) / s_) / positive_;
   }
   double ln_end() const {
     return ln_n_ + (relative_ ? kTail * s_ : std::log1p(kTail * a_ * s_) / a_);
@@ -73,6 +76,7 @@ class Scattered {
  private:
   bool relative_;
   double ln_n_, s_, a_;
+  double positive_;  // share of normal z
 };
 
 // Σ ln(k/(k − 1)) P(v > k − ½), k = 2, 3, ..., which is ∫ P(v > x) dx/x where k is large.

@@ -28,14 +28,14 @@ class FieldRegression {
     squares_ = centred.dot(weight.cwiseProduct(centred));
     log_weights_ = weight.array().log().sum();
     inverse_diagonal_ = mass_.diagonal().cwiseInverse();
+    mass_factors_.factorise(mass_);
   }
 
   // Factors of the precision of the field given the values.
   void compute(const FieldPrior& prior) {
-    const EigenMatrix B = mass_ / (prior.length * prior.length) + stiffness_;
+    const EigenMatrix B = operator_of(prior);
     precision_ =
         prior.smoothing * EigenMatrix(B * inverse_diagonal_.asDiagonal() * B) + information_;
-    prior_factors_.factorise(B);
     factors_.factorise(precision_);
     field_ = factors_.solve(load_);
   }
@@ -44,6 +44,7 @@ class FieldRegression {
   }
   double deviance(const FieldPrior& prior) {
     compute(prior);
+    prior_factors_.factorise(operator_of(prior));
     const double log_prior = 2 * prior_factors_.log_determinant() +
                              inverse_diagonal_.array().log().sum() +
                              static_cast<double>(field_.size()) * std::log(prior.smoothing);
@@ -55,7 +56,7 @@ class FieldRegression {
 
   // M̃ Y = M X, as initial data of a run: off the surface nothing is known.
   Eigen::MatrixXd projected(const Eigen::MatrixXd& X) const {
-    return SparseCholesky(mass_).solve(trace_mass_ * X);
+    return mass_factors_.solve(trace_mass_ * X);
   }
 
   // The directions of the covariance Σ that matter most for smooth parts of the field: eigenvectors
@@ -93,11 +94,15 @@ class FieldRegression {
   }
 
  private:
+  EigenMatrix operator_of(const FieldPrior& prior) const {
+    return mass_ / (prior.length * prior.length) + stiffness_;
+  }
+
   EigenMatrix mass_, trace_mass_, stiffness_, information_, precision_;
   Eigen::Index count_;
   double mean_, squares_, log_weights_;
   Vec load_, inverse_diagonal_, field_;
-  SparseCholesky prior_factors_, factors_;
+  SparseCholesky mass_factors_, prior_factors_, factors_;
 };
 
 FieldEstimate result_of(FieldRegression& regression, const FieldPrior& prior,

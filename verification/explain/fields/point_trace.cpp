@@ -153,26 +153,36 @@ std::string text_of(const Point& x) {
 
 }  // namespace
 
-PointTrace point_trace(const SurfaceSpace& space, const std::vector<Point>& points, double reach) {
-  const TriangleFinder finder(space);
+PointTrace trace_at(const SurfaceSpace& space, const std::vector<SurfacePlace>& places) {
+  const CutSurface& surface = space.surface;
   std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(6 * points.size());
-  for (std::size_t row = 0; row < points.size(); ++row) {
-    const auto nearest = finder.find(points[row], reach);
-    if (nearest.distance > reach)
-      throw InputError(
-          "point " + std::to_string(row + 1) + ", " + text_of(points[row]) +
-          " in units of R, is further than " + format_number(reach) +
-          " R from the surface; are the surface, its radius and the unit of length right?");
+  entries.reserve(6 * places.size());
+  for (std::size_t row = 0; row < places.size(); ++row)
     for (int k = 0; k < 3; ++k) {
-      const CutPoint& cut = space.surface.points[space.surface.triangles[nearest.triangle][k]];
-      entries.emplace_back(static_cast<int>(row), cut.low, nearest.at[k] * (1 - cut.s));
-      entries.emplace_back(static_cast<int>(row), cut.high, nearest.at[k] * cut.s);
+      const auto& [triangle, at] = places[row];
+      const CutPoint& cut = surface.points[surface.triangles[triangle][k]];
+      entries.emplace_back(static_cast<int>(row), cut.low, at[k] * (1 - cut.s));
+      entries.emplace_back(static_cast<int>(row), cut.high, at[k] * cut.s);
     }
-  }
-  PointTrace trace(static_cast<Eigen::Index>(points.size()), space.nodes());
+  PointTrace trace(static_cast<Eigen::Index>(places.size()), space.nodes());
   trace.setFromTriplets(entries.begin(), entries.end());
   return trace;
+}
+
+PointTrace point_trace(const SurfaceSpace& space, const std::vector<Point>& points, double reach) {
+  const TriangleFinder finder(space);
+  std::vector<SurfacePlace> places;
+  places.reserve(points.size());
+  for (const Point& x : points) {
+    const auto nearest = finder.find(x, reach);
+    if (nearest.distance > reach)
+      throw InputError(
+          "point " + std::to_string(places.size() + 1) + ", " + text_of(x) +
+          " in units of R, is further than " + format_number(reach) +
+          " R from the surface; are the surface, its radius and the unit of length right?");
+    places.push_back({nearest.triangle, nearest.at});
+  }
+  return trace_at(space, places);
 }
 
 }  // namespace traceraft

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Sparse>
+#include <array>
 #include <vector>
 
 #include "kernel/fem/surface_space.hpp"
@@ -10,6 +11,13 @@ namespace traceraft {
 
 // A row per point, a column per node: values = trace · nodal. Serial spaces only.
 using PointTrace = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+// A point of Γ_h: on one of its triangles, in barycentric coordinates.
+struct SurfacePlace {
+  int triangle;
+  std::array<double, 3> at;
+};
+PointTrace trace_at(const SurfaceSpace& space, const std::vector<SurfacePlace>& places);
 
 // A field at a point is c_h at the point of Γ_h nearest to it. Throws InputError naming the first
 // point that is further than `reach` away.

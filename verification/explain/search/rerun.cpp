@@ -22,24 +22,22 @@ FilterProblems problems_with(const std::vector<std::vector<double>>& noises,
   return data;
 }
 
+FilterResult pass_of(const FilterProblems& data, const FilterModel& model,
+                     const FilterSettings& settings) {
+  std::vector<ErrorMaps> maps;
+  return filter_fields(data, model, settings, maps);
+}
+
 FilterResult pass_of_model(const FilterProblems& data, const ExplainRequest& request, double pace,
                            const std::vector<EffectTerm>& effects) {
   FilterSettings alone = request.filter;
   alone.replicates = 0;
-  std::vector<ErrorMaps> maps;
-  return filter_fields(data, {with_effects(request.base, effects), pace, {}, {}}, alone, maps);
+  return pass_of(data, {with_effects(request.base, effects), pace, {}, {}}, alone);
 }
 
 FilterResult pass_of_model(const FilterProblems& data, const ExplainRequest& request,
                            const Refit& fit) {
   return pass_of_model(data, request, fit.pace, fit.hypothesis.terms());
-}
-
-// As the search asks it, of the model that it ended with.
-FilterResult what_is_left(const FilterProblems& data, const ExplainRequest& request,
-                          const Refit& end) {
-  std::vector<ErrorMaps> maps;
-  return filter_fields(data, {request.base, end.pace, end.hypothesis, {}}, request.filter, maps);
 }
 
 Rerun compare_both(const FilterProblems& data, const ExplainRequest& other,
@@ -53,15 +51,17 @@ Rerun compare_both(const FilterProblems& data, const ExplainRequest& other,
   return compare_forecasts(passes[0], passes[1], found.rounds.back().screening.mesh_error);
 }
 
-// Is what nothing explains there on the other mesh, too?
+// Is what nothing explains there on the other mesh, too? As the search asks it, of the model that
+// it ended with.
 void look_for_gap(const FilterProblems& data, const ExplainRequest& other, Explanation& found,
                   Rerun& rerun) {
-  const FilterResult pass = what_is_left(data, other, found.found);
-  if (found.found.hypothesis.added() == 0) {
+  const Refit& end = found.found;
+  const FilterResult pass = pass_of(data, {other.base, end.pace, end.hypothesis, {}}, other.filter);
+  if (end.hypothesis.added() == 0) {
     rerun.base = rerun.found = gaps_of_pass(pass);
     rerun.floor = expected_gaps(pass);
   }
-  const Screening left = screen(pass, {}, found.found.hypothesis);
+  const Screening left = screen(pass, {}, end.hypothesis);
   rerun.gap_p = left.gap_p;
   if (!has_gap(left, found.false_alarms)) found.finding = found.without_gap;
 }
