@@ -140,5 +140,6 @@ int run_with_ranks(int argc, char** argv) {
 int main(int argc, char** argv) {
   // Read by OpenBLAS when it is loaded, hence before anything else.
   traceraft::restart_with_environment(traceraft::preferred_environment(), argv);
+  traceraft::use_one_blas_thread();
   return traceraft::run_with_ranks(argc, argv);
 }

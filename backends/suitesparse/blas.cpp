@@ -4,6 +4,7 @@ extern "C" {
 void openblas_set_num_threads(int);
 char* openblas_get_config();
 char* openblas_get_corename();
+int blas_thread_shutdown_() __attribute__((weak));  // unless OpenBLAS is built without threads
 // Of OpenMP, which is there if CHOLMOD was built with it.
 void omp_set_max_active_levels(int) __attribute__((weak));
 }
@@ -27,7 +28,12 @@ std::string better_blas_core() {
 }  // namespace
 
 void use_one_blas_thread() {
-  openblas_set_num_threads(1);
+  static const bool done = [] {
+    openblas_set_num_threads(1);
+    if (blas_thread_shutdown_) blas_thread_shutdown_();
+    return true;
+  }();
+  static_cast<void>(done);
 }
 
 void use_one_openmp_thread() {

@@ -8,6 +8,8 @@
 
 namespace traceraft {
 
+// Once per process. OpenBLAS starts a thread for each processor when it is loaded, which looks for
+// work for 0.1 s of its processor: the sooner this ends them the better.
 void use_one_blas_thread();
 
 // CHOLMOD starts OpenMP threads for loops that are too short for them (a factorisation at n = 128:

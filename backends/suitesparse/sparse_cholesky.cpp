@@ -3,22 +3,12 @@
 #include <cmath>
 #include <new>
 #include <stdexcept>
+#include <string>
 
 #include "backends/suitesparse/blas.hpp"
 #include "backends/suitesparse/cholmod_workspace.hpp"
 
 namespace traceraft {
-
-struct SparseCholesky::Factors {
-  CholmodWorkspace workspace;
-  cholmod_factor* factor = nullptr;
-
-  // Not METIS, which draws from the random numbers that all threads share.
-  Factors() { workspace.common.method[0].ordering = CHOLMOD_AMD; }
-  ~Factors() { cholmod_free_factor(&factor, &workspace.common); }
-  Factors(const Factors&) = delete;
-  Factors& operator=(const Factors&) = delete;
-};
 
 namespace {
 
@@ -50,7 +40,36 @@ cholmod_dense view_of(const Eigen::MatrixXd& B) {
   return view;
 }
 
+void require_success(const cholmod_common& common) {
+  if (common.status == CHOLMOD_OK) return;
+  if (common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
+  if (common.status == CHOLMOD_NOT_POSDEF)
+    throw std::runtime_error("CHOLMOD: the matrix is not positive definite");
+  throw std::runtime_error("CHOLMOD: status " + std::to_string(common.status));
+}
+
 }  // namespace
+
+struct SparseCholesky::Factors {
+  CholmodWorkspace workspace;
+  cholmod_factor* factor = nullptr;
+
+  // Not METIS, which draws from the random numbers that all threads share.
+  Factors() { workspace.common.method[0].ordering = CHOLMOD_AMD; }
+  ~Factors() { cholmod_free_factor(&factor, &workspace.common); }
+  Factors(const Factors&) = delete;
+  Factors& operator=(const Factors&) = delete;
+
+  Eigen::MatrixXd solved(int system, const Eigen::MatrixXd& B) {
+    cholmod_dense view = view_of(B);
+    cholmod_dense* x = cholmod_solve(system, factor, &view, &workspace.common);
+    if (!x) require_success(workspace.common);
+    const Eigen::MatrixXd result =
+        Eigen::Map<const Eigen::MatrixXd>(static_cast<const double*>(x->x), B.rows(), B.cols());
+    cholmod_free_dense(&x, &workspace.common);
+    return result;
+  }
+};
 
 SparseCholesky::SparseCholesky() : factors_(std::make_unique<Factors>()) {
   use_one_blas_thread();
@@ -62,25 +81,21 @@ SparseCholesky& SparseCholesky::operator=(SparseCholesky&&) noexcept = default;
 void SparseCholesky::factorise(const Eigen::SparseMatrix<double>& A) {
   cholmod_sparse view = view_of(A);
   cholmod_common* common = &factors_->workspace.common;
-  if (!factors_->factor) factors_->factor = cholmod_analyze(&view, common);
   common->status = CHOLMOD_OK;
-  if (factors_->factor) {
-    use_one_openmp_thread();
-    cholmod_factorize(&view, factors_->factor, common);
-  }
-  if (!factors_->factor || common->status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
-  if (common->status != CHOLMOD_OK || factors_->factor->minor < factors_->factor->n)
-    throw std::runtime_error("CHOLMOD: the matrix is not positive definite");
+  use_one_openmp_thread();
+  if (!factors_->factor) factors_->factor = cholmod_analyze(&view, common);
+  require_success(*common);
+  cholmod_factorize(&view, factors_->factor, common);
+  require_success(*common);
 }
 
 Eigen::MatrixXd SparseCholesky::solve(const Eigen::MatrixXd& B) const {
-  cholmod_dense view = view_of(B);
-  cholmod_dense* x = cholmod_solve(CHOLMOD_A, factors_->factor, &view, &factors_->workspace.common);
-  if (!x) throw std::bad_alloc();
-  const Eigen::MatrixXd result =
-      Eigen::Map<const Eigen::MatrixXd>(static_cast<const double*>(x->x), B.rows(), B.cols());
-  cholmod_free_dense(&x, &factors_->workspace.common);
-  return result;
+  return factors_->solved(CHOLMOD_A, B);
+}
+
+// A = Pᵀ L Lᵀ P.
+Eigen::MatrixXd SparseCholesky::correlated(const Eigen::MatrixXd& Z) const {
+  return factors_->solved(CHOLMOD_Pt, factors_->solved(CHOLMOD_Lt, Z));
 }
 
 // Twice that of L, whose supernodes are trapezoids, column after column.

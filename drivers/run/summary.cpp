@@ -120,11 +120,10 @@ std::string summary_json(const Configuration& configuration, const RunSetup& run
 }
 
 // Of a sphere nothing separates where f0'' + ε² l(l + 1)/R² > 0 even for c halfway and l = 1. Other
-// surfaces are longer than wide.
+// surfaces are longer than wide: l(l + 1)/R² is taken as half of that.
 bool is_as_wide_as(const std::string& surface, const CahnHilliardModel& model) {
-  constexpr double kWide = 0.5;
-  const double unstable = -model.well.second(0.5 * (model.well.a + model.well.b));
-  return surface == "sphere" ? 2 * model.epsilon * model.epsilon > unstable : model.epsilon > kWide;
+  const double stiffness = (surface == "sphere" ? 2 : 1) * model.epsilon * model.epsilon;
+  return stiffness > -model.well.second(0.5 * (model.well.a + model.well.b));
 }
 
 std::string resolution_text(const Configuration& configuration, const RunSetup& run) {

@@ -50,6 +50,14 @@ TEST(SparseCholesky, SolvesAndKnowsDeterminants) {
   EXPECT_NEAR(moved.log_determinant(), ln_determinant(kSide, 0.5), 1e-9);
 }
 
+TEST(SparseCholesky, CorrelatesAsTheInverse) {
+  constexpr int kSide = 9;
+  const Eigen::SparseMatrix<double> A = grid(kSide, 0.1);
+  const auto one = Eigen::MatrixXd::Identity(kSide * kSide, kSide * kSide);
+  const Eigen::MatrixXd X = SparseCholesky(A).correlated(one);
+  EXPECT_LT((A * (X * X.transpose()) - one).norm(), 1e-12 * one.norm());
+}
+
 TEST(SparseCholesky, RefusesWhatIsNotPositiveDefinite) {
   SparseCholesky factors;
   EXPECT_THROW(factors.factorise(grid(10, -1)), std::runtime_error);

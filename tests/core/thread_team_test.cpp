@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <numeric>
 #include <stdexcept>
+#include <thread>
 
 namespace traceraft {
 namespace {
@@ -22,6 +24,21 @@ TEST_P(ThreadTeamTest, RunsEveryPartOnceAndCoversEveryRange) {
     ASSERT_EQ(std::accumulate(hits.begin(), hits.end(), 0), 1000);
     ASSERT_EQ(*std::min_element(hits.begin(), hits.end()), 1);
   }
+}
+
+// Longer than a thread looks for work, or for the end of it, before it sleeps.
+TEST_P(ThreadTeamTest, WakesUp) {
+  const auto pause = [] { std::this_thread::sleep_for(std::chrono::milliseconds(2)); };
+  const ThreadTeam team(GetParam());
+  std::atomic<int> count{0};
+  for (int round = 0; round < 20; ++round) {
+    team.run([&](int part) {
+      if (part == GetParam() - 1) pause();
+      ++count;
+    });
+    pause();
+  }
+  EXPECT_EQ(count, 20 * GetParam());
 }
 
 TEST_P(ThreadTeamTest, RunsNestedWorkInTheSameThread) {

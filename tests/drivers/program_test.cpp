@@ -419,11 +419,13 @@ INSTANTIATE_TEST_SUITE_P(
 // epsilon > R/√8, in units of R.
 TEST_F(ProgramTest, SaysThatBoundariesAreAsWideAsTheVesicle) {
   // R/√8; with a well that is 25 times as deep, five times as much; and a torus is longer than
-  // that.
+  // that, R/2.
   for (const auto& [model, wide] :
        {std::pair("0.36", true), std::pair("0.35", false), std::pair("1.75 --well rho=6.25", false),
         std::pair("1.78 --well rho=6.25", true), std::pair("0.4 --surface torus", false),
-        std::pair("0.51 --surface torus", true)}) {
+        std::pair("0.51 --surface torus", true),
+        std::pair("2.45 --surface torus --well rho=6.25", false),
+        std::pair("2.55 --surface torus --well rho=6.25", true)}) {
     const ProgramEnd run = traceraft(
         std::string("run --validate --scaled --case two-rafts --cells 16 --epsilon ") + model);
     EXPECT_EQ(run.code, 0) << run.output;

@@ -7,6 +7,7 @@
 
 int main(int argc, char** argv) {
   traceraft::restart_with_environment(traceraft::preferred_environment(), argv);
+  traceraft::use_one_blas_thread();
   ::testing::InitGoogleTest(&argc, argv);
   const traceraft::RankSession session;
   const auto ranks = traceraft::world();

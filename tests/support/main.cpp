@@ -7,6 +7,7 @@
 
 int main(int argc, char** argv) {
   traceraft::restart_with_environment(traceraft::preferred_environment(), argv);
+  traceraft::use_one_blas_thread();
   ::testing::InitGoogleTest(&argc, argv);
   return RUN_ALL_TESTS();
 }

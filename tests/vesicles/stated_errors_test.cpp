@@ -167,6 +167,36 @@ TEST(StatedErrors, OfCountsAreDrawnAsTheMeanOfTheLogarithmSays) {
       }
 }
 
+// By the midpoint rule in z.
+double integrated_count_mean(int n, double s, double power) {
+  constexpr int kPoints = 100000;
+  constexpr double kTail = 8;
+  const double a = 1 - power, from = std::max(-kTail, -1 / (a * s));
+  double mean = 0, weights = 0;
+  for (int i = 0; i < kPoints; ++i) {
+    const double z = from + (kTail - from) * (i + 0.5) / kPoints, weight = std::exp(-0.5 * z * z);
+    const double v = n * std::pow(1 + a * s * z, 1 / a);
+    mean += weight * std::log(std::max(1.0, std::round(v)));
+    weights += weight;
+  }
+  return mean / weights - std::log(n);
+}
+
+TEST(StatedErrors, OfCountsKnowTheirMeanBetweenPowersAndNumbers) {
+  for (const double power : {0.04, 0.3, 0.75, 0.87, 0.95, 0.995})
+    for (const int n : {1, 2, 3, 7, 20, 32})
+      for (const double s : {0.02, 0.2, 0.7, 1.5})
+        EXPECT_NEAR(mean_of_count_logarithm(n, s, power), integrated_count_mean(n, s, power), 0.01)
+            << n << " " << s << " " << power;
+}
+
+TEST(StatedErrors, ThatAreNearlyRelativeAreNearlyNormal) {
+  for (const double power : {0.99, 0.9999})
+    for (const double s : {0.1, 0.3, 1.0})
+      EXPECT_NEAR(mean_of_logarithm(s, power) / (-0.5 * (1 - power) * s * s), 1, 0.02)
+          << s << " " << power;
+}
+
 TEST(StatedErrors, OfCountsAreThoseOfRoundingAtLeast) {
   for (const Quantity quantity : {Quantity::rafts, Quantity::perimeter}) {
     MeasuredVesicles data = data_with(quantity, 0);

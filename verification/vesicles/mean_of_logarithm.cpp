@@ -14,8 +14,9 @@ namespace {
 constexpr int kSteps = 400, kCountSteps = 100;
 constexpr double kLargest = 1000, kMostShare = kLargest / (1 + kLargest);
 constexpr double kLeastAbsolute = 1e-6;  // of 1 − power
+constexpr double kSmall = 0.05;          // s below which moments of z give the mean to 1e-9
 constexpr double kTail = 8;              // of a normal distribution
-// Counts of which the mean is known, for so many powers.
+// Counts of which the mean is known, for so many powers, closer to each other near 1.
 constexpr int kMany = 32, kPowers = 10;
 
 double normal_above(double z) {
@@ -98,7 +99,7 @@ using CountTable = std::array<std::vector<std::vector<double>>, kPowers + 1>;
 CountTable table_of_counts() {
   CountTable table;
   for (int b = 0; b <= kPowers; ++b) {
-    const double power = static_cast<double>(b) / kPowers;
+    const double away = 1 - static_cast<double>(b) / kPowers, power = 1 - away * away;
     for (int n = 1; n <= kMany; ++n) {
       std::vector<double> row{0};
       for (int k = 1; k <= kCountSteps; ++k) {
@@ -123,8 +124,9 @@ double from_table(double n, double share, double power) {
     return between(n - static_cast<double>(row + 1), interpolated(table[b][row], share),
                    interpolated(table[b][row + 1], share));
   };
-  const auto b = std::min(static_cast<std::size_t>(kPowers * power), std::size_t{kPowers - 1});
-  return between(kPowers * power - static_cast<double>(b), of_power(b), of_power(b + 1));
+  const double at = kPowers * (1 - std::sqrt(1 - power));
+  const auto b = std::min(static_cast<std::size_t>(at), std::size_t{kPowers - 1});
+  return between(at - static_cast<double>(b), of_power(b), of_power(b + 1));
 }
 
 }  // namespace
@@ -138,6 +140,10 @@ double mean_of_logarithm(double s, double power) {
   if (is_relative(power)) return 0;
   const double absolute = 1 - power;
   const double within = std::min(absolute * s, kLargest);
+  if (within < kSmall) {
+    const double square = within * within;
+    return -square * (0.5 + square * (0.75 + 2.5 * square)) / absolute;
+  }
   return (std::log1p(within) + interpolated(table, kSteps * share_of(within))) / absolute;
 }
 

@@ -12,7 +12,7 @@ bool is_relative(double power);
 double mean_of_logarithm(double s, double power);
 
 // The same of a count, which is a whole number and 1 at least: of ln max(1, round(v)). Between
-// whole numbers n >= 1: between theirs. Of more than 32 within 0.03 where s <= 1.5.
+// whole numbers n >= 1: between theirs. Where s <= 1.5 within 0.01, of more than 32 within 0.03.
 double mean_of_count_logarithm(double n, double s, double power);
 
 }  // namespace traceraft

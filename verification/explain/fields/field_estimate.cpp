@@ -34,9 +34,8 @@ class FieldRegression {
   // Factors of the precision of the field given the values.
   void compute(const FieldPrior& prior) {
     const EigenMatrix B = operator_of(prior);
-    precision_ =
-        prior.smoothing * EigenMatrix(B * inverse_diagonal_.asDiagonal() * B) + information_;
-    factors_.factorise(precision_);
+    factors_.factorise(prior.smoothing * EigenMatrix(B * inverse_diagonal_.asDiagonal() * B) +
+                       information_);
     field_ = factors_.solve(load_);
   }
   double noise() const {
@@ -84,13 +83,11 @@ class FieldRegression {
            ritz.eigenvalues().tail(kept).cwiseMax(0).cwiseSqrt().asDiagonal();
   }
 
-  // L⁻ᵀ z with normal z has the covariance (L Lᵀ)⁻¹.
   Eigen::MatrixXd draws(int count, std::uint64_t stream) const {
     Eigen::MatrixXd z(field_.size(), count);
     for (Eigen::Index i = 0; i < z.size(); ++i)
       z.data()[i] = normal_random(2, stream, static_cast<std::uint64_t>(i));
-    const Eigen::SimplicialLLT<EigenMatrix> factors(precision_);
-    return factors.permutationPinv() * factors.matrixU().solve(z);
+    return factors_.correlated(z);
   }
 
  private:
@@ -98,7 +95,7 @@ class FieldRegression {
     return mass_ / (prior.length * prior.length) + stiffness_;
   }
 
-  EigenMatrix mass_, trace_mass_, stiffness_, information_, precision_;
+  EigenMatrix mass_, trace_mass_, stiffness_, information_;
   Eigen::Index count_;
   double mean_, squares_, log_weights_;
   Vec load_, inverse_diagonal_, field_;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 namespace traceraft {
@@ -40,9 +41,10 @@ FilterResult pass_of_model(const FilterProblems& data, const ExplainRequest& req
   return pass_of_model(data, request, fit.pace, fit.hypothesis.terms());
 }
 
-Rerun compare_both(const FilterProblems& data, const ExplainRequest& other,
-                   const Explanation& found) {
+// A pass per processor.
+Rerun compare_both(FilterProblems data, const ExplainRequest& other, const Explanation& found) {
   const int lanes = std::min(other.threads, 2);
+  for (FilterProblem& vesicle : data) vesicle.team = std::make_shared<ThreadTeam>(1);
   std::array<FilterResult, 2> passes;
   ThreadTeam(lanes).run([&](int lane) {
     for (int k = lane; k < 2; k += lanes)
@@ -118,19 +120,19 @@ void run_again(const std::vector<FieldSeries>& series, const ExplainRequest& req
   ExplainRequest other = request;
   other.cells = static_cast<int>(std::lround(kOtherCells * request.cells));
   other.filter.integrator = kOtherIntegrator;
+  const bool asks_for_gap = found.finding == Finding::unnamed;
+  if (!asks_for_gap) other.filter.replicates = 0;
   Rerun result;
-  FilterProblems data;
+  std::optional<FilterProblems> data;
   std::string no_data;
   attempt(no_data, [&] { data = problems_with(found.noises, series, other); });
   if (found.found.hypothesis.added() > 0) {
     result.failure = no_data;
-    if (no_data.empty())
-      attempt(result.failure, [&] { result = compare_both(data, other, found); });
+    if (data) attempt(result.failure, [&] { result = compare_both(*data, other, found); });
   }
-  if (found.finding == Finding::unnamed) {
+  if (asks_for_gap) {
     result.gap_failure = no_data;
-    if (no_data.empty())
-      attempt(result.gap_failure, [&] { look_for_gap(data, other, found, result); });
+    if (data) attempt(result.gap_failure, [&] { look_for_gap(*data, other, found, result); });
   }
   result.cells = other.cells;
   result.integrator = kOtherIntegrator;
