@@ -1,5 +1,7 @@
 #include "backends/suitesparse/blas.hpp"
 
+#include <mutex>
+
 extern "C" {
 void openblas_set_num_threads(int);
 char* openblas_get_config();
@@ -28,12 +30,11 @@ std::string better_blas_core() {
 }  // namespace
 
 void use_one_blas_thread() {
-  static const bool done = [] {
-    openblas_set_num_threads(1);
+  static std::once_flag done;
+  std::call_once(done, [] {
+    openblas_set_num_threads(1);  // would start threads again later
     if (blas_thread_shutdown_) blas_thread_shutdown_();
-    return true;
-  }();
-  static_cast<void>(done);
+  });
 }
 
 void use_one_openmp_thread() {

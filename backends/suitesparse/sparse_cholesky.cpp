@@ -40,12 +40,11 @@ cholmod_dense view_of(const Eigen::MatrixXd& B) {
   return view;
 }
 
-void require_success(const cholmod_common& common) {
-  if (common.status == CHOLMOD_OK) return;
-  if (common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
-  if (common.status == CHOLMOD_NOT_POSDEF)
+[[noreturn]] void fail(int status) {
+  if (status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
+  if (status == CHOLMOD_NOT_POSDEF)
     throw std::runtime_error("CHOLMOD: the matrix is not positive definite");
-  throw std::runtime_error("CHOLMOD: status " + std::to_string(common.status));
+  throw std::runtime_error("CHOLMOD: status " + std::to_string(status));
 }
 
 }  // namespace
@@ -63,7 +62,7 @@ struct SparseCholesky::Factors {
   Eigen::MatrixXd solved(int system, const Eigen::MatrixXd& B) {
     cholmod_dense view = view_of(B);
     cholmod_dense* x = cholmod_solve(system, factor, &view, &workspace.common);
-    if (!x) require_success(workspace.common);
+    if (!x) fail(workspace.common.status);
     const Eigen::MatrixXd result =
         Eigen::Map<const Eigen::MatrixXd>(static_cast<const double*>(x->x), B.rows(), B.cols());
     cholmod_free_dense(&x, &workspace.common);
@@ -81,12 +80,14 @@ SparseCholesky& SparseCholesky::operator=(SparseCholesky&&) noexcept = default;
 void SparseCholesky::factorise(const Eigen::SparseMatrix<double>& A) {
   cholmod_sparse view = view_of(A);
   cholmod_common* common = &factors_->workspace.common;
+  cholmod_factor*& factor = factors_->factor;
+  if (!factor) factor = cholmod_analyze(&view, common);
+  if (!factor) fail(common->status);
   common->status = CHOLMOD_OK;
   use_one_openmp_thread();
-  if (!factors_->factor) factors_->factor = cholmod_analyze(&view, common);
-  require_success(*common);
-  cholmod_factorize(&view, factors_->factor, common);
-  require_success(*common);
+  cholmod_factorize(&view, factor, common);
+  if (common->status != CHOLMOD_OK) fail(common->status);
+  if (factor->minor < factor->n) fail(CHOLMOD_NOT_POSDEF);
 }
 
 Eigen::MatrixXd SparseCholesky::solve(const Eigen::MatrixXd& B) const {

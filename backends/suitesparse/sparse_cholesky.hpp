@@ -21,8 +21,7 @@ class SparseCholesky {
 
   // A⁻¹ B. Of factors that there are, as below.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const;
-  // X with X Xᵀ = A⁻¹ Z Zᵀ if Z = 1: of columns of independent normal numbers, those of covariance
-  // A⁻¹.
+  // R Z with R Rᵀ = A⁻¹: of independent normal numbers, columns with the covariance A⁻¹.
   Eigen::MatrixXd correlated(const Eigen::MatrixXd& Z) const;
   double log_determinant() const;  // of A
 
