@@ -38,7 +38,11 @@ std::unique_ptr<MpiSession> session;
 }  // namespace
 
 RankSession::RankSession() {
-  if (!started_together()) return;
+  // A process alone, which starts MPI for Trilinos later, needs no daemon of Open MPI beside it.
+  if (!started_together()) {
+    setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+    return;
+  }
   session = std::make_unique<MpiSession>();
   if (const int started = started_ranks(); started > 1 && mpi_world()->size() == 1) {
     session.reset();

@@ -21,16 +21,17 @@ constexpr useconds_t kPause = 50000;  // microseconds between looks
 
 // In the new process, with nothing but calls that are safe after a fork: becomes the program, or
 // reports why not.
-[[noreturn]] void become(char* const* arguments, char* const* environment, const char* log,
-                         pid_t parent, int report) {
+[[noreturn]] void become(char* const* arguments, char* const* environment,
+                         const ChildRequest& request, pid_t parent, int report) {
   prctl(PR_SET_PDEATHSIG, kParentDied);
   if (getppid() != parent) _exit(1);  // it died before that
   default_stop_signals();
   setpgid(0, 0);  // Ctrl-C reaches the parent, which asks once; twice would be "at once"
   const int input = open("/dev/null", O_RDONLY);
   // Another process may be writing to it, as of a run that both want to go on with.
-  const int output = open(log, O_WRONLY | O_CREAT | O_APPEND, 0644);
-  if (input >= 0 && output >= 0 && dup2(input, STDIN_FILENO) >= 0 &&
+  const int output = open(request.log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_NOFOLLOW, 0644);
+  const bool there = request.folder.empty() || chdir(request.folder.c_str()) == 0;
+  if (input >= 0 && output >= 0 && there && dup2(input, STDIN_FILENO) >= 0 &&
       dup2(output, STDOUT_FILENO) >= 0 && dup2(output, STDERR_FILENO) >= 0)
     execvpe(arguments[0], arguments, environment);
   const int error = errno;
@@ -42,9 +43,15 @@ constexpr useconds_t kPause = 50000;  // microseconds between looks
 // that make an mpirun among the children fail.
 std::vector<std::string> first_environment() {
   std::ifstream file("/proc/self/environ");
+  if (!file) throw IoError("cannot read /proc/self/environ");
   std::vector<std::string> variables;
-  for (std::string variable; std::getline(file, variable, '\0');) variables.push_back(variable);
-  if (variables.empty()) throw IoError("cannot read /proc/self/environ");
+  bool has_path = false;
+  for (std::string variable; std::getline(file, variable, '\0');) {
+    has_path = has_path || variable.compare(0, 5, "PATH=") == 0;
+    variables.push_back(variable);
+  }
+  // This process finds programs without one. Those that look for others, such as mpirun, may not.
+  if (!has_path) variables.emplace_back("PATH=/usr/local/bin:/usr/bin:/bin");
   return variables;
 }
 
@@ -62,8 +69,7 @@ pid_t spawn(const ChildRequest& request) {
   int report[2];
   if (pipe2(report, O_CLOEXEC) != 0) throw IoError(std::string("pipe: ") + std::strerror(errno));
   const pid_t parent = getpid(), child = fork();
-  if (child == 0)
-    become(arguments.data(), environment.data(), request.log.c_str(), parent, report[1]);
+  if (child == 0) become(arguments.data(), environment.data(), request, parent, report[1]);
   const int fork_error = errno;
   close(report[1]);
   int error = 0;

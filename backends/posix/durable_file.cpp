@@ -1,10 +1,12 @@
 #include "backends/posix/durable_file.hpp"
 
 #include <fcntl.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 
 #include "kernel/core/error.hpp"
@@ -53,13 +55,31 @@ void write_all(int descriptor, const std::string& data, const std::filesystem::p
   }
 }
 
+// A name that nobody else has: 64 random bits.
+std::filesystem::path temporary_beside(const std::filesystem::path& path) {
+  std::uint64_t bits = 0;
+  if (::getrandom(&bits, sizeof bits, 0) != sizeof bits) fail("cannot name a file beside", path);
+  char name[40];
+  std::snprintf(name, sizeof name, ".traceraft-%016llx.part",
+                static_cast<unsigned long long>(bits));
+  return path.parent_path() / name;
+}
+
+void refuse_special(int descriptor, const std::filesystem::path& path) {
+  struct stat info {};
+  if (::fstat(descriptor, &info) != 0) fail("cannot read", path);
+  if (!S_ISREG(info.st_mode)) throw IoError("cannot write " + path.string() + ": not a file");
+  if (info.st_nlink > 1)
+    throw IoError("cannot write " + path.string() + ": the same file has another name, too");
+}
+
 }  // namespace
 
 void write_durably(const std::filesystem::path& path, const std::string& content) {
-  std::filesystem::path temporary = path;
-  temporary += ".part";
+  const std::filesystem::path temporary = temporary_beside(path);
+  // Neither a file nor a link of that name is there, or this throws.
+  Descriptor file(temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW);
   try {
-    Descriptor file(temporary, O_WRONLY | O_CREAT | O_TRUNC);
     write_all(file.get(), content, temporary);
     file.sync();
     file.close();
@@ -72,34 +92,34 @@ void write_durably(const std::filesystem::path& path, const std::string& content
   Descriptor(folder, O_RDONLY | O_DIRECTORY).sync();
 }
 
+struct AppendFile::Handle : Descriptor {
+  using Descriptor::Descriptor;
+};
+
 AppendFile::AppendFile(std::filesystem::path path, std::uint64_t size)
-    : path_(std::move(path)), size_(size) {
-  descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
-  if (descriptor_ < 0) fail("cannot open", path_);
+    : path_(std::move(path)),
+      handle_(std::make_unique<Handle>(path_, O_WRONLY | O_CREAT | O_NOFOLLOW)),
+      size_(size) {
+  refuse_special(handle_->get(), path_);
   struct stat info {};
-  if (::fstat(descriptor_, &info) != 0 || static_cast<std::uint64_t>(info.st_size) < size) {
-    ::close(descriptor_);
+  if (::fstat(handle_->get(), &info) != 0) fail("cannot read", path_);
+  if (static_cast<std::uint64_t>(info.st_size) < size)
     throw IoError(path_.string() + " has lost rows: it is shorter than the " +
                   std::to_string(size) + " bytes it had");
-  }
-  if (::ftruncate(descriptor_, static_cast<off_t>(size)) != 0 ||
-      ::lseek(descriptor_, 0, SEEK_END) < 0) {
-    ::close(descriptor_);
+  if (::ftruncate(handle_->get(), static_cast<off_t>(size)) != 0 ||
+      ::lseek(handle_->get(), 0, SEEK_END) < 0)
     fail("cannot cut", path_);
-  }
 }
 
-AppendFile::~AppendFile() {
-  ::close(descriptor_);
-}
+AppendFile::~AppendFile() = default;
 
 void AppendFile::append(const std::string& record) {
-  write_all(descriptor_, record, path_);
+  write_all(handle_->get(), record, path_);
   size_ += record.size();
 }
 
 void AppendFile::sync() {
-  if (::fsync(descriptor_) != 0) fail("cannot write", path_);
+  handle_->sync();
 }
 
 std::string read_file(const std::filesystem::path& path, std::uint64_t limit) {

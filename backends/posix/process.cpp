@@ -1,5 +1,6 @@
 #include "backends/posix/process.hpp"
 
+#include <fcntl.h>
 #include <sys/ioctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -23,7 +24,20 @@ namespace {
 const std::chrono::steady_clock::time_point kLoaded = std::chrono::steady_clock::now();
 const double kLoading = cpu_seconds();
 
-constexpr int kStopSignals[] = {SIGINT, SIGTERM, kParentDied};
+bool is_ignored(int signal) {
+  struct sigaction action {};
+  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+// Who starts a program by nohup wants it to go on without a terminal.
+std::vector<int> signals_to_stop() {
+  std::vector<int> signals = {SIGINT, SIGTERM, kParentDied};
+  if (!is_ignored(SIGHUP)) signals.push_back(SIGHUP);
+  return signals;
+}
+
+// Made before there are threads and children; a handler only reads it.
+const std::vector<int> kStopSignals = signals_to_stop();
 
 std::atomic<bool> stop_flag = false;
 // When SIGINT or SIGTERM came first. A terminal, a manager of scopes and the parent may each send
@@ -63,7 +77,7 @@ void on_stop(int signal) {
   }
   install(on_stop);  // METIS puts back what there was as if by signal() of System V: for one signal
   stop_flag = true;
-  if (signal == kParentDied) return;
+  if (signal == kParentDied || signal == SIGHUP) return;
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
   std::int64_t first = 0;
@@ -141,6 +155,15 @@ bool stop_requested() {
 
 void ignore_file_size_signal() {
   std::signal(SIGXFSZ, SIG_IGN);
+}
+
+void occupy_standard_descriptors() {
+  for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor) {
+    if (fcntl(descriptor, F_GETFD) >= 0) continue;
+    // Open for the wrong direction, so that using it still is an error. It is the lowest free one.
+    const int opened = open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+    if (opened != descriptor && opened >= 0) close(opened);
+  }
 }
 
 void restart_with_environment(const std::vector<std::pair<std::string, std::string>>& variables,

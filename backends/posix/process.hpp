@@ -18,9 +18,9 @@ int terminal_columns();  // 80 if unknown
 // What a child gets when the process that started it dies (child.hpp), perhaps several times.
 inline constexpr int kParentDied = SIGUSR1;
 
-// From now on SIGINT, SIGTERM and kParentDied only set a flag; another SIGINT or SIGTERM, two
-// seconds or more after the first, ends the process at once. Threads that are older than this may
-// not run METIS, which puts a handler of its own.
+// From now on SIGINT, SIGTERM, kParentDied and, unless it is ignored, SIGHUP only set a flag;
+// another SIGINT or SIGTERM, two seconds or more after the first, ends the process at once. Threads
+// that are older than this may not run METIS, which puts a handler of its own.
 void catch_stop_signals();
 bool stop_requested();
 // From now on they end the process at once, with this exit code and a line on stderr: for work
@@ -31,6 +31,9 @@ void end_on_stop_signals(int exit_code, const std::string& line);
 void default_stop_signals();
 // Writing beyond a file size limit becomes an error of the write instead of a signal.
 void ignore_file_size_signal();
+// Standard input, output or error that are closed would be given to the next file that is opened,
+// which would then receive messages. From now on their descriptors are taken, and using them fails.
+void occupy_standard_descriptors();
 
 // Starts this program anew with these variables in its environment, unless all are set already.
 // Values that the user has set are kept. Returns if there is nothing to do or the system refuses.

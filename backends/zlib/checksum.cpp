@@ -4,9 +4,9 @@
 
 namespace traceraft {
 
-std::uint32_t crc32_of(std::string_view data) {
+std::uint32_t crc32_of(std::string_view data, std::uint32_t before) {
   return static_cast<std::uint32_t>(
-      crc32_z(0, reinterpret_cast<const Bytef*>(data.data()), data.size()));
+      crc32_z(before, reinterpret_cast<const Bytef*>(data.data()), data.size()));
 }
 
 }  // namespace traceraft

@@ -78,8 +78,8 @@ TEST(DependencyRule, EveryBackendKnowsTheKernelAndItsOwnLibrary) {
       {"gif", {"gif_lib.h"}},
       {"png", {"png.h"}},
       {"posix",
-       {"fcntl.h", "spawn.h", "unistd.h", "sys/file.h", "sys/prctl.h", "sys/stat.h", "sys/ioctl.h",
-        "sys/resource.h", "sys/wait.h"}},
+       {"fcntl.h", "fnmatch.h", "spawn.h", "unistd.h", "sys/file.h", "sys/mman.h", "sys/prctl.h",
+        "sys/random.h", "sys/stat.h", "sys/ioctl.h", "sys/resource.h", "sys/wait.h"}},
       {"zlib", {"zlib.h"}}};
   for (const auto& entry : fs::directory_iterator(fs::path(TRACERAFT_ROOT) / "backends")) {
     if (!entry.is_directory()) continue;

@@ -79,5 +79,36 @@ TEST(FolderLock, IsHeldByOne) {
   EXPECT_THROW(FolderLock none(folder.path / "missing"), IoError);
 }
 
+// A link of the name of a file is replaced, what it points to is left alone.
+TEST(DurableFile, WritesThroughNoLink) {
+  const TemporaryFolder folder, outside;
+  write_durably(outside.path / "victim", "of somebody");
+  std::filesystem::create_symlink(outside.path / "victim", folder.path / "a");
+  std::filesystem::create_symlink(outside.path / "victim", folder.path / "a.part");
+  write_durably(folder.path / "a", "content");
+  EXPECT_EQ(read_file(outside.path / "victim", 100), "of somebody");
+  EXPECT_FALSE(std::filesystem::is_symlink(folder.path / "a"));
+  EXPECT_EQ(read_file(folder.path / "a", 100), "content");
+}
+
+TEST(AppendFile, OpensNoLinkAndNoFileOfTwoNames) {
+  const TemporaryFolder folder, outside;
+  write_durably(outside.path / "victim", "of somebody");
+  std::filesystem::create_symlink(outside.path / "victim", folder.path / "link");
+  std::filesystem::create_symlink(outside.path / "new", folder.path / "dangling");
+  std::filesystem::create_hard_link(outside.path / "victim", folder.path / "twin");
+  for (const char* name : {"link", "dangling", "twin"})
+    EXPECT_THROW(AppendFile(folder.path / name, 0), IoError) << name;
+  EXPECT_EQ(read_file(outside.path / "victim", 100), "of somebody");
+  EXPECT_FALSE(std::filesystem::exists(outside.path / "new"));
+}
+
+TEST(FolderLock, FollowsNoLink) {
+  const TemporaryFolder folder, outside;
+  std::filesystem::create_symlink(outside.path / "new", folder.path / kLockFile);
+  EXPECT_THROW(FolderLock lock(folder.path), IoError);
+  EXPECT_EQ(outside.entries(), 0u);
+}
+
 }  // namespace
 }  // namespace traceraft
