@@ -1,10 +1,10 @@
-#include <cstdio>
 #include <type_traits>
 
 #include "backends/list.hpp"
 #include "drivers/commands.hpp"
 #include "drivers/config/cases.hpp"
 #include "drivers/exit_codes.hpp"
+#include "drivers/text/say.hpp"
 #include "kernel/effects/effects.hpp"
 #include "kernel/physics/mobility.hpp"
 #include "kernel/problem/initial_data.hpp"
@@ -15,38 +15,33 @@ namespace {
 
 template <class Entry>
 void print_list(const char* title, const NamedList<Entry>& list) {
-  std::printf("%s\n", title);
-  for (const Entry& entry : list)
-    std::printf("  %-14s %s\n", entry.name.c_str(), entry.summary.c_str());
-  std::printf("\n");
+  say("%s\n", title);
+  for (const Entry& entry : list) say("  %-14s %s\n", entry.name, entry.summary);
+  say("\n");
 }
 
 template <class Entry>
 void print_list_with_parameters(const char* title, const NamedList<Entry>& list) {
-  std::printf("%s\n", title);
+  say("%s\n", title);
   for (const Entry& entry : list) {
-    std::printf("  %-14s %s\n", entry.name.c_str(), entry.summary.c_str());
+    say("  %-14s %s\n", entry.name, entry.summary);
     if constexpr (std::is_same_v<Entry, EffectEntry>)
-      if (!entry.reversed.empty())
-        std::printf("  %-14s (negative: %s)\n", "", entry.reversed.c_str());
+      if (!entry.reversed.empty()) say("  %-14s (negative: %s)\n", "", entry.reversed);
     for (const ParameterSpec& p : entry.parameters)
-      std::printf("  %-14s   :%s=%s  %s [%s], %s to %s\n", "", p.name.c_str(),
-                  format_number(p.default_value).c_str(), p.meaning.c_str(),
-                  p.unit.empty() ? "1" : p.unit.c_str(), format_number(p.min).c_str(),
-                  format_number(p.max).c_str());
+      say("  %-14s   :%s=%s  %s [%s], %s to %s\n", "", p.name, format_number(p.default_value),
+          p.meaning, p.unit.empty() ? "1" : p.unit, format_number(p.min), format_number(p.max));
   }
-  std::printf("\n");
+  say("\n");
 }
 
 int print_lists() {
   print_list("Cases (--case)", cases());
   print_list_with_parameters("Surfaces (--surface)", surfaces());
-  std::printf("  %-14s %s\n\n", "formula", "any level set, from --surface-formula");
+  say("  %-14s %s\n\n", "formula", "any level set, from --surface-formula");
   print_list_with_parameters("Mobility laws (--mobility)", mobilities());
   print_list_with_parameters("Effects (--effect)", effects());
   print_list_with_parameters("Initial states (--initial)", initial_fields());
-  std::printf("  %-14s %s\n\n", "restart:DIR",
-              "the last state of the run in DIR, on the same mesh");
+  say("  %-14s %s\n\n", "restart:DIR", "the last state of the run in DIR, on the same mesh");
   print_list("Integrators (--integrator)", integrators());
   print_list("Linear solvers (--linear-solver)", linear_solvers());
   print_list("Studies (verify)", studies());

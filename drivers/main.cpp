@@ -1,9 +1,11 @@
 // traceraft: the command line, and what becomes of exceptions.
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
+#include <cstring>
 #include <filesystem>
+#include <sstream>
 
+#include "backends/posix/address_space.hpp"
 #include "backends/posix/folder_lock.hpp"
 #include "backends/posix/process.hpp"
 #include "backends/ranks.hpp"
@@ -12,6 +14,7 @@
 #include "drivers/config/number_checks.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/numerical_failure.hpp"
+#include "drivers/text/say.hpp"
 #include "drivers/version.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/named_list.hpp"
@@ -29,6 +32,7 @@ std::vector<std::string> flags_of(const CLI::App& command) {
 // CLI11 collects what it does not know; the answer names the nearest flag.
 void refuse_unknown(const CLI::App& command) {
   for (const std::string& word : command.remaining()) {
+    if (word == "--") continue;  // which ends the flags, and is one of those words all the same
     if (word.compare(0, 1, "-") != 0) throw InputError("unexpected '" + word + "'");
     throw InputError(
         unknown_name_message("flag", word.substr(0, word.find('=')), flags_of(command)));
@@ -51,7 +55,17 @@ void refuse_ranks(const Command& command) {
     throw InputError(command.name + " starts processes itself; start it without mpirun");
 }
 
+// None has a meaning here, and what is made of them in scripts, pages and file names has many.
+void refuse_control_characters(int argc, char** argv) {
+  for (int k = 1; k < argc; ++k)
+    if (std::any_of(argv[k], argv[k] + std::strlen(argv[k]),
+                    [](char ch) { return static_cast<unsigned char>(ch) < 32 || ch == 127; }))
+      throw InputError("argument " + std::to_string(k) +
+                       " holds a control character, such as a line break: " + argv[k]);
+}
+
 int dispatch(int argc, char** argv) {
+  refuse_control_characters(argc, argv);
   CLI::App app{"Predicts how lipid rafts form and coarsen on liposomes.", "traceraft"};
   app.set_version_flag("--version", kVersion);
   app.require_subcommand(1);
@@ -68,7 +82,10 @@ int dispatch(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {
-    return app.exit(asked);  // --help, --version
+    std::ostringstream text;  // --help, --version
+    const int code = app.exit(asked, text);
+    say_encoded(text.str());
+    return code;
   } catch (const CLI::RequiredError& error) {
     if (!app.get_subcommands().empty())
       throw InputError(app.get_subcommands().front()->get_name() + ": " +
@@ -95,10 +112,10 @@ int dispatch(int argc, char** argv) {
 int complain(const std::string& what, int code) {
   const bool alike = RankSession::all_fail();
   const std::shared_ptr<const Communicator> ranks = world();
-  std::fflush(stdout);
+  flush_output();
   if (ranks->root() || !alike) {
     const std::string who = alike ? "" : "rank " + std::to_string(ranks->rank()) + ": ";
-    std::fprintf(stderr, "traceraft: %s%s\n", who.c_str(), what.c_str());
+    say_error(who + what);
   }
   if (!alike) RankSession::abort(code);
   return code;
@@ -112,7 +129,9 @@ int guarded(int argc, char** argv) {
   } catch (const IoError& error) {
     return complain(error.what(), kInputOutput);
   } catch (const std::filesystem::filesystem_error& error) {
-    return complain(error.what(), kInputOutput);
+    const bool too_long = error.code() == std::errc::filename_too_long;
+    return complain(error.path1().string() + ": " + error.code().message(),
+                    too_long ? kBadInput : kInputOutput);
   } catch (const NumericalFailure& error) {
     return complain(error.what(), kNumericalFailure);
   } catch (const LockedError& error) {
@@ -124,12 +143,20 @@ int guarded(int argc, char** argv) {
   }
 }
 
+// What was said and could not be written is lost, whatever else was reached.
+int with_output_checked(int code) {
+  const std::string why = output_error();
+  if (why.empty()) return code;
+  say_error("cannot write to the standard output: " + why);
+  return code == kSuccess ? kInputOutput : code;
+}
+
 int run_with_ranks(int argc, char** argv) {
   try {
     const RankSession session;
-    return guarded(argc, argv);
+    return with_output_checked(guarded(argc, argv));
   } catch (const InputError& error) {  // there are ranks, but no MPI
-    std::fprintf(stderr, "traceraft: %s\n", error.what());
+    say_error(error.what());
     return kBadInput;
   }
 }
@@ -137,7 +164,13 @@ int run_with_ranks(int argc, char** argv) {
 }  // namespace
 }  // namespace traceraft
 
+// Called before libraries start.
+__attribute__((section(".preinit_array"), used)) static void (*const kBeforeLibraries)(
+    int, char**, char**) = traceraft::require_address_space<traceraft::kInternalError>;
+
 int main(int argc, char** argv) {
+  traceraft::occupy_standard_descriptors();
+  traceraft::ignore_file_size_signal();
   // Read by OpenBLAS when it is loaded, hence before anything else.
   traceraft::restart_with_environment(traceraft::preferred_environment(), argv);
   traceraft::use_one_blas_thread();

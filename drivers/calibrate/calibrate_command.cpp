@@ -1,7 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
 #include "backends/posix/durable_file.hpp"
@@ -20,6 +19,7 @@
 #include "drivers/input/model_of_data.hpp"
 #include "drivers/run/run_folder.hpp"
 #include "drivers/run/run_setup.hpp"
+#include "drivers/text/say.hpp"
 #include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
@@ -69,7 +69,7 @@ void remember(const fs::path& out, const std::string& what, const std::string& d
               const Configuration& model) {
   const fs::path file = out / kIdentityFile;
   const std::string heading = "# " + what + "\n# of the measurements in " +
-                              fs::absolute(data).lexically_normal().string() + "\n";
+                              in_comment(fs::absolute(data).lexically_normal().string()) + "\n";
   const auto is_same = [&] {
     return read_file(file, 1 << 20).compare(0, heading.size(), heading) == 0 &&
            numerical_identity({read_config_file(file), {}}) == numerical_identity(model);
@@ -180,7 +180,8 @@ int run_calibration(CalibrateRequest request) {
                                       request.runs, request.jobs, request.quiet};
   Calibrator calibrator(simulations, data, model);
   if (!calibrator.run()) {
-    if (!request.quiet) std::printf("to go on, give the same command with --out %s\n", out.c_str());
+    if (!request.quiet)
+      say("to go on, give the same command with --out %s\n", in_shell(out.string()));
     return kInterrupted;
   }
   end_on_stop_signals(

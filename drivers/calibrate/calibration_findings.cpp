@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "drivers/calibrate/calibration_points.hpp"
-#include "drivers/output/json_file.hpp"
+#include "drivers/input/json_file.hpp"
 #include "kernel/core/text.hpp"
 #include "verification/vesicles/differences.hpp"
 

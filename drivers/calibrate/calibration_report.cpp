@@ -1,7 +1,6 @@
 #include "drivers/calibrate/calibration_report.hpp"
 
 #include <cmath>
-#include <cstdio>
 
 #include "backends/posix/durable_file.hpp"
 #include "drivers/calibrate/calibration_notes.hpp"
@@ -10,6 +9,7 @@
 #include "drivers/output/page.hpp"
 #include "drivers/output/provenance.hpp"
 #include "drivers/output/text_table.hpp"
+#include "drivers/text/say.hpp"
 #include "drivers/vesicles/agreement_report.hpp"
 #include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/text.hpp"
@@ -109,16 +109,17 @@ void write_calibration(const std::filesystem::path& folder, const MeasuredVesicl
   add_provenance(page, folder, runs.command);
   write_durably(folder / "calibration.html", page.html());
   if (quiet) return;
-  std::printf("\n%s\n\n", title_of(data).c_str());
+  say("\n%s\n\n", title_of(data));
   print_rows(rows);
-  for (const std::string& note : notes) std::printf("\n%s\n", note.c_str());
-  std::printf("\nin the simulations that fit best:\n");
+  for (const std::string& note : notes) say("\n%s\n", note);
+  say("\nin the simulations that fit best:\n");
   print_rows(agreement);
-  std::printf("%s\n", about_agreement(found.best.size()).c_str());
+  say("%s\n", about_agreement(found.best.size()));
   if (!result.unit_at_bound)
-    std::printf("\nrun it with: traceraft run --config %s\n", (folder / "calibrated.toml").c_str());
-  std::printf("open next: %s\n", (folder / "calibration.html").c_str());
-  if (!missing.text().empty()) std::printf("the page lacks: %s\n", missing.text().c_str());
+    say("\nrun it with: traceraft run --config %s\n",
+        in_shell((folder / "calibrated.toml").string()));
+  say("open next: %s\n", (folder / "calibration.html"));
+  if (!missing.text().empty()) say("the page lacks: %s\n", missing.text());
 }
 
 }  // namespace traceraft

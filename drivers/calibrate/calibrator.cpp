@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "drivers/config/options.hpp"
 #include "drivers/ensemble/run_cost.hpp"
 #include "drivers/output/status_line.hpp"
+#include "drivers/text/say.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
@@ -35,9 +35,9 @@ double end_of_runs(const MeasuredVesicles& data) {
 
 bool Calibrator::run() {
   if (!request_.quiet && !request_.names.empty())
-    std::printf("%zu to %d rounds of simulations, %zu choices in each, %d runs of each\n",
-                std::size(kSteps), kMostRounds,
-                design_around(std::vector<double>(request_.names.size()), 0).size(), request_.runs);
+    say("%zu to %d rounds of simulations, %zu choices in each, %d runs of each\n",
+        std::size(kSteps), kMostRounds,
+        design_around(std::vector<double>(request_.names.size()), 0).size(), request_.runs);
   std::vector<double> centre;
   for (const double value : values_of(model_, request_.names)) centre.push_back(std::log(value));
   const double seconds = model_.units().seconds_per_unit();
@@ -110,9 +110,8 @@ bool Calibrator::add_point(const std::vector<double>& ln, const std::string& num
   for (const CalibrationPoint& before : points_)
     if (before.ln_parameters == point.ln_parameters) return true;
   if (!request_.quiet)
-    std::printf("simulations %s: at%s, %s cells%s\n", number.c_str(),
-                words.empty() ? " the model" : words.c_str(), here.text("cells").c_str(),
-                expected_time(here).c_str());
+    say("simulations %s: at%s, %s cells%s\n", number, words.empty() ? " the model" : words,
+        here.text("cells"), expected_time(here));
   const std::filesystem::path folder = request_.out / "points" / name;
   const bool fresh = !std::filesystem::exists(folder);
   const Stopwatch watch;
@@ -120,8 +119,8 @@ bool Calibrator::add_point(const std::vector<double>& ln, const std::string& num
   if (end.stopped) return false;
   if (fresh) seconds_per_work_ = watch.seconds() / relative_work(here);
   for (const MemberFailure& failure : end.failures)
-    std::fprintf(stderr, "traceraft: the run of seed %llu at%s failed: %s\n",
-                 static_cast<unsigned long long>(failure.seed), words.c_str(), failure.why.c_str());
+    say_error("the run of seed " + std::to_string(failure.seed) + " at" + words +
+              " failed: " + failure.why);
   ends_.push_back(std::move(end));
   points_.push_back(std::move(point));
   return true;

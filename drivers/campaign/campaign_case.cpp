@@ -1,16 +1,16 @@
 #include "drivers/campaign/campaign_case.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <stdexcept>
 
 #include "drivers/campaign/hidden_case.hpp"
 #include "drivers/explain/resumable_search.hpp"
 #include "drivers/explain/search_file.hpp"
-#include "drivers/output/json_file.hpp"
+#include "drivers/input/json_file.hpp"
 #include "drivers/output/program.hpp"
 #include "drivers/output/status_line.hpp"
+#include "drivers/text/say.hpp"
 #include "kernel/core/random.hpp"
 #include "kernel/core/stopwatch.hpp"
 #include "verification/explain/search/rerun.hpp"
@@ -64,7 +64,7 @@ Gaps floor_of(const ExplainSetup& setup, const HiddenTruth& truth) {
   try {
     return gaps_of_model(setup.series, setup.request, truth.pace, truth.effects).gap;
   } catch (const std::runtime_error& error) {
-    std::fprintf(stderr, "no floor: %s\n", error.what());
+    say_error(std::string("no floor: ") + error.what());
     return {};
   }
 }
@@ -79,7 +79,7 @@ double seconds_of(const fs::path& explained) {
 // One by another build, or that is damaged, is none.
 void forget_if_unusable(const fs::path& explained, const ExplainSetup& setup) {
   const auto forget = [&](const std::exception& why) {
-    std::printf("the search begins anew: %s\n", why.what());
+    say("the search begins anew: %s\n", why.what());
     for (const char* file : {"search.json", "time.json"}) fs::remove(explained / file);
   };
   try {
@@ -99,8 +99,8 @@ void search(const fs::path& explained, ExplainSetup& setup) {
   setup.request.progress = [&](const std::string& step) {
     const double seconds = before + watch.seconds();
     write_durably(explained / "time.json", Json{{"seconds", seconds}}.dump() + "\n");
-    std::printf("%s  %s\n", clock_text(seconds).c_str(), step.c_str());
-    std::fflush(stdout);
+    say("%s  %s\n", clock_text(seconds), step);
+    flush_output();
   };
   (void)search_resumably(explained, setup);
   setup.request.progress("done");

@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
 #include <mutex>
 #include <set>
 
@@ -21,6 +20,7 @@
 #include "drivers/run/job_pool.hpp"
 #include "drivers/run/program_run.hpp"
 #include "drivers/run/run_folder.hpp"
+#include "drivers/text/say.hpp"
 #include "kernel/core/error.hpp"
 
 namespace traceraft {
@@ -114,8 +114,8 @@ WorkEnd work_off(const CampaignFolder& folder, const std::vector<CaseId>& cases,
   WorkEnd end_of_work;
   if (left.empty()) return end_of_work;
   if (!quiet)
-    std::printf("%zu cases, %d at a time; most take minutes\nfolder %s\n", left.size(), jobs,
-                folder.path().c_str());
+    say("%zu cases, %d at a time; most take minutes\nfolder %s\n", left.size(), jobs,
+        folder.path());
   JobPool pool(left.size(), [&](std::size_t k) {
     fs::create_directories(folder.of(left[k]));
     const ProgramEnd end =
@@ -156,10 +156,10 @@ void report(const CampaignFolder& folder, std::vector<CaseScore> scores,
   if (quiet) return;
   print_rows(table_rows(summary_of(scores, failures)));
   if (const Table confusion = confusion_of(scores); !confusion.rows.empty()) {
-    std::printf("\n");
+    say("\n");
     print_rows(table_rows(confusion));
   }
-  std::printf("\nwritten: %s\n", (folder.path() / "campaign.md").c_str());
+  say("\nwritten: %s\n", (folder.path() / "campaign.md"));
 }
 
 std::string command_to_go_on(const CampaignFolder& folder, const CampaignRequest& request) {
@@ -195,10 +195,9 @@ int run_campaign(const CampaignRequest& request) {
   for (const CaseId& id : cases)
     if (fs::exists(folder.score_of(id))) scores.push_back(read_score(folder, id));
   report(folder, scores, end.failures, request.quiet);
-  for (const CaseFailure& failure : end.failures)
-    std::fprintf(stderr, "traceraft: %s: %s\n", failure.id.name().c_str(), failure.why.c_str());
+  for (const CaseFailure& failure : end.failures) say_error(failure.id.name() + ": " + failure.why);
   if (end.stopped) {
-    if (!request.quiet) std::printf("go on with: %s\n", command_to_go_on(folder, request).c_str());
+    if (!request.quiet) say("go on with: %s\n", command_to_go_on(folder, request));
     return kInterrupted;
   }
   return end.failures.empty() ? kSuccess : kNumericalFailure;
@@ -209,7 +208,7 @@ Action define_campaign(CLI::App& app) {
   app.add_option("--out", request->out,
                  "folder, new or of a campaign to go on with; default: runs/campaign-<number>");
   app.add_option("--cases", request->cases, "of each group; default: 11; a campaign can grow")
-      ->check(CLI::Range(1, 999));
+      ->check(CLI::Range(1, kMostCases));
   app.add_option("--jobs", request->jobs, "cases at a time; default: one for each processor")
       ->check(CLI::Range(1, 1024));
   app.add_option("--elsewhere", request->elsewhere,
@@ -225,13 +224,13 @@ Action define_campaign(CLI::App& app) {
       ->check(between(0, kLargestSeed))
       ->capture_default_str();
   app.add_option("--points", request->plan.points, "of each snapshot")
-      ->check(CLI::Range(100, 1000000))
+      ->check(CLI::Range(kFewestPoints, kMostPoints))
       ->capture_default_str();
   app.add_option("--replicates", request->plan.replicates, "of noise alone, in each search")
-      ->check(CLI::Range(49, 9999))
+      ->check(CLI::Range(kFewestReplicates, kMostReplicates))
       ->capture_default_str();
   app.add_option("--most-effects", request->plan.effects, "how many a search may name")
-      ->check(CLI::Range(1, 5))
+      ->check(CLI::Range(1, kMostNamedEffects))
       ->capture_default_str();
   add_vesicle_options(app, request->plan.model);
   const auto all = std::as_const(app).get_options();

@@ -1,6 +1,9 @@
 #include "drivers/campaign/campaign_folder.hpp"
 
-#include "drivers/output/json_file.hpp"
+#include <map>
+
+#include "drivers/explain/explain_run.hpp"
+#include "drivers/input/json_members.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/text.hpp"
 
@@ -8,12 +11,28 @@ namespace traceraft {
 
 namespace {
 
+// As it stands in the file, with the texts of the model's options.
+struct StoredPlan {
+  CampaignPlan plan;
+  std::map<std::string, std::string> model;
+};
+
+template <class Members>
+void describe(Members& members, StoredPlan& stored) {
+  CampaignPlan& plan = stored.plan;
+  members("groups", plan.groups, OneOf{"group", campaign_groups().names()});
+  members("cases", plan.cases, WithinRange{1, kMostCases});
+  members("seed", plan.seed, WithinRange{0, kLargestSeed});
+  members("points", plan.points, WithinRange{kFewestPoints, kMostPoints});
+  members("model", stored.model, AnyText{});
+  members("replicates", plan.replicates, WithinRange{kFewestReplicates, kMostReplicates});
+  members("effects", plan.effects, WithinRange{1, kMostNamedEffects});
+}
+
 Json plan_json(const CampaignPlan& plan) {
-  Json model = Json::object();
-  for (const auto& [name, value] : plan.model) model[name] = value.text;
-  return {{"groups", plan.groups},  {"cases", plan.cases}, {"seed", plan.seed},
-          {"points", plan.points},  {"model", model},      {"replicates", plan.replicates},
-          {"effects", plan.effects}};
+  StoredPlan stored{plan, {}};
+  for (const auto& [name, value] : plan.model) stored.model[name] = value.text;
+  return object_of(stored);
 }
 
 }  // namespace
@@ -23,18 +42,14 @@ void CampaignFolder::save(const CampaignPlan& plan) const {
 }
 
 CampaignPlan CampaignFolder::load() const {
-  return from_json(plan_file(), [this](const Json& json) {
-    CampaignPlan plan{json.at("groups"),
-                      json.at("cases"),
-                      json.at("seed"),
-                      json.at("points"),
-                      json.at("replicates"),
-                      json.at("effects"),
-                      {}};
-    for (const auto& [name, text] : json.at("model").items())
-      plan.model[name] = {text, plan_file().string() + ": " + name};
-    return plan;
-  });
+  StoredPlan stored = read_object<StoredPlan>(plan_file());
+  for (const auto& [name, text] : stored.model) {
+    const std::string where = plan_file().string() + ": model." + name;
+    check_value(where, name, OneOf{"option", run_option_names()});
+    stored.plan.model[name] = {text, where};
+  }
+  (void)Configuration(stored.plan.model, {});
+  return stored.plan;
 }
 
 std::string CaseId::name() const {

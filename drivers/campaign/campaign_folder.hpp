@@ -11,6 +11,8 @@
 
 namespace traceraft {
 
+inline constexpr int kMostCases = 999, kFewestPoints = 100, kMostPoints = 1000000;
+
 struct CampaignPlan {
   std::vector<std::string> groups;
   int cases = 11;  // of each group

@@ -8,6 +8,7 @@
 #include "backends/posix/durable_file.hpp"
 #include "drivers/input/csv_table.hpp"
 #include "drivers/output/text_table.hpp"
+#include "drivers/text/encoders.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/text.hpp"
 #include "verification/explain/fit/refit.hpp"
@@ -82,7 +83,8 @@ std::string builds_of(const Scores& scores) {
   if (cases.size() < 2) return "";
   std::string text = "\nBuilds of the program that explained them:\n\n";
   for (const auto& [program, count] : cases)
-    text += formatted("- %s: %d\n", program.empty() ? "not known" : program.c_str(), count);
+    text +=
+        "- " + (program.empty() ? "not known" : in_markdown(program)) + formatted(": %d\n", count);
   return text;
 }
 
@@ -150,19 +152,19 @@ void write_campaign(const CampaignFolder& campaign, const Scores& scores,
                     const std::vector<CaseFailure>& failures) {
   const std::filesystem::path& folder = campaign.path();
   const Table summary = summary_of(scores, failures), confusion = confusion_of(scores);
-  write_durably(campaign.cases(), csv_text(cases_table(scores)));
+  write_durably(campaign.cases(), checked_csv_text(cases_table(scores)));
   write_durably(folder / "summary.csv", csv_text(summary));
   write_durably(folder / "confusion.csv", csv_text(confusion));
   std::string text = markdown_table(table_rows(summary));
   if (!confusion.rows.empty()) text += "\n" + markdown_table(table_rows(confusion));
   for (const auto& [group, own] : by_group(scores))
     if (const Table alone = confusion_of(own); !alone.rows.empty())
-      text += "\n" + group + ": " + campaign_groups().find(group).summary + "\n\n" +
+      text += "\n" + in_markdown(group + ": " + campaign_groups().find(group).summary) + "\n\n" +
               markdown_table(table_rows(alone));
   text += builds_of(scores);
   if (!failures.empty()) text += "\nNo verdict:\n\n";
   for (const CaseFailure& failure : failures)
-    text += "- " + failure.id.name() + ": " + failure.why + "\n";
+    text += "- " + in_markdown(failure.id.name() + ": " + failure.why) + "\n";
   write_durably(folder / "campaign.md", text);
 }
 

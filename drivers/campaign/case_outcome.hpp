@@ -6,7 +6,7 @@
 
 #include "drivers/campaign/campaign_groups.hpp"
 #include "drivers/campaign/hidden_case.hpp"
-#include "drivers/output/json_file.hpp"
+#include "drivers/input/json_file.hpp"
 
 namespace traceraft {
 

@@ -8,7 +8,7 @@
 #include "drivers/input/field_dataset.hpp"
 #include "drivers/input/measured_units.hpp"
 #include "drivers/numerical_failure.hpp"
-#include "drivers/output/json_file.hpp"
+#include "drivers/input/json_file.hpp"
 #include "drivers/run/physical_model.hpp"
 #include "kernel/effects/effects.hpp"
 
@@ -49,7 +49,7 @@ Json truth_json(const BlindCase& drawn, const BlindRequest& request, const Units
 void forget_snapshots(const fs::path& data) {
   const std::vector<fs::directory_entry> files(fs::directory_iterator(data), {});
   for (const fs::path& file : files)
-    if (file.filename().string().rfind("snapshot_", 0) == 0) fs::remove(file);
+    if (is_snapshot_file(file)) fs::remove(file);
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
 
 #include "backends/posix/folder_lock.hpp"
 #include "backends/posix/process.hpp"
@@ -13,6 +12,7 @@
 #include "drivers/exit_codes.hpp"
 #include "drivers/input/field_dataset.hpp"
 #include "drivers/run/run_folder.hpp"
+#include "drivers/text/say.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/random.hpp"
@@ -80,14 +80,13 @@ int hide_effects(const HideCommand& command) {
   fs::create_directories(out);
   const FolderLock lock(out);
   end_on_stop_signals(kInterrupted, "nothing was hidden; give the same command again");
-  std::printf("computing the truth on %d cells\n", request.cells);
+  say("computing the truth on %d cells\n", request.cells);
   if (2 * request.cells < 5 * configuration.integer("cells"))
-    std::printf(
-        "NOTE: the error of so coarse a truth may be named itself; 4 times --cells is safe\n");
-  std::fflush(stdout);
+    say("NOTE: the error of so coarse a truth may be named itself; 4 times --cells is safe\n");
+  flush_output();
   hide(out, model, request);
-  std::printf("find it with: traceraft explain --data %s --model %s\n", (out / "data").c_str(),
-              (out / "model.toml").c_str());
+  say("find it with: traceraft explain --data %s --model %s\n", in_shell((out / "data").string()),
+      in_shell((out / "model.toml").string()));
   return kSuccess;
 }
 

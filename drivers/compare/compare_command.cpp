@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cstdio>
 #include <optional>
 
 #include "backends/posix/durable_file.hpp"
@@ -17,6 +16,7 @@
 #include "drivers/run/finished_run.hpp"
 #include "drivers/run/run_folder.hpp"
 #include "drivers/run/run_setup.hpp"
+#include "drivers/text/say.hpp"
 #include "kernel/core/error.hpp"
 
 namespace traceraft {
@@ -93,20 +93,18 @@ int carry_out(const CompareRequest& request, const ComparisonFolder& folder,
               const ComparePlan& plan, const Configuration& configuration, const RunSetup& run) {
   const Reference reference = reference_of(plan, folder, request.references);
   if (!request.quiet)
-    std::printf(
-        "comparing %zu integrators, %zu linear solvers and %zu tolerances, %d times, on %d "
+    say("comparing %zu integrators, %zu linear solvers and %zu tolerances, %d times, on %d "
         "unknowns\nfolder %s\n",
         plan.integrators.size(), plan.linear_solvers.size(), plan.tolerances.size(), plan.repeat,
-        run.problem->size(), folder.path().c_str());
+        run.problem->size(), folder.path());
   std::string why;
   switch (work_off(plan, folder, reference, request.quiet, why)) {
     case WorkEnd::stopped:
       if (!request.quiet)
-        std::printf("go on with: traceraft compare --out %s\n",
-                    in_shell(folder.path().string()).c_str());
+        say("go on with: traceraft compare --out %s\n", in_shell(folder.path().string()));
       return kInterrupted;
     case WorkEnd::reference_failed:
-      std::fprintf(stderr, "traceraft: the reference failed: %s\n", why.c_str());
+      say_error("the reference failed: " + why);
       return kNumericalFailure;
     case WorkEnd::done:
       break;
@@ -117,8 +115,7 @@ int carry_out(const CompareRequest& request, const ComparisonFolder& folder,
   write_report(folder, points, advice, explanations(configuration, run, plan));
   if (!request.quiet) {
     print_points(points);
-    std::printf("\n%s\n\nopen next: %s\n", advice.sentence.c_str(),
-                (folder.path() / "compare.html").c_str());
+    say("\n%s\n\nopen next: %s\n", advice.sentence, (folder.path() / "compare.html"));
   }
   return any_result(points) ? kSuccess : kNumericalFailure;
 }
@@ -181,7 +178,7 @@ Action define_compare(CLI::App& app) {
                  "comma-separated numbers of ranks for the solvers that work on several; "
                  "default: 1");
   app.add_option("--repeat", request->repeat, "runs of each combination, for its time; default: 3")
-      ->check(CLI::Range(1, 1000));
+      ->check(CLI::Range(1, kMostRepetitions));
   app.add_option("--time-limit", request->time_limit, "seconds per run; 0: none")
       ->check(at_least(0));
   app.add_option("--target-error", request->target_error,

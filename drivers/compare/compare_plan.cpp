@@ -45,8 +45,10 @@ void add_tolerances(const std::string& text, std::vector<double>& tolerances) {
   if (text.empty()) return;
   for (const std::string& word : words("--tolerances", text)) {
     const double tolerance = parse_number("--tolerances", word);
-    if (!(tolerance >= 1e-12 && tolerance <= 0.5))
-      throw InputError("--tolerances: " + word + " is out of range (allowed: 1e-12 to 0.5)");
+    if (!(tolerance >= kLeastTolerance && tolerance <= kLargestTolerance))
+      throw InputError("--tolerances: " + word +
+                       " is out of range (allowed: " + format_number(kLeastTolerance) + " to " +
+                       format_number(kLargestTolerance) + ")");
     add_new(tolerances, tolerance);
   }
 }
@@ -55,8 +57,9 @@ void add_ranks(const std::string& text, std::vector<int>& ranks) {
   if (text.empty()) return;
   for (const std::string& word : words("--ranks", text)) {
     const double number = parse_number("--ranks", word);
-    if (!(number >= 1 && number <= 4096 && number == std::floor(number)))
-      throw InputError("--ranks: " + word + " is out of range (allowed: 1 to 4096, whole)");
+    if (!(number >= 1 && number <= kMostRanks && number == std::floor(number)))
+      throw InputError("--ranks: " + word + " is out of range (allowed: 1 to " +
+                       std::to_string(kMostRanks) + ", whole)");
     add_new(ranks, static_cast<int>(number));
   }
 }
@@ -71,7 +74,7 @@ double fraction_of_smallest(const std::vector<double>& values, double factor) {
 double ComparePlan::reference() const {
   return reference_tolerance > 0
              ? reference_tolerance
-             : std::max(1e-12, fraction_of_smallest(tolerances, kReferenceFactor));
+             : std::max(kLeastTolerance, fraction_of_smallest(tolerances, kReferenceFactor));
 }
 
 ComparePlan extended_plan(const CompareRequest& request, const ComparePlan* before) {

@@ -23,6 +23,9 @@ struct CompareRequest {
   bool quiet = false;
 };
 
+inline constexpr double kLeastTolerance = 1e-12, kLargestTolerance = 0.5;
+inline constexpr int kMostRanks = 4096, kMostRepetitions = 1000;
+
 struct ComparePlan {
   std::vector<std::string> integrators, linear_solvers;
   std::vector<double> tolerances;

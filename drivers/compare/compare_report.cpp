@@ -1,13 +1,13 @@
 #include "drivers/compare/compare_report.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <map>
 
 #include "backends/posix/durable_file.hpp"
 #include "drivers/output/chart.hpp"
-#include "drivers/output/csv.hpp"
 #include "drivers/output/page.hpp"
+#include "drivers/text/csv.hpp"
+#include "drivers/text/say.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
@@ -107,10 +107,9 @@ void print_points(const std::vector<WorkPoint>& points) {
       if (row.size() == width.size()) width[k] = std::max(width[k], row[k].size());
   for (const Row& row : rows) {
     for (std::size_t k = 0; k < row.size(); ++k)
-      std::printf("  %*s",
-                  static_cast<int>(row.size() == width.size() || k < kNames ? width[k] : 0),
-                  row[k].c_str());
-    std::printf("\n");
+      say("  %*s", static_cast<int>(row.size() == width.size() || k < kNames ? width[k] : 0),
+          row[k]);
+    say("\n");
   }
 }
 

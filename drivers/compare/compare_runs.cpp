@@ -4,11 +4,11 @@
 
 #include <cstdio>
 #include <functional>
-#include <optional>
 
 #include "backends/list.hpp"
 #include "backends/posix/durable_file.hpp"
 #include "backends/posix/folder_lock.hpp"
+#include "backends/posix/own_files.hpp"
 #include "backends/posix/process.hpp"
 #include "backends/zlib/checksum.hpp"
 #include "drivers/config/config_file.hpp"
@@ -16,6 +16,7 @@
 #include "drivers/output/status_line.hpp"
 #include "drivers/run/finished_run.hpp"
 #include "drivers/run/program_run.hpp"
+#include "drivers/run/run_folder.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 
@@ -67,8 +68,8 @@ WorkEnd compute(const CompareJob& job, const ComparisonFolder& folder, double ti
   if (fs::exists(run)) {
     // What an interruption left: its times mean nothing. Unless a run that outlived its comparison
     // is still at it.
-    std::optional<FolderLock> lock(run);
-    fs::remove_all(run);
+    const FolderLock lock(run);
+    remove_own_folder(run, files_of_a_run());
   }
   std::vector<std::string> arguments = {"run", "--config", folder.config().string()};
   arguments.insert(arguments.end(),

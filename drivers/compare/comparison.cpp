@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "drivers/output/json_file.hpp"
+#include "backends/list.hpp"
+#include "drivers/input/json_members.hpp"
 #include "drivers/run/finished_run.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
@@ -29,30 +30,37 @@ double relative_error(const DaeProblem& problem, const Vec& c, ConstVec referenc
 
 }  // namespace
 
+template <class Members>
+void describe(Members& members, ComparePlan& plan) {
+  members("integrators", plan.integrators, OneOf{"integrator", integrators().names()});
+  members("linear_solvers", plan.linear_solvers, OneOf{"linear solver", linear_solvers().names()});
+  members("tolerances", plan.tolerances, WithinRange{kLeastTolerance, kLargestTolerance});
+  members("ranks", plan.ranks, WithinRange{1, kMostRanks});
+  members("repeat", plan.repeat, WithinRange{1, kMostRepetitions});
+  members("reference_tolerance", plan.reference_tolerance, WithinRange{0, kLargestTolerance});
+  members("time_limit", plan.time_limit, WithinRange{0, kAnyNumber});
+  members("target_error", plan.target_error, WithinRange{0, kAnyNumber});
+  members("initial_state", plan.initial_state, WithinRange{0, 0xFFFFFFFF});
+  members("program", plan.program, AnyText{});
+}
+
+template <class Members>
+void describe(Members& members, ComparisonFolder::Record& record) {
+  members("failure", record.failure, AnyText{});
+  members("time_limit", record.time_limit, WithinRange{0, kAnyNumber});
+}
+
 void ComparisonFolder::save(const ComparePlan& plan) const {
-  const nlohmann::ordered_json json = {{"integrators", plan.integrators},
-                                       {"linear_solvers", plan.linear_solvers},
-                                       {"tolerances", plan.tolerances},
-                                       {"ranks", plan.ranks},
-                                       {"repeat", plan.repeat},
-                                       {"reference_tolerance", plan.reference_tolerance},
-                                       {"time_limit", plan.time_limit},
-                                       {"target_error", plan.target_error},
-                                       {"initial_state", plan.initial_state},
-                                       {"program", plan.program}};
-  write_durably(plan_file(), json.dump(2) + "\n");
+  write_durably(plan_file(), object_of(plan).dump(2) + "\n");
 }
 
 ComparePlan ComparisonFolder::load() const {
-  return from_json(plan_file(), [this](const Json& json) {
-    if (!json.contains("integrators"))
-      throw InputError(path_.string() + " holds no comparison, but something else with a plan");
-    return ComparePlan{json.at("integrators"),   json.at("linear_solvers"),
-                       json.at("tolerances"),    json.at("ranks"),
-                       json.at("repeat"),        json.at("reference_tolerance"),
-                       json.at("time_limit"),    json.at("target_error"),
-                       json.at("initial_state"), json.value("program", "")};
+  const bool of_comparison = from_json(plan_file(), [](const Json& json) {
+    return !json.is_object() || json.contains("integrators");  // else a plan of another command
   });
+  if (!of_comparison)
+    throw InputError(path_.string() + " holds no comparison, but something else with a plan");
+  return read_object<ComparePlan>(plan_file());
 }
 
 std::filesystem::path ComparisonFolder::run_of(const CompareJob& job) const {
@@ -66,17 +74,12 @@ std::filesystem::path ComparisonFolder::record_of(const CompareJob& job) const {
 }
 
 void ComparisonFolder::record(const CompareJob& job, const Record& record) const {
-  write_durably(record_of(job), nlohmann::ordered_json{{"failure", record.failure},
-                                                       {"time_limit", record.time_limit}}
-                                        .dump() +
-                                    "\n");
+  write_durably(record_of(job), object_of(record).dump() + "\n");
 }
 
 std::optional<ComparisonFolder::Record> ComparisonFolder::recorded(const CompareJob& job) const {
   if (!std::filesystem::exists(record_of(job))) return std::nullopt;
-  return from_json(record_of(job), [](const Json& json) {
-    return Record{json.at("failure"), json.at("time_limit")};
-  });
+  return read_object<Record>(record_of(job));
 }
 
 bool ComparisonFolder::done(const CompareJob& job, const ComparePlan& plan) const {

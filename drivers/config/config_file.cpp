@@ -4,6 +4,7 @@
 
 #include "drivers/config/option_needs.hpp"
 #include "drivers/config/toml_table.hpp"
+#include "drivers/text/encoders.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 
@@ -64,14 +65,6 @@ std::string config_line(const OptionSpec& spec, const Configuration& configurati
 }
 
 }  // namespace
-
-std::string in_shell(const std::string& text) {
-  const char* plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_=.,:/+";
-  if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) return text;
-  std::string quoted = "'";
-  for (const char ch : text) quoted += ch == '\'' ? std::string("'\\''") : std::string(1, ch);
-  return quoted + "'";
-}
 
 GivenValues read_config_file(const std::filesystem::path& path, const std::string& flag) {
   if (path.empty()) return {};

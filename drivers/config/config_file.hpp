@@ -20,9 +20,6 @@ std::string config_text(const Configuration& configuration);
 // The lines of some of them.
 std::string config_lines(const Configuration& configuration, const std::vector<std::string>& names);
 
-// A word of a command, quoted where a shell would make something else of it.
-std::string in_shell(const std::string& text);
-
 // The flags that give the same numbers, as one would type them: those that are no defaults, without
 // the leading space.
 std::string flags_text(const Configuration& configuration);

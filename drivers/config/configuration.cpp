@@ -6,7 +6,7 @@
 
 #include "backends/list.hpp"
 #include "drivers/config/cases.hpp"
-#include "drivers/config/utf8.hpp"
+#include "drivers/text/utf8.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/mesh/cube_mesh.hpp"

@@ -6,6 +6,7 @@
 #include "backends/posix/child.hpp"
 #include "drivers/config/config_file.hpp"
 #include "drivers/ensemble/run_cost.hpp"
+#include "drivers/text/encoders.hpp"
 
 namespace traceraft {
 
@@ -38,7 +39,7 @@ std::string array_job_script(const EnsembleFolder& folder, const EnsemblePlan& p
          "#SBATCH --signal=B:TERM@60\n"
          "# A task that is stopped or killed goes on where it was when it is submitted again.\n"
          "# When all are done: " +
-         program +
+         in_comment(program) +
          "\n"
          "exec " +
          program + " --member \"$((" + std::to_string(plan.first_seed) +

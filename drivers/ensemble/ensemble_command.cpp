@@ -1,5 +1,4 @@
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <optional>
 
 #include "backends/posix/durable_file.hpp"
@@ -16,7 +15,9 @@
 #include "drivers/run/run_folder.hpp"
 #include "drivers/run/run_setup.hpp"
 #include "drivers/run/summary.hpp"
+#include "drivers/text/say.hpp"
 #include "kernel/core/error.hpp"
+#include "kernel/core/parameters.hpp"
 
 namespace traceraft {
 namespace {
@@ -76,6 +77,10 @@ EnsemblePlan plan_of(const EnsembleRequest& request, const EnsembleFolder& folde
                        std::to_string(plan.first_seed));
     plan.first_seed = first;
   }
+  if (static_cast<double>(plan.last_seed()) > kLargestSeed)
+    throw InputError("--first-seed: " + std::to_string(plan.first_seed) + " and " +
+                     std::to_string(plan.runs) + " runs go beyond the largest seed, " +
+                     format_number(kLargestSeed));
   return plan;
 }
 
@@ -94,19 +99,17 @@ int carry_out(const EnsembleRequest& request, const EnsembleFolder& folder,
   const Jobs jobs = jobs_of(request.jobs, request.threads);
   const Units units = configuration.units();
   if (!request.quiet)
-    std::printf("%d runs, %d at a time with %d thread%s each\nfolder %s\n\n", plan.runs,
-                jobs.at_a_time, jobs.threads, jobs.threads == 1 ? "" : "s", folder.path().c_str());
+    say("%d runs, %d at a time with %d thread%s each\nfolder %s\n\n", plan.runs, jobs.at_a_time,
+        jobs.threads, jobs.threads == 1 ? "" : "s", folder.path());
   const double t_end = configuration.number("t-end");
   EnsembleEnd end = work_off(plan, folder, jobs, t_end, request.quiet);
   const FinishedMembers finished = finished_members(folder, units.length(), t_end);
   end.failures.insert(end.failures.end(), finished.damaged.begin(), finished.damaged.end());
   for (const MemberFailure& failure : end.failures)
-    std::fprintf(stderr, "traceraft: the run of seed %llu failed: %s\n",
-                 static_cast<unsigned long long>(failure.seed), failure.why.c_str());
+    say_error("the run of seed " + std::to_string(failure.seed) + " failed: " + failure.why);
   if (end.stopped) {
     if (!request.quiet)
-      std::printf("go on with: traceraft ensemble --out %s\n",
-                  in_shell(folder.path().string()).c_str());
+      say("go on with: traceraft ensemble --out %s\n", in_shell(folder.path().string()));
     return kInterrupted;
   }
   const std::vector<History>& runs = finished.histories;
@@ -115,8 +118,8 @@ int carry_out(const EnsembleRequest& request, const EnsembleFolder& folder,
   write_histories(folder.path() / kHistoriesFile, finished.seeds, runs, summary.times);
   const std::string missing = write_ensemble(folder, configuration, summary, end, request.quiet);
   if (!request.quiet) {
-    if (!missing.empty()) std::printf("\ncharts are missing: %s\n", missing.c_str());
-    std::printf("\nopen next: %s\n", (folder.path() / "ensemble.html").c_str());
+    if (!missing.empty()) say("\ncharts are missing: %s\n", missing);
+    say("\nopen next: %s\n", (folder.path() / "ensemble.html"));
   }
   return end.failures.empty() ? kSuccess : kNumericalFailure;
 }
@@ -151,18 +154,16 @@ int run_ensemble(const EnsembleRequest& request) {
   folder.save(plan);
   fs::create_directories(folder.path() / "runs");
   if (run && !request.quiet)
-    std::printf("case %s, %s\n", configuration.text("case").c_str(),
-                resolution_text(configuration, *run).c_str());
+    say("case %s, %s\n", configuration.text("case"), resolution_text(configuration, *run));
   if (!goes_on) write_durably(folder.config(), config_text(configuration));
   if (!request.array_job) return carry_out(request, folder, plan, configuration);
   const fs::path script = folder.path() / "array-job.sh";
   const ArrayTask task = array_task(configuration);
   write_durably(script, array_job_script(folder, plan, task));
   if (!request.quiet)
-    std::printf(
-        "%d tasks of 2 processors, %d GB and at most %d h each: see its #SBATCH lines\n"
+    say("%d tasks of 2 processors, %d GB and at most %d h each: see its #SBATCH lines\n"
         "submit it with: sbatch %s\n",
-        plan.runs, task.gigabytes, task.hours, in_shell(script.string()).c_str());
+        plan.runs, task.gigabytes, task.hours, in_shell(script.string()));
   return kSuccess;
 }
 
@@ -172,7 +173,7 @@ Action define_ensemble(CLI::App& app) {
   app.add_option("--out", request->out,
                  "folder, new or of an ensemble to go on with or to extend; default: "
                  "runs/ensemble-<case>-<number>");
-  app.add_option("--runs", request->runs, "how many; default: 10")->check(CLI::Range(1, 100000));
+  app.add_option("--runs", request->runs, "how many; default: 10")->check(CLI::Range(1, kMostRuns));
   app.add_option("--first-seed", request->first_seed, "seed of the first run; default: 1")
       ->check(between(0, kLargestSeed));
   app.add_option("--jobs", request->jobs, "runs at a time; default: one for each processor")

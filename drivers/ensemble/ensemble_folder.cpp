@@ -5,8 +5,10 @@
 #include <fstream>
 #include <numeric>
 
+#include "drivers/config/options.hpp"
 #include "drivers/input/csv_table.hpp"
-#include "drivers/output/json_file.hpp"
+#include "drivers/input/json_members.hpp"
+#include "drivers/run/finished_run.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 
@@ -15,7 +17,7 @@ namespace {
 
 // What may only be unreadable for the moment is not to be deleted.
 std::string with_advice(const std::string& why, const std::filesystem::path& run) {
-  return why + "; delete " + run.string() + " to have it repeated";
+  return "delete " + run.string() + " to have it repeated: " + why;
 }
 
 }  // namespace
@@ -26,9 +28,14 @@ std::vector<std::uint64_t> EnsemblePlan::seeds() const {
   return all;
 }
 
+template <class Members>
+void describe(Members& members, EnsemblePlan& plan) {
+  members("runs", plan.runs, WithinRange{1, kMostRuns});
+  members("first_seed", plan.first_seed, WithinRange{0, kLargestSeed});
+}
+
 void EnsembleFolder::save(const EnsemblePlan& plan) const {
-  write_durably(plan_file(),
-                Json{{"runs", plan.runs}, {"first_seed", plan.first_seed}}.dump(2) + "\n");
+  write_durably(plan_file(), object_of(plan).dump(2) + "\n");
 }
 
 void EnsembleFolder::refuse_other_plan() const {
@@ -45,10 +52,11 @@ void EnsembleFolder::refuse_plan() const {
 }
 
 EnsemblePlan EnsembleFolder::load() const {
-  return from_json(plan_file(), [this](const Json& json) {
-    if (!json.contains("first_seed")) refuse_plan();
-    return EnsemblePlan{json.at("runs"), json.at("first_seed")};
+  const bool of_ensemble = from_json(plan_file(), [](const Json& json) {
+    return !json.is_object() || json.contains("first_seed");  // else a plan of another command
   });
+  if (!of_ensemble) refuse_plan();
+  return read_object<EnsemblePlan>(plan_file());
 }
 
 std::filesystem::path EnsembleFolder::run_of(std::uint64_t seed) const {
@@ -93,6 +101,7 @@ double EnsembleFolder::reached(std::uint64_t seed) const {
 }
 
 History EnsembleFolder::history(std::uint64_t seed, double radius) const {
+  require_whole_table(run_of(seed), "series.csv");
   const CsvTable series = CsvTable::read(run_of(seed) / "series.csv");
   History history;
   history.time = series.numbers("t");
@@ -122,6 +131,8 @@ FinishedMembers finished_members(const EnsembleFolder& folder, double radius, do
       result.seeds.push_back(seed);
       result.histories.push_back(std::move(history));
     } catch (const InputError& error) {
+      damaged(seed, error.what());
+    } catch (const DamagedFile& error) {
       damaged(seed, error.what());
     } catch (const IoError& error) {
       if (std::filesystem::exists(folder.run_of(seed) / "series.csv"))

@@ -10,6 +10,8 @@
 
 namespace traceraft {
 
+inline constexpr int kMostRuns = 100000;
+
 struct EnsemblePlan {
   int runs = 10;
   std::uint64_t first_seed = 1;

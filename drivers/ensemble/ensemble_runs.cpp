@@ -12,6 +12,7 @@
 #include "drivers/output/status_line.hpp"
 #include "drivers/run/job_pool.hpp"
 #include "drivers/run/program_run.hpp"
+#include "drivers/text/say.hpp"
 #include "kernel/core/error.hpp"
 
 namespace traceraft {
@@ -118,24 +119,22 @@ EnsembleEnd work_off(const EnsemblePlan& plan, const EnsembleFolder& folder, con
 }
 
 int run_member(const EnsembleFolder& folder, std::uint64_t seed, int threads, bool quiet) {
-  const auto say = [seed, quiet](const std::string& what) {
+  const auto report = [seed, quiet](const std::string& what) {
     if (quiet) return;
-    std::printf("seed %llu: %s\n", static_cast<unsigned long long>(seed), what.c_str());
-    std::fflush(stdout);  // the log of a job is read while it runs
+    say("seed %llu: %s\n", static_cast<unsigned long long>(seed), what);
+    flush_output();  // the log of a job is read while it runs
   };
   const MemberEnd before = folder.member(seed).end;
   if (before == MemberEnd::finished) {
-    say("finished before");
+    report("finished before");
     return kSuccess;
   }
-  say(std::string(before == MemberEnd::missing ? "begins" : "goes on") +
-      ", threads: " + std::to_string(threads));
+  report(std::string(before == MemberEnd::missing ? "begins" : "goes on") +
+         ", threads: " + std::to_string(threads));
   const Stopwatch watch;
   const ProgramEnd end = run_or_resume(folder, seed, threads);
-  if (end.exit_code == kSuccess) say("finished after " + clock_text(watch.seconds()));
-  if (end.exit_code != kSuccess)
-    std::fprintf(stderr, "traceraft: seed %llu: %s\n", static_cast<unsigned long long>(seed),
-                 end.reason().c_str());
+  if (end.exit_code == kSuccess) report("finished after " + clock_text(watch.seconds()));
+  if (end.exit_code != kSuccess) say_error("seed " + std::to_string(seed) + ": " + end.reason());
   return end.exit_code;
 }
 

@@ -21,7 +21,7 @@ void write_histories(const std::filesystem::path& file, const std::vector<std::u
         row.emplace_back(formatted("%.6g", runs[k].at(quantity, t)));
       table.rows.push_back(std::move(row));
     }
-  write_durably(file, csv_text(table));
+  write_durably(file, checked_csv_text(table));
 }
 
 std::vector<History> read_histories(const std::filesystem::path& file) {

@@ -1,6 +1,5 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
 #include "backends/posix/folder_lock.hpp"
@@ -22,6 +21,7 @@
 #include "drivers/numerical_failure.hpp"
 #include "drivers/output/status_line.hpp"
 #include "drivers/run/run_folder.hpp"
+#include "drivers/text/say.hpp"
 #include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/effects/effects.hpp"
@@ -53,21 +53,21 @@ struct ExplainCommand {
 };
 
 void print_earlier_model(const fs::path& out) {
-  std::printf("\n%s is that of an earlier explanation\n", (out / "model.toml").c_str());
+  say("\n%s is that of an earlier explanation\n", (out / "model.toml"));
 }
 
 void explain_field_data(const ExplainCommand& command, ExplainSetup& setup, const fs::path& out) {
   const Stopwatch watch;
   if (!command.quiet)
     setup.request.progress = [&](const std::string& step) {
-      std::printf("%s  %s\n", clock_text(watch.seconds()).c_str(), step.c_str());
-      std::fflush(stdout);
+      say("%s  %s\n", clock_text(watch.seconds()), step);
+      flush_output();
     };
   if (!command.quiet) {
-    std::printf("%s\n", data_text(setup).c_str());
-    std::printf("the model: %s\n", flags_text(setup.configuration()).c_str());
-    for (const std::string& note : setup.notes) std::printf("%s\n", note.c_str());
-    std::fflush(stdout);
+    say("%s\n", data_text(setup));
+    say("the model: %s\n", flags_text(setup.configuration()));
+    for (const std::string& note : setup.notes) say("%s\n", note);
+    flush_output();
   }
   const Explanation found = search_resumably(out, setup);
   const std::string missing = write_explain_page(out, found, setup);
@@ -75,13 +75,11 @@ void explain_field_data(const ExplainCommand& command, ExplainSetup& setup, cons
   print_explanation(found, setup);
   const std::string run = command_for_found(out, found, setup);
   if (!run.empty())
-    std::printf(
-        "\nrun it with: %s\n(it starts from noise, not from the vesicle that was measured)\n",
-        run.c_str());
+    say("\nrun it with: %s\n(it starts from noise, not from the vesicle that was measured)\n", run);
   else if (fs::exists(out / "model.toml"))
     print_earlier_model(out);
-  std::printf("\nwritten: %s\n", (out / "explain.html").c_str());
-  if (!missing.empty()) std::printf("the page lacks: %s\n", missing.c_str());
+  say("\nwritten: %s\n", (out / "explain.html"));
+  if (!missing.empty()) say("the page lacks: %s\n", missing);
 }
 
 struct SeriesSetup {
@@ -111,8 +109,8 @@ bool explain_series_data(const ExplainCommand& command, const SeriesSetup& setup
                          const fs::path& out, const std::string& go_on) {
   const auto& [data, given, model, request] = setup;
   if (!command.quiet) {
-    std::printf("%s\nthe model: %s\n", title_of(data).c_str(), flags_text(model).c_str());
-    std::fflush(stdout);
+    say("%s\nthe model: %s\n", title_of(data), flags_text(model));
+    flush_output();
   }
   const fs::path simulations =
       command.ensembles.empty() ? out / "ensembles" : fs::path(command.ensembles);
@@ -147,7 +145,7 @@ void find_series(ExplainCommand& command) {
   if (folder.empty() || !holds_series(folder)) return;
   if (holds_fields(folder) && has_effects(command.job)) {
     if (!command.quiet)
-      std::printf("the series of %s are not looked at, as the model has effects\n", folder.c_str());
+      say("the series of %s are not looked at, as the model has effects\n", folder);
     return;
   }
   if (!command.series.empty())
@@ -187,11 +185,11 @@ int explain(ExplainCommand command) {
   const FolderLock lock(out);
   // The search is on disk after every refit.
   const std::string go_on =
-      command.quiet ? "" : "to go on, give the same command with --out " + out.string();
+      command.quiet ? "" : "to go on, give the same command with --out " + in_shell(out.string());
   end_on_stop_signals(kInterrupted, go_on);
   if (fields) explain_field_data(command, *fields, out);
   if (series && !explain_series_data(command, *series, out, go_on)) {
-    if (!command.quiet) std::printf("%s\n", go_on.c_str());
+    if (!command.quiet) say("%s\n", go_on);
     return kInterrupted;
   }
   return kSuccess;
@@ -218,11 +216,11 @@ Action define_explain(CLI::App& app) {
   app.add_option("--model", command->job.model, "TOML file with the flags' names as keys");
   app.add_option("--out", command->out, "folder for the verdict; default: runs/explain-N");
   app.add_option("--most-effects", command->job.effects, "to look for, one after the other")
-      ->check(CLI::Range(1, 5))
+      ->check(CLI::Range(1, kMostNamedEffects))
       ->capture_default_str();
   app.add_option("--replicates", command->job.replicates,
                  "of noise alone, that what is found is judged by")
-      ->check(CLI::Range(49, 9999))
+      ->check(CLI::Range(kFewestReplicates, kMostReplicates))
       ->capture_default_str();
   app.add_option("--diffusion-error", command->job.diffusion_error,
                  "relative standard error of the model's D, if it was measured; default: D is not "

@@ -1,7 +1,5 @@
 #include "drivers/explain/explain_report.hpp"
 
-#include <cstdio>
-
 #include "drivers/config/config_file.hpp"
 #include "drivers/explain/explain_tables.hpp"
 #include "drivers/explain/extended_model.hpp"
@@ -9,6 +7,7 @@
 #include "drivers/explain/verdict.hpp"
 #include "drivers/explain/verdict_sentence.hpp"
 #include "drivers/output/text_table.hpp"
+#include "drivers/text/say.hpp"
 #include "kernel/core/text.hpp"
 #include "verification/measure/figures.hpp"
 
@@ -63,15 +62,13 @@ std::string command_for_found(const std::filesystem::path& folder, const Explana
 
 void print_explanation(const Explanation& found, const ExplainSetup& setup) {
   const Units units = setup.configuration().units();
-  std::printf("\n%s\n\nVerdict: %s\n%s\n\n", data_text(setup).c_str(),
-              verdict_words(found.finding, class_of(found)).c_str(),
-              verdict_sentence(found).c_str());
+  say("\n%s\n\nVerdict: %s\n%s\n\n", data_text(setup),
+      verdict_words(found.finding, class_of(found)), verdict_sentence(found));
   print_rows(parameter_rows(found, units));
-  std::printf("\n");
+  say("\n");
   print_rows(gap_rows(found));
-  for (const std::string& remark : remarks_on(found, setup)) std::printf("\n%s\n", remark.c_str());
-  std::printf(
-      "\nnoise of the measurements %.3g; patches that disagree significantly with the base model: "
+  for (const std::string& remark : remarks_on(found, setup)) say("\n%s\n", remark);
+  say("\nnoise of the measurements %.3g; patches that disagree significantly with the base model: "
       "%zu\n",
       found.noise, found.disagreements.size());
 }

@@ -9,6 +9,8 @@
 
 namespace traceraft {
 
+inline constexpr int kFewestReplicates = 49, kMostReplicates = 9999, kMostNamedEffects = 5;
+
 struct ExplainJob {
   std::string data, model;  // a folder and a file; no file: flags alone
   GivenValues flags;        // of the model, before what its file says

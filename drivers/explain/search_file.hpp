@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "drivers/explain/explain_run.hpp"
-#include "drivers/output/json_file.hpp"
+#include "drivers/input/json_file.hpp"
 
 namespace traceraft {
 

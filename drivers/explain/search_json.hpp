@@ -1,7 +1,7 @@
 // The state of a search as JSON: everything that it goes on from, at full precision.
 #pragma once
 
-#include "drivers/output/json_file.hpp"
+#include "drivers/input/json_file.hpp"
 #include "verification/explain/search/explanation.hpp"
 
 namespace traceraft {

@@ -1,7 +1,6 @@
 #include "drivers/explain/series_ensembles.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <optional>
 
 #include "backends/posix/process.hpp"
@@ -12,8 +11,9 @@
 #include "drivers/explain/found_parameters.hpp"
 #include "drivers/input/measured_units.hpp"
 #include "drivers/numerical_failure.hpp"
-#include "drivers/output/json_file.hpp"
+#include "drivers/input/json_members.hpp"
 #include "drivers/run/physical_model.hpp"
+#include "drivers/text/say.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
@@ -31,8 +31,8 @@ constexpr double kFastestPace = 4;
 
 void tell(const SeriesEnsemblesRequest& request, const std::string& step) {
   if (request.quiet) return;
-  std::printf("%s\n", step.c_str());
-  std::fflush(stdout);
+  say("%s\n", step);
+  flush_output();
 }
 
 Configuration ensemble_model(const Configuration& model, const std::string& effect, double t_end) {
@@ -90,6 +90,25 @@ Json saved_strengths(const fs::path& file, const Json& header) {
   });
 }
 
+// The parameters of an effect as a file has them, in units of R and R²/D.
+EffectTerm saved_term(const fs::path& file, const std::string& effect, const Json& json,
+                      const Units& units) {
+  const std::vector<ParameterSpec>& specs = effects().find(effect).parameters;
+  const std::string where = file.string() + ": strengths." + effect;
+  if (!json.is_array() || json.size() != specs.size())
+    throw DamagedFile(where + " is damaged: " + std::to_string(specs.size()) +
+                      " numbers are needed");
+  EffectTerm term{effect, {}};
+  for (std::size_t k = 0; k < specs.size(); ++k) {
+    const double factor = to_model_units(specs[k].unit, units);
+    term.values.push_back(json[k].get<double>());
+    // A strength that no range reaches is drawn back into it later.
+    if (k > 0) check_value(where, term.values[k] / factor, WithinRange{specs[k].min, specs[k].max});
+  }
+  check_value(where, term.values.front(), WithinRange{-kAnyNumber, kAnyNumber});
+  return term;
+}
+
 // The strengths of all effects, each found once.
 std::vector<EffectTerm> sizes(const fs::path& folder, const Configuration& model,
                               const SeriesEnsemblesRequest& request) {
@@ -111,7 +130,7 @@ std::vector<EffectTerm> sizes(const fs::path& folder, const Configuration& model
       strengths[effect] = sized_term(*sizing, effect, k, asked.raft_fraction).values;
       write_durably(file, saved.dump(2) + "\n");
     }
-    terms.push_back({effect, strengths.at(effect)});
+    terms.push_back(saved_term(file, effect, strengths.at(effect), model.units()));
   }
   if (terms.empty()) throw InputError("--without: no effect is left to look for");
   return terms;
@@ -145,6 +164,8 @@ void take_over_ensembles(const fs::path& folder, const Configuration& model,
     if (!json.contains("looks"))
       throw InputError("--ensembles: " + folder.string() + " is by an earlier version");
     const Window looks{json.at("looks").at(0), json.at("looks").at(1)};
+    if (!(looks.begin > 0 && looks.begin < looks.end && looks.end <= kAnyNumber))
+      throw InputError(file.string() + ": looks: two times are needed, the second after the first");
     if (!is_for(json, header_of(model, looks), "identity"))
       throw InputError("--ensembles: " + folder.string() +
                        " holds simulations of another model, or by an earlier version");

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 
 #include "drivers/explain/series_verdict.hpp"
@@ -11,6 +10,7 @@
 #include "drivers/output/page.hpp"
 #include "drivers/output/program.hpp"
 #include "drivers/output/text_table.hpp"
+#include "drivers/text/say.hpp"
 #include "drivers/vesicles/agreement_report.hpp"
 #include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/text.hpp"
@@ -244,16 +244,16 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
   write_durably(folder / "series.html", page.html());
   write_durably(folder / "series.json", series_json(model, simulated, found, laws).dump(2) + "\n");
   if (quiet) return;
-  std::printf("\n%s\n", verdict.c_str());
-  for (const std::string& line : words) std::printf("%s\n", line.c_str());
-  std::printf("\n");
+  say("\n%s\n", verdict);
+  for (const std::string& line : words) say("%s\n", line);
+  say("\n");
   print_rows(offset);
-  std::printf("\n");
+  say("\n");
   print_rows(scores);
-  std::printf("\n");
+  say("\n");
   print_rows(exponent);
-  std::printf("\nwritten: %s\n", (folder / "series.html").c_str());
-  if (!missing.text().empty()) std::printf("the page lacks: %s\n", missing.text().c_str());
+  say("\nwritten: %s\n", (folder / "series.html"));
+  if (!missing.text().empty()) say("the page lacks: %s\n", missing.text());
 }
 
 }  // namespace traceraft

@@ -7,7 +7,7 @@
 
 #include "drivers/explain/found_parameters.hpp"
 #include "drivers/explain/series_ensembles.hpp"
-#include "drivers/output/json_file.hpp"
+#include "drivers/input/json_file.hpp"
 #include "verification/vesicles/power_law.hpp"
 
 namespace traceraft {

@@ -3,7 +3,7 @@
 
 #include "drivers/explain/explain_run.hpp"
 #include "drivers/explain/found_parameters.hpp"
-#include "drivers/output/json_file.hpp"
+#include "drivers/input/json_file.hpp"
 
 namespace traceraft {
 

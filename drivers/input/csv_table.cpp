@@ -6,7 +6,8 @@
 #include <cmath>
 
 #include "backends/posix/durable_file.hpp"
-#include "drivers/config/utf8.hpp"
+#include "drivers/text/csv.hpp"
+#include "drivers/text/utf8.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/named_list.hpp"
 #include "kernel/core/parameters.hpp"
@@ -104,10 +105,19 @@ Rows parse(const std::filesystem::path& path, std::string text) {
   return rows;
 }
 
+// Tables that the program itself has written may end with one.
+void require_checksum(const std::filesystem::path& path, const std::string& text) {
+  const std::size_t at = text.rfind(kChecksumRemark);
+  if (at == std::string::npos) return;
+  if (text.substr(at) != checksum_line(text.substr(0, at)))
+    throw DamagedFile(path.string() + " is damaged: its rows are not those that were written");
+}
+
 }  // namespace
 
 CsvTable CsvTable::read(const std::filesystem::path& path) {
   std::string text = read_file(path, kLargestTable);
+  require_checksum(path, text);
   if (text.find('\0') != std::string::npos)
     throw InputError(path.string() +
                      " is no plain text, or in UTF-16; save the table as CSV in UTF-8");

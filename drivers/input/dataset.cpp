@@ -8,7 +8,7 @@
 #include "drivers/input/measured_folder.hpp"
 #include "drivers/input/measured_units.hpp"
 #include "drivers/input/measurement_rows.hpp"
-#include "drivers/output/csv.hpp"
+#include "drivers/text/csv.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 

@@ -46,4 +46,12 @@ std::string snapshot_file(std::size_t number) {
   return formatted("snapshot_%03zu.csv", number);
 }
 
+bool is_snapshot_file(const fs::path& path) {
+  const std::string begin = "snapshot_", digits = "0123456789", stem = path.stem().string();
+  return path.extension() == ".csv" && stem.size() >= begin.size() + 3 &&
+         stem.compare(0, begin.size(), begin) == 0 &&
+         stem.find_first_not_of(digits, begin.size()) == std::string::npos &&
+         fs::is_regular_file(fs::symlink_status(path));
+}
+
 }  // namespace traceraft

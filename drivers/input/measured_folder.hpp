@@ -18,5 +18,7 @@ TomlTable read_series_description(const std::filesystem::path& folder);
 
 // Of a folder of fields, counted over all its vesicles from 1 on.
 std::string snapshot_file(std::size_t number);
+// Is it a file of such a name?
+bool is_snapshot_file(const std::filesystem::path& path);
 
 }  // namespace traceraft

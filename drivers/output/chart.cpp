@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "backends/posix/child.hpp"
 #include "backends/posix/durable_file.hpp"
+#include "drivers/text/encoders.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
@@ -30,13 +32,6 @@ const char* style(Mark mark) {
 // Told apart by people who see few colours, too (Okabe and Ito).
 constexpr const char* kColours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                     "#e69f00", "#000000", "#56b4e9", "#999999"};
-
-// Within gnuplot's single quotes nothing is special but the quote.
-std::string quoted(const std::string& text) {
-  std::string result = "'";
-  for (const char ch : text) result += ch == '\'' ? "''" : std::string(1, ch);
-  return result + "'";
-}
 
 // Logarithms have no place for what is not positive. Bands end at the axis then.
 bool drawable(const Chart& chart, const ChartSeries& series, std::size_t k) {
@@ -127,11 +122,34 @@ std::string log_axis(const std::string& axis, const Extent& extent) {
   return text + "set " + axis + "tics (" + log_tics(extent) + ")\n";
 }
 
+// The one name of a chart's files; anything else could be a command of a shell or of gnuplot.
+std::string plain_name(const std::filesystem::path& stem) {
+  const std::string name = stem.filename().string();
+  const char* allowed = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
+  constexpr std::size_t kLongestName = 100;
+  if (name.empty() || name.size() > kLongestName || name[0] == '-' ||
+      name.find_first_not_of(allowed) != std::string::npos)
+    throw std::logic_error("'" + name.substr(0, kLongestName) +
+                           "' is no name for the files of a chart");
+  return name;
+}
+
+// Text stands within single quotes, where gnuplot knows no commands, no macros and no pipes.
+void refuse_commands(const std::string& script) {
+  bool quoted = false;
+  for (const char ch : script) {
+    if (ch == '\'') quoted = !quoted;
+    if (quoted ? ch == '\n' : std::string("`@|!\"\\;").find(ch) != std::string::npos)
+      throw std::logic_error("the input of gnuplot would hold a command");
+  }
+}
+
 std::string script(const Chart& chart, const std::string& svg) {
   std::string text = "set terminal svg noenhanced size 720,520 dynamic font 'sans-serif,13'\n";
-  text += "set output " + quoted(svg) + "\n";
-  text += "set title " + quoted(chart.title) + "\n";
-  text += "set xlabel " + quoted(chart.x_label) + "\nset ylabel " + quoted(chart.y_label) + "\n";
+  text += "set output " + in_gnuplot(svg) + "\n";
+  text += "set title " + in_gnuplot(chart.title) + "\n";
+  text += "set xlabel " + in_gnuplot(chart.x_label) + "\nset ylabel " + in_gnuplot(chart.y_label) +
+          "\n";
   const auto [x, y, all_x] = extents(chart);
   if (chart.log_x) text += log_axis("x", all_x);
   if (all_x.least < x.least || all_x.most > x.most)
@@ -165,7 +183,7 @@ std::string script(const Chart& chart, const std::string& svg) {
     }
     text += "END\n";
     plots += (plots.empty() ? "" : ", ") + block + " with " + style(series.mark) + " title " +
-             quoted(series.name);
+             in_gnuplot(series.name);
   }
   return text + "plot " + plots + "\n";
 }
@@ -181,9 +199,13 @@ std::string draw_chart(const Chart& chart, const std::filesystem::path& stem) {
                    [&](const ChartSeries& series) { return has_something(chart, series); }))
     return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"720\" height=\"40\"><text y=\"24\">"
            "nothing to show</text></svg>";
-  write_durably(with(".gp"), script(chart, with(".svg").string()));
-  const ChildResult result =
-      run_child({{"gnuplot", with(".gp").string()}, with(".log"), 60, nullptr});
+  // In the folder of its files, with names that are plain, and without the user's start-up files.
+  const std::string name = plain_name(stem), input = script(chart, name + ".svg");
+  refuse_commands(input);
+  write_durably(with(".gp"), input);
+  ChildRequest request{{"gnuplot", "--default-settings", name + ".gp"}, with(".log"), 60, nullptr};
+  request.folder = stem.parent_path();
+  const ChildResult result = run_child(request);
   if (result.exit_code == 127) return "";
   if (result.exit_code != 0)
     throw IoError("gnuplot failed on " + with(".gp").string() + "; see " + with(".log").string());

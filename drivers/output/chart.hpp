@@ -13,7 +13,8 @@ namespace traceraft {
 inline constexpr const char* kNoGnuplot = "gnuplot is not installed (Debian package gnuplot-nox)";
 
 // Writes `stem`.gp, gnuplot's input with the data in it, and from it `stem`.svg, whose text is
-// returned. "" if gnuplot is not installed; throws IoError if it fails.
+// returned. "" if gnuplot is not installed; throws IoError if it fails. The last part of `stem`
+// consists of letters, digits, - and _; std::logic_error for others.
 std::string draw_chart(const Chart& chart, const std::filesystem::path& stem);
 
 // What a page lacks, collected.

@@ -1,21 +1,8 @@
 #include "drivers/output/page.hpp"
 
-namespace traceraft {
+#include "drivers/text/encoders.hpp"
 
-std::string html_text(const std::string& text) {
-  std::string result;
-  for (const char ch : text) {
-    if (ch == '&')
-      result += "&amp;";
-    else if (ch == '<')
-      result += "&lt;";
-    else if (ch == '>')
-      result += "&gt;";
-    else
-      result += ch;
-  }
-  return result;
-}
+namespace traceraft {
 
 std::string page_body(const std::string& html) {
   const std::string after = "</h1>\n";
@@ -26,19 +13,19 @@ std::string page_body(const std::string& html) {
 }
 
 void Page::heading(const std::string& text) {
-  body_ += "<h2>" + html_text(text) + "</h2>\n";
+  body_ += "<h2>" + in_html(text) + "</h2>\n";
 }
 
 void Page::paragraph(const std::string& text) {
-  body_ += "<p>" + html_text(text) + "</p>\n";
+  body_ += "<p>" + in_html(text) + "</p>\n";
 }
 
 void Page::code(const std::string& text) {
-  body_ += "<pre>" + html_text(text) + "</pre>\n";
+  body_ += "<pre>" + in_html(text) + "</pre>\n";
 }
 
 void Page::figure(const std::string& svg, const std::string& caption) {
-  body_ += "<figure>" + svg + "<figcaption>" + html_text(caption) + "</figcaption></figure>\n";
+  body_ += "<figure>" + svg + "<figcaption>" + in_html(caption) + "</figcaption></figure>\n";
 }
 
 void Page::table(const std::vector<std::vector<std::string>>& rows) {
@@ -49,7 +36,7 @@ void Page::table(const std::vector<std::vector<std::string>>& rows) {
     for (const std::string& cell : rows[r]) {
       const bool number =
           !cell.empty() && std::string("0123456789+-.").find(cell[0]) != std::string::npos;
-      body_ += "<" + tag + (number ? " class=\"n\">" : ">") + html_text(cell) + "</" + tag + ">";
+      body_ += "<" + tag + (number ? " class=\"n\">" : ">") + in_html(cell) + "</" + tag + ">";
     }
     body_ += "</tr>\n";
   }
@@ -63,7 +50,7 @@ void Page::raw(const std::string& html) {
 std::string Page::html() const {
   return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
-         html_text(title_) +
+         in_html(title_) +
          "</title>\n<style>\n"
          "body{font:16px/1.5 sans-serif;max-width:60em;margin:2em auto;padding:0 1em;color:#222}\n"
          "table{border-collapse:collapse;font-size:14px}\n"
@@ -72,7 +59,7 @@ std::string Page::html() const {
          ".wide,pre{overflow-x:auto}\nfigure{margin:1em "
          "0}\nsvg{max-width:100%;height:auto}\nfigcaption{color:#555;font-size:14px}\n"
          "</style></head><body>\n<h1>" +
-         html_text(title_) + "</h1>\n" + body_ + "</body></html>\n";
+         in_html(title_) + "</h1>\n" + body_ + "</body></html>\n";
 }
 
 }  // namespace traceraft

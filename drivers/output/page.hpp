@@ -6,8 +6,6 @@
 
 namespace traceraft {
 
-std::string html_text(const std::string& text);  // with &, < and > escaped
-
 // What html() below has made, without its head and title.
 std::string page_body(const std::string& html);
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "backends/posix/process.hpp"
+#include "drivers/text/say.hpp"
 
 namespace traceraft {
 namespace {
@@ -36,20 +37,20 @@ void StatusLine::show(double share, const std::string& text) {
   shown_ = true;
   since_ = Stopwatch();
   if (!terminal_) {
-    std::printf("%3.0f %%  %s\n", 100 * share, text.c_str());
+    say("%3.0f %%  %s\n", 100 * share, text);
   } else {
     const int columns = terminal_columns() - 1;
     const int width = std::clamp(columns - static_cast<int>(text.size()) - 3, 0, kBar);
     std::string bar(static_cast<std::size_t>(width), '.');
     std::fill_n(bar.begin(), static_cast<std::size_t>(share * width), '#');
-    std::printf("\r\033[K%.*s", columns, ((width ? "[" + bar + "] " : "") + text).c_str());
+    say("\r\033[K%.*s", columns, ((width ? "[" + bar + "] " : "") + text));
   }
-  std::fflush(stdout);
+  flush_output();
 }
 
 void StatusLine::finish() {
-  if (!quiet_ && terminal_ && shown_) std::printf("\n");
-  std::fflush(stdout);
+  if (!quiet_ && terminal_ && shown_) say("\n");
+  flush_output();
 }
 
 }  // namespace traceraft

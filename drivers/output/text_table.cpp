@@ -1,9 +1,9 @@
 #include "drivers/output/text_table.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
-#include "drivers/output/csv.hpp"
+#include "drivers/text/csv.hpp"
+#include "drivers/text/say.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
 
@@ -35,7 +35,7 @@ void print_rows(const std::vector<Row>& rows) {
       // The first column is a name as a rule.
       line += "  " + (k == 0 ? row[k] + gap : gap + row[k]);
     }
-    std::printf("%s\n", line.c_str());
+    say("%s\n", line);
   }
 }
 
@@ -53,11 +53,20 @@ std::string csv_text(const Table& table) {
   return csv;
 }
 
-std::string markdown_table(const std::vector<Row>& rows) {
+std::string checked_csv_text(const Table& table) {
+  const std::string csv = csv_text(table);
+  return csv + checksum_line(csv);
+}
+
+std::string markdown_table(const std::vector<Row>& rows, MarkdownLinks links) {
   std::string text;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     text += "|";
-    for (const std::string& cell : rows[r]) text += " " + cell + " |";
+    for (std::size_t k = 0; k < rows[r].size(); ++k) {
+      const std::string cell = in_markdown(rows[r][k]);
+      const bool link = links == MarkdownLinks::to_headings && r > 0 && k == 0;
+      text += " " + (link ? "[" + cell + "](#" + in_markdown_link(rows[r][k]) + ")" : cell) + " |";
+    }
     text += "\n";
     if (r > 0) continue;
     text += "|";

@@ -15,6 +15,10 @@ std::vector<Row> table_rows(const Table& table);  // the heading first, numbers 
 
 void print_rows(const std::vector<Row>& rows);  // in columns, the first one flush left
 std::string csv_text(const Table& table);       // numbers in full precision
-std::string markdown_table(const std::vector<Row>& rows);
+// The same with a last line that CsvTable::read checks it by: for tables that are read again.
+std::string checked_csv_text(const Table& table);
+// to_headings: cells of the first column, but for the first, are links to headings of that text.
+enum class MarkdownLinks { none, to_headings };
+std::string markdown_table(const std::vector<Row>& rows, MarkdownLinks links = MarkdownLinks::none);
 
 }  // namespace traceraft

@@ -1,5 +1,4 @@
 #include <CLI/CLI.hpp>
-#include <cstdio>
 
 #include "backends/gif/gif_writer.hpp"
 #include "backends/gif/label.hpp"
@@ -10,6 +9,7 @@
 #include "drivers/exit_codes.hpp"
 #include "drivers/input/dataset.hpp"
 #include "drivers/report/report_page.hpp"
+#include "drivers/text/say.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
@@ -44,7 +44,7 @@ void write_pictures(const ReportRequest& request) {
   }
   if (!request.animation.empty()) {
     write_durably(request.animation, gif_bytes(images, request.pause));
-    if (!request.quiet) std::printf("%s\n", request.animation.c_str());
+    if (!request.quiet) say("%s\n", request.animation);
   }
   if (request.snapshots.empty()) return;
   fs::create_directories(request.snapshots);
@@ -55,9 +55,9 @@ void write_pictures(const ReportRequest& request) {
   }
   write_durably(fs::path(request.snapshots) / "frames.csv", times);
   if (request.quiet) return;
-  std::printf("%zu pictures in %s\n", images.size(), request.snapshots.c_str());
+  say("%zu pictures in %s\n", images.size(), request.snapshots);
   if (fs::exists(fs::path(request.snapshots) / frame_name(images.size())))
-    std::printf("later ones there are of another time\n");
+    say("later ones there are of another time\n");
 }
 
 // A slip of the pen must not write over a configuration or a table.
@@ -81,8 +81,8 @@ int report(const ReportRequest& request) {
        request.data.empty() ? std::nullopt : std::optional(read_dataset(request.data))});
   write_pictures(request);
   if (!request.quiet) {
-    if (!missing.empty()) std::printf("missing in the page: %s\n", missing.c_str());
-    std::printf("open next: %s\n", out.c_str());
+    if (!missing.empty()) say("missing in the page: %s\n", missing);
+    say("open next: %s\n", out);
   }
   return kSuccess;
 }

@@ -9,11 +9,12 @@
 #include "drivers/input/csv_table.hpp"
 #include "drivers/input/model_of_data.hpp"
 #include "drivers/output/chart.hpp"
-#include "drivers/output/json_file.hpp"
+#include "drivers/input/json_file.hpp"
 #include "drivers/output/page.hpp"
 #include "drivers/output/provenance.hpp"
 #include "drivers/output/text_table.hpp"
 #include "drivers/report/viewer.hpp"
+#include "drivers/run/finished_run.hpp"
 #include "drivers/run/physical_model.hpp"
 #include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/error.hpp"
@@ -125,6 +126,7 @@ void fill_run(Page& page, const fs::path& folder, const PageRequest& request, Mi
   page.heading("In time");
   if (request.data)
     page.paragraph("Perimeters that were measured are drawn for a vesicle of this one's radius.");
+  require_whole_table(folder, "series.csv");
   const CsvTable series = CsvTable::read(folder / "series.csv");
   for (const Curve& curve : curves()) {
     Chart chart = series_chart(series, curve, length, time);

@@ -8,6 +8,7 @@
 #include "backends/posix/durable_file.hpp"
 #include "backends/zlib/vtk_array.hpp"
 #include "drivers/report/viewer_script.hpp"
+#include "drivers/text/encoders.hpp"
 #include "kernel/core/error.hpp"
 
 namespace traceraft {
@@ -83,9 +84,11 @@ std::string add_viewer(Page& page, const SurfaceMesh& mesh, const std::vector<Ve
   page.raw(
       licence_comment() + script(read_file(kLibrary, kLargestScript)) +
       script(read_file(kControls, kLargestScript)) +
-      script("window.traceraftScene = " +
-             nlohmann::json{{"labels", view.labels}, {"differences", view.differences}}.dump() +
-             ";") +
+      script(
+          "window.traceraftScene = " +
+          in_html_script(
+              nlohmann::json{{"labels", view.labels}, {"differences", view.differences}}.dump()) +
+          ";") +
       script(kViewerScript));
   return "";
 }

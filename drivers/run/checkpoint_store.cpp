@@ -6,13 +6,14 @@
 
 #include "backends/posix/durable_file.hpp"
 #include "backends/zlib/checksum.hpp"
+#include "drivers/text/say.hpp"
 #include "kernel/core/binary.hpp"
 #include "kernel/core/error.hpp"
 
 namespace traceraft {
 namespace {
 
-constexpr char kMagic[] = "traceraft checkpoint 3\n";  // the number is the version of the format
+constexpr char kMagic[] = "traceraft checkpoint 4\n";  // the number is the version of the format
 constexpr std::size_t kMagicSize = sizeof kMagic - 1;
 constexpr std::uint64_t kLargestCheckpoint = std::uint64_t{1} << 36;
 constexpr std::size_t kKept = 2;
@@ -68,9 +69,10 @@ std::string encode(const Checkpoint& checkpoint) {
   std::ostringstream out;
   write_text(out, checkpoint.configuration);
   write_binary(out, static_cast<std::uint64_t>(checkpoint.tables.size()));
-  for (const auto& [name, size] : checkpoint.tables) {
+  for (const auto& [name, extent] : checkpoint.tables) {
     write_text(out, name);
-    write_binary(out, size);
+    write_binary(out, extent.bytes);
+    write_binary(out, extent.checksum);
   }
   write_text(out, checkpoint.state);
   write_binary(out, static_cast<std::uint64_t>(checkpoint.concentration.size()));
@@ -101,7 +103,9 @@ Checkpoint decode(const std::string& data) {
   checkpoint.configuration = in.text();
   for (auto tables = in.number<std::uint64_t>(); tables > 0; --tables) {
     const std::string name = in.text();
-    checkpoint.tables[name] = in.number<std::uint64_t>();
+    TableExtent& extent = checkpoint.tables[name];
+    extent.bytes = in.number<std::uint64_t>();
+    extent.checksum = in.number<std::uint32_t>();
   }
   checkpoint.state = in.text();
   checkpoint.concentration = in.numbers();
@@ -151,7 +155,7 @@ Checkpoint CheckpointStore::newest() const {
   std::vector<std::string> refused;
   Checkpoint checkpoint = newest(refused);
   for (const std::string& why : refused)
-    std::fprintf(stderr, "traceraft: refused %s; using the checkpoint before it\n", why.c_str());
+    say_error("refused " + why + "; using the checkpoint before it");
   return checkpoint;
 }
 

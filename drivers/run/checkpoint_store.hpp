@@ -3,10 +3,10 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <string>
 #include <vector>
 
+#include "drivers/run/table_file.hpp"
 #include "kernel/core/types.hpp"
 
 namespace traceraft {
@@ -18,10 +18,10 @@ struct RunCost {
 
 // What one checkpoint file holds, besides magic, version and checksum.
 struct Checkpoint {
-  std::string configuration;                    // resolved, to recognise a changed run
-  std::map<std::string, std::uint64_t> tables;  // sizes of the tables when it was written
-  std::string state;                            // RunState::save
-  std::vector<double> concentration;            // c at the nodes, for --initial restart:DIR
+  std::string configuration;          // resolved, to recognise a changed run
+  TableExtents tables;                // when it was written
+  std::string state;                  // RunState::save
+  std::vector<double> concentration;  // c at the nodes, for --initial restart:DIR
   long step = 0;
   RunCost cost;
 };

@@ -1,6 +1,9 @@
 #include "drivers/run/finished_run.hpp"
 
-#include "drivers/output/json_file.hpp"
+#include <charconv>
+#include <optional>
+
+#include "drivers/input/json_file.hpp"
 #include "drivers/run/checkpoint_store.hpp"
 
 namespace traceraft {
@@ -10,6 +13,30 @@ bool run_finished(const std::filesystem::path& run_folder) {
   return std::filesystem::exists(summary) && from_json(summary, [](const Json& json) {
            return json.at("end").get<std::string>() == "finished";
          });
+}
+
+namespace {
+
+TableExtent extent_in(const Json& tables, const std::string& name) {
+  const Json& table = tables.at(name);
+  const std::string digits = table.at("crc32");
+  std::uint32_t checksum = 0;
+  const auto parsed = std::from_chars(digits.data(), digits.data() + digits.size(), checksum, 16);
+  if (parsed.ec != std::errc() || parsed.ptr != digits.data() + digits.size())
+    throw DamagedFile("the summary of a run is damaged: '" + digits + "' is no checksum");
+  return {table.at("bytes").get<std::uint64_t>(), checksum};
+}
+
+}  // namespace
+
+void require_whole_table(const std::filesystem::path& run_folder, const std::string& name) {
+  if (!run_finished(run_folder)) return;
+  const auto extent =
+      from_json(run_folder / "summary.json", [&](const Json& json) -> std::optional<TableExtent> {
+        if (!json.contains("tables")) return std::nullopt;
+        return extent_in(json["tables"], name);
+      });
+  if (extent) require_extent(run_folder / name, *extent);
 }
 
 double summary_number(const std::filesystem::path& run_folder, const char* name) {

@@ -7,9 +7,11 @@
 
 #include "backends/posix/child.hpp"
 #include "backends/posix/durable_file.hpp"
+#include "backends/posix/own_files.hpp"
 #include "backends/posix/process.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/run/finished_run.hpp"
+#include "drivers/run/run_folder.hpp"
 
 namespace traceraft {
 namespace {
@@ -25,6 +27,14 @@ std::vector<std::string> program_on(int ranks) {
   if (is_superuser()) command.push_back("--allow-run-as-root");
   command.push_back(own_path());
   return command;
+}
+
+// A run and its log.
+void remove_scratch(const std::filesystem::path& scratch) {
+  if (!std::filesystem::exists(scratch)) return;
+  std::vector<std::string> own = {"log"};
+  for (const std::string& name : files_of_a_run()) own.push_back("run/" + name);
+  remove_own_folder(scratch, own);
 }
 
 }  // namespace
@@ -84,7 +94,7 @@ ProgramEnd run_program(const std::vector<std::string>& arguments, const std::fil
 RunProgram program_runner(std::filesystem::path scratch) {
   return [scratch = std::move(scratch)](const std::vector<std::string>& options, int ranks,
                                         int nodes) {
-    std::filesystem::remove_all(scratch);  // what a run that failed has left
+    remove_scratch(scratch);  // what a run that failed has left
     std::filesystem::create_directories(scratch);
     const std::filesystem::path folder = scratch / "run";
     std::vector<std::string> arguments = {"run",         "--scaled", "--out",     folder.string(),
@@ -95,7 +105,7 @@ RunProgram program_runner(std::filesystem::path scratch) {
       throw std::runtime_error("a run on " + std::to_string(ranks) + " ranks: " + end.reason());
     const ProgramRun run{summary_number(folder, "steps"), summary_number(folder, "mass_drift"),
                          concentration_at_end(folder, nodes)};
-    std::filesystem::remove_all(scratch);
+    remove_scratch(scratch);
     return run;
   };
 }

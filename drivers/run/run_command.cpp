@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <optional>
 #include <sstream>
 
@@ -11,7 +10,9 @@
 #include "drivers/run/progress.hpp"
 #include "drivers/run/run_outputs.hpp"
 #include "drivers/run/summary.hpp"
+#include "drivers/text/say.hpp"
 #include "kernel/core/error.hpp"
+#include "kernel/core/text.hpp"
 
 namespace traceraft {
 namespace {
@@ -45,11 +46,9 @@ int carry_out(const Configuration& configuration, RunSetup& run, const RunFolder
               const std::optional<Checkpoint>& checkpoint, bool quiet) {
   const bool root = run.ranks->root();
   catch_stop_signals();
-  ignore_file_size_signal();
   RunState state{*run.integrator, {}, 0, {}};
   std::optional<TableWriter> tables;
-  if (root)
-    tables.emplace(folder, run, checkpoint ? checkpoint->tables : decltype(Checkpoint::tables){});
+  if (root) tables.emplace(folder, run, checkpoint ? checkpoint->tables : TableExtents{});
   FieldWriter fields(folder, run);
   CheckpointWriter checkpoints(
       folder, run, root ? &*tables : nullptr, numerical_identity(configuration),
@@ -77,14 +76,14 @@ int carry_out(const Configuration& configuration, RunSetup& run, const RunFolder
   const RunCost cost = checkpoints.cost();
   const double memory = run.ranks->sum(peak_memory_mb());
   if (root)
-    write_durably(folder.summary(), summary_json(configuration, run, state, result, cost, memory));
+    write_durably(folder.summary(),
+                  summary_json(configuration, run, state, result, cost, memory, tables->extents()));
   if (!quiet) print_summary(configuration, run, state, result, cost, memory, folder);
   if (result.end == RunEnd::stopped && !quiet)
-    std::printf("  go on with             traceraft resume %s\n",
-                in_shell(folder.path.string()).c_str());
+    say("  go on with             traceraft resume %s\n", in_shell(folder.path.string()));
   if (result.end == RunEnd::failed && root)
-    std::fprintf(stderr, "traceraft: numerical failure at t = %g: %s\n",
-                 state.row.t * run.units.time(), result.why.c_str());
+    say_error(formatted("numerical failure at t = %g: ", state.row.t * run.units.time()) +
+              result.why);
   return exit_code(result);
 }
 
@@ -111,12 +110,12 @@ int run(const RunRequest& request) {
   if (!quiet) print_setup(configuration, run);
   if (request.validate) {
     if (!request.out.empty()) refuse_files_of_a_run(request.out);
-    if (run.ranks->root()) std::printf("everything is valid; nothing was run\n");
+    if (run.ranks->root()) say("everything is valid; nothing was run\n");
     return kSuccess;
   }
   const RunFolder folder =
       shared_folder(*run.ranks, [&] { return create_run_folder(request.out, configuration); });
-  if (!quiet) std::printf("  %-22s %s\n\n", "folder", folder.path.c_str());
+  if (!quiet) say("  %-22s %s\n\n", "folder", folder.path);
   return carry_out(configuration, run, folder, std::nullopt, quiet);
 }
 
@@ -136,10 +135,10 @@ int resume(const ResumeRequest& request) {
   if (!quiet) {
     print_setup(configuration, run);
     if (checkpoint)
-      std::printf("  %-22s %s from step %ld\n\n", "resumed", folder.path.c_str(), checkpoint->step);
+      say("  %-22s %s from step %ld\n\n", "resumed", folder.path, checkpoint->step);
     else
-      std::printf("  %-22s %s, which has no checkpoint: its steps are taken again\n\n",
-                  "begun anew", folder.path.c_str());
+      say("  %-22s %s, which has no checkpoint: its steps are taken again\n\n", "begun anew",
+          folder.path);
   }
   return carry_out(configuration, run, folder, checkpoint, quiet);
 }

@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "backends/posix/durable_file.hpp"
+#include "backends/posix/own_files.hpp"
 #include "drivers/config/config_file.hpp"
+#include "drivers/text/encoders.hpp"
 #include "kernel/core/error.hpp"
 
 namespace traceraft {
@@ -23,6 +25,19 @@ bool holds_runs(const fs::path& path) {
 
 }  // namespace
 
+std::vector<std::string> files_of_a_report() {
+  return {"report.html", "report-charts/*.gp", "report-charts/*.svg", "report-charts/*.log"};
+}
+
+std::vector<std::string> files_of_a_run() {
+  std::vector<std::string> names = files_of_a_report();
+  names.insert(names.end(),
+               {kLockFile, "config.toml", "series.csv", "observables.csv", "rafts.csv", "view.png",
+                "fields.pvd", "summary.json", "fields/field-????*.vtu", "fields/field-????*.pvtu",
+                "fields/view-????*.png", "checkpoints/step-??????????.ckpt"});
+  return names;
+}
+
 std::string first_free_folder(const std::string& name) {
   for (int number = 1;; ++number) {
     const std::string candidate = "runs/" + name + "-" + std::to_string(number);
@@ -36,13 +51,14 @@ void refuse_files_of_a_run(const fs::path& path) {
        {folder.config(), folder.summary(), folder.fields(), folder.checkpoints(),
         folder.table("view.png"), folder.table("fields.pvd"), folder.table("series.csv"),
         folder.table("observables.csv"), folder.table("rafts.csv")})
-    if (fs::exists(ours))
+    if (fs::exists(fs::symlink_status(ours)))
       throw InputError("--out: " + path.string() + " already holds " + ours.filename().string() +
                        (holds_runs(path)
                             ? std::string(", of a set of runs")
                             : "; go on with: traceraft resume " + in_shell(path.string())) +
                        "; choose another folder");
   refuse_folder_of_others(path);
+  refuse_foreign_folder(path, {});
 }
 
 void refuse_folder_of_others(const fs::path& path) {
@@ -66,7 +82,7 @@ void refuse_foreign_folder(const fs::path& path, const std::vector<std::string>&
                   [&](const std::string& name) { return fs::exists(path / name); }))
     return;
   for (const auto& entry : fs::directory_iterator(path))
-    if (entry.path().filename() != kLockFile)
+    if (entry.path().filename() != kLockFile && !is_temporary_file(entry.path()))
       throw InputError("--out: " + path.string() + " holds " + entry.path().filename().string() +
                        ", which is nothing of this command; choose another folder");
 }
@@ -107,6 +123,7 @@ RunFolder create_run_folder(const std::string& out, const Configuration& configu
     fs::create_directories(folder.path);
     folder.lock = std::make_unique<FolderLock>(folder.path);
     refuse_files_of_a_run(folder.path);
+    remove_temporary_files(folder.path);
     // First what makes it a run that can be resumed.
     write_durably(folder.config(), config_text(configuration));
     create_sub_folders(folder);
@@ -129,6 +146,8 @@ RunFolder open_run_folder(const fs::path& path) {
                      in_shell(path.string()));
   folder.lock = std::make_unique<FolderLock>(path);
   create_sub_folders(folder);
+  for (const fs::path& own : {folder.path, folder.fields(), folder.checkpoints()})
+    remove_temporary_files(own);
   return folder;
 }
 

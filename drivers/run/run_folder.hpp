@@ -24,6 +24,10 @@ struct RunFolder {
   std::filesystem::path table(const std::string& name) const { return path / name; }
 };
 
+// The files that a run, and `report`, write into a folder, as own_files.hpp names them.
+std::vector<std::string> files_of_a_run();
+std::vector<std::string> files_of_a_report();
+
 // runs/<name>-<first free number>.
 std::string first_free_folder(const std::string& name);
 
@@ -35,7 +39,7 @@ void refuse_files_of_a_run(const std::filesystem::path& path);
 // Throws InputError: another process has begun something there between choice and lock.
 [[noreturn]] void refuse_begun(const std::filesystem::path& path);
 
-// Throws InputError if a folder that is to be written to holds anything but none of `own`, the
+// Throws InputError if a folder that is to be written to holds anything and none of `own`, the
 // files by which the command knows its folders: what is there may be somebody's. Locks do not
 // count.
 void refuse_foreign_folder(const std::filesystem::path& path, const std::vector<std::string>& own);
@@ -43,9 +47,9 @@ void refuse_foreign_folder(const std::filesystem::path& path, const std::vector<
 // On every rank the folder that the first one has made or opened, or what it has thrown.
 RunFolder shared_folder(const Communicator& ranks, const std::function<RunFolder()>& open);
 
-// A folder for a new run, locked, holding its resolved configuration. Files of others in it are
-// left alone. An empty `out` means runs/<case>-<first free number>. Throws InputError if it holds a
-// run already, LockedError if one is going on, IoError.
+// A folder for a new run, locked, holding its resolved configuration. An empty `out` means
+// runs/<case>-<first free number>. Throws InputError if it holds anything already, LockedError if a
+// run is going on there, IoError.
 RunFolder create_run_folder(const std::string& out, const Configuration& configuration);
 
 // The folder of an earlier run, locked. Throws InputError if there is none, LockedError, IoError.

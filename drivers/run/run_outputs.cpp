@@ -18,9 +18,9 @@ constexpr char kColumns[] =
     "failures,newton_iterations,linear_iterations,linear_setups,order\n";
 constexpr char kRaftColumns[] = "t,raft,area,perimeter,x,y,z\n";
 
-std::uint64_t size_of(const std::map<std::string, std::uint64_t>& sizes, const std::string& name) {
-  const auto found = sizes.find(name);
-  return found == sizes.end() ? 0 : found->second;
+TableExtent extent_of(const TableExtents& extents, const std::string& name) {
+  const auto found = extents.find(name);
+  return found == extents.end() ? TableExtent{} : found->second;
 }
 
 std::string csv_row(std::initializer_list<double> values) {
@@ -54,15 +54,14 @@ std::string piece_name(std::size_t index, int rank) {
 
 }  // namespace
 
-TableWriter::TableWriter(const RunFolder& folder, const RunSetup& run,
-                         const std::map<std::string, std::uint64_t>& sizes)
+TableWriter::TableWriter(const RunFolder& folder, const RunSetup& run, const TableExtents& extents)
     : run_(run),
-      series_(folder.table("series.csv"), size_of(sizes, "series.csv")),
-      observables_(folder.table("observables.csv"), size_of(sizes, "observables.csv")),
-      rafts_(folder.table("rafts.csv"), size_of(sizes, "rafts.csv")) {
-  if (series_.size() == 0) series_.append(kColumns);
-  if (observables_.size() == 0) observables_.append(kColumns);
-  if (rafts_.size() == 0) rafts_.append(kRaftColumns);
+      series_(folder.table("series.csv"), extent_of(extents, "series.csv")),
+      observables_(folder.table("observables.csv"), extent_of(extents, "observables.csv")),
+      rafts_(folder.table("rafts.csv"), extent_of(extents, "rafts.csv")) {
+  if (series_.extent().bytes == 0) series_.append(kColumns);
+  if (observables_.extent().bytes == 0) observables_.append(kColumns);
+  if (rafts_.extent().bytes == 0) rafts_.append(kRaftColumns);
 }
 
 std::string TableWriter::row_text(const Observables& row, double t) const {
@@ -99,13 +98,13 @@ void TableWriter::on_output(const Observables& row, const RaftReport& rafts, Con
 }
 
 void TableWriter::sync() {
-  for (AppendFile* table : {&series_, &observables_, &rafts_}) table->sync();
+  for (TableFile* table : {&series_, &observables_, &rafts_}) table->sync();
 }
 
-std::map<std::string, std::uint64_t> TableWriter::sizes() const {
-  return {{"series.csv", series_.size()},
-          {"observables.csv", observables_.size()},
-          {"rafts.csv", rafts_.size()}};
+TableExtents TableWriter::extents() const {
+  return {{"series.csv", series_.extent()},
+          {"observables.csv", observables_.extent()},
+          {"rafts.csv", rafts_.extent()}};
 }
 
 void FieldWriter::on_output(const Observables& row, const RaftReport&, ConstVec y) {
@@ -183,7 +182,7 @@ void CheckpointWriter::write(const RunState& state) {
   checkpoint.step = state.integrator.statistics().steps;
   checkpoint.cost = cost();
   if (tables_) {
-    checkpoint.tables = tables_->sizes();
+    checkpoint.tables = tables_->extents();
     store_.write(checkpoint);
   }
   since_last_ = Stopwatch();

@@ -1,12 +1,10 @@
 // What a run writes: tables, fields and checkpoints, each a listener of the run loop.
 #pragma once
 
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "backends/posix/durable_file.hpp"
 #include "drivers/run/checkpoint_store.hpp"
 #include "drivers/run/run_folder.hpp"
 #include "drivers/run/run_setup.hpp"
@@ -19,19 +17,18 @@ namespace traceraft {
 // output times. rafts.csv: every raft at the output times.
 class TableWriter final : public RunListener {
  public:
-  // Sizes as a checkpoint recorded them; empty for a new run.
-  TableWriter(const RunFolder& folder, const RunSetup& run,
-              const std::map<std::string, std::uint64_t>& sizes);
+  // `extents`: as a checkpoint recorded them; empty for a new run. Throws IoError.
+  TableWriter(const RunFolder& folder, const RunSetup& run, const TableExtents& extents);
   void on_step(const RunState& state) override;
   void on_output(const Observables& row, const RaftReport& rafts, ConstVec y) override;
   void sync();
-  std::map<std::string, std::uint64_t> sizes() const;
+  TableExtents extents() const;
 
  private:
   std::string row_text(const Observables& row, double t) const;
 
   const RunSetup& run_;
-  AppendFile series_, observables_, rafts_;
+  TableFile series_, observables_, rafts_;
 };
 
 // fields/field-NNNN.vtu with c and mu on Γ_h, collected in fields.pvd, and a picture of front and

@@ -1,6 +1,5 @@
 #include "drivers/run/summary.hpp"
 
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "backends/posix/process.hpp"
@@ -8,6 +7,7 @@
 #include "drivers/config/config_file.hpp"
 #include "drivers/output/program.hpp"
 #include "drivers/run/progress.hpp"
+#include "drivers/text/say.hpp"
 #include "drivers/version.hpp"
 #include "kernel/core/text.hpp"
 
@@ -30,7 +30,7 @@ bool decay_promised(const RunSetup& run) {
 }
 
 void line(const char* label, const std::string& value) {
-  std::printf("  %-22s %s\n", label, value.c_str());
+  say("  %-22s %s\n", label, value);
 }
 
 // The energy, and what became of steps that gained some.
@@ -52,7 +52,7 @@ std::string energy_text(const Configuration& configuration, const RunSetup& run,
 
 std::string summary_json(const Configuration& configuration, const RunSetup& run,
                          const RunState& state, const RunResult& result, const RunCost& cost,
-                         double memory_mb) {
+                         double memory_mb, const TableExtents& tables) {
   const Units& units = run.units;
   const Observables& row = state.row;
   const IntegratorStatistics steps = run.integrator->statistics();
@@ -116,6 +116,8 @@ std::string summary_json(const Configuration& configuration, const RunSetup& run
   json["ranks"] = run.ranks->size();
   json["threads"] = run.team->size();
   json["blas"] = blas_description();
+  for (const auto& [name, extent] : tables)
+    json["tables"][name] = {{"bytes", extent.bytes}, {"crc32", formatted("%08x", extent.checksum)}};
   return json.dump(2) + "\n";
 }
 
@@ -149,7 +151,7 @@ std::string initial_text(const Configuration& configuration, const RunSetup& run
 
 void print_setup(const Configuration& configuration, const RunSetup& run) {
   const Units& units = run.units;
-  std::printf("traceraft %s\n", kVersion);
+  say("traceraft %s\n", kVersion);
   line("case", configuration.text("case"));
   line("surface",
        formatted("%s, R = %g um, area %.6g %s", configuration.text("surface").c_str(),
@@ -190,8 +192,7 @@ void print_summary(const Configuration& configuration, const RunSetup& run, cons
   const IntegratorStatistics steps = run.integrator->statistics();
   const LinearStatistics linear = run.integrator->linear_statistics();
   const char* length = units.scaled ? "R" : "um";
-  std::printf("\n%s at t = %.6g%s\n", end_name(result.end), row.t * units.time(),
-              units.scaled ? "" : " s");
+  say("\n%s at t = %.6g%s\n", end_name(result.end), row.t * units.time(), units.scaled ? "" : " s");
   if (!result.why.empty()) line("why", result.why);
   line("rafts", formatted("%d", row.rafts));
   line("raft fraction", formatted("%.4f of the area, mean concentration %.6f", row.raft_fraction,

@@ -13,7 +13,7 @@ namespace traceraft {
 
 std::string summary_json(const Configuration& configuration, const RunSetup& run,
                          const RunState& state, const RunResult& result, const RunCost& cost,
-                         double memory_mb);
+                         double memory_mb, const TableExtents& tables);
 
 // How well the mesh resolves the phase boundary, and a warning if it does not.
 std::string resolution_text(const Configuration& configuration, const RunSetup& run);

@@ -1,11 +1,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 
 #include "backends/posix/child.hpp"
 #include "backends/posix/durable_file.hpp"
 #include "backends/posix/folder_lock.hpp"
+#include "backends/posix/own_files.hpp"
 #include "backends/posix/process.hpp"
 #include "drivers/commands.hpp"
 #include "drivers/ensemble/ensemble_runs.hpp"
@@ -14,6 +14,7 @@
 #include "drivers/output/status_line.hpp"
 #include "drivers/run/program_run.hpp"
 #include "drivers/run/run_folder.hpp"
+#include "drivers/text/say.hpp"
 #include "drivers/verify/verify_jobs.hpp"
 #include "drivers/verify/verify_report.hpp"
 #include "kernel/core/error.hpp"
@@ -109,8 +110,8 @@ VerificationContext context_of(const VerifyRequest& request, const BenchRequest&
 
 int list_studies() {
   for (const StudyEntry& study : studies())
-    std::printf("  %-14s %s%s\n", study.name.c_str(), study.summary.c_str(),
-                study.by_name_only ? " (not part of all)" : "");
+    say("  %-14s %s%s\n", study.name, study.summary,
+        study.by_name_only ? " (not part of all)" : "");
   return kSuccess;
 }
 
@@ -132,7 +133,18 @@ std::vector<StudyEntry> not_measured(const std::vector<StudyEntry>& chosen, cons
 
 void print_verdicts(const std::vector<StudyResult>& results) {
   for (const StudyResult& result : results)
-    std::printf("  %-14s %s\n", result.study.name.c_str(), verdict_text(result.verdict()));
+    say("  %-14s %s\n", result.study.name, verdict_text(result.verdict()));
+}
+
+void refuse_foreign_files(const fs::path& folder) {
+  if (!fs::exists(folder)) return;
+  if (!fs::is_directory(folder)) throw InputError("--out: " + folder.string() + " is no folder");
+  std::vector<std::string> own = files_of_a_verification();
+  for (const std::string& name : files_of_a_verification()) own.push_back("job-*/" + name);
+  own.emplace_back("job-*.log");
+  if (const fs::path foreign = first_foreign(folder, own); !foreign.empty())
+    throw InputError("--out: " + folder.string() + " holds " + foreign.string() +
+                     ", which is nothing of a verification; choose another folder");
 }
 
 int verify(const VerifyRequest& request) {
@@ -147,7 +159,7 @@ int verify(const VerifyRequest& request) {
   BenchRequest bench{request.quick, request.integrator, request.linear_solver, jobs.threads};
   (void)Bench(bench);  // refuses unknown names before anything is written
   const fs::path folder = request.out.empty() ? first_free_folder("verify") : request.out;
-  refuse_folder_of_others(folder);
+  refuse_foreign_files(folder);
   fs::create_directories(folder);
   const FolderLock lock(folder);
   bench.run_program = program_runner(folder / "ranks");
@@ -160,7 +172,7 @@ int verify(const VerifyRequest& request) {
       request.quiet ? ""
                     : "to go on, give the same command with --out " + in_shell(folder.string());
   if (jobs.at_a_time > 1 && !carry_out_side_by_side(side_by_side, folder)) {
-    if (!request.quiet) std::printf("%s\n", go_on.c_str());
+    if (!request.quiet) say("%s\n", go_on);
     return kInterrupted;
   }
   end_on_stop_signals(kInterrupted, go_on);  // studies are on disk as soon as they are done
@@ -168,10 +180,10 @@ int verify(const VerifyRequest& request) {
   std::vector<StudyResult> results;
   bool all = true;
   for (const StudyEntry& study : chosen) {
-    if (!request.quiet) std::printf("%s: %s\n\n", study.name.c_str(), study.summary.c_str());
+    if (!request.quiet) say("%s: %s\n\n", study.name, study.summary);
     auto before = measured_before(folder, study, context.measured_with);
     if (before && !holds(left, study) && !request.quiet)
-      std::printf("  (measured before, in %s)\n\n", folder.c_str());
+      say("  (measured before, in %s)\n\n", folder);
     results.push_back(before ? std::move(*before) : carry_out(study, bench, line));
     if (!request.quiet) print_result(results.back());
     all = all && results.back().verdict() != Verdict::fails;
@@ -181,8 +193,8 @@ int verify(const VerifyRequest& request) {
   if (!request.document.empty()) write_document(request.document, folder, context, results);
   if (!request.quiet) {
     print_verdicts(results);
-    if (!missing.empty()) std::printf("\ncharts are missing: %s\n", missing.c_str());
-    std::printf("\nopen next: %s\n", (folder / "verify.html").c_str());
+    if (!missing.empty()) say("\ncharts are missing: %s\n", missing);
+    say("\nopen next: %s\n", (folder / "verify.html"));
   }
   return all ? kSuccess : kClaimFailed;
 }

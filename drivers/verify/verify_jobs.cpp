@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include "backends/posix/own_files.hpp"
 #include "backends/posix/process.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/output/status_line.hpp"
@@ -28,7 +29,7 @@ bool carry_out(const StudyJobs& jobs, const StudyEntry& study, const fs::path& f
                           : std::nullopt;
   if (!result) throw IoError(study.name + ": " + end.reason() + ", see " + log.string());
   write_study(folder, *result, jobs.measured_with);
-  fs::remove_all(own);
+  remove_own_folder(own, files_of_a_verification());
   fs::remove(log);
   return true;
 }

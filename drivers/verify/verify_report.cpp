@@ -1,15 +1,18 @@
 #include "drivers/verify/verify_report.hpp"
 
 #include <cmath>
-#include <cstdio>
 
 #include "backends/posix/durable_file.hpp"
+#include "backends/posix/folder_lock.hpp"
 #include "drivers/output/chart.hpp"
 #include "drivers/output/page.hpp"
 #include "drivers/output/text_table.hpp"
+#include "drivers/run/run_folder.hpp"
+#include "drivers/text/say.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
+#include "verification/studies/studies.hpp"
 
 namespace traceraft {
 namespace {
@@ -85,15 +88,25 @@ std::vector<Row> claim_rows(const std::vector<Claim>& claims) {
 void print_result(const StudyResult& result) {
   for (const Table& table : result.report.tables) {
     print_rows(table_rows(table));
-    std::printf("\n");
+    say("\n");
   }
-  for (const std::string& note : result.report.notes) std::printf("  %s\n", note.c_str());
-  if (!result.report.notes.empty()) std::printf("\n");
+  for (const std::string& note : result.report.notes) say("  %s\n", note);
+  if (!result.report.notes.empty()) say("\n");
   if (!result.report.claims.empty()) print_rows(claim_rows(result.report.claims));
   if (const std::string outcome = outcome_sentence(result); !outcome.empty())
-    std::printf("  %s\n", outcome.c_str());
-  std::printf("\n  %.1f s\n\n", result.seconds);
-  std::fflush(stdout);
+    say("  %s\n", outcome);
+  say("\n  %.1f s\n\n", result.seconds);
+  flush_output();
+}
+
+std::vector<std::string> files_of_a_verification() {
+  std::vector<std::string> names = files_of_a_report();
+  names.insert(names.end(), {kLockFile, "verify.json", "verify.html", "ranks/log"});
+  for (const StudyEntry& study : studies())
+    for (const char* ending : {".json", "-*.csv", "-*.gp", "-*.svg", "-*.log"})
+      names.push_back(study.name + ending);
+  for (const std::string& name : files_of_a_run()) names.push_back("ranks/run/" + name);
+  return names;
 }
 
 void write_study(const fs::path& folder, const StudyResult& result, const std::string& with) {
@@ -138,27 +151,24 @@ void write_document(const fs::path& path, const fs::path& folder,
   fs::path figures = path;
   figures.replace_extension();
   fs::create_directories(figures);
-  std::string text = "# Verification\n\n" + context.conditions +
-                     "\nThis document and its figures are written by\n\n    " + context.command +
-                     "\n\n";
-  std::vector<Row> overview = overview_rows(results);
-  for (std::size_t k = 1; k < overview.size(); ++k)
-    overview[k][0] = "[" + overview[k][0] + "](#" + overview[k][0] + ")";
-  text += markdown_table(overview);
+  std::string text = "# Verification\n\n" + in_markdown(context.conditions) +
+                     "\nThis document and its figures are written by\n\n    " +
+                     in_markdown_code(context.command) + "\n\n";
+  text += markdown_table(overview_rows(results), MarkdownLinks::to_headings);
   for (const StudyResult& result : results) {
     text += "## " + result.study.name + "\n\n`traceraft verify " + result.study.name +
-            "`: " + result.study.summary + ".\n";
-    for (const std::string& note : result.report.notes) text += note + "\n";
+            "`: " + in_markdown(result.study.summary) + ".\n";
+    for (const std::string& note : result.report.notes) text += in_markdown(note) + "\n";
     text += "\n";
     if (const std::string outcome = outcome_sentence(result); !outcome.empty())
-      text += outcome + "\n\n";
+      text += in_markdown(outcome) + "\n\n";
     if (!result.report.claims.empty()) text += markdown_table(claim_rows(result.report.claims));
     for (std::size_t k = 0; k < result.report.charts.size(); ++k) {
       const std::string name = chart_name(result, k) + ".svg";
       if (!fs::exists(folder / name)) continue;
       write_durably(figures / name, read_file(folder / name, kLargestChart));
-      text += "![" + result.report.charts[k].title + "](" + figures.filename().string() + "/" +
-              name + ")\n\n";
+      text += "![" + in_markdown(result.report.charts[k].title) + "](" +
+              in_markdown_link(figures.filename().string() + "/" + name) + ")\n\n";
     }
     for (const Table& table : result.report.tables)
       if (table.rows.size() <= 40) text += markdown_table(table_rows(table));

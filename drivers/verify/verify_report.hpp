@@ -21,6 +21,9 @@ struct VerificationContext {
   std::string measured_with;
 };
 
+// Everything that is written into the folder, as own_files.hpp names it.
+std::vector<std::string> files_of_a_verification();
+
 // NAME-TABLE.csv and last NAME.json of one study, as soon as it is done. Throws IoError.
 void write_study(const std::filesystem::path& folder, const StudyResult& result,
                  const std::string& measured_with);

@@ -1,5 +1,6 @@
 #include "drivers/verify/verify_result.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -51,7 +52,15 @@ Json to_json(const Table& table) {
   return {{"columns", table.columns}, {"rows", rows}};
 }
 
+[[noreturn]] void refuse(const std::string& what) {
+  throw DamagedFile("the result of a study is damaged: " + what);
+}
+
+// Its name becomes one of a file.
 Table table_of(const std::string& name, const Json& json) {
+  const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_";
+  if (name.empty() || name.find_first_not_of(plain) != std::string::npos)
+    refuse("'" + name + "' is no name of a table");
   Table table{name, json.at("columns"), {}};
   for (const Json& cells : json.at("rows")) {
     std::vector<Cell>& row = table.rows.emplace_back();
@@ -61,6 +70,7 @@ Table table_of(const std::string& name, const Json& json) {
       else
         row.emplace_back(number_or(cell, kNaN));
     }
+    if (row.size() != table.columns.size()) refuse("a row of " + name + " lacks cells");
   }
   return table;
 }
@@ -91,11 +101,15 @@ Chart chart_of(const Json& json) {
               json.at("log_x"), json.at("log_y"),   {}};
   for (const Json& item : json.at("series")) {
     ChartSeries series{item.at("name"), {}};
-    for (const Mark mark : {Mark::line, Mark::points, Mark::both, Mark::band, Mark::bars})
-      if (item.at("mark") == kMarks[static_cast<int>(mark)]) series.mark = mark;
+    const auto mark = std::find(std::begin(kMarks), std::end(kMarks), item.at("mark"));
+    if (mark == std::end(kMarks)) refuse("a mark of a chart is unknown");
+    series.mark = static_cast<Mark>(mark - std::begin(kMarks));
     for (const Json& point : item.at("points"))
       series.points.emplace_back(number_or(point.at(0), kNaN), number_or(point.at(1), kNaN));
     for (const Json& value : item.at("other")) series.other.push_back(number_or(value, kNaN));
+    const bool has_other = series.mark == Mark::band || series.mark == Mark::bars;
+    if (series.other.size() != (has_other ? series.points.size() : 0))
+      refuse("a chart lacks values");
     chart.series.push_back(series);
   }
   return chart;

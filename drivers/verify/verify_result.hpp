@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "drivers/output/json_file.hpp"
+#include "drivers/input/json_file.hpp"
 #include "verification/studies/study.hpp"
 
 namespace traceraft {

@@ -1,12 +1,11 @@
 #include "drivers/vesicles/comparison_report.hpp"
 
-#include <cstdio>
-
 #include "backends/posix/durable_file.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/input/model_of_data.hpp"
-#include "drivers/output/json_file.hpp"
+#include "drivers/input/json_file.hpp"
 #include "drivers/output/provenance.hpp"
+#include "drivers/text/say.hpp"
 #include "drivers/vesicles/agreement_report.hpp"
 #include "drivers/vesicles/law_report.hpp"
 #include "drivers/vesicles/measured_report.hpp"
@@ -64,15 +63,15 @@ class ComparisonReport {
   }
 
   void print() const {
-    std::printf("%s\n\n", about_data(data_).c_str());
+    say("%s\n\n", about_data(data_));
     print_rows(agreement_rows(agreements_));
-    std::printf("%s\n\npower laws from %g to %g s\n", about_agreement(runs_.size()).c_str(),
-                request_.window.begin, request_.window.end);
+    say("%s\n\npower laws from %g to %g s\n", about_agreement(runs_.size()), request_.window.begin,
+        request_.window.end);
     print_rows(laws());
-    for (const std::string& remark : remarks()) std::printf("%s\n", remark.c_str());
-    for (const std::string& note : notes_) std::printf("\n%s\n", note.c_str());
-    std::printf("\nopen next: %s\n", (request_.out / "comparison.html").c_str());
-    if (!missing_.text().empty()) std::printf("the page lacks: %s\n", missing_.text().c_str());
+    for (const std::string& remark : remarks()) say("%s\n", remark);
+    for (const std::string& note : notes_) say("\n%s\n", note);
+    say("\nopen next: %s\n", (request_.out / "comparison.html"));
+    if (!missing_.text().empty()) say("the page lacks: %s\n", missing_.text());
   }
 
  private:

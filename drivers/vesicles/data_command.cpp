@@ -1,6 +1,5 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
 
 #include "drivers/commands.hpp"
 #include "drivers/config/config_file.hpp"
@@ -11,6 +10,7 @@
 #include "drivers/input/dataset.hpp"
 #include "drivers/input/facts_file.hpp"
 #include "drivers/run/run_folder.hpp"
+#include "drivers/text/say.hpp"
 #include "drivers/vesicles/comparison_report.hpp"
 #include "drivers/vesicles/field_report.hpp"
 #include "drivers/vesicles/measured_report.hpp"
@@ -86,8 +86,7 @@ int draw(const DataRequest& request) {
                     (request.ensemble.empty() ? "published facts" : "simulations") +
                     ", not measured (seed " + std::to_string(request.seed) + ")");
   if (!request.quiet)
-    std::printf("%zu synthetic measurements in %s\n", data.measurements.size(),
-                request.folder.c_str());
+    say("%zu synthetic measurements in %s\n", data.measurements.size(), request.folder);
   return kSuccess;
 }
 

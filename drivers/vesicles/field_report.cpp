@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
 #include "drivers/output/text_table.hpp"
+#include "drivers/text/say.hpp"
 #include "kernel/core/text.hpp"
 #include "verification/explain/filter/disagreement.hpp"
 #include "verification/vesicles/history.hpp"
@@ -87,11 +87,11 @@ std::vector<std::string> notes_on(const std::filesystem::path& folder, const Fie
 }  // namespace
 
 void print_fields(const std::filesystem::path& folder, const FieldDataset& data) {
-  std::printf("%s%s: measured fields of %zu vesicle%s, R = %g um%s%s\n", data.name.c_str(),
-              data.synthetic ? " (SYNTHETIC)" : "", data.vesicles.size(),
-              data.vesicles.size() == 1 ? "" : "s", data.radius_um, data.origin.empty() ? "" : "; ",
-              data.origin.c_str());
-  if (data.blur_um) std::printf("images blurred by %g um\n", *data.blur_um);
+  say("%s%s: measured fields of %zu vesicle%s, R = %g um%s%s\n", data.name,
+      data.synthetic ? " (SYNTHETIC)" : "", data.vesicles.size(),
+      data.vesicles.size() == 1 ? "" : "s", data.radius_um, data.origin.empty() ? "" : "; ",
+      data.origin);
+  if (data.blur_um) say("images blurred by %g um\n", *data.blur_um);
   Table table{"fields",
               {"vesicle", "time (s)", "points", "patches of 12", "|x|/R from", "to", "mean of c",
                "deviation of c", "least", "largest", "usual sigma"},
@@ -100,7 +100,7 @@ void print_fields(const std::filesystem::path& folder, const FieldDataset& data)
     for (const FieldSnapshot& snapshot : vesicle.snapshots)
       table.rows.push_back(row_of(vesicle, snapshot));
   print_rows(table_rows(table));
-  for (const std::string& note : notes_on(folder, data)) std::printf("NOTE: %s\n", note.c_str());
+  for (const std::string& note : notes_on(folder, data)) say("NOTE: %s\n", note);
 }
 
 }  // namespace traceraft

@@ -1,10 +1,10 @@
 #include <CLI/CLI.hpp>
-#include <cstdio>
 
 #include "drivers/commands.hpp"
 #include "drivers/config/number_checks.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/input/model_of_data.hpp"
+#include "drivers/text/say.hpp"
 #include "kernel/core/error.hpp"
 #include "verification/vesicles/raft_fraction.hpp"
 
@@ -17,8 +17,8 @@ struct FractionRequest {
   std::string ordered, disordered;  // mol % of the two phases; "": from what is published
 };
 void print_mixture(const char* what, const LipidMixture& mixture) {
-  std::printf("  %-22s DOPC %.3f, DPPC %.3f, cholesterol %.3f\n", what, mixture.dopc, mixture.dppc,
-              mixture.cholesterol);
+  say("  %-22s DOPC %.3f, DPPC %.3f, cholesterol %.3f\n", what, mixture.dopc, mixture.dppc,
+      mixture.cholesterol);
 }
 
 int estimate_fraction(const FractionRequest& request) {
@@ -37,27 +37,23 @@ int estimate_fraction(const FractionRequest& request) {
     estimate.how = "the tie line given";
   }
   print_mixture("membrane", membrane);
-  std::printf("  %-22s %g C\n", "temperature", request.celsius);
+  say("  %-22s %g C\n", "temperature", request.celsius);
   if (estimate.phases) {
     print_mixture("ordered phase (rafts)", estimate.phases->ordered);
     print_mixture("disordered phase", estimate.phases->disordered);
     const double lipids = raft_fraction(membrane, *estimate.phases, request.celsius).lipids;
-    std::printf("  %-22s %.3f ordered, %.3f disordered\n", "lipids", lipids, 1 - lipids);
+    say("  %-22s %.3f ordered, %.3f disordered\n", "lipids", lipids, 1 - lipids);
     if (estimate.phases->ordered.dppc < estimate.phases->disordered.dppc)
-      std::printf(
-          "  NOTE: the ordered phase given has less DPPC than the disordered one; are --ordered "
+      say("  NOTE: the ordered phase given has less DPPC than the disordered one; are --ordered "
           "and "
           "--disordered the right way round?\n");
   }
-  std::printf("  %-22s %.1f %%  (%s)\n", "raft area fraction", 100 * estimate.area,
-              estimate.how.c_str());
-  std::printf(
-      "  areas per lipid are published ones of DOPC; those of DPPC with cholesterol are "
+  say("  %-22s %.1f %%  (%s)\n", "raft area fraction", 100 * estimate.area, estimate.how);
+  say("  areas per lipid are published ones of DOPC; those of DPPC with cholesterol are "
       "FITTED to two published raft fractions\n");
   const std::string own = case_of(request.composition);
-  std::printf(
-      "\nto simulate it: traceraft run %s --raft-fraction %.3f\n",
-      own.empty() ? "--diffusion <D of this membrane in cm^2/s>" : ("--case " + own).c_str(),
+  say("\nto simulate it: traceraft run %s --raft-fraction %.3f\n",
+      own.empty() ? "--diffusion <D of this membrane in cm^2/s>" : ("--case " + own),
       estimate.area);
   return kSuccess;
 }

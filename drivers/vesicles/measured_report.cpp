@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "backends/posix/durable_file.hpp"
 #include "drivers/config/config_file.hpp"
@@ -11,6 +10,7 @@
 #include "drivers/output/chart.hpp"
 #include "drivers/output/page.hpp"
 #include "drivers/output/text_table.hpp"
+#include "drivers/text/say.hpp"
 #include "drivers/vesicles/law_report.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/text.hpp"
@@ -105,7 +105,7 @@ std::string about_data(const MeasuredVesicles& data) {
 
 void print_dataset(const MeasuredVesicles& data, const std::optional<FittedLaw>& law,
                    const Window& window) {
-  std::printf("%s\n", about_data(data).c_str());
+  say("%s\n", about_data(data));
   double first = HUGE_VAL, last = 0;
   std::vector<double> radii;
   for (const Measurement& m : data.measurements) {
@@ -113,18 +113,16 @@ void print_dataset(const MeasuredVesicles& data, const std::optional<FittedLaw>&
     last = std::max(last, m.time);
     radii.push_back(m.radius);
   }
-  std::printf("  %-22s %.4g to %.4g s after time zero (%s)\n", "time", first, last,
-              data.time_zero.c_str());
-  std::printf("  %-22s %s\n", "radius (um)", spread(radii).c_str());
+  say("  %-22s %.4g to %.4g s after time zero (%s)\n", "time", first, last, data.time_zero);
+  say("  %-22s %s\n", "radius (um)", spread(radii));
   for (const Quantity quantity : kQuantities)
-    std::printf("  %-22s %s\n", name_of(quantity).label, spread(values_of(data, quantity)).c_str());
+    say("  %-22s %s\n", name_of(quantity).label, spread(values_of(data, quantity)));
   if (!data.composition.empty() && data.celsius)
-    std::printf("  %-22s %s\n", "estimated fraction",
-                estimated_fraction(data.composition, *data.celsius).c_str());
-  for (const std::string& doubt : doubts_about(data)) std::printf("\nNOTE: %s\n", doubt.c_str());
-  std::printf("\npower law from %g to %g s\n", window.begin, window.end);
+    say("  %-22s %s\n", "estimated fraction", estimated_fraction(data.composition, *data.celsius));
+  for (const std::string& doubt : doubts_about(data)) say("\nNOTE: %s\n", doubt);
+  say("\npower law from %g to %g s\n", window.begin, window.end);
   print_rows({law_heading(), law_row(origin_of(data), law)});
-  for (const std::string& remark : remarks_on({law})) std::printf("%s\n", remark.c_str());
+  for (const std::string& remark : remarks_on({law})) say("%s\n", remark);
 }
 
 Configuration model_of(const fs::path& path) {

@@ -296,7 +296,11 @@ TEST_F(ProgramTest, LeavesForeignFilesAlone) {
   EXPECT_NE(beside.output.find("holds dataset.toml, of another command"), std::string::npos)
       << beside.output;
   EXPECT_FALSE(fs::exists(folder.path / "measured/config.toml"));
-  ASSERT_EQ(traceraft("run --quiet " + quick + "--out " + out("a")).code, 0);
+  const ProgramEnd foreign = traceraft("run --quiet " + quick + "--out " + out("a"));
+  EXPECT_EQ(foreign.code, 2);
+  EXPECT_NE(foreign.output.find("which is nothing of this command"), std::string::npos)
+      << foreign.output;
+  EXPECT_FALSE(fs::exists(folder.path / "a/config.toml"));
   EXPECT_EQ(content(folder.path / "a/notes.txt"), "mine");
   EXPECT_TRUE(fs::exists(folder.path / "a/checkpoints-of-mine"));
 }

@@ -3,7 +3,16 @@
 
 #include <string>
 
+#include "backends/zlib/checksum.hpp"
+#include "kernel/core/text.hpp"
+
 namespace traceraft {
+
+// A remark after the last row, by which damage to the table is noticed.
+inline constexpr char kChecksumRemark[] = "# CRC-32 of the rows above: ";
+inline std::string checksum_line(const std::string& table) {
+  return kChecksumRemark + formatted("%08x", crc32_of(table)) + "\n";
+}
 
 inline std::string csv_quoted(const std::string& text) {
   std::string quoted = "\"";

@@ -1,0 +1,172 @@
+// Structs as JSON objects, by one list of their members that is used for writing, reading and
+// checking: a member that is not in the list is in no file, and one that is in it is checked.
+//
+//   template <class Members>
+//   void describe(Members& members, EnsemblePlan& plan) {
+//     members("runs", plan.runs, WithinRange{1, 100000});
+//   }
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/input/json_file.hpp"
+#include "kernel/core/named_list.hpp"
+#include "kernel/core/parameters.hpp"
+
+namespace traceraft {
+
+// What values may be; of lists, each of theirs. Objects check their own members.
+struct WithinRange {
+  double low, high;             // both are allowed
+  bool may_be_unknown = false;  // NaN, which is null in JSON
+};
+inline constexpr double kAnyNumber = std::numeric_limits<double>::max();
+struct OneOf {
+  std::string kind;  // "integrator"
+  std::vector<std::string> names;
+};
+struct AnyText {};
+struct AnyFlag {};
+struct AsDescribed {};  // an object
+
+// Throw InputError.
+void check_value(const std::string& where, double value, const WithinRange& range);
+void check_value(const std::string& where, const std::string& name, const OneOf& list);
+inline void check_value(const std::string&, const std::string&, const AnyText&) {}
+inline void check_value(const std::string&, bool, const AnyFlag&) {}
+
+class JsonWriter {
+ public:
+  template <class T, class Check>
+  void operator()(const char* name, T& member, const Check&) {
+    json_[name] = json_of(member);
+  }
+  Json take() { return std::move(json_); }
+
+  template <class T>
+  static Json json_of(T& value) {
+    if constexpr (std::is_same_v<T, double>)
+      return std::isfinite(value) ? Json(value) : Json();  // JSON has neither NaN nor infinity
+    else if constexpr (std::is_arithmetic_v<T> || std::is_same_v<T, std::string>)
+      return value;
+    else
+      return object_or_list(value);
+  }
+
+ private:
+  template <class T>
+  static Json object_or_list(std::vector<T>& list) {
+    Json json = Json::array();
+    for (auto&& value : list) json.push_back(json_of(value));
+    return json;
+  }
+  template <class T>
+  static Json object_or_list(std::map<std::string, T>& map) {
+    Json json = Json::object();
+    for (auto& [name, value] : map) json[name] = json_of(value);
+    return json;
+  }
+  template <class T>
+  static Json object_or_list(T& value) {
+    JsonWriter writer;
+    describe(writer, value);
+    return writer.take();
+  }
+
+  Json json_ = Json::object();
+};
+
+class JsonReader {
+ public:
+  // `where`: the file, and the way to the object in it.
+  JsonReader(const Json& json, std::string where) : json_(json), where_(std::move(where)) {
+    if (!json.is_object()) throw DamagedFile(where_ + " is damaged: it holds no object");
+  }
+
+  template <class T, class Check>
+  void operator()(const char* name, T& member, const Check& check) {
+    const auto found = json_.find(name);
+    if (found == json_.end()) throw DamagedFile(where_ + " is damaged: there is no " + name);
+    read(*found, where_ + ": " + name, member, check);
+  }
+
+ private:
+  [[noreturn]] static void refuse(const std::string& where, const char* needed) {
+    throw DamagedFile(where + " is damaged: it is no " + needed);
+  }
+
+  template <class T, class Check>
+  static void read(const Json& json, const std::string& where, std::vector<T>& list,
+                   const Check& check) {
+    if (!json.is_array()) refuse(where, "list");
+    list.resize(json.size());
+    for (std::size_t k = 0; k < list.size(); ++k)
+      read(json[k], where + "[" + std::to_string(k) + "]", list[k], check);
+  }
+  template <class T, class Check>
+  static void read(const Json& json, const std::string& where, std::map<std::string, T>& map,
+                   const Check& check) {
+    if (!json.is_object()) refuse(where, "object");
+    map.clear();
+    for (const auto& [name, value] : json.items())
+      read(value, where + "." + name, map[name], check);
+  }
+  template <class T, class Check>
+  static void read(const Json& json, const std::string& where, T& value, const Check& check) {
+    if constexpr (std::is_same_v<Check, AsDescribed>) {
+      JsonReader reader(json, where);
+      describe(reader, value);
+    } else if constexpr (std::is_same_v<T, bool>) {
+      if (!json.is_boolean()) refuse(where, "true or false");
+      value = json.get<bool>();
+    } else if constexpr (std::is_arithmetic_v<T>) {
+      read_number(json, where, value, check);
+    } else {
+      if (!json.is_string()) refuse(where, "text");
+      value = json.get<std::string>();
+      check_value(where, value, check);
+    }
+  }
+  template <class T>
+  static void read_number(const Json& json, const std::string& where, T& value,
+                          const WithinRange& range) {
+    if (json.is_null() && std::is_floating_point_v<T>) {
+      value = std::numeric_limits<T>::has_quiet_NaN ? std::numeric_limits<T>::quiet_NaN() : T();
+      check_value(where, static_cast<double>(value), range);
+      return;
+    }
+    if (!json.is_number()) refuse(where, "number");
+    // Before it is made smaller, which is not defined for what does not fit.
+    const double number = json.get<double>();
+    check_value(where, number, range);
+    if (std::is_integral_v<T> && number != std::floor(number)) refuse(where, "whole number");
+    value = json.get<T>();
+  }
+
+  const Json& json_;
+  std::string where_;
+};
+
+template <class T>
+Json object_of(const T& value) {
+  T copy = value;  // one list of members serves both ways, and so takes no constant
+  return JsonWriter::json_of(copy);
+}
+
+// Throws IoError if the file cannot be read, DamagedFile unless it holds all members, each of its
+// kind, InputError for a value that is out of range and for a name that is unknown.
+template <class T>
+T read_object(const std::filesystem::path& file, T value = {}) {
+  return from_json(file, [&](const Json& json) {
+    JsonReader reader(json, file.string());
+    describe(reader, value);
+    return value;
+  });
+}
+
+}  // namespace traceraft

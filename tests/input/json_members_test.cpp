@@ -1,0 +1,111 @@
+#include "drivers/input/json_members.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/temporary_folder.hpp"
+
+namespace traceraft {
+namespace {
+
+struct Part {
+  double size = 0;
+};
+template <class Members>
+void describe(Members& members, Part& part) {
+  members("size", part.size, WithinRange{0, 10, true});
+}
+
+struct Whole {
+  int runs = 1;
+  std::uint64_t seed = 0;
+  bool quick = false;
+  std::vector<std::string> words;
+  std::vector<Part> parts;
+  std::map<std::string, std::string> texts;
+};
+template <class Members>
+void describe(Members& members, Whole& whole) {
+  members("runs", whole.runs, WithinRange{1, 100000});
+  members("seed", whole.seed, WithinRange{0, 9007199254740992});
+  members("quick", whole.quick, AnyFlag{});
+  members("words", whole.words, OneOf{"word", {"alpha", "beta"}});
+  members("parts", whole.parts, AsDescribed{});
+  members("texts", whole.texts, AnyText{});
+}
+
+class JsonMembersTest : public ::testing::Test {
+ protected:
+  testing::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path / "plan.json";
+  const Whole whole{3, 9007199254740992, true, {"beta"}, {{0.1}, {NAN}}, {{"a", "b"}}};
+
+  std::string complaint(const char* member, const Json& value) {
+    Json json = object_of(whole);
+    json[member] = value;
+    write_durably(file, json.dump());
+    try {
+      (void)read_object<Whole>(file);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  }
+};
+
+TEST_F(JsonMembersTest, ComeBackAsTheyWere) {
+  write_durably(file, object_of(whole).dump());
+  const Whole read = read_object<Whole>(file);
+  EXPECT_EQ(read.runs, 3);
+  EXPECT_EQ(read.seed, whole.seed);
+  EXPECT_TRUE(read.quick);
+  EXPECT_EQ(read.words, whole.words);
+  ASSERT_EQ(read.parts.size(), 2u);
+  EXPECT_EQ(read.parts[0].size, 0.1);
+  EXPECT_TRUE(std::isnan(read.parts[1].size));
+  EXPECT_EQ(read.texts, whole.texts);
+}
+
+// Out of range and unknown is bad input, what no writer writes is damage.
+TEST_F(JsonMembersTest, AreChecked) {
+  for (const Json& runs : {Json(-5), Json(2147483647), Json(1e8), Json(0)}) {
+    EXPECT_NE(complaint("runs", runs).find("plan.json: runs: "), std::string::npos) << runs;
+    EXPECT_THROW((void)read_object<Whole>(file), InputError) << runs;
+  }
+  EXPECT_NE(complaint("runs", 1e300).find("allowed: 1 to 1e+05"), std::string::npos);
+  EXPECT_NE(
+      complaint("words", {"alpa"}).find("words[0]: unknown word 'alpa'; did you mean 'alpha'"),
+      std::string::npos);
+  EXPECT_THROW((void)read_object<Whole>(file), InputError);
+  EXPECT_NE(complaint("parts", {{{"size", 11}}}).find("parts[0]: size: 11"), std::string::npos);
+  for (const auto& [member, value] :
+       std::initializer_list<std::pair<const char*, Json>>{{"runs", "3"},
+                                                           {"runs", 1.5},
+                                                           {"runs", Json()},
+                                                           {"runs", {3}},
+                                                           {"quick", 1},
+                                                           {"words", "beta"},
+                                                           {"words", {1}},
+                                                           {"parts", {1}},
+                                                           {"parts", {Json::object()}},
+                                                           {"texts", {"a"}}}) {
+    EXPECT_NE(complaint(member, value).find("is damaged"), std::string::npos) << member << value;
+    EXPECT_THROW((void)read_object<Whole>(file), DamagedFile) << member << value;
+  }
+}
+
+TEST_F(JsonMembersTest, AreAllNeeded) {
+  const Json all = object_of(whole);
+  for (const auto& [name, value] : all.items()) {
+    Json json = all;
+    json.erase(name);
+    write_durably(file, json.dump());
+    EXPECT_THROW((void)read_object<Whole>(file), DamagedFile) << name;
+  }
+  for (const char* text : {"[1]", "{", "", "3", "null"}) {
+    write_durably(file, text);
+    EXPECT_THROW((void)read_object<Whole>(file), DamagedFile) << text;
+  }
+}
+
+}  // namespace
+}  // namespace traceraft
