@@ -232,7 +232,8 @@ Action define_explain(CLI::App& app) {
       ->delimiter(',');
   app.add_flag("--quiet", command->quiet, "print nothing but errors");
   add_options(app, command->job.flags, [](const OptionSpec& spec) {
-    return (spec.group == "Physics" || spec.group == "Surface" || spec.group == "Case") &&
+    return (spec.group == "Physics" || spec.group == "Surface" || spec.group == "Case" ||
+            spec.name == "raft-fraction") &&
            spec.name != "scaled";
   });
   app.footer("Example: traceraft explain --data my-vesicle --model model.toml --cells 40");

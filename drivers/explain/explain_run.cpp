@@ -19,6 +19,8 @@
 namespace traceraft {
 namespace {
 
+namespace fs = std::filesystem;
+
 GivenValues with_radius(GivenValues model, double radius_um) {
   model["radius"] = {format_number(radius_um), "dataset.toml: radius"};
   return model;
@@ -86,15 +88,40 @@ void refuse_wide_boundaries(const Configuration& model, const CahnHilliardModel&
                      format_number(model.units().radius_um) + " um by dataset.toml");
 }
 
-// Nothing moves in what is the same everywhere.
+// Nothing moves in what is the same everywhere, and no measurement is without noise.
 void refuse_uniform_values(const std::vector<FieldSeries>& vesicles, const DoubleWell& well,
                            const std::string& folder) {
   constexpr double kLeast = 1e-6;
+  std::size_t number = 0;
   for (const FieldSeries& vesicle : vesicles)
-    for (const FieldSnapshot& snapshot : vesicle.snapshots)
+    for (const FieldSnapshot& snapshot : vesicle.snapshots) {
+      ++number;
       if (snapshot.values.maxCoeff() - snapshot.values.minCoeff() > kLeast * (well.b - well.a))
-        return;
-  throw InputError(folder + ": c is the same everywhere; there is nothing to explain");
+        continue;
+      throw InputError((fs::path(folder) / snapshot_file(number)).string() + ": c is " +
+                       format_number(snapshot.values[0]) +
+                       " everywhere; there is nothing to explain, leave the snapshot out");
+    }
+}
+
+// A dye of the other phase. The equation is the same for c and 1 − c, so that no fit would tell.
+void refuse_exchanged_phases(const Configuration& model, const std::vector<FieldSeries>& vesicles,
+                             const DoubleWell& well) {
+  constexpr double kTold = 0.2, kMuchNearer = 4;
+  const double stated = model.number("raft-fraction");
+  if (model.text("initial") != "noise" || std::fabs(1 - 2 * stated) < kTold) return;
+  double sum = 0, count = 0;
+  for (const FieldSeries& vesicle : vesicles)
+    for (const FieldSnapshot& snapshot : vesicle.snapshots) {
+      sum += snapshot.values.sum();
+      count += static_cast<double>(snapshot.values.size());
+    }
+  const double measured = (sum / count - well.a) / (well.b - well.a);
+  if (kMuchNearer * std::fabs(measured - (1 - stated)) > std::fabs(measured - stated)) return;
+  throw InputError(
+      model.where("raft-fraction") + ": the model has " + format_number(stated) +
+      formatted(" of rafts, and the mean of c is %.2f: if c marks the other phase, ", measured) +
+      formatted("write 1 - c; if not, say --raft-fraction %.2f", measured));
 }
 
 // What data could not tell from the rest of the model is not fitted beside it.
@@ -206,6 +233,7 @@ ExplainSetup read_explain_job(const ExplainJob& job) {
   refuse_wide_boundaries(model, request.base);
   refuse_far_values(setup.series, request.base.well, job.data);
   refuse_uniform_values(setup.series, request.base.well, job.data);
+  refuse_exchanged_phases(model, setup.series, request.base.well);
   set_effects(model, setup);
   return setup;
 }

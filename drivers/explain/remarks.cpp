@@ -170,11 +170,12 @@ void add_class(const Explanation& found, const Units& base, std::vector<std::str
 }
 
 void add_mesh(const Explanation& found, std::vector<std::string>& all) {
+  // Where the verdict itself asks for other data, another mesh would not decide.
+  const bool noise_decides = found.finding == Finding::not_identifiable;
   if (found.h_over_epsilon > kCoarse)
-    all.push_back(
-        formatted("The mesh is coarse for these phase boundaries, h/epsilon = %.2g; with "
-                  "more --cells the verdict would be surer.",
-                  found.h_over_epsilon));
+    all.push_back(formatted("The mesh is coarse for these phase boundaries, h/epsilon = %.2g",
+                            found.h_over_epsilon) +
+                  (noise_decides ? "." : "; with more --cells the verdict would be surer."));
 }
 
 void add_rerun(const Explanation& found, std::vector<std::string>& all) {
@@ -190,7 +191,7 @@ void add_rerun(const Explanation& found, std::vector<std::string>& all) {
   else if (is_named(found) && !found.rerun->confirms())
     all.push_back(
         "On another mesh and by another integrator what was found foretells the measurements no "
-        "better than the base model, within noise: repeat with more --cells or more snapshots.");
+        "better than the base model, within noise: more snapshots would tell.");
   else if (is_named(found) && !found.rerun->heldout())
     all.push_back(
         "No snapshot is held out of fewer than four: that what was found foretells new ones was "
@@ -198,9 +199,10 @@ void add_rerun(const Explanation& found, std::vector<std::string>& all) {
   if (found.rerun->gap_p && found.finding != Finding::unnamed)
     all.push_back(
         "On the model's own mesh there is a gap that nothing explains; on another mesh and by "
-        "another integrator it is within noise (p = " +
-        formatted("%.2g", *found.rerun->gap_p) +
-        "), so that it is that of the mesh: repeat with more --cells.");
+        "another integrator it is not significant (p = " +
+        formatted("%.2g, and a gap is one below %.2g", *found.rerun->gap_p,
+                  kGapLevel * found.false_alarms) +
+        "), so that it may be that of the mesh: repeat with more --cells.");
   if (!found.rerun->gap_failure.empty())
     all.push_back(
         "Whether the gap that nothing explains is there on another mesh, too, is not "

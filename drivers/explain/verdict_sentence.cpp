@@ -43,6 +43,13 @@ std::string nothing_sentence(const Explanation& found) {
          "the model explains the data within their noise.";
 }
 
+// What explains next to nothing of a disagreement is not close to it.
+bool closes_something(const Explanation& found, const Refit& fit) {
+  constexpr double kLeast = 0.1;
+  const SharesClosed closed = shares_closed(found.base_gap, fit.gap, fit.expected);
+  return closed.heldout.value_or(closed.train.value_or(0)) >= kLeast;
+}
+
 // Of single effects, refitted if any was.
 std::string likeliest(const Explanation& found) {
   const Round& first = found.rounds.front();
@@ -58,6 +65,12 @@ std::string doubt_sentence(const Explanation& found) {
   if (first.p <= found.false_alarms)
     return "Something seems to be missing, too little of it to say what: " + likeliest(found) +
            " would explain most of it. More points, less noise or more snapshots would tell.";
+  if (!tests_kinetics(found.base))
+    return formatted(
+        "No significant disagreement, but kinetics were not tested: these data know D "
+        "to a factor of %.2g only. Snapshots from times at which rafts still change, "
+        "and several of them, would tell.",
+        std::exp(kNormal95 * found.base.pace_deviation));
   return "No significant disagreement, but these data would hardly show an effect: they need "
          "more points, less noise, or snapshots that are further apart.";
 }
@@ -66,11 +79,12 @@ std::string doubt_sentence(const Explanation& found) {
 
 std::string comes_closest(const Explanation& found) {
   if (found.finding != Finding::unnamed) return "";
-  if (found.found.hypothesis.added() > 0) return found.found.hypothesis.name();
   const Round& first = found.rounds.front();
-  if (first.refits.empty()) return "";
-  const Refit& best = first.refits.front();
-  return first.without.deviance - best.deviance > kTelling ? best.hypothesis.name() : "";
+  const bool added = found.found.hypothesis.added() > 0;
+  if (!added && first.refits.empty()) return "";
+  const Refit& best = added ? found.found : first.refits.front();
+  const bool gains = added || first.without.deviance - best.deviance > kTelling;
+  return gains && closes_something(found, best) ? best.hypothesis.name() : "";
 }
 
 bool changes_pace(const Refit& fit) {
@@ -97,8 +111,14 @@ std::string verdict_sentence(const Explanation& found) {
     case Finding::not_identifiable:
       return doubt_sentence(found);
     case Finding::unnamed:
-      return "There is a disagreement that none of the effects that were looked for explains" +
-             (closest.empty() ? "." : "; " + closest + " comes closest.");
+      return (found.disagreements.empty()
+                  ? "Measurements and forecasts disagree in a pattern over the whole vesicle, in "
+                    "no "
+                    "single region beyond noise; none of the effects that were looked for explains "
+                    "it"
+                  : "There is a disagreement that none of the effects that were looked for "
+                    "explains") +
+             (closest.empty() ? "; none comes close." : "; " + closest + " comes closest.");
   }
   return "";
 }

@@ -289,6 +289,20 @@ TEST_F(ExplainTest, RefusesWhatItCannotUse) {
   EXPECT_NE(text.find("snapshot_002.csv:9: column 'c': -9999"), std::string::npos) << text;
   text = checked();
   EXPECT_NE(text.find("snapshot_002.csv:9: column 'c': -9999; explain"), std::string::npos) << text;
+  // A picture without a vesicle in it, and one of the other phase.
+  const std::vector<FieldSeries> good = draw_blind_case(asked).vesicles;
+  vesicles = good;
+  vesicles[0].snapshots[2].values.setConstant(0.25);
+  write(vesicles);
+  EXPECT_NE(refusal(command(13)).find("snapshot_003.csv: c is 0.25 everywhere"), std::string::npos);
+  asked.raft_fraction = 0.35;
+  vesicles = draw_blind_case(asked).vesicles;
+  write(vesicles);
+  double mean = 0;
+  for (const FieldSnapshot& snapshot : vesicles[0].snapshots)
+    mean += snapshot.values.mean() / static_cast<double>(vesicles[0].snapshots.size());
+  text = refusal(command(13) + " --raft-fraction " + format_number(1 - mean));
+  EXPECT_NE(text.find("if c marks the other phase, write 1 - c"), std::string::npos) << text;
   fs::remove(folder.path / "data" / "snapshot_003.csv");
   text = refusal(command(13));
   EXPECT_NE(text.find("3 times, but there is no snapshot_003.csv"), std::string::npos) << text;

@@ -43,6 +43,18 @@ Judgement judged(const Round& round, bool gap_beside = false) {
   });
 }
 
+// Rafts at rest agree with any D.
+TEST(Judgement, FindsNothingOnlyWhereKineticsWereTested) {
+  Round round = first_round();
+  round.refits.clear();
+  round.screening.p = 0.5;
+  round.screening.gap_p = 0.5;
+  round.without.pace_deviation = 0.9 * kKineticsUntested;
+  EXPECT_EQ(judged(round).finding, Finding::none);
+  round.without.pace_deviation = 1.1 * kKineticsUntested;
+  EXPECT_EQ(judged(round).finding, Finding::not_identifiable);
+}
+
 TEST(Judgement, TakesWhatExplainsTheDataBest) {
   const Judgement judgement = judged(first_round());
   EXPECT_TRUE(judgement.taken);

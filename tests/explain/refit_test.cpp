@@ -328,6 +328,7 @@ TEST(ShareClosed, IsOfMeanSquares) {
   EXPECT_NEAR(share_closed(5, 4, 3).value(), 9.0 / 16, 1e-14);
   EXPECT_NEAR(share_closed(2, 1, 1).value(), 1, 1e-14);
   EXPECT_LT(share_closed(2, 2.1, 1).value(), 0);
+  EXPECT_EQ(share_closed(2, 0.9, 1).value(), 1) << "more than all is noise";
   EXPECT_FALSE(share_closed(1.01, 1, 1));
   EXPECT_FALSE(share_closed(0, 0, 0));  // nothing is held out
 }

@@ -1,5 +1,6 @@
 #include "verification/explain/filter/gaps.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -25,7 +26,7 @@ Gaps over_snapshots(const FilterResult& pass,
 std::optional<double> share_closed(double base, double found, double floor) {
   constexpr double kTold = 1.02;
   if (!(floor > 0 && base > kTold * floor)) return std::nullopt;
-  return (square(base) - square(found)) / (square(base) - square(floor));
+  return std::min(1.0, (square(base) - square(found)) / (square(base) - square(floor)));
 }
 
 SharesClosed shares_closed(const Gaps& base, const Gaps& found, const Gaps& floor) {

@@ -14,8 +14,8 @@ struct Gaps {
   double train = 0, heldout = 0;
 };
 
-// The share of what the base lacks that was closed, in mean squares; nothing where the base is
-// within 2 % of the floor, which it may be by noise.
+// The share of what the base lacks that was closed, in mean squares, at most 1: more is noise.
+// Nothing where the base is within 2 % of the floor, which it may be by noise.
 std::optional<double> share_closed(double base, double found, double floor);
 struct SharesClosed {
   std::optional<double> train, heldout;

@@ -93,10 +93,11 @@ Judgement judge(const Round& round, double values, double false_alarms, double u
   const bool first = round.known.hypothesis.added() == 0;
   const bool quiet = round.screening.p > false_alarms;
   // What follows if nothing is added.
-  const Finding no_gap = !first ? Finding::named
-                         : quiet && identifiable(round.screening, usual_change)
-                             ? Finding::none
-                             : Finding::not_identifiable;
+  const Finding no_gap =
+      !first ? Finding::named
+      : quiet && identifiable(round.screening, usual_change) && tests_kinetics(round.without)
+          ? Finding::none
+          : Finding::not_identifiable;
   const Judgement rest{
       false, has_gap(round.screening, false_alarms) ? Finding::unnamed : no_gap, no_gap, {}};
   if (round.refits.empty()) return rest;

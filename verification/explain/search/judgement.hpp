@@ -16,8 +16,8 @@ enum class Finding {
   named,             // one effect, or several, that leave no significant disagreement
   ambiguous,         // like it, but another one explains the data as well
   below_resolution,  // what would explain the data could be the error of the model's own mesh
-  not_identifiable,  // no disagreement, but effects of the usual size would not be seen either; or
-                     // one that is too small to tell which effect it is
+  not_identifiable,  // no disagreement, but effects of the usual size would not be seen either, or
+                     // D itself; or one that is too small to tell which effect it is
   unnamed            // a significant disagreement that no candidate explains
 };
 // Are there effects that belong to the model?
@@ -49,6 +49,13 @@ struct Round {
 inline constexpr double kTelling = 6;
 // Standard deviations that an effect has to have to be seen in nine cases of ten.
 inline constexpr double kSeen = 4;
+
+// Standard deviation of ln D beyond which the data say too little of how fast anything happens: D
+// is known to a factor of 3 at best, in 95 of 100 cases. Rafts at rest are such data.
+inline constexpr double kKineticsUntested = 0.56;
+inline bool tests_kinetics(const Refit& base) {
+  return base.pace_deviation <= kKineticsUntested;
+}
 
 // Schwarz' (1978): an effect with a second coefficient has to earn it, above all if one without is
 // a special case of it. `values`: how many have been measured.
