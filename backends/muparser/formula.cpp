@@ -4,15 +4,28 @@
 
 #include <memory>
 #include <mutex>
+#include <string>
 
 #include "kernel/core/error.hpp"
 
 namespace traceraft {
 namespace {
 
+// muParser's "=" gives a variable another value. Comparisons are "==", "<=", ">=" and "!=".
+void refuse_assignment(const std::string& text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool pair = i + 1 < text.size() && text[i + 1] == '=';
+    if (pair && std::string("=<>!").find(text[i]) != std::string::npos)
+      ++i;
+    else if (text[i] == '=')
+      throw mu::Parser::exception_type("'=' assigns; write == to compare");
+  }
+}
+
 class Formula {
  public:
   explicit Formula(const std::string& text) {
+    refuse_assignment(text);
     parser_.DefineVar("x", &x_[0]);
     parser_.DefineVar("y", &x_[1]);
     parser_.DefineVar("z", &x_[2]);

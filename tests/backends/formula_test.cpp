@@ -15,6 +15,19 @@ TEST(Formula, IsEvaluated) {
   EXPECT_NEAR(f({0, 2, 0}), 0.5, 1e-14);
 }
 
+TEST(Formula, MayCompareAndNotAssign) {
+  EXPECT_EQ(parse_formula("f", "x>=0.5 ? (y==2) : (z!=1)*(x<=0)")({0.5, 2, 0}), 1);
+  for (const char* bad : {"x=1", "x = 1", "(y=2)+x", "z^2=1", "x===1", "x+(e=3)", "x<==1"}) {
+    try {
+      parse_formula("--initial-formula", bad);
+      FAIL() << bad;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("'=' assigns; write =="), std::string::npos)
+          << error.what();
+    }
+  }
+}
+
 TEST(Formula, SaysWhatItCannotRead) {
   for (const char* bad : {"", "x+", "q*2", "sin(", "x y", "1,,2", "0,5+x", "\xff"}) {
     try {
