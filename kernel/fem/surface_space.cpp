@@ -3,12 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/mesh/gradient_check.hpp"
+
 namespace traceraft {
 namespace {
 
-CutSurface checked_surface(const ActiveMesh& mesh, const Communicator& ranks) {
+CutSurface checked_surface(const LevelSet& level_set, const ActiveMesh& mesh,
+                           const Communicator& ranks) {
   CutSurface surface = build_cut_surface(mesh);
+  // A mesh that is too coarse may be so near one place alone.
+  require_gradient(level_set, mesh, surface, 0.5, ranks);
   require_resolution(mesh, surface, ranks);
+  require_gradient(level_set, mesh, surface, 0, ranks);
   return surface;
 }
 
@@ -114,7 +120,7 @@ SurfaceSpace::SurfaceSpace(const LevelSet& level_set, std::int64_t cells,
                            std::shared_ptr<const ThreadTeam> team_,
                            std::shared_ptr<const Communicator> communicator_)
     : mesh(build_active_mesh(level_set, cells, *communicator_)),
-      surface(checked_surface(mesh, *communicator_)),
+      surface(checked_surface(level_set, mesh, *communicator_)),
       elements(build_cut_elements(mesh, surface)),
       edge_couplings(build_edge_couplings(elements, mesh.edges.size())),
       team(std::move(team_)),

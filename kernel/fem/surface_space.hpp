@@ -18,7 +18,8 @@ namespace traceraft {
 
 class SurfaceSpace {
  public:
-  // Throws InputError when the surface is not closed inside the box or the mesh is too coarse.
+  // Throws InputError when the surface is not closed inside the box, the mesh is too coarse, or the
+  // level set has no gradient on its surface.
   SurfaceSpace(const LevelSet& level_set, std::int64_t cells,
                std::shared_ptr<const ThreadTeam> team,
                std::shared_ptr<const Communicator> communicator);
