@@ -81,12 +81,12 @@ class Spfgmr final : public KrylovMethod {
     const int flag = SUNLinSolSolve(solver_, nullptr, solution_, right_, tolerance * norm);
     if (operators.thrown) std::rethrow_exception(operators.thrown);
     const int iterations = SUNLinSolNumIters(solver_);
+    x = view(solution_);
     // Anything but plain success, a merely reduced residual included, is no solution.
     if (flag != SUNLS_SUCCESS)
       return {Status::retry("GMRES: no convergence in " + std::to_string(iterations) +
                             " iterations (SUNDIALS code " + std::to_string(flag) + ")"),
               iterations};
-    x = view(solution_);
     return {{}, iterations};
   }
 

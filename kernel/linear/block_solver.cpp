@@ -62,6 +62,7 @@ class BlockSolver final : public LinearSolver {
     SolveReport report =
         lane.krylov->solve(apply, precondition, lane.right, x, tolerance, kMaxIterations);
     shared_.count(lane_number, report.iterations);
+    report.status = judged_by_residual(report.status, J, b, x, tolerance, *team_);
     if (report.status.ok()) restore_mass(J, b, x);
     return report;
   }

@@ -14,7 +14,8 @@ namespace traceraft {
 using LinearOperator = std::function<Status(ConstVec in, VecRef out)>;
 
 // A Krylov method with a right (flexible) preconditioner, so that the residual it stops on is the
-// true one. ok only if ‖b − A x‖₂ ≤ tolerance · ‖b‖₂; x comes in as the initial guess.
+// true one. ok only if ‖b − A x‖₂ ≤ tolerance · ‖b‖₂; x comes in as the initial guess, and is the
+// last iterate in any case. Who asks for it looks at the residual, too.
 class KrylovMethod {
  public:
   virtual ~KrylovMethod() = default;

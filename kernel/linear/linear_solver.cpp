@@ -21,6 +21,17 @@ double scaled_norm(const BlockJacobian& J, ConstVec b) {
       J.ranks().sum(scale * scale * dot(b.head(n), b.head(n)) + dot(b.tail(n), b.tail(n))));
 }
 
+Status judged_by_residual(const Status& said, const BlockJacobian& J, ConstVec b, ConstVec x,
+                          double tolerance, const ThreadTeam& team) {
+  constexpr double kSlack = 1.01;
+  Vec residual(b.size());
+  J.multiply(x, residual, team);
+  residual = b - residual;
+  // NaN is refused, too.
+  if (scaled_norm(J, residual) <= kSlack * tolerance * scaled_norm(J, b)) return {};
+  return said.ok() ? Status::retry("the residual is larger than the method says") : said;
+}
+
 void restore_mass(const BlockJacobian& J, ConstVec b, VecRef x) {
   const int n = J.block_size();
   const SparsityPattern& pattern = *J.cc.pattern;

@@ -7,6 +7,7 @@
 
 #include "kernel/core/checkpoint_stream.hpp"
 #include "kernel/core/status.hpp"
+#include "kernel/core/thread_team.hpp"
 #include "kernel/core/types.hpp"
 #include "kernel/linear/block_jacobian.hpp"
 
@@ -65,6 +66,12 @@ struct LinearSolverChoice {
 
 // D of the contract: the first block row is divided by the shift so that one norm judges both.
 double scaled_norm(const BlockJacobian& J, ConstVec b);
+
+// What an iterative method says of its last iterate x does not count, but b − J x does: ok if that
+// is as small as the contract says, up to rounding; else what the method said, or that it was
+// mistaken. Collective.
+Status judged_by_residual(const Status& said, const BlockJacobian& J, ConstVec b, ConstVec x,
+                          double tolerance, const ThreadTeam& team);
 
 // Shifts the differential half of x by a constant so that 1ᵀ(cc δc + cm δμ) = 1ᵀb₁ exactly. The
 // stiffness terms drop out of that sum, so it is the mass balance of the step.

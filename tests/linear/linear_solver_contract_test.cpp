@@ -7,6 +7,8 @@
 #include "backends/list.hpp"
 #include "backends/suitesparse/cholmod_solver.hpp"
 #include "backends/suitesparse/direct_solver.hpp"
+#include "backends/sundials/spfgmr.hpp"
+#include "kernel/linear/block_solver.hpp"
 #include "kernel/linear/setup_policy.hpp"
 #include "kernel/linear/two_solve_preconditioner.hpp"
 #include "tests/support/dense.hpp"
@@ -180,6 +182,49 @@ class Inexact final : public SparseLu {
   double factor_;
   std::unique_ptr<SparseLu> lu_ = make_umfpack_lu();
 };
+
+// A Krylov method that says what it is told to, of an iterate that is off by a factor.
+class Mistaken final : public KrylovMethod {
+ public:
+  Mistaken(int size, double factor, Status said)
+      : factor_(factor), said_(std::move(said)), method_(make_spfgmr(size)) {}
+  SolveReport solve(const LinearOperator& A, const LinearOperator& preconditioner, ConstVec b,
+                    VecRef x, double tolerance, int max_iterations) override {
+    SolveReport report = method_->solve(A, preconditioner, b, x, 0.01 * tolerance, max_iterations);
+    x *= factor_;
+    report.status = said_;
+    return report;
+  }
+
+ private:
+  double factor_;
+  Status said_;
+  std::unique_ptr<KrylovMethod> method_;
+};
+
+// Only the explicit residual decides.
+TEST(BlockSolver, DoesNotTakeItsKrylovMethodAtItsWord) {
+  const auto space = make_space(12);
+  const CahnHilliard problem(space, make_model("degenerate", 0.1));
+  const auto size = static_cast<int>(problem.size());
+  BlockJacobian J = problem.make_jacobian();
+  const testing::StartState start = noise_state(problem, 1);
+  ASSERT_TRUE(problem.jacobian(0, start.y, start.ydot, 50, Tangent::stabilised, J).ok());
+  const Vec b = random_vector(size, 2);
+  const auto solves = [&](double factor, const Status& said) {
+    const LinearSolverPtr solver = make_block_solver(
+        cholmod_factory(space->pattern),
+        [&] { return std::make_unique<Mistaken>(size, factor, said); }, space->team, 1);
+    EXPECT_TRUE(solver->setup(J).ok());
+    Vec x = Vec::Zero(size);
+    return solver->solve(J, b, x, 1e-6).status;
+  };
+  EXPECT_TRUE(solves(1, {}).ok());
+  EXPECT_TRUE(solves(1, Status::retry("it stagnates")).ok());
+  EXPECT_EQ(solves(1 + 1e-4, {}).outcome, Outcome::retry);
+  EXPECT_EQ(solves(1 + 1e-4, Status::retry("it stagnates")).why, "it stagnates");
+  EXPECT_EQ(solves(std::nan(""), {}).outcome, Outcome::retry);
+}
 
 TEST(DirectSolver, RefinesWhereItsFactorsAreNotGoodEnough) {
   const auto space = make_space(12);
