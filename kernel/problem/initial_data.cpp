@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 namespace traceraft {
 
@@ -35,6 +36,27 @@ Vec make_initial_field(const std::string& specification, const SurfaceSpace& spa
   return project(space, entry.make(space, request, parameters));
 }
 
+namespace {
+
+// Nodes lie up to a cell beside the surface, where acos(z), say, is not defined.
+void require_finite_formula(const SurfaceSpace& space, const Vec& c) {
+  std::vector<double> bad;  // the first place where it is not
+  for (int i = 0; i < space.nodes() && bad.empty(); ++i)
+    if (const Point x = space.mesh.position(i); !std::isfinite(c[i])) bad = {x[0], x[1], x[2]};
+  for (const std::vector<double>& other : gather_everywhere(*space.communicator, bad))
+    bad = std::max(bad, other);
+  if (bad.empty()) return;
+  std::ostringstream text;
+  text.precision(3);
+  text << "initial 'formula': --initial-formula is not finite at (" << bad[0] << ", " << bad[1]
+       << ", " << bad[2]
+       << "), a node of the mesh beside the surface; on a sphere write z/sqrt(x^2+y^2+z^2) for z, "
+          "as in acos(z/sqrt(x^2+y^2+z^2)), and so for x and y";
+  throw InputError(text.str());
+}
+
+}  // namespace
+
 InitialEntry formula_field() {
   return {"formula",
           "c(x, y, z) from --initial-formula, coordinates in units of R",
@@ -46,6 +68,7 @@ InitialEntry formula_field() {
                   "--initial-formula \"0.5+0.1*z\"");
             Vec c(space.nodes());
             for (int i = 0; i < space.nodes(); ++i) c[i] = request.formula(space.mesh.position(i));
+            require_finite_formula(space, c);
             return c;
           }};
 }
