@@ -25,7 +25,8 @@ std::string file_head(const char* type) {
 }  // namespace
 
 std::string vtu_text(const SurfaceSpace& space, double length,
-                     const std::vector<PointField>& fields) {
+                     const std::vector<PointField>& fields,
+                     const std::vector<CellField>& cell_fields) {
   const CutSurface& surface = space.surface;
   std::vector<char> needed(surface.points.size(), 0);
   for (std::size_t t = 0; t < surface.triangles.size(); ++t)
@@ -56,7 +57,14 @@ std::string vtu_text(const SurfaceSpace& space, double length,
     for (const int p : used) values.push_back(static_cast<float>(field.values[p]));
     text += array("Float32", field.name, 1, values);
   }
-  text += "</PointData>\n<Points>\n" + array("Float32", "Points", 3, coordinates) +
+  text += "</PointData>\n<CellData>\n";
+  for (const CellField& field : cell_fields) {
+    std::vector<std::int32_t> values;
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+      if (space.owns_triangle(t)) values.push_back(field.values[t]);
+    text += array("Int32", field.name, 1, values);
+  }
+  text += "</CellData>\n<Points>\n" + array("Float32", "Points", 3, coordinates) +
           "</Points>\n<Cells>\n" + array("Int32", "connectivity", 1, connectivity) +
           array("Int32", "offsets", 1, offsets) + array("UInt8", "types", 1, types) +
           "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
@@ -64,13 +72,17 @@ std::string vtu_text(const SurfaceSpace& space, double length,
 }
 
 std::string pvtu_text(const std::vector<std::string>& pieces,
-                      const std::vector<std::string>& fields) {
+                      const std::vector<std::string>& fields,
+                      const std::vector<std::string>& cell_fields) {
   std::string text =
       file_head("PUnstructuredGrid") + "<PUnstructuredGrid GhostLevel=\"0\">\n<PPointData>\n";
   for (const std::string& field : fields)
     text += "<PDataArray type=\"Float32\" Name=\"" + field + "\"/>\n";
+  text += "</PPointData>\n<PCellData>\n";
+  for (const std::string& field : cell_fields)
+    text += "<PDataArray type=\"Int32\" Name=\"" + field + "\"/>\n";
   text +=
-      "</PPointData>\n<PPoints>\n<PDataArray type=\"Float32\" Name=\"Points\" "
+      "</PCellData>\n<PPoints>\n<PDataArray type=\"Float32\" Name=\"Points\" "
       "NumberOfComponents=\"3\"/>\n</PPoints>\n";
   for (const std::string& piece : pieces) text += "<Piece Source=\"" + piece + "\"/>\n";
   return text + "</PUnstructuredGrid>\n</VTKFile>\n";

@@ -14,9 +14,9 @@ namespace traceraft {
 namespace {
 
 constexpr char kColumns[] =
-    "step,t,dt,mass,energy,perimeter,perimeter_level,rafts,raft_fraction,c_min,c_max,rejected,"
-    "failures,newton_iterations,linear_iterations,linear_setups,order\n";
-constexpr char kRaftColumns[] = "t,raft,area,perimeter,x,y,z\n";
+    "step,t,dt,mass,energy,perimeter,perimeter_level,rafts,raft_fraction,c_min,c_max,domains,"
+    "rejected,failures,newton_iterations,linear_iterations,linear_setups,order\n";
+constexpr char kRaftColumns[] = "t,raft,area,perimeter,x,y,z,distance\n";
 
 TableExtent extent_of(const TableExtents& extents, const std::string& name) {
   const auto found = extents.find(name);
@@ -52,6 +52,14 @@ std::string piece_name(std::size_t index, int rank) {
   return name;
 }
 
+// No triangle has corners in two rafts: two that are above the level belong to one.
+std::vector<int> largest_at_corners(const CutSurface& surface, const std::vector<int>& of_point) {
+  std::vector<int> largest;
+  for (const auto& [a, b, c] : surface.triangles)
+    largest.push_back(std::max({of_point[a], of_point[b], of_point[c]}));
+  return largest;
+}
+
 }  // namespace
 
 TableWriter::TableWriter(const RunFolder& folder, const RunSetup& run, const TableExtents& extents)
@@ -73,10 +81,10 @@ std::string TableWriter::row_text(const Observables& row, double t) const {
       {static_cast<double>(statistics.steps), t, integrator.step() * units.time(),
        row.mass * units.area(), row.energy * units.area(), row.perimeter * units.length(),
        row.perimeter_level * units.length(), static_cast<double>(row.rafts), row.raft_fraction,
-       row.c_min, row.c_max, static_cast<double>(statistics.rejected),
-       static_cast<double>(statistics.failures), static_cast<double>(statistics.newton_iterations),
-       static_cast<double>(linear.iterations), static_cast<double>(linear.setups),
-       static_cast<double>(statistics.order)});
+       row.c_min, row.c_max, static_cast<double>(row.domains),
+       static_cast<double>(statistics.rejected), static_cast<double>(statistics.failures),
+       static_cast<double>(statistics.newton_iterations), static_cast<double>(linear.iterations),
+       static_cast<double>(linear.setups), static_cast<double>(statistics.order)});
 }
 
 void TableWriter::on_step(const RunState& state) {
@@ -92,7 +100,8 @@ void TableWriter::on_output(const Observables& row, const RaftReport& rafts, Con
   for (const Raft& raft : rafts.rafts) {
     const Point x = raft.centre * units.length();
     text += csv_row({t, static_cast<double>(++number), raft.area * units.area(),
-                     raft.perimeter * units.length(), x[0], x[1], x[2]});
+                     raft.perimeter * units.length(), x[0], x[1], x[2],
+                     raft.distance * units.length()});
   }
   rafts_.append(text);
 }
@@ -107,7 +116,7 @@ TableExtents TableWriter::extents() const {
           {"rafts.csv", rafts_.extent()}};
 }
 
-void FieldWriter::on_output(const Observables& row, const RaftReport&, ConstVec y) {
+void FieldWriter::on_output(const Observables& row, const RaftReport& rafts, ConstVec y) {
   const Communicator& ranks = *run_.ranks;
   const SurfaceSpace& space = *run_.space;
   const std::size_t index = output_index(run_, row.t);
@@ -117,7 +126,8 @@ void FieldWriter::on_output(const Observables& row, const RaftReport&, ConstVec 
   const bool alone = ranks.size() == 1;
   write_durably(
       folder_.fields() / (alone ? field_name(index, ranks) : piece_name(index, ranks.rank())),
-      vtu_text(space, run_.units.length(), {{"c", c}, {"mu", mu}}));
+      vtu_text(space, run_.units.length(), {{"c", c}, {"mu", mu}},
+               {{"raft", largest_at_corners(space.surface, rafts.of_point)}}));
   const DoubleWell& well = run_.problem->model().well;
   const Image image = draw_front_and_back(space, c, well.a, well.b, kViewPixels);
   // Nothing is named before all of it is there.
@@ -125,7 +135,8 @@ void FieldWriter::on_output(const Observables& row, const RaftReport&, ConstVec 
   if (!alone) {
     std::vector<std::string> pieces;
     for (int rank = 0; rank < ranks.size(); ++rank) pieces.push_back(piece_name(index, rank));
-    write_durably(folder_.fields() / field_name(index, ranks), pvtu_text(pieces, {"c", "mu"}));
+    write_durably(folder_.fields() / field_name(index, ranks),
+                  pvtu_text(pieces, {"c", "mu"}, {"raft"}));
   }
   // What this run wrote at that time before it went on with more or fewer ranks.
   std::filesystem::remove(folder_.fields() / numbered("field", index, alone ? "pvtu" : "vtu"));

@@ -90,6 +90,7 @@ std::string summary_json(const Configuration& configuration, const RunSetup& run
   json["perimeter"] = row.perimeter * units.length();
   json["perimeter_level"] = row.perimeter_level * units.length();
   json["rafts"] = row.rafts;
+  json["domains"] = row.domains;
   json["raft_fraction"] = row.raft_fraction;
   json["c_min"] = row.c_min;
   json["c_max"] = row.c_max;
@@ -194,7 +195,10 @@ void print_summary(const Configuration& configuration, const RunSetup& run, cons
   const char* length = units.scaled ? "R" : "um";
   say("\n%s at t = %.6g%s\n", end_name(result.end), row.t * units.time(), units.scaled ? "" : " s");
   if (!result.why.empty()) line("why", result.why);
-  line("rafts", formatted("%d", row.rafts));
+  line("rafts", formatted("%d", row.rafts) +
+                    (row.raft_fraction > 0.5
+                         ? formatted(", around %d domains of the other phase", row.domains)
+                         : ""));
   line("raft fraction", formatted("%.4f of the area, mean concentration %.6f", row.raft_fraction,
                                   row.mass / run.space->area));
   line("perimeter", formatted("%.5g %s (level curve %.5g %s)", row.perimeter * units.length(),

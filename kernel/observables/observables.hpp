@@ -18,6 +18,7 @@ struct Observables {
   double perimeter = 0;        // p0 ∫ ε |∇_Γ c|²
   double perimeter_level = 0;  // length of the curve c = (a + b)/2
   int rafts = 0;
+  int domains = 0;           // components of the phase that covers less: rafts, or what is not raft
   double raft_fraction = 0;  // area of {c > (a + b)/2} over |Γ|
   double c_min = 0, c_max = 0;
 };

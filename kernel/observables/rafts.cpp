@@ -1,6 +1,8 @@
 #include "kernel/observables/rafts.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -58,7 +60,12 @@ Piece piece_above(const std::array<Point, 3>& x, const std::array<double, 3>& va
 struct Sums {
   double area = 0, perimeter = 0;
   double moment[3] = {0, 0, 0};  // area times centre of area
+  // The first of the edges it has points on, by the global ids of their nodes.
+  std::int64_t low = std::numeric_limits<std::int64_t>::max(), high = low;
 
+  void see(std::int64_t low_, std::int64_t high_) {
+    if (std::pair(low_, high_) < std::pair(low, high)) low = low_, high = high_;
+  }
   void add(double area_, double perimeter_, const double* moment_) {
     area += area_;
     perimeter += perimeter_;
@@ -96,6 +103,8 @@ Pieces find_pieces(const SurfaceSpace& space, const Vec& value, double level) {
       pieces.sums.emplace_back();
     }
     pieces.of_point[p] = piece;
+    const CutPoint& point = surface.points[p];
+    pieces.sums[piece].see(space.mesh.node_id[point.low], space.mesh.node_id[point.high]);
   }
   const std::vector<Point>& x = surface.position;
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
@@ -168,34 +177,52 @@ Merged merge(const SurfaceSpace& space, const Pieces& pieces) {
       }
       const Sums& part = sums[rank][piece];
       merged.rafts[raft].add(part.area, part.perimeter, part.moment);
+      merged.rafts[raft].see(part.low, part.high);
       if (static_cast<int>(rank) == ranks.rank()) merged.raft_of_piece.push_back(raft);
     }
   return merged;
 }
 
-// The point of each raft nearest to its centre of area.
-std::vector<Point> find_centres(const SurfaceSpace& space, const Pieces& pieces,
-                                const Merged& merged) {
-  struct Candidate {
-    double distance;
-    double x[3];
-  };
-  std::vector<Candidate> nearest(merged.rafts.size(), {1e300, {0, 0, 0}});
+Point centre_of(const Sums& raft) {
+  return Eigen::Map<const Point>(raft.moment) / raft.area;
+}
+
+// From the centre of each raft to the nearest of its points.
+std::vector<double> find_distances(const SurfaceSpace& space, const Pieces& pieces,
+                                   const Merged& merged) {
+  std::vector<double> nearest(merged.rafts.size(), 1e300);
   for (std::size_t p = 0; p < pieces.of_point.size(); ++p) {
     if (pieces.of_point[p] < 0) continue;
     const int raft = merged.raft_of_piece[pieces.of_point[p]];
-    const Sums& sums = merged.rafts[raft];
-    const Point& x = space.surface.position[p];
-    const Point middle = Eigen::Map<const Point>(sums.moment) / sums.area;
-    const double distance = (x - middle).norm();
-    if (distance < nearest[raft].distance) nearest[raft] = {distance, {x[0], x[1], x[2]}};
+    const double distance = (space.surface.position[p] - centre_of(merged.rafts[raft])).norm();
+    nearest[raft] = std::min(nearest[raft], distance);
   }
-  for (const std::vector<Candidate>& others : gather_everywhere(*space.communicator, nearest))
+  for (const std::vector<double>& others : gather_everywhere(*space.communicator, nearest))
     for (std::size_t raft = 0; raft < others.size(); ++raft)
-      if (others[raft].distance < nearest[raft].distance) nearest[raft] = others[raft];
-  std::vector<Point> centres;
-  for (const Candidate& candidate : nearest) centres.emplace_back(candidate.x);
-  return centres;
+      nearest[raft] = std::min(nearest[raft], others[raft]);
+  return nearest;
+}
+
+// Sums over ranks differ by roundoff from those over one.
+double without_roundoff(double area) {
+  constexpr int kBits = 30;
+  int exponent = 0;
+  const double mantissa = std::frexp(area, &exponent);
+  return std::ldexp(std::round(std::ldexp(mantissa, kBits)), exponent - kBits);
+}
+
+// The largest raft first; equally large ones in the order of their nodes, which is the same on any
+// number of ranks.
+std::vector<int> by_size(const std::vector<Sums>& rafts) {
+  std::vector<int> order(rafts.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    const Sums &first = rafts[a], &second = rafts[b];
+    const double larger = without_roundoff(first.area), smaller = without_roundoff(second.area);
+    if (larger != smaller) return larger > smaller;
+    return std::pair(first.low, first.high) < std::pair(second.low, second.high);
+  });
+  return order;
 }
 
 }  // namespace
@@ -207,19 +234,29 @@ RaftReport RaftFinder::find(ConstVec c, double level) const {
   const Vec value = trace(*space_, space_->with_ghosts(c, buffer));
   const Pieces pieces = find_pieces(*space_, value, level);
   const Merged merged = merge(*space_, pieces);
-  const std::vector<Point> centres = find_centres(*space_, pieces, merged);
+  const std::vector<double> distances = find_distances(*space_, pieces, merged);
   RaftReport report;
   report.c_min = space_->communicator->min(value.minCoeff());
   report.c_max = space_->communicator->max(value.maxCoeff());
-  for (std::size_t raft = 0; raft < merged.rafts.size(); ++raft) {
+  std::vector<int> number(merged.rafts.size());
+  for (const int raft : by_size(merged.rafts)) {
     const Sums& sums = merged.rafts[raft];
-    report.rafts.push_back({sums.area, sums.perimeter, centres[raft]});
+    report.rafts.push_back({sums.area, sums.perimeter, centre_of(sums), distances[raft]});
+    number[raft] = static_cast<int>(report.rafts.size());
+  }
+  for (const Sums& sums : merged.rafts) {
     report.area += sums.area;
     report.perimeter += sums.perimeter;
   }
-  std::sort(report.rafts.begin(), report.rafts.end(),
-            [](const Raft& a, const Raft& b) { return a.area > b.area; });
+  for (const int piece : pieces.of_point)
+    report.of_point.push_back(piece < 0 ? 0 : number[merged.raft_of_piece[piece]]);
   return report;
+}
+
+int RaftFinder::regions_below(ConstVec c, double level) const {
+  Vec buffer;
+  const Vec value = -trace(*space_, space_->with_ghosts(c, buffer));
+  return static_cast<int>(merge(*space_, find_pieces(*space_, value, -level)).rafts.size());
 }
 
 }  // namespace traceraft

@@ -11,11 +11,13 @@ namespace traceraft {
 struct Raft {
   double area;
   double perimeter;  // length of its boundary, the level curve
-  Point centre;      // the point of the raft nearest to its centre of area
+  Point centre;      // of area: below the surface, and for a ring in its hole
+  double distance;   // from there to the nearest point of the raft
 };
 
 struct RaftReport {
-  std::vector<Raft> rafts;      // largest first
+  std::vector<Raft> rafts;      // largest first, equally large ones in the order of their nodes
+  std::vector<int> of_point;    // of this rank's triangles: 1 is the first raft, 0 none
   double area = 0;              // of {c > level}
   double perimeter = 0;         // length of the level curve
   double c_min = 0, c_max = 0;  // on Γ_h, where nodal values mean nothing
@@ -28,6 +30,8 @@ class RaftFinder {
  public:
   explicit RaftFinder(std::shared_ptr<const SurfaceSpace> space);
   RaftReport find(ConstVec c, double level) const;
+  // Of {c < level}, how many components it has.
+  int regions_below(ConstVec c, double level) const;
 
  private:
   std::shared_ptr<const SurfaceSpace> space_;

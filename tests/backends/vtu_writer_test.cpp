@@ -76,6 +76,21 @@ TEST(VtuWriter, WritesTheSurfaceAndItsFields) {
   EXPECT_EQ(array_named<std::uint8_t>(file, "types").size(), space->surface.triangles.size());
 }
 
+TEST(VtuWriter, WritesWholeNumbersOfTriangles) {
+  const auto space = testing::make_space(16);
+  std::vector<int> number(space->surface.triangles.size());
+  for (std::size_t t = 0; t < number.size(); ++t) number[t] = static_cast<int>(t % 5);
+  const std::string file = vtu_text(*space, 1.0, {}, {{"raft", number}});
+  const std::size_t begin = file.find("<CellData>"), end = file.find("</CellData>");
+  ASSERT_LT(begin, file.find("Name=\"raft\""));
+  EXPECT_GT(end, file.find("Name=\"raft\""));
+  const auto written = array_named<std::int32_t>(file, "raft");
+  EXPECT_EQ(std::vector<int>(written.begin(), written.end()), number);
+  EXPECT_NE(pvtu_text({"a.vtu"}, {"c"}, {"raft"})
+                .find("<PCellData>\n<PDataArray type=\"Int32\" Name=\"raft\"/>"),
+            std::string::npos);
+}
+
 TEST(VtuWriter, RanksWritePiecesOfTheWhole) {
   const auto whole = testing::make_space(16);
   std::size_t triangles = 0;

@@ -233,6 +233,57 @@ TEST_P(Distribution, ConsistentStatesNormsAndObservablesAreTheSame) {
   });
 }
 
+std::vector<std::pair<int, std::function<double(const Point&)>>> fields_of_rafts() {
+  const auto angle = [](const Point& x) { return std::acos(x[2] / x.norm()); };
+  const auto turn = [](const Point& x) { return std::atan2(x[1], x[0]); };
+  return {{1, [=](const Point& x) { return 0.5 + 0.45 * std::sin(6 * angle(x) + turn(x)); }},
+          {3,
+           [=](const Point& x) {
+             return 0.4 + 0.45 * std::sin(angle(x)) * std::sin(4 * angle(x) + 3 * turn(x));
+           }},
+          {1, [](const Point& x) { return 0.8 - std::fabs(x[2]); }},
+          {4, [](const Point& x) { return 0.45 + x[0] * x[1] * x[2]; }}};
+}
+
+Vec at_nodes(const SurfaceSpace& space, const std::function<double(const Point&)>& f) {
+  Vec c(space.nodes());
+  for (int i = 0; i < space.nodes(); ++i) c[i] = f(space.mesh.position(i));
+  return c;
+}
+
+using NodePair = std::pair<std::int64_t, std::int64_t>;
+NodePair place_of(const SurfaceSpace& space, int point) {
+  const CutPoint& cut = space.surface.points[point];
+  return {space.mesh.node_id[cut.low], space.mesh.node_id[cut.high]};
+}
+
+// Spirals over all ranks, a ring, and rafts that are equally large.
+TEST_P(Distribution, RaftsAreTheSameAndHaveTheSameNumbers) {
+  const auto whole = make_space(kCells);
+  for (const auto& [count, field] : fields_of_rafts()) {
+    const RaftReport rafts = RaftFinder(whole).find(at_nodes(*whole, field), 0.5);
+    EXPECT_EQ(static_cast<int>(rafts.rafts.size()), count);
+    std::map<NodePair, int> numbers;
+    for (std::size_t p = 0; p < rafts.of_point.size(); ++p)
+      numbers[place_of(*whole, static_cast<int>(p))] = rafts.of_point[p];
+    run_on_ranks(GetParam(), [&, &f = field](const auto& ranks) {
+      const auto part = part_of(ranks);
+      const RaftReport mine = RaftFinder(part).find(at_nodes(*part, f), 0.5);
+      EXPECT_NEAR(mine.perimeter / rafts.perimeter, 1, 1e-12);
+      ASSERT_EQ(mine.rafts.size(), rafts.rafts.size());
+      for (std::size_t k = 0; k < rafts.rafts.size(); ++k) {
+        EXPECT_LT((mine.rafts[k].centre - rafts.rafts[k].centre).norm(), 1e-12) << k;
+        EXPECT_NEAR(mine.rafts[k].distance, rafts.rafts[k].distance, 1e-12) << k;
+      }
+      for (std::size_t t = 0; t < part->surface.triangles.size(); ++t) {
+        if (!part->owns_triangle(t)) continue;
+        for (const int p : part->surface.triangles[t])
+          ASSERT_EQ(mine.of_point[p], numbers.at(place_of(*part, p)));
+      }
+    });
+  }
+}
+
 // A checkpoint does not depend on the number of ranks that write it, nor on those that read it.
 TEST_P(Distribution, CheckpointsAreWrittenAndReadOnAnyNumberOfRanks) {
   const auto whole = make_space(kCells);

@@ -91,8 +91,14 @@ TEST(Caps, ArePlacedWhereTheyWereAskedFor) {
   EXPECT_NEAR(report.rafts[0].perimeter, 2 * M_PI * std::sin(0.8), 0.05);
   EXPECT_NEAR(report.rafts[1].area, 2 * M_PI * (1 - std::cos(0.5)), 0.02);
   EXPECT_NEAR(report.rafts[1].perimeter, 2 * M_PI * std::sin(0.5), 0.05);
-  EXPECT_LT((report.rafts[0].centre - Point(0, 0, 1)).norm(), 0.1);
-  EXPECT_LT((report.rafts[1].centre - Point(2, 0, -1).normalized()).norm(), 0.1);
+  // The centre of a cap's area is halfway between its pole and the plane of its rim.
+  const auto depth = [](double angle) { return 0.5 * (1 - std::cos(angle)); };
+  const double angles[] = {0.8, 0.5};
+  const Point axes[] = {{0, 0, 1}, Point(2, 0, -1).normalized()};
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_LT((report.rafts[k].centre - (1 - depth(angles[k])) * axes[k]).norm(), 0.01);
+    EXPECT_NEAR(report.rafts[k].distance, depth(angles[k]), 0.02);
+  }
 }
 
 TEST(Formula, IsProjected) {
