@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "backends/posix/durable_file.hpp"
+#include "drivers/config/toml_depth.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/named_list.hpp"
 
@@ -34,7 +35,16 @@ std::string one_line(std::string text) {
   return text.substr(0, 200);
 }
 
-TomlValue value_of(const toml::node& node) {
+// The same number as a double, or a complaint.
+double exactly(std::int64_t integer, const std::string& where) {
+  constexpr std::int64_t kLargest = std::int64_t{1} << 53;
+  if (integer <= kLargest && integer >= -kLargest) return static_cast<double>(integer);
+  throw InputError(where + ": " + std::to_string(integer) +
+                   " has too many digits (allowed: whole numbers up to " +
+                   std::to_string(kLargest) + ")");
+}
+
+TomlValue value_of(const toml::node& node, const std::string& where) {
   if (const auto text = node.value_exact<std::string>()) return *text;
   if (const auto flag = node.value_exact<bool>()) return *flag;
   if (const auto integer = node.value_exact<std::int64_t>()) return *integer;
@@ -44,7 +54,8 @@ TomlValue value_of(const toml::node& node) {
   std::vector<double> numbers;
   for (const toml::node& item : *array) {
     if (!item.is_number()) return std::monostate();
-    numbers.push_back(*item.value<double>());
+    const auto integer = item.value_exact<std::int64_t>();
+    numbers.push_back(integer ? exactly(*integer, where) : *item.value<double>());
   }
   return numbers;
 }
@@ -54,6 +65,9 @@ TomlValue value_of(const toml::node& node) {
 TomlTable TomlTable::read(const std::filesystem::path& path, const std::vector<std::string>& known,
                           const std::string& context) {
   const std::string text = read_text(path, context);
+  if (const long line = line_of_deep_key(text); line > 0)
+    throw InputError(path.string() + ":" + std::to_string(line) +
+                     ": a key of many parts between dots; keys are single names here");
   toml::table parsed;
   try {
     parsed = toml::parse(text, path.string());
@@ -69,7 +83,8 @@ TomlTable TomlTable::read(const std::filesystem::path& path, const std::vector<s
     if (std::find(known.begin(), known.end(), name) == known.end())
       throw InputError(path.string() + ":" + std::to_string(line) + ": " +
                        unknown_name_message("key", name, known));
-    table.entries_[name] = {value_of(node), line};
+    table.entries_[name] = {std::monostate(), line};
+    table.entries_[name].value = value_of(node, table.where(name));
   }
   return table;
 }
@@ -97,7 +112,7 @@ std::string TomlTable::text(const std::string& key) const {
 
 double TomlTable::number(const std::string& key) const {
   const TomlValue& found = needed(key);
-  if (const auto* integer = std::get_if<std::int64_t>(&found)) return static_cast<double>(*integer);
+  if (const auto* integer = std::get_if<std::int64_t>(&found)) return exactly(*integer, where(key));
   if (const auto* number = std::get_if<double>(&found)) return *number;
   throw InputError(where(key) + ": a number is needed here");
 }
