@@ -20,6 +20,9 @@ std::string number_text(const TomlTable& table, const std::string& key, const st
 
 std::string value_text(const OptionSpec& spec, const TomlTable& table, const std::string& where) {
   const TomlValue& value = table.value(spec.name);
+  if (const auto* number = std::get_if<double>(&value);
+      number && spec.kind == OptionKind::integer && *number >= kLargestSeed)
+    throw InputError(where + ": whole numbers as large as this are written in digits alone");
   switch (spec.kind) {
     case OptionKind::text:
     case OptionKind::path:

@@ -1,6 +1,8 @@
 #include "drivers/config/configuration.hpp"
 
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <sstream>
 
@@ -20,12 +22,24 @@ bool parse_flag(const GivenValue& value) {
   throw InputError(value.where + ": '" + value.text + "' is neither true nor false");
 }
 
+// From 2^53 on a double may hold another whole number than the text does.
+bool has_lost_digits(const std::string& text, double number) {
+  if (!(std::fabs(number) >= kLargestSeed)) return false;
+  std::int64_t exact = 0;
+  const char* end = text.data() + text.size();
+  const auto result = std::from_chars(text.data() + (text[0] == '+' ? 1 : 0), end, exact);
+  return result.ec != std::errc() || result.ptr != end ||
+         static_cast<long double>(exact) != static_cast<long double>(number);
+}
+
 double checked_number(const OptionSpec& spec, const GivenValue& value, const std::string& text,
                       double unit) {
   const double number = parse_number(value.where, text);
-  if (spec.kind == OptionKind::integer && number != std::floor(number))
+  const bool whole = spec.kind == OptionKind::integer;
+  if (whole && number != std::floor(number))
     throw InputError(value.where + ": '" + text + "' is not a whole number");
-  if (spec.min < spec.max && !(number >= spec.min / unit && number <= spec.max / unit))
+  const bool lost = whole && has_lost_digits(text, number);
+  if (spec.min < spec.max && (lost || !(number >= spec.min / unit && number <= spec.max / unit)))
     throw InputError(value.where + ": " + text +
                      " is out of range (allowed: " + format_number(spec.min / unit) + " to " +
                      format_number(spec.max / unit) + ")");
@@ -132,8 +146,12 @@ void Configuration::set(const OptionSpec& spec, const GivenValue& value) {
       checked_number(spec, value, value.text, unit);
       break;
     case OptionKind::numbers:
-      for (const std::string& item : split_list(value.text))
+      for (const std::string& item : split_list(value.text)) {
+        if (item.find_first_of(" ;\t") != std::string::npos)
+          throw InputError(value.where + ": '" + item.substr(0, 60) +
+                           "' is no number; commas stand between numbers");
         checked_number(spec, value, item, unit);
+      }
       break;
   }
   values_[spec.name] = value;

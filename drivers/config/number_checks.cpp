@@ -27,11 +27,12 @@ std::string whole_number(const std::string& text) {
   return not_finite.empty() ? "'" + text + "' is not a whole number in digits" : not_finite;
 }
 
-// `range`: for the help; `complaint`: after the number, where `holds` is false.
+// `range`: for the help; `complaint`: after the number, where `holds` is false. A long double holds
+// every whole number of 64 bits.
 CLI::Validator checked(const std::string& range, const std::string& complaint,
-                       const std::function<bool(double)>& holds) {
+                       const std::function<bool(long double)>& holds) {
   return {[=](std::string& text) {
-            double value = 0;
+            long double value = 0;
             CLI::detail::lexical_cast(text, value);
             return holds(value) ? std::string() : text + " is " + complaint;
           },
@@ -43,16 +44,16 @@ CLI::Validator checked(const std::string& range, const std::string& complaint,
 CLI::Validator between(double low, double high) {
   const std::string from = as_number(low), to = as_number(high);
   return checked("in [" + from + " - " + to + "]", "not between " + from + " and " + to,
-                 [=](double value) { return value >= low && value <= high; });
+                 [=](long double value) { return value >= low && value <= high; });
 }
 
 CLI::Validator at_least(double low) {
   return checked(">= " + as_number(low), "less than " + as_number(low),
-                 [=](double value) { return value >= low; });
+                 [=](long double value) { return value >= low; });
 }
 
 CLI::Validator positive() {
-  return checked("> 0", "not positive", [](double value) { return value > 0; });
+  return checked("> 0", "not positive", [](long double value) { return value > 0; });
 }
 
 void check_numbers_first(CLI::App& command) {

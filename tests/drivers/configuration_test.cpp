@@ -100,6 +100,36 @@ TEST(Configuration, NamesWhatIsWrongAndWhatIsAllowed) {
   EXPECT_NE(of("initial-formula", "\xff\xfe").find("UTF-8"), std::string::npos);
 }
 
+// A double would make 9007199254740992 of it.
+TEST(Configuration, RefusesSeedsThatLoseDigits) {
+  const auto of = [](const std::string& text) {
+    return complaint([&] { Configuration({}, flags({{"seed", text}})); });
+  };
+  for (const char* good : {"0", "+7", "1e3", "9007199254740991", "9007199254740992"})
+    EXPECT_EQ(of(good), "") << good;
+  for (const char* bad : {"9007199254740993", "9007199254740993.0", "9.007199254740993e15",
+                          "18446744073709551617", "1e300"})
+    EXPECT_EQ(of(bad),
+              std::string("--seed: ") + bad + " is out of range (allowed: 0 to 9007199254740992)");
+  const auto in_file = [](const std::string& text) {
+    return complaint([&] { Configuration(read_text("seed = " + text + "\n"), {}); });
+  };
+  EXPECT_EQ(in_file("9007199254740992"), "");
+  EXPECT_NE(in_file("9007199254740993").find("run.toml:1: seed: 9007199254740993 is out of range"),
+            std::string::npos);
+  EXPECT_NE(in_file("9007199254740993.0").find("in digits alone"), std::string::npos);
+  EXPECT_NE(in_file("99999999999999999999").find("run.toml:1"), std::string::npos);
+}
+
+TEST(Configuration, SaysHowNumbersAreSeparated) {
+  for (const char* text : {"100 20 9", "1;2"})
+    EXPECT_EQ(
+        complaint([&] {
+          Configuration({}, flags({{"output-times", text}}));
+        }),
+        std::string("--output-times: '") + text + "' is no number; commas stand between numbers");
+}
+
 TEST(ConfigFile, NamesFileLineAndKey) {
   const auto of = [](const std::string& text) { return complaint([&] { read_text(text); }); };
   EXPECT_NE(of("cells = 48\nepsilom = 0.1\n")
