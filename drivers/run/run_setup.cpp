@@ -9,6 +9,7 @@
 #include "backends/ranks.hpp"
 #include "drivers/run/checked_options.hpp"
 #include "drivers/run/initial_state.hpp"
+#include "drivers/run/memory_need.hpp"
 #include "drivers/run/numerical_methods.hpp"
 #include "drivers/run/physical_model.hpp"
 #include "kernel/core/text.hpp"
@@ -81,6 +82,7 @@ RunSetup build_run(const Configuration& configuration, InitialState initial,
   run.ranks = world();
   run.team = std::make_shared<ThreadTeam>(thread_count(configuration, *run.ranks));
   const LevelSetPtr surface = surface_of(configuration);
+  refuse_too_fine(configuration, *surface, *run.ranks);
   run.space = said_of(configuration, "surface", [&] {
     return std::make_shared<const SurfaceSpace>(*surface, configuration.integer("cells"), run.team,
                                                 run.ranks);

@@ -1,0 +1,32 @@
+#include "drivers/run/memory_need.hpp"
+
+#include <gtest/gtest.h>
+
+#include "kernel/core/error.hpp"
+
+namespace traceraft {
+namespace {
+
+TEST(MemoryNeed, GrowsWithTheSurfaceAndTheSquareOfTheCells) {
+  const LevelSetPtr sphere = make_surface("sphere");
+  EXPECT_EQ(least_memory(*sphere, 256, 1), 0);  // fits anywhere
+  const double fine = least_memory(*sphere, 2048, 1);
+  EXPECT_NEAR(least_memory(*sphere, 4096, 1) / fine, 4, 1e-9);
+  EXPECT_NEAR(least_memory(*sphere, 2048, 4) / fine, 0.25, 1e-9);
+  // 11.2 million nodes, of 2 to 5 kB each.
+  EXPECT_GT(fine, 22e9);
+  EXPECT_LT(fine, 56e9);
+  EXPECT_LT(least_memory(*make_surface("ellipsoid:a=0.3,b=0.3,c=0.3"), 2048, 1), 0.2 * fine);
+}
+
+TEST(MemoryNeed, IsComparedWithWhatThereIs) {
+  EXPECT_EQ(memory_complaint(4096, 1e11, 2e11), "");
+  EXPECT_EQ(memory_complaint(4096, 1.12e11, 2.5e10),
+            "4096 per edge need at least 112 GB of memory on each rank, and this machine has 25; "
+            "take 1935 at most, or ranks on several machines");
+  // Nothing is known of a surface that the coarse mesh does not find.
+  EXPECT_EQ(least_memory(FunctionLevelSet([](const Point&) { return 1.0; }), 4096, 1), 0);
+}
+
+}  // namespace
+}  // namespace traceraft
