@@ -176,6 +176,15 @@ class Ida final : public Integrator {
         return Status::fatal(
             "no step size down to the smallest one" +
             (reason.empty() ? "; Newton's method does not converge" : ": " + reason));
+      case IDA_RES_FAIL:
+        return Status::fatal("the equations cannot be evaluated" +
+                             (reason.empty() ? "" : ": " + reason));
+      case IDA_TOO_MUCH_ACC:
+        return Status::fatal("the tolerance is smaller than roundoff allows; take a larger one");
+      case IDA_ILL_INPUT:
+        return Status::fatal(
+            "the first step cannot be chosen: the end of the run, the initial and the largest step "
+            "do not go together");
       default:
         return Status::fatal("IDA code " + std::to_string(flag) +
                              (reason.empty() ? "" : ": " + reason));

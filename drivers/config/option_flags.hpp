@@ -28,6 +28,7 @@ void add_options(CLI::App& command, GivenValues& values, const Wanted& wanted,
             : command.add_option_function<std::string>(flag, store, spec.help);
     option->group(spec.group);
     if (spec.list) option->join(';');
+    if (spec.kind == OptionKind::numbers) option->join(',');
     if (const std::string text = defaults.text(spec.name);
         !text.empty() && spec.kind != OptionKind::flag)
       option->default_str(text)->run_callback_for_default(false);

@@ -3,8 +3,17 @@
 #include <algorithm>
 
 #include "kernel/core/named_list.hpp"
+#include "kernel/core/parameters.hpp"
+#include "kernel/core/text.hpp"
 
 namespace traceraft {
+namespace {
+
+constexpr double kShortestTime = 1e-100, kLongestTime = 1e100;  // in R²/D
+// Steps that are shorter, over the end of the run, are lost when they are added to its time.
+constexpr double kLeastPart = 1e-14;
+
+}  // namespace
 
 std::string one_of(const Configuration& configuration, const char* option, const char* kind,
                    const std::vector<std::string>& words) {
@@ -12,6 +21,28 @@ std::string one_of(const Configuration& configuration, const char* option, const
   if (std::find(words.begin(), words.end(), word) == words.end())
     throw InputError(configuration.where(option) + ": " + unknown_name_message(kind, word, words));
   return word;
+}
+
+void refuse_times_out_of_range(const Configuration& configuration) {
+  const double unit = configuration.units().time(), end = configuration.number("t-end");
+  const auto require = [&](const OptionSpec& spec, double value, double least) {
+    const double most = kLongestTime * unit;
+    if ((value == 0 && spec.min == 0) || (value >= least && value <= most)) return;
+    throw InputError(
+        configuration.where(spec.name) + ": " + format_number(value) +
+        " is too short or too long to compute with (allowed: " + (spec.min == 0 ? "0, or " : "") +
+        formatted("%.3g to %.3g)", least, most));
+  };
+  for (const OptionSpec& spec : run_options()) {
+    if (spec.dimension != Dimension::time) continue;
+    const bool several = spec.kind == OptionKind::numbers;
+    const std::vector<double> values = several
+                                           ? configuration.numbers(spec.name)
+                                           : std::vector<double>{configuration.number(spec.name)};
+    for (const double value : values) require(spec, value, kShortestTime * unit);
+  }
+  for (const char* longest : {"max-step", "ida-maxstep"})
+    require(run_option(longest), configuration.number(longest), kLeastPart * end);
 }
 
 }  // namespace traceraft

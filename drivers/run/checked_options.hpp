@@ -24,4 +24,8 @@ auto said_of(const Configuration& configuration, const char* option, const Make&
 std::string one_of(const Configuration& configuration, const char* option, const char* kind,
                    const std::vector<std::string>& words);
 
+// Refuses times and steps that are too short or too long to compute with, in R²/D: integrators need
+// inverses of steps, and squares of these, as doubles. Throws InputError.
+void refuse_times_out_of_range(const Configuration& configuration);
+
 }  // namespace traceraft

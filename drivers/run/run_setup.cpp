@@ -42,8 +42,8 @@ PerimeterCalibration perimeter_calibration(const Configuration& configuration,
   return calibrate_perimeter(*sphere, model);
 }
 
-// In the user's units.
-std::vector<double> output_labels(const Configuration& configuration) {
+// In the user's units, ascending.
+std::vector<double> asked_times(const Configuration& configuration) {
   constexpr int kDefaultTimes = 16;
   const double end = configuration.number("t-end");
   std::vector<double> times = configuration.numbers("output-times");
@@ -53,11 +53,23 @@ std::vector<double> output_labels(const Configuration& configuration) {
       times.push_back(end * std::pow(10.0, 4.0 * (i - kDefaultTimes) / kDefaultTimes));
   }
   std::sort(times.begin(), times.end());
-  times.erase(std::unique(times.begin(), times.end()), times.end());
   if (times.back() > end)
     throw InputError(configuration.where("output-times") + ": " + format_number(times.back()) +
                      " is after the end of the run, " + configuration.text("t-end"));
   return times;
+}
+
+void set_output_times(const Configuration& configuration, RunSetup& run) {
+  for (const double label : asked_times(configuration)) {
+    const double t = std::min(label / run.units.time(), run.t_end);
+    if (!run.output_times.empty() && t == run.output_times.back()) {
+      if (run.repeated_labels.empty() || run.repeated_labels.back() != label)
+        run.repeated_labels.push_back(label);
+      continue;
+    }
+    run.output_labels.push_back(label);
+    run.output_times.push_back(t);
+  }
 }
 
 }  // namespace
@@ -65,11 +77,10 @@ std::vector<double> output_labels(const Configuration& configuration) {
 RunSetup build_run(const Configuration& configuration, InitialState initial,
                    const Compared& compared) {
   RunSetup run;
+  refuse_times_out_of_range(configuration);
   run.units = configuration.units();
   run.t_end = configuration.number("t-end") / run.units.time();
-  run.output_labels = output_labels(configuration);
-  for (const double label : run.output_labels)
-    run.output_times.push_back(std::min(label / run.units.time(), run.t_end));
+  set_output_times(configuration, run);
   const CahnHilliardModel physics = physical_model(configuration);
   const IntegratorEntry& integrator = said_of(configuration, "integrator", [&] {
     return std::cref(integrators().find(configuration.text("integrator")));

@@ -25,10 +25,11 @@ struct RunSetup {
   double initial_mean = 0;  // and its mean
   PerimeterCalibration perimeter;
   std::unique_ptr<Observer> observer;
-  IntegratorPtr integrator;           // not started
-  double t_end;                       // units of R²/D, as below
-  std::vector<double> output_times;   // ascending, within [0, t_end]
-  std::vector<double> output_labels;  // the same as the user wrote them, in the user's units
+  IntegratorPtr integrator;             // not started
+  double t_end;                         // units of R²/D, as below
+  std::vector<double> output_times;     // ascending, within [0, t_end]
+  std::vector<double> output_labels;    // the same as the user wrote them, in the user's units
+  std::vector<double> repeated_labels;  // those that were asked for more than once
 };
 
 enum class InitialState { build, from_checkpoint /* leaves RunSetup::initial empty */ };

@@ -9,6 +9,7 @@
 #include "drivers/run/progress.hpp"
 #include "drivers/text/say.hpp"
 #include "drivers/version.hpp"
+#include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
 
 namespace traceraft {
@@ -150,6 +151,13 @@ std::string initial_text(const Configuration& configuration, const RunSetup& run
                    length / (run.problem->model().epsilon * run.units.radius_um));
 }
 
+std::string repeated_times_text(const RunSetup& run) {
+  std::vector<std::string> repeated;
+  for (const double label : run.repeated_labels) repeated.push_back(format_number(label));
+  return std::to_string(run.output_times.size()) +
+         "; given more than once: " + joined(repeated, ", ");
+}
+
 void print_setup(const Configuration& configuration, const RunSetup& run) {
   const Units& units = run.units;
   say("traceraft %s\n", kVersion);
@@ -173,6 +181,7 @@ void print_setup(const Configuration& configuration, const RunSetup& run) {
   line("units", formatted("length R = %g um, time R^2/D = %g s; the run ends at %g s = %g R^2/D",
                           units.radius_um, units.seconds_per_unit(),
                           run.t_end * units.seconds_per_unit(), run.t_end));
+  if (!run.repeated_labels.empty()) line("output times", repeated_times_text(run));
   if (run.initial.size() > 0)
     line("initial state", formatted("%s, mean concentration %.6f, seed %lld",
                                     initial_text(configuration, run).c_str(), run.initial_mean,

@@ -226,6 +226,42 @@ TEST(RunSetup, ChecksEverythingBeforeAnythingRuns) {
   EXPECT_EQ(of({{"min-step", "2"}, {"max-step", "1"}}).find("--min-step: "), 0u);
 }
 
+// Steps are divided by, and the quotients squared.
+TEST(RunSetup, RefusesTimesThatDoublesCannotHold) {
+  const auto of = [](std::initializer_list<std::pair<std::string, std::string>> values) {
+    GivenValues given = flags(values);
+    given.emplace("cells", GivenValue{"8", "--cells"});
+    return complaint([&] { build_run(Configuration({}, given), InitialState::from_checkpoint); });
+  };
+  const std::string allowed = " is too short or too long to compute with (allowed: ";
+  EXPECT_EQ(of({{"t-end", "1e-300"}}), "--t-end: 1e-300" + allowed + "1e-102 to 1e+98)");
+  EXPECT_EQ(of({{"t-end", "1e200"}}), "--t-end: 1e+200" + allowed + "1e-102 to 1e+98)");
+  for (const char* option : {"initial-step", "min-step", "max-step", "ida-initstep", "ida-maxstep"})
+    EXPECT_EQ(of({{option, "1e-200"}}).find(std::string("--") + option + ": 1e-200" + allowed), 0u);
+  EXPECT_EQ(of({{"output-times", "1,1e-200"}}).find("--output-times: 1e-200" + allowed), 0u);
+  // What is added to the time of the run has to change it.
+  EXPECT_EQ(of({{"max-step", "1e-20"}, {"t-end", "1"}}),
+            "--max-step: 1e-20" + allowed + "0, or 1e-14 to 1e+98)");
+  EXPECT_EQ(of({{"t-end", "1e-100"}}), "");
+  EXPECT_EQ(of({{"t-end", "1e-12"}, {"output-times", "0,1e-13"}}), "");
+  // In units of the model it would be infinite.
+  EXPECT_NE(of({{"diffusion", "1e30"}, {"t-end", "1e300"}}).find("--t-end: 1e+300"),
+            std::string::npos);
+}
+
+TEST(RunSetup, SortsOutputTimesAndNamesThoseThatAreRepeated) {
+  const auto of = [](const std::string& times) {
+    return build_run(
+        Configuration({}, flags({{"cells", "8"}, {"t-end", "100"}, {"output-times", times}})),
+        InitialState::from_checkpoint);
+  };
+  const RunSetup run = of("100,20,9,1e1,10, 20.0,10");
+  EXPECT_EQ(run.output_labels, (std::vector<double>{9, 10, 20, 100}));
+  EXPECT_EQ(run.output_times.size(), 4u);
+  EXPECT_EQ(run.repeated_labels, (std::vector<double>{10, 20}));
+  EXPECT_TRUE(of("1,2").repeated_labels.empty());
+}
+
 TEST(RunSetup, RefusesOptionsOfMethodsThatAreNotChosen) {
   GivenValues given = flags({{"cells", "8"}, {"ida-maxord", "2"}});
   const auto of = [&](const auto&... compared) {
