@@ -10,24 +10,30 @@
 
 namespace traceraft {
 
-ArrayTask array_task(const Configuration& configuration) {
+ArrayTask array_task(const Configuration& configuration, const EnsemblePlan& plan,
+                     const ArrayLimits& limits) {
   // Of guv-2to1, 128 cells, on one processor: docs/results.md.
   constexpr double kGigabytes = 0.45, kHours = 0.25, kSpare = 4;
-  return {
-      static_cast<int>(
-          std::ceil(kSpare * kGigabytes * std::max(1.0, relative_memory(configuration)))),
-      static_cast<int>(std::ceil(kSpare * kHours * std::max(1.0, relative_work(configuration))))};
+  const auto shares = [](int all, int each) { return (all + each - 1) / each; };
+  const int runs = shares(plan.runs, limits.most_tasks);
+  const double hours = kSpare * kHours * std::max(1.0, relative_work(configuration));
+  return {static_cast<int>(
+              std::ceil(kSpare * kGigabytes * std::max(1.0, relative_memory(configuration)))),
+          static_cast<int>(std::ceil(runs * hours)), shares(plan.runs, runs), runs};
 }
 
 std::string array_job_script(const EnsembleFolder& folder, const EnsemblePlan& plan,
-                             const ArrayTask& task) {
+                             const ArrayTask& task, const ArrayLimits& limits) {
   const std::string path = std::filesystem::absolute(folder.path()).lexically_normal().string();
   const std::string program = in_shell(own_path()) + " ensemble --out " + in_shell(path);
+  const std::string throttle = limits.at_a_time > 0 ? "%" + std::to_string(limits.at_a_time) : "";
+  const std::string each = std::to_string(task.runs), index = "SLURM_ARRAY_TASK_ID";
+  const std::string offset = task.runs > 1 ? each + " * " + index : index;
   return "#!/bin/sh\n"
          "#SBATCH --job-name=traceraft\n"
          // Clusters limit the index, seeds may be anything.
          "#SBATCH --array=0-" +
-         std::to_string(plan.runs - 1) +
+         std::to_string(task.tasks - 1) + throttle +
          "\n"
          "#SBATCH --cpus-per-task=2\n"
          "#SBATCH --mem=" +
@@ -42,8 +48,8 @@ std::string array_job_script(const EnsembleFolder& folder, const EnsemblePlan& p
          in_comment(program) +
          "\n"
          "exec " +
-         program + " --member \"$((" + std::to_string(plan.first_seed) +
-         " + SLURM_ARRAY_TASK_ID))\" --threads \"${SLURM_CPUS_PER_TASK:-1}\"\n";
+         program + " --member \"$((" + std::to_string(plan.first_seed) + " + " + offset + "))\"" +
+         (task.runs > 1 ? " --members " + each : "") + " --threads \"${SLURM_CPUS_PER_TASK:-1}\"\n";
 }
 
 }  // namespace traceraft

@@ -8,17 +8,25 @@
 
 namespace traceraft {
 
+// Clusters limit the index of a task, by default to 1000, and some the tasks at a time.
+struct ArrayLimits {
+  int most_tasks = 1000;
+  int at_a_time = 0;  // 0: as many as the cluster likes
+};
+
 // What a task asks for: four times what the runs of the paper's cases took, and more for finer
 // meshes; what else makes a run long, such as --t-end, is not known here.
 struct ArrayTask {
-  int gigabytes, hours;
+  int gigabytes, hours;  // hours of all its runs
+  int tasks, runs;       // how many there are; runs of each, one after the other
 };
-ArrayTask array_task(const Configuration& configuration);
+ArrayTask array_task(const Configuration& configuration, const EnsemblePlan& plan,
+                     const ArrayLimits& limits);
 
-// The text of a script for sbatch. Each task carries out, or goes on with, the run of its seed with
-// as many threads as it is given processors; afterwards the ensemble is gathered by the command
-// that a comment in the script names.
+// The text of a script for sbatch. Each task carries out, or goes on with, the runs of its seeds
+// with as many threads as it is given processors; afterwards the ensemble is gathered by the
+// command that a comment in the script names.
 std::string array_job_script(const EnsembleFolder& folder, const EnsemblePlan& plan,
-                             const ArrayTask& task);
+                             const ArrayTask& task, const ArrayLimits& limits);
 
 }  // namespace traceraft

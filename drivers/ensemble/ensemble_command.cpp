@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <optional>
 
 #include "backends/posix/durable_file.hpp"
@@ -30,8 +31,10 @@ struct EnsembleRequest {
   int runs = 0, jobs = 0;        // 0: 10, or as many as there are; as many as processors
   std::int64_t first_seed = -1;  // −1: 1, or as it is
   std::int64_t member = -1;      // −1: all
+  int members = 1;               // from that one on
   int threads = 0;               // of each run; 0: what the jobs leave
   bool array_job = false, quiet = false;
+  ArrayLimits limits;  // of the array job
 };
 
 // The seed of a configuration file says nothing here: those that the program writes have one.
@@ -84,14 +87,23 @@ EnsemblePlan plan_of(const EnsembleRequest& request, const EnsembleFolder& folde
   return plan;
 }
 
-int one_member(const EnsembleRequest& request, const EnsembleFolder& folder,
-               const EnsemblePlan& plan) {
-  const auto seed = static_cast<std::uint64_t>(request.member);
-  if (seed < plan.first_seed || seed > plan.last_seed())
-    throw InputError("--member: " + std::to_string(seed) +
+// One after the other. A run that fails leaves the others alone; what stops one stops all.
+int some_members(const EnsembleRequest& request, const EnsembleFolder& folder,
+                 const EnsemblePlan& plan) {
+  const auto first = static_cast<std::uint64_t>(request.member);
+  if (first < plan.first_seed || first > plan.last_seed())
+    throw InputError("--member: " + std::to_string(first) +
                      " is not in this ensemble (allowed: " + std::to_string(plan.first_seed) +
                      " to " + std::to_string(plan.last_seed()) + ")");
-  return run_member(folder, seed, std::max(1, request.threads), request.quiet);
+  const std::uint64_t left = plan.last_seed() - first + 1;
+  const auto members = static_cast<std::uint64_t>(request.members);
+  int code = kSuccess;
+  for (std::uint64_t k = 0; k < std::min(members, left); ++k) {
+    const int end = run_member(folder, first + k, std::max(1, request.threads), request.quiet);
+    if (end != kSuccess) code = end;
+    if (end == kInterrupted || stop_requested()) return kInterrupted;
+  }
+  return code;
 }
 
 int carry_out(const EnsembleRequest& request, const EnsembleFolder& folder,
@@ -124,13 +136,27 @@ int carry_out(const EnsembleRequest& request, const EnsembleFolder& folder,
   return end.failures.empty() ? kSuccess : kNumericalFailure;
 }
 
+void write_array_job(const EnsembleRequest& request, const EnsembleFolder& folder,
+                     const EnsemblePlan& plan, const Configuration& configuration) {
+  const fs::path script = folder.path() / "array-job.sh";
+  const ArrayTask task = array_task(configuration, plan, request.limits);
+  write_durably(script, array_job_script(folder, plan, task, request.limits));
+  if (request.quiet) return;
+  say("%d tasks of 2 processors, %d GB and at most %d h each: see its #SBATCH lines\n", task.tasks,
+      task.gigabytes, task.hours);
+  if (task.runs > 1)
+    say("each of them carries out %d runs, one after the other: --array-tasks %d\n", task.runs,
+        request.limits.most_tasks);
+  say("submit it with: sbatch %s\n", in_shell(script.string()));
+}
+
 int run_ensemble(const EnsembleRequest& request) {
   catch_stop_signals();
   const GivenValues file = read_config_file(request.config_file);
   const bool goes_on = !request.out.empty() && EnsembleFolder(request.out).started();
   if (request.member >= 0) {
     if (!goes_on) throw InputError("--member: --out has to name an ensemble that has begun");
-    return one_member(request, EnsembleFolder(request.out), EnsembleFolder(request.out).load());
+    return some_members(request, EnsembleFolder(request.out), EnsembleFolder(request.out).load());
   }
   if (!goes_on && !request.out.empty()) {
     refuse_foreign_folder(request.out, {EnsembleFolder(request.out).plan_file().filename()});
@@ -157,14 +183,30 @@ int run_ensemble(const EnsembleRequest& request) {
     say("case %s, %s\n", configuration.text("case"), resolution_text(configuration, *run));
   if (!goes_on) write_durably(folder.config(), config_text(configuration));
   if (!request.array_job) return carry_out(request, folder, plan, configuration);
-  const fs::path script = folder.path() / "array-job.sh";
-  const ArrayTask task = array_task(configuration);
-  write_durably(script, array_job_script(folder, plan, task));
-  if (!request.quiet)
-    say("%d tasks of 2 processors, %d GB and at most %d h each: see its #SBATCH lines\n"
-        "submit it with: sbatch %s\n",
-        plan.runs, task.gigabytes, task.hours, in_shell(script.string()));
+  write_array_job(request, folder, plan, configuration);
   return kSuccess;
+}
+
+void add_array_options(CLI::App& app, EnsembleRequest& request) {
+  CLI::Option* const job = app.add_flag(
+      "--array-job", request.array_job,
+      "run nothing, write a script for SLURM's sbatch with a task per run, or per some");
+  app.add_option("--array-tasks", request.limits.most_tasks,
+                 "at most so many tasks, each with several runs if there are more: what the "
+                 "cluster allows (MaxArraySize less 1)")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str()
+      ->needs(job);
+  app.add_option("--array-throttle", request.limits.at_a_time,
+                 "at most so many tasks at a time; default: as many as the cluster likes")
+      ->check(CLI::Range(1, 100000))
+      ->needs(job);
+  CLI::Option* const member = app.add_option("--member", request.member,
+                                             "carry out the run of this seed alone (array jobs)")
+                                  ->check(between(0, kLargestSeed));
+  app.add_option("--members", request.members, "and of those after it: so many in all")
+      ->check(CLI::Range(1, 100000))
+      ->needs(member);
 }
 
 Action define_ensemble(CLI::App& app) {
@@ -180,10 +222,7 @@ Action define_ensemble(CLI::App& app) {
       ->check(CLI::Range(1, 1024));
   app.add_option("--threads", request->threads, "of each run; default: what the jobs leave")
       ->check(CLI::Range(1, 64));
-  app.add_flag("--array-job", request->array_job,
-               "run nothing, write a script for SLURM's sbatch with a task per run");
-  app.add_option("--member", request->member, "carry out the run of this seed alone (array jobs)")
-      ->check(between(0, kLargestSeed));
+  add_array_options(app, *request);
   app.add_flag("--quiet", request->quiet, "print nothing but errors");
   add_options(app, request->flags,
               [](const OptionSpec& spec) { return spec.name != "seed" && spec.name != "threads"; });

@@ -234,6 +234,38 @@ TEST_F(EnsembleTest, IsAnArrayJobToo) {
   EXPECT_EQ(content(csv("there it is")), content(csv("here")));
 }
 
+// Clusters allow some 1000 tasks, of which each may have several runs, and fewer at a time.
+TEST_F(EnsembleTest, IsAnArrayJobOfFewTasks) {
+  const ProgramEnd many = traceraft(
+      "ensemble --case guv-2to1 --cells 20 --epsilon 0.5 --runs 2500 "
+      "--array-job --array-throttle 50 --out " +
+      out("many"));
+  ASSERT_EQ(many.code, 0) << many.output;
+  const std::string job = content(folder.path / "many/array-job.sh");
+  for (const char* text : {"#SBATCH --array=0-833%50\n", "#SBATCH --time=3:00:00\n",
+                           " --member \"$((1 + 3 * SLURM_ARRAY_TASK_ID))\" --members 3 "})
+    EXPECT_NE(job.find(text), std::string::npos) << job;
+  ASSERT_EQ(traceraft("ensemble --quiet " + runs + "--runs 3 --out " + out("here")).code, 0);
+  ASSERT_EQ(traceraft("ensemble --quiet " + runs + "--runs 3 --array-job --array-tasks 2 --out " +
+                      out("there"))
+                .code,
+            0);
+  for (const char* task : {"0", "1"}) {
+    const ProgramEnd done =
+        shell("SLURM_ARRAY_TASK_ID=" + std::string(task) + " sh " + out("there") + "/array-job.sh");
+    EXPECT_EQ(done.code, 0) << done.output;
+    EXPECT_EQ(done.output.find("seed 3: finished") != std::string::npos, task == std::string("1"))
+        << done.output;
+  }
+  ASSERT_EQ(traceraft("ensemble --quiet --out " + out("there")).code, 0);
+  EXPECT_EQ(content(csv("there")), content(csv("here")));
+  for (const char* flag : {"--array-tasks 5", "--array-throttle 5", "--members 2"}) {
+    const ProgramEnd alone = traceraft("ensemble --case guv-2to1 " + std::string(flag));
+    EXPECT_EQ(alone.code, 2) << flag;
+    EXPECT_EQ(std::count(alone.output.begin(), alone.output.end(), '\n'), 1) << alone.output;
+  }
+}
+
 // Killed before the first run: a plan, or the plan and no configuration.
 TEST_F(EnsembleTest, BeginsAgainWhereNothingHadBegun) {
   fs::create_directories(folder.path / "a/runs");
