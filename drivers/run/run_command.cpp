@@ -110,7 +110,7 @@ int run(const RunRequest& request) {
   if (!quiet) print_setup(configuration, run);
   if (request.validate) {
     if (!request.out.empty()) refuse_files_of_a_run(request.out);
-    if (run.ranks->root()) say("everything is valid; nothing was run\n");
+    if (!quiet) say("everything is valid; nothing was run\n");
     return kSuccess;
   }
   const RunFolder folder =

@@ -444,6 +444,12 @@ TEST_F(ProgramTest, ValidateStopsAfterChecking) {
   EXPECT_FALSE(fs::exists(folder.path / "new"));
 }
 
+TEST_F(ProgramTest, ValidatesWithoutAWordIfItIsToBeQuiet) {
+  const ProgramEnd run = traceraft("run --validate --quiet " + quick);
+  EXPECT_EQ(run.code, 0);
+  EXPECT_EQ(run.output, "");
+}
+
 TEST_F(ProgramTest, HelpAndListNameEverything) {
   const std::string help = traceraft("run --help").output, list = traceraft("list").output;
   for (const char* word : {"--case", "--epsilon", "--linear-solver", "--scaled", "Exit codes"})
