@@ -12,6 +12,7 @@
 #include "backends/suitesparse/blas.hpp"
 #include "drivers/commands.hpp"
 #include "drivers/config/number_checks.hpp"
+#include "drivers/config/text_checks.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/numerical_failure.hpp"
 #include "drivers/text/say.hpp"
@@ -77,6 +78,7 @@ int dispatch(int argc, char** argv) {
     sub->allow_extras();
     defined.emplace_back(sub, command.define(*sub));
     check_numbers_first(*sub);
+    refuse_empty_texts(*sub);
   }
 
   try {

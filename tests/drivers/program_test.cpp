@@ -363,12 +363,13 @@ class BadInput : public ProgramTest, public ::testing::WithParamInterface<Refusa
 
 TEST_P(BadInput, IsAnsweredInOneLineBeforeAnyFolderIsMade) {
   const auto [arguments, expected] = GetParam();
-  const ProgramEnd run =
-      shell("cd " + folder.path.string() +
-            " && printf 'cells = 16\\ncells = 8\\n' > "
-            "twice.toml && printf 'cells = \"x\"\\n' > type.toml && head -c 3000000 "
-            "/dev/zero > huge.toml && head -c 3000 /dev/urandom > binary.toml && " +
-            TRACERAFT_PROGRAM + " " + arguments);
+  const ProgramEnd run = shell(
+      "cd " + folder.path.string() +
+      " && printf 'cells = 16\\ncells = 8\\n' > "
+      "twice.toml && printf 'cells = \"x\"\\n' > type.toml && head -c 3000000 "
+      "/dev/zero > huge.toml && (yes a. | head -87000 | tr -d '\\n' && echo 'b = 1') > deep.toml "
+      "&& head -c 3000 /dev/urandom > binary.toml && " +
+      TRACERAFT_PROGRAM + " " + arguments);
   EXPECT_EQ(run.code, 2) << run.output;
   EXPECT_NE(run.output.find(expected), std::string::npos) << run.output;
   EXPECT_EQ(std::count(run.output.begin(), run.output.end(), '\n'), 1) << run.output;
@@ -417,7 +418,34 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"run --surface formula --surface-formula 1-x^2-y^2-z^2", "change its sign"},
         Refusal{"run --linear-solver klu", "klu is for small systems"},
         Refusal{"run --energy-guard reject --potential nodal", "--energy-guard"},
-        Refusal{"verify everything", "unknown study"}));
+        Refusal{"verify everything", "unknown study"},
+        // What a variable of a shell script leaves that is not set.
+        Refusal{"run --config ''", "--config: it is empty; give a value, or leave it out"},
+        Refusal{"run --out ''", "--out: it is empty"},
+        Refusal{"run --linear-solver teko --teko-parameters ''", "--teko-parameters: it is empty"},
+        Refusal{"run --output-times ''", "--output-times: it is empty"},
+        Refusal{"resume ''", "folder: it is empty"}, Refusal{"report ''", "folder: it is empty"},
+        Refusal{"data check ''", "folder: it is empty"},
+        Refusal{"data compare . --ensemble ''", "--ensemble: it is empty"},
+        Refusal{"verify mass --document ''", "--document: it is empty"},
+        Refusal{"compare --references ''", "--references: it is empty"},
+        Refusal{"hide --model ''", "--model: it is empty"},
+        Refusal{"campaign --elsewhere ''", "--elsewhere: it is empty"},
+        Refusal{"explain --data ''", "--data: it is empty"},
+        Refusal{"calibrate --data ''", "--data: it is empty"},
+        // Whole numbers that a double does not hold.
+        Refusal{"run --seed 9007199254740993", "--seed: 9007199254740993 is out of range"},
+        Refusal{"hide --seed 9007199254740993", "--seed: 9007199254740993 is not between 0 and"},
+        Refusal{"ensemble --first-seed 9007199254740993", "--first-seed: 9007199254740993 is not"},
+        Refusal{"ensemble --case guv-2to1 --first-seed 9007199254740990 --out new",
+                "the last of 10 runs has seed 9007199254740999"},
+        Refusal{"run --config deep.toml", "deep.toml:1: a key of many parts between dots"},
+        Refusal{"run --t-end 1e-300", "--t-end: 1e-300 is too short or too long to compute with"},
+        Refusal{"run --cells 16 --initial formula --initial-formula x=1", "write == to compare"},
+        Refusal{"run --cells 16 --surface formula --surface-formula '(x^2+y^2+z^2-1)^3'",
+                "hardly any gradient on its surface"},
+        Refusal{"run --cells 16 --initial formula --initial-formula 'cos(8*acos(z))'",
+                "write z/sqrt(x^2+y^2+z^2) for z"}));
 
 // Everything is valid, and nothing can separate: of the usual well on a sphere that is where
 // epsilon > R/√8, in units of R.
