@@ -14,7 +14,13 @@ class TimeLeft {
 
   // After a step: the simulated time, and the seconds since the run began.
   void note(double t, double seconds);
-  double seconds() const;                  // 0 while that is unknown
+  double seconds() const;  // 0 while that is unknown
+  // Between what and what the truth lies in nine of ten moments of runs that coarsen. Both are 0
+  // while that is unknown.
+  struct Range {
+    double low = 0, high = 0;
+  };
+  Range range() const;
   double share() const { return share_; }  // of the run that is done; it never falls
 
  private:
