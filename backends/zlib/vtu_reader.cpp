@@ -57,6 +57,11 @@ SurfaceField read_vtu(const std::string& text, const std::string& field) {
   return result;
 }
 
+std::vector<int> read_cells(const std::string& text, const std::string& field) {
+  const std::vector<std::int32_t> values = array<std::int32_t>(text, field);
+  return {values.begin(), values.end()};
+}
+
 std::vector<std::string> pieces_of_pvtu(const std::string& text) {
   std::vector<std::string> pieces;
   for (std::size_t begin = 0; text.find("<Piece Source=\"", begin) != std::string::npos;)

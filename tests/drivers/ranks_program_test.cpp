@@ -1,11 +1,15 @@
 // The program under mpirun as a user meets it.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <csignal>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 
+#include "backends/zlib/vtu_reader.hpp"
+#include "drivers/input/csv_table.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -146,6 +150,85 @@ TEST_F(RanksTest, FieldsAreThoseOfTheLastWriter) {
   EXPECT_FALSE(fs::exists(fields + "field-0001.vtu"));
   for (const char* name : {"field-0001.pvtu", "field-0001-0000.vtu", "field-0001-0001.vtu"})
     EXPECT_TRUE(fs::exists(fields + name)) << name;
+}
+
+// Fields of all pieces at the n-th output time: raft numbers of the triangles by their midpoints.
+std::map<std::array<long, 3>, int> raft_numbers(const fs::path& run, const std::string& file) {
+  std::vector<std::string> names = {file};
+  if (file.substr(file.rfind('.')) == ".pvtu") names = pieces_of_pvtu(content(run / file));
+  std::map<std::array<long, 3>, int> numbers;
+  for (const std::string& name : names) {
+    const std::string text = content((run / file).parent_path() / fs::path(name).filename());
+    const SurfaceMesh mesh = read_vtu(text, "c").mesh;
+    const std::vector<int> rafts = read_cells(text, "raft");
+    EXPECT_EQ(rafts.size(), mesh.triangles.size());
+    for (std::size_t t = 0; t < rafts.size(); ++t) {
+      Point middle = Point::Zero();
+      for (const int p : mesh.triangles[t]) middle += mesh.position[p] / 3;
+      std::array<long, 3> key;
+      for (int axis = 0; axis < 3; ++axis) key[axis] = std::lround(1e4 * middle[axis]);
+      numbers[key] = rafts[t];
+    }
+  }
+  return numbers;
+}
+
+// One spiral over all ranks is one raft, three are three; ParaView counts them by their numbers.
+TEST_F(RanksTest, SpiralsOverAllRanksAreCountedOnce) {
+  for (const int arms : {1, 3}) {
+    const std::string spiral =
+        "run --quiet --case two-rafts --cells 24 --epsilon 0.8 --t-end 1e-6 --output-times 0 "
+        "--linear-solver teko --initial formula --initial-formula "
+        "'0.4+0.45*sqrt((x^2+y^2)/(x^2+y^2+z^2))*sin(4*acos(z/sqrt("
+        "x^2+y^2+z^2))+" +
+        std::to_string(arms) + "*atan2(y,x))' --out ";
+    double perimeter = 0;
+    std::map<std::array<long, 3>, int> expected;
+    for (const int ranks : {1, 2, 3, 5}) {
+      const std::string name = std::to_string(arms) + "-" + std::to_string(ranks);
+      const ProgramEnd end = on(ranks, spiral + at(name));
+      ASSERT_EQ(end.code, 0) << end.output;
+      const CsvTable row = CsvTable::read(at(name) + "/observables.csv");
+      EXPECT_EQ(row.number(0, "rafts"), arms);
+      const double length = row.number(0, "perimeter_level");
+      if (ranks == 1) perimeter = length;
+      EXPECT_NEAR(length / perimeter, 1, 1e-12);
+      const auto files = files_of_pvd(content(at(name) + "/fields.pvd"));
+      ASSERT_EQ(files.size(), 1u);
+      const auto numbers = raft_numbers(at(name), files[0].second);
+      int most = 0;
+      for (const auto& [place, number] : numbers) most = std::max(most, number);
+      EXPECT_EQ(most, arms);
+      if (ranks == 1) expected = numbers;
+      EXPECT_EQ(numbers, expected) << ranks;
+    }
+  }
+}
+
+// However often it was interrupted, and on however many ranks it went on.
+TEST_F(RanksTest, EveryTimeIsCollectedOnce) {
+  const std::string name = "run";
+  std::string command = "run --quiet --checkpoint-interval 0 " + runs + "--out " + at(name);
+  long rows = 8;
+  for (const int ranks : {2, 1, 3}) {
+    const pid_t child = start(ranks, command);
+    while_short_of(rows, name);
+    kill(child, SIGUSR1);
+    waitpid(child, nullptr, 0);
+    rows = testing::lines_of(at(name) + "/series.csv") + 8;
+    command = "resume --quiet --checkpoint-interval 0 " + at(name);
+  }
+  const ProgramEnd last = on(2, "resume --quiet " + at(name));
+  ASSERT_EQ(last.code, 0) << last.output;
+  const auto files = files_of_pvd(content(at(name) + "/fields.pvd"));
+  const CsvTable observables = CsvTable::read(at(name) + "/observables.csv");
+  ASSERT_EQ(files.size(), observables.rows());
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    EXPECT_EQ(files[k].first, observables.number(k, "t"));
+    EXPECT_TRUE(k == 0 || files[k].first > files[k - 1].first);
+    ASSERT_TRUE(fs::exists(at(name) + "/" + files[k].second)) << files[k].second;
+    EXPECT_FALSE(raft_numbers(at(name), files[k].second).empty());
+  }
 }
 
 // What ends before it computes may share the processors with other tests.
