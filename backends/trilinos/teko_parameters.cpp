@@ -50,6 +50,22 @@ void refuse_other_lists(const std::string& path, const ParameterList& lists) {
   }
 }
 
+// Teuchos calls itself for each list within a list.
+int depth_of_lists(const std::string& text) {
+  int depth = 0, deepest = 0;
+  for (std::size_t i = text.find('<'); i != std::string::npos; i = text.find('<', i + 1)) {
+    const char kind = i + 1 < text.size() ? text[i + 1] : '>';
+    if (kind == '?' || kind == '!') continue;
+    const std::size_t end = text.find('>', i);
+    const bool whole = end != std::string::npos && text[end - 1] == '/';
+    if (kind == '/')
+      --depth;
+    else if (!whole)
+      deepest = std::max(deepest, ++depth);
+  }
+  return deepest;
+}
+
 void refuse_inverses_without_type(const std::string& path, const ParameterList& inverses) {
   for (auto entry = inverses.begin(); entry != inverses.end(); ++entry)
     if (!inverses.isSublist(inverses.name(entry)) ||
@@ -67,6 +83,9 @@ void read_lists(TekoParameters& parameters) {
   if (!stream || text.str().empty())
     refuse("parameters", path + ": cannot be read: " + std::strerror(errno ? errno : ENODATA));
   parameters.checksum = std::hash<std::string>()(text.str());
+  constexpr int kMostLists = 100;
+  if (depth_of_lists(text.str()) > kMostLists)
+    refuse("parameters", path + ": lists within lists, more than " + std::to_string(kMostLists));
   ParameterList lists;
   try {
     Teuchos::updateParametersFromXmlString(text.str(), Teuchos::ptrFromRef(lists));

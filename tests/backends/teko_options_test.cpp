@@ -38,7 +38,8 @@ class TekoOptionsTest : public ::testing::Test {
     }
     return "";
   }
-  SolveReport solve(LinearSolver& solver, double shift = 50, double tolerance = 1e-8) const {
+  SolveReport solve(LinearSolver& solver, double shift = 50, double tolerance = 1e-8,
+                    double size = 1) const {
     const testing::StartState start = noise_state(problem);
     BlockJacobian J = problem.make_jacobian();
     EXPECT_TRUE(problem.jacobian(0, start.y, start.ydot, shift, Tangent::stabilised, J).ok());
@@ -46,7 +47,7 @@ class TekoOptionsTest : public ::testing::Test {
       EXPECT_TRUE(solver.setup(J).ok());
     }
     Vec x = Vec::Zero(problem.size());
-    return solver.solve(J, testing::random_vector(problem.size(), 3), x, tolerance);
+    return solver.solve(J, size * testing::random_vector(problem.size(), 3), x, tolerance);
   }
 
   testing::TemporaryFolder folder;
@@ -62,6 +63,28 @@ TEST_F(TekoOptionsTest, WordsAreRefusedByTheirFlag) {
   EXPECT_EQ(complaint({{"inverse", "mulu"}}).find("inverse: "), 0u);
   EXPECT_EQ(complaint({{"method", "fgmre"}}).find("method: "), 0u);
   EXPECT_EQ(complaint({{"preconditioner", "two"}}).find("preconditioner: "), 0u);
+}
+
+// The parser calls itself for every list: the stack was gone.
+TEST_F(TekoOptionsTest, ListsWithinTwentyThousandListsAreRefused) {
+  std::string lists;
+  for (int k = 0; k < 20000; ++k) lists += "<ParameterList name=\"a\">";
+  for (int k = 0; k < 20000; ++k) lists += "</ParameterList>";
+  EXPECT_NE(complaint({{"parameters", file(lists)}}).find("lists within lists, more than 100"),
+            std::string::npos);
+}
+
+// Judged without a scale, what is small has converged before it begins.
+TEST_F(TekoOptionsTest, ALoosenedTestDoesNotMakeASolution) {
+  std::string lists = "<ParameterList name=\"Belos\">";
+  for (const char* scaling : {"Implicit Residual Scaling", "Explicit Residual Scaling"})
+    lists += "<Parameter name=\"" + std::string(scaling) + "\" type=\"string\" value=\"None\"/>";
+  const std::string loose = file(lists + "</ParameterList>");
+  const SolveReport report =
+      solve(*make({{"method", "gmres"}, {"parameters", loose}}), 50, 1e-8, 1e-12);
+  EXPECT_EQ(report.status.outcome, Outcome::retry);
+  EXPECT_EQ(report.status.why, "the residual is larger than the method says");
+  EXPECT_TRUE(solve(*make({{"method", "gmres"}}), 50, 1e-8, 1e-12).status.ok());
 }
 
 TEST_F(TekoOptionsTest, FilesAreCheckedBeforeARunStarts) {
