@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "drivers/input/csv_table.hpp"
 #include "kernel/core/types.hpp"
@@ -84,6 +85,26 @@ TEST_F(SituationsTest, TheMinorityOfAnOrderedMembraneIsCounted) {
   EXPECT_NE(run.output.find("1, around 4 domains of the other phase"), std::string::npos)
       << run.output;
   EXPECT_EQ(summary("a")["domains"], 4);
+}
+
+// What the guide prints of raft fractions is what the program answers.
+TEST(GuideTest, RaftFractionsAreThoseOfTheProgram) {
+  std::istringstream guide(content(TRACERAFT_ROOT "/docs/guide.md"));
+  int rows = 0;
+  for (std::string line; std::getline(guide, line);) {
+    // | 3:1:20 | 15 °C | 10.8 % | 10.8 % | |
+    std::istringstream words(line);
+    std::string bar, membrane, celsius, degree, published, percent, own;
+    words >> bar >> membrane >> bar >> celsius >> degree >> bar >> published >> percent >> bar >>
+        own;
+    if (degree != "°C" || std::count(membrane.begin(), membrane.end(), ':') != 2) continue;
+    ++rows;
+    const ProgramEnd answer =
+        traceraft("fraction --composition " + membrane + " --temperature " + celsius);
+    EXPECT_EQ(answer.code, 0) << answer.output;
+    EXPECT_NE(answer.output.find(own + " %"), std::string::npos) << line << "\n" << answer.output;
+  }
+  EXPECT_EQ(rows, 4);
 }
 
 // The membrane turns as a whole: after a turn everything is where it was.
