@@ -76,7 +76,7 @@ TEST(HostileStrings, ScriptsOfArrayJobsExecuteOneCommand) {
     if (text.find('\0') != std::string::npos || text.size() > 255) continue;
     const TemporaryFolder folder;
     const fs::path ensemble = folder.path / fs::path(text).relative_path();
-    const std::string script = array_job_script(EnsembleFolder(ensemble), {}, {1, 1});
+    const std::string script = array_job_script(EnsembleFolder(ensemble), {}, {1, 1, 10, 1}, {});
     // `exec` is replaced by a function that says what it was asked to execute.
     write_durably(folder.path / "job.sh",
                   "cd " + in_shell(folder.path.string()) +
