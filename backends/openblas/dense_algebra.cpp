@@ -8,6 +8,7 @@
 extern "C" void dsyevd_(const char* jobz, const char* uplo, const int* n, double* a, const int* lda,
                         double* w, double* work, const int* lwork, int* iwork, const int* liwork,
                         int* info);
+extern "C" void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info);
 
 namespace traceraft {
 namespace {
@@ -56,6 +57,25 @@ Eigen::MatrixXd divided_by_upper(const Eigen::MatrixXd& X, const Eigen::MatrixXd
   cblas_dtrsm(CblasColMajor, CblasRight, CblasUpper, CblasNoTrans, CblasNonUnit, rows(X),
               columns(X), 1, R.data(), leading(R), quotient.data(), leading(quotient));
   return quotient;
+}
+
+Eigen::MatrixXd cholesky_factor(const Eigen::MatrixXd& lower) {
+  eigen_assert(lower.rows() == lower.cols());
+  Eigen::MatrixXd L = lower;
+  const int n = rows(L), most = leading(L);
+  int info = 0;
+  dpotrf_("L", &n, L.data(), &most, &info);
+  if (info != 0) throw std::runtime_error("a dense matrix is not positive definite");
+  return L;
+}
+
+Eigen::MatrixXd divided_by_factors(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B) {
+  eigen_assert(L.rows() == L.cols() && L.cols() == B.rows());
+  Eigen::MatrixXd X = B;
+  for (const CBLAS_TRANSPOSE side : {CblasNoTrans, CblasTrans})
+    cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, side, CblasNonUnit, rows(X), columns(X), 1,
+                L.data(), leading(L), X.data(), leading(X));
+  return X;
 }
 
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& lower) {

@@ -1,5 +1,6 @@
-// Products and eigenvectors of large dense matrices by OpenBLAS, whose kernels use what the
-// processor has (eight times as fast as those of a portable build of Eigen on one with AVX-512).
+// Products, Cholesky factors and eigenvectors of large dense matrices by OpenBLAS, whose kernels
+// use what the processor has (eight times as fast as those of a portable build of Eigen on one with
+// AVX-512).
 #pragma once
 
 #include <Eigen/Core>
@@ -14,6 +15,12 @@ Eigen::MatrixXd transposed_product(const Eigen::MatrixXd& A, const Eigen::Matrix
 Eigen::MatrixXd gram(const Eigen::MatrixXd& X);
 // X R⁻¹ with the upper triangle of R.
 Eigen::MatrixXd divided_by_upper(const Eigen::MatrixXd& X, const Eigen::MatrixXd& R);
+
+// L of A = L Lᵀ, A being given by its lower half; the upper half of L is that of A. Throws
+// std::runtime_error if A is not positive definite.
+Eigen::MatrixXd cholesky_factor(const Eigen::MatrixXd& lower);
+// (L Lᵀ)⁻¹ B.
+Eigen::MatrixXd divided_by_factors(const Eigen::MatrixXd& L, const Eigen::MatrixXd& B);
 
 struct SymmetricEigen {
   Eigen::VectorXd values;   // ascending

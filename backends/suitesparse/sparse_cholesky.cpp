@@ -99,6 +99,31 @@ Eigen::MatrixXd SparseCholesky::correlated(const Eigen::MatrixXd& Z) const {
   return factors_->solved(CHOLMOD_Pt, factors_->solved(CHOLMOD_Lt, Z));
 }
 
+// A = Pᵀ L Lᵀ P: the root is Pᵀ L.
+Eigen::MatrixXd SparseCholesky::whitened(const Eigen::MatrixXd& Z) const {
+  return factors_->solved(CHOLMOD_L, factors_->solved(CHOLMOD_P, Z));
+}
+
+// CHOLMOD has no product with L. Supernodes are trapezoids: their first rows are their own columns.
+Eigen::MatrixXd SparseCholesky::coloured(const Eigen::MatrixXd& Z) const {
+  const cholmod_factor& L = *factors_->factor;
+  const auto* first = static_cast<const int*>(L.super);
+  const auto *pointer = static_cast<const int*>(L.pi), *begin = static_cast<const int*>(L.px);
+  const auto* row = static_cast<const int*>(L.s);
+  const auto* values = static_cast<const double*>(L.x);
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(Z.rows(), Z.cols());
+  for (std::size_t s = 0; s < L.nsuper; ++s) {
+    const Eigen::Index rows = pointer[s + 1] - pointer[s], columns = first[s + 1] - first[s];
+    const Eigen::Map<const Eigen::MatrixXd> block(values + begin[s], rows, columns);
+    const auto part = Z.middleRows(first[s], columns);
+    const Eigen::MatrixXd own = block.topRows(columns).triangularView<Eigen::Lower>() * part;
+    const Eigen::MatrixXd below = block.bottomRows(rows - columns) * part;
+    for (Eigen::Index k = 0; k < rows; ++k)
+      result.row(row[pointer[s] + k]) += k < columns ? own.row(k) : below.row(k - columns);
+  }
+  return factors_->solved(CHOLMOD_Pt, result);
+}
+
 // Twice that of L, whose supernodes are trapezoids, column after column.
 double SparseCholesky::log_determinant() const {
   const cholmod_factor& L = *factors_->factor;

@@ -1,4 +1,5 @@
-// Cholesky factors in double precision of matrices that come from statistics: precisions of fields.
+// Cholesky factors in double precision of matrices that come from statistics: precisions of fields,
+// covariances of noise.
 #pragma once
 
 #include <Eigen/Sparse>
@@ -23,6 +24,10 @@ class SparseCholesky {
   Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const;
   // R Z with R Rᵀ = A⁻¹: of independent normal numbers, columns with the covariance A⁻¹.
   Eigen::MatrixXd correlated(const Eigen::MatrixXd& Z) const;
+  // L⁻¹ Z with A = L Lᵀ: columns with the covariance A become independent numbers of variance 1.
+  Eigen::MatrixXd whitened(const Eigen::MatrixXd& Z) const;
+  // L Z, the inverse of that.
+  Eigen::MatrixXd coloured(const Eigen::MatrixXd& Z) const;
   double log_determinant() const;  // of A
 
  private:

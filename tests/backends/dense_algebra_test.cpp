@@ -31,6 +31,16 @@ TEST(DenseAlgebra, DividesByTheUpperTriangleAlone) {
   EXPECT_TRUE((divided_by_upper(X, R) * upper).isApprox(X, 1e-13));
 }
 
+TEST(DenseAlgebra, FactorisesTheLowerHalf) {
+  const MatrixXd half = gram(random_matrix(9, 6, 7)), X = random_matrix(6, 2, 8);
+  const MatrixXd whole = half.selfadjointView<Eigen::Lower>();
+  const MatrixXd L = cholesky_factor(half);
+  const MatrixXd lower = L.triangularView<Eigen::Lower>();
+  EXPECT_TRUE((lower * lower.transpose()).isApprox(whole, 1e-13));
+  EXPECT_TRUE(divided_by_factors(L, whole * X).isApprox(X, 1e-10));
+  EXPECT_THROW(cholesky_factor(-half), std::runtime_error);
+}
+
 TEST(DenseAlgebra, FindsEigenvectorsFromTheLowerHalf) {
   const MatrixXd half = gram(random_matrix(9, 6, 6));
   const MatrixXd whole = half.selfadjointView<Eigen::Lower>();

@@ -58,6 +58,16 @@ TEST(SparseCholesky, CorrelatesAsTheInverse) {
   EXPECT_LT((A * (X * X.transpose()) - one).norm(), 1e-12 * one.norm());
 }
 
+TEST(SparseCholesky, WhitensAndColours) {
+  constexpr int kSide = 30;
+  const Eigen::SparseMatrix<double> A = grid(kSide, 0.1);
+  const SparseCholesky factors(A);
+  const auto one = Eigen::MatrixXd::Identity(kSide * kSide, kSide * kSide);
+  const Eigen::MatrixXd root = factors.coloured(one);
+  EXPECT_LT((root * root.transpose() - A).norm(), 1e-12 * A.norm());
+  EXPECT_LT((factors.whitened(root) - one).norm(), 1e-12 * one.norm());
+}
+
 TEST(SparseCholesky, RefusesWhatIsNotPositiveDefinite) {
   SparseCholesky factors;
   EXPECT_THROW(factors.factorise(grid(10, -1)), std::runtime_error);
