@@ -1,5 +1,6 @@
 #include "verification/explain/blind/blind_case.hpp"
 
+#include <cmath>
 #include <optional>
 
 #include "kernel/core/random.hpp"
@@ -56,12 +57,20 @@ class Vesicle {
     const double stated = number % 2 == 1 ? request_.stated : 1;
     snapshot.deviation =
         Vec::Constant(snapshot.values.size(), request_.stated > 0 ? stated * noise : 1);
-    for (Eigen::Index i = 0; i < snapshot.values.size(); ++i)
-      snapshot.values[i] +=
-          noise * normal_random(request_.seed,
-                                blind_stream::noise + static_cast<std::uint64_t>(number),
-                                static_cast<std::uint64_t>(i));
+    snapshot.values += noise * unit_noise(snapshot.points, static_cast<std::uint64_t>(number));
     return snapshot;
+  }
+
+  Vec unit_noise(const std::vector<Point>& points, std::uint64_t number) const {
+    Vec result(static_cast<Eigen::Index>(points.size()));
+    for (Eigen::Index i = 0; i < result.size(); ++i)
+      result[i] =
+          normal_random(request_.seed, blind_stream::noise + number, static_cast<std::uint64_t>(i));
+    if (request_.noise_share <= 0) return result;
+    return std::sqrt(1 - request_.noise_share) * result +
+           std::sqrt(request_.noise_share) * noise_waves(points, request_.noise_correlation,
+                                                         request_.noise_shape, request_.seed,
+                                                         blind_stream::shared_noise + number);
   }
 
   const BlindRequest& request_;

@@ -6,13 +6,21 @@
 #include <vector>
 
 #include "kernel/problem/cahn_hilliard.hpp"
+#include "verification/explain/blind/noise_waves.hpp"
 
 namespace traceraft {
 
 // Streams of random numbers: what is drawn for one purpose does not depend on how much is drawn for
-// another. Those of points (two) and noise count up by snapshots.
+// another. Those of points (two) and of noise count up by snapshots.
 namespace blind_stream {
-enum : std::uint64_t { placement = 101, times, effects, points = 300, noise = 500 };
+enum : std::uint64_t {
+  placement = 101,
+  times,
+  effects,
+  points = 300,
+  noise = 500,
+  shared_noise = 700
+};
 }
 
 struct BlindRequest {
@@ -22,7 +30,10 @@ struct BlindRequest {
                       // in units of the standard deviation of c, in the first vesicle
   double pace = 1;    // D of the truth over that of the model
   double noise = 0.1;  // standard deviation, in units of that of c
-  double blur = 0;     // standard deviation of the microscope's point spread function, in R
+  // Of the variance of the noise, which neighbours share; over which length, in R; and how.
+  double noise_share = 0, noise_correlation = 0;
+  NoiseShape noise_shape = NoiseShape::gaussian;
+  double blur = 0;  // standard deviation of the microscope's point spread function, in R
   int vesicles = 1;
   int snapshots = 8;             // of each
   int sizing_snapshots = 0;      // that effects make the gap between; 0: so many as there are

@@ -7,7 +7,7 @@
 #include "backends/openblas/dense_algebra.hpp"
 #include "backends/suitesparse/sparse_cholesky.hpp"
 #include "kernel/core/random.hpp"
-#include "verification/explain/fields/stiffness_along_normals.hpp"
+#include "verification/explain/fields/gaussian_field.hpp"
 
 namespace traceraft {
 namespace {
@@ -16,10 +16,7 @@ namespace {
 class FieldRegression {
  public:
   FieldRegression(const SurfaceSpace& space, const NoisyValues& measured)
-      : mass_(as_eigen(space, space.stabilised_mass)),
-        trace_mass_(as_eigen(space, space.mass)),
-        stiffness_(stiffness_along_normals(space)),
-        count_(measured.values.size()) {
+      : matrices_(space), count_(measured.values.size()) {
     const Vec weight = measured.deviation.cwiseAbs2().cwiseInverse();
     mean_ = measured.values.dot(weight) / weight.sum();
     const Vec centred = measured.values.array() - mean_;
@@ -27,8 +24,8 @@ class FieldRegression {
     load_ = measured.trace.transpose() * weight.cwiseProduct(centred);
     squares_ = centred.dot(weight.cwiseProduct(centred));
     log_weights_ = weight.array().log().sum();
-    inverse_diagonal_ = mass_.diagonal().cwiseInverse();
-    mass_factors_.factorise(mass_);
+    inverse_diagonal_ = matrices_.mass.diagonal().cwiseInverse();
+    mass_factors_.factorise(matrices_.mass);
   }
 
   // Factors of the precision of the field given the values.
@@ -55,32 +52,12 @@ class FieldRegression {
 
   // M̃ Y = M X, as initial data of a run: off the surface nothing is known.
   Eigen::MatrixXd projected(const Eigen::MatrixXd& X) const {
-    return mass_factors_.solve(trace_mass_ * X);
+    return mass_factors_.solve(matrices_.trace_mass * X);
   }
 
-  // The directions of the covariance Σ that matter most for smooth parts of the field: eigenvectors
-  // of Σ W with W = Tᵀ M T and T = (1 − length² Δ)⁻¹, by subspace iteration. Without W they would
-  // be waves that nothing measures and that the flow damps at once.
   Eigen::MatrixXd errors(double length, int rank) const {
-    constexpr int kIterations = 4, kExtra = 16;
-    const EigenMatrix smoother = mass_ + length * length * stiffness_;
-    const SparseCholesky smoothing(smoother);
-    const auto weighted = [&](const Eigen::MatrixXd& X) -> Eigen::MatrixXd {
-      return mass_ * smoothing.solve(trace_mass_ * smoothing.solve(mass_ * X));
-    };
-    Eigen::MatrixXd X(field_.size(), std::min<Eigen::Index>(rank + kExtra, field_.size()));
-    for (Eigen::Index i = 0; i < X.size(); ++i)
-      X.data()[i] = uniform_random(1, 0, static_cast<std::uint64_t>(i)) - 0.5;
-    for (int k = 0; k < kIterations; ++k) {
-      X = factors_.solve(weighted(X)).eval();
-      const Eigen::LLT<Eigen::MatrixXd> gram(X.transpose() * weighted(X));
-      X = gram.matrixU().solve<Eigen::OnTheRight>(X).eval();
-    }
-    const Eigen::MatrixXd WX = weighted(X);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz(WX.transpose() * factors_.solve(WX));
-    const Eigen::Index kept = std::min<Eigen::Index>(rank, X.cols());
-    return X * ritz.eigenvectors().rightCols(kept) *
-           ritz.eigenvalues().tail(kept).cwiseMax(0).cwiseSqrt().asDiagonal();
+    return important_directions(
+        matrices_, [&](const Eigen::MatrixXd& X) { return factors_.solve(X); }, length, rank);
   }
 
   Eigen::MatrixXd draws(int count, std::uint64_t stream) const {
@@ -92,10 +69,11 @@ class FieldRegression {
 
  private:
   EigenMatrix operator_of(const FieldPrior& prior) const {
-    return mass_ / (prior.length * prior.length) + stiffness_;
+    return matrices_.mass / (prior.length * prior.length) + matrices_.stiffness;
   }
 
-  EigenMatrix mass_, trace_mass_, stiffness_, information_;
+  FieldMatrices matrices_;
+  EigenMatrix information_;
   Eigen::Index count_;
   double mean_, squares_, log_weights_;
   Vec load_, inverse_diagonal_, field_;

@@ -54,7 +54,7 @@ std::vector<Disagreement> disagreements(const FilterProblems& data, const Filter
       member(i, static_cast<Eigen::Index>(patch)) = 1;
     }
     // eᵀ S⁻¹ ν against the same of noise.
-    const Columns weighted = InnovationCovariance(in, 0).solve(member);
+    const Columns weighted = InnovationCovariance(in, 0).solve(whitened(in, member));
     const Vec measured = weighted.transpose() * in.values;
     const Columns noise = weighted.transpose() * in.replicates;
     for (Eigen::Index patch = 0; patch < patches; ++patch) {

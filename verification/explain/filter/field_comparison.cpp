@@ -41,9 +41,12 @@ FieldComparison compare_field(const FilterProblem& data, const CahnHilliard& pro
                               std::size_t snapshot, const ResolvedForecast::End& mesh) {
   const NoisyValues& measured = data.snapshots[snapshot];
   const Vec noise = data.noise[snapshot] * measured.deviation, scale = noise.cwiseInverse();
-  const auto seen = [&](const Columns& X) {
-    return Columns(scale.asDiagonal() * (measured.trace * X));
+  const WhiteningPtr& whitening = data.whitening[snapshot];
+  const auto weighted = [&](const Columns& X) {
+    const Columns scaled = scale.asDiagonal() * X;
+    return whitening ? whitening->whitened(scaled) : scaled;
   };
+  const auto seen = [&](const Columns& X) { return weighted(measured.trace * X); };
   const DoubleWell& well = problem.model().well;
   const double distance = well.b - well.a;
   const Columns patterns = distance * data.patterns->at(well, forecast.c);
@@ -56,9 +59,11 @@ FieldComparison compare_field(const FilterProblem& data, const CahnHilliard& pro
   in.held_out = snapshot >= data.train;
   // What the traces of the forecast on this mesh lack, beyond what its nodes do.
   in.forecast = measured.trace * (forecast.c - mesh.field) + mesh.values;
-  in.values = scale.cwiseProduct(measured.values - in.forecast);
+  in.whitening = whitening;
+  in.values = weighted(measured.values - in.forecast);
   Columns frame(scale.size(), 2);
-  frame << settings.gain * seen(forecast.c), settings.offset * distance * scale;
+  frame << settings.gain * seen(forecast.c),
+      settings.offset * distance * weighted(Vec::Ones(scale.size()));
   // The model's boundaries are as wide as ever: it is the images that are blurred, each of them.
   if (data.blur) frame = side_by_side(frame, seen(data.blur->blurred(forecast.c) - forecast.c));
   const Columns errors = side_by_side(forecast.errors, turned), error_values = seen(errors);
@@ -67,8 +72,7 @@ FieldComparison compare_field(const FilterProblem& data, const CahnHilliard& pro
   in.state_directions = state.cols();
   in.gram = gram(in.directions);
   in.parameters = seen(forecast.parameters);
-  in.parameters.col(kMeshError) +=
-      scale.cwiseProduct(mesh.values_doubt - measured.trace * mesh.doubt);
+  in.parameters.col(kMeshError) += weighted(mesh.values_doubt - measured.trace * mesh.doubt).col(0);
   in.replicates = seen(forecast.replicates);
   add_noise(data.vesicle, snapshot, in.replicates);
   in.model_error = most_probable_error(in);
@@ -78,7 +82,7 @@ FieldComparison compare_field(const FilterProblem& data, const CahnHilliard& pro
   comparison.known = forecast.errors.cols();
   comparison.frames = turned.cols() + frame.cols();
   const Columns unknown =
-      error_values.middleCols(in.first_frame, comparison.known - in.first_frame);
+      at_points(in, error_values.middleCols(in.first_frame, comparison.known - in.first_frame));
   in.expected_squares = noise.squaredNorm() + (noise.asDiagonal() * unknown).squaredNorm();
   const Columns no_share = Columns::Zero(forecast.c.size(), frame.cols());
   comparison.fields = side_by_side(side_by_side(errors, no_share), patterns);

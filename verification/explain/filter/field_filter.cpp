@@ -117,8 +117,10 @@ class Filter {
     const InnovationCovariance weight(in, in.model_error);
     const Vec found = weight.amplitudes(in.values);
     in.frame = found.segment(comparison.known, comparison.frames);
-    in.gap = in.values - in.directions.middleCols(comparison.known, comparison.frames) * in.frame -
-             in.directions.leftCols(in.first_frame) * found.head(in.first_frame);
+    const Vec gap = in.values -
+                    in.directions.middleCols(comparison.known, comparison.frames) * in.frame -
+                    in.directions.leftCols(in.first_frame) * found.head(in.first_frame);
+    in.gap = at_points(in, gap);
     in.weighted_squares = in.values.dot(weight.solve(in.values).col(0));
     if (!in.held_out) account(in, weight);
     if (in.replicates.cols() > 0)

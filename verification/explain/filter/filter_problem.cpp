@@ -5,6 +5,7 @@
 #include "backends/list.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/random.hpp"
+#include "verification/explain/fields/kriging.hpp"
 #include "verification/explain/fields/outliers.hpp"
 
 namespace traceraft {
@@ -114,16 +115,31 @@ void add_frame(const FilterSettings& settings, double distance, std::size_t vesi
   }
 }
 
+// The first field, on the model's mesh and on the finest one.
+void estimate_first(const CahnHilliardModel& base, const FilterSettings& settings,
+                    FilterProblem& data) {
+  const ErrorRequest wanted{2 * base.epsilon, settings.rank, settings.replicates, data.vesicle};
+  const NoisyValues& measured = data.snapshots.front();
+  const SurfaceSpace& finest = *data.finer->spaces[1];
+  NoisyValues resolved = measured;
+  resolved.trace = data.finer_traces[1].front();
+  if (data.correlation.white()) {
+    data.first = estimate_field(*data.space, measured, data.prior, wanted);
+    data.first_resolved = estimate_field(finest, resolved, data.prior, {}).field;
+  } else {
+    const Kriging kriging(*data.space, measured, data.series.snapshots.front().points,
+                          {data.noise.front(), data.correlation}, data.prior);
+    data.first = kriging.estimate(wanted);
+    data.first_resolved = kriging.field_on(finest, resolved.trace);
+  }
+  add_frame(settings, base.well.b - base.well.a, data.vesicle, data.first);
+}
+
 void add_series(const FieldSeries& series, const CahnHilliardModel& base,
                 const FilterSettings& settings, FilterProblem& data) {
-  const FieldPrior prior = clean(series, base.well, data);
+  data.prior = clean(series, base.well, data);
   data.finer_traces = finer_traces(*data.finer, data.series);
-  data.first = estimate_field(*data.space, data.snapshots.front(), prior,
-                              {2 * base.epsilon, settings.rank, settings.replicates, data.vesicle});
-  add_frame(settings, base.well.b - base.well.a, data.vesicle, data.first);
-  NoisyValues resolved = data.snapshots.front();
-  resolved.trace = data.finer_traces[1].front();
-  data.first_resolved = estimate_field(*data.finer->spaces[1], resolved, prior, {}).field;
+  set_correlation(settings.correlation, base, settings, data);
 }
 
 }  // namespace
@@ -134,6 +150,18 @@ double count_values(const FilterProblems& data) {
     for (std::size_t k = 1; k < vesicle.train; ++k)
       count += static_cast<double>(vesicle.snapshots[k].values.size());
   return count;
+}
+
+void set_correlation(const NoiseCorrelation& correlation, const CahnHilliardModel& base,
+                     const FilterSettings& settings, FilterProblem& data) {
+  data.correlation = correlation;
+  data.whitening.assign(data.snapshots.size(), nullptr);
+  const auto lanes = static_cast<std::size_t>(data.team->size());
+  data.team->run([&](int lane) {
+    for (auto k = static_cast<std::size_t>(lane); k < data.snapshots.size(); k += lanes)
+      data.whitening[k] = whitening(data.series.snapshots[k].points, correlation);
+  });
+  estimate_first(base, settings, data);
 }
 
 FilterProblems make_filter_problems(const std::vector<FieldSeries>& series, const LevelSet& surface,

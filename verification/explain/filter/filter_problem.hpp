@@ -8,6 +8,7 @@
 #include "kernel/linear/linear_solver.hpp"
 #include "kernel/problem/cahn_hilliard.hpp"
 #include "verification/explain/fields/blur.hpp"
+#include "verification/explain/fields/noise_correlation.hpp"
 #include "verification/explain/forecast/gap_patterns.hpp"
 #include "verification/explain/forecast/resolved_forecast.hpp"
 
@@ -21,7 +22,8 @@ struct FilterSettings {
   double gain = 0.1;      // standard deviations of the scale and of the zero of each snapshot's
   double offset = 0.1;  // values, as far as they are unknown; the latter of the distance of phases
   double first_gain = 0.1, first_offset = 0.1;  // of the first snapshot, which forecasts begin with
-  double blur = 0;     // of the point spread function of the images, in R: they have it, or none
+  double blur = 0;  // of the point spread function of the images, in R: they have it, or none
+  NoiseCorrelation correlation = {};  // of the noise, that its estimate begins with
   double turn = 0.05;  // of the angle by which a vesicle may have turned between two snapshots
   int gap_degree = 6;  // of the polynomials that gaps are sought as
   // Standard deviation of ln D of the base model, as far as D is known from elsewhere.
@@ -43,10 +45,13 @@ struct FilterProblem {
   EigenMatrix mass;                    // stabilised, on `space`
   std::vector<NoisyValues> snapshots;  // of the series, on `space`
   FinerTraces finer_traces;
-  std::size_t train = 0;      // snapshots that count
-  FieldEstimate first;        // of the first snapshot, whose scale and zero begin its errors
-  Vec first_resolved;         // its field on the finest mesh
-  std::vector<double> noise;  // of each snapshot, in units of its deviations
+  std::size_t train = 0;         // snapshots that count
+  FieldPrior prior{};            // of the first field, as white noise would have it
+  FieldEstimate first;           // of the first snapshot, whose scale and zero begin its errors
+  Vec first_resolved;            // its field on the finest mesh
+  std::vector<double> noise;     // of each snapshot, in units of its deviations
+  NoiseCorrelation correlation;  // of that noise, between values of one snapshot
+  std::vector<WhiteningPtr> whitening;  // by that, of each snapshot
   std::shared_ptr<const GapPatterns> patterns;
   std::shared_ptr<const Blur> blur;  // if the images have one
   LinearSolverFactory tangent_solver;
@@ -59,6 +64,11 @@ using FilterProblems = std::vector<FilterProblem>;
 
 // That were measured and count, first snapshots aside.
 double count_values(const FilterProblems& data);
+
+// From now on the noise of its snapshots, whose levels are known, has that correlation; the first
+// field is estimated anew. Throws std::runtime_error if it cannot be.
+void set_correlation(const NoiseCorrelation& correlation, const CahnHilliardModel& base,
+                     const FilterSettings& settings, FilterProblem& data);
 
 // Of all vesicles, on the same meshes. `hold_out`: the last of four snapshots or more is forecast,
 // but counts for nothing. Throws InputError for places that are off the surface, and where more

@@ -51,10 +51,19 @@ Columns InnovationCovariance::posterior_root(const Columns& L) const {
   return divided_by_upper(L * scale_.asDiagonal(), factors_.matrixU());
 }
 
+Columns at_points(const Innovation& in, const Columns& X) {
+  return in.whitening ? in.whitening->coloured(X) : X;
+}
+
+Columns whitened(const Innovation& in, const Columns& X) {
+  return in.whitening ? in.whitening->whitened(X) : X;
+}
+
 Columns gaps_of_replicates(const Innovation& in) {
-  if (in.first_frame == 0) return in.replicates;
+  if (in.first_frame == 0) return at_points(in, in.replicates);
   const Columns found = InnovationCovariance(in, in.model_error).amplitudes(in.replicates);
-  return in.replicates - in.directions.leftCols(in.first_frame) * found.topRows(in.first_frame);
+  return at_points(
+      in, in.replicates - in.directions.leftCols(in.first_frame) * found.topRows(in.first_frame));
 }
 
 double most_probable_error(const Innovation& innovation) {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "verification/explain/fields/noise_correlation.hpp"
 #include "verification/explain/forecast/tangent_flow.hpp"
 
 namespace traceraft {
@@ -17,7 +18,10 @@ struct Innovation {
   bool held_out;                  // it counts for nothing, but between members of a class
   Vec forecast;                   // c where it was measured
   Vec noise;                      // standard deviation of each value, in c
-  Vec values;                     // measured minus forecast, in units of the noise
+  // What values, directions, parameters and replicates are divided by beside that, so that noise is
+  // white in all of them; nothing where it is anyway.
+  WhiteningPtr whitening;
+  Vec values;  // measured minus forecast, in units of the noise
   // G: what uncertain directions do to the values: those of the state, with their standard
   // deviations, then patterns that a gap could have (GapPatterns), of size 1.
   Columns directions;
@@ -31,7 +35,7 @@ struct Innovation {
   double expected_squares = 0;  // of the gap in c, by noise and what it leaves unknown of c
   // Most probable turns about the three axes, scale and zero of the values, and their blur if
   // images have one, in their standard deviations; `gap`: the values without what these, and the
-  // first snapshot's, make of them.
+  // first snapshot's, make of them, each at its point.
   Vec frame, gap;
   double model_error;  // size of the state's error that is no noise, per step, of the distance of
                        // the phases
@@ -56,7 +60,11 @@ class InnovationCovariance {
   Eigen::LLT<Eigen::MatrixXd> factors_;  // of 1 + D Gᵀ G D
 };
 
-// The replicates without what the first snapshot's scale and zero make of them.
+// From units of white noise to those of the noise of each value at its point, and back.
+Columns at_points(const Innovation& innovation, const Columns& X);
+Columns whitened(const Innovation& innovation, const Columns& X);
+
+// The replicates without what the first snapshot's scale and zero make of them, at the points.
 Columns gaps_of_replicates(const Innovation& innovation);
 
 // The size of the model's error that makes an innovation most probable.

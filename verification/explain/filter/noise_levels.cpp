@@ -60,6 +60,10 @@ void fit_noise(FilterProblems& data, const FilterResult& pass) {
     const double squares = in.weighted_squares / static_cast<double>(in.values.size());
     own[in.vesicle].push_back(data[in.vesicle].noise[in.snapshot] * std::sqrt(squares));
   }
+  set_noise(data, own);
+}
+
+void set_noise(FilterProblems& data, const std::vector<std::vector<double>>& own) {
   for (FilterProblem& vesicle : data) vesicle.noise = believed(own[vesicle.vesicle], vesicle.train);
 }
 

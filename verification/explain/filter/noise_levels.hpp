@@ -17,4 +17,19 @@ double contrast_of(const FilterProblems& data);
 // wrongly.
 void fit_noise(FilterProblems& data, const FilterResult& pass);
 
+// The same from the noise of each vesicle's snapshots but the first, in units of their deviations.
+void set_noise(FilterProblems& data, const std::vector<std::vector<double>>& own);
+
+// A noise that is known: levels as above, of all snapshots, and the correlation.
+void give_noise(const std::vector<std::vector<double>>& levels, const NoiseCorrelation& correlation,
+                const CahnHilliardModel& base, const FilterSettings& settings,
+                FilterProblems& data);
+
+// The same with what neighbours share of the noise, which is common to all snapshots: as the
+// innovations have it beside what they leave unknown of the states and of the model. True if its
+// correlation is another one now, so that forecasts and their errors have to be found anew; the
+// first fields are. Throws std::runtime_error if they cannot be.
+bool fit_noise_covariance(FilterProblems& data, const FilterResult& pass,
+                          const CahnHilliardModel& base, const FilterSettings& settings);
+
 }  // namespace traceraft

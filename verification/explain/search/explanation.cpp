@@ -37,6 +37,7 @@ Explanation conclusion(Search search) {
   const ExplainRequest& request = search.request;
   const CutSurface& surface = search.data.front().space->surface;
   result.noise = noise_of(search.data);
+  result.correlation = search.data.front().correlation;
   for (const FilterProblem& vesicle : search.data) {
     result.outliers += vesicle.outliers;
     result.noises.push_back(vesicle.noise);

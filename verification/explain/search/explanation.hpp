@@ -90,6 +90,7 @@ struct Explanation {
   double false_alarms = 0;                  // as requested
   double noise = 0;                         // standard deviation of the values that count
   std::vector<std::vector<double>> noises;  // of each vesicle's snapshots, in units of deviations
+  NoiseCorrelation correlation;             // of that noise
   Refit base, found;                        // with the pace refitted; found: the base if none was
   std::vector<Refit> rivals;                // other hypotheses that explain the data as well
   std::vector<ToldApart> told_apart;
@@ -134,6 +135,7 @@ std::vector<std::string> class_of(const Explanation& found);
 struct SearchState {
   Explanation so_far;
   std::vector<std::vector<double>> noise;  // of each vesicle, of each snapshot
+  NoiseCorrelation correlation;            // of that
   bool more = true;                        // is there another round?
   bool told_apart = false;                 // has what is held out been asked about the class?
   std::map<std::size_t, Refit> ahead;      // by their number in the round

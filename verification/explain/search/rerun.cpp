@@ -5,6 +5,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include "verification/explain/filter/noise_levels.hpp"
+
 namespace traceraft {
 namespace {
 
@@ -15,11 +17,11 @@ constexpr char kOtherIntegrator[] = "rosenbrock";
 constexpr double kRefuted = 2.33;
 
 FilterProblems problems_with(const std::vector<std::vector<double>>& noises,
+                             const NoiseCorrelation& correlation,
                              const std::vector<FieldSeries>& series,
                              const ExplainRequest& request) {
   FilterProblems data = problems_of(series, request);
-  if (!noises.empty())
-    for (FilterProblem& vesicle : data) vesicle.noise = noises[vesicle.vesicle];
+  if (!noises.empty()) give_noise(noises, correlation, request.base, request.filter, data);
   return data;
 }
 
@@ -125,7 +127,7 @@ void run_again(const std::vector<FieldSeries>& series, const ExplainRequest& req
   Rerun result;
   std::optional<FilterProblems> data;
   std::string no_data;
-  attempt(no_data, [&] { data = problems_with(found.noises, series, other); });
+  attempt(no_data, [&] { data = problems_with(found.noises, found.correlation, series, other); });
   if (found.found.hypothesis.added() > 0) {
     result.failure = no_data;
     if (data) attempt(result.failure, [&] { result = compare_both(*data, other, found); });
@@ -143,11 +145,12 @@ void run_again(const std::vector<FieldSeries>& series, const ExplainRequest& req
 
 ModelGaps gaps_of_model(const std::vector<FieldSeries>& series, const ExplainRequest& request,
                         double pace, const std::vector<EffectTerm>& effects,
-                        const std::vector<std::vector<double>>& noises) {
+                        const std::vector<std::vector<double>>& noises,
+                        const NoiseCorrelation& correlation) {
   ExplainRequest alone = request;
   alone.filter.replicates = 0;
   const FilterResult pass =
-      pass_of_model(problems_with(noises, series, alone), alone, pace, effects);
+      pass_of_model(problems_with(noises, correlation, series, alone), alone, pace, effects);
   return {gaps_of_pass(pass), expected_gaps(pass)};
 }
 

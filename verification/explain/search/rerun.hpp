@@ -26,6 +26,7 @@ struct ModelGaps {
 };
 ModelGaps gaps_of_model(const std::vector<FieldSeries>& series, const ExplainRequest& request,
                         double pace, const std::vector<EffectTerm>& effects,
-                        const std::vector<std::vector<double>>& noises = {});
+                        const std::vector<std::vector<double>>& noises = {},
+                        const NoiseCorrelation& correlation = {});
 
 }  // namespace traceraft

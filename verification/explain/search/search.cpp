@@ -13,6 +13,8 @@ namespace {
 
 // A refit that ends beyond kMapsReach is none of the noise and the errors that it began with.
 constexpr int kMostPasses = 4;
+// A correlation of noise that is not settled by then is near what it should be.
+constexpr int kMostCorrelationPasses = 4;
 // Of strengths that a model cannot be advanced with; then they are 0.
 constexpr int kMostHalvings = 3;
 
@@ -53,12 +55,23 @@ FilterResult Search::pass_with_own_effects() {
   }
 }
 
+void Search::settle_noise(FilterResult pass) {
+  FilterModel bare = model;
+  bare.screened.clear();
+  for (int k = 0; fit_noise_covariance(data, pass, request.base, request.filter); ++k) {
+    tell("  noise: " + text_of(data.front().correlation));
+    maps = {};
+    if (k == kMostCorrelationPasses) return;
+    pass = filter_fields(data, bare, request.filter, maps);
+  }
+}
+
 FilterResult Search::first_pass() {
   FilterResult pass;
   for (int k = 0; k < kMostPasses; ++k) {
     const double pace = model.pace;
     tell("  forecasts, and errors of states and of the mesh");
-    fit_noise(data, pass_with_own_effects());
+    settle_noise(pass_with_own_effects());
     if (request.own.parts.empty()) {
       tell(formatted("  what %zu effects would change", model.screened.size()));
       pass = filter_fields(data, model, request.filter, maps);
@@ -84,7 +97,7 @@ FilterResult Search::next_pass() {
     const double pace = model.pace;
     maps = {};
     tell("  forecasts, and errors of states and of the mesh");
-    fit_noise(data, filter_fields(data, model, request.filter, maps));
+    settle_noise(filter_fields(data, model, request.filter, maps));
     tell("  D, and its effects");
     set_found(refit(data, model, request.filter, maps));
     if (maps_reach(result.found.pace, pace)) break;
@@ -133,8 +146,9 @@ void Search::tell_gain(const Refit& fit) const {
 }
 
 SearchState Search::state(bool more) const {
-  SearchState now{result, {}, more, told_apart, {}};
+  SearchState now{result, {}, {}, more, told_apart, {}};
   for (const FilterProblem& vesicle : data) now.noise.push_back(vesicle.noise);
+  now.correlation = data.front().correlation;
   return now;
 }
 
@@ -152,7 +166,7 @@ void Search::begin_round(bool more, std::map<std::size_t, Refit> ahead) {
 void Search::go_on_from(const SearchState& state) {
   result = state.so_far;
   told_apart = state.told_apart;
-  for (FilterProblem& vesicle : data) vesicle.noise = state.noise[vesicle.vesicle];
+  give_noise(state.noise, state.correlation, request.base, request.filter, data);
   set_found(result.found);
 }
 

@@ -46,6 +46,9 @@ struct Search {
   void begin_round(bool more, std::map<std::size_t, Refit> ahead);
 
  private:
+  // The noise is that of the model, which begins with this pass; where neighbours share another
+  // part of it, maps and passes are repeated with that.
+  void settle_noise(FilterResult pass);
   void tell_gain(const Refit& fit) const;
   // Weakens effects that the model has until it can be advanced.
   FilterResult pass_with_own_effects();

@@ -1,0 +1,27 @@
+// Values near each other, by which the covariance of noise is estimated: blocks of a snapshot that
+// are small enough for dense matrices.
+#pragma once
+
+#include <vector>
+
+#include "kernel/core/types.hpp"
+
+namespace traceraft {
+
+using BlockRows = std::vector<Eigen::Index>;
+
+// Compact blocks of points, all about equal in number and none larger than `most`: halves of
+// halves, across where they extend furthest.
+std::vector<BlockRows> compact_blocks(const std::vector<Point>& points, std::size_t most);
+
+struct NoiseBlock {
+  Vec values;  // with mean 0
+  // Their covariance: `known`, and noise of these standard deviations, times a level.
+  Eigen::MatrixXd known;
+  Vec deviation;
+  Eigen::MatrixXd distance;  // between the points
+};
+
+Eigen::MatrixXd distances(const std::vector<Point>& points, const BlockRows& rows);
+
+}  // namespace traceraft
