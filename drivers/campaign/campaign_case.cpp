@@ -45,6 +45,7 @@ void draw(const fs::path& folder, const CampaignPlan& plan, const CaseSettings& 
   request.effects = settings.hidden;
   request.gap = settings.gap;
   request.noise = settings.noise;
+  set_shared_noise(plan.noise, request);
   request.stated = settings.stated;
   request.snapshots = settings.snapshots;
   request.sizing_snapshots = CaseSettings().snapshots;

@@ -9,6 +9,7 @@
 #include "backends/posix/process.hpp"
 #include "drivers/campaign/campaign_report.hpp"
 #include "drivers/campaign/hidden_case.hpp"
+#include "drivers/campaign/noise_flags.hpp"
 #include "drivers/campaign/vesicle_flags.hpp"
 #include "drivers/commands.hpp"
 #include "drivers/config/config_file.hpp"
@@ -45,6 +46,7 @@ CampaignPlan new_plan(const CampaignRequest& request) {
   for (const std::string& group : plan.groups) (void)campaign_groups().find(group);
   add_small_vesicle(plan.model, "campaign");
   (void)Configuration(plan.model, {});
+  check_shared_noise(plan.noise);
   return plan;
 }
 
@@ -232,6 +234,7 @@ Action define_campaign(CLI::App& app) {
   app.add_option("--most-effects", request->plan.effects, "how many a search may name")
       ->check(CLI::Range(1, kMostNamedEffects))
       ->capture_default_str();
+  add_noise_options(app, request->plan.noise);
   add_vesicle_options(app, request->plan.model);
   const auto all = std::as_const(app).get_options();
   request->planned.assign(all.begin() + static_cast<std::ptrdiff_t>(changing), all.end());

@@ -17,6 +17,17 @@ struct StoredPlan {
   std::map<std::string, std::string> model;
 };
 
+}  // namespace
+
+template <class Members>
+void describe(Members& members, SharedNoise& noise) {
+  members("share", noise.share, WithinRange{0, 1});
+  members("correlation", noise.length, WithinRange{0, kLongestCorrelation});
+  members("shape", noise.shape, OneOf{"shape", shared_noise_shapes()});
+}
+
+namespace {
+
 template <class Members>
 void describe(Members& members, StoredPlan& stored) {
   CampaignPlan& plan = stored.plan;
@@ -27,6 +38,7 @@ void describe(Members& members, StoredPlan& stored) {
   members("model", stored.model, AnyText{});
   members("replicates", plan.replicates, WithinRange{kFewestReplicates, kMostReplicates});
   members("effects", plan.effects, WithinRange{1, kMostNamedEffects});
+  members.later("noise", plan.noise, AsDescribed{});
 }
 
 Json plan_json(const CampaignPlan& plan) {

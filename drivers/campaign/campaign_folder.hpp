@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "drivers/campaign/campaign_groups.hpp"
+#include "drivers/campaign/shared_noise.hpp"
 #include "drivers/config/configuration.hpp"
 
 namespace traceraft {
@@ -20,6 +21,7 @@ struct CampaignPlan {
   int points = 4000, replicates = 199;
   int effects = 3;  // that a search may name
   GivenValues model;
+  SharedNoise noise = {};
 };
 
 struct CaseId {

@@ -6,9 +6,9 @@
 #include "backends/sodium/seal.hpp"
 #include "drivers/config/config_file.hpp"
 #include "drivers/input/field_dataset.hpp"
+#include "drivers/input/json_file.hpp"
 #include "drivers/input/measured_units.hpp"
 #include "drivers/numerical_failure.hpp"
-#include "drivers/input/json_file.hpp"
 #include "drivers/run/physical_model.hpp"
 #include "kernel/effects/effects.hpp"
 
@@ -40,6 +40,8 @@ Json truth_json(const BlindCase& drawn, const BlindRequest& request, const Units
           {"diffusion", own.diffusion_cm2_s},
           {"pace", request.pace},
           {"noise", drawn.noise},
+          {"noise_share", request.noise_share},
+          {"noise_correlation", request.noise_correlation},
           {"cells", request.cells},
           {"integrator", request.integrator},
           {"tolerance", request.tolerance}};

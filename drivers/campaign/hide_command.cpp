@@ -5,6 +5,7 @@
 #include "backends/posix/process.hpp"
 #include "backends/sodium/seal.hpp"
 #include "drivers/campaign/hidden_case.hpp"
+#include "drivers/campaign/noise_flags.hpp"
 #include "drivers/campaign/vesicle_flags.hpp"
 #include "drivers/commands.hpp"
 #include "drivers/config/config_file.hpp"
@@ -32,6 +33,7 @@ struct HideCommand {
   double blur_um = 0;
   double first_s = 0, last_s = 0;
   int truth_cells = 0;
+  SharedNoise noise;
 };
 
 // "random" may be nothing.
@@ -62,6 +64,7 @@ int hide_effects(const HideCommand& command) {
   request.cells = command.truth_cells > 0 ? command.truth_cells : truth_cells(model);
   request.seed = command.seed >= 0 ? static_cast<std::uint64_t>(command.seed) : random_seed();
   request.effects = effects_of(command.effects, request.seed);
+  set_shared_noise(command.noise, request);
   request.blur = command.blur_um / units.length();
   if (!(request.blur < kWidestBlur))
     throw InputError("--blur: " + format_number(command.blur_um) + " um is not less than " +
@@ -106,6 +109,7 @@ Action define_hide(CLI::App& app) {
   app.add_option("--noise", request.noise, "of a value, over the standard deviation of c")
       ->check(between(1e-3, 2))
       ->capture_default_str();
+  add_noise_options(app, command->noise);
   app.add_option("--stated", request.stated,
                  "write a column sigma, the noise, and in every second snapshot this times the "
                  "noise; 0: no "

@@ -56,7 +56,8 @@ class ExplainPage {
                          : ", curvature sorts nothing where it is the same everywhere."));
     page_.heading("Where this comes from");
     page_.paragraph(program_text() + ". Noise " + formatted("%.3g of c, ", found_.noise) +
-                    std::to_string(found_.replicates) + " replicates of noise alone, " +
+                    text_of(found_.correlation) + ", " + std::to_string(found_.replicates) +
+                    " replicates of noise alone, " +
                     formatted("h/epsilon = %.2f.", found_.h_over_epsilon) + " The model:");
     page_.code(flags_text(setup_.configuration()));
     if (const std::string run = command_for_found(folder_, found_, setup_); !run.empty()) {

@@ -68,9 +68,9 @@ void print_explanation(const Explanation& found, const ExplainSetup& setup) {
   say("\n");
   print_rows(gap_rows(found));
   for (const std::string& remark : remarks_on(found, setup)) say("\n%s\n", remark);
-  say("\nnoise of the measurements %.3g; patches that disagree significantly with the base model: "
-      "%zu\n",
-      found.noise, found.disagreements.size());
+  say("\nnoise of the measurements %.3g, %s; patches that disagree significantly with the base "
+      "model: %zu\n",
+      found.noise, text_of(found.correlation), found.disagreements.size());
 }
 
 }  // namespace traceraft

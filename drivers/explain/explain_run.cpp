@@ -230,6 +230,9 @@ ExplainSetup read_explain_job(const ExplainJob& job) {
   if (job.diffusion_error > 0) request.filter.pace_doubt = job.diffusion_error;
   request.filter.blur = data.blur_um.value_or(0) / data.radius_um;
   request.blur_stated = data.blur_um.has_value();
+  if (data.noise_share > 0)
+    request.filter.correlation =
+        gaussian_correlation(data.noise_correlation_um / data.radius_um, data.noise_share);
   refuse_wide_boundaries(model, request.base);
   refuse_far_values(setup.series, request.base.well, job.data);
   refuse_uniform_values(setup.series, request.base.well, job.data);

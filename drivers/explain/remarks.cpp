@@ -221,6 +221,11 @@ std::vector<std::string> remarks(const Explanation& found, const Units& base) {
     all.push_back(
         "dataset.toml does not say how blurred the images are (blur, 0 if they are not): "
         "boundaries that a microscope widens are taken for physics.");
+  if (found.correlation.at_bound)
+    all.push_back(formatted(
+        "Neighbours share noise over %.2g R, or further, which is not looked for: what is missing "
+        "may be taken for such noise, and such noise for what is missing.",
+        found.correlation.length()));
   add_pace(found, base, all);
   add_story(found, all);
   add_ends(found, base, all);

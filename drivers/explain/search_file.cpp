@@ -38,6 +38,8 @@ Json subject_of(const ExplainSetup& setup) {
           {"the model", config_text(Configuration(setup.model, {}))},
           {"the data", checksum_of(setup.series)},
           {"the blur of the data", request.blur_stated ? Json(request.filter.blur) : Json()},
+          {"the noise of the data",
+           {request.filter.correlation.length(), request.filter.correlation.share()}},
           {"--without", request.without},
           {"--most-effects", request.most_effects},
           {"--replicates", request.filter.replicates},

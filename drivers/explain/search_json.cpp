@@ -222,6 +222,19 @@ std::optional<Rerun> rerun_of(const Json& json) {
   return rerun;
 }
 
+Json json_of(const NoiseCorrelation& correlation) {
+  Json components = Json::array();
+  for (const NoiseCorrelation::Component& c : correlation.components)
+    components.push_back({c.support, c.share});
+  return {{"components", components}, {"at_bound", correlation.at_bound}};
+}
+NoiseCorrelation correlation_of(const Json& json) {
+  NoiseCorrelation correlation;
+  for (const Json& c : json.at("components")) correlation.components.push_back({c.at(0), c.at(1)});
+  correlation.at_bound = json.at("at_bound");
+  return correlation;
+}
+
 Finding finding_of(const std::string& word) {
   for (const Finding finding : kFindings)
     if (word_for(finding) == word) return finding;
@@ -245,6 +258,7 @@ Json search_json(const SearchState& state) {
   return {{"more", state.more},
           {"class_weighed", state.told_apart},
           {"noise", state.noise},
+          {"noise_correlation", json_of(state.correlation)},
           {"finding", word_for(found.finding)},
           {"without_gap", word_for(found.without_gap)},
           {"rivals", rivals},
@@ -267,6 +281,7 @@ SearchState search_from(const Json& json, const CahnHilliardModel& base) {
   state.more = json.at("more");
   state.told_apart = json.at("class_weighed");
   state.noise = json.at("noise").get<std::vector<std::vector<double>>>();
+  state.correlation = correlation_of(json.at("noise_correlation"));
   Explanation& found = state.so_far;
   found.finding = finding_of(json.at("finding"));
   found.without_gap = finding_of(json.at("without_gap"));

@@ -103,6 +103,15 @@ Json rerun_json(const Explanation& found) {
           {"floor", gap_json(rerun.floor)}};
 }
 
+// Length in R.
+Json noise_json(const Explanation& found) {
+  const NoiseCorrelation& shared = found.correlation;
+  return {{"level", found.noise},
+          {"share", shared.share()},
+          {"length", shared.white() ? Json() : Json(shared.length())},
+          {"at_bound", shared.at_bound}};
+}
+
 Json data_json(const ExplainSetup& setup) {
   const double radius = setup.configuration().units().length();
   const ExplainRequest& request = setup.request;
@@ -163,7 +172,7 @@ Json verdict_json(const Explanation& found, const ExplainSetup& setup) {
             {"false_alarm_level", found.false_alarms},
             {"p", found.rounds.front().screening.p},
             {"rounds", rounds_json(found)}}},
-          {"noise", found.noise},
+          {"noise", noise_json(found)},
           {"data", data_json(setup)},
           {"model",
            {{"epsilon_um", model.number("epsilon")},

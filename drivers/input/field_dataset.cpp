@@ -74,6 +74,22 @@ void read_blur(const TomlTable& toml, double length, FieldDataset& data) {
                                                     kWidestBlur));
 }
 
+void read_noise(const TomlTable& toml, double length, FieldDataset& data) {
+  const char *size = "noise_correlation", *share = "noise_share";
+  if (toml.has(size) != toml.has(share))
+    throw InputError(toml.where(toml.has(size) ? size : share) + ": it stands without " +
+                     (toml.has(size) ? share : size));
+  if (!toml.has(size)) return;
+  data.noise_correlation_um = toml.number(size) * length;
+  data.noise_share = toml.number(share);
+  if (!(data.noise_share >= 0 && data.noise_share <= 1))
+    throw InputError(toml.where(share) + ": it has to be from 0 to 1, a part of the variance");
+  if (!(data.noise_correlation_um > 0 &&
+        data.noise_correlation_um <= kLongestCorrelation * data.radius_um))
+    throw InputError(toml.where(size) +
+                     formatted(": it has to be from 0 to %.2g of the radius", kLongestCorrelation));
+}
+
 // Whose each snapshot is.
 std::vector<std::string> vesicles_of(const TomlTable& toml, std::size_t snapshots) {
   const std::vector<double> numbers =
@@ -133,6 +149,7 @@ FieldDataset read_field_dataset(const fs::path& folder) {
                offset = time_offset(toml);
   data.radius_um = checked_radius(toml.number("radius") * length, toml.where("radius"));
   read_blur(toml, length, data);
+  read_noise(toml, length, data);
   const std::vector<double> times = numbers_of(toml, "times");
   const std::vector<std::string> vesicles = vesicles_of(toml, times.size());
   bool with_sigma = false;
@@ -214,8 +231,12 @@ void write_field_dataset(const fs::path& folder, const FieldDataset& data,
           "\nkind = " + (data.synthetic ? "\"synthetic\"" : "\"measured\"") +
           "\norigin = " + quoted(data.origin) + "\ntime_zero = " + quoted(data.time_zero) +
           "\nlength_unit = \"um\"\ntime_unit = \"s\"\nradius = " + format_number(data.radius_um) +
-          (data.blur_um ? "\nblur = " + format_number(*data.blur_um) : "") + "\ntimes = [" + times +
-          "]\nvesicles = [" + vesicles + "]\n");
+          (data.blur_um ? "\nblur = " + format_number(*data.blur_um) : "") +
+          (data.noise_share > 0
+               ? "\nnoise_correlation = " + format_number(data.noise_correlation_um) +
+                     "\nnoise_share = " + format_number(data.noise_share)
+               : "") +
+          "\ntimes = [" + times + "]\nvesicles = [" + vesicles + "]\n");
 }
 
 }  // namespace traceraft

@@ -19,7 +19,9 @@ struct FieldDataset {
   std::string name, origin, time_zero, composition;
   bool synthetic = false;
   double radius_um = 0;
-  std::optional<double> blur_um;      // standard deviation of the point spread function
+  std::optional<double> blur_um;  // standard deviation of the point spread function
+  // Over which length neighbours share noise, in um, and which part of its variance; both or none.
+  double noise_correlation_um = 0, noise_share = 0;
   std::vector<FieldSeries> vesicles;  // times in s, places in units of the radius
 };
 

@@ -46,6 +46,11 @@ class JsonWriter {
   void operator()(const char* name, T& member, const Check&) {
     json_[name] = json_of(member);
   }
+  // One that earlier versions did not know: it keeps its value where a file lacks it.
+  template <class T, class Check>
+  void later(const char* name, T& member, const Check& check) {
+    (*this)(name, member, check);
+  }
   Json take() { return std::move(json_); }
 
   template <class T>
@@ -93,6 +98,10 @@ class JsonReader {
     const auto found = json_.find(name);
     if (found == json_.end()) throw DamagedFile(where_ + " is damaged: there is no " + name);
     read(*found, where_ + ": " + name, member, check);
+  }
+  template <class T, class Check>
+  void later(const char* name, T& member, const Check& check) {
+    if (json_.contains(name)) (*this)(name, member, check);
   }
 
  private:

@@ -12,7 +12,8 @@ TomlTable read_description(const fs::path& folder, bool fields, bool series) {
   std::vector<std::string> keys{"name",        "kind",      "origin",      "composition",
                                 "temperature", "time_zero", "time_offset", "length_unit",
                                 "time_unit",   "radius"};
-  if (fields) keys.insert(keys.end(), {"blur", "times", "vesicles"});
+  if (fields)
+    keys.insert(keys.end(), {"blur", "noise_correlation", "noise_share", "times", "vesicles"});
   if (series) keys.insert(keys.end(), {"sigma", "table"});
   if (fs::exists(folder) && !fs::is_directory(folder))
     throw InputError(folder.string() + " is a file; the folder that holds dataset.toml is needed");

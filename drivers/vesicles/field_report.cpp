@@ -8,6 +8,7 @@
 #include "drivers/text/say.hpp"
 #include "kernel/core/text.hpp"
 #include "verification/explain/filter/disagreement.hpp"
+#include "verification/explain/filter/field_noise.hpp"
 #include "verification/vesicles/history.hpp"
 
 namespace traceraft {
@@ -100,6 +101,9 @@ void print_fields(const std::filesystem::path& folder, const FieldDataset& data)
     for (const FieldSnapshot& snapshot : vesicle.snapshots)
       table.rows.push_back(row_of(vesicle, snapshot));
   print_rows(table_rows(table));
+  if (const std::optional<FieldNoise> noise = noise_of_fields(data.vesicles, 1))
+    say("noise about %.3g, %s (R = %g um), as flat parts of the fields have it\n", noise->level,
+        text_of(noise->correlation), data.radius_um);
   for (const std::string& note : notes_on(folder, data)) say("NOTE: %s\n", note);
 }
 

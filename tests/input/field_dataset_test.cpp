@@ -77,6 +77,23 @@ TEST_F(FieldDatasetTest, ReadsWhatItHasWritten) {
   EXPECT_LT((after.deviation - before.deviation).norm(), 1e-4);
 }
 
+TEST_F(FieldDatasetTest, ReadsWhatNeighboursShareOfTheNoise) {
+  EXPECT_EQ(read_field_dataset(folder.path).noise_share, 0);
+  FieldDataset data = small_dataset();
+  data.noise_correlation_um = 0.25;
+  data.noise_share = 0.2;
+  write_field_dataset(folder.path, data, "of a test");
+  EXPECT_EQ(read_field_dataset(folder.path).noise_share, 0.2);
+  EXPECT_NEAR(read_field_dataset(folder.path).noise_correlation_um, 0.25, 1e-12);
+  replace("dataset.toml", description("[1, 2, 3]") + "noise_share = 0.2\n");
+  expect_refusal("it stands without noise_correlation");
+  replace("dataset.toml",
+          description("[1, 2, 3]") + "noise_share = 1.2\nnoise_correlation = 0.1\n");
+  expect_refusal("from 0 to 1");
+  replace("dataset.toml", description("[1, 2, 3]") + "noise_share = 0.2\nnoise_correlation = 3\n");
+  expect_refusal("0.14 of the radius");
+}
+
 TEST_F(FieldDatasetTest, AsksAboutARadiusThatThePointsContradict) {
   FieldDataset data = small_dataset();
   EXPECT_EQ(note_on_distance(data), "");
