@@ -13,9 +13,12 @@ class MeshTransfer {
  public:
   MeshTransfer() = default;
   // Serial spaces of one surface. Throws InputError if they are not near each other.
-  MeshTransfer(const SurfaceSpace& from, SpacePtr to);
+  // `rotation`: that the field is turned by.
+  MeshTransfer(const SurfaceSpace& from, SpacePtr to,
+               const Eigen::Matrix3d& rotation = Eigen::Matrix3d::Identity());
 
   Vec operator()(ConstVec c) const;  // nodal values on `from` to those on `to`
+  Eigen::MatrixXd columns(const Eigen::MatrixXd& X) const;
 
  private:
   SpacePtr to_;

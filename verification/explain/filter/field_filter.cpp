@@ -51,26 +51,30 @@ class Filter {
  private:
   void advance(std::size_t k) {
     const double begin = pace_ * data_.time(k), end = pace_ * data_.time(k + 1);
+    const SnapshotTurn* turn = data_.turns[k + 1].get();
     // The finer meshes on one processor, everything else on the other.
     std::future<ResolvedForecast::End> resolved;
     if (resolved_)
-      resolved = std::async(data_.team->size() > 1 ? std::launch::async : std::launch::deferred,
-                            [=] { return resolved_->advance(k + 1, begin, end); });
+      resolved = std::async(
+          data_.team->size() > 1 ? std::launch::async : std::launch::deferred,
+          [=] { return resolved_->advance(k + 1, begin, end, turn ? &turn->finest : nullptr); });
     const auto on_its_mesh = [this](const DaeProblem& p) {
       return data_.make_integrator(p, *data_.space);
     };
     const Forecast way = forecast(problem_, on_its_mesh, belief_.c, begin, end,
                                   {settings_.tangent_steps, settings_.error_steps});
-    if (resolved_) map_errors(way);
+    if (resolved_) map_errors(way, turn);
     belief_.errors =
         product(maps_.image[k], transposed_product(maps_.basis[k], data_.mass * belief_.errors));
     belief_.replicates = maps_.replicates[k].leftCols(settings_.replicates);
     flow_.advance(way.paths[0], belief_.parameters,
                   [&](double t, ConstVec y) { return forcing(begin, end, t, y); });
     belief_.parameters.col(kPace) += (end - begin) * way.end_rate;
-    if (resolved_) map_mesh(k, resolved.get(), way.end);
+    if (turn) belief_.parameters = turn->own.columns(belief_.parameters);
+    const Vec there = turn ? turn->own(way.end) : way.end;
+    if (resolved_) map_mesh(k, resolved.get(), there);
     belief_.parameters.col(kMeshError) += maps_.mesh_error[k].doubt;
-    belief_.c = way.end + maps_.mesh_error[k].field;
+    belief_.c = there + maps_.mesh_error[k].field;
   }
 
   // ∂F/∂θ of all parameters. With F = F(pace t, …) the derivative S of c by ln pace has two parts:
@@ -94,11 +98,12 @@ class Filter {
     maps_.mesh_error.push_back(std::move(resolved));
   }
 
-  void map_errors(const Forecast& way) {
+  void map_errors(const Forecast& way, const SnapshotTurn* turn) {
     Columns basis = belief_.errors;
     orthonormalise(basis);
     Columns moved = side_by_side(basis, belief_.replicates);
     flow_.advance(way.paths[1], moved);
+    if (turn) moved = turn->own.columns(moved);
     maps_.image.push_back(moved.leftCols(basis.cols()));
     maps_.replicates.push_back(moved.rightCols(settings_.replicates));
     maps_.basis.push_back(std::move(basis));

@@ -7,6 +7,7 @@
 #include "kernel/core/random.hpp"
 #include "verification/explain/fields/kriging.hpp"
 #include "verification/explain/fields/outliers.hpp"
+#include "verification/explain/fields/registration.hpp"
 
 namespace traceraft {
 namespace {
@@ -49,6 +50,7 @@ FilterProblem on_meshes(const LevelSet& surface, int cells, int threads,
   // On meshes of some thousand nodes threads are better used for different columns and models.
   data.team = std::make_shared<ThreadTeam>(threads);
   data.space = serial_space(surface, cells);
+  data.sphere = is_sphere(surface);
   data.finer = std::make_shared<const FinerMeshes>(finer_meshes(surface, data.space, cells));
   data.mass = as_eigen(*data.space, data.space->stabilised_mass);
   data.patterns = std::make_shared<const GapPatterns>(*data.space, settings.gap_degree);
@@ -135,10 +137,26 @@ void estimate_first(const CahnHilliardModel& base, const FilterSettings& setting
   add_frame(settings, base.well.b - base.well.a, data.vesicle, data.first);
 }
 
+// Each snapshot against the field of the one before.
+void register_snapshots(FilterProblem& data) {
+  data.turns.assign(data.snapshots.size(), nullptr);
+  if (!data.sphere) return;
+  const SpacePtr& finest = data.finer->spaces[1];
+  for (std::size_t k = 1; k < data.snapshots.size(); ++k) {
+    const Vec before = estimate_field(*data.space, data.snapshots[k - 1], data.prior, {}).field;
+    const FieldSnapshot& snapshot = data.series.snapshots[k];
+    if (const auto Q =
+            registration(SphereMap(*data.space, before), snapshot.points, snapshot.values))
+      data.turns[k] = std::make_shared<const SnapshotTurn>(SnapshotTurn{
+          *Q, MeshTransfer(*data.space, data.space, *Q), MeshTransfer(*finest, finest, *Q)});
+  }
+}
+
 void add_series(const FieldSeries& series, const CahnHilliardModel& base,
                 const FilterSettings& settings, FilterProblem& data) {
   data.prior = clean(series, base.well, data);
   data.finer_traces = finer_traces(*data.finer, data.series);
+  register_snapshots(data);
   set_correlation(settings.correlation, base, settings, data);
 }
 

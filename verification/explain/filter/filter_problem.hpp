@@ -34,13 +34,20 @@ struct FilterSettings {
 // Directions of errors of the first snapshot's state that are of its scale and its zero.
 inline constexpr Eigen::Index kFirstFrame = 2;
 
+// By which a vesicle has turned since the snapshot before, on the model's mesh and on the finest.
+struct SnapshotTurn {
+  Eigen::Matrix3d rotation;
+  MeshTransfer own, finest;
+};
+
 // Everything about the series of one vesicle that does not depend on parameters.
 struct FilterProblem {
   std::size_t vesicle;  // its number
   FieldSeries series;   // without outliers
   std::size_t outliers = 0;
   std::shared_ptr<const ThreadTeam> team;
-  SpacePtr space;  // of one thread
+  SpacePtr space;       // of one thread
+  bool sphere = false;  // is that what the surface is?
   std::shared_ptr<const FinerMeshes> finer;
   EigenMatrix mass;                    // stabilised, on `space`
   std::vector<NoisyValues> snapshots;  // of the series, on `space`
@@ -52,6 +59,8 @@ struct FilterProblem {
   std::vector<double> noise;     // of each snapshot, in units of its deviations
   NoiseCorrelation correlation;  // of that noise, between values of one snapshot
   std::vector<WhiteningPtr> whitening;  // by that, of each snapshot
+  // Before each snapshot; nothing where it has turned by no more than the settings' `turn` or so.
+  std::vector<std::shared_ptr<const SnapshotTurn>> turns;
   std::shared_ptr<const GapPatterns> patterns;
   std::shared_ptr<const Blur> blur;  // if the images have one
   LinearSolverFactory tangent_solver;

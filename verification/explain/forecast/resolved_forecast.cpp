@@ -46,7 +46,8 @@ ResolvedForecast::ResolvedForecast(const FinerMeshes& meshes, const FinerTraces&
       make_integrator_(make_integrator),
       c_(std::move(c)) {}
 
-ResolvedForecast::End ResolvedForecast::advance(std::size_t k, double begin, double end) {
+ResolvedForecast::End ResolvedForecast::advance(std::size_t k, double begin, double end,
+                                                const MeshTransfer* turn) {
   const std::array<Vec, 2> starts{meshes_.down(c_), c_};
   std::array<Vec, 2> ends;
   for (std::size_t m = 0; m < 2; ++m) {
@@ -59,10 +60,14 @@ ResolvedForecast::End ResolvedForecast::advance(std::size_t k, double begin, dou
   // Both on the coarser of the two: how well it represents a field is no error of the flow, and
   // falls on other points in finer meshes.
   const Vec last = share * (meshes_.down(ends[1]) - ends[0]);
-  const Vec up = meshes_.up(last);
+  Vec up = meshes_.up(last);
   c_ = ends[1] + up;
+  if (turn) {
+    c_ = (*turn)(c_);
+    up = (*turn)(up);
+  }
   return {meshes_.from_finest(c_), meshes_.from_finest(up), traces_[1][k] * c_,
-          traces_[0][k] * last};
+          turn ? Vec(traces_[1][k] * up) : Vec(traces_[0][k] * last)};
 }
 
 }  // namespace traceraft

@@ -41,8 +41,9 @@ class ResolvedForecast {
     Vec field, doubt;          // at the nodes of the model's mesh
     Vec values, values_doubt;  // where snapshot k was measured
   };
-  // Throws std::runtime_error if the flow cannot be advanced.
-  End advance(std::size_t k, double begin, double end);
+  // `turn`: by which the vesicle turns at the end, on the finest mesh; may be null. Throws
+  // std::runtime_error if the flow cannot be advanced.
+  End advance(std::size_t k, double begin, double end, const MeshTransfer* turn = nullptr);
   void correct(ConstVec increment) { c_ += meshes_.to_finest(increment); }  // of the model's mesh
 
  private:

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "kernel/core/text.hpp"
+#include "verification/explain/fields/registration.hpp"
 #include "verification/explain/filter/noise_levels.hpp"
 #include "verification/explain/fit/first_pace.hpp"
 #include "verification/explain/search/class_evidence.hpp"
@@ -41,6 +42,9 @@ Explanation conclusion(Search search) {
   for (const FilterProblem& vesicle : search.data) {
     result.outliers += vesicle.outliers;
     result.noises.push_back(vesicle.noise);
+    for (std::size_t k = 1; k < vesicle.turns.size(); ++k)
+      if (vesicle.turns[k])
+        result.registered.push_back({vesicle.vesicle, k, angle_of(vesicle.turns[k]->rotation)});
   }
   result.map_mesh = {surface.position, surface.triangles};
   result.replicates = request.filter.replicates;

@@ -83,6 +83,12 @@ struct Turn {
   std::string from, to;
 };
 
+// A snapshot that has turned by more than errors of the state allow for, and was registered.
+struct RegisteredTurn {
+  std::size_t vesicle, snapshot;
+  double angle;  // since the snapshot before
+};
+
 struct Explanation {
   Finding finding = Finding::none;
   Finding without_gap = Finding::none;      // if it is `unnamed`: what it is if that gap is none
@@ -105,6 +111,7 @@ struct Explanation {
   double h_over_epsilon = 0;                                    // of the model's mesh
   std::size_t outliers = 0;                                     // values that were left out
   std::vector<FrameChange> changes;                             // of the found model
+  std::vector<RegisteredTurn> registered;
   std::string stopped;                      // why the search could not go on, if it had to stop
   std::optional<Rerun> rerun;               // by run_again
   std::vector<Bound> bounds;                // of effects that were not found

@@ -1,0 +1,134 @@
+// Vesicles that turn between two looks at them.
+#include "verification/explain/fields/registration.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "tests/support/small_vesicle.hpp"
+#include "tests/support/spaces.hpp"
+#include "verification/explain/fields/mesh_transfer.hpp"
+#include "verification/explain/filter/field_filter.hpp"
+#include "verification/explain/filter/gaps.hpp"
+
+namespace traceraft {
+namespace {
+
+using testing::make_space;
+
+// Rafts that no rotation but one brings onto themselves.
+double rafts_at(const Point& x) {
+  const double level = std::sin(3 * x[0] + 1) * x[1] + 0.3 * x[2] + 0.4 * x[0] * x[1];
+  return 0.5 + 0.5 * std::tanh(level / 0.15);
+}
+
+Vec rafts_on(const SurfaceSpace& space) {
+  Vec nodal(space.nodes());
+  for (int k = 0; k < space.nodes(); ++k) nodal[k] = rafts_at(space.mesh.position(k).normalized());
+  return nodal;
+}
+
+Eigen::Matrix3d turn_of(double angle) {
+  return Eigen::AngleAxisd(angle, Point(1, -2, 0.5).normalized()).toRotationMatrix();
+}
+
+struct Turned {
+  std::vector<Point> points;
+  Vec values;
+
+  explicit Turned(const Eigen::Matrix3d& Q, double noise = 0.1) : values(1000) {
+    for (int k = 0; k < 1000; ++k) {
+      points.push_back(testing::random_direction(5, static_cast<std::uint64_t>(k)));
+      values[k] = 0.2 + 0.8 * rafts_at(Q.transpose() * points[k]) + noise * normal_random(5, 3, k);
+    }
+  }
+};
+
+TEST(Registration, FindsAnyRotation) {
+  const auto space = make_space(20);
+  const SphereMap before(*space, rafts_on(*space));
+  for (const double angle : {0.1, 0.7, 2.0, 3.1}) {
+    const Turned turned(turn_of(angle));
+    const auto Q = registration(before, turned.points, turned.values);
+    ASSERT_TRUE(Q) << angle;
+    EXPECT_LT(angle_of(*Q * turn_of(angle).transpose()), 0.03) << angle;
+  }
+}
+
+TEST(Registration, LeavesWhatHasNotTurned) {
+  const auto space = make_space(20);
+  const SphereMap before(*space, rafts_on(*space));
+  const Turned still(turn_of(0)), hardly(turn_of(0.02)), other(turn_of(1), 3);
+  EXPECT_FALSE(registration(before, still.points, still.values));
+  EXPECT_FALSE(registration(before, hardly.points, hardly.values));
+  EXPECT_FALSE(registration(before, other.points, other.values));  // noise is like nothing
+}
+
+TEST(Registration, IsOfSpheresAlone) {
+  EXPECT_TRUE(is_sphere(*make_surface("sphere")));
+  EXPECT_FALSE(is_sphere(*make_surface("ellipsoid")));
+  EXPECT_FALSE(is_sphere(ShiftedLevelSet(make_surface("sphere"), Point(0.01, 0, 0))));
+}
+
+TEST(SphereMap, IsTheField) {
+  const auto space = make_space(20);
+  const SphereMap map(*space, rafts_on(*space));
+  double squares = 0;
+  for (int k = 0; k < 1000; ++k) {
+    const Point x = testing::random_direction(7, static_cast<std::uint64_t>(k));
+    squares += std::pow(map.at(x) - rafts_at(x), 2) / 1000;
+  }
+  EXPECT_LT(std::sqrt(squares), 0.06);
+}
+
+TEST(MeshTransfer, TurnsFields) {
+  const auto space = make_space(28);
+  const Eigen::Matrix3d Q = turn_of(2);
+  const MeshTransfer turn(*space, space, Q), back(*space, space, Q.transpose());
+  const Vec c = rafts_on(*space);
+  Vec expected(space->nodes());
+  for (int k = 0; k < space->nodes(); ++k)
+    expected[k] = rafts_at(Q.transpose() * space->mesh.position(k).normalized());
+  const Vec difference = turn(c) - expected, around = back(turn(c)) - c;
+  const double size = std::sqrt(space->inner(c, c));
+  EXPECT_LT(std::sqrt(space->inner(difference, difference)), 0.03 * size);
+  EXPECT_LT(std::sqrt(space->inner(around, around)), 0.05 * size);
+  EXPECT_TRUE(turn.columns(c).col(0).isApprox(turn(c)));
+}
+
+// What was measured of a vesicle that is turned by 2 rad between looks is as probable.
+TEST(FieldFilter, TakesATurnAlong) {
+  BlindRequest asked = testing::small_vesicle(3);
+  asked.effects = {};
+  asked.first = 40;  // rafts are much alike from look to look
+  asked.last = 48;
+  std::vector<FieldSeries> series = draw_blind_case(asked).vesicles;
+  FilterSettings settings;
+  settings.rank = 30;
+  settings.replicates = 0;
+  const FilterModel model{asked.base, 1, {}, {}};
+  const auto pass = [&] {
+    const FilterProblems data =
+        make_filter_problems(series, *make_surface("sphere"), asked.base, 12, 1, false, settings);
+    std::vector<ErrorMaps> maps;
+    return std::pair(filter_fields(data, model, settings, maps), data[0].turns);
+  };
+  const auto [still, none] = pass();
+  const Eigen::Matrix3d Q = turn_of(2);
+  for (std::size_t k = 1; k < 3; ++k)
+    for (Point& x : series[0].snapshots[k].points) x = (k == 1 ? Q : Eigen::Matrix3d(Q * Q)) * x;
+  const auto [turned, turns] = pass();
+  EXPECT_FALSE(none[1]);
+  ASSERT_TRUE(turns[1]);
+  // A round raft does not say by how much it turns about its middle: what was measured does.
+  const double gap = gaps_of_pass(still).train;
+  EXPECT_NEAR(gaps_of_pass(turned).train, gap, 0.03 * gap);
+  const double scatter = std::sqrt(2.0 * 2 * asked.points);
+  EXPECT_NEAR(turned.deviance, still.deviance, 2 * scatter);
+  EXPECT_NEAR(turned.information(kPace, kPace), still.information(kPace, kPace),
+              0.2 * still.information(kPace, kPace));
+}
+
+}  // namespace
+}  // namespace traceraft

@@ -1,0 +1,35 @@
+// Registration of measured fields on a sphere: by which rotation a vesicle has turned between two
+// snapshots.
+#pragma once
+
+#include <optional>
+
+#include "kernel/fem/surface_space.hpp"
+#include "kernel/geometry/level_set.hpp"
+
+namespace traceraft {
+
+// A field on the unit sphere for fast looks at any direction: bilinear on the faces of a cube.
+class SphereMap {
+ public:
+  // Throws InputError if the space is that of another surface.
+  SphereMap(const SurfaceSpace& space, const Vec& field);
+  double at(const Point& x) const;
+
+ private:
+  static constexpr int kSide = 48;  // of a face
+  Vec samples_;
+};
+
+// Q so that the values are most like those of the field before, turned: v(x) ~ a + b f(Qᵀ x).
+// Searched for over all rotations, then refined. Nothing if no rotation but a small one, which
+// errors of the state allow for, makes them clearly more alike than none does.
+std::optional<Eigen::Matrix3d> registration(const SphereMap& before,
+                                            const std::vector<Point>& points, const Vec& values);
+
+// Is it the unit sphere around the origin?
+bool is_sphere(const LevelSet& surface);
+
+double angle_of(const Eigen::Matrix3d& rotation);
+
+}  // namespace traceraft
