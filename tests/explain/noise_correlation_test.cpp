@@ -12,6 +12,7 @@
 #include "tests/support/spaces.hpp"
 #include "verification/explain/blind/noise_waves.hpp"
 #include "verification/explain/filter/correlation_fit.hpp"
+#include "verification/explain/filter/field_noise.hpp"
 #include "verification/explain/filter/variance_components.hpp"
 
 namespace traceraft {
@@ -168,6 +169,33 @@ TEST(CorrelationFit, FindsShareAndLengthOfAnyShape) {
     EXPECT_NEAR(fit_variance(drawn.blocks, fit.correlation, team), fit.variance,
                 0.02 * fit.variance);
   }
+}
+
+// Of measured fields by themselves: of a smooth field nothing is taken for noise.
+TEST(FieldNoise, IsFoundInFlatParts) {
+  for (const double share : {0.0, 0.5}) {
+    std::vector<FieldSeries> series{{"1", {}}};
+    for (std::uint64_t s = 0; s < 4; ++s) {
+      FieldSnapshot snapshot{double(s), {}, {}, Vec::Ones(2000)};
+      for (std::uint64_t i = 0; i < 2000; ++i)
+        snapshot.points.push_back(testing::random_direction(10 + s, i));
+      Vec noise = std::sqrt(1 - share) * white_noise(2000, s);
+      if (share > 0)
+        noise += std::sqrt(share) * noise_waves(snapshot.points, 0.08, NoiseShape::gaussian, 5, s);
+      snapshot.values = 0.05 * noise;
+      for (int i = 0; i < 2000; ++i)
+        snapshot.values[i] += 0.5 + 0.5 * std::tanh((snapshot.points[i][2] - 0.3) / 0.25);
+      series[0].snapshots.push_back(snapshot);
+    }
+    const auto found = noise_of_fields(series, 2);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->level, 0.05, 0.005);
+    EXPECT_NEAR(found->correlation.share(), share, 0.15);
+    if (share > 0) {
+      EXPECT_NEAR(found->correlation.length(), 0.08, 0.03);
+    }
+  }
+  EXPECT_FALSE(noise_of_fields({}, 1));
 }
 
 TEST(CorrelationFit, SaysWhereItIsAsLongAsItMayBe) {

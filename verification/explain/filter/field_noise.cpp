@@ -10,8 +10,8 @@ namespace traceraft {
 namespace {
 
 constexpr std::size_t kPatch = 110, kFewestInPatch = 40;
-// Standard deviation of a polynomial's coefficients, in c: as good as unknown.
-constexpr double kUnknown = 30;
+// Standard deviation of a polynomial's coefficients, in units of the noise: as good as unknown.
+constexpr double kUnknown = 100;
 // Values that are looked at: the noise need not be known better.
 constexpr std::size_t kMostPatches = 160;
 
@@ -70,6 +70,18 @@ std::vector<NoiseBlock> flatter_half(std::vector<Patch> patches) {
   return blocks;
 }
 
+// Values in units of their deviation from the polynomials, which is returned.
+double in_units_of_noise(std::vector<NoiseBlock>& blocks) {
+  double squares = 0, count = 0;
+  for (const NoiseBlock& block : blocks) {
+    squares += block.values.cwiseQuotient(block.deviation).squaredNorm();
+    count += static_cast<double>(block.values.size());
+  }
+  const double unit = std::max(std::sqrt(squares / count), 1e-12);
+  for (NoiseBlock& block : blocks) block.values /= unit;
+  return unit;
+}
+
 // Of the points of a snapshot, on average.
 double spacing_of(const std::vector<FieldSeries>& series) {
   double squares = 0, count = 0, snapshots = 0;
@@ -87,7 +99,8 @@ double spacing_of(const std::vector<FieldSeries>& series) {
 std::optional<FieldNoise> noise_of_fields(const std::vector<FieldSeries>& series, int threads) {
   std::vector<Patch> patches = patches_of(series);
   if (patches.size() < 2) return std::nullopt;
-  const std::vector<NoiseBlock> blocks = flatter_half(std::move(patches));
+  std::vector<NoiseBlock> blocks = flatter_half(std::move(patches));
+  const double unit = in_units_of_noise(blocks);
   const CorrelationFit fit = fit_correlation(blocks, spacing_of(series), ThreadTeam(threads));
   double squares = 0, count = 0;
   for (const FieldSeries& vesicle : series)
@@ -95,7 +108,7 @@ std::optional<FieldNoise> noise_of_fields(const std::vector<FieldSeries>& series
       squares += snapshot.deviation.squaredNorm();
       count += static_cast<double>(snapshot.deviation.size());
     }
-  return FieldNoise{std::sqrt(fit.variance * squares / count), fit.correlation};
+  return FieldNoise{unit * std::sqrt(fit.variance * squares / count), fit.correlation};
 }
 
 }  // namespace traceraft
