@@ -11,7 +11,7 @@ namespace {
 // D is known by its logarithm: far from certain, it is so within a factor.
 std::string interval_of(const FoundParameter& p) {
   constexpr double kLinear = 0.3, kHopeless = 1000;
-  if (!p.sigma) return "assumed";
+  if (!p.sigma) return p.effect.empty() ? "not known" : "assumed";
   const double relative = kNormal95 * *p.sigma / std::fabs(p.value);
   if (!p.effect.empty() || relative < kLinear) return formatted("%.2g", kNormal95 * *p.sigma);
   const double factor = std::exp(relative);
@@ -23,7 +23,7 @@ std::string interval_of(const FoundParameter& p) {
 std::vector<Row> parameter_rows(const Explanation& found, const Units& base) {
   std::vector<Row> rows{{"parameter", "value", "95 % +-", "unit"}};
   const auto add = [&](const Refit& fit, const std::string& before) {
-    for (const FoundParameter& p : found_parameters(fit, base))
+    for (const FoundParameter& p : told_parameters(found, fit, base))
       rows.push_back({before + p.effect + (p.effect.empty() ? "" : " ") + p.name,
                       formatted("%.4g", p.value), interval_of(p), p.unit});
   };

@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "kernel/core/parameters.hpp"
+#include "kernel/core/text.hpp"
 #include "kernel/effects/effects.hpp"
+#include "verification/measure/fit.hpp"
 
 namespace traceraft {
 namespace {
@@ -67,6 +69,53 @@ std::vector<FoundParameter> found_parameters(const Refit& fit, const Units& base
   const double D = units.diffusion_cm2_s;
   result.push_back({"", "diffusion", "cm^2/s", D, D * fit.pace_deviation});
   return result;
+}
+
+bool knows_diffusion(const Explanation& found) {
+  return found.finding == Finding::none || is_named(found);
+}
+
+std::vector<FoundParameter> told_parameters(const Explanation& found, const Refit& fit,
+                                            const Units& base) {
+  std::vector<FoundParameter> all = found_parameters(fit, base);
+  if (!knows_diffusion(found)) all.back().sigma.reset();
+  return all;
+}
+
+namespace {
+
+// Of the members of a class, each with its own interval.
+DiffusionRange range_of_class(const Explanation& found, double D) {
+  std::vector<Refit> members = found.rivals;
+  members.push_back(found.found);
+  DiffusionRange range{HUGE_VAL, 0, "all members of the class, each with its own interval"};
+  for (const Refit& fit : members) {
+    const double width = std::exp(kNormal95 * fit.pace_deviation);
+    range.low = std::min(range.low, D * fit.pace / width);
+    range.high = std::max(range.high, D * fit.pace * width);
+  }
+  return range;
+}
+
+// Known is one number, D (1 + slope · strength): the more of the effect, the less of D.
+DiffusionRange range_beside(const ConfoundedWithPace& confounded, const Refit& fit, double D) {
+  const double most = find_candidate(confounded.effect)->most;
+  const double width = std::exp(kNormal95 * fit.pace_deviation), known = D * fit.pace;
+  return {known / width / (1 + confounded.slope * most), known * width,
+          formatted("these data know D (1 + %.3g s) = %.4g, s being the strength of %s, and the "
+                    "interval of D is that without it",
+                    confounded.slope, known, confounded.effect.c_str())};
+}
+
+}  // namespace
+
+std::optional<DiffusionRange> diffusion_range(const Explanation& found, const Units& base) {
+  const double D = base.diffusion_cm2_s;
+  if (found.finding == Finding::ambiguous) return range_of_class(found, D);
+  if (!knows_diffusion(found) || found.rounds.empty() || std::isfinite(found.pace_doubt)) return {};
+  const std::vector<ConfoundedWithPace>& confounded = found.rounds.back().screening.confounded;
+  if (confounded.empty()) return {};
+  return range_beside(confounded.front(), found.found, D);
 }
 
 std::vector<FoundBound> found_bounds(const Explanation& found, const Units& base) {

@@ -26,6 +26,19 @@ std::string text_of(const FrameChange& change, const ExplainSetup& setup) {
          ". That is more than the search allows for; align and calibrate the images first.";
 }
 
+// Turns that were found and taken along.
+void add_registered(const Explanation& found, const ExplainSetup& setup,
+                    std::vector<std::string>& all) {
+  if (found.registered.empty()) return;
+  std::vector<std::string> turns;
+  for (const RegisteredTurn& turn : found.registered)
+    turns.push_back(
+        formatted("%.2g rad before snapshot %zu", turn.angle, turn.snapshot + 1) +
+        (setup.series.size() > 1 ? " of vesicle " + setup.series[turn.vesicle].vesicle : ""));
+  all.push_back("The vesicle has turned between snapshots, which was found and allowed for: " +
+                joined(turns, ", ") + ".");
+}
+
 void add_failures(const Explanation& found, std::vector<std::string>& all) {
   for (const Round& round : found.rounds)
     for (const Round::Failure& failure : round.failures)
@@ -93,6 +106,17 @@ void add_pace(const Explanation& found, const Units& base, std::vector<std::stri
       "The measurements ask for a D of %.2g cm^2/s, %.3g times %s than the "
       "model's, %.2g: are time_unit and the model's --diffusion right?",
       D, std::exp(log_pace), found.found.pace < 1 ? "smaller" : "larger", base.diffusion_cm2_s));
+}
+
+// What is said of D where its interval is not all that may be.
+void add_diffusion(const Explanation& found, const Units& base, std::vector<std::string>& all) {
+  if (const auto range = diffusion_range(found, base))
+    all.push_back(formatted("D is between %.3g and %.3g cm^2/s: ", range->low, range->high) +
+                  range->why + ".");
+  if (!knows_diffusion(found))
+    all.push_back(
+        "The interval of D is not known: the D that fits best makes up for part of what is "
+        "missing.");
 }
 
 std::string text_of(const Turn& turn) {
@@ -248,7 +272,9 @@ std::vector<std::string> remarks_on(const Explanation& found, const ExplainSetup
   std::vector<std::string> all = setup.notes;
   for (std::string& remark : remarks(found, setup.configuration().units()))
     all.push_back(std::move(remark));
+  add_diffusion(found, setup.configuration().units(), all);
   add_own(found, setup, all);
+  add_registered(found, setup, all);
   for (const FrameChange& change : found.changes) all.push_back(text_of(change, setup));
   if (const auto& without = setup.request.without; !without.empty())
     all.push_back("Not looked for, as asked: " + joined(without, ", ") + ".");

@@ -107,7 +107,11 @@ Json json_of(const Screening& screening) {
                       {"response", s.response},
                       {"covariance", json_of(s.covariance)},
                       {"resolution", json_of(s.resolution)}});
+  Json confounded = Json::array();
+  for (const ConfoundedWithPace& c : screening.confounded)
+    confounded.push_back({c.effect, c.slope, c.correlation});
   return {{"scores", scores},
+          {"confounded_with_pace", confounded},
           {"p", screening.p},
           {"gap_p", {screening.train_gap_p, screening.heldout_gap_p, screening.gap_p}},
           {"pace_change", screening.pace_change},
@@ -123,7 +127,10 @@ Screening screening_of(const Json& json) {
                       gap_p.at(2),
                       json.at("pace_change"),
                       json.at("pace_deviation"),
-                      json.at("mesh_error")};
+                      json.at("mesh_error"),
+                      {}};
+  for (const Json& c : json.at("confounded_with_pace"))
+    screening.confounded.push_back({c.at(0), c.at(1), c.at(2)});
   for (const Json& s : json.at("scores"))
     screening.scores.push_back({s.at("effect"), s.at("coefficients"), s.at("score"),
                                 s.at("null_mean"), s.at("p"), s.at("response"),

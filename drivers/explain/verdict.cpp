@@ -103,6 +103,12 @@ Json rerun_json(const Explanation& found) {
           {"floor", gap_json(rerun.floor)}};
 }
 
+Json range_json(const Explanation& found, const Units& base) {
+  const std::optional<DiffusionRange> range = diffusion_range(found, base);
+  if (!range) return {};
+  return {{"low", range->low}, {"high", range->high}, {"why", range->why}};
+}
+
 // Length in R.
 Json noise_json(const Explanation& found) {
   const NoiseCorrelation& shared = found.correlation;
@@ -153,7 +159,8 @@ Json verdict_json(const Explanation& found, const ExplainSetup& setup) {
           {"effect", is_named(found) ? Json(name) : Json()},
           {"class", class_of(found)},
           {"closest", closest.empty() ? Json() : Json(closest)},
-          {"parameters", parameters_json(found_parameters(fit_shown(found), base))},
+          {"parameters", parameters_json(told_parameters(found, fit_shown(found), base))},
+          {"diffusion_range", range_json(found, base)},
           {"rivals", rivals_json(found, base)},
           {"told_apart", told_apart_json(found)},
           {"bounds", bounds_json(found, base)},

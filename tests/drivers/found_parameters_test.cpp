@@ -43,6 +43,53 @@ TEST(FoundParameters, WhatIsHeldDoesNotBlurTheRate) {
   EXPECT_GT(found[1].sigma.value(), 1);  // of a target nothing is known
 }
 
+// What is missing without a name is made up for by D, too.
+TEST(FoundParameters, KnowNoDiffusionWhereSomethingIsMissing) {
+  Explanation found;
+  found.found.pace = 2;
+  found.found.pace_deviation = 0.1;
+  for (const Finding finding :
+       {Finding::unnamed, Finding::not_identifiable, Finding::below_resolution}) {
+    found.finding = finding;
+    EXPECT_FALSE(told_parameters(found, found.found, kCell).back().sigma);
+    EXPECT_FALSE(diffusion_range(found, kCell));
+  }
+  found.finding = Finding::none;
+  EXPECT_NEAR(told_parameters(found, found.found, kCell).back().sigma.value(), 2e-6, 1e-12);
+}
+
+TEST(FoundParameters, WidenDiffusionByWhatItMakesUpFor) {
+  Explanation found;
+  found.finding = Finding::none;
+  found.found.pace = 2;
+  found.found.pace_deviation = 0.1;
+  found.rounds.resize(1);
+  EXPECT_FALSE(diffusion_range(found, kCell));
+  found.rounds[0].screening.confounded = {{"bulk-mobility", 7, 0.95}};
+  const double width = std::exp(1.96 * 0.1), most = find_candidate("bulk-mobility")->most;
+  const auto range = diffusion_range(found, kCell);
+  ASSERT_TRUE(range);
+  EXPECT_NEAR(range->high, 2e-5 * width, 1e-9);
+  EXPECT_NEAR(range->low, 2e-5 / width / (1 + 7 * most), 1e-9);
+  EXPECT_NE(range->why.find("D (1 + 7 s)"), std::string::npos) << range->why;
+  found.pace_doubt = 0.05;  // D was measured
+  EXPECT_FALSE(diffusion_range(found, kCell));
+}
+
+TEST(FoundParameters, WidenDiffusionByTheClass) {
+  Explanation found;
+  found.finding = Finding::ambiguous;
+  found.found.pace = 1;
+  found.found.pace_deviation = 0.01;
+  found.rivals.resize(1);
+  found.rivals[0].pace = 3;
+  found.rivals[0].pace_deviation = 0.1;
+  const auto range = diffusion_range(found, kCell);
+  ASSERT_TRUE(range);
+  EXPECT_NEAR(range->low, 1e-5 / std::exp(1.96 * 0.01), 1e-9);
+  EXPECT_NEAR(range->high, 3e-5 * std::exp(1.96 * 0.1), 1e-9);
+}
+
 // Minutes that are said to be seconds look like a D that is 60 times smaller.
 TEST(Remarks, AskWhetherTheUnitOfTimeIsRight) {
   Explanation found;

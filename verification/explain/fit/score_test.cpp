@@ -200,6 +200,23 @@ class Scores {
   Vec highest_;    // of each replicate: the largest score over its candidate's mean
 };
 
+// `first`: the place of each screened candidate's first coefficient among the parameters.
+std::vector<ConfoundedWithPace> confounded_with_pace(const Eigen::MatrixXd& information,
+                                                     const std::vector<Candidate>& screened,
+                                                     Indices others, Eigen::Index first) {
+  const Eigen::MatrixXd F = information.selfadjointView<Eigen::Lower>();
+  others.erase(std::find(others.begin(), others.end(), Eigen::Index{kPace}));
+  std::vector<ConfoundedWithPace> result;
+  for (const Candidate& candidate : screened) {
+    const Eigen::MatrixXd I = Profile(F, others, {kPace, first}).information;
+    const double correlation = I(0, 1) / std::sqrt(I(0, 0) * I(1, 1));
+    if (candidate.like_pace && !candidate.two_sided && correlation > kConfounded)
+      result.push_back({candidate.effect, I(0, 1) / I(0, 0), correlation});
+    first += candidate.directions;
+  }
+  return result;
+}
+
 }  // namespace
 
 Screening screen(const FilterResult& result, const std::vector<Candidate>& screened,
@@ -218,6 +235,8 @@ Screening screen(const FilterResult& result, const std::vector<Candidate>& scree
     return in.parameters.col(kMeshError).squaredNorm();
   });
   const Eigen::MatrixXd inverse = result.information(nuisances, nuisances).inverse();
+  screening.confounded = confounded_with_pace(result.information, screened, nuisances,
+                                              kFirstParameter + known.coefficients());
   screening.pace_change = (inverse * result.score(nuisances))[kPace];
   screening.pace_deviation = std::sqrt(inverse(kPace, kPace));
   return screening;

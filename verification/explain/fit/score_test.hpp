@@ -27,6 +27,15 @@ struct CandidateScore {
   double resolution;  // response to one standard deviation of the coefficient that is known best
 };
 
+// An effect that only makes the mobility larger, so that D makes up for nearly all of it: data know
+// D (1 + slope · strength), to first order, and little of the two by themselves.
+struct ConfoundedWithPace {
+  std::string effect;
+  double slope;        // ∂ ln D/∂ strength along which next to nothing that is measured changes
+  double correlation;  // of the two responses, all else being at its best
+};
+inline constexpr double kConfounded = 0.9;
+
 struct Screening {
   std::vector<CandidateScore> scores;  // most probable first
   double p = 1;                        // that the most telling of them is noise
@@ -35,6 +44,7 @@ struct Screening {
   double train_gap_p = 1, heldout_gap_p = 1, gap_p = 1;
   double pace_change, pace_deviation;  // of ln D, if nothing else is missing
   double mesh_error;                   // root mean square of what a finer mesh changes, in noise
+  std::vector<ConfoundedWithPace> confounded = {};  // correlated by more than kConfounded
 };
 
 // `known`: the hypothesis of the model whose pass the result is.
