@@ -84,7 +84,7 @@ TEST_F(ExplainTest, NamesWhatWasHidden) {
   const double truth = drawn.truth[0].values[0] / Units().time();
   EXPECT_NEAR(rate["value"], truth, 4 * rate["sigma"].get<double>());
   EXPECT_LT(rate["sigma"], 0.2 * truth);
-  EXPECT_NEAR(verdict["noise"], drawn.noise, 0.05 * drawn.noise);
+  EXPECT_NEAR(verdict["noise"]["level"], drawn.noise, 0.05 * drawn.noise);
   // What is left is what is to be expected of noise.
   const auto gap = [&](const char* which) { return verdict["gap"][which]["train"].get<double>(); };
   EXPECT_NEAR(gap("named"), gap("floor"), 0.03 * gap("floor"));
