@@ -22,7 +22,7 @@ struct StoredPlan {
 template <class Members>
 void describe(Members& members, SharedNoise& noise) {
   members("share", noise.share, WithinRange{0, 1});
-  members("correlation", noise.length, WithinRange{0, kLongestCorrelation});
+  members("correlation", noise.length, WithinRange{0, kLongestDrawn});
   members("shape", noise.shape, OneOf{"shape", shared_noise_shapes()});
 }
 

@@ -13,7 +13,7 @@ inline void add_noise_options(CLI::App& command, SharedNoise& noise) {
       .add_option("--noise-correlation", noise.length,
                   "length in R over which neighbours share noise: the standard deviation of a "
                   "Gaussian")
-      ->check(between(kShortestCorrelation, kLongestCorrelation));
+      ->check(between(kShortestDrawn, kLongestDrawn));
   command.add_option("--noise-share", noise.share, "how much of the noise's variance they share")
       ->check(between(0, 1));
   command

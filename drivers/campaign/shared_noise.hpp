@@ -8,7 +8,7 @@
 
 namespace traceraft {
 
-inline constexpr double kShortestCorrelation = 0.005, kLongestCorrelation = 0.5;  // in R
+inline constexpr double kShortestDrawn = 0.005, kLongestDrawn = 0.5;  // in R
 
 struct SharedNoise {
   double length = 0;  // in R
