@@ -20,9 +20,11 @@ namespace {
 
 class Descriptor {
  public:
-  Descriptor(const std::filesystem::path& path, int flags) : path_(path) {
+  // `meant`: what messages name, where that is another file.
+  Descriptor(const std::filesystem::path& path, int flags, std::filesystem::path meant = {})
+      : path_(meant.empty() ? path : std::move(meant)) {
     fd_ = ::open(path.c_str(), flags | O_CLOEXEC, 0644);
-    if (fd_ < 0) fail("cannot open", path);
+    if (fd_ < 0) fail("cannot open", path_);
   }
   ~Descriptor() {
     if (fd_ >= 0) ::close(fd_);
@@ -78,12 +80,12 @@ void refuse_special(int descriptor, const std::filesystem::path& path) {
 void write_durably(const std::filesystem::path& path, const std::string& content) {
   const std::filesystem::path temporary = temporary_beside(path);
   // Neither a file nor a link of that name is there, or this throws.
-  Descriptor file(temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW);
+  Descriptor file(temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW, path);
   try {
-    write_all(file.get(), content, temporary);
+    write_all(file.get(), content, path);
     file.sync();
     file.close();
-    if (::rename(temporary.c_str(), path.c_str()) != 0) fail("cannot rename", temporary);
+    if (::rename(temporary.c_str(), path.c_str()) != 0) fail("cannot write", path);
   } catch (...) {
     ::unlink(temporary.c_str());
     throw;

@@ -80,10 +80,10 @@ EnsemblePlan plan_of(const EnsembleRequest& request, const EnsembleFolder& folde
                        std::to_string(plan.first_seed));
     plan.first_seed = first;
   }
-  if (static_cast<double>(plan.last_seed()) > kLargestSeed)
-    throw InputError("--first-seed: " + std::to_string(plan.first_seed) + " and " +
-                     std::to_string(plan.runs) + " runs go beyond the largest seed, " +
-                     format_number(kLargestSeed));
+  if (static_cast<long double>(plan.last_seed()) > kLargestSeed)
+    throw InputError("--first-seed: the last of " + std::to_string(plan.runs) + " runs has seed " +
+                     std::to_string(plan.last_seed()) + " (allowed: up to " +
+                     format_number(kLargestSeed) + ")");
   return plan;
 }
 

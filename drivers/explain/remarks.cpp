@@ -234,6 +234,22 @@ void add_rerun(const Explanation& found, std::vector<std::string>& all) {
         found.rerun->gap_failure);
 }
 
+// Why nothing more was looked for.
+std::string more_effects(const Explanation& found) {
+  const std::optional<double> last =
+      found.rounds.size() > 1
+          ? share_closed(found.rounds[found.rounds.size() - 2].without.gap.train,
+                         found.rounds.back().without.gap.train,
+                         found.rounds.back().without.expected.train)
+          : std::nullopt;
+  if (last && *last < kLeastProgress)
+    return formatted(
+        "Something is still lacking. The search ended there, as its last round closed "
+        "%.0f %% of what was left.",
+        100 * std::max(0.0, *last));
+  return "Something may still be lacking; more --most-effects would look for it.";
+}
+
 }  // namespace
 
 std::vector<std::string> remarks(const Explanation& found, const Units& base) {
@@ -261,7 +277,7 @@ std::vector<std::string> remarks(const Explanation& found, const Units& base) {
   const Round& last = found.rounds.back();
   if (is_named(found) && found.stopped.empty() && last.screening.p <= found.false_alarms)
     all.push_back(last.refits.empty() && last.failures.empty()
-                      ? "Something may still be lacking; more --most-effects would look for it."
+                      ? more_effects(found)
                       : "Something may still be lacking, too little of it to say what.");
   add_assumptions(found, base, all);
   add_rerun(found, all);

@@ -54,6 +54,36 @@ std::string differences(const Json& saved, const Json& subject) {
   return joined(words, ", ");
 }
 
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& what) {
+  throw DamagedFile(path.string() + " is damaged: " + what);
+}
+
+// Everything that is counted by the data: vesicles, their snapshots, and rounds that are over.
+void check_against_data(const std::filesystem::path& path, const SearchState& state,
+                        const std::vector<FieldSeries>& series) {
+  const auto check = [&](std::size_t vesicle, std::size_t snapshot) {
+    if (vesicle >= series.size() || snapshot >= series[vesicle].snapshots.size())
+      refuse(path, "it names a snapshot that the data have not");
+  };
+  if (state.noise.size() != series.size()) refuse(path, "it lacks the noise of a vesicle");
+  for (std::size_t v = 0; v < series.size(); ++v) {
+    if (state.noise[v].size() != series[v].snapshots.size())
+      refuse(path, "it lacks the noise of a snapshot");
+    for (const double noise : state.noise[v])
+      if (!(noise > 0)) refuse(path, "a noise is not positive");
+  }
+  for (const Disagreement& d : state.so_far.disagreements) check(d.vesicle, 0);
+  for (const FrameChange& change : state.so_far.changes) check(change.vesicle, change.snapshot);
+  for (const DisagreementMaps* maps : {&state.so_far.base_maps, &state.so_far.found_maps})
+    for (const DisagreementMap& map : maps->snapshots) {
+      check(map.vesicle, 0);
+      if (map.z.size() != maps->snapshots.front().z.size())
+        refuse(path, "its maps are of different meshes");
+    }
+  if (!state.more && state.so_far.rounds.empty()) refuse(path, "it has ended without a round");
+  if (!(state.so_far.found.pace > 0)) refuse(path, "its D is not positive");
+}
+
 }  // namespace
 
 SearchFile::SearchFile(const std::filesystem::path& folder, const ExplainSetup& setup)
@@ -69,7 +99,9 @@ std::optional<SearchState> SearchFile::load() const {
         if (!words.empty())
           throw InputError("--out: " + path_.parent_path().string() +
                            " holds a search that differs in " + words + "; choose another folder");
-        return std::optional(search_from(json, setup_.request.base));
+        SearchState state = search_from(json, setup_.request.base);
+        check_against_data(path_, state, setup_.series);
+        return std::optional(std::move(state));
       },
       kMaxSearchBytes);
 }

@@ -31,12 +31,13 @@ Json json_of(const Eigen::MatrixXd& square) {
 Eigen::MatrixXd square_of(const Json& json) {
   const Vec values = vec_of(json);
   const auto n = static_cast<Eigen::Index>(std::lround(std::sqrt(double(values.size()))));
+  if (n * n != values.size()) throw DamagedFile("a matrix of a search is not square");
   return values.reshaped(n, n);
 }
 
 Candidate candidate_of(const std::string& effect) {
   const std::optional<Candidate> found = find_candidate(effect);
-  if (!found) throw IoError("a search names '" + effect + "', which is no candidate");
+  if (!found) throw DamagedFile("a search names '" + effect + "', which is no candidate");
   return *found;
 }
 
@@ -53,8 +54,15 @@ Hypothesis hypothesis_of(const Json& json) {
   hypothesis.known = json.at("known");
   for (const Json& part : json.at("parts")) {
     const EffectTerm term{candidate_of(part.at("effect")).effect, part.at("values")};
+    if (term.values.size() != effects().find(term.effect).parameters.size())
+      throw DamagedFile("a search has " + term.effect + " with parameters that it has not");
     hypothesis.parts.push_back({part_of(term).candidate, part.at("coefficients")});
+    const Hypothesis::Part& read = hypothesis.parts.back();
+    if (read.coefficients.size() != static_cast<std::size_t>(read.candidate.directions))
+      throw DamagedFile("a search has " + term.effect + " with coefficients that it has not");
   }
+  if (hypothesis.known > hypothesis.parts.size())
+    throw DamagedFile("a search knows more effects than it has");
   return hypothesis;
 }
 
@@ -180,9 +188,10 @@ Json json_of(const Disagreement& d) {
           {"p", d.p}};
 }
 Disagreement disagreement_of(const Json& json) {
-  return {json.at("vesicle"), json.at("time"),
-          json.at("state"),   Point(vec_of(json.at("direction"))),
-          json.at("z"),       json.at("p")};
+  const Vec direction = vec_of(json.at("direction"));
+  if (direction.size() != 3) throw DamagedFile("a direction of a search is none");
+  return {json.at("vesicle"), json.at("time"), json.at("state"),
+          Point(direction),   json.at("z"),    json.at("p")};
 }
 
 Json json_of(const FrameChange& change) {
@@ -245,7 +254,14 @@ NoiseCorrelation correlation_of(const Json& json) {
 Finding finding_of(const std::string& word) {
   for (const Finding finding : kFindings)
     if (word_for(finding) == word) return finding;
-  throw IoError("a search cannot end with '" + word + "'");
+  throw DamagedFile("a search cannot end with '" + word + "'");
+}
+
+Turn::Why why_of(const Json& json) {
+  const auto number = json.get<int>();
+  if (number < Turn::replaced || number > Turn::is_none)
+    throw DamagedFile("a search has changed its mind for no reason that there is");
+  return static_cast<Turn::Why>(number);
 }
 
 }  // namespace
@@ -300,7 +316,7 @@ SearchState search_from(const Json& json, const CahnHilliardModel& base) {
   for (const Json& change : json.at("changes")) found.changes.push_back(change_of(change));
   for (const Json& t : json.at("told_apart")) found.told_apart.push_back({t.at(0), t.at(1)});
   for (const Json& turn : json.at("turns"))
-    found.turns.push_back({static_cast<Turn::Why>(turn.at(0).get<int>()), turn.at(1), turn.at(2)});
+    found.turns.push_back({why_of(turn.at(0)), turn.at(1), turn.at(2)});
   for (const Json& fit : json.at("ahead")) state.ahead[fit.at(0)] = refit_of(fit.at(1));
   found.stopped = json.at("stopped");
   found.rerun = rerun_of(json.at("rerun"));

@@ -75,5 +75,30 @@ TEST(SearchJson, KeepsEffectsOfTheModel) {
   EXPECT_NE(find_candidate("ohta-kawasaki")->term({12.5}).values, own.values);
 }
 
+// What no search writes is damage, never a crash.
+TEST(SearchJson, RefusesWhatDoesNotFit) {
+  SearchState state;
+  state.so_far.found = fit_of("uptake", 100);
+  state.so_far.turns = {{Turn::left_gap, "exchange", "uptake"}};
+  Disagreement d{};
+  d.direction = Point(1, 0, 0);
+  state.so_far.disagreements = {d};
+  const Json good = search_json(state);
+  EXPECT_NO_THROW((void)search_from(good, {}));
+  const auto refused = [&](const char* pointer, const Json& value) {
+    Json bad = good;
+    bad[Json::json_pointer(pointer)] = value;
+    EXPECT_THROW((void)search_from(bad, {}), DamagedFile) << pointer << " " << value;
+  };
+  refused("/found/covariance", {1.0, 0.0});
+  refused("/found/hypothesis/parts/0/effect", "../../victim");
+  refused("/found/hypothesis/parts/0/values", Json::array());
+  refused("/found/hypothesis/parts/0/coefficients", {1.0, 2.0});
+  refused("/found/hypothesis/known", 7);
+  refused("/finding", "x");
+  refused("/turns/0/0", 99);
+  refused("/disagreements/0/direction", {1.0});
+}
+
 }  // namespace
 }  // namespace traceraft

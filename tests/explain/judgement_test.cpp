@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "verification/explain/search/explanation.hpp"
+
 namespace traceraft {
 namespace {
 
@@ -41,6 +43,23 @@ Judgement judged(const Round& round, bool gap_beside = false) {
     EXPECT_EQ(fit.hypothesis.name(), round.refits.front().hypothesis.name());
     return gap_beside;
   });
+}
+
+// A round that closes next to nothing of what was left is the last one.
+TEST(Progress, IsWhatTheLastRoundHasClosed) {
+  Explanation result;
+  EXPECT_FALSE(closed_by_last_round(result));
+  result.rounds = {first_round()};
+  result.rounds.back().without.gap = {5, 5};
+  result.found = refit_with({"gravity"}, 900);
+  result.found.expected = {3, 3};
+  result.found.gap = {4.9, 5};
+  EXPECT_NEAR(closed_by_last_round(result).value(), (25 - 4.9 * 4.9) / 16, 1e-12);
+  EXPECT_LT(closed_by_last_round(result).value(), kLeastProgress);
+  result.found.gap = {3.5, 5};
+  EXPECT_GT(closed_by_last_round(result).value(), kLeastProgress);
+  result.rounds.back().without.gap = {3.01, 5};
+  EXPECT_FALSE(closed_by_last_round(result)) << "so little may be noise";
 }
 
 // Rafts at rest agree with any D.

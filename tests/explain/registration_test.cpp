@@ -50,9 +50,9 @@ TEST(Registration, FindsAnyRotation) {
   const SphereMap before(*space, rafts_on(*space));
   for (const double angle : {0.1, 0.7, 2.0, 3.1}) {
     const Turned turned(turn_of(angle));
-    const auto Q = registration(before, turned.points, turned.values);
-    ASSERT_TRUE(Q) << angle;
-    EXPECT_LT(angle_of(*Q * turn_of(angle).transpose()), 0.03) << angle;
+    const Registration found = register_values(before, turned.points, turned.values);
+    ASSERT_TRUE(found.turned) << angle;
+    EXPECT_LT(angle_of(found.rotation * turn_of(angle).transpose()), 0.03) << angle;
   }
 }
 
@@ -60,9 +60,29 @@ TEST(Registration, LeavesWhatHasNotTurned) {
   const auto space = make_space(20);
   const SphereMap before(*space, rafts_on(*space));
   const Turned still(turn_of(0)), hardly(turn_of(0.02)), other(turn_of(1), 3);
-  EXPECT_FALSE(registration(before, still.points, still.values));
-  EXPECT_FALSE(registration(before, hardly.points, hardly.values));
-  EXPECT_FALSE(registration(before, other.points, other.values));  // noise is like nothing
+  EXPECT_FALSE(register_values(before, still.points, still.values).turned);
+  EXPECT_FALSE(register_values(before, hardly.points, hardly.values).turned);
+  EXPECT_FALSE(
+      register_values(before, other.points, other.values).turned);  // noise is like nothing
+}
+
+// Turned about its axis a cap stays as it is: what is found is how its middle has moved.
+TEST(Registration, IsTheLeastOfThoseThatLookAlike) {
+  const auto space = make_space(20);
+  const auto cap_at = [](const Point& x) { return 0.5 + 0.5 * std::tanh((x[2] - 0.5) / 0.15); };
+  Vec cap(space->nodes());
+  for (int k = 0; k < space->nodes(); ++k) cap[k] = cap_at(space->mesh.position(k).normalized());
+  const Eigen::Matrix3d tilt = Eigen::AngleAxisd(0.4, Point::UnitX()).toRotationMatrix();
+  std::vector<Point> points;
+  Vec values(1000);
+  for (int k = 0; k < 1000; ++k) {
+    points.push_back(testing::random_direction(5, static_cast<std::uint64_t>(k)));
+    values[k] = cap_at(tilt.transpose() * points[k]) + 0.05 * normal_random(5, 4, k);
+  }
+  const Registration found = register_values(SphereMap(*space, cap), points, values);
+  ASSERT_TRUE(found.turned);
+  EXPECT_NEAR(angle_of(found.rotation), 0.4, 0.1);
+  EXPECT_LT((found.rotation * Point::UnitZ() - tilt * Point::UnitZ()).norm(), 0.05);
 }
 
 TEST(Registration, IsOfSpheresAlone) {

@@ -44,6 +44,20 @@ Eigen::Matrix3d rotation_by(const Point& vector) {
   return Eigen::AngleAxisd(angle, vector / angle).toRotationMatrix();
 }
 
+// What is left of the variance.
+double left_by(double correlation) {
+  return 1 - correlation * std::max(correlation, 0.0);
+}
+
+// What decides between rotations. A field that looks the same after some of them, such as a single
+// cap turned about its axis, leaves open which one it was; the least one counts then. Elsewhere the
+// preference is weaker than noise.
+double misfit(double correlation, const Eigen::Matrix3d& rotation) {
+  constexpr double kPreference = 0.02;
+  const double angle = angle_of(rotation);
+  return left_by(correlation) * (1 + kPreference * angle * angle);
+}
+
 class Alignment {
  public:
   Alignment(const SphereMap& before, const std::vector<Point>& points, const Vec& values)
@@ -73,7 +87,8 @@ class Alignment {
   Eigen::Matrix3d refined(const Eigen::Matrix3d& near) const {
     MinimiseRequest request;
     request.function = [&](const std::vector<double>& w) {
-      return -(*this)(rotation_by({w[0], w[1], w[2]}) * near, stride_for(kFineValues));
+      const Eigen::Matrix3d Q = rotation_by({w[0], w[1], w[2]}) * near;
+      return misfit((*this)(Q, stride_for(kFineValues)), Q);
     };
     request.start.assign(3, 0);
     request.lower.assign(3, -0.6);
@@ -149,21 +164,22 @@ double SphereMap::at(const Point& x) const {
          s * ((1 - t) * sample(1, 0) + t * sample(1, 1));
 }
 
-std::optional<Eigen::Matrix3d> registration(const SphereMap& before,
-                                            const std::vector<Point>& points, const Vec& values) {
-  const Alignment alignment(before, points, values);
-  double most = -1;
-  Eigen::Matrix3d best = Eigen::Matrix3d::Identity();
+Registration register_values(const SphereMap& field, const std::vector<Point>& points,
+                             const Vec& values) {
+  const Alignment alignment(field, points, values);
+  Registration best{Eigen::Matrix3d::Identity(), true, -1};
+  double least = HUGE_VAL;
   for (const Eigen::Matrix3d& near : most_alike(alignment)) {
     const Eigen::Matrix3d Q = alignment.refined(near);
-    const double alike = alignment(Q, 1);
-    if (alike <= most) continue;
-    most = alike;
-    best = Q;
+    const double correlation = alignment(Q, 1);
+    if (misfit(correlation, Q) >= least) continue;
+    least = misfit(correlation, Q);
+    best = {Q, true, correlation};
   }
   const double without = alignment(Eigen::Matrix3d::Identity(), 1);
-  const double left = (1 - most * most) / (1 - without * std::max(without, 0.0));
-  if (most < kAlike || left > kClearly || angle_of(best) < kLeastAngle) return std::nullopt;
+  const double left = left_by(best.correlation) / left_by(without);
+  if (best.correlation < kAlike || left > kClearly || angle_of(best.rotation) < kLeastAngle)
+    return {Eigen::Matrix3d::Identity(), false, without};
   return best;
 }
 

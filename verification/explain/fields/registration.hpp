@@ -2,7 +2,7 @@
 // snapshots.
 #pragma once
 
-#include <optional>
+#include <vector>
 
 #include "kernel/fem/surface_space.hpp"
 #include "kernel/geometry/level_set.hpp"
@@ -21,11 +21,17 @@ class SphereMap {
   Vec samples_;
 };
 
-// Q so that the values are most like those of the field before, turned: v(x) ~ a + b f(Qᵀ x).
-// Searched for over all rotations, then refined. Nothing if no rotation but a small one, which
-// errors of the state allow for, makes them clearly more alike than none does.
-std::optional<Eigen::Matrix3d> registration(const SphereMap& before,
-                                            const std::vector<Point>& points, const Vec& values);
+struct Registration {
+  Eigen::Matrix3d rotation;
+  bool turned;         // is it any rotation?
+  double correlation;  // of the values with the field turned by it
+};
+
+// The rotation Q that makes the values most like those of a field: v(x) ~ a + b f(Qᵀ x). Searched
+// for over all rotations, then refined. None if no rotation but a small one, which errors of the
+// state allow for, makes them clearly more alike.
+Registration register_values(const SphereMap& field, const std::vector<Point>& points,
+                             const Vec& values);
 
 // Is it the unit sphere around the origin?
 bool is_sphere(const LevelSet& surface);

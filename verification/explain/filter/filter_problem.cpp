@@ -137,18 +137,40 @@ void estimate_first(const CahnHilliardModel& base, const FilterSettings& setting
   add_frame(settings, base.well.b - base.well.a, data.vesicle, data.first);
 }
 
-// Each snapshot against the field of the one before.
-void register_snapshots(FilterProblem& data) {
+// What a snapshot may look like before it is turned: the field of the one before, and what the
+// base model makes of it by then. The latter only if the model can be advanced so far.
+std::vector<Vec> expected_fields(const FilterProblem& data, const CahnHilliard& base,
+                                 std::size_t snapshot) {
+  const NoisyValues& before = data.snapshots[snapshot - 1];
+  std::vector<Vec> fields{estimate_field(*data.space, before, data.prior, {}).field};
+  const auto make = [&](const DaeProblem& p) { return data.make_integrator(p, *data.space); };
+  try {
+    fields.push_back(
+        forecast(base, make, fields[0], data.time(snapshot - 1), data.time(snapshot)).end);
+  } catch (const std::runtime_error&) {
+    // D of the base model may be far from that of the data.
+  }
+  return fields;
+}
+
+// Each snapshot against what the one before lets expect, whichever is more like it.
+void register_snapshots(const CahnHilliardModel& base, FilterProblem& data) {
   data.turns.assign(data.snapshots.size(), nullptr);
   if (!data.sphere) return;
+  const CahnHilliard problem(data.space, base);
   const SpacePtr& finest = data.finer->spaces[1];
   for (std::size_t k = 1; k < data.snapshots.size(); ++k) {
-    const Vec before = estimate_field(*data.space, data.snapshots[k - 1], data.prior, {}).field;
     const FieldSnapshot& snapshot = data.series.snapshots[k];
-    if (const auto Q =
-            registration(SphereMap(*data.space, before), snapshot.points, snapshot.values))
-      data.turns[k] = std::make_shared<const SnapshotTurn>(SnapshotTurn{
-          *Q, MeshTransfer(*data.space, data.space, *Q), MeshTransfer(*finest, finest, *Q)});
+    Registration best{Eigen::Matrix3d::Identity(), false, -1};
+    for (const Vec& field : expected_fields(data, problem, k)) {
+      const Registration found =
+          register_values(SphereMap(*data.space, field), snapshot.points, snapshot.values);
+      if (found.correlation > best.correlation) best = found;
+    }
+    if (!best.turned) continue;
+    const Eigen::Matrix3d& Q = best.rotation;
+    data.turns[k] = std::make_shared<const SnapshotTurn>(SnapshotTurn{
+        Q, MeshTransfer(*data.space, data.space, Q), MeshTransfer(*finest, finest, Q)});
   }
 }
 
@@ -156,7 +178,7 @@ void add_series(const FieldSeries& series, const CahnHilliardModel& base,
                 const FilterSettings& settings, FilterProblem& data) {
   data.prior = clean(series, base.well, data);
   data.finer_traces = finer_traces(*data.finer, data.series);
-  register_snapshots(data);
+  register_snapshots(base, data);
   set_correlation(settings.correlation, base, settings, data);
 }
 

@@ -82,6 +82,12 @@ std::optional<Gaps> placebo_of(const Explanation& result) {
   return best != nullptr ? std::optional(best->gap) : std::nullopt;
 }
 
+std::optional<double> closed_by_last_round(const Explanation& found) {
+  if (found.rounds.empty()) return {};
+  const Gaps& before = found.rounds.back().without.gap;
+  return share_closed(before.train, found.found.gap.train, found.found.expected.train);
+}
+
 bool is_named(const Explanation& found) {
   return is_named(found.finding);
 }

@@ -129,6 +129,12 @@ inline constexpr double kCoarse = 1.5;
 
 // Did the search find effects that belong to the model?
 bool is_named(const Explanation& found);
+// The share of what was left of the gap that the last round has closed, of the snapshots that
+// count; nothing before a round is over, or where so little was left that it may be noise.
+std::optional<double> closed_by_last_round(const Explanation& found);
+// A search goes on only while rounds close at least that share: models that lack something with no
+// name else collect effects that each explain next to nothing of it.
+inline constexpr double kLeastProgress = 0.1;
 // The gaps of the best rival, or of the best of the last round that had others than the found one
 // or that with something more: by their gaps, as deviances of different rounds are in units of
 // different noise.

@@ -121,6 +121,20 @@ bool take(Search& search, const Round& round) {
   return true;
 }
 
+// Says what is left. Is it worth while to look for more?
+bool progresses(const Search& search) {
+  const Explanation& result = search.result;
+  if (result.rounds.empty()) return true;
+  const Gaps &base = result.base.gap, &now = result.found.gap;
+  if (const auto closed = share_closed(base.train, now.train, result.found.expected.train))
+    search.tell(formatted("  %.0f %% of the gap is left", 100 * (1 - *closed)));
+  const std::optional<double> last = closed_by_last_round(result);
+  if (!last || *last >= kLeastProgress) return true;
+  search.tell(formatted("  the last round closed %.0f %% of what was left: no more are begun",
+                        100 * std::max(0.0, *last)));
+  return false;
+}
+
 // Nothing was looked at beside what was found.
 void stop(Explanation& result, const std::string& why) {
   result.stopped = why;
@@ -153,7 +167,8 @@ bool look_for_one(Search& search) {
   const FilterModel& model = search.model;
   Round round{model, screen(pass, model.screened, model.hypothesis), result.found, {}, {}, {}};
   const auto most = static_cast<std::size_t>(search.request.most_effects);
-  const bool more = model.hypothesis.added() < most && result.rounds.size() < most + kMoreRounds;
+  const bool more = progresses(search) && model.hypothesis.added() < most &&
+                    result.rounds.size() < most + kMoreRounds;
   if (more && round.screening.p <= search.request.false_alarms) refit_shortlist(search, round);
   result.rounds.push_back(std::move(round));
   return take(search, result.rounds.back());
