@@ -145,7 +145,7 @@ int guarded(int argc, char** argv) {
   }
 }
 
-// What was said and could not be written is lost, whatever else was reached.
+// Output that could not be written is lost, even if everything else was done.
 int with_output_checked(int code) {
   const std::string why = output_error();
   if (why.empty()) return code;

@@ -54,7 +54,7 @@ void remove_own_folder(const fs::path& folder, const std::vector<std::string>& n
                   ", which is not the program's; move that away");
   std::vector<fs::path> all;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) all.push_back(entry.path());
-  // What is in a folder comes after it. A folder that is not empty by now stays, with an error.
+  // The content of a folder comes after it. A folder that is not empty by now stays, with an error.
   for (auto path = all.rbegin(); path != all.rend(); ++path) fs::remove(*path);
   fs::remove(folder);
 }

@@ -1,4 +1,4 @@
-// What neighbours share of the noise of drawn measurements.
+// The correlated part of the noise of drawn measurements.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// What is said of flags and folders that are given as an empty text: most often a variable of a
-// shell script that is not set.
+// Complaints about flags and folders that are given as an empty text. Most often a variable of a
+// shell script is not set.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -84,7 +84,7 @@ std::vector<FoundParameter> told_parameters(const Explanation& found, const Refi
 
 namespace {
 
-// Of the members of a class, each with its own interval.
+// The range that holds the intervals of all members of a class.
 DiffusionRange range_of_class(const Explanation& found, double D) {
   std::vector<Refit> members = found.rivals;
   members.push_back(found.found);

@@ -108,7 +108,7 @@ void add_pace(const Explanation& found, const Units& base, std::vector<std::stri
       D, std::exp(log_pace), found.found.pace < 1 ? "smaller" : "larger", base.diffusion_cm2_s));
 }
 
-// What is said of D where its interval is not all that may be.
+// D has a wider range than its interval where something else would change it, too.
 void add_diffusion(const Explanation& found, const Units& base, std::vector<std::string>& all) {
   if (const auto range = diffusion_range(found, base))
     all.push_back(formatted("D is between %.3g and %.3g cm^2/s: ", range->low, range->high) +

@@ -7,8 +7,8 @@
 namespace traceraft {
 
 Json search_json(const SearchState& state);
-// Of a search with that base model. Throws DamagedFile for unknown names and sizes that do not fit
-// each other, and what the JSON library throws for anything else that is not a search.
+// The state of a search with that base model. Throws DamagedFile for unknown names and sizes that
+// do not fit each other, and what the JSON library throws for anything else that is not a search.
 SearchState search_from(const Json& json, const CahnHilliardModel& base);
 
 }  // namespace traceraft

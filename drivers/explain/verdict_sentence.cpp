@@ -43,7 +43,7 @@ std::string nothing_sentence(const Explanation& found) {
          "the model explains the data within their noise.";
 }
 
-// What explains next to nothing of a disagreement is not close to it.
+// An effect that closes next to nothing of the gap is not close to the truth.
 bool closes_something(const Explanation& found, const Refit& fit) {
   constexpr double kLeast = 0.1;
   const SharesClosed closed = shares_closed(found.base_gap, fit.gap, fit.expected);

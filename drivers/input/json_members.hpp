@@ -20,7 +20,7 @@
 
 namespace traceraft {
 
-// What values may be; of lists, each of theirs. Objects check their own members.
+// Allowed values of a member. A list is checked value by value, an object by its own members.
 struct WithinRange {
   double low, high;             // both are allowed
   bool may_be_unknown = false;  // NaN, which is null in JSON

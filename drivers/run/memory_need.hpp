@@ -9,11 +9,11 @@
 
 namespace traceraft {
 
-// What the set-up of a run takes at least on each rank, in bytes, judged by the nodes of a coarse
-// mesh. 0 for meshes that fit anywhere, and where the coarse one cannot be made.
+// The least memory that the set-up of a run takes on each rank, in bytes, judged by the nodes of a
+// coarse mesh. It is 0 for meshes that fit anywhere, and where the coarse one cannot be made.
 double least_memory(const LevelSet& surface, std::int64_t cells, int ranks);
 
-// What is said of cells that need more than there is, in bytes; "" if they fit.
+// A complaint about cells that need more bytes than there are; "" if they fit.
 std::string memory_complaint(std::int64_t cells, double need, double there_is);
 
 // Throws InputError, before hours or all memory are spent, if that is more than the machine has.

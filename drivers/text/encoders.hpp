@@ -31,8 +31,8 @@ std::string in_markdown_link(const std::string& path);
 // A line of an indented block of code.
 std::string in_markdown_code(const std::string& text);
 
-// What a terminal shows as it is: escapes such as \x1b stand for control characters, for bytes that
-// are no UTF-8 and for code points that hide or reorder others.
+// Text that a terminal shows as it is. Escapes such as \x1b stand for control characters, for bytes
+// that are no UTF-8 and for code points that hide or reorder others.
 std::string in_terminal(const std::string& text);
 // The same of a message in one line: at most `most` characters, the middle of a longer one left
 // out.

@@ -1,5 +1,5 @@
-// What the program says to people. All text on stdout and stderr goes through here, encoded for a
-// terminal; an error of the output is remembered.
+// Output for people. All text on stdout and stderr goes through here, encoded for a terminal. An
+// error of the output is remembered.
 #pragma once
 
 #include <cstdio>

@@ -67,9 +67,9 @@ struct LinearSolverChoice {
 // D of the contract: the first block row is divided by the shift so that one norm judges both.
 double scaled_norm(const BlockJacobian& J, ConstVec b);
 
-// What an iterative method says of its last iterate x does not count, but b − J x does: ok if that
-// is as small as the contract says, up to rounding; else what the method said, or that it was
-// mistaken. Collective.
+// The explicit residual b − J x of the last iterate decides, not what an iterative method says of
+// it. The status is ok if the residual is as small as the contract says, up to rounding. Otherwise
+// it is what the method said, or that it was mistaken. Collective.
 Status judged_by_residual(const Status& said, const BlockJacobian& J, ConstVec b, ConstVec x,
                           double tolerance, const ThreadTeam& team);
 

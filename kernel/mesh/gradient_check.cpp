@@ -34,7 +34,7 @@ Point root_between(const LevelSet& surface, Point low, Point high) {
 
 struct Samples {
   double all = 0, bad = 0;
-  // Of the ratio that is furthest from 1.
+  // The ratio that is furthest from 1.
   double distance = 0;  // |ln ratio|
   bool flat = false;
   Point where = Point::Zero();

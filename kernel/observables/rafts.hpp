@@ -30,7 +30,7 @@ class RaftFinder {
  public:
   explicit RaftFinder(std::shared_ptr<const SurfaceSpace> space);
   RaftReport find(ConstVec c, double level) const;
-  // Of {c < level}, how many components it has.
+  // The number of connected components of {c < level}.
   int regions_below(ConstVec c, double level) const;
 
  private:

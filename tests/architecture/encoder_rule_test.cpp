@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What writes past the encoders, and the files that may do so since they do encode.
+// Words that write past the encoders, and the files that may use them since they do encode.
 struct Rule {
   std::string words;
   std::vector<std::string> allowed;

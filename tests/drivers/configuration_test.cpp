@@ -239,7 +239,7 @@ TEST(RunSetup, RefusesTimesThatDoublesCannotHold) {
   for (const char* option : {"initial-step", "min-step", "max-step", "ida-initstep", "ida-maxstep"})
     EXPECT_EQ(of({{option, "1e-200"}}).find(std::string("--") + option + ": 1e-200" + allowed), 0u);
   EXPECT_EQ(of({{"output-times", "1,1e-200"}}).find("--output-times: 1e-200" + allowed), 0u);
-  // What is added to the time of the run has to change it.
+  // A step that is added to the time of the run has to change it.
   EXPECT_EQ(of({{"max-step", "1e-20"}, {"t-end", "1"}}),
             "--max-step: 1e-20" + allowed + "0, or 1e-14 to 1e+98)");
   EXPECT_EQ(of({{"t-end", "1e-100"}}), "");

@@ -100,7 +100,7 @@ TEST_F(ExplainTest, NamesWhatWasHidden) {
   const nlohmann::json& again = verdict["rerun"];
   EXPECT_EQ(again["integrator"], "rosenbrock");
   EXPECT_EQ(again["confirms"], true);
-  // Of D alone, which bulk mobility makes up for whatever else is there.
+  // The one remark is of D: bulk mobility is confounded with it whatever else is there.
   ASSERT_EQ(verdict["remarks"].size(), 1u) << verdict["remarks"];
   EXPECT_NE(verdict["remarks"][0].get<std::string>().find("D is between"), std::string::npos);
   EXPECT_NEAR(again["named"]["heldout"], again["floor"]["heldout"], 0.05 * gap("floor"));

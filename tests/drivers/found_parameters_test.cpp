@@ -43,7 +43,7 @@ TEST(FoundParameters, WhatIsHeldDoesNotBlurTheRate) {
   EXPECT_GT(found[1].sigma.value(), 1);  // of a target nothing is known
 }
 
-// What is missing without a name is made up for by D, too.
+// D makes up for part of what is missing without a name.
 TEST(FoundParameters, KnowNoDiffusionWhereSomethingIsMissing) {
   Explanation found;
   found.found.pace = 2;
