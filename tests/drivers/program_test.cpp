@@ -419,7 +419,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"run --linear-solver klu", "klu is for small systems"},
         Refusal{"run --energy-guard reject --potential nodal", "--energy-guard"},
         Refusal{"verify everything", "unknown study"},
-        // What a variable of a shell script leaves that is not set.
+        // A shell script leaves this where a variable is not set.
         Refusal{"run --config ''", "--config: it is empty; give a value, or leave it out"},
         Refusal{"run --out ''", "--out: it is empty"},
         Refusal{"run --linear-solver teko --teko-parameters ''", "--teko-parameters: it is empty"},

@@ -75,7 +75,7 @@ TEST(SearchJson, KeepsEffectsOfTheModel) {
   EXPECT_NE(find_candidate("ohta-kawasaki")->term({12.5}).values, own.values);
 }
 
-// What no search writes is damage, never a crash.
+// A state that no search writes is damage, never a crash.
 TEST(SearchJson, RefusesWhatDoesNotFit) {
   SearchState state;
   state.so_far.found = fit_of("uptake", 100);

@@ -87,7 +87,7 @@ TEST_F(SituationsTest, TheMinorityOfAnOrderedMembraneIsCounted) {
   EXPECT_EQ(summary("a")["domains"], 4);
 }
 
-// What the guide prints of raft fractions is what the program answers.
+// The guide prints the raft fractions that the program answers.
 TEST(GuideTest, RaftFractionsAreThoseOfTheProgram) {
   std::istringstream guide(content(TRACERAFT_ROOT "/docs/guide.md"));
   int rows = 0;

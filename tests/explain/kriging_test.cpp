@@ -38,7 +38,7 @@ struct Shared {
   }
 };
 
-// With no correlation to speak of: another way to the same posterior.
+// The correlation is next to none: this is another way to the same posterior.
 TEST(Kriging, OfWhiteNoiseIsTheOtherEstimate) {
   const Shared m(0);
   const FieldEstimate white = estimate_field(*m.space, m.values, {0.4, 40, 0});

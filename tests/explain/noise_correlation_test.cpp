@@ -171,7 +171,7 @@ TEST(CorrelationFit, FindsShareAndLengthOfAnyShape) {
   }
 }
 
-// Of measured fields by themselves: of a smooth field nothing is taken for noise.
+// Measured fields alone give an estimate, which takes nothing of a smooth field for noise.
 TEST(FieldNoise, IsFoundInFlatParts) {
   for (const double share : {0.0, 0.5}) {
     std::vector<FieldSeries> series{{"1", {}}};

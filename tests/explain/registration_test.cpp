@@ -117,7 +117,7 @@ TEST(MeshTransfer, TurnsFields) {
   EXPECT_TRUE(turn.columns(c).col(0).isApprox(turn(c)));
 }
 
-// What was measured of a vesicle that is turned by 2 rad between looks is as probable.
+// Measurements of a vesicle that turns by 2 rad between looks are as probable.
 TEST(FieldFilter, TakesATurnAlong) {
   BlindRequest asked = testing::small_vesicle(3);
   asked.effects = {};
