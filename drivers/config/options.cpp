@@ -67,10 +67,12 @@ const std::vector<OptionSpec>& run_options() {
        "semicolons or by several flags (see: traceraft list)",
        0, 0, D::none, true, true},
       {"potential", K::text, "consistent", "Physics",
-       "f0' by quadrature, the gradient of an energy (consistent), or nodal as in the paper's "
-       "code"},
+       "free energy of an element: from the mean of its square root (averaged: exact line "
+       "tension), by quadrature (consistent), or nodal as in the paper's code"},
       {"stabilisation", K::number, "1", "Physics",
        "normal-gradient stabilisation, in units of the mesh size", 1e-6, 1e6},
+      {"mass-stabilisation", K::number, "1", "Physics",
+       "the same of the mass matrix; 1 as in the paper's code slows waves of few cells", 1e-3, 1e3},
 
       {"initial", K::text, "noise", "Initial state",
        "noise, band-limited:wavelength=0.3,amplitude=0.05, caps, formula, or restart:DIR"},

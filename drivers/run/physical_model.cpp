@@ -48,10 +48,13 @@ CahnHilliardModel model_without_effects(const Configuration& configuration) {
                      ": the degenerate mobility c(1-c) belongs to wells at 0 and 1; choose "
                      "--mobility constant:value=0.25");
   result.epsilon = configuration.number("epsilon") / units.length();
-  result.rule = one_of(configuration, "potential", "potential", {"consistent", "nodal"}) == "nodal"
-                    ? PotentialRule::nodal
-                    : PotentialRule::consistent;
+  const std::string rule =
+      one_of(configuration, "potential", "potential", {"averaged", "consistent", "nodal"});
+  result.rule = rule == "averaged"     ? PotentialRule::averaged
+                : rule == "consistent" ? PotentialRule::consistent
+                                       : PotentialRule::nodal;
   result.stabilisation = configuration.number("stabilisation");
+  result.mass_stabilisation = configuration.number("mass-stabilisation");
   result.seed = static_cast<std::uint64_t>(configuration.integer("seed"));
   return result;
 }

@@ -36,9 +36,9 @@ PerimeterCalibration perimeter_calibration(const Configuration& configuration,
                                            const std::shared_ptr<const SurfaceSpace>& space) {
   const auto sphere = configuration.text("surface") == "sphere"
                           ? space
-                          : std::make_shared<const SurfaceSpace>(*make_surface("sphere"),
-                                                                 configuration.integer("cells"),
-                                                                 space->team, space->communicator);
+                          : std::make_shared<const SurfaceSpace>(
+                                *make_surface("sphere"), configuration.integer("cells"),
+                                space->team, space->communicator, model.mass_stabilisation);
   return calibrate_perimeter(*sphere, model);
 }
 
@@ -96,7 +96,7 @@ RunSetup build_run(const Configuration& configuration, InitialState initial,
   refuse_too_fine(configuration, *surface, *run.ranks);
   run.space = said_of(configuration, "surface", [&] {
     return std::make_shared<const SurfaceSpace>(*surface, configuration.integer("cells"), run.team,
-                                                run.ranks);
+                                                run.ranks, physics.mass_stabilisation);
   });
   said_of(configuration, "effect", [&] {
     for (const EffectPtr& effect : physics.effects) effect->require_surface(*run.space);

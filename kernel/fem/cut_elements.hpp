@@ -29,6 +29,15 @@ std::vector<CutElement> build_cut_elements(const ActiveMesh& mesh, const CutSurf
 // ∫_T (n·∇λ_i)(n·∇λ_j) dx of the edges of a tetrahedron: the element matrix of S off the diagonal.
 std::array<double, 6> normal_coupling(const ActiveMesh& mesh, const ActiveTet& tet);
 
+// What integrals of linear functions over Γ_T need, over |Γ_T|, in the order of the nodes and, for
+// pairs, of the four nodes and then of kTetEdges.
+struct TraceMoments {
+  std::array<double, 4> mean;   // ∫ φ_i
+  std::array<double, 10> mass;  // ∫ φ_i φ_j
+};
+std::vector<TraceMoments> build_trace_moments(const CutSurface& surface,
+                                              const std::vector<CutElement>& elements);
+
 // The traces at the polygon's corners (rows) of the element's four basis functions (columns).
 Eigen::Matrix4d trace_matrix(const CutSurface& surface, const CutElement& element);
 

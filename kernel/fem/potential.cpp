@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "kernel/fem/averaged_potential.hpp"
 #include "kernel/fem/trace.hpp"
 #include "kernel/fem/weighted_mass.hpp"
 
@@ -27,6 +28,7 @@ void add_nodal_tangent(const SurfaceSpace& space, const DoubleWell& well, double
 
 void add_potential(const SurfaceSpace& space, const DoubleWell& well, PotentialRule rule,
                    double factor, ConstVec c, VecRef r) {
+  if (rule == PotentialRule::averaged) return averaged_potential::add(space, well, factor, c, r);
   if (rule == PotentialRule::nodal) {
     const Vec derivative = c.unaryExpr([&](double value) { return well.derivative(value); });
     space.mass.multiply_add(factor, derivative, r, *space.team);
@@ -48,6 +50,8 @@ void add_potential(const SurfaceSpace& space, const DoubleWell& well, PotentialR
 
 void add_potential_tangent(const SurfaceSpace& space, const DoubleWell& well, PotentialRule rule,
                            double factor, ConstVec c, CsrMatrix& matrix) {
+  if (rule == PotentialRule::averaged)
+    return averaged_potential::add_tangent(space, well, factor, c, matrix);
   if (rule == PotentialRule::nodal) return add_nodal_tangent(space, well, factor, c, matrix);
   const Vec point_value = trace(space, c);
   add_weighted_mass(
@@ -62,6 +66,8 @@ void add_potential_tangent(const SurfaceSpace& space, const DoubleWell& well, Po
 void add_potential_tangent_product(const SurfaceSpace& space, const DoubleWell& well,
                                    PotentialRule rule, double factor, ConstVec c, ConstVec v,
                                    VecRef r) {
+  if (rule == PotentialRule::averaged)
+    return averaged_potential::add_tangent_product(space, well, factor, c, v, r);
   if (rule == PotentialRule::nodal) {
     const Vec scaled = c.binaryExpr(
         v, [&](double value, double direction) { return well.second(value) * direction; });
@@ -83,7 +89,9 @@ void add_potential_tangent_product(const SurfaceSpace& space, const DoubleWell& 
   add_trace_transpose(space, factor, load, r);
 }
 
-double potential_energy(const SurfaceSpace& space, const DoubleWell& well, ConstVec c) {
+double potential_energy(const SurfaceSpace& space, const DoubleWell& well, PotentialRule rule,
+                        ConstVec c) {
+  if (rule == PotentialRule::averaged) return averaged_potential::energy(space, well, c);
   // Summed in chunks of fixed size so that the result does not depend on the number of threads.
   constexpr std::size_t kChunk = 1024;
   const Vec point_value = trace(space, c);

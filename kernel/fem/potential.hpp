@@ -7,6 +7,7 @@
 namespace traceraft {
 
 enum class PotentialRule {
+  averaged,    // √f0 averaged over each element (averaged_potential.hpp): b is a gradient
   consistent,  // degree-4 quadrature on every triangle: b is the gradient of the discrete energy
   nodal        // M f0'(c): the reference code's choice, not the gradient of any energy
 };
@@ -24,7 +25,9 @@ void add_potential_tangent_product(const SurfaceSpace& space, const DoubleWell& 
                                    PotentialRule rule, double factor, ConstVec c, ConstVec v,
                                    VecRef r);
 
-// ∫_Γ f0(c_h) over this rank's triangles, exact for the quartic.
-double potential_energy(const SurfaceSpace& space, const DoubleWell& well, ConstVec c);
+// ∫_Γ f0(c_h) over this rank's triangles: of the averaged rule what b is the gradient of, else
+// exact.
+double potential_energy(const SurfaceSpace& space, const DoubleWell& well, PotentialRule rule,
+                        ConstVec c);
 
 }  // namespace traceraft

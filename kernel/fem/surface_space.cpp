@@ -53,20 +53,13 @@ CsrMatrix normal_matrix(const SurfaceSpace& space) {
       space, [&](std::size_t t) { return normal_coupling(space.mesh, space.mesh.tets[t]); });
 }
 
-// M_T = Pᵀ M_Γ P: the mass matrix of each flat triangle, area/12 (1 + δ_ab), seen from the nodes.
 CsrMatrix mass_matrix(const SurfaceSpace& space) {
   std::vector<double> edge(space.mesh.edges.size(), 0.0), diagonal(space.mesh.nodes(), 0.0);
-  for (const CutElement& element : space.elements) {
-    const Eigen::Matrix4d nodal = trace_matrix(space.surface, element);
-    Eigen::Matrix4d surface = Eigen::Matrix4d::Zero();
-    for (int t = 0; t < element.triangles(); ++t)
-      for (const int a : kPolygonTriangles[t])
-        for (const int b : kPolygonTriangles[t])
-          surface(a, b) +=
-              space.surface.triangle_area[element.first_triangle + t] / (a == b ? 6 : 12);
-    const Eigen::Matrix4d local = nodal.transpose() * surface * nodal;
-    for (int i = 0; i < 4; ++i) diagonal[element.node[i]] += local(i, i);
-    for (int e = 0; e < 6; ++e) edge[element.edge[e]] += local(kTetEdges[e][0], kTetEdges[e][1]);
+  for (std::size_t t = 0; t < space.elements.size(); ++t) {
+    const CutElement& element = space.elements[t];
+    const std::array<double, 10>& mass = space.moments[t].mass;
+    for (int i = 0; i < 4; ++i) diagonal[element.node[i]] += element.area * mass[i];
+    for (int e = 0; e < 6; ++e) edge[element.edge[e]] += element.area * mass[4 + e];
   }
   CsrMatrix matrix(space.pattern);
   fill_symmetric(edge, diagonal, matrix);
@@ -118,19 +111,22 @@ void fill_zero_row_sum(const std::vector<double>& edge, const std::vector<RowBlo
 
 SurfaceSpace::SurfaceSpace(const LevelSet& level_set, std::int64_t cells,
                            std::shared_ptr<const ThreadTeam> team_,
-                           std::shared_ptr<const Communicator> communicator_)
+                           std::shared_ptr<const Communicator> communicator_,
+                           double mass_stabilisation_)
     : mesh(build_active_mesh(level_set, cells, *communicator_)),
       surface(checked_surface(level_set, mesh, *communicator_)),
       elements(build_cut_elements(mesh, surface)),
+      moments(build_trace_moments(surface, elements)),
       edge_couplings(build_edge_couplings(elements, mesh.edges.size())),
       team(std::move(team_)),
       communicator(std::move(communicator_)),
       blocks(split_rows(mesh, surface, elements, team->size())),
       pattern(build_pattern(mesh, communicator)),
+      mass_stabilisation(mass_stabilisation_),
       mass(mass_matrix(*this)),
       stiffness(stiffness_matrix(*this)),
       normal(normal_matrix(*this)),
-      stabilised_mass(combine(1.0, mass, h(), normal)),
+      stabilised_mass(combine(1.0, mass, mass_stabilisation * h(), normal)),
       node_area(Vec::Zero(nodes())),
       totals(totals_of(mesh, surface, *communicator)),
       order({mesh.node_id.begin(), mesh.node_id.begin() + mesh.owned_nodes}, communicator) {

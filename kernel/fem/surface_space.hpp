@@ -16,27 +16,35 @@
 
 namespace traceraft {
 
+// How much of h S regularises the mass matrix. S adds to the mass of short waves, which slows them:
+// with 1, as in the paper's code, −K/M of a wave of 3 h is 10 % too small, with 0.1 8 % too large
+// (docs/decisions/0019).
+inline constexpr double kMassStabilisation = 1;
+
 class SurfaceSpace {
  public:
   // Throws InputError when the surface is not closed inside the box, the mesh is too coarse, or the
-  // level set has no gradient on its surface.
+  // level set has no gradient on its surface. `mass_stabilisation`: of M̃, in units of h.
   SurfaceSpace(const LevelSet& level_set, std::int64_t cells,
                std::shared_ptr<const ThreadTeam> team,
-               std::shared_ptr<const Communicator> communicator);
+               std::shared_ptr<const Communicator> communicator,
+               double mass_stabilisation = kMassStabilisation);
 
   const ActiveMesh mesh;
   const CutSurface surface;
   const std::vector<CutElement> elements;
+  const std::vector<TraceMoments> moments;  // of each element
   const EdgeCouplings edge_couplings;
   const std::shared_ptr<const ThreadTeam> team;
   const std::shared_ptr<const Communicator> communicator;
   const std::vector<RowBlock> blocks;  // one per thread
   const PatternPtr pattern;
+  const double mass_stabilisation;
 
   CsrMatrix mass;             // M_ij = ∫_Γ φ_i φ_j: singular, see stabilised_mass
   CsrMatrix stiffness;        // K_ij = ∫_Γ ∇_Γφ_i·∇_Γφ_j
   CsrMatrix normal;           // S_ij = ∫_cut tets (n·∇φ_i)(n·∇φ_j) dx; S·1 = 0
-  CsrMatrix stabilised_mass;  // M̃ = M + h S
+  CsrMatrix stabilised_mass;  // M̃ = M + mass_stabilisation h S
   Vec node_area;              // w_i = ∫_Γ φ_i, so ∫_Γ c_h = w·c
   double area;                // |Γ_h|
 

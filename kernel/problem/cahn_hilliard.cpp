@@ -170,7 +170,7 @@ double CahnHilliard::field_norm(ConstVec half) const {
 double CahnHilliard::energy(ConstVec y) const {
   Vec buffer;
   const auto c = space_->with_ghosts(c_of(y), buffer);
-  double energy = ranks().sum(potential_energy(*space_, model_.well, c)) +
+  double energy = ranks().sum(potential_energy(*space_, model_.well, model_.rule, c)) +
                   0.5 * space_->quadratic(gradient_energy_, c_of(y));
   for (const EffectPtr& effect : model_.effects) energy += effect->energy(*space_, c);
   return energy;
@@ -187,7 +187,7 @@ double CahnHilliard::energy_scale() const {
 
 bool CahnHilliard::dissipates_energy() const {
   // With the nodal rule F2 is not the gradient of the energy.
-  return model_.rule == PotentialRule::consistent &&
+  return model_.rule != PotentialRule::nodal &&
          std::all_of(model_.effects.begin(), model_.effects.end(),
                      [](const EffectPtr& effect) { return effect->dissipates_energy(); });
 }

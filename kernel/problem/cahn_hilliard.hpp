@@ -18,7 +18,8 @@ struct CahnHilliardModel {
   DoubleWell well;
   double epsilon = 0.05;  // width of the phase boundary
   PotentialRule rule = PotentialRule::consistent;
-  double stabilisation = 1.0;  // ρ = stabilisation · h
+  double stabilisation = 1.0;                      // ρ = stabilisation · h
+  double mass_stabilisation = kMassStabilisation;  // of the space that the problem is posed on
   std::vector<EffectPtr> effects;
   // How fast lipids are in time, over `mobility`, where an effect changes that; empty: always 1.
   std::function<double(double)> pace;
@@ -37,7 +38,7 @@ CsrMatrix gradient_energy_matrix(const SurfaceSpace& space, const CahnHilliardMo
 //   F2 = M̃ μ − b(c) − ε² (K + ρ S) c
 // and the model's effects. S makes the singular matrices of the trace space regular, vanishes on
 // constants and so keeps ∫c. Energy: ∫ f0(c_h) + ½ ε² cᵀ(K + ρ S)c, of which F2 is the gradient
-// (with PotentialRule::consistent).
+// (not with PotentialRule::nodal).
 class CahnHilliard final : public DaeProblem {
  public:
   CahnHilliard(std::shared_ptr<const SurfaceSpace> space, CahnHilliardModel model);

@@ -124,14 +124,15 @@ TEST_P(OperatorTest, MobilityStiffnessIsTheWeightedIntegral) {
 
 TEST_P(OperatorTest, PotentialIsTheGradientOfItsEnergy) {
   const DoubleWell well{0.7, -0.3, 1.1};
-  Vec b = Vec::Zero(space->nodes());
-  add_potential(*space, well, PotentialRule::consistent, 1, c, b);
-  const double step = 1e-5;
-  const double difference = (potential_energy(*space, well, c + step * d) -
-                             potential_energy(*space, well, c - step * d)) /
-                            (2 * step);
-  EXPECT_NEAR(b.dot(d) / difference, 1, 1e-8);
-  EXPECT_NEAR(potential_energy(*space, well, c) /
+  for (const PotentialRule rule : {PotentialRule::averaged, PotentialRule::consistent}) {
+    const auto energy = [&](const Vec& at) { return potential_energy(*space, well, rule, at); };
+    Vec b = Vec::Zero(space->nodes());
+    add_potential(*space, well, rule, 1, c, b);
+    const double step = 1e-5;
+    const double difference = (energy(c + step * d) - energy(c - step * d)) / (2 * step);
+    EXPECT_NEAR(b.dot(d) / difference, 1, 1e-8);
+  }
+  EXPECT_NEAR(potential_energy(*space, well, PotentialRule::consistent, c) /
                   integrate(*space, c,
                             [&](const Point&, double v, const Point&) { return well.energy(v); }),
               1, 1e-12);

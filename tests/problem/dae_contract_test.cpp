@@ -158,7 +158,8 @@ TEST_P(DaeContract, SaysSoWhenTheStateIsNotFinite) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, DaeContract,
-    ::testing::Values(DaeCase{"degenerate", "degenerate", PotentialRule::consistent, false},
+    ::testing::Values(DaeCase{"averaged", "degenerate", PotentialRule::averaged, false},
+                      DaeCase{"degenerate", "degenerate", PotentialRule::consistent, false},
                       DaeCase{"floored", "degenerate:outside=-1", PotentialRule::consistent, false},
                       DaeCase{"constant", "constant:value=0.3", PotentialRule::consistent, false},
                       DaeCase{"nodal", "degenerate", PotentialRule::nodal, false},

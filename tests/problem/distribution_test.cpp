@@ -90,7 +90,8 @@ TEST_P(Distribution, MatricesAreBitwiseThoseOfOneRank) {
 }
 
 TEST_P(Distribution, ResidualAndJacobianAreBitwiseThoseOfOneRank) {
-  for (const PotentialRule rule : {PotentialRule::consistent, PotentialRule::nodal}) {
+  for (const PotentialRule rule :
+       {PotentialRule::averaged, PotentialRule::consistent, PotentialRule::nodal}) {
     CahnHilliardModel model = make_model();
     model.rule = rule;
     model.effects = {prescribed_density("g", Slot::source, [](const QuadraturePoint& at, double t) {

@@ -28,7 +28,7 @@ double gradient_error_squared(const SurfaceSpace& space, ConstVec c) {
 double recovered_energy(const CahnHilliard& problem, ConstVec c) {
   const SurfaceSpace& space = problem.space();
   const double e2 = problem.model().epsilon * problem.model().epsilon;
-  return potential_energy(space, problem.model().well, c) +
+  return potential_energy(space, problem.model().well, problem.model().rule, c) +
          0.5 * e2 * (space.quadratic(space.stiffness, c) - gradient_error_squared(space, c));
 }
 

@@ -19,9 +19,9 @@ class Vesicle {
   explicit Vesicle(const BlindRequest& request)
       : request_(request),
         looks_(request),
-        space_(std::make_shared<const SurfaceSpace>(looks_.surface, request.cells,
-                                                    std::make_shared<ThreadTeam>(request.threads),
-                                                    std::make_shared<SerialCommunicator>())) {}
+        space_(std::make_shared<const SurfaceSpace>(
+            looks_.surface, request.cells, std::make_shared<ThreadTeam>(request.threads),
+            std::make_shared<SerialCommunicator>(), request.base.mass_stabilisation)) {}
 
   std::vector<Vec> states(const std::vector<EffectTerm>& effects) const {
     const BlindMethod method{space_, request_.integrator, request_.tolerance};

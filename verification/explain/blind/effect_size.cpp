@@ -26,7 +26,8 @@ EffectSizing::EffectSizing(const BlindRequest& request)
   constexpr double kCoarser = 0.7, kTolerance = 1e-3;
   const int cells =
       request.sizing_cells > 0 ? request.sizing_cells : static_cast<int>(kCoarser * request.cells);
-  method_ = {serial_space(looks_.surface, cells), "ida", kTolerance};
+  method_ = {serial_space(looks_.surface, cells, request.base.mass_stabilisation), "ida",
+             kTolerance};
   const BlindSimulation base(request_, method_, {});
   snapshots_ = base.run(looks_.times);
   for (std::size_t k = 0; k + 1 < snapshots_.size(); ++k)

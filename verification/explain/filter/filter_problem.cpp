@@ -44,12 +44,12 @@ std::vector<NoisyValues> noisy_values(const FilterProblem& data) {
 }
 
 // What is common to all vesicles.
-FilterProblem on_meshes(const LevelSet& surface, int cells, int threads,
-                        const FilterSettings& settings) {
+FilterProblem on_meshes(const LevelSet& surface, const CahnHilliardModel& base, int cells,
+                        int threads, const FilterSettings& settings) {
   FilterProblem data;
   // On meshes of some thousand nodes threads are better used for different columns and models.
   data.team = std::make_shared<ThreadTeam>(threads);
-  data.space = serial_space(surface, cells);
+  data.space = serial_space(surface, cells, base.mass_stabilisation);
   data.sphere = is_sphere(surface);
   data.finer = std::make_shared<const FinerMeshes>(finer_meshes(surface, data.space, cells));
   data.mass = as_eigen(*data.space, data.space->stabilised_mass);
@@ -207,7 +207,7 @@ void set_correlation(const NoiseCorrelation& correlation, const CahnHilliardMode
 FilterProblems make_filter_problems(const std::vector<FieldSeries>& series, const LevelSet& surface,
                                     const CahnHilliardModel& base, int cells, int threads,
                                     bool hold_out, const FilterSettings& settings) {
-  FilterProblems problems(series.size(), on_meshes(surface, cells, threads, settings));
+  FilterProblems problems(series.size(), on_meshes(surface, base, cells, threads, settings));
   for (std::size_t v = 0; v < series.size(); ++v) {
     const std::size_t snapshots = series[v].snapshots.size();
     problems[v].vesicle = v;

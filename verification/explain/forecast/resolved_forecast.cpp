@@ -13,15 +13,17 @@ constexpr std::array<double, 2> kFiner{1.5, 2.25};
 
 }  // namespace
 
-SpacePtr serial_space(const LevelSet& surface, int cells) {
+SpacePtr serial_space(const LevelSet& surface, int cells, double mass_stabilisation) {
   return std::make_shared<const SurfaceSpace>(surface, cells, std::make_shared<ThreadTeam>(1),
-                                              std::make_shared<SerialCommunicator>());
+                                              std::make_shared<SerialCommunicator>(),
+                                              mass_stabilisation);
 }
 
 FinerMeshes finer_meshes(const LevelSet& surface, const SpacePtr& own, int cells) {
   FinerMeshes meshes;
   for (std::size_t m = 0; m < kFiner.size(); ++m)
-    meshes.spaces[m] = serial_space(surface, static_cast<int>(std::lround(kFiner[m] * cells)));
+    meshes.spaces[m] = serial_space(surface, static_cast<int>(std::lround(kFiner[m] * cells)),
+                                    own->mass_stabilisation);
   meshes.to_finest = MeshTransfer(*own, meshes.spaces[1]);
   meshes.from_finest = MeshTransfer(*meshes.spaces[1], own);
   meshes.up = MeshTransfer(*meshes.spaces[0], meshes.spaces[1]);

@@ -15,7 +15,8 @@ namespace traceraft {
 using MakeForecaster = std::function<IntegratorPtr(const DaeProblem&, const SurfaceSpace&)>;
 
 // Of one thread, which its matrices and solvers use.
-SpacePtr serial_space(const LevelSet& surface, int cells);
+SpacePtr serial_space(const LevelSet& surface, int cells,
+                      double mass_stabilisation = kMassStabilisation);
 
 // What does not depend on the model.
 struct FinerMeshes {

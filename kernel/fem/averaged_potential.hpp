@@ -1,0 +1,30 @@
+// The potential whose square root is averaged over each cut element. With w = √(2 f0), which is
+// quadratic for a double well, and the mean c̄ and the variance V of c_h on Γ_T:
+//
+//   E_T = ½ |Γ_T| (w̄² − η w'(c̄)² V),   w̄ = w(c̄) + ½ ξ w'' V.
+//
+// Why: the energy of a boundary is ½ Σ |Γ_T| (ε|∇c_h| − w̄)² + ε Σ |Γ_T| |∇c_h| w̄. With the mean
+// itself, ξ = 1 and η = 0, the second sum is ε ∫ |∇W(c_h)| with W' = w: the exact line tension,
+// wherever the boundary lies in the mesh (in one dimension: Speight and Ward, Nonlinearity 7,
+// 1994). Quadrature of f0(c_h) misses that by ½ Var(w), and boundaries stick to the lattice. In two
+// dimensions ∇c_h errs across a boundary too, which adds g ε² ∫ c''² as V does: 2ξ + η = 2(1 + g).
+// The values below cancel that on average over cuts of the Kuhn mesh: docs/decisions/0019.
+#pragma once
+
+#include "kernel/fem/surface_space.hpp"
+#include "kernel/physics/double_well.hpp"
+
+namespace traceraft::averaged_potential {
+
+inline constexpr double kVarianceInMean = 1.2;   // ξ
+inline constexpr double kVarianceOfSlope = 0.4;  // η; below 1 the energy is bounded from below
+
+// The meaning of potential.hpp; `c` and `v` have ghosts.
+void add(const SurfaceSpace& space, const DoubleWell& well, double factor, ConstVec c, VecRef r);
+void add_tangent(const SurfaceSpace& space, const DoubleWell& well, double factor, ConstVec c,
+                 CsrMatrix& matrix);
+void add_tangent_product(const SurfaceSpace& space, const DoubleWell& well, double factor,
+                         ConstVec c, ConstVec v, VecRef r);
+double energy(const SurfaceSpace& space, const DoubleWell& well, ConstVec c);
+
+}  // namespace traceraft::averaged_potential
