@@ -17,7 +17,7 @@
 namespace traceraft {
 
 // How much of h S regularises the mass matrix. S adds to the mass of short waves, which slows them:
-// with 1, as in the paper's code, −K/M of a wave of 3 h is 10 % too small, with 0.1 8 % too large
+// with 1, as in the paper's code, K/M of a wave of 3 h is 10 % too small, with 0.3 5 % too large
 // (docs/decisions/0019).
 inline constexpr double kMassStabilisation = 1;
 

@@ -21,10 +21,9 @@ Vec half_and_half(const SurfaceSpace& sphere, const DoubleWell& well, double eps
 
 }  // namespace
 
-double relaxed_interface_energy(const SurfaceSpace& sphere, const CahnHilliardModel& model,
-                                const Point& axis) {
+std::optional<Vec> relaxed_boundary(const SurfaceSpace& sphere, const CahnHilliardModel& model,
+                                    const Point& axis) {
   const DoubleWell& well = model.well;
-  const double epsilon = model.epsilon;
   const CsrMatrix gradient_energy = gradient_energy_matrix(sphere, model);
   // Descent of the energy at fixed mass, (ε²(K + ρS) + βM̃) δ = −(b + ε²(K + ρS)c − λw): the profile
   // settles within some ten steps, long before the boundary as a whole could move to where the mesh
@@ -32,11 +31,8 @@ double relaxed_interface_energy(const SurfaceSpace& sphere, const CahnHilliardMo
   // between the wells, below which the energy could rise.
   const double beta = 0.6 * well.second(well.a);
   const CsrMatrix descent = combine(1, gradient_energy, beta, sphere.stabilised_mass);
-  const auto measured = [&](const Vec& c) {
-    return epsilon * sphere.quadratic(sphere.stiffness, c) / (2 * kPi);
-  };
-  Vec c = half_and_half(sphere, well, epsilon, axis), step(sphere.nodes()), buffer;
-  double energy = measured(c);
+  Vec c = half_and_half(sphere, well, model.epsilon, axis), step(sphere.nodes()), buffer;
+  double energy = sphere.quadratic(sphere.stiffness, c);
   for (int iteration = 0; iteration < 100; ++iteration) {
     Vec force = Vec::Zero(sphere.nodes());
     const auto local = sphere.with_ghosts(c, buffer);
@@ -44,13 +40,19 @@ double relaxed_interface_energy(const SurfaceSpace& sphere, const CahnHilliardMo
     gradient_energy.multiply_add(1, local, force, *sphere.team);
     force -= sphere.communicator->sum(force.sum()) / sphere.area * sphere.node_area;
     if (Status status = sphere.solve_spd(descent, -force, step, 1e-2); !status.ok())
-      return 0;  // no boundary to speak of
+      return std::nullopt;
     c += step;
     const double before = energy;
-    energy = measured(c);
+    energy = sphere.quadratic(sphere.stiffness, c);
     if (std::fabs(energy - before) < 5e-5 * energy) break;
   }
-  return energy;
+  return c;
+}
+
+double relaxed_interface_energy(const SurfaceSpace& sphere, const CahnHilliardModel& model,
+                                const Point& axis) {
+  const std::optional<Vec> c = relaxed_boundary(sphere, model, axis);
+  return c ? model.epsilon * sphere.quadratic(sphere.stiffness, *c) / (2 * kPi) : 0;
 }
 
 PerimeterCalibration calibrate_perimeter(const SurfaceSpace& sphere,

@@ -1,6 +1,8 @@
 // p0: what makes the diffuse perimeter p0 ∫ ε|∇_Γ c|² a length on a given mesh.
 #pragma once
 
+#include <optional>
+
 #include "kernel/problem/cahn_hilliard.hpp"
 
 namespace traceraft {
@@ -10,8 +12,12 @@ struct PerimeterCalibration {
   double resolved;          // the same over its exact value, √(2ρ)(b − a)³/6
 };
 
-// ∫ ε|∇c|² per unit length of the boundary between two equal halves of the unit sphere, relaxed to
-// equilibrium with the energy of `model` on this mesh; `axis` points from one half to the other.
+// Two equal halves of the unit sphere, relaxed to equilibrium with the energy of `model` on this
+// mesh; `axis` points from one half to the other. Nothing where there is no boundary to speak of.
+std::optional<Vec> relaxed_boundary(const SurfaceSpace& sphere, const CahnHilliardModel& model,
+                                    const Point& axis);
+
+// ∫ ε|∇c|² per unit length of that boundary.
 double relaxed_interface_energy(const SurfaceSpace& sphere, const CahnHilliardModel& model,
                                 const Point& axis);
 
