@@ -242,12 +242,14 @@ Json json_of(const NoiseCorrelation& correlation) {
   Json components = Json::array();
   for (const NoiseCorrelation::Component& c : correlation.components)
     components.push_back({c.support, c.share});
-  return {{"components", components}, {"at_bound", correlation.at_bound}};
+  return {
+      {"components", components}, {"at_bound", correlation.at_bound}, {"error", correlation.error}};
 }
 NoiseCorrelation correlation_of(const Json& json) {
   NoiseCorrelation correlation;
   for (const Json& c : json.at("components")) correlation.components.push_back({c.at(0), c.at(1)});
   correlation.at_bound = json.at("at_bound");
+  correlation.error = json.at("error");
   return correlation;
 }
 

@@ -115,7 +115,8 @@ Json noise_json(const Explanation& found) {
   return {{"level", found.noise},
           {"share", shared.share()},
           {"length", shared.white() ? Json() : Json(shared.length())},
-          {"at_bound", shared.at_bound}};
+          {"at_bound", shared.at_bound},
+          {"error", shared.error}};
 }
 
 Json data_json(const ExplainSetup& setup) {

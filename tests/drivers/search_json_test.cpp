@@ -22,7 +22,7 @@ TEST(SearchJson, KeepsWhatARoundThatIsNotOverHas) {
   const CahnHilliardModel base = bench_model("degenerate", 0.2);
   SearchState state;
   state.noise = {{0.1, 0.2}};
-  state.correlation = {{{0.2, 0.3}, {0.4, 0.1}}, true};
+  state.correlation = {{{0.2, 0.3}, {0.4, 0.1}}, true, 0.07};
   state.told_apart = true;
   state.so_far.finding = Finding::ambiguous;
   state.so_far.found = fit_of("uptake", 100);
@@ -44,6 +44,7 @@ TEST(SearchJson, KeepsWhatARoundThatIsNotOverHas) {
   EXPECT_EQ(read.correlation.share(), 0.4);
   EXPECT_EQ(read.correlation.support(), 0.4);
   EXPECT_TRUE(read.correlation.at_bound);
+  EXPECT_EQ(read.correlation.error, 0.07);
   EXPECT_EQ(class_of(read.so_far), (std::vector<std::string>{"uptake", "gravity"}));
   ASSERT_EQ(read.so_far.turns.size(), 2u);
   EXPECT_EQ(read.so_far.turns[1].why, Turn::is_none);

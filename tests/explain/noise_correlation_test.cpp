@@ -115,8 +115,8 @@ struct Drawn {
   std::vector<NoiseBlock> blocks;
   static constexpr int kPoints = 2000;
 
-  Drawn(double share, double length, NoiseShape shape) {
-    for (std::uint64_t s = 0; s < 4; ++s) {
+  Drawn(double share, double length, NoiseShape shape, std::uint64_t first = 0) {
+    for (std::uint64_t s = first; s < first + 4; ++s) {
       std::vector<Point> points;
       for (std::uint64_t i = 0; i < kPoints; ++i)
         points.push_back(testing::random_direction(10 + s, i));
@@ -169,6 +169,27 @@ TEST(CorrelationFit, FindsShareAndLengthOfAnyShape) {
     EXPECT_NEAR(fit_variance(drawn.blocks, fit.correlation, team), fit.variance,
                 0.02 * fit.variance);
   }
+}
+
+// How much noise smooth patterns have is known to some error, which the fit states.
+TEST(CorrelationFit, StatesItsErrorOverSmoothPatterns) {
+  constexpr int kDraws = 8;
+  const ThreadTeam team(2);
+  double squares = 0, stated = 0;
+  for (int k = 0; k < kDraws; ++k) {
+    const Drawn drawn(0.3, 0.1, NoiseShape::gaussian, 4 * static_cast<std::uint64_t>(k));
+    const CorrelationFit fit = fit_correlation(drawn.blocks, drawn.spacing(), team);
+    ASSERT_FALSE(fit.correlation.white());
+    const double density = 1 / std::pow(drawn.spacing(), 2);
+    const auto smooth = [&](double share, double length) {
+      return 1 - share + share * 2 * kPi * length * length * density;
+    };
+    const double found = fit.variance * smooth(fit.correlation.share(), fit.correlation.length());
+    squares += std::pow(std::log(found / (4 * smooth(0.3, 0.1))), 2) / kDraws;
+    stated += fit.correlation.error / kDraws;
+  }
+  EXPECT_LT(std::sqrt(squares) / stated, 2);
+  EXPECT_GT(std::sqrt(squares) / stated, 0.5);
 }
 
 // Measured fields alone give an estimate, which takes nothing of a smooth field for noise.

@@ -27,6 +27,7 @@ struct NoiseCorrelation {
   };
   std::vector<Component> components;  // none: white noise
   bool at_bound = false;              // is it as long as it may be, and maybe longer?
+  double error = 0;  // relative standard error of the variance that smooth patterns see
 
   bool white() const { return components.empty(); }
   double share() const;  // of the variance that neighbours share

@@ -53,6 +53,17 @@ VarianceFit without_unseen(const VarianceComponents& model, VarianceFit fit,
   }
 }
 
+// Smooth patterns see the integral of the covariance over the surface, per value.
+double error_over_smooth(const VarianceFit& fit, const std::vector<double>& supports,
+                         double spacing) {
+  Vec weight = Vec::Ones(fit.variances.size());
+  for (std::size_t k = 0; k < supports.size(); ++k) {
+    const double length = kWendlandLength * supports[k] / spacing;
+    weight[static_cast<Eigen::Index>(k + 1)] = kLeastNugget + 2 * kPi * length * length;
+  }
+  return std::sqrt(std::max(0.0, weight.dot(fit.covariance * weight))) / weight.dot(fit.variances);
+}
+
 NoiseCorrelation correlation_of(const Vec& variances, const std::vector<double>& supports) {
   const double nugget = variances[0] / variances.sum();
   const double scale = nugget < kLeastNugget ? (1 - kLeastNugget) / (1 - nugget) : 1;
@@ -86,6 +97,8 @@ CorrelationFit fit_correlation(const std::vector<NoiseBlock>& blocks, double spa
   if (result.gain < kCorrelated) return result;
   const VarianceFit fit = without_unseen(model, model.fit(white.variances, all), all);
   result.correlation = correlation_of(fit.variances, lengths);
+  if (!result.correlation.white())
+    result.correlation.error = error_over_smooth(fit, lengths, spacing);
   result.variance = fit.variances.sum();
   return result;
 }

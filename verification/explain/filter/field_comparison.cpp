@@ -26,12 +26,16 @@ Columns turns(const CahnHilliard& problem, const Vec& c) {
   return result;
 }
 
-void add_noise(std::size_t vesicle, std::size_t snapshot, Columns& values) {
+// The variance of noise is known to a relative standard error; each column has one of its own, the
+// same in all snapshots.
+void add_noise(std::size_t vesicle, std::size_t snapshot, double error, Columns& values) {
   const std::uint64_t stream = 10000 * (1000 * vesicle + snapshot);
-  for (Eigen::Index j = 0; j < values.cols(); ++j)
+  for (Eigen::Index j = 0; j < values.cols(); ++j) {
+    const auto column = static_cast<std::uint64_t>(j);
+    const double size = std::exp(0.5 * error * normal_random(16, column, 0));
     for (Eigen::Index i = 0; i < values.rows(); ++i)
-      values(i, j) +=
-          normal_random(7, stream + static_cast<std::uint64_t>(j), static_cast<std::uint64_t>(i));
+      values(i, j) += size * normal_random(7, stream + column, static_cast<std::uint64_t>(i));
+  }
 }
 
 }  // namespace
@@ -74,7 +78,7 @@ FieldComparison compare_field(const FilterProblem& data, const CahnHilliard& pro
   in.parameters = seen(forecast.parameters);
   in.parameters.col(kMeshError) += weighted(mesh.values_doubt - measured.trace * mesh.doubt).col(0);
   in.replicates = seen(forecast.replicates);
-  add_noise(data.vesicle, snapshot, in.replicates);
+  add_noise(data.vesicle, snapshot, data.correlation.error, in.replicates);
   in.model_error = most_probable_error(in);
   in.noise = noise;
   // What the first snapshot's scale and zero make of the forecast is taken out as that of others.

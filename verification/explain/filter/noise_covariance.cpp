@@ -12,7 +12,7 @@ constexpr std::size_t kLargestBlock = 160;
 // Of all blocks so many values at most, every other block or so then.
 constexpr double kMostValues = 40000;
 // Correlations are as they were if what they add to the noise of smooth patterns is, to that share.
-constexpr double kUnchanged = 0.05;
+constexpr double kUnchanged = 0.02;
 
 // Columns per value, in c.
 Columns in_c(const Innovation& in, const Columns& X) {
@@ -81,13 +81,13 @@ bool fit_noise_covariance(FilterProblems& data, const FilterResult& pass,
     if (!in.held_out) counting.insert(counting.end(), all.back().begin(), all.back().end());
   }
   const NoiseCorrelation before = data.front().correlation;
-  NoiseCorrelation now = fit_correlation(some_of(std::move(counting)), spacing, team).correlation;
+  const NoiseCorrelation now =
+      fit_correlation(some_of(std::move(counting)), spacing, team).correlation;
   if (now.white() && before.white()) {
     fit_noise(data, pass);
     return false;
   }
   const bool same = is_as_before(now, before, 1 / (spacing * spacing));
-  if (same) now = before;
   std::vector<std::vector<double>> own(data.size());
   for (std::size_t k = 0; k < all.size(); ++k) {
     const Innovation& in = pass.innovations[k];
@@ -95,8 +95,7 @@ bool fit_noise_covariance(FilterProblems& data, const FilterResult& pass,
                               std::sqrt(fit_variance(all[k], now, team)));
   }
   set_noise(data, own);
-  if (!same)
-    for (FilterProblem& vesicle : data) set_correlation(now, base, settings, vesicle);
+  for (FilterProblem& vesicle : data) set_correlation(now, base, settings, vesicle);
   return !same;
 }
 

@@ -17,8 +17,9 @@ namespace traceraft {
 using CorrelationFunction = std::function<double(double distance)>;
 
 struct VarianceFit {
-  Vec variances;  // of each component, in units of the blocks' deviations
-  Vec errors;     // standard ones; 0 for variances that are 0
+  Vec variances;               // of each component, in units of the blocks' deviations
+  Vec errors;                  // standard ones; 0 for variances that are 0
+  Eigen::MatrixXd covariance;  // of the estimates; 0 where variances are 0
 };
 
 class VarianceComponents {
