@@ -69,6 +69,8 @@ class CholmodSolver final : public SpdSolver {
     if (workspace_.common.status < CHOLMOD_OK)
       return Status::retry("CHOLMOD: error " + std::to_string(workspace_.common.status));
     copy_.copy(*factor_);
+    // Its numbers are needed no more, its structure is.
+    cholmod_change_factor(CHOLMOD_PATTERN, 1, 1, 1, 1, factor_, &workspace_.common);
     return {};
   }
 

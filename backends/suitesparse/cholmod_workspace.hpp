@@ -13,13 +13,6 @@ struct CholmodWorkspace {
     common.supernodal = CHOLMOD_SUPERNODAL;
     common.nmethods = 1;
     common.postorder = 1;
-    // Larger relaxed supernodes than by default: factorisation 20 % faster, solves as fast.
-    constexpr std::size_t columns[3] = {16, 32, 64};
-    constexpr double zeros[3] = {0.8, 0.3, 0.1};
-    for (int i = 0; i < 3; ++i) {
-      common.nrelax[i] = columns[i];
-      common.zrelax[i] = zeros[i];
-    }
   }
   ~CholmodWorkspace() { cholmod_finish(&common); }
   CholmodWorkspace(const CholmodWorkspace&) = delete;

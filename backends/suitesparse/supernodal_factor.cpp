@@ -1,6 +1,7 @@
 #include "backends/suitesparse/supernodal_factor.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 // Compiled for several instruction sets; the loader picks the best one for the processor.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
@@ -33,71 +34,135 @@ using Real = SupernodalFactor::Real;
 
 #define TRACERAFT_INLINE __attribute__((always_inline)) inline
 
-// Eight numbers at a time, summed in one fixed order.
-constexpr int kWide = 8;
+using Stored = SupernodalFactor::Stored;
+
+// Sixteen numbers at a time, summed in one fixed order. Columns are read beyond their ends, up to
+// fifteen numbers into what follows; what that adds to is of no interest, or it is added to times
+// 0.
+constexpr int kWide = 16;
 using Wide =
     Real __attribute__((vector_size(kWide * sizeof(Real)), aligned(alignof(Real)), may_alias));
+using Bits = std::uint32_t __attribute__((vector_size(kWide * sizeof(std::uint32_t))));
+using Halves = Stored
+    __attribute__((vector_size(kWide * sizeof(Stored)), aligned(alignof(Stored)), may_alias));
+
+TRACERAFT_INLINE void load(const Stored* l, Wide& value) {
+  const Bits bits = __builtin_convertvector(*reinterpret_cast<const Halves*>(l), Bits) << 16;
+  value = reinterpret_cast<const Wide&>(bits);
+}
+
+TRACERAFT_INLINE Real real(Stored value) {
+  const std::uint32_t bits = static_cast<std::uint32_t>(value) << 16;
+  Real result;
+  std::memcpy(&result, &bits, sizeof result);
+  return result;
+}
+
+// Rounded to the nearest, ties to even. The numbers of a factor are finite.
+TRACERAFT_INLINE Stored stored(double value) {
+  const auto single = static_cast<Real>(value);
+  std::uint32_t bits;
+  std::memcpy(&bits, &single, sizeof bits);
+  return static_cast<Stored>((bits + 0x7fff + ((bits >> 16) & 1)) >> 16);
+}
 
 TRACERAFT_INLINE Real sum_of(const Wide& v) {
-  return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
+  Real sum[8];
+  for (int i = 0; i < 8; ++i) sum[i] = v[i] + v[i + 8];
+  return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
 }
 
-// The leading K columns of a trapezoid of L, `rows` from the diagonal of the first one downwards.
-// Solves for the first K numbers of x and subtracts what they contribute to the others.
+// A group: K neighbouring columns of L from the diagonal of the first one downwards, `rows` numbers
+// each, with reciprocals on the diagonal. Solves for the first K numbers of x and subtracts what
+// they contribute to the others.
 template <int K>
-TRACERAFT_INLINE void eliminate(const Real* l, int stride, int rows, Real* __restrict x) {
+TRACERAFT_INLINE void eliminate(const Stored* l, int rows, Real* __restrict x) {
   Real solved[K];
   for (int a = 0; a < K; ++a) {
-    for (int b = 0; b < a; ++b) x[a] -= l[b * stride + a] * solved[b];
-    solved[a] = x[a] /= l[a * stride + a];
+    for (int b = 0; b < a; ++b) x[a] -= real(l[b * rows + a]) * solved[b];
+    solved[a] = x[a] *= real(l[a * rows + a]);
   }
-  for (int i = K; i < rows; ++i) {
-    Real sum = 0;
-    for (int a = 0; a < K; ++a) sum += solved[a] * l[a * stride + i];
-    x[i] -= sum;
+  for (int i = K; i < rows; i += kWide) {
+    Wide sum, column;
+    load(l + i, sum);
+    sum *= solved[0];
+    for (int a = 1; a < K; ++a) {
+      load(l + a * rows + i, column);
+      sum += solved[a] * column;
+    }
+    *reinterpret_cast<Wide*>(x + i) -= sum;
   }
 }
 
-// Solves for the first K numbers of x, given the others, with the transpose.
+// Solves for the first K numbers of x, given the others and zeros after them, with the transpose.
 template <int K>
-TRACERAFT_INLINE void substitute(const Real* l, int stride, int rows, Real* __restrict x) {
-  Wide sum[K] = {};
-  int i = K;
-  for (; i + kWide <= rows; i += kWide)
-    for (int a = 0; a < K; ++a)
-      sum[a] += *reinterpret_cast<const Wide*>(l + a * stride + i) *
-                *reinterpret_cast<const Wide*>(x + i);
-  Real total[K];
-  for (int a = 0; a < K; ++a) total[a] = sum_of(sum[a]);
-  for (; i < rows; ++i)
-    for (int a = 0; a < K; ++a) total[a] += l[a * stride + i] * x[i];
+TRACERAFT_INLINE void substitute(const Stored* l, int rows, Real* __restrict x) {
+  Wide sum[K] = {}, column;
+  for (int i = K; i < rows; i += kWide)
+    for (int a = 0; a < K; ++a) {
+      load(l + a * rows + i, column);
+      sum[a] += column * *reinterpret_cast<const Wide*>(x + i);
+    }
   for (int a = K - 1; a >= 0; --a) {
-    x[a] -= total[a];
-    for (int b = a + 1; b < K; ++b) x[a] -= l[a * stride + b] * x[b];
-    x[a] /= l[a * stride + a];
+    x[a] -= sum_of(sum[a]);
+    for (int b = a + 1; b < K; ++b) x[a] -= real(l[a * rows + b]) * x[b];
+    x[a] *= real(l[a * rows + a]);
   }
 }
 
-// A supernode's columns in groups of four, after those that make no group. x: a contiguous copy of
-// what belongs to its rows; L is stored column by column, `rows` apart.
-TRACERAFT_CLONES
-void forward_dense(const Real* l, int columns, int rows, Real* x) {
-  const auto at = [&](int j) { return l + static_cast<std::size_t>(j) * (rows + 1); };
-  int j = columns % 4;
-  if (j == 1) eliminate<1>(l, rows, rows, x);
-  if (j == 2) eliminate<2>(l, rows, rows, x);
-  if (j == 3) eliminate<3>(l, rows, rows, x);
-  for (; j < columns; j += 4) eliminate<4>(at(j), rows, rows - j, x + j);
+// A supernode's columns are in groups of four, after those that make no group. So many numbers has
+// it in all.
+std::size_t group_values(int columns, int rows) {
+  std::size_t count = 0;
+  for (int j = 0; j < columns;) {
+    const int size = j == 0 && columns % 4 > 0 ? columns % 4 : 4;
+    count += static_cast<std::size_t>(size) * (rows - j);
+    j += size;
+  }
+  return count;
 }
 
+// x: a contiguous copy of what belongs to the supernode's rows.
 TRACERAFT_CLONES
-void backward_dense(const Real* l, int columns, int rows, Real* x) {
-  const auto at = [&](int j) { return l + static_cast<std::size_t>(j) * (rows + 1); };
+void forward_dense(const Stored* l, int columns, int rows, Real* x) {
+  int j = columns % 4;
+  if (j == 1) eliminate<1>(l, rows, x);
+  if (j == 2) eliminate<2>(l, rows, x);
+  if (j == 3) eliminate<3>(l, rows, x);
+  l += static_cast<std::size_t>(j) * rows;
+  for (; j < columns; j += 4) {
+    eliminate<4>(l, rows - j, x + j);
+    l += static_cast<std::size_t>(4) * (rows - j);
+  }
+}
+
+// l: the end of the supernode's numbers.
+TRACERAFT_CLONES
+void backward_dense(const Stored* l, int columns, int rows, Real* x) {
   const int single = columns % 4;
-  for (int j = columns - 4; j >= single; j -= 4) substitute<4>(at(j), rows, rows - j, x + j);
-  if (single == 3) substitute<3>(l, rows, rows, x);
-  if (single == 2) substitute<2>(l, rows, rows, x);
-  if (single == 1) substitute<1>(l, rows, rows, x);
+  for (int j = columns - 4; j >= single; j -= 4) {
+    l -= static_cast<std::size_t>(4) * (rows - j);
+    substitute<4>(l, rows - j, x + j);
+  }
+  l -= static_cast<std::size_t>(single) * rows;
+  if (single == 3) substitute<3>(l, rows, x);
+  if (single == 2) substitute<2>(l, rows, x);
+  if (single == 1) substitute<1>(l, rows, x);
+}
+
+// The columns of one supernode, `rows` apart.
+TRACERAFT_CLONES
+void copy_dense(const double* from, int columns, int rows, Stored* to) {
+  for (int j = 0; j < columns;) {
+    const int size = j == 0 && columns % 4 > 0 ? columns % 4 : 4;
+    for (int a = 0; a < size; ++a) {
+      const double* column = from + static_cast<std::size_t>(j + a) * rows + j;
+      for (int i = 0; i < rows - j; ++i) to[i] = stored(column[i]);
+      to[a] = stored(1 / column[a]);
+      to += rows - j;
+    }
+    j += size;
+  }
 }
 
 }  // namespace
@@ -105,18 +170,19 @@ void backward_dense(const Real* l, int columns, int rows, Real* x) {
 void SupernodalFactor::read_structure(const cholmod_factor& factor) {
   const int* super = static_cast<const int*>(factor.super);
   const int* row_begin = static_cast<const int*>(factor.pi);
-  const int* value_begin = static_cast<const int*>(factor.px);
   const int* rows = static_cast<const int*>(factor.s);
   const int* order = static_cast<const int*>(factor.Perm);
   permutation_.assign(order, order + factor.n);
   rows_.assign(rows, rows + factor.ssize);
+  std::size_t values = 0;
   for (std::size_t s = 0; s < factor.nsuper; ++s) {
-    const int count = row_begin[s + 1] - row_begin[s];
-    supernodes_.push_back({super[s], super[s + 1] - super[s], count, count,
-                           static_cast<std::size_t>(row_begin[s]),
-                           static_cast<std::size_t>(value_begin[s])});
+    const int count = row_begin[s + 1] - row_begin[s], columns = super[s + 1] - super[s];
+    supernodes_.push_back(
+        {super[s], columns, count, count, static_cast<std::size_t>(row_begin[s]), values});
+    values += group_values(columns, count);
     most_rows_ = std::max(most_rows_, count);
   }
+  values_.assign(values + kWide, 0);
   find_branches();
 }
 
@@ -163,11 +229,14 @@ void SupernodalFactor::find_branches() {
 }
 
 void SupernodalFactor::copy(const cholmod_factor& factor) {
-  const double* values = static_cast<const double*>(factor.x);
-  values_.resize(factor.xsize);
-  std::transform(values, values + factor.xsize, values_.begin(),
-                 [](double value) { return static_cast<Real>(value); });
   if (supernodes_.empty()) read_structure(factor);
+  const FlushSubnormals flush;
+  const auto* values = static_cast<const double*>(factor.x);
+  const auto* begin = static_cast<const int*>(factor.px);
+  for (std::size_t s = 0; s < supernodes_.size(); ++s) {
+    const Supernode& node = supernodes_[s];
+    copy_dense(values + begin[s], node.columns, node.rows, values_.data() + node.value_begin);
+  }
 }
 
 // above: where contributions to the rows of the top go, or x itself from there on.
@@ -188,7 +257,9 @@ void SupernodalFactor::backward(const Supernode& node, Real* x, Real* work) cons
   Real* own = x + node.first_column;
   std::copy(own, own + node.columns, work);
   for (int i = node.columns; i < node.rows; ++i) work[i] = x[row[i]];
-  backward_dense(values_.data() + node.value_begin, node.columns, node.rows, work);
+  std::fill(work + node.rows, work + node.rows + kWide, Real{0});
+  const std::size_t values = group_values(node.columns, node.rows);
+  backward_dense(values_.data() + node.value_begin + values, node.columns, node.rows, work);
   std::copy(work, work + node.columns, own);
 }
 
@@ -205,7 +276,7 @@ void SupernodalFactor::solve(ConstVec b, VecRef x, const ThreadTeam& team, Work&
   const FlushSubnormals flush;
   for (std::size_t k = 0; k < n; ++k) solution[k] = static_cast<Real>(b[permutation_[k]]);
   for_branches([&](int branch) {
-    work.dense[branch].resize(most_rows_);
+    work.dense[branch].resize(most_rows_ + kWide);
     work.above[branch].assign(top, Real{0});
     for (int s = branch_begin_[branch]; s < branch_begin_[branch + 1]; ++s)
       forward(supernodes_[s], solution, work.above[branch].data(), work.dense[branch].data());

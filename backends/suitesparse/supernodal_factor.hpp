@@ -3,6 +3,7 @@
 
 #include <suitesparse/cholmod.h>
 
+#include <cstdint>
 #include <vector>
 
 #include "kernel/core/thread_team.hpp"
@@ -12,15 +13,16 @@ namespace traceraft {
 
 // CHOLMOD solves through one BLAS call per supernode. For one right-hand side and the small
 // supernodes of a surface mesh, the calls (each takes a lock that the threads of a process share)
-// cost more than the arithmetic, and reading the factor costs more than both: kept in single
-// precision it is half as long. That is enough for a preconditioner, whose Krylov method runs in
-// double precision.
+// cost more than the arithmetic, and reading the factor costs more than both: kept in 16 bits it is
+// a quarter as long. Their eight significant ones are enough for a preconditioner, whose Krylov
+// method runs in double precision; arithmetic is in single precision.
 //
 // The elimination tree is cut into two branches, which two threads take, and what both contribute
 // to. Contributions are added up in one order, so results do not depend on the number of threads.
 class SupernodalFactor {
  public:
   using Real = float;
+  using Stored = std::uint16_t;  // bfloat16: the upper half of a float
 
   // Copies a factor P A Pᵀ = L Lᵀ; reuses the memory of an earlier copy.
   void copy(const cholmod_factor& factor);
@@ -37,7 +39,7 @@ class SupernodalFactor {
     int first_column, columns, rows;  // the first `columns` rows are the triangular part,
     int below_top;                    // the first `below_top` rows belong to the node's branch
     std::size_t row_begin;            // in rows_
-    std::size_t value_begin;          // in values_, column by column
+    std::size_t value_begin;          // in values_: groups of columns, see group_values
   };
   void read_structure(const cholmod_factor& factor);
   void find_branches();
@@ -50,7 +52,7 @@ class SupernodalFactor {
   int top_row_ = 0;                    // first row of the top
   int most_rows_ = 0;
   std::vector<int> rows_;
-  std::vector<Real> values_;
+  std::vector<Stored> values_;
 };
 
 }  // namespace traceraft

@@ -344,7 +344,8 @@ TEST(Cholmod, SolvesToThePrecisionOfItsCopyOnEveryLane) {
   reference.solve(b, expected, one, 0);
   solver->solve(b, first, one, 0);
   solver->solve(b, second, two, 1);
-  EXPECT_LT((first - expected).norm(), 1e-5 * expected.norm());
+  // Eight significant bits: 0.4 % of each number of the factor.
+  EXPECT_LT((first - expected).norm(), 1e-2 * expected.norm());
   EXPECT_EQ(first, second);
   solver->solve(b, second, three, 0);
   EXPECT_EQ(first, second);
