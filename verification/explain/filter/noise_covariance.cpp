@@ -81,13 +81,13 @@ bool fit_noise_covariance(FilterProblems& data, const FilterResult& pass,
     if (!in.held_out) counting.insert(counting.end(), all.back().begin(), all.back().end());
   }
   const NoiseCorrelation before = data.front().correlation;
-  const NoiseCorrelation now =
-      fit_correlation(some_of(std::move(counting)), spacing, team).correlation;
+  NoiseCorrelation now = fit_correlation(some_of(std::move(counting)), spacing, team).correlation;
   if (now.white() && before.white()) {
     fit_noise(data, pass);
     return false;
   }
   const bool same = is_as_before(now, before, 1 / (spacing * spacing));
+  if (same) now = before;  // which the first field and the pass belong to
   std::vector<std::vector<double>> own(data.size());
   for (std::size_t k = 0; k < all.size(); ++k) {
     const Innovation& in = pass.innovations[k];
@@ -95,7 +95,8 @@ bool fit_noise_covariance(FilterProblems& data, const FilterResult& pass,
                               std::sqrt(fit_variance(all[k], now, team)));
   }
   set_noise(data, own);
-  for (FilterProblem& vesicle : data) set_correlation(now, base, settings, vesicle);
+  if (!same)
+    for (FilterProblem& vesicle : data) set_correlation(now, base, settings, vesicle);
   return !same;
 }
 
