@@ -189,7 +189,7 @@ TEST(CorrelationFit, StatesItsErrorOverSmoothPatterns) {
     stated += fit.correlation.error / kDraws;
   }
   EXPECT_LT(std::sqrt(squares) / stated, 2);
-  EXPECT_GT(std::sqrt(squares) / stated, 0.5);
+  EXPECT_GT(std::sqrt(squares) / stated, 0.7);
 }
 
 // Measured fields alone give an estimate, which takes nothing of a smooth field for noise.

@@ -61,6 +61,21 @@ TEST(NoiseCovariance, IsFoundBesideTheStateAndMakesNoGap) {
   EXPECT_EQ(in.gap.size(), in.values.size());
 }
 
+// Where its size is known to some error only, each replicate has noise of a size of its own.
+TEST(NoiseCovariance, HasReplicatesOfTheSizesThatItMayHave) {
+  Measured m(0);
+  const auto replicates = [&](double error) {
+    m.data[0].correlation.error = error;
+    return m.pass().innovations.front().replicates;
+  };
+  // The state's part is the same. Noise has norm √(values), so this is |size − 1|, with
+  // size = exp(½ error z): its root mean square is 0.207.
+  const Columns change = replicates(0.4) - replicates(0);
+  const double values = static_cast<double>(change.rows());
+  const Vec sizes = change.colwise().norm().transpose() / std::sqrt(values);
+  EXPECT_NEAR(std::sqrt(sizes.squaredNorm() / static_cast<double>(sizes.size())), 0.207, 0.05);
+}
+
 TEST(NoiseCovariance, StaysWhiteWhereItIs) {
   Measured m(0);
   FilterProblems same = m.data;

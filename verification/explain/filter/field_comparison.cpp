@@ -1,5 +1,7 @@
 #include "verification/explain/filter/field_comparison.hpp"
 
+#include <cmath>
+
 #include "backends/openblas/dense_algebra.hpp"
 #include "kernel/core/random.hpp"
 #include "kernel/effects/effects.hpp"
