@@ -40,8 +40,9 @@ VarianceFit without_unseen(const VarianceComponents& model, VarianceFit fit,
     for (std::size_t k = 1; k < free.size(); ++k) {
       const auto i = static_cast<Eigen::Index>(k);
       if (!free[k] || fit.variances[i] == 0) continue;
-      if (fit.variances[i] >= certainty * fit.errors[i]) continue;
-      certainty = fit.variances[i] / fit.errors[i];
+      const double error = fit.standard_error(i);
+      if (fit.variances[i] >= certainty * error) continue;
+      certainty = fit.variances[i] / error;
       least = k;
     }
     if (least == 0) return fit;

@@ -116,8 +116,7 @@ VarianceComponents::Moments VarianceComponents::moments(const Vec& variances, do
 
 VarianceFit VarianceComponents::fit(const Vec& start, const std::vector<bool>& free) const {
   const BlockRows own = indices(free);
-  VarianceFit result{start, Vec::Zero(start.size()),
-                     Eigen::MatrixXd::Zero(start.size(), start.size())};
+  VarianceFit result{start, Eigen::MatrixXd::Zero(start.size(), start.size())};
   Eigen::MatrixXd matrix;
   for (int k = 0; k < kMostWeightings; ++k) {
     const double sum = result.variances.sum();
@@ -139,7 +138,6 @@ VarianceFit VarianceComponents::fit(const Vec& start, const std::vector<bool>& f
   for (Eigen::Index k = 0; k < n; ++k)
     for (Eigen::Index j = 0; j < n; ++j)
       result.covariance(own[positive[k]], own[positive[j]]) = 2 * inverse(k, j);
-  result.errors = result.covariance.diagonal().cwiseMax(0).cwiseSqrt();
   return result;
 }
 

@@ -6,6 +6,8 @@
 // would be that of its shape there; what matters is how much of it there is over long ones.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "kernel/core/thread_team.hpp"
@@ -18,8 +20,8 @@ using CorrelationFunction = std::function<double(double distance)>;
 
 struct VarianceFit {
   Vec variances;               // of each component, in units of the blocks' deviations
-  Vec errors;                  // standard ones; 0 for variances that are 0
   Eigen::MatrixXd covariance;  // of the estimates; 0 where variances are 0
+  double standard_error(Eigen::Index k) const { return std::sqrt(std::max(0.0, covariance(k, k))); }
 };
 
 class VarianceComponents {
