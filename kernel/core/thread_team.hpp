@@ -1,6 +1,7 @@
 // A fixed team of threads that run the same function on different blocks of work.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <cstddef>
@@ -36,6 +37,22 @@ class ThreadTeam {
       const auto p = static_cast<std::size_t>(part);
       body(count * p / parts, count * (p + 1) / parts);
     });
+  }
+
+  // Sums over [0, count): add(i, total) adds the part of i to a total. Totals are of chunks of
+  // fixed size, so that the sum does not depend on the size of the team.
+  template <class Add>
+  double sum(std::size_t count, const Add& add) const {
+    constexpr std::size_t kChunk = 1024;
+    std::vector<double> partial((count + kChunk - 1) / kChunk, 0.0);
+    for_range(partial.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t chunk = begin; chunk < end; ++chunk)
+        for (std::size_t i = chunk * kChunk; i < std::min((chunk + 1) * kChunk, count); ++i)
+          add(i, partial[chunk]);
+    });
+    double total = 0;
+    for (const double part : partial) total += part;
+    return total;
   }
 
  private:

@@ -1,6 +1,5 @@
 #include "kernel/fem/averaged_potential.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -135,19 +134,9 @@ void add_tangent_product(const SurfaceSpace& space, const DoubleWell& well, doub
 }
 
 double energy(const SurfaceSpace& space, const DoubleWell& well, ConstVec c) {
-  // Summed in chunks of fixed size so that the result does not depend on the number of threads.
-  constexpr std::size_t kChunk = 512;
-  const std::size_t elements = space.elements.size();
-  std::vector<double> partial((elements + kChunk - 1) / kChunk, 0.0);
-  space.team->for_range(partial.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t chunk = begin; chunk < end; ++chunk)
-      for (std::size_t e = chunk * kChunk; e < std::min((chunk + 1) * kChunk, elements); ++e)
-        if (space.mesh.owns(space.mesh.tets[e]))
-          partial[chunk] += ElementEnergy(space, e, well, c).value();
+  return space.team->sum(space.elements.size(), [&](std::size_t e, double& total) {
+    if (space.mesh.owns(space.mesh.tets[e])) total += ElementEnergy(space, e, well, c).value();
   });
-  double total = 0;
-  for (const double part : partial) total += part;
-  return total;
 }
 
 }  // namespace traceraft::averaged_potential

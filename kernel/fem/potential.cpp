@@ -1,6 +1,5 @@
 #include "kernel/fem/potential.hpp"
 
-#include <algorithm>
 #include <array>
 
 #include "kernel/fem/averaged_potential.hpp"
@@ -92,26 +91,14 @@ void add_potential_tangent_product(const SurfaceSpace& space, const DoubleWell& 
 double potential_energy(const SurfaceSpace& space, const DoubleWell& well, PotentialRule rule,
                         ConstVec c) {
   if (rule == PotentialRule::averaged) return averaged_potential::energy(space, well, c);
-  // Summed in chunks of fixed size so that the result does not depend on the number of threads.
-  constexpr std::size_t kChunk = 1024;
   const Vec point_value = trace(space, c);
   const std::vector<double>& area = space.surface.triangle_area;
   const bool alone = space.communicator->size() == 1;
-  std::vector<double> partial((area.size() + kChunk - 1) / kChunk, 0.0);
-  space.team->for_range(partial.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t chunk = begin; chunk < end; ++chunk) {
-      const std::size_t last = std::min((chunk + 1) * kChunk, area.size());
-      for (std::size_t t = chunk * kChunk; t < last; ++t)
-        if (alone || space.owns_triangle(t))
-          for_each_point(area[t], corner_values(space, static_cast<int>(t), point_value),
-                         [&](double value, const auto&, double w) {
-                           partial[chunk] += w * well.energy(value);
-                         });
-    }
+  return space.team->sum(area.size(), [&](std::size_t t, double& total) {
+    if (!alone && !space.owns_triangle(t)) return;
+    for_each_point(area[t], corner_values(space, static_cast<int>(t), point_value),
+                   [&](double value, const auto&, double w) { total += w * well.energy(value); });
   });
-  double total = 0;
-  for (const double part : partial) total += part;
-  return total;
 }
 
 }  // namespace traceraft
