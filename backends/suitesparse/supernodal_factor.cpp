@@ -37,8 +37,7 @@ using Real = SupernodalFactor::Real;
 using Stored = SupernodalFactor::Stored;
 
 // Sixteen numbers at a time, summed in one fixed order. Columns are read beyond their ends, up to
-// fifteen numbers into what follows; what that adds to is of no interest, or it is added to times
-// 0.
+// fifteen numbers into what follows. These products go to numbers that nobody reads, or are zero.
 constexpr int kWide = 16;
 using Wide =
     Real __attribute__((vector_size(kWide * sizeof(Real)), aligned(alignof(Real)), may_alias));
@@ -110,15 +109,15 @@ TRACERAFT_INLINE void substitute(const Stored* l, int rows, Real* __restrict x) 
   }
 }
 
-// A supernode's columns are in groups of four, after those that make no group. So many numbers has
-// it in all.
-std::size_t group_values(int columns, int rows) {
+// A supernode's columns are in groups of four, after those that make no group.
+TRACERAFT_INLINE int group_size(int columns, int first) {
+  return first == 0 && columns % 4 > 0 ? columns % 4 : 4;
+}
+
+std::size_t values_of_groups(int columns, int rows) {
   std::size_t count = 0;
-  for (int j = 0; j < columns;) {
-    const int size = j == 0 && columns % 4 > 0 ? columns % 4 : 4;
-    count += static_cast<std::size_t>(size) * (rows - j);
-    j += size;
-  }
+  for (int j = 0; j < columns; j += group_size(columns, j))
+    count += static_cast<std::size_t>(group_size(columns, j)) * (rows - j);
   return count;
 }
 
@@ -153,16 +152,13 @@ void backward_dense(const Stored* l, int columns, int rows, Real* x) {
 // The columns of one supernode, `rows` apart.
 TRACERAFT_CLONES
 void copy_dense(const double* from, int columns, int rows, Stored* to) {
-  for (int j = 0; j < columns;) {
-    const int size = j == 0 && columns % 4 > 0 ? columns % 4 : 4;
-    for (int a = 0; a < size; ++a) {
+  for (int j = 0; j < columns; j += group_size(columns, j))
+    for (int a = 0; a < group_size(columns, j); ++a) {
       const double* column = from + static_cast<std::size_t>(j + a) * rows + j;
       for (int i = 0; i < rows - j; ++i) to[i] = stored(column[i]);
       to[a] = stored(1 / column[a]);
       to += rows - j;
     }
-    j += size;
-  }
 }
 
 }  // namespace
@@ -177,9 +173,10 @@ void SupernodalFactor::read_structure(const cholmod_factor& factor) {
   std::size_t values = 0;
   for (std::size_t s = 0; s < factor.nsuper; ++s) {
     const int count = row_begin[s + 1] - row_begin[s], columns = super[s + 1] - super[s];
+    const std::size_t begin = values;
+    values += values_of_groups(columns, count);
     supernodes_.push_back(
-        {super[s], columns, count, count, static_cast<std::size_t>(row_begin[s]), values});
-    values += group_values(columns, count);
+        {super[s], columns, count, count, static_cast<std::size_t>(row_begin[s]), begin, values});
     most_rows_ = std::max(most_rows_, count);
   }
   values_.assign(values + kWide, 0);
@@ -258,8 +255,7 @@ void SupernodalFactor::backward(const Supernode& node, Real* x, Real* work) cons
   std::copy(own, own + node.columns, work);
   for (int i = node.columns; i < node.rows; ++i) work[i] = x[row[i]];
   std::fill(work + node.rows, work + node.rows + kWide, Real{0});
-  const std::size_t values = group_values(node.columns, node.rows);
-  backward_dense(values_.data() + node.value_begin + values, node.columns, node.rows, work);
+  backward_dense(values_.data() + node.value_end, node.columns, node.rows, work);
   std::copy(work, work + node.columns, own);
 }
 

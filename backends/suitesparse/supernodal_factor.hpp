@@ -36,10 +36,10 @@ class SupernodalFactor {
 
  private:
   struct Supernode {
-    int first_column, columns, rows;  // the first `columns` rows are the triangular part,
-    int below_top;                    // the first `below_top` rows belong to the node's branch
-    std::size_t row_begin;            // in rows_
-    std::size_t value_begin;          // in values_: groups of columns, see group_values
+    int first_column, columns, rows;     // the first `columns` rows are the triangular part,
+    int below_top;                       // the first `below_top` rows belong to the node's branch
+    std::size_t row_begin;               // in rows_
+    std::size_t value_begin, value_end;  // in values_: its groups of columns
   };
   void read_structure(const cholmod_factor& factor);
   void find_branches();
