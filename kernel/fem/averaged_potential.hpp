@@ -17,7 +17,9 @@
 namespace traceraft::averaged_potential {
 
 inline constexpr double kVarianceInMean = 1.2;   // ξ
-inline constexpr double kVarianceOfSlope = 0.4;  // η; below 1 the energy is bounded from below
+inline constexpr double kVarianceOfSlope = 0.4;  // η
+// Large values of c make E_T ∝ (c̄² + ξV)² − 4η c̄² V ≥ 4 (ξ − η) c̄² V.
+static_assert(kVarianceOfSlope < kVarianceInMean, "the energy has to be bounded from below");
 
 // The meaning of potential.hpp; `c` and `v` have ghosts.
 void add(const SurfaceSpace& space, const DoubleWell& well, double factor, ConstVec c, VecRef r);
