@@ -72,7 +72,8 @@ const std::vector<OptionSpec>& run_options() {
       {"stabilisation", K::number, "1", "Physics",
        "normal-gradient stabilisation, in units of the mesh size", 1e-6, 1e6},
       {"mass-stabilisation", K::number, "1", "Physics",
-       "the same of the mass matrix; 1, as in the paper's code, slows short waves; 0.3 hardly does", 1e-3, 1e3},
+       "the same of the mass matrix, where it slows short waves; 1 as in the paper's code", 1e-3,
+       1e3},
 
       {"initial", K::text, "noise", "Initial state",
        "noise, band-limited:wavelength=0.3,amplitude=0.05, caps, formula, or restart:DIR"},

@@ -68,7 +68,7 @@ std::vector<TraceMoments> build_trace_moments(const CutSurface& surface,
   std::vector<TraceMoments> result;
   result.reserve(elements.size());
   for (const CutElement& element : elements) {
-    // Of each flat triangle: 1/3 and (1 + δ_ab)/12 between its corners.
+    // A flat triangle adds 1/3 at each corner, and (1 + δ_ab)/12 between two.
     Eigen::Vector4d mean = Eigen::Vector4d::Zero();
     Eigen::Matrix4d mass = Eigen::Matrix4d::Zero();
     for (int t = 0; t < element.triangles(); ++t) {

@@ -29,8 +29,8 @@ std::vector<CutElement> build_cut_elements(const ActiveMesh& mesh, const CutSurf
 // ∫_T (n·∇λ_i)(n·∇λ_j) dx of the edges of a tetrahedron: the element matrix of S off the diagonal.
 std::array<double, 6> normal_coupling(const ActiveMesh& mesh, const ActiveTet& tet);
 
-// What integrals of linear functions over Γ_T need, over |Γ_T|, in the order of the nodes and, for
-// pairs, of the four nodes and then of kTetEdges.
+// Integrals of the basis functions over Γ_T, divided by |Γ_T|. Pairs are those of each node with
+// itself, then those of kTetEdges.
 struct TraceMoments {
   std::array<double, 4> mean;   // ∫ φ_i
   std::array<double, 10> mass;  // ∫ φ_i φ_j
