@@ -181,7 +181,7 @@ const Fault kFaults[] = {
      [](CahnHilliardModel& m) { m.epsilon *= 1.02; }},
     {"geometry",
      "a surface 1e-3 too large, and no stabilisation",
-     {"sphere: order of the area", "torus: order of the area", "largest condition of M + h S"},
+     {"sphere: order of the area", "torus: order of the area", "largest condition of M + 0.3 h S"},
      {},
      {},
      "",

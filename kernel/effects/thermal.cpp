@@ -7,6 +7,25 @@
 namespace traceraft {
 namespace {
 
+// A factor G of the products of the four surface gradients, G Gᵀ: two steps of Cholesky's method
+// with pivots, as gradients on a surface have rank two.
+Eigen::Matrix<double, 4, 2> gradient_factor(const CutElement& element) {
+  Eigen::Matrix4d rest = Eigen::Matrix4d::Zero();
+  for (int e = 0; e < 6; ++e) {
+    const auto& [i, j] = kTetEdges[e];
+    rest(i, j) = rest(j, i) = element.coupling[e];
+  }
+  rest.diagonal() = -rest.rowwise().sum();
+  Eigen::Matrix<double, 4, 2> factor;
+  for (int k = 0; k < 2; ++k) {
+    Eigen::Index pivot;
+    const double largest = rest.diagonal().maxCoeff(&pivot);
+    factor.col(k) = rest.col(pivot) / std::sqrt(largest);
+    rest -= factor.col(k) * factor.col(k).transpose();
+  }
+  return factor;
+}
+
 // Cook's noise: a random flux √(2 kT M) ξ with ξ white in space and time. In every tetrahedron one
 // vector with variance 1/|Γ_T|; in time drawn every τ with variance 1/τ and linear in between, so
 // that integrators see a continuous function. A step that is longer than τ would take one draw for
@@ -62,27 +81,25 @@ class ThermalNoise final : public Effect {
     return Eigen::Map<const Eigen::Vector4d>(gradient.data()) / (2 * std::sqrt(integral));
   }
 
-  // −√(2 kT/τ) ξ·∇_Γλ_i, to be multiplied with √∫_T M.
+  // −√(2 kT/τ) G ξ with G Gᵀ = ∇_Γλ_i·∇_Γλ_j, to be multiplied with √∫_T M.
   Eigen::Vector4d element_flux(const SurfaceSpace& space, std::size_t e, double t) const {
     const ActiveTet& tet = space.mesh.tets[e];
     const auto place = static_cast<std::uint64_t>(space.mesh.node_id[tet.node[0]]) * 6 +
                        static_cast<std::uint64_t>(tet.kuhn);
     const double when = t / tau_;
     const double begin = std::floor(when), share = when - begin;
-    const Point flux = (1 - share) * draw(place, begin) + share * draw(place, begin + 1);
-    const Point normal = cut_normal(space.mesh, tet);
-    return -std::sqrt(2 * kT_ / tau_ * (pace_ ? pace_(t) : 1)) / space.h() *
-           scaled_gradients(tet.kuhn) * (flux - flux.dot(normal) * normal);
+    const Eigen::Vector2d flux = (1 - share) * draw(place, begin) + share * draw(place, begin + 1);
+    return -std::sqrt(2 * kT_ / tau_ * (pace_ ? pace_(t) : 1)) *
+           (gradient_factor(space.elements[e]) * flux);
   }
 
-  Point draw(std::uint64_t place, double when) const {
+  Eigen::Vector2d draw(std::uint64_t place, double when) const {
     const auto stream = static_cast<std::uint64_t>(when) + 1000;
     const auto uniform = [&](std::uint64_t k) {
-      return uniform_random(seed_, stream, 4 * place + k);
+      return uniform_random(seed_, stream, 2 * place + k);
     };
-    const auto first = normal_pair(uniform(0), uniform(1));
-    const auto second = normal_pair(uniform(2), uniform(3));
-    return {first[0], first[1], second[0]};
+    const auto pair = normal_pair(uniform(0), uniform(1));
+    return {pair[0], pair[1]};
   }
 
   void add_flux(const SurfaceSpace& space, std::size_t e, double weight, double t, VecRef r) const {

@@ -3,26 +3,14 @@
 namespace traceraft {
 namespace {
 
-// Products of the gradients of the barycentric coordinates along (n·∇λ) and in full, per edge.
-struct GradientProducts {
-  std::array<double, 6> full, normal;
-};
-
-GradientProducts gradient_products(const ActiveMesh& mesh, const ActiveTet& tet) {
-  const Eigen::Matrix<double, 4, 3> gradient = scaled_gradients(tet.kuhn) / mesh.cube.h();
-  const Eigen::Matrix<double, 4, 1> along = gradient * cut_normal(mesh, tet);
-  GradientProducts products;
-  for (int e = 0; e < 6; ++e) {
-    const auto& [i, j] = kTetEdges[e];
-    products.full[e] = gradient.row(i).dot(gradient.row(j));
-    products.normal[e] = along[i] * along[j];
-  }
-  return products;
+Eigen::Matrix<double, 4, 3> basis_gradients(const ActiveMesh& mesh, const ActiveTet& tet) {
+  return scaled_gradients(tet.kuhn) / mesh.cube.h();
 }
 
 }  // namespace
 
-std::vector<CutElement> build_cut_elements(const ActiveMesh& mesh, const CutSurface& surface) {
+std::vector<CutElement> build_cut_elements(const ActiveMesh& mesh,
+                                           const std::vector<LiftedTriangle>& lifted) {
   std::vector<CutElement> elements;
   elements.reserve(mesh.tets.size());
   int triangle = 0;
@@ -30,14 +18,19 @@ std::vector<CutElement> build_cut_elements(const ActiveMesh& mesh, const CutSurf
     CutElement element{};
     element.node = tet.node;
     element.edge = tet.edge;
-    const GradientProducts products = gradient_products(mesh, tet);
-    for (int e = 0; e < 6; ++e) element.coupling[e] = products.full[e] - products.normal[e];
     const CutPolygon polygon = cut_polygon(mesh, tet);
     element.corners = polygon.count;
     for (int v = 0; v < polygon.count; ++v)
       element.cut_edge[v] = static_cast<signed char>(polygon.edge[v]);
     element.first_triangle = triangle;
-    for (int t = 0; t < element.triangles(); ++t) element.area += surface.triangle_area[triangle++];
+    Eigen::Matrix3d metric = Eigen::Matrix3d::Zero();
+    for (int t = 0; t < element.triangles(); ++t, ++triangle) {
+      element.area += lifted[triangle].area;
+      metric += lifted[triangle].area * lifted[triangle].metric;
+    }
+    const auto gradient = basis_gradients(mesh, tet);
+    const Eigen::Matrix4d products = gradient * (metric / element.area) * gradient.transpose();
+    for (int e = 0; e < 6; ++e) element.coupling[e] = products(kTetEdges[e][0], kTetEdges[e][1]);
     elements.push_back(element);
   }
   return elements;
@@ -45,8 +38,10 @@ std::vector<CutElement> build_cut_elements(const ActiveMesh& mesh, const CutSurf
 
 std::array<double, 6> normal_coupling(const ActiveMesh& mesh, const ActiveTet& tet) {
   const double h = mesh.cube.h(), volume = h * h * h / 6;
-  std::array<double, 6> coupling = gradient_products(mesh, tet).normal;
-  for (double& value : coupling) value *= volume;
+  const Eigen::Vector4d along = basis_gradients(mesh, tet) * cut_normal(mesh, tet);
+  std::array<double, 6> coupling;
+  for (int e = 0; e < 6; ++e)
+    coupling[e] = volume * along[kTetEdges[e][0]] * along[kTetEdges[e][1]];
   return coupling;
 }
 

@@ -4,17 +4,18 @@
 #include <array>
 #include <vector>
 
-#include "kernel/mesh/cut_surface.hpp"
+#include "kernel/mesh/lifted_surface.hpp"
 
 namespace traceraft {
 
 // On a tetrahedron ∇c_h is constant and Γ_h is one or two flat triangles, so every weighted
-// stiffness matrix is (∫ weight) times the same 4×4 matrix.
+// stiffness matrix is (∫ weight) times the same 4×4 matrix. Integrals are those over the triangles'
+// images on Γ.
 struct CutElement {
   std::array<int, 4> node;
   std::array<int, 6> edge;              // active edges, order of kTetEdges
   std::array<double, 6> coupling;       // ∇_Γλ_i·∇_Γλ_j of the edges; rows sum to zero
-  double area;                          // |Γ_T|
+  double area;                          // |Γ_T|, of the images
   int first_triangle;                   // of Γ_h; the second, if there is one, follows
   int corners;                          // of the polygon: 3 or 4
   std::array<signed char, 4> cut_edge;  // local edges at the polygon's corners
@@ -24,7 +25,9 @@ struct CutElement {
 // The polygon's corners that triangle 0 and 1 of an element join, in the order of CutSurface.
 inline constexpr std::array<std::array<int, 3>, 2> kPolygonTriangles = {{{0, 1, 2}, {0, 2, 3}}};
 
-std::vector<CutElement> build_cut_elements(const ActiveMesh& mesh, const CutSurface& surface);
+// `lifted`: of each triangle of the surface.
+std::vector<CutElement> build_cut_elements(const ActiveMesh& mesh,
+                                           const std::vector<LiftedTriangle>& lifted);
 
 // ∫_T (n·∇λ_i)(n·∇λ_j) dx of the edges of a tetrahedron: the element matrix of S off the diagonal.
 std::array<double, 6> normal_coupling(const ActiveMesh& mesh, const ActiveTet& tet);

@@ -68,6 +68,21 @@ CsrMatrix mass_matrix(const SurfaceSpace& space) {
 
 }  // namespace
 
+struct SurfaceSpace::Geometry {
+  ActiveMesh mesh;
+  CutSurface surface;
+  std::vector<CutElement> elements;
+
+  Geometry(const LevelSet& level_set, std::int64_t cells, const ThreadTeam& team,
+           const Communicator& ranks)
+      : mesh(build_active_mesh(level_set, cells, ranks)),
+        surface(checked_surface(level_set, mesh, ranks)) {
+    const std::vector<LiftedTriangle> lifted = lifted_triangles(level_set, mesh, surface, team);
+    elements = build_cut_elements(mesh, lifted);
+    for (std::size_t t = 0; t < lifted.size(); ++t) surface.triangle_area[t] = lifted[t].area;
+  }
+};
+
 void add_element_matrix(const CutElement& element, const Eigen::Matrix4d& local,
                         const RowBlock& block, CsrMatrix& matrix) {
   const SparsityPattern& pattern = *matrix.pattern;
@@ -113,9 +128,15 @@ SurfaceSpace::SurfaceSpace(const LevelSet& level_set, std::int64_t cells,
                            std::shared_ptr<const ThreadTeam> team_,
                            std::shared_ptr<const Communicator> communicator_,
                            double mass_stabilisation_)
-    : mesh(build_active_mesh(level_set, cells, *communicator_)),
-      surface(checked_surface(level_set, mesh, *communicator_)),
-      elements(build_cut_elements(mesh, surface)),
+    : SurfaceSpace(Geometry(level_set, cells, *team_, *communicator_), team_, communicator_,
+                   mass_stabilisation_) {}
+
+SurfaceSpace::SurfaceSpace(Geometry geometry, std::shared_ptr<const ThreadTeam> team_,
+                           std::shared_ptr<const Communicator> communicator_,
+                           double mass_stabilisation_)
+    : mesh(std::move(geometry.mesh)),
+      surface(std::move(geometry.surface)),
+      elements(std::move(geometry.elements)),
       moments(build_trace_moments(surface, elements)),
       edge_couplings(build_edge_couplings(elements, mesh.edges.size())),
       team(std::move(team_)),

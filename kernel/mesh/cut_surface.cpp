@@ -75,8 +75,7 @@ CutSurface build_cut_surface(const ActiveMesh& mesh) {
   }
   const std::vector<Point>& position = surface.position;
   for (const auto& [a, b, c] : surface.triangles)
-    surface.triangle_area.push_back(
-        0.5 * (position[b] - position[a]).cross(position[c] - position[a]).norm());
+    surface.triangle_area.push_back(triangle_area(position[a], position[b], position[c]));
   return surface;
 }
 

@@ -25,6 +25,10 @@ inline double cut_fraction(double phi_low, double phi_high) {
 // Unit normal of Γ_h in a tetrahedron, ∇φ_h/|∇φ_h|, pointing to φ > 0.
 Point cut_normal(const ActiveMesh& mesh, const ActiveTet& tet);
 
+inline double triangle_area(const Point& a, const Point& b, const Point& c) {
+  return 0.5 * (b - a).cross(c - a).norm();
+}
+
 struct CutPoint {
   int low, high;  // nodes of the edge
   double s;       // x = (1 − s) x_low + s x_high
@@ -36,7 +40,8 @@ struct CutSurface {
   std::vector<Point> position;                // of each point
   std::vector<std::array<int, 3>> triangles;  // counter-clockwise seen from outside
   std::vector<int> triangle_tet;              // ascending
-  std::vector<double> triangle_area;
+  std::vector<double>
+      triangle_area;  // of the flat triangles; in a SurfaceSpace, of their images on Γ
 };
 
 CutSurface build_cut_surface(const ActiveMesh& mesh);

@@ -48,7 +48,7 @@ Piece piece_above(const std::array<Point, 3>& x, const std::array<double, 3>& va
   }
   Piece piece;
   for (int i = 2; i < corners; ++i) {
-    const double area = 0.5 * (corner[i - 1] - corner[0]).cross(corner[i] - corner[0]).norm();
+    const double area = triangle_area(corner[0], corner[i - 1], corner[i]);
     piece.area += area;
     piece.moment += area / 3 * (corner[0] + corner[i - 1] + corner[i]);
   }
@@ -113,7 +113,9 @@ Pieces find_pieces(const SurfaceSpace& space, const Vec& value, double level) {
     const int piece = std::max({pieces.of_point[i], pieces.of_point[j], pieces.of_point[k]});
     if (piece < 0) continue;
     const Piece part = piece_above({x[i], x[j], x[k]}, {value[i], value[j], value[k]}, level);
-    pieces.sums[piece].add(part.area, part.curve, part.moment.data());
+    const double stretch = surface.triangle_area[t] / triangle_area(x[i], x[j], x[k]);
+    const Point moment = stretch * part.moment;
+    pieces.sums[piece].add(stretch * part.area, part.curve, moment.data());
   }
   return pieces;
 }
