@@ -6,6 +6,7 @@
 #include "drivers/config/config_file.hpp"
 #include "drivers/run/checked_options.hpp"
 #include "drivers/run/checkpoint_store.hpp"
+#include "drivers/run/physical_model.hpp"
 #include "kernel/problem/initial_data.hpp"
 
 namespace traceraft {
@@ -44,6 +45,7 @@ InitialRequest initial_request(const Configuration& configuration, const CahnHil
   request.caps = parse_caps(configuration);
   if (const std::string formula = configuration.text("initial-formula"); !formula.empty())
     request.formula = parse_formula(configuration.where("initial-formula"), formula);
+  request.surface = surface_of(configuration);
   request.epsilon = model.epsilon;
   request.well = model.well;
   return request;

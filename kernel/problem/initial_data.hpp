@@ -1,5 +1,5 @@
-// Initial concentrations. All are projected, M̃ c₀ = M c, because nodal values away from Γ_h would
-// otherwise act as extra data; the projection keeps ∫c exactly.
+// Initial concentrations. All are projected, M̃ c₀ = (∫ c φ_i), because nodal values away from Γ_h
+// would otherwise act as extra data; the projection keeps ∫c exactly.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,8 @@ struct InitialRequest {
   std::int64_t noise_cells = 0;  // cells per edge of the mesh on which noise is drawn; 0: the mesh
   std::uint64_t seed = 1;
   std::vector<CapRaft> caps;
-  std::function<double(const Point&)> formula;
+  std::function<double(const Point&)> formula;  // thread-safe
+  LevelSetPtr surface;  // where formulas are evaluated; without it, on the triangles of Γ_h
   double epsilon = 0.05;
   DoubleWell well;
 };
@@ -34,8 +35,9 @@ struct InitialEntry {
   std::string name;
   std::string summary;
   std::vector<ParameterSpec> parameters;
-  // Nodal values before projection.
-  std::function<Vec(const SurfaceSpace&, const InitialRequest&, const Parameters&)> make;
+  // One of both: values at the nodes, or at any point of the surface.
+  std::function<Vec(const SurfaceSpace&, const InitialRequest&, const Parameters&)> nodal;
+  std::function<std::function<double(const Point&)>(const InitialRequest&)> concentration;
 };
 
 InitialEntry bernoulli_noise();
@@ -49,8 +51,8 @@ const NamedList<InitialEntry>& initial_fields();
 Vec make_initial_field(const std::string& specification, const SurfaceSpace& space,
                        const InitialRequest& request);
 
-// L² projection with the stabilised mass matrix: M̃ c = M nodal. Throws InputError if the data are
-// not finite.
+// L² projection of nodal values with the stabilised mass matrix: M̃ c = M nodal. Throws InputError
+// if the data are not finite.
 Vec project(const SurfaceSpace& space, ConstVec nodal);
 
 }  // namespace traceraft

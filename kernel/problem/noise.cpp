@@ -145,7 +145,8 @@ InitialEntry bernoulli_noise() {
           {},
           [](const SurfaceSpace& space, const InitialRequest& request, const Parameters&) {
             return bernoulli(space, request);
-          }};
+          },
+          {}};
 }
 
 InitialEntry band_limited_noise() {
@@ -153,7 +154,8 @@ InitialEntry band_limited_noise() {
           "smooth noise of one wavelength, the same on every mesh (--raft-fraction, --seed)",
           {{"wavelength", "R", 0.3, 0.01, 10, "typical wavelength"},
            {"amplitude", "b-a", 0.05, 0, 1, "standard deviation"}},
-          band_limited};
+          band_limited,
+          {}};
 }
 
 }  // namespace traceraft
