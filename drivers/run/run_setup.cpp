@@ -30,18 +30,6 @@ int thread_count(const Configuration& configuration, const Communicator& ranks) 
   return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 2);
 }
 
-// On the run's own mesh if it is a sphere, else on a sphere of the same mesh size.
-PerimeterCalibration perimeter_calibration(const Configuration& configuration,
-                                           const CahnHilliardModel& model,
-                                           const std::shared_ptr<const SurfaceSpace>& space) {
-  const auto sphere = configuration.text("surface") == "sphere"
-                          ? space
-                          : std::make_shared<const SurfaceSpace>(
-                                *make_surface("sphere"), configuration.integer("cells"),
-                                space->team, space->communicator, model.mass_stabilisation);
-  return calibrate_perimeter(*sphere, model);
-}
-
 // In the user's units, ascending.
 std::vector<double> asked_times(const Configuration& configuration) {
   constexpr int kDefaultTimes = 16;
@@ -111,9 +99,8 @@ RunSetup build_run(const Configuration& configuration, InitialState initial,
     run.initial = initial_field(configuration, physics, *run.space);
     run.initial_mean = run.space->integral(run.initial) / run.space->area;
   }
-  run.perimeter = perimeter_calibration(configuration, physics, run.space);
-  run.observer =
-      std::make_unique<Observer>(*run.problem, run.space, run.perimeter.interface_energy);
+  run.boundary = resolved_boundary(physics, run.space->h());
+  run.observer = std::make_unique<Observer>(*run.problem, run.space, run.boundary.interface_energy);
   const LinearSolverChoice solvers = linear_solver(configuration, *run.space);
   run.integrator = integrator.make(*run.problem, solvers, run.team, settings);
   return run;

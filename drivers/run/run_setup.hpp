@@ -8,7 +8,7 @@
 #include "drivers/config/configuration.hpp"
 #include "drivers/config/option_needs.hpp"
 #include "kernel/observables/observables.hpp"
-#include "kernel/observables/perimeter_calibration.hpp"
+#include "kernel/observables/resolved_boundary.hpp"
 #include "kernel/problem/cahn_hilliard.hpp"
 #include "kernel/time/integrator.hpp"
 
@@ -23,7 +23,7 @@ struct RunSetup {
   std::unique_ptr<const CahnHilliard> problem;
   Vec initial;              // projected c at the nodes
   double initial_mean = 0;  // and its mean
-  PerimeterCalibration perimeter;
+  ResolvedBoundary boundary;
   std::unique_ptr<Observer> observer;
   IntegratorPtr integrator;             // not started
   double t_end;                         // units of R²/D, as below

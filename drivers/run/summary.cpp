@@ -135,7 +135,7 @@ std::string resolution_text(const Configuration& configuration, const RunSetup& 
   const CahnHilliardModel& model = run.problem->model();
   const double epsilon = model.epsilon, ratio = run.space->h() / epsilon;
   return formatted("epsilon = %g um = %g R, h/epsilon = %.2f, %.1f %% of its energy resolved%s",
-                   epsilon * run.units.radius_um, epsilon, ratio, 100 * run.perimeter.resolved,
+                   epsilon * run.units.radius_um, epsilon, ratio, 100 * run.boundary.resolved,
                    is_as_wide_as(configuration.text("surface"), model)
                        ? "; AS WIDE AS THE VESICLE: take a smaller --epsilon"
                    : ratio > kCoarse ? "; TOO COARSE: take more --cells"

@@ -25,7 +25,7 @@ struct Observables {
 
 class Observer {
  public:
-  // interface_energy: ∫ ε|∇c|² per unit length of phase boundary, see perimeter_calibration.hpp.
+  // interface_energy: ∫ ε|∇c|² per unit length of phase boundary, see resolved_boundary.hpp.
   // The problem must outlive this object.
   Observer(const CahnHilliard& problem, std::shared_ptr<const SurfaceSpace> space,
            double interface_energy);

@@ -5,8 +5,8 @@
 #include "backends/list.hpp"
 #include "kernel/fem/trace.hpp"
 #include "kernel/observables/observables.hpp"
-#include "kernel/observables/perimeter_calibration.hpp"
-#include "tests/support/spaces.hpp"
+#include "kernel/observables/resolved_boundary.hpp"
+#include "tests/support/relaxed_boundary.hpp"
 
 namespace traceraft {
 namespace {
@@ -147,39 +147,53 @@ TEST(Observables, PerimetersAgreeForAnEquilibriumProfile) {
   EXPECT_NEAR(row.energy, 0.06 * 2 * M_PI / (6 * std::sqrt(2.0)), 1e-3);
 }
 
-TEST(PerimeterCalibration, KnowsHowMuchOfTheBoundaryTheMeshResolves) {
-  const auto space = make_space(64);
-  const auto resolved = [&](double h_over_epsilon, PotentialRule rule) {
-    CahnHilliardModel model = testing::make_model("degenerate", space->h() / h_over_epsilon);
-    model.rule = rule;
-    return relaxed_interface_energy(*space, model, Point(0, 0, 1)) / model.well.interface_energy();
-  };
-  // The independent prototype found 0.906 and 0.98 with the nodal potential on 128 cells, where ε
-  // is half as large beside R as here.
-  EXPECT_NEAR(resolved(2.6, PotentialRule::nodal), 0.906, 0.012);
-  EXPECT_NEAR(resolved(1.3, PotentialRule::nodal), 0.98, 0.02);
-  EXPECT_NEAR(resolved(2.6, PotentialRule::consistent), 0.98, 0.01);
+// ∫ ε|∇c|² of two halves in equilibrium over that of a straight boundary of the same length.
+double measured_resolution(const CahnHilliardModel& model, const SurfaceSpace& space, int axes) {
+  double sum = 0;
+  for (int k = 0; k < axes; ++k) {
+    const Vec c =
+        testing::relaxed_boundary(space, model, testing::random_direction(8, std::uint64_t(k)));
+    sum += model.epsilon * space.quadratic(space.stiffness, c) / (2 * kPi);
+  }
+  return sum / axes / model.well.interface_energy();
 }
 
-TEST(PerimeterCalibration, MakesTheEquilibriumOfTwoHalvesTwoPiWithinThreePercent) {
-  const auto space = make_space(32);
-  CahnHilliardModel model = testing::make_model("constant:value=0.25", space->h() / 2);
-  const PerimeterCalibration calibration = calibrate_perimeter(*space, model);
-  const CahnHilliard problem(space, model);
-  Vec y = Vec::Zero(problem.size()), ydot(problem.size());
-  InitialRequest request;
-  request.epsilon = model.epsilon;
-  request.caps = {{{1, 5, -2}, M_PI / 2}};  // none of the axes of the calibration
-  y.head(problem.block_size()) = make_initial_field("caps", *space, request);
-  ASSERT_TRUE(problem.consistent_initial_state(0, y, ydot).ok());
-  const IntegratorPtr integrator = integrators().find("ida").make(
-      problem, choose_linear_solver("block", *space), space->team, {});
-  ASSERT_TRUE(integrator->start(0, y, ydot, 20).ok());
-  while (integrator->time() < 20) ASSERT_TRUE(integrator->advance().ok());
-  const Observables row =
-      Observer(problem, space, calibration.interface_energy).measure(20, integrator->state());
-  EXPECT_NEAR(row.perimeter / (2 * M_PI), 1, 0.03);
-  EXPECT_NEAR(row.perimeter_level / (2 * M_PI), 1, 0.01);
+TEST(ResolvedBoundary, IsWhatBoundariesHaveOnAverage) {
+  constexpr int kAxes = 16;
+  const auto space = make_space(48);
+  for (const double h_over_epsilon : {1.3, 2.6, 4.5})
+    for (const auto& [rule, scatter] :
+         {std::pair(PotentialRule::averaged, 0.0013), std::pair(PotentialRule::consistent, 0.0035),
+          std::pair(PotentialRule::nodal, 0.011)}) {
+      CahnHilliardModel model = testing::make_model("degenerate", space->h() / h_over_epsilon);
+      model.rule = rule;
+      const double straight = 1 - 4 * model.epsilon * model.epsilon;
+      EXPECT_NEAR(measured_resolution(model, *space, kAxes) / straight,
+                  resolved_boundary(model, space->h()).resolved,
+                  3 * scatter * h_over_epsilon / std::sqrt(kAxes))
+          << h_over_epsilon << " " << scatter;
+    }
+}
+
+TEST(ResolvedBoundary, DependsOnTheWidthThatTheWellMakes) {
+  CahnHilliardModel model = testing::make_model("degenerate", 0.02);
+  const double resolved = resolved_boundary(model, 0.05).resolved;
+  model.well = {4, 0.3, 0.8};  // half as wide
+  model.epsilon = 0.04;
+  EXPECT_DOUBLE_EQ(resolved_boundary(model, 0.05).resolved, resolved);
+  EXPECT_DOUBLE_EQ(resolved_boundary(model, 0.05).interface_energy,
+                   resolved * model.well.interface_energy());
+}
+
+TEST(ResolvedBoundary, ItsTableHasNoGapsAndEnds) {
+  CahnHilliardModel model = testing::make_model("degenerate", 1);
+  double before = 1;
+  for (double h = 0; h < 20; h += 0.05) {
+    const double resolved = resolved_boundary(model, h).resolved;
+    EXPECT_NEAR(resolved, before, 5e-4);
+    before = resolved;
+  }
+  EXPECT_EQ(before, 1.0196);
 }
 
 }  // namespace
