@@ -34,7 +34,8 @@ N_Vector clone(N_Vector v) {
   if (!copy) return nullptr;
   N_VCopyOps(v, copy);
   try {  // no exception may pass through the functions of C that ask for copies
-    copy->content = new Content{Vec::Zero(content(v).data.size()), content(v).space};
+    // Its numbers are not set: a Krylov method asks for a hundred of them and touches few.
+    copy->content = new Content{Vec(content(v).data.size()), content(v).space};
   } catch (const std::bad_alloc&) {
     N_VFreeEmpty(copy);
     return nullptr;
