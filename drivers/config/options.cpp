@@ -66,12 +66,12 @@ const std::vector<OptionSpec>& run_options() {
        "what is added to the model, as in exchange:rate=1e-3,target=0.2; several between "
        "semicolons or by several flags (see: traceraft list)",
        0, 0, D::none, true, true},
-      {"potential", K::text, "consistent", "Physics",
+      {"potential", K::text, "averaged", "Physics",
        "free energy of an element: from the mean of its square root (averaged: exact line "
        "tension), by quadrature (consistent), or nodal as in the paper's code"},
       {"stabilisation", K::number, "1", "Physics",
        "normal-gradient stabilisation, in units of the mesh size", 1e-6, 1e6},
-      {"mass-stabilisation", K::number, "1", "Physics",
+      {"mass-stabilisation", K::number, "0.3", "Physics",
        "the same of the mass matrix, where it slows short waves; 1 as in the paper's code", 1e-3,
        1e3},
 

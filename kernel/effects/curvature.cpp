@@ -31,8 +31,10 @@ Vec mean_curvature(const SurfaceSpace& space) {
   const int n = space.nodes();
   Vec curvature = Vec::Zero(n), x(n), load(n), vector(n), normal(n), buffer;
   Vec squares = Vec::Zero(n);
+  // ∇_Γ x errs by O(h), and its divergence by O(1). All of h S is needed to smooth that.
+  const CsrMatrix smoothing = combine(1, space.mass, space.h(), space.normal);
   const auto solve = [&](const Vec& right, Vec& solution) {
-    if (const Status status = space.solve_mass(right, solution); !status.ok())
+    if (const Status status = space.solve_spd(smoothing, right, solution, 1e-14); !status.ok())
       throw std::runtime_error("the curvature of the surface: " + status.why);
   };
   for (int axis = 0; axis < 3; ++axis) {

@@ -19,9 +19,11 @@ namespace traceraft {
 // How much of h S regularises the mass matrix. S adds to the mass of short waves, which slows them:
 // with 1, as in the paper's code, K/M of a wave of 3 h is 10 % too small, with 0.3 5 % too large
 // (docs/decisions/0019).
-inline constexpr double kMassStabilisation = 1;
+inline constexpr double kMassStabilisation = 0.3;
 
 class SurfaceSpace {
+  struct Geometry;
+
  public:
   // Throws InputError when the surface is not closed inside the box, the mesh is too coarse, or the
   // level set has no gradient on its surface. `mass_stabilisation`: of M̃, in units of h.
@@ -79,6 +81,10 @@ class SurfaceSpace {
   Status solve_spd(const CsrMatrix& A, ConstVec b, VecRef x, double tolerance) const;
   // M̃ x = b, with ∫x = 1ᵀb exactly up to roundoff.
   Status solve_mass(ConstVec b, VecRef x) const;
+
+ private:
+  SurfaceSpace(Geometry geometry, std::shared_ptr<const ThreadTeam> team,
+               std::shared_ptr<const Communicator> communicator, double mass_stabilisation);
 };
 
 // Adds the rows of a block that a 4×4 element matrix touches.

@@ -17,7 +17,7 @@ struct CahnHilliardModel {
   MobilityPtr mobility;
   DoubleWell well;
   double epsilon = 0.05;  // width of the phase boundary
-  PotentialRule rule = PotentialRule::consistent;
+  PotentialRule rule = PotentialRule::averaged;
   double stabilisation = 1.0;                      // ρ = stabilisation · h
   double mass_stabilisation = kMassStabilisation;  // of the space that the problem is posed on
   std::vector<EffectPtr> effects;

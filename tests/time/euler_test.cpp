@@ -121,7 +121,7 @@ TEST(Euler, OneStepIsTheHandAssembledStabilisedScheme) {
   Vec right = Vec::Zero(2 * n);
   const Vec c = start.y.head(n);
   space->stabilised_mass.multiply_add(1e3, c, right.head(n), *space->team);
-  add_potential(*space, problem.model().well, PotentialRule::consistent, 1, c, right.tail(n));
+  add_potential(*space, problem.model().well, problem.model().rule, 1, c, right.tail(n));
   space->stabilised_mass.multiply_add(-1, c, right.tail(n), *space->team);
   const Vec expected = system.partialPivLu().solve(right);
   EXPECT_LT((integrator->state() - expected).norm(), 1e-10 * expected.norm());
