@@ -220,7 +220,14 @@ const Fault kFaults[] = {
      broken_program(0, 1e-3),
      "2 ranks from 1"},
     {"iterations", "no stabilisation", {}, {}, {}, "", 0, true},
-    {"teko", "no stabilisation", {"most to 1e-8"}, {}, {}, "", 0, true},
+    {"teko",
+     "no stabilisation",
+     {"muelu (default): most to 1e-8", "muelu (default): systems it does not solve"},
+     {},
+     {},
+     "",
+     0,
+     true},
 };
 
 INSTANTIATE_TEST_SUITE_P(Broken, FaultTest, ::testing::ValuesIn(kFaults), [](const auto& info) {

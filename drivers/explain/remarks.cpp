@@ -114,9 +114,11 @@ void add_diffusion(const Explanation& found, const Units& base, std::vector<std:
     all.push_back(formatted("D is between %.3g and %.3g cm^2/s: ", range->low, range->high) +
                   range->why + ".");
   if (!knows_diffusion(found))
-    all.push_back(
-        "The interval of D is not known: the D that fits best makes up for part of what is "
-        "missing.");
+    all.push_back(found.finding == Finding::not_identifiable
+                      ? "The interval of D is not known: the D that fits best may make up for an "
+                        "effect that these data would not show."
+                      : "The interval of D is not known: the D that fits best makes up for part of "
+                        "what is missing.");
 }
 
 std::string text_of(const Turn& turn) {
