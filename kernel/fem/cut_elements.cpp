@@ -58,32 +58,24 @@ Eigen::Matrix4d trace_matrix(const CutSurface& surface, const CutElement& elemen
   return trace;
 }
 
-std::vector<TraceMoments> build_trace_moments(const CutSurface& surface,
-                                              const std::vector<CutElement>& elements) {
-  std::vector<TraceMoments> result;
+std::vector<TraceMass> build_trace_masses(const CutSurface& surface,
+                                          const std::vector<CutElement>& elements) {
+  std::vector<TraceMass> result;
   result.reserve(elements.size());
   for (const CutElement& element : elements) {
-    // A flat triangle adds 1/3 at each corner, and (1 + δ_ab)/12 between two.
-    Eigen::Vector4d mean = Eigen::Vector4d::Zero();
-    Eigen::Matrix4d mass = Eigen::Matrix4d::Zero();
+    // A flat triangle adds (1 + δ_ab)/12 between two corners.
+    Eigen::Matrix4d at_corners = Eigen::Matrix4d::Zero();
     for (int t = 0; t < element.triangles(); ++t) {
       const double share = surface.triangle_area[element.first_triangle + t] / element.area;
-      for (const int a : kPolygonTriangles[t]) {
-        mean[a] += share / 3;
-        for (const int b : kPolygonTriangles[t]) mass(a, b) += share / (a == b ? 6 : 12);
-      }
+      for (const int a : kPolygonTriangles[t])
+        for (const int b : kPolygonTriangles[t]) at_corners(a, b) += share / (a == b ? 6 : 12);
     }
     const Eigen::Matrix4d nodal = trace_matrix(surface, element);
-    const Eigen::Vector4d at_nodes = nodal.transpose() * mean;
-    const Eigen::Matrix4d between_nodes = nodal.transpose() * mass * nodal;
-    TraceMoments moments{};
-    for (int i = 0; i < 4; ++i) {
-      moments.mean[i] = at_nodes[i];
-      moments.mass[i] = between_nodes(i, i);
-    }
-    for (int e = 0; e < 6; ++e)
-      moments.mass[4 + e] = between_nodes(kTetEdges[e][0], kTetEdges[e][1]);
-    result.push_back(moments);
+    const Eigen::Matrix4d at_nodes = nodal.transpose() * at_corners * nodal;
+    TraceMass mass{};
+    for (int i = 0; i < 4; ++i) mass[i] = at_nodes(i, i);
+    for (int e = 0; e < 6; ++e) mass[4 + e] = at_nodes(kTetEdges[e][0], kTetEdges[e][1]);
+    result.push_back(mass);
   }
   return result;
 }
