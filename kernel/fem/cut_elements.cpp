@@ -23,13 +23,14 @@ std::vector<CutElement> build_cut_elements(const ActiveMesh& mesh,
     for (int v = 0; v < polygon.count; ++v)
       element.cut_edge[v] = static_cast<signed char>(polygon.edge[v]);
     element.first_triangle = triangle;
-    Eigen::Matrix3d metric = Eigen::Matrix3d::Zero();
+    Eigen::Matrix3d inverse_metric = Eigen::Matrix3d::Zero();
     for (int t = 0; t < element.triangles(); ++t, ++triangle) {
       element.area += lifted[triangle].area;
-      metric += lifted[triangle].area * lifted[triangle].metric;
+      inverse_metric += lifted[triangle].area * lifted[triangle].inverse_metric;
     }
     const auto gradient = basis_gradients(mesh, tet);
-    const Eigen::Matrix4d products = gradient * (metric / element.area) * gradient.transpose();
+    const Eigen::Matrix4d products =
+        gradient * (inverse_metric / element.area) * gradient.transpose();
     for (int e = 0; e < 6; ++e) element.coupling[e] = products(kTetEdges[e][0], kTetEdges[e][1]);
     elements.push_back(element);
   }

@@ -40,8 +40,8 @@ struct CutSurface {
   std::vector<Point> position;                // of each point
   std::vector<std::array<int, 3>> triangles;  // counter-clockwise seen from outside
   std::vector<int> triangle_tet;              // ascending
-  std::vector<double>
-      triangle_area;  // of the flat triangles; in a SurfaceSpace, of their images on Γ
+  // Of the flat triangles as built here; in a SurfaceSpace, of their images on Γ.
+  std::vector<double> triangle_area;
 };
 
 CutSurface build_cut_surface(const ActiveMesh& mesh);

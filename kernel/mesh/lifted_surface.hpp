@@ -12,9 +12,9 @@ namespace traceraft {
 // The image of a triangle on Γ. A function u that is linear on the triangle lives there, too.
 struct LiftedTriangle {
   double area;
-  // ∫ ∇_Γu·∇_Γv over the image = area (∇u)ᵀ metric ∇v, with the gradients on the triangle. Its
-  // kernel is the triangle's normal.
-  Eigen::Matrix3d metric;
+  // ∫ ∇_Γu·∇_Γv over the image = area (∇u)ᵀ inverse_metric ∇v, with the gradients on the triangle.
+  // It vanishes along the triangle's normal.
+  Eigen::Matrix3d inverse_metric;
 };
 
 // Where x, a point near Γ, is lifted to: along ∇φ(x), to φ = 0. `h` is the scale of differences.

@@ -28,7 +28,7 @@ double integrate(const SurfaceSpace& space, const std::vector<LiftedTriangle>& l
     Point gradient = Point::Zero();
     for (int v = 0; v < 4; ++v)
       gradient += c[tet.node[v]] / space.h() * scaled_gradients(tet.kuhn).row(v).transpose();
-    const double squared_slope = gradient.dot(lifted[k].metric * gradient);
+    const double squared_slope = gradient.dot(lifted[k].inverse_metric * gradient);
     for (const auto& [at, weight] : kDegreeFourRule)
       sum += weight * lifted[k].area *
              f(at[0] * trace[i] + at[1] * trace[j] + at[2] * trace[l], squared_slope);

@@ -46,7 +46,7 @@ TEST(LiftedSurface, HasTheMetricOfTheUnitSphere) {
       sum += area / 3 * inverse;
     }
     EXPECT_NEAR(lift.triangles[t].area / lift.surface.triangle_area[t], stretch, 1e-5);
-    EXPECT_LT((lift.triangles[t].metric - sum / stretch).cwiseAbs().maxCoeff(), 1e-5);
+    EXPECT_LT((lift.triangles[t].inverse_metric - sum / stretch).cwiseAbs().maxCoeff(), 1e-5);
   }
 }
 
@@ -83,8 +83,8 @@ TEST(LiftedSurface, StaysFlatAtAnEdge) {
   const Lift lift(cube, 20);
   EXPECT_NEAR(lift.area() / (6 * 1.4 * 1.4), 1, 0.03);
   for (const LiftedTriangle& triangle : lift.triangles) {
-    EXPECT_TRUE(triangle.metric.allFinite());
-    EXPECT_LT(triangle.metric.cwiseAbs().maxCoeff(), 4);
+    EXPECT_TRUE(triangle.inverse_metric.allFinite());
+    EXPECT_LT(triangle.inverse_metric.cwiseAbs().maxCoeff(), 4);
   }
 }
 
