@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "backends/suitesparse/huge_pages.hpp"
 #include "kernel/core/thread_team.hpp"
 #include "kernel/core/types.hpp"
 
@@ -53,7 +52,7 @@ class SupernodalFactor {
   int top_row_ = 0;                    // first row of the top
   int most_rows_ = 0;
   std::vector<int> rows_;
-  std::vector<Stored, HugePages<Stored>> values_;
+  std::vector<Stored> values_;
 };
 
 }  // namespace traceraft
