@@ -8,6 +8,7 @@ usage: compare.py [--traceraft build/release/traceraft] [--programs traceraft,pe
 """
 import argparse
 import csv
+import json
 import os
 import pathlib
 import subprocess
@@ -15,8 +16,9 @@ import sys
 import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
+# By spherical harmonics. The times are those at which the programs of problem.py report.
 TIMES = (1.0, 10.0, 100.0, 1000.0)
-ENERGIES = (925.4, 658.3, 390.724, 210.412)  # by spherical harmonics, as in problem.py
+ENERGIES = (925.4, 658.3, 390.724, 210.412)
 # What is run: size of the mesh, end, tolerance (FEniCS: first step).
 RUNS = {"traceraft": [(64, 1000, 1e-3), (88, 1000, 1e-3), (48, 100, 1e-3), (64, 100, 1e-3)],
         "petsc": [(5, 1000, 1e-3), (6, 100, 1e-3)],
@@ -55,7 +57,6 @@ def energies_of(name, output, folder):
 
 def nodes_of(name, output, folder):
     if name == "traceraft":
-        import json
         with open(os.path.join(folder, "summary.json")) as file:
             return json.load(file)["nodes"]
     return [int(w[1]) for w in map(str.split, output.splitlines()) if w and w[0] == "nodes"][0]

@@ -88,7 +88,7 @@ def main():
             before.assign(u)
             if step.dt == dt:
                 dt *= GROWTH if iterations <= EASY else 1 / GROWTH
-        problem.report([(end, assemble(energy))])
+        problem.report(end, assemble(energy))
     print("nodes", mesh.num_vertices())
 
 

@@ -134,7 +134,7 @@ def main():
             break
         ts.setMaxTime(t)
         ts.solve(state)
-        problem.report([(t, fem.energy(state.getArray()[:fem.size]))])
+        problem.report(t, fem.energy(state.getArray()[:fem.size]))
     print("nodes", fem.size)
 
 
