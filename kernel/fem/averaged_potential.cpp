@@ -18,8 +18,8 @@ class ElementEnergy {
  public:
   ElementEnergy(const SurfaceSpace& space, std::size_t e, const DoubleWell& well, ConstVec c)
       : area_(space.elements[e].area),
-        mass_(space.trace_mass[e]),
-        p_(mass_product(Nodes::Ones())),
+        mass_(space.moments[e].mass),
+        p_(space.moments[e].mean.data()),
         root_(std::sqrt(2 * well.rho)) {
     const Nodes value = values_at(space.elements[e], c);
     const Nodes product = mass_product(value);
@@ -84,8 +84,8 @@ class ElementEnergy {
   }
 
   double area_;
-  const TraceMass& mass_;
-  Nodes p_;                      // ∂c̄/∂c
+  const std::array<double, 10>& mass_;
+  Eigen::Map<const Nodes> p_;    // ∂c̄/∂c
   Nodes z_;                      // ½ ∂V/∂c
   double root_;                  // −w''/2
   double variance_, slope_, w_;  // V, w'(c̄), w̄

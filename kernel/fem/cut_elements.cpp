@@ -59,9 +59,9 @@ Eigen::Matrix4d trace_matrix(const CutSurface& surface, const CutElement& elemen
   return trace;
 }
 
-std::vector<TraceMass> build_trace_masses(const CutSurface& surface,
-                                          const std::vector<CutElement>& elements) {
-  std::vector<TraceMass> result;
+std::vector<TraceMoments> build_trace_moments(const CutSurface& surface,
+                                              const std::vector<CutElement>& elements) {
+  std::vector<TraceMoments> result;
   result.reserve(elements.size());
   for (const CutElement& element : elements) {
     // A flat triangle adds (1 + δ_ab)/12 between two corners.
@@ -73,10 +73,13 @@ std::vector<TraceMass> build_trace_masses(const CutSurface& surface,
     }
     const Eigen::Matrix4d nodal = trace_matrix(surface, element);
     const Eigen::Matrix4d at_nodes = nodal.transpose() * at_corners * nodal;
-    TraceMass mass{};
-    for (int i = 0; i < 4; ++i) mass[i] = at_nodes(i, i);
-    for (int e = 0; e < 6; ++e) mass[4 + e] = at_nodes(kTetEdges[e][0], kTetEdges[e][1]);
-    result.push_back(mass);
+    TraceMoments moments{};
+    for (int i = 0; i < 4; ++i) {
+      moments.mean[i] = at_nodes.row(i).sum();  // the φ_j add up to 1
+      moments.mass[i] = at_nodes(i, i);
+    }
+    for (int e = 0; e < 6; ++e) moments.mass[4 + e] = at_nodes(kTetEdges[e][0], kTetEdges[e][1]);
+    result.push_back(moments);
   }
   return result;
 }

@@ -32,11 +32,15 @@ std::vector<CutElement> build_cut_elements(const ActiveMesh& mesh,
 // ∫_T (n·∇λ_i)(n·∇λ_j) dx of the edges of a tetrahedron: the element matrix of S off the diagonal.
 std::array<double, 6> normal_coupling(const ActiveMesh& mesh, const ActiveTet& tet);
 
-// ∫ φ_i φ_j over Γ_T, divided by |Γ_T|: of each node with itself, then of the pairs of kTetEdges.
-// Σ_j of it is ∫ φ_i / |Γ_T|, as the φ_j add up to 1.
-using TraceMass = std::array<double, 10>;
-std::vector<TraceMass> build_trace_masses(const CutSurface& surface,
-                                          const std::vector<CutElement>& elements);
+// Integrals of the basis functions over Γ_T, divided by |Γ_T|. Pairs are those of each node with
+// itself, then those of kTetEdges. The mean could be summed up from the mass; a run takes 3 %
+// longer then.
+struct TraceMoments {
+  std::array<double, 4> mean;   // ∫ φ_i
+  std::array<double, 10> mass;  // ∫ φ_i φ_j
+};
+std::vector<TraceMoments> build_trace_moments(const CutSurface& surface,
+                                              const std::vector<CutElement>& elements);
 
 // The traces at the polygon's corners (rows) of the element's four basis functions (columns).
 Eigen::Matrix4d trace_matrix(const CutSurface& surface, const CutElement& element);

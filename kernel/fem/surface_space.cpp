@@ -57,7 +57,7 @@ CsrMatrix mass_matrix(const SurfaceSpace& space) {
   std::vector<double> edge(space.mesh.edges.size(), 0.0), diagonal(space.mesh.nodes(), 0.0);
   for (std::size_t t = 0; t < space.elements.size(); ++t) {
     const CutElement& element = space.elements[t];
-    const TraceMass& mass = space.trace_mass[t];
+    const std::array<double, 10>& mass = space.moments[t].mass;
     for (int i = 0; i < 4; ++i) diagonal[element.node[i]] += element.area * mass[i];
     for (int e = 0; e < 6; ++e) edge[element.edge[e]] += element.area * mass[4 + e];
   }
@@ -137,7 +137,7 @@ SurfaceSpace::SurfaceSpace(Geometry geometry, std::shared_ptr<const ThreadTeam> 
     : mesh(std::move(geometry.mesh)),
       surface(std::move(geometry.surface)),
       elements(std::move(geometry.elements)),
-      trace_mass(build_trace_masses(surface, elements)),
+      moments(build_trace_moments(surface, elements)),
       edge_couplings(build_edge_couplings(elements, mesh.edges.size())),
       team(std::move(team_)),
       communicator(std::move(communicator_)),

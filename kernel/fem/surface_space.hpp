@@ -35,7 +35,7 @@ class SurfaceSpace {
   const ActiveMesh mesh;
   const CutSurface surface;
   const std::vector<CutElement> elements;
-  const std::vector<TraceMass> trace_mass;  // of each element
+  const std::vector<TraceMoments> moments;  // of each element
   const EdgeCouplings edge_couplings;
   const std::shared_ptr<const ThreadTeam> team;
   const std::shared_ptr<const Communicator> communicator;

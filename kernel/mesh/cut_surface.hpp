@@ -40,7 +40,7 @@ struct CutSurface {
   std::vector<Point> position;                // of each point
   std::vector<std::array<int, 3>> triangles;  // counter-clockwise seen from outside
   std::vector<int> triangle_tet;              // ascending
-  // Of the flat triangles as built here; in a SurfaceSpace, of their images on Γ.
+  // Areas of the flat triangles as built here, and of their images on Γ in a SurfaceSpace.
   std::vector<double> triangle_area;
 };
 
