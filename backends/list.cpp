@@ -3,7 +3,7 @@
 #include "backends/euler/euler.hpp"
 #include "backends/rosenbrock/rosenbrock.hpp"
 #include "backends/suitesparse/blas.hpp"
-#include "backends/suitesparse/cholmod_solver.hpp"
+#include "backends/suitesparse/supernodal_solver.hpp"
 #include "backends/suitesparse/direct_solver.hpp"
 #include "backends/sundials/ida.hpp"
 #include "backends/sundials/ida_settings.hpp"
@@ -25,7 +25,7 @@ void require_one_rank(const char* name, const SurfaceSpace& space) {
 
 LinearSolverFactory block(const SurfaceSpace& space, const WordOptions&) {
   require_one_rank("block", space);
-  return [spd = cholmod_factory(space.pattern), size = 2 * space.nodes(),
+  return [spd = supernodal_factory(space.pattern), size = 2 * space.nodes(),
           team = space.team](int lanes) {
     return make_block_solver(
         spd, [size] { return make_spfgmr(size); }, team, lanes);
@@ -73,7 +73,7 @@ LinearSolverFactory teko(const SurfaceSpace&, const WordOptions&) {
 
 const NamedList<LinearSolverEntry>& linear_solvers() {
   static const std::vector<LinearSolverEntry> entries = {
-      {"block", "SUNDIALS GMRES, two-solve preconditioner with CHOLMOD factors", "direct", block},
+      {"block", "SUNDIALS GMRES, two-solve preconditioner, Cholesky factors of 16 bits", "direct", block},
       {"direct", "UMFPACK factors of the whole system at every solve", "", direct},
       {"klu", "KLU factors of the whole system at every solve, for small meshes", "", klu},
       {"teko",

@@ -3,6 +3,8 @@
 
 #include <suitesparse/cholmod.h>
 
+#include "kernel/fem/csr.hpp"
+
 namespace traceraft {
 
 struct CholmodWorkspace {
@@ -18,5 +20,9 @@ struct CholmodWorkspace {
   CholmodWorkspace(const CholmodWorkspace&) = delete;
   CholmodWorkspace& operator=(const CholmodWorkspace&) = delete;
 };
+
+// The upper triangle of the pattern in compressed columns, without values: the lower triangle of
+// the CSR rows, as the matrix is symmetric. To be freed by cholmod_free_sparse.
+cholmod_sparse* upper_triangle(const SparsityPattern& pattern, cholmod_common* common);
 
 }  // namespace traceraft

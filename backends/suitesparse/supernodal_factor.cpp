@@ -2,33 +2,13 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
-// Compiled for several instruction sets; the loader picks the best one for the processor.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define TRACERAFT_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define TRACERAFT_CLONES
-#endif
+#include "backends/suitesparse/instruction_sets.hpp"
+#include "backends/suitesparse/multifrontal.hpp"
 
 namespace traceraft {
 namespace {
-
-// Far from the diagonal a factor decays to numbers that single precision holds as subnormals only,
-// and arithmetic on those is a hundred times slower. While this lives they count as zero.
-class FlushSubnormals {
- public:
-#if defined(__SSE__)
-  FlushSubnormals() : before_(__builtin_ia32_stmxcsr()) {
-    __builtin_ia32_ldmxcsr(before_ | 0x8040);
-  }
-  ~FlushSubnormals() {
-    __builtin_ia32_ldmxcsr(before_);
-  }
-
- private:
-  unsigned before_;
-#endif
-};
 
 using Real = SupernodalFactor::Real;
 
@@ -58,10 +38,9 @@ TRACERAFT_INLINE Real real(Stored value) {
 }
 
 // Rounded to the nearest, ties to even. The numbers of a factor are finite.
-TRACERAFT_INLINE Stored stored(double value) {
-  const auto single = static_cast<Real>(value);
+TRACERAFT_INLINE Stored stored(Real value) {
   std::uint32_t bits;
-  std::memcpy(&bits, &single, sizeof bits);
+  std::memcpy(&bits, &value, sizeof bits);
   return static_cast<Stored>((bits + 0x7fff + ((bits >> 16) & 1)) >> 16);
 }
 
@@ -151,10 +130,10 @@ void backward_dense(const Stored* l, int columns, int rows, Real* x) {
 
 // The columns of one supernode, `rows` apart.
 TRACERAFT_CLONES
-void copy_dense(const double* from, int columns, int rows, Stored* to) {
+void copy_dense(const float* from, int columns, int rows, Stored* to) {
   for (int j = 0; j < columns; j += group_size(columns, j))
     for (int a = 0; a < group_size(columns, j); ++a) {
-      const double* column = from + static_cast<std::size_t>(j + a) * rows + j;
+      const float* column = from + static_cast<std::size_t>(j + a) * rows + j;
       for (int i = 0; i < rows - j; ++i) to[i] = stored(column[i]);
       to[a] = stored(1 / column[a]);
       to += rows - j;
@@ -163,104 +142,54 @@ void copy_dense(const double* from, int columns, int rows, Stored* to) {
 
 }  // namespace
 
-void SupernodalFactor::read_structure(const cholmod_factor& factor) {
-  const int* super = static_cast<const int*>(factor.super);
-  const int* row_begin = static_cast<const int*>(factor.pi);
-  const int* rows = static_cast<const int*>(factor.s);
-  const int* order = static_cast<const int*>(factor.Perm);
-  permutation_.assign(order, order + factor.n);
-  rows_.assign(rows, rows + factor.ssize);
-  std::size_t values = 0;
-  for (std::size_t s = 0; s < factor.nsuper; ++s) {
-    const int count = row_begin[s + 1] - row_begin[s], columns = super[s + 1] - super[s];
-    const std::size_t begin = values;
-    values += values_of_groups(columns, count);
-    supernodes_.push_back(
-        {super[s], columns, count, count, static_cast<std::size_t>(row_begin[s]), begin, values});
-    most_rows_ = std::max(most_rows_, count);
-  }
-  values_.assign(values + kWide, 0);
-  find_branches();
+SupernodalFactor::SupernodalFactor(std::shared_ptr<const SupernodalStructure> structure)
+    : structure_(std::move(structure)) {
+  value_begin_.push_back(0);
+  for (const Supernode& node : structure_->supernodes)
+    value_begin_.push_back(value_begin_.back() + values_of_groups(node.columns, node.rows));
 }
 
-// From the root downwards as long as a supernode has one child; the children of the first one with
-// more become the branches, in two groups of about equal length in memory. In postorder a subtree
-// is contiguous and ends with its root.
-void SupernodalFactor::find_branches() {
-  const int count = static_cast<int>(supernodes_.size());
-  std::vector<int> supernode_of(permutation_.size()), first(count);
-  std::vector<std::vector<int>> children(count + 1);  // the last: the roots
-  for (int s = 0; s < count; ++s)
-    for (int k = 0; k < supernodes_[s].columns; ++k)
-      supernode_of[supernodes_[s].first_column + k] = s;
-  for (int s = 0; s < count; ++s) {
-    const Supernode& node = supernodes_[s];
-    first[s] = children[s].empty() ? s : first[children[s].front()];
-    const bool root = node.rows == node.columns;
-    children[root ? count : supernode_of[rows_[node.row_begin + node.columns]]].push_back(s);
-  }
-  int top = count;
-  while (children[top].size() == 1) top = children[top].front();
-  const auto values_before = [&](int s) {
-    return s < count ? supernodes_[s].value_begin : values_.size();
-  };
-  const std::vector<int>& branches = children[top];
-  const int begin = branches.empty() ? 0 : first[branches.front()];
-  const int end = branches.empty() ? 0 : branches.back() + 1;
-  const std::size_t half = (values_before(begin) + values_before(end)) / 2;
-  int middle = end;
-  const auto distance = [&](int s) {
-    const std::size_t at = values_before(s);
-    return at > half ? at - half : half - at;
-  };
-  for (const int child : branches)
-    if (distance(child + 1) < distance(middle)) middle = child + 1;
-  branch_begin_[0] = begin;
-  branch_begin_[1] = middle;
-  branch_begin_[2] = end;
-  top_row_ = end < count ? supernodes_[end].first_column : static_cast<int>(permutation_.size());
-  for (Supernode& node : supernodes_) {
-    const int* row = rows_.data() + node.row_begin;
-    node.below_top = static_cast<int>(std::lower_bound(row, row + node.rows, top_row_) - row);
-  }
+void SupernodalFactor::keep(std::size_t supernode, const float* columns) {
+  const Supernode& node = structure_->supernodes[supernode];
+  copy_dense(columns, node.columns, node.rows, values_.data() + value_begin_[supernode]);
 }
 
-void SupernodalFactor::copy(const cholmod_factor& factor) {
-  if (supernodes_.empty()) read_structure(factor);
-  const FlushSubnormals flush;
-  const auto* values = static_cast<const double*>(factor.x);
-  const auto* begin = static_cast<const int*>(factor.px);
-  for (std::size_t s = 0; s < supernodes_.size(); ++s) {
-    const Supernode& node = supernodes_[s];
-    copy_dense(values + begin[s], node.columns, node.rows, values_.data() + node.value_begin);
-  }
+bool SupernodalFactor::factorise(const std::vector<double>& values) {
+  values_.resize(value_begin_.back() + kWide);
+  return factorise_multifrontal(*structure_, values,
+                                [this](std::size_t s, const float* columns) { keep(s, columns); });
 }
 
 // above: where contributions to the rows of the top go, or x itself from there on.
-void SupernodalFactor::forward(const Supernode& node, Real* x, Real* above, Real* work) const {
-  const int* row = rows_.data() + node.row_begin;
+void SupernodalFactor::forward(int supernode, Real* x, Real* above, Real* work) const {
+  const Supernode& node = structure_->supernodes[supernode];
+  const int* row = structure_->rows.data() + node.row_begin;
   Real* own = x + node.first_column;
   std::copy(own, own + node.columns, work);
   std::fill(work + node.columns, work + node.rows, Real{0});
-  forward_dense(values_.data() + node.value_begin, node.columns, node.rows, work);
+  forward_dense(values_.data() + value_begin_[supernode], node.columns, node.rows, work);
   std::copy(work, work + node.columns, own);
   const int split = std::max(node.columns, node.below_top);
   for (int i = node.columns; i < split; ++i) x[row[i]] += work[i];
-  for (int i = split; i < node.rows; ++i) above[row[i] - top_row_] += work[i];
+  for (int i = split; i < node.rows; ++i) above[row[i] - structure_->top_row] += work[i];
 }
 
-void SupernodalFactor::backward(const Supernode& node, Real* x, Real* work) const {
-  const int* row = rows_.data() + node.row_begin;
+void SupernodalFactor::backward(int supernode, Real* x, Real* work) const {
+  const Supernode& node = structure_->supernodes[supernode];
+  const int* row = structure_->rows.data() + node.row_begin;
   Real* own = x + node.first_column;
   std::copy(own, own + node.columns, work);
   for (int i = node.columns; i < node.rows; ++i) work[i] = x[row[i]];
   std::fill(work + node.rows, work + node.rows + kWide, Real{0});
-  backward_dense(values_.data() + node.value_end, node.columns, node.rows, work);
+  backward_dense(values_.data() + value_begin_[supernode + 1], node.columns, node.rows, work);
   std::copy(work, work + node.columns, own);
 }
 
 void SupernodalFactor::solve(ConstVec b, VecRef x, const ThreadTeam& team, Work& work) const {
-  const std::size_t n = permutation_.size(), top = n - static_cast<std::size_t>(top_row_);
+  const std::vector<int>& permutation = structure_->permutation;
+  const int* branch_begin = structure_->branch_begin;
+  const int top_row = structure_->top_row;
+  const std::size_t n = permutation.size(), top = n - static_cast<std::size_t>(top_row);
   work.x.resize(n);
   Real* solution = work.x.data();
   const auto for_branches = [&](const auto& action) {
@@ -270,25 +199,24 @@ void SupernodalFactor::solve(ConstVec b, VecRef x, const ThreadTeam& team, Work&
     });
   };
   const FlushSubnormals flush;
-  for (std::size_t k = 0; k < n; ++k) solution[k] = static_cast<Real>(b[permutation_[k]]);
+  for (std::size_t k = 0; k < n; ++k) solution[k] = static_cast<Real>(b[permutation[k]]);
   for_branches([&](int branch) {
-    work.dense[branch].resize(most_rows_ + kWide);
+    work.dense[branch].resize(structure_->most_rows + kWide);
     work.above[branch].assign(top, Real{0});
-    for (int s = branch_begin_[branch]; s < branch_begin_[branch + 1]; ++s)
-      forward(supernodes_[s], solution, work.above[branch].data(), work.dense[branch].data());
+    for (int s = branch_begin[branch]; s < branch_begin[branch + 1]; ++s)
+      forward(s, solution, work.above[branch].data(), work.dense[branch].data());
   });
   for (std::size_t k = 0; k < top; ++k)
-    solution[top_row_ + k] += work.above[0][k] + work.above[1][k];
-  const int count = static_cast<int>(supernodes_.size());
-  for (int s = branch_begin_[2]; s < count; ++s)
-    forward(supernodes_[s], solution, solution + top_row_, work.dense[0].data());
-  for (int s = count - 1; s >= branch_begin_[2]; --s)
-    backward(supernodes_[s], solution, work.dense[0].data());
+    solution[top_row + k] += work.above[0][k] + work.above[1][k];
+  const int count = static_cast<int>(structure_->supernodes.size());
+  for (int s = branch_begin[2]; s < count; ++s)
+    forward(s, solution, solution + top_row, work.dense[0].data());
+  for (int s = count - 1; s >= branch_begin[2]; --s) backward(s, solution, work.dense[0].data());
   for_branches([&](int branch) {
-    for (int s = branch_begin_[branch + 1] - 1; s >= branch_begin_[branch]; --s)
-      backward(supernodes_[s], solution, work.dense[branch].data());
+    for (int s = branch_begin[branch + 1] - 1; s >= branch_begin[branch]; --s)
+      backward(s, solution, work.dense[branch].data());
   });
-  for (std::size_t k = 0; k < n; ++k) x[permutation_[k]] = static_cast<double>(solution[k]);
+  for (std::size_t k = 0; k < n; ++k) x[permutation[k]] = static_cast<double>(solution[k]);
 }
 
 }  // namespace traceraft

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "backends/list.hpp"
-#include "backends/suitesparse/cholmod_solver.hpp"
+#include "backends/suitesparse/supernodal_solver.hpp"
 #include "backends/suitesparse/direct_solver.hpp"
 #include "backends/sundials/spfgmr.hpp"
 #include "kernel/linear/block_solver.hpp"
@@ -215,7 +215,7 @@ TEST(BlockSolver, DoesNotTakeItsKrylovMethodAtItsWord) {
   const Vec b = random_vector(size, 2);
   const auto solves = [&](double factor, const Status& said) {
     const LinearSolverPtr solver = make_block_solver(
-        cholmod_factory(space->pattern),
+        supernodal_factory(space->pattern),
         [&] { return std::make_unique<Mistaken>(size, factor, said); }, space->team, 1);
     EXPECT_TRUE(solver->setup(J).ok());
     Vec x = Vec::Zero(size);
@@ -333,10 +333,10 @@ TEST(TwoSolve, IsTheExactInverseForConstantMobilityAndRealRoots) {
   }
 }
 
-TEST(Cholmod, SolvesToThePrecisionOfItsCopyOnEveryLane) {
+TEST(SupernodalSolver, SolvesToThePrecisionOfItsCopyOnEveryLane) {
   const auto space = make_space(24);
   const CsrMatrix A = combine(1, space->stabilised_mass, 0.01, space->stiffness);
-  const SpdSolverPtr solver = cholmod_factory(space->pattern)(2);
+  const SpdSolverPtr solver = supernodal_factory(space->pattern)(2);
   DenseSolver reference;
   ASSERT_TRUE(solver->factorise(A).ok());
   ASSERT_TRUE(reference.factorise(A).ok());

@@ -1,0 +1,13 @@
+// Cholesky factors for preconditioners: METIS orders, CHOLMOD analyses, the numbers are computed in
+// single precision and kept in 16 bits.
+#pragma once
+
+#include "kernel/linear/krylov.hpp"
+
+namespace traceraft {
+
+// All solvers that the factory makes share the analysis of `pattern`, which the first one makes.
+// They can factorise at the same time.
+SpdSolverFactory supernodal_factory(PatternPtr pattern);
+
+}  // namespace traceraft

@@ -1,0 +1,96 @@
+#include "backends/suitesparse/multifrontal.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "tests/support/dense.hpp"
+#include "tests/support/spaces.hpp"
+
+namespace traceraft {
+namespace {
+
+using testing::make_space;
+
+// L as a dense matrix; empty if the matrix is not positive definite.
+Eigen::MatrixXd factor(const SupernodalStructure& structure, const CsrMatrix& A) {
+  const auto n = static_cast<Eigen::Index>(structure.permutation.size());
+  Eigen::MatrixXd L = Eigen::MatrixXd::Zero(n, n);
+  const bool ok =
+      factorise_multifrontal(structure, A.values, [&](std::size_t s, const float* columns) {
+        const Supernode& node = structure.supernodes[s];
+        for (int j = 0; j < node.columns; ++j)
+          for (int i = j; i < node.rows; ++i)
+            L(structure.rows[node.row_begin + i], node.first_column + j) =
+                columns[j * node.rows + i];
+      });
+  return ok ? L : Eigen::MatrixXd();
+}
+
+Eigen::MatrixXd permuted(const SupernodalStructure& structure, const CsrMatrix& A) {
+  const Eigen::MatrixXd full = testing::dense(A);
+  return full(structure.permutation, structure.permutation);
+}
+
+// Two surfaces that do not touch: the elimination tree has two roots.
+std::shared_ptr<const SurfaceSpace> two_spheres() {
+  const FunctionLevelSet phi([](const Point& x) {
+    return std::min((x - Point(0, 0, 0.8)).norm(), (x + Point(0, 0, 0.8)).norm()) - 0.5;
+  });
+  return std::make_shared<SurfaceSpace>(phi, 20, std::make_shared<ThreadTeam>(1),
+                                        std::make_shared<SerialCommunicator>());
+}
+
+TEST(Multifrontal, IsTheCholeskyFactorInSinglePrecision) {
+  for (const auto& space : {make_space(20), two_spheres()}) {
+    const auto structure = analyse(*space->pattern);
+    for (const double share : {1.0, 1e-3}) {
+      const CsrMatrix A = combine(share, space->stabilised_mass, 1, space->stiffness);
+      const Eigen::MatrixXd expected = permuted(*structure, A).llt().matrixL();
+      const Eigen::MatrixXd L = factor(*structure, A);
+      ASSERT_EQ(L.rows(), expected.rows());
+      EXPECT_LT((L - expected).norm(), 1e-5 * expected.norm()) << share;
+    }
+  }
+}
+
+// Where supernodes are wide, their columns are in several blocks and BLAS multiplies.
+TEST(Multifrontal, IsTheFactorWhereSupernodesAreWide) {
+  const auto space = make_space(40);
+  const auto structure = analyse(*space->pattern);
+  int widest = 0;
+  for (const Supernode& node : structure->supernodes) widest = std::max(widest, node.columns);
+  EXPECT_GT(widest, 96);
+  const CsrMatrix A = combine(0.01, space->stabilised_mass, 1, space->stiffness);
+  const Eigen::MatrixXd L = factor(*structure, A);
+  const Eigen::MatrixXd expected = permuted(*structure, A);
+  const Vec x = testing::random_vector(expected.rows(), 5);
+  const Vec image = L * (L.transpose() * x);
+  EXPECT_LT((image - expected * x).norm(), 1e-5 * (expected * x).norm());
+}
+
+// A pivot is as small as roundoff where a matrix is singular: the factor is of one that is not.
+TEST(Multifrontal, ReplacesPivotsThatAreZeroWithinRoundoff) {
+  const auto space = make_space(12);
+  const auto structure = analyse(*space->pattern);
+  const CsrMatrix& A = space->stiffness;
+  const Eigen::MatrixXd expected = permuted(*structure, A), L = factor(*structure, A);
+  ASSERT_EQ(L.rows(), expected.rows());
+  EXPECT_TRUE(L.allFinite());
+  EXPECT_LT((L * L.transpose() - expected).norm(), 1e-5 * expected.norm());
+}
+
+TEST(Multifrontal, RefusesWhatIsNotPositiveDefinite) {
+  const auto space = make_space(12);
+  const auto structure = analyse(*space->pattern);
+  // Its smallest eigenvalue is near -1.
+  EXPECT_EQ(factor(*structure, combine(1, space->stiffness, -1, space->stabilised_mass)).size(), 0);
+  CsrMatrix broken = space->stabilised_mass;
+  broken.values[space->pattern->diagonal[7]] = std::nan("");
+  EXPECT_EQ(factor(*structure, broken).size(), 0);
+}
+
+}  // namespace
+}  // namespace traceraft
