@@ -6,7 +6,9 @@
 namespace traceraft {
 namespace {
 
-constexpr double kLinearTolerance = 1e-2;
+// What IDA's answer costs and how wrong it is was measured for these and for the factor of Newton's
+// test below: docs/decisions/0008-ida.md.
+constexpr double kLinearTolerance = 5e-2;
 constexpr double kLaterFactor = 10;
 
 }  // namespace
@@ -20,7 +22,7 @@ std::vector<ParameterSpec> ida_parameters() {
       {"maxstep", "s", 0, 0, 1e300, "largest step; 0: --max-step"},
       {"suppressalg", "", 1, 0, 1, "1: algebraic variables are left out of the error test", true},
       {"epslin", "", 0, 0, 0.5, "relative residual of Newton corrections; 0: --linear-tolerance"},
-      {"nonlinconvcoef", "", 0.33, 1e-6, 1, "factor in the test of Newton's convergence"},
+      {"nonlinconvcoef", "", 0.66, 1e-6, 1, "factor in the test of Newton's convergence"},
   };
 }
 

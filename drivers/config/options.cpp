@@ -111,7 +111,7 @@ const std::vector<OptionSpec>& run_options() {
 
       {"linear-solver", K::text, "block", "Linear algebra", "linear solver (see: traceraft list)"},
       {"linear-tolerance", K::number, "0", "Linear algebra",
-       "relative residual of each correction; 0: the integrator's choice (euler 1e-4, ida 1e-2, "
+       "relative residual of each correction; 0: the integrator's choice (euler 1e-4, ida 5e-2, "
        "rosenbrock up to 1e-3)",
        0, 0.5},
       {"threads", K::integer, "0", "Linear algebra",

@@ -12,7 +12,8 @@
 namespace traceraft {
 namespace {
 
-// What integrators ask for: euler, with the stabilised tangent, and ida, with the exact one.
+// The stabilised tangent is solved to what euler asks for, the exact one to a fifth of what ida asks
+// for.
 constexpr double kTolerance[2] = {1e-4, 1e-2};
 // The exact Jacobian of a step far longer than the state allows is indefinite. What is claimed of
 // it is for steps up to twice the one that ida takes there, as it at most doubles a step.
