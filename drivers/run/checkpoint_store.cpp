@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <sstream>
+#include <string_view>
 
 #include "backends/posix/durable_file.hpp"
 #include "backends/zlib/checksum.hpp"
@@ -26,47 +26,59 @@ void write_text(std::ostream& out, const std::string& text) {
 // Sizes are compared with what is left, so that damaged data cannot ask for memory.
 class Reader {
  public:
-  explicit Reader(const std::string& data) : in_(data), left_(data.size()) {}
+  explicit Reader(std::string_view data) : left_(data) {}
 
   template <class T>
   T number() {
     T value;
-    take(sizeof value);
-    read_binary(in_, value);
+    take(1, &value);
     return value;
   }
   std::string text() {
     std::string result(count(1), '\0');
-    in_.read(result.data(), static_cast<std::streamsize>(result.size()));
+    take(result.size(), result.data());
     return result;
   }
   std::vector<double> numbers() {
     std::vector<double> result(count(sizeof(double)));
-    in_.read(reinterpret_cast<char*>(result.data()),
-             static_cast<std::streamsize>(sizeof(double) * result.size()));
+    take(result.size(), result.data());
     return result;
   }
 
  private:
-  void take(std::uint64_t bytes) {
-    if (bytes > left_) throw IoError("it ends too early");
-    left_ -= bytes;
+  template <class T>
+  void take(std::size_t items, T* to) {
+    const std::size_t bytes = items * sizeof(T);
+    if (bytes > left_.size()) throw IoError("it ends too early");
+    std::copy_n(left_.data(), bytes, reinterpret_cast<char*>(to));
+    left_.remove_prefix(bytes);
   }
-  std::size_t count(std::uint64_t size) {
+  std::size_t count(std::size_t size) {
     const auto items = number<std::uint64_t>();
-    if (items > left_ / size) throw IoError("it ends too early");
-    take(items * size);
+    if (items > left_.size() / size) throw IoError("it ends too early");
     return static_cast<std::size_t>(items);
   }
 
-  std::istringstream in_;
-  std::uint64_t left_;
+  std::string_view left_;
 };
+
+// The size and the checksum of what follows them.
+std::string prefix(std::string_view body) {
+  std::string result(kMagic);
+  StringAppender out(result);
+  write_binary(out, static_cast<std::uint64_t>(body.size()));
+  write_binary(out, crc32_of(body));
+  return result;
+}
+constexpr std::size_t kPrefixSize = kMagicSize + sizeof(std::uint64_t) + sizeof(std::uint32_t);
 
 }  // namespace
 
 std::string encode(const Checkpoint& checkpoint) {
-  std::ostringstream out;
+  const std::size_t field = sizeof(double) * checkpoint.concentration.size();
+  std::string result(kPrefixSize, '\0');
+  result.reserve(checkpoint.configuration.size() + checkpoint.state.size() + field + 4096);
+  StringAppender out(result);
   write_text(out, checkpoint.configuration);
   write_binary(out, static_cast<std::uint64_t>(checkpoint.tables.size()));
   for (const auto& [name, extent] : checkpoint.tables) {
@@ -77,25 +89,20 @@ std::string encode(const Checkpoint& checkpoint) {
   write_text(out, checkpoint.state);
   write_binary(out, static_cast<std::uint64_t>(checkpoint.concentration.size()));
   out.write(reinterpret_cast<const char*>(checkpoint.concentration.data()),
-            static_cast<std::streamsize>(sizeof(double) * checkpoint.concentration.size()));
+            static_cast<std::streamsize>(field));
   write_binary(out, static_cast<std::int64_t>(checkpoint.step));
   write_binary(out, checkpoint.cost.wall_seconds);
   write_binary(out, checkpoint.cost.cpu_seconds);
-  const std::string body = out.str();
-  std::ostringstream head;
-  head << kMagic;
-  write_binary(head, static_cast<std::uint64_t>(body.size()));
-  write_binary(head, crc32_of(body));
-  return head.str() + body;
+  return result.replace(0, kPrefixSize, prefix(std::string_view(result).substr(kPrefixSize)));
 }
 
 Checkpoint decode(const std::string& data) {
   if (data.compare(0, kMagicSize, kMagic) != 0)
     throw IoError("it is no checkpoint of this version");
-  Reader head(data.substr(kMagicSize, sizeof(std::uint64_t) + sizeof(std::uint32_t)));
+  Reader head(std::string_view(data).substr(kMagicSize));
   const auto size = head.number<std::uint64_t>();
   const auto checksum = head.number<std::uint32_t>();
-  const std::string body = data.substr(kMagicSize + sizeof size + sizeof checksum);
+  const std::string_view body = std::string_view(data).substr(kPrefixSize);
   if (body.size() != size) throw IoError("it is torn");
   if (crc32_of(body) != checksum) throw IoError("it is damaged");
   Reader in(body);

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <ostream>
+#include <streambuf>
 #include <string>
 #include <vector>
 
@@ -24,6 +26,37 @@ struct Checkpoint {
   std::vector<double> concentration;  // c at the nodes, for --initial restart:DIR
   long step = 0;
   RunCost cost;
+};
+
+// Appends what is written to a string, such as a checkpoint's state. A std::ostringstream holds up
+// to twice as much memory, and gives its text as a copy.
+class StringAppender final : public std::ostream {
+ public:
+  // The string must outlive this object.
+  explicit StringAppender(std::string& text) : std::ostream(nullptr), buffer_(text) {
+    rdbuf(&buffer_);
+  }
+
+ private:
+  class Buffer final : public std::streambuf {
+   public:
+    explicit Buffer(std::string& text) : text_(text) {}
+
+   private:
+    std::streamsize xsputn(const char* data, std::streamsize count) override {
+      text_.append(data, static_cast<std::size_t>(count));
+      return count;
+    }
+    int_type overflow(int_type character) override {
+      if (!traits_type::eq_int_type(character, traits_type::eof()))
+        text_.push_back(traits_type::to_char_type(character));
+      return traits_type::not_eof(character);
+    }
+
+    std::string& text_;
+  };
+
+  Buffer buffer_;
 };
 
 class CheckpointStore {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <sstream>
 
 #include "backends/png/png_writer.hpp"
 #include "backends/posix/process.hpp"
@@ -185,9 +184,8 @@ void CheckpointWriter::write(const RunState& state) {
   if (tables_) tables_->sync();
   Checkpoint checkpoint;
   checkpoint.configuration = configuration_;
-  std::ostringstream out;
+  StringAppender out(checkpoint.state);
   state.save(CheckpointOut(out, run_.space->order));
-  checkpoint.state = out.str();
   const Vec c = run_.space->order.gathered(run_.problem->c_of(state.integrator.state()));
   checkpoint.concentration.assign(c.data(), c.data() + c.size());
   checkpoint.step = state.integrator.statistics().steps;
