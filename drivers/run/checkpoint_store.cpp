@@ -93,7 +93,8 @@ std::string encode(const Checkpoint& checkpoint) {
   write_binary(out, static_cast<std::int64_t>(checkpoint.step));
   write_binary(out, checkpoint.cost.wall_seconds);
   write_binary(out, checkpoint.cost.cpu_seconds);
-  return result.replace(0, kPrefixSize, prefix(std::string_view(result).substr(kPrefixSize)));
+  result.replace(0, kPrefixSize, prefix(std::string_view(result).substr(kPrefixSize)));
+  return result;
 }
 
 Checkpoint decode(const std::string& data) {
