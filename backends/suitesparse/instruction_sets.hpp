@@ -1,4 +1,4 @@
-// What the loops over factors need of the processor.
+// Loops over factors are compiled for the processor at hand, and run without subnormal numbers.
 #pragma once
 
 // Compiled for several instruction sets; the loader picks the best one for the processor.

@@ -6,8 +6,8 @@
 namespace traceraft {
 namespace {
 
-// What IDA's answer costs and how wrong it is was measured for these and for the factor of Newton's
-// test below: docs/decisions/0008-ida.md.
+// These and the factor of Newton's test below were chosen by measuring cost and error:
+// docs/decisions/0008-ida.md.
 constexpr double kLinearTolerance = 5e-2;
 constexpr double kLaterFactor = 10;
 

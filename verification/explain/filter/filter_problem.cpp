@@ -14,8 +14,8 @@ namespace {
 
 // Of the tolerance that integrators have unless asked: far below the noise of a measurement.
 constexpr double kForecastTolerance = 0.3;
-// Of ida: the deviance of thousands of values sees what corrections leave. With the default, 5e-2,
-// it is 3 too large in a small case, with 1e-2 0.4.
+// ida solves corrections of forecasts to this, as the deviance of thousands of values sees what
+// they leave. With the default, 5e-2, it is 3 too large in a small case, with 1e-2 0.4.
 constexpr double kForecastLinearTolerance = 1e-2;
 // Outliers are that far from what is around them, in units of the distance of the wells; more than
 // that share of the values is refused, and they are looked for that often.
