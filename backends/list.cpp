@@ -3,8 +3,8 @@
 #include "backends/euler/euler.hpp"
 #include "backends/rosenbrock/rosenbrock.hpp"
 #include "backends/suitesparse/blas.hpp"
-#include "backends/suitesparse/supernodal_solver.hpp"
 #include "backends/suitesparse/direct_solver.hpp"
+#include "backends/suitesparse/supernodal_solver.hpp"
 #include "backends/sundials/ida.hpp"
 #include "backends/sundials/ida_settings.hpp"
 #include "backends/sundials/spfgmr.hpp"
@@ -73,7 +73,8 @@ LinearSolverFactory teko(const SurfaceSpace&, const WordOptions&) {
 
 const NamedList<LinearSolverEntry>& linear_solvers() {
   static const std::vector<LinearSolverEntry> entries = {
-      {"block", "SUNDIALS GMRES, two-solve preconditioner, Cholesky factors of 16 bits", "direct", block},
+      {"block", "SUNDIALS GMRES, two-solve preconditioner, Cholesky factors of 16 bits", "direct",
+       block},
       {"direct", "UMFPACK factors of the whole system at every solve", "", direct},
       {"klu", "KLU factors of the whole system at every solve, for small meshes", "", klu},
       {"teko",

@@ -5,8 +5,8 @@
 #include <sstream>
 
 #include "backends/list.hpp"
-#include "backends/suitesparse/supernodal_solver.hpp"
 #include "backends/suitesparse/direct_solver.hpp"
+#include "backends/suitesparse/supernodal_solver.hpp"
 #include "backends/sundials/spfgmr.hpp"
 #include "kernel/linear/block_solver.hpp"
 #include "kernel/linear/setup_policy.hpp"
