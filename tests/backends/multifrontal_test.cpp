@@ -82,6 +82,22 @@ TEST(Multifrontal, ReplacesPivotsThatAreZeroWithinRoundoff) {
   EXPECT_LT((L * L.transpose() - expected).norm(), 1e-5 * expected.norm());
 }
 
+// The unit matrix but for one pair of nodes, whose second pivot is 1 - 1 * 1, or below by roundoff.
+TEST(Multifrontal, GivesAVanishingPivotItsLeastValue) {
+  const auto space = make_space(8);
+  const SparsityPattern& pattern = *space->pattern;
+  const auto structure = analyse(pattern);
+  for (const double coupling : {1.0, 1.00002}) {
+    CsrMatrix A(space->pattern);
+    for (const int k : pattern.diagonal) A.values[k] = 1;
+    A.values[pattern.low_high[0]] = A.values[pattern.high_low[0]] = coupling;
+    const Eigen::MatrixXd L = factor(*structure, A);
+    ASSERT_EQ(L.rows(), pattern.rows()) << coupling;
+    EXPECT_TRUE(L.allFinite());
+    EXPECT_NEAR(L.diagonal().minCoeff(), 1e-3, 1e-6);
+  }
+}
+
 TEST(Multifrontal, RefusesWhatIsNotPositiveDefinite) {
   const auto space = make_space(12);
   const auto structure = analyse(*space->pattern);
