@@ -34,6 +34,9 @@ Row claim_row(const Claim& claim) {
   } else if (std::isinf(claim.low)) {
     row.push_back("at most " + short_number(claim.high));
     row.push_back("");
+  } else if (std::isinf(claim.high)) {
+    row.push_back("at least " + short_number(claim.low));
+    row.push_back("");
   } else {
     row.push_back(short_number(claim.low) + " to " + short_number(claim.high));
     row.push_back("");

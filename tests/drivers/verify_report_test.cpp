@@ -51,12 +51,14 @@ TEST(Verdicts, AreThoseOfTheWorstClaim) {
 TEST(VerifyReport, ClaimsAreRowsForPeople) {
   Claim near = claim_near("order", 1.98, 2, 0.25);
   near.uncertainty = 0.03;
-  const auto rows = claim_rows({near, claim_at_most("drift", 2e-12, 1e-12)});
-  ASSERT_EQ(rows.size(), 3u);
+  const auto rows =
+      claim_rows({near, claim_at_most("drift", 2e-12, 1e-12), claim_at_least("steps", 23, 10)});
+  ASSERT_EQ(rows.size(), 4u);
   EXPECT_EQ(rows[0],
             (std::vector<std::string>{"claim", "measured", "expected", "tolerance", "verdict"}));
   EXPECT_EQ(rows[1], (std::vector<std::string>{"order", "1.98 +- 0.03", "2", "+- 0.25", "holds"}));
   EXPECT_EQ(rows[2], (std::vector<std::string>{"drift", "2e-12", "at most 1e-12", "", "FAILS"}));
+  EXPECT_EQ(rows[3], (std::vector<std::string>{"steps", "23", "at least 10", "", "holds"}));
 }
 
 TEST(VerifyReport, FilesHoldAllOfIt) {

@@ -117,7 +117,7 @@ StudyReport run(const Bench& bench) {
       formatted("%zu runs, %.0f accepted steps.", list.size(), steps)};
   report.tables = {table};
   report.claims = {claim_at_most("largest relative drift of the mass", largest, kBound),
-                   claim_between("fewest accepted steps of a run", fewest, kEnough, 1e9)};
+                   claim_at_least("fewest accepted steps of a run", fewest, kEnough)};
   if (!bench.linear_solvers_on_ranks().empty())
     report.claims.insert(report.claims.begin() + 1,
                          claim_at_most("the same on two ranks", largest_on_ranks, kBound));

@@ -20,6 +20,11 @@ Claim claim_at_most(std::string what, double measured, double bound) {
   return {std::move(what), measured, {}, -std::numeric_limits<double>::infinity(), bound};
 }
 
+Claim claim_at_least(std::string what, double measured, double bound, double uncertainty) {
+  return {std::move(what), measured, {}, bound, std::numeric_limits<double>::infinity(),
+          uncertainty};
+}
+
 Claim claim_between(std::string what, double measured, double low, double high) {
   return {std::move(what), measured, {}, low, high};
 }

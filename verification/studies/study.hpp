@@ -30,6 +30,7 @@ Claim claim_near(std::string what, double measured, double expected, double tole
 Claim claim_order(std::string what, const Points& size_and_error, double expected,
                   double tolerance);
 Claim claim_at_most(std::string what, double measured, double bound);
+Claim claim_at_least(std::string what, double measured, double bound, double uncertainty = 0);
 Claim claim_between(std::string what, double measured, double low, double high);
 
 struct StudyReport {
