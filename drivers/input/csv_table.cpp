@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "backends/posix/durable_file.hpp"
 #include "drivers/text/csv.hpp"
@@ -78,6 +79,17 @@ void refuse_other_separators(const std::string& where, const std::vector<std::st
                        "; commas are needed (and points in numbers)");
 }
 
+// "t" of "t (s)". A unit that the program does not write stays part of the name, so that nobody's
+// minutes are taken for seconds.
+std::string without_unit(const std::string& heading) {
+  for (const char* unit : {" (s)", " (um)", " (um^2)", " (R)", " (R^2)", " (R^2/D)"}) {
+    const std::size_t length = std::strlen(unit);
+    if (heading.size() > length && heading.compare(heading.size() - length, length, unit) == 0)
+      return heading.substr(0, heading.size() - length);
+  }
+  return heading;
+}
+
 // Line by line, so that every row knows where it stands.
 Rows parse(const std::filesystem::path& path, std::string text) {
   if (text.compare(0, 3, "\xEF\xBB\xBF") == 0) text.erase(0, 3);  // as spreadsheets begin
@@ -126,6 +138,7 @@ CsvTable CsvTable::read(const std::filesystem::path& path) {
   table.path_ = path;
   if (rows.rows.empty()) throw InputError(path.string() + ": the file is empty");
   table.columns_ = std::move(rows.rows.front());
+  for (std::string& column : table.columns_) column = without_unit(column);
   table.heading_line_ = rows.lines.front();
   refuse_other_separators(table.heading(), table.columns_);
   for (std::size_t i = 0; i < table.columns_.size(); ++i)

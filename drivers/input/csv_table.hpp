@@ -11,10 +11,11 @@ namespace traceraft {
 
 class CsvTable {
  public:
-  // The first row names the columns; lines that are empty or start with # do not count. Throws
-  // IoError if the file cannot be read, DamagedFile if it ends with a checksum that is not its own,
-  // InputError naming the line if it is no such table: no
-  // heading, two columns of one name, a row with more or fewer cells, a quote that does not end.
+  // The first row names the columns. A unit in parentheses after a name is no part of it. Lines
+  // that are empty or start with # do not count. Throws IoError if the file cannot be read,
+  // DamagedFile if it ends with a checksum that is not its own, InputError naming the line if it is
+  // no such table: no heading, two columns of one name, a row with more or fewer cells, a quote
+  // that does not end.
   static CsvTable read(const std::filesystem::path& path);
 
   const std::filesystem::path& path() const { return path_; }

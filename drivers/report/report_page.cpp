@@ -7,15 +7,16 @@
 #include "drivers/ensemble/ensemble_report.hpp"
 #include "drivers/ensemble/histories_file.hpp"
 #include "drivers/input/csv_table.hpp"
+#include "drivers/input/json_file.hpp"
 #include "drivers/input/model_of_data.hpp"
 #include "drivers/output/chart.hpp"
-#include "drivers/input/json_file.hpp"
 #include "drivers/output/page.hpp"
 #include "drivers/output/provenance.hpp"
 #include "drivers/output/text_table.hpp"
 #include "drivers/report/viewer.hpp"
 #include "drivers/run/finished_run.hpp"
 #include "drivers/run/physical_model.hpp"
+#include "drivers/run/run_numbers.hpp"
 #include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/text.hpp"
@@ -50,15 +51,6 @@ std::string finished_page(const fs::path& folder) {
   return "";
 }
 
-// Of what series.csv and summary.json say, where it has a unit that its name does not say.
-std::string unit_of(const std::string& key, const std::string& length, const std::string& time) {
-  if (key == "t" || key == "dt") return time;
-  if (key == "h" || key == "perimeter" || key == "perimeter_level") return length;
-  if (key == "area" || key == "mass") return length + "^2";
-  if (key == "energy") return length + "^2, in units of the energy density";
-  return "";
-}
-
 struct Curve {
   std::string column, title;
   bool log_y;
@@ -73,11 +65,11 @@ std::vector<Curve> curves() {
           {"dt", "step size", true}};
 }
 
-Chart series_chart(const CsvTable& series, const Curve& curve, const std::string& length,
-                   const std::string& time) {
-  const std::string unit = unit_of(curve.column, length, time);
+Chart series_chart(const CsvTable& series, const Curve& curve, bool scaled) {
+  const std::string unit = unit_of_number(curve.column, scaled);
   const std::string label = curve.title + (unit.empty() ? "" : " (" + unit + ")");
-  Chart chart{curve.title, "time (" + time + ")", label, true, curve.log_y, {}};
+  const std::string time = "time (" + unit_of_number("t", scaled) + ")";
+  Chart chart{curve.title, time, label, true, curve.log_y, {}};
   chart.series = {{curve.column, {}, Mark::line}};
   const std::vector<double> t = series.numbers("t"), y = series.numbers(curve.column);
   for (std::size_t i = 0; i < t.size(); ++i)
@@ -99,13 +91,12 @@ std::string value_text(const Json& value) {
   return value.is_number_float() ? formatted("%.6g", value.get<double>()) : value.dump();
 }
 
-void add_summary(Page& page, const fs::path& run, const std::string& length,
-                 const std::string& time) {
+void add_summary(Page& page, const fs::path& run, bool scaled) {
   if (!fs::exists(run / "summary.json")) return;
   std::vector<Row> rows = {{"number", "value", "unit"}};
   from_json(run / "summary.json", [&](const Json& json) {
     for (const auto& [key, value] : json.items()) {
-      if (!value.is_object()) rows.push_back({key, value_text(value), unit_of(key, length, time)});
+      if (!value.is_object()) rows.push_back({key, value_text(value), unit_of_number(key, scaled)});
       if (value.is_object())
         for (const auto& [inner, entry] : value.items())
           rows.push_back({key + "." + inner, value_text(entry), ""});
@@ -119,7 +110,6 @@ void add_summary(Page& page, const fs::path& run, const std::string& length,
 void fill_run(Page& page, const fs::path& folder, const PageRequest& request, Missing& missing) {
   const Configuration configuration(read_config_file(folder / "config.toml"), {});
   const bool scaled = configuration.units().scaled;
-  const std::string length = scaled ? "R" : "um", time = scaled ? "R^2/D" : "s";
   page.paragraph("A run of the case " + configuration.text("case") + ", seed " +
                  configuration.text("seed") + ".");
   add_surface(page, folder, request, missing);
@@ -129,7 +119,7 @@ void fill_run(Page& page, const fs::path& folder, const PageRequest& request, Mi
   require_whole_table(folder, "series.csv");
   const CsvTable series = CsvTable::read(folder / "series.csv");
   for (const Curve& curve : curves()) {
-    Chart chart = series_chart(series, curve, length, time);
+    Chart chart = series_chart(series, curve, scaled);
     if (request.data && curve.measured) {
       const double unit =
           *curve.measured == Quantity::perimeter ? configuration.units().length() : 1;
@@ -137,7 +127,7 @@ void fill_run(Page& page, const fs::path& folder, const PageRequest& request, Mi
     }
     add_chart(page, chart, request.charts / curve.column, missing);
   }
-  add_summary(page, folder, length, time);
+  add_summary(page, folder, scaled);
   add_settings(page, configuration);
   add_provenance(page, folder, command_for("traceraft run", configuration));
 }

@@ -28,10 +28,9 @@ void refuse_times_out_of_range(const Configuration& configuration) {
   const auto require = [&](const OptionSpec& spec, double value, double least) {
     const double most = kLongestTime * unit;
     if ((value == 0 && spec.min == 0) || (value >= least && value <= most)) return;
-    throw InputError(
-        configuration.where(spec.name) + ": " + format_number(value) +
-        " is too short or too long to compute with (allowed: " + (spec.min == 0 ? "0, or " : "") +
-        formatted("%.3g to %.3g)", least, most));
+    throw InputError(configuration.where(spec.name) + ": " + format_number(value) +
+                     " is too short or too long to compute with (allowed: " +
+                     (spec.min == 0 ? "0, or " : "") + formatted("%.3g to %.3g)", least, most));
   };
   for (const OptionSpec& spec : run_options()) {
     if (spec.dimension != Dimension::time) continue;

@@ -6,6 +6,7 @@
 
 #include "backends/posix/durable_file.hpp"
 #include "backends/zlib/checksum.hpp"
+#include "drivers/run/run_numbers.hpp"
 #include "drivers/text/say.hpp"
 #include "kernel/core/binary.hpp"
 #include "kernel/core/error.hpp"
@@ -13,7 +14,7 @@
 namespace traceraft {
 namespace {
 
-constexpr char kMagic[] = "traceraft checkpoint 4\n";  // the number is the version of the format
+constexpr char kMagic[] = "traceraft checkpoint 5\n";  // the number is the version of the format
 constexpr std::size_t kMagicSize = sizeof kMagic - 1;
 constexpr std::uint64_t kLargestCheckpoint = std::uint64_t{1} << 36;
 constexpr std::size_t kKept = 2;
@@ -79,6 +80,7 @@ std::string encode(const Checkpoint& checkpoint) {
   std::string result(kPrefixSize, '\0');
   result.reserve(checkpoint.configuration.size() + checkpoint.state.size() + field + 4096);
   StringAppender out(result);
+  write_binary(out, report_layout());
   write_text(out, checkpoint.configuration);
   write_binary(out, static_cast<std::uint64_t>(checkpoint.tables.size()));
   for (const auto& [name, extent] : checkpoint.tables) {
@@ -107,6 +109,8 @@ Checkpoint decode(const std::string& data) {
   if (body.size() != size) throw IoError("it is torn");
   if (crc32_of(body) != checksum) throw IoError("it is damaged");
   Reader in(body);
+  if (in.number<std::uint32_t>() != report_layout())
+    throw IoError("it is of a version that reports other numbers");
   Checkpoint checkpoint;
   checkpoint.configuration = in.text();
   for (auto tables = in.number<std::uint64_t>(); tables > 0; --tables) {

@@ -6,16 +6,21 @@
 #include "backends/png/png_writer.hpp"
 #include "backends/posix/process.hpp"
 #include "backends/zlib/vtu_writer.hpp"
+#include "drivers/run/run_numbers.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/fem/trace.hpp"
 
 namespace traceraft {
 namespace {
 
-constexpr char kColumns[] =
-    "step,t,dt,mass,energy,perimeter,perimeter_level,rafts,raft_fraction,c_min,c_max,domains,"
-    "rejected,failures,newton_iterations,linear_iterations,linear_setups,order\n";
-constexpr char kRaftColumns[] = "t,raft,area,perimeter,x,y,z,distance\n";
+std::string raft_heading(bool scaled) {
+  const std::string length = unit_name(Unit::length, scaled);
+  std::string text =
+      "t (" + unit_name(Unit::time, scaled) + "),raft,area (" + unit_name(Unit::area, scaled) + ")";
+  for (const char* name : {"perimeter", "x", "y", "z", "distance"})
+    text += std::string(",") + name + " (" + length + ")";
+  return text + "\n";
+}
 
 TableExtent extent_of(const TableExtents& extents, const std::string& name) {
   const auto found = extents.find(name);
@@ -66,34 +71,20 @@ TableWriter::TableWriter(const RunFolder& folder, const RunSetup& run, const Tab
       series_(folder.table("series.csv"), extent_of(extents, "series.csv")),
       observables_(folder.table("observables.csv"), extent_of(extents, "observables.csv")),
       rafts_(folder.table("rafts.csv"), extent_of(extents, "rafts.csv")) {
-  if (series_.extent().bytes == 0) series_.append(kColumns);
-  if (observables_.extent().bytes == 0) observables_.append(kColumns);
-  if (rafts_.extent().bytes == 0) rafts_.append(kRaftColumns);
-}
-
-std::string TableWriter::row_text(const Observables& row, double t) const {
-  const Units& units = run_.units;
-  const Integrator& integrator = *run_.integrator;
-  const IntegratorStatistics statistics = integrator.statistics();
-  const LinearStatistics linear = integrator.linear_statistics();
-  return csv_row(
-      {static_cast<double>(statistics.steps), t, integrator.step() * units.time(),
-       row.mass * units.area(), row.energy * units.area(), row.perimeter * units.length(),
-       row.perimeter_level * units.length(), static_cast<double>(row.rafts), row.raft_fraction,
-       row.c_min, row.c_max, static_cast<double>(row.domains),
-       static_cast<double>(statistics.rejected), static_cast<double>(statistics.failures),
-       static_cast<double>(statistics.newton_iterations), static_cast<double>(linear.iterations),
-       static_cast<double>(linear.setups), static_cast<double>(statistics.order)});
+  const std::string heading = column_heading(run.units.scaled);
+  if (series_.extent().bytes == 0) series_.append(heading);
+  if (observables_.extent().bytes == 0) observables_.append(heading);
+  if (rafts_.extent().bytes == 0) rafts_.append(raft_heading(run.units.scaled));
 }
 
 void TableWriter::on_step(const RunState& state) {
-  series_.append(row_text(state.row, state.row.t * run_.units.time()));
+  series_.append(column_values({run_, state.row, state.row.t * run_.units.time()}));
 }
 
 void TableWriter::on_output(const Observables& row, const RaftReport& rafts, ConstVec) {
   const Units& units = run_.units;
   const double t = run_.output_labels[output_index(run_, row.t)];
-  observables_.append(row_text(row, t));
+  observables_.append(column_values({run_, row, t}));
   std::string text;
   int number = 0;
   for (const Raft& raft : rafts.rafts) {

@@ -25,8 +25,6 @@ class TableWriter final : public RunListener {
   TableExtents extents() const;
 
  private:
-  std::string row_text(const Observables& row, double t) const;
-
   const RunSetup& run_;
   TableFile series_, observables_, rafts_;
 };

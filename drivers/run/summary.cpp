@@ -7,6 +7,7 @@
 #include "drivers/config/config_file.hpp"
 #include "drivers/output/program.hpp"
 #include "drivers/run/progress.hpp"
+#include "drivers/run/run_numbers.hpp"
 #include "drivers/text/say.hpp"
 #include "drivers/version.hpp"
 #include "kernel/core/parameters.hpp"
@@ -49,15 +50,20 @@ std::string energy_text(const Configuration& configuration, const RunSetup& run,
          " a smaller --tolerance or --energy-guard reject prevents that";
 }
 
+void put(nlohmann::ordered_json& json, const char* name, Unit unit, double value) {
+  if (unit == Unit::count) {
+    json[name] = static_cast<std::int64_t>(value);
+  } else {
+    json[name] = value;
+  }
+}
+
 }  // namespace
 
 std::string summary_json(const Configuration& configuration, const RunSetup& run,
                          const RunState& state, const RunResult& result, const RunCost& cost,
                          double memory_mb, const TableExtents& tables) {
   const Units& units = run.units;
-  const Observables& row = state.row;
-  const IntegratorStatistics steps = run.integrator->statistics();
-  const LinearStatistics linear = run.integrator->linear_statistics();
   nlohmann::ordered_json json;
   json["end"] = end_name(result.end);
   if (!result.why.empty()) json["why"] = result.why;
@@ -72,51 +78,12 @@ std::string summary_json(const Configuration& configuration, const RunSetup& run
                    {"radius_um", units.radius_um},
                    {"diffusion_cm2_s", units.diffusion_cm2_s},
                    {"seconds_per_unit", units.seconds_per_unit()}};
-  json["nodes"] = run.space->totals.nodes;
-  json["unknowns"] = 2 * run.space->totals.nodes;
-  json["cut_tetrahedra"] = run.space->totals.elements;
-  json["euler_characteristic"] = run.space->totals.euler_characteristic;
-  json["area"] = run.space->area * units.area();
-  json["h"] = run.space->h() * units.length();
-  json["t"] = row.t * units.time();
-  json["mass"] = row.mass * units.area();
-  json["mean_concentration"] = row.mass / run.space->area;
-  json["mass_drift"] = state.monitor.mass_drift();
-  json["energy"] = row.energy * units.area();
-  json["energy_rises"] = state.monitor.energy_rises();
-  json["largest_energy_rise"] = state.monitor.largest_rise();
   json["energy_guard"] = configuration.text("energy-guard");
-  json["energy_rises_refused"] = steps.energy_rises;
   json["energy_decay_promised"] = decay_promised(run);
-  json["perimeter"] = row.perimeter * units.length();
-  json["perimeter_level"] = row.perimeter_level * units.length();
-  json["rafts"] = row.rafts;
-  json["domains"] = row.domains;
-  json["raft_fraction"] = row.raft_fraction;
-  json["c_min"] = row.c_min;
-  json["c_max"] = row.c_max;
-  json["steps"] = steps.steps;
-  json["rejected"] = steps.rejected;
-  json["first_order_steps"] = steps.first_order;
-  json["failures"] = steps.failures;
-  json["renewals"] = steps.renewals;
-  json["fallbacks"] = steps.fallbacks;
-  json["residuals"] = steps.residuals;
-  json["jacobians"] = steps.jacobians;
-  json["newton_iterations"] = steps.newton_iterations;
-  json["order"] = steps.order;
-  json["linear_setups"] = linear.setups;
-  json["linear_solves"] = linear.solves;
-  json["linear_iterations"] = linear.iterations;
-  json["most_linear_iterations"] = linear.most_iterations;
-  json["assembly_s"] = steps.assembly_seconds;
-  json["linear_setup_s"] = linear.setup_seconds;
-  json["linear_solve_s"] = linear.solve_seconds;
-  json["wall_s"] = cost.wall_seconds;
-  json["cpu_s"] = cost.cpu_seconds;
-  json["peak_memory_mb"] = memory_mb;
-  json["ranks"] = run.ranks->size();
-  json["threads"] = run.team->size();
+  const RunMoment end(run, state.row, state.row.t * units.time());
+  for (const auto& column : run_columns()) put(json, column.name, column.unit, column.value(end));
+  const RunTotals totals{end, state.monitor, cost, memory_mb};
+  for (const auto& total : run_totals()) put(json, total.name, total.unit, total.value(totals));
   json["blas"] = blas_description();
   for (const auto& [name, extent] : tables)
     json["tables"][name] = {{"bytes", extent.bytes}, {"crc32", formatted("%08x", extent.checksum)}};

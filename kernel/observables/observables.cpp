@@ -31,6 +31,7 @@ Observables Observer::measure(double t, ConstVec y, const RaftReport& report) co
   row.rafts = static_cast<int>(report.rafts.size());
   row.raft_fraction = report.area / space.area;
   row.domains = row.raft_fraction > 0.5 ? finder_.regions_below(c, level()) : row.rafts;
+  row.largest_raft = report.rafts.empty() ? 0 : report.rafts.front().area;
   row.c_min = report.c_min;
   row.c_max = report.c_max;
   return row;

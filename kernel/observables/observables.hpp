@@ -20,6 +20,7 @@ struct Observables {
   int rafts = 0;
   int domains = 0;           // components of the phase that covers less: rafts, or what is not raft
   double raft_fraction = 0;  // area of {c > (a + b)/2} over |Γ|
+  double largest_raft = 0;   // area of the largest raft
   double c_min = 0, c_max = 0;
 };
 

@@ -1,0 +1,205 @@
+#include "drivers/run/run_numbers.hpp"
+
+#include "backends/zlib/checksum.hpp"
+#include "kernel/core/parameters.hpp"
+
+namespace traceraft {
+
+std::string unit_name(Unit unit, bool scaled) {
+  switch (unit) {
+    case Unit::time:
+      return scaled ? "R^2/D" : "s";
+    case Unit::length:
+      return scaled ? "R" : "um";
+    case Unit::area:
+      return scaled ? "R^2" : "um^2";
+    case Unit::seconds:
+      return "s";
+    case Unit::megabytes:
+      return "MB";
+    default:
+      return "";
+  }
+}
+
+RunMoment::RunMoment(const RunSetup& run_, const Observables& row_, double t_)
+    : run(run_),
+      row(row_),
+      t(t_),
+      steps(run_.integrator->statistics()),
+      linear(run_.integrator->linear_statistics()) {}
+
+namespace {
+
+double number(std::int64_t count) {
+  return static_cast<double>(count);
+}
+
+}  // namespace
+
+const std::vector<ReportedNumber<RunMoment>>& run_columns() {
+  using M = const RunMoment&;
+  using U = Unit;
+  static const std::vector<ReportedNumber<RunMoment>> columns = {
+      {"steps", U::count, "accepted steps so far", [](M m) { return number(m.steps.steps); }},
+      {"t", U::time, "time", [](M m) { return m.t; }},
+      {"dt", U::time, "the step that ends at t, or that t lies in",
+       [](M m) { return m.run.integrator->step() * m.units().time(); }},
+      {"mass", U::area, "∫ c over the surface", [](M m) { return m.row.mass * m.units().area(); }},
+      {"energy", U::area, "∫ f0(c) + ½ ε² |∇c|², in units of the energy density times area",
+       [](M m) { return m.row.energy * m.units().area(); }},
+      {"perimeter", U::length,
+       "the diffuse perimeter ∫ ε |∇c|² over the same integral per length of a straight boundary "
+       "at rest on a mesh of this h/ε",
+       [](M m) { return m.row.perimeter * m.units().length(); }},
+      {"perimeter_level", U::length, "length of the curve c = (a + b)/2",
+       [](M m) { return m.row.perimeter_level * m.units().length(); }},
+      {"rafts", U::count, "connected components of c > (a + b)/2",
+       [](M m) { return number(m.row.rafts); }},
+      {"domains", U::count,
+       "connected components of the phase that covers less: rafts, or, where raft_fraction is "
+       "above one half, those of c < (a + b)/2",
+       [](M m) { return number(m.row.domains); }},
+      {"raft_fraction", U::ratio, "area of all rafts over that of the surface",
+       [](M m) { return m.row.raft_fraction; }},
+      {"largest_raft", U::area, "area of the largest raft",
+       [](M m) { return m.row.largest_raft * m.units().area(); }},
+      {"c_min", U::ratio, "smallest c on the surface", [](M m) { return m.row.c_min; }},
+      {"c_max", U::ratio, "largest c on the surface", [](M m) { return m.row.c_max; }},
+      {"rejected", U::count, "attempts so far whose error was too large",
+       [](M m) { return number(m.steps.rejected); }},
+      {"failures", U::count, "attempts so far whose solve failed",
+       [](M m) { return number(m.steps.failures); }},
+      {"newton_iterations", U::count, "Newton corrections so far",
+       [](M m) { return number(m.steps.newton_iterations); }},
+      {"linear_iterations", U::count, "iterations of the linear solver so far",
+       [](M m) { return number(m.linear.iterations); }},
+      {"linear_setups", U::count, "preconditioners or factorisations so far",
+       [](M m) { return number(m.linear.setups); }},
+      {"order", U::count, "order of the last step", [](M m) { return number(m.steps.order); }},
+  };
+  return columns;
+}
+
+const std::vector<ReportedNumber<RunTotals>>& run_totals() {
+  using T = const RunTotals&;
+  using U = Unit;
+  static const std::vector<ReportedNumber<RunTotals>> totals = {
+      {"nodes", U::count, "nodes whose basis functions touch the surface",
+       [](T r) { return number(r.at.run.space->totals.nodes); }},
+      {"unknowns", U::count, "c and μ at the nodes",
+       [](T r) { return 2 * number(r.at.run.space->totals.nodes); }},
+      {"cut_tetrahedra", U::count, "tetrahedra that the surface cuts",
+       [](T r) { return number(r.at.run.space->totals.elements); }},
+      {"euler_characteristic", U::count, "of the surface: 2 for a sphere",
+       [](T r) { return number(r.at.run.space->totals.euler_characteristic); }},
+      {"area", U::area, "of the surface",
+       [](T r) { return r.at.run.space->area * r.at.units().area(); }},
+      {"h", U::length, "edge of a cell of the mesh",
+       [](T r) { return r.at.run.space->h() * r.at.units().length(); }},
+      {"mean_concentration", U::ratio, "mass over area",
+       [](T r) { return r.at.row.mass / r.at.run.space->area; }},
+      {"mass_drift", U::ratio, "largest change of the mass, relative to it",
+       [](T r) { return r.monitor.mass_drift(); }},
+      {"energy_rises", U::count, "steps in which the energy grew",
+       [](T r) { return number(r.monitor.energy_rises()); }},
+      {"largest_energy_rise", U::ratio, "the largest of these, over the initial energy",
+       [](T r) { return r.monitor.largest_rise(); }},
+      {"energy_rises_refused", U::count, "attempts that were cut because the energy grew",
+       [](T r) { return number(r.at.steps.energy_rises); }},
+      {"first_order_steps", U::count, "steps of euler with its first-order solution",
+       [](T r) { return number(r.at.steps.first_order); }},
+      {"residuals", U::count, "evaluations of F", [](T r) { return number(r.at.steps.residuals); }},
+      {"jacobians", U::count, "assemblies of the Jacobian",
+       [](T r) { return number(r.at.steps.jacobians); }},
+      {"renewals", U::count, "solves that were repeated with new factors",
+       [](T r) { return number(r.at.steps.renewals); }},
+      {"fallbacks", U::count, "solves that the second solver had to do",
+       [](T r) { return number(r.at.steps.fallbacks); }},
+      {"linear_solves", U::count, "linear systems solved",
+       [](T r) { return number(r.at.linear.solves); }},
+      {"most_linear_iterations", U::count, "the most that one of them took",
+       [](T r) { return number(r.at.linear.most_iterations); }},
+      {"assembly_s", U::seconds, "spent on residuals and Jacobians, summed over threads",
+       [](T r) { return r.at.steps.assembly_seconds; }},
+      {"linear_setup_s", U::seconds, "spent on preconditioners or factorisations",
+       [](T r) { return r.at.linear.setup_seconds; }},
+      {"linear_solve_s", U::seconds, "spent on linear solves",
+       [](T r) { return r.at.linear.solve_seconds; }},
+      {"wall_s", U::seconds, "wall-clock time of all processes that worked on the run",
+       [](T r) { return r.cost.wall_seconds; }},
+      {"cpu_s", U::seconds, "their CPU time, user and system",
+       [](T r) { return r.cost.cpu_seconds; }},
+      {"peak_memory_mb", U::megabytes, "largest resident memory of the last process",
+       [](T r) { return r.memory_mb; }},
+      {"ranks", U::count, "MPI ranks", [](T r) { return number(r.at.run.ranks->size()); }},
+      {"threads", U::count, "threads of a rank", [](T r) { return number(r.at.run.team->size()); }},
+  };
+  return totals;
+}
+
+namespace {
+
+template <class Source>
+const ReportedNumber<Source>* found(const std::vector<ReportedNumber<Source>>& list,
+                                    const std::string& name) {
+  for (const ReportedNumber<Source>& number : list)
+    if (name == number.name) return &number;
+  return nullptr;
+}
+
+template <class Source>
+std::string in_markdown(const std::vector<ReportedNumber<Source>>& list) {
+  std::string text = "| name | unit | meaning |\n|---|---|---|\n";
+  for (const ReportedNumber<Source>& number : list) {
+    std::string meaning;
+    for (const char* p = number.meaning; *p; ++p) meaning += *p == '|' ? "\\|" : std::string(1, *p);
+    text += std::string("| ") + number.name + " | " + unit_name(number.unit, false) + " | " +
+            meaning + " |\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string unit_of_number(const std::string& name, bool scaled) {
+  if (const auto* column = found(run_columns(), name)) return unit_name(column->unit, scaled);
+  if (const auto* total = found(run_totals(), name)) return unit_name(total->unit, scaled);
+  return "";
+}
+
+std::string column_heading(bool scaled) {
+  std::string text;
+  for (const auto& column : run_columns()) {
+    const std::string unit = unit_name(column.unit, scaled);
+    text += (text.empty() ? "" : ",") + std::string(column.name);
+    if (!unit.empty()) text += " (" + unit + ")";
+  }
+  return text + "\n";
+}
+
+std::string column_values(const RunMoment& moment) {
+  std::string text;
+  for (const auto& column : run_columns())
+    text += (text.empty() ? "" : ",") + format_number(column.value(moment));
+  return text + "\n";
+}
+
+std::uint32_t report_layout() {
+  std::string layout;
+  for (const auto& column : run_columns()) layout += std::string(column.name) + "\n";
+  for (const std::size_t size : {sizeof(Observables), sizeof(RunMonitor),
+                                 sizeof(IntegratorStatistics), sizeof(LinearStatistics)})
+    layout += std::to_string(size) + "\n";
+  return crc32_of(layout);
+}
+
+std::string columns_in_markdown() {
+  return in_markdown(run_columns());
+}
+
+std::string totals_in_markdown() {
+  return in_markdown(run_totals());
+}
+
+}  // namespace traceraft

@@ -1,0 +1,70 @@
+// The numbers that a run reports, each declared once: in the tables, in summary.json or in both.
+// The headings of tables, the units of the page, the tables in docs/formats.md and the layout that
+// checkpoints are checked against follow from the list.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "drivers/run/checkpoint_store.hpp"
+#include "drivers/run/run_setup.hpp"
+#include "kernel/simulation/run_monitor.hpp"
+
+namespace traceraft {
+
+enum class Unit { count, ratio, time, length, area, seconds, megabytes };
+
+// "um^2", or "R^2" where inputs and outputs are scaled; "" of a count or a ratio. The energy is an
+// area: it is measured in units of the energy density.
+std::string unit_name(Unit unit, bool scaled);
+
+// A step or an output time of a run.
+struct RunMoment {
+  const RunSetup& run;
+  const Observables& row;
+  double t;  // in the units of the outputs; at an output time, as the user wrote it
+  IntegratorStatistics steps;
+  LinearStatistics linear;
+
+  RunMoment(const RunSetup& run, const Observables& row, double t);
+  const Units& units() const { return run.units; }
+};
+
+// The end of a run.
+struct RunTotals {
+  const RunMoment& at;
+  const RunMonitor& monitor;
+  RunCost cost;
+  double memory_mb;
+};
+
+// `value` is in the units of the outputs.
+template <class Source>
+struct ReportedNumber {
+  const char* name;
+  Unit unit;
+  const char* meaning;
+  double (*value)(const Source&);
+};
+
+// A column of series.csv and observables.csv, and a number of summary.json.
+const std::vector<ReportedNumber<RunMoment>>& run_columns();
+// Numbers of summary.json alone.
+const std::vector<ReportedNumber<RunTotals>>& run_totals();
+
+// The unit of a number of either list by its name; "" if there is none of that name.
+std::string unit_of_number(const std::string& name, bool scaled);
+
+// "t (s),mass (um^2),…" and a line end.
+std::string column_heading(bool scaled);
+std::string column_values(const RunMoment& moment);
+
+// What a checkpoint's numbers depend on: a program that reports others cannot go on with it.
+std::uint32_t report_layout();
+
+// A Markdown table of a list: name, unit, meaning.
+std::string columns_in_markdown();
+std::string totals_in_markdown();
+
+}  // namespace traceraft
