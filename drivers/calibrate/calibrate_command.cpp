@@ -83,12 +83,12 @@ void remember(const fs::path& out, const std::string& what, const std::string& d
 
 // D shifts the axis of time only if nothing else in the model has a unit of time.
 void refuse_calibrating(const Configuration& model) {
-  const std::string effect = model.text("effect");
+  const std::string effect = model.options().effect;
   for (const EffectEntry& entry : effects())
     for (const ParameterSpec& parameter : entry.parameters)
       if ((is_rate(parameter.unit) || parameter.unit == "s") &&
           effect.find(entry.name + ":") != std::string::npos)
-        throw InputError(model.where("effect") + ": " + entry.name +
+        throw InputError(model.where(&RunOptions::effect) + ": " + entry.name +
                          " has a time of its own, so that D is more than a unit of time; it cannot "
                          "be calibrated");
 }
@@ -144,7 +144,7 @@ int calibrate_ensemble(const CalibrateRequest& request, const MeasuredVesicles& 
 
 // Fewer cells than the model's would make its own ε too small.
 int most_cells_of(const CalibrateRequest& request, const Configuration& model) {
-  const auto own = static_cast<int>(model.integer("cells"));
+  const auto own = static_cast<int>(model.options().cells);
   if (request.most_cells == 0) return usual_most_cells(model);
   if (request.most_cells >= own) return std::max((own + 3) / 4, request.most_cells / 4) * 4;
   throw InputError("--most-cells: " + std::to_string(request.most_cells) +
@@ -163,7 +163,7 @@ int run_calibration(CalibrateRequest request) {
   refuse_without_model(data.composition, request.model, request.flags);
   const Configuration model(read_config_file(request.model, "--model"), request.flags);
   if (std::find(costly.begin(), costly.end(), "fraction") == costly.end())
-    refuse_other_membrane(model.where("case"), data, model);
+    refuse_other_membrane(model.where(&RunOptions::case_name), data, model);
   refuse_scaled(model);
   refuse_calibrating(model);
   refuse_without_noise(model);

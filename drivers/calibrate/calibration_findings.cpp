@@ -106,7 +106,7 @@ Configuration found_model(const CalibrationRuns& runs,
   std::vector<double> values;
   for (std::size_t i = 1; i < parameters.size(); ++i) values.push_back(parameters[i].value);
   const Configuration at =
-      configuration_at(runs.model, runs.names, values, runs.model.number("t-end"));
+      configuration_at(runs.model, runs.names, values, runs.model.options().t_end);
   GivenValues given;
   for (const OptionSpec& spec : run_options())
     if (!at.text(spec.name).empty() && spec.name != "output-times" && spec.name != "fields")

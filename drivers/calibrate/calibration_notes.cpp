@@ -84,7 +84,7 @@ void add_size(const MeasuredVesicles& data, const CalibrationRuns& runs, const C
         "THE SIZE OF THE VESICLES decides about D: simulations with --radius %.3g "
         "--cells %.0f would make it %.2g times as large.",
         radius * std::pow(factor, 0.25),
-        std::round(static_cast<double>(runs.model.integer("cells")) * std::pow(factor, 0.25)),
+        std::round(static_cast<double>(runs.model.options().cells) * std::pow(factor, 0.25)),
         factor));
 }
 

@@ -15,8 +15,8 @@ constexpr Interval kFractions = {0.02, 0.9};
 
 // As many cells that the mesh is no coarser against ε than the model's, a multiple of 4.
 int cells_for(const Configuration& model, double epsilon) {
-  const double cells = static_cast<double>(model.integer("cells"));
-  const double needed = cells * std::max(1.0, model.number("epsilon") / epsilon);
+  const double cells = static_cast<double>(model.options().cells);
+  const double needed = cells * std::max(1.0, model.options().epsilon / epsilon);
   return 4 * static_cast<int>(std::ceil(needed / 4 * (1 - kRounding)));
 }
 
@@ -36,18 +36,19 @@ const NamedList<CalibratedOption>& calibrated_options() {
 }
 
 Interval range_of(const Configuration& model, const std::string& parameter, int most_cells) {
-  const double box = box_width(model), cells = model.number("cells");
+  const double box = box_width(model), cells = static_cast<double>(model.options().cells);
   if (parameter == "noise-length") return {box / cells, box / kFewestNoiseCells};
   if (parameter == "fraction") return kFractions;
-  return {model.number("epsilon") * cells / most_cells, 0.5 * model.units().length()};
+  return {model.options().epsilon * cells / most_cells, 0.5 * model.units().length()};
 }
 
 std::vector<double> values_of(const Configuration& model,
                               const std::vector<std::string>& parameters) {
   std::vector<double> values;
   for (const std::string& name : parameters)
-    values.push_back(name == "noise-length" ? model.noise_length()
-                                            : model.number(calibrated_options().find(name).option));
+    values.push_back(name == "noise-length"
+                         ? model.noise_length()
+                         : model.numbers(run_option(calibrated_options().find(name).option))[0]);
   return values;
 }
 
@@ -58,7 +59,7 @@ Configuration configuration_at(const Configuration& model,
   const auto set = [&](const std::string& option, const std::string& text) {
     given[option] = {text, "--" + option};
   };
-  double length = model.noise_length(), epsilon = model.number("epsilon");
+  double length = model.noise_length(), epsilon = model.options().epsilon;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     if (parameters[i] == "noise-length")
       length = values[i];

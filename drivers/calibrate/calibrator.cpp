@@ -24,7 +24,7 @@ constexpr double kRoundoff = 1e-9;
 
 int usual_most_cells(const Configuration& model) {
   constexpr int kUsual = 128;
-  const double needed = std::exp(kSteps[0]) * model.number("cells");
+  const double needed = std::exp(kSteps[0]) * static_cast<double>(model.options().cells);
   const double most = std::min(run_option("cells").max, 4 * std::ceil(needed / 4));
   return std::max(kUsual, static_cast<int>(most));
 }
@@ -111,7 +111,7 @@ bool Calibrator::add_point(const std::vector<double>& ln, const std::string& num
     if (before.ln_parameters == point.ln_parameters) return true;
   if (!request_.quiet)
     say("simulations %s: at%s, %s cells%s\n", number, words.empty() ? " the model" : words,
-        here.text("cells"), expected_time(here));
+        std::to_string(here.options().cells), expected_time(here));
   const std::filesystem::path folder = request_.out / "points" / name;
   const bool fresh = !std::filesystem::exists(folder);
   const Stopwatch watch;

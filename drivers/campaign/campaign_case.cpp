@@ -55,7 +55,7 @@ void draw(const fs::path& folder, const CampaignPlan& plan, const CaseSettings& 
   request.seed = seed;
   request.threads = 1;
   GivenValues given = plan.model;
-  const auto cells = std::lround(settings.coarser * static_cast<double>(model.integer("cells")));
+  const auto cells = std::lround(settings.coarser * static_cast<double>(model.options().cells));
   given["cells"] = {std::to_string(cells), "campaign"};
   hide(folder, given, request);
 }

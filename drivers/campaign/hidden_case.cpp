@@ -63,20 +63,21 @@ void add_small_vesicle(GivenValues& model, const std::string& source) {
 }
 
 int truth_cells(const GivenValues& model) {
-  const auto cells = static_cast<double>(Configuration(model, {}).integer("cells"));
+  const auto cells = static_cast<double>(Configuration(model, {}).options().cells);
   return static_cast<int>(std::lround(kFinerTruth * cells));
 }
 
 void refuse_hiding(const Configuration& model, const BlindRequest& request) {
   refuse_scaled(model);
-  if (model.text("surface") != "sphere")
-    throw InputError(model.where("surface") + ": measurements are drawn on spheres only");
-  if (!model.text("effect").empty())
-    throw InputError(model.where("effect") + ": effects are hidden with --effects");
-  if (request.cells <= model.integer("cells"))
+  if (model.options().surface != "sphere")
+    throw InputError(model.where(&RunOptions::surface) +
+                     ": measurements are drawn on spheres only");
+  if (!model.options().effect.empty())
+    throw InputError(model.where(&RunOptions::effect) + ": effects are hidden with --effects");
+  if (request.cells <= model.options().cells)
     throw InputError("--truth-cells: " + std::to_string(request.cells) +
                      " has to be more than the model's cells, " +
-                     std::to_string(model.integer("cells")));
+                     std::to_string(model.options().cells));
 }
 
 void hide(const fs::path& folder, const GivenValues& model, BlindRequest request) {
@@ -86,8 +87,8 @@ void hide(const fs::path& folder, const GivenValues& model, BlindRequest request
   request.base = physical_model(configuration);
   request.sizing_cells = std::min(
       request.cells,
-      static_cast<int>(std::lround(kSizing * static_cast<double>(configuration.integer("cells")))));
-  request.raft_fraction = configuration.number("raft-fraction");
+      static_cast<int>(std::lround(kSizing * static_cast<double>(configuration.options().cells))));
+  request.raft_fraction = configuration.options().raft_fraction;
   BlindCase drawn = numerically([&] { return draw_blind_case(request); });
 
   fs::create_directories(folder / "data");

@@ -84,7 +84,7 @@ int hide_effects(const HideCommand& command) {
   const FolderLock lock(out);
   end_on_stop_signals(kInterrupted, "nothing was hidden; give the same command again");
   say("computing the truth on %d cells\n", request.cells);
-  if (2 * request.cells < 5 * configuration.integer("cells"))
+  if (2 * request.cells < 5 * configuration.options().cells)
     say("NOTE: the error of so coarse a truth may be named itself; 4 times --cells is safe\n");
   flush_output();
   hide(out, model, request);

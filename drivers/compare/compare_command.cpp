@@ -44,7 +44,7 @@ Configuration new_configuration(const GivenValues& file, GivenValues flags,
   if (!decides_numbers(file) && !decides_numbers(flags))
     throw InputError((out.empty() ? "compare: " : "--out: " + out + " holds no comparison; ") +
                      std::string("say which runs to compare, as in --case spinodal"));
-  flags["output-times"] = {Configuration(file, flags).text("t-end"), "--t-end"};
+  flags["output-times"] = {format_number(Configuration(file, flags).options().t_end), "--t-end"};
   return {file, flags};
 }
 
@@ -61,8 +61,8 @@ Configuration known_configuration(const ComparisonFolder& folder, const GivenVal
       refuse("other runs");
   for (const GivenValues* given : {&file, &flags})
     if (const auto threads = given->find("threads"); threads != given->end())
-      if (Configuration({}, *given).integer("threads") != known.integer("threads"))
-        refuse("runs with --threads " + known.text("threads"));
+      if (Configuration({}, *given).options().threads != known.options().threads)
+        refuse("runs with --threads " + std::to_string(known.options().threads));
   return known;
 }
 
@@ -73,13 +73,13 @@ std::uint32_t checksum(const Vec& state) {
 }
 
 std::string folder_name(const CompareRequest& request, const Configuration& configuration) {
-  return request.out.empty() ? first_free_folder("compare-" + configuration.text("case"))
+  return request.out.empty() ? first_free_folder("compare-" + configuration.options().case_name)
                              : request.out;
 }
 
 std::vector<std::string> explanations(const Configuration& configuration, const RunSetup& run,
                                       const ComparePlan& plan) {
-  return {"Errors are those of c at t = " + configuration.text("t-end") +
+  return {"Errors are those of c at t = " + format_number(configuration.options().t_end) +
               (run.units.scaled ? "" : " s") +
               ", relative in L2 of the surface, against ida with block at tolerance " +
               format_number(plan.reference()) + " and linear tolerance " +

@@ -43,10 +43,11 @@ std::string value_text(const OptionSpec& spec, const TomlTable& table, const std
   }
 }
 
+// "5." and ".5" are no TOML.
 std::string number_list(const std::vector<double>& numbers) {
   std::string text;
   for (const double number : numbers) text += (text.empty() ? "" : ", ") + format_number(number);
-  return "[" + text + "]";
+  return text;
 }
 
 std::string toml_value(const OptionSpec& spec, const Configuration& configuration) {
@@ -57,9 +58,9 @@ std::string toml_value(const OptionSpec& spec, const Configuration& configuratio
     case OptionKind::flag:
       return configuration.text(spec.name);
     case OptionKind::numbers:
-      return number_list(configuration.numbers(spec.name));
+      return "[" + number_list(configuration.numbers(spec)) + "]";
     default:
-      return format_number(configuration.number(spec.name));  // "5." and ".5" are no TOML
+      return number_list(configuration.numbers(spec));
   }
 }
 
@@ -113,7 +114,7 @@ std::string flags_text(const Configuration& configuration) {
       continue;
     text += text.empty() ? "--" : " --";
     if (spec.kind == OptionKind::flag)
-      text += (configuration.flag(spec.name) ? "" : "no-") + spec.name;
+      text += (configuration.text(spec.name) == "true" ? "" : "no-") + spec.name;
     else
       text += spec.name + " " + in_shell(configuration.text(spec.name));
   }

@@ -53,6 +53,19 @@ const GivenValue* find_given(const GivenValues& file, const GivenValues& flags,
   return nullptr;
 }
 
+// A run folder stays resumable from everywhere.
+std::string with_absolute_path(const OptionSpec& spec, const GivenValue& value) {
+  if (spec.kind == OptionKind::path && !value.text.empty())
+    return std::filesystem::absolute(value.text).string();
+  const NamedArguments parts = split_named_arguments(value.text);
+  if (spec.member != OptionMember(&RunOptions::initial) || parts.name != "restart")
+    return value.text;
+  if (parts.arguments.empty())
+    throw InputError(value.where +
+                     ": restart needs the folder of a run, as in restart:runs/earlier");
+  return "restart:" + std::filesystem::absolute(parts.arguments).string();
+}
+
 }  // namespace
 
 std::vector<std::string> split_list(const std::string& text) {
@@ -101,22 +114,22 @@ Configuration::Configuration(const GivenValues& file, const GivenValues& flags) 
     }
     set(spec, {text, "--" + spec.name});
   }
-  if (!given("tolerance"))
+  if (!given(&RunOptions::tolerance))
     for (const IntegratorEntry& integrator : integrators())
-      if (integrator.name == text("integrator"))
-        values_["tolerance"].text = format_number(integrator.tolerance);
+      if (integrator.name == options_.integrator)
+        set_text(run_option(&RunOptions::tolerance), format_number(integrator.tolerance));
   // A case's choice is for its own mesh.
-  if (!given("noise-cells") && integer("noise-cells") > integer("cells"))
-    values_["noise-cells"].text = text("cells");
+  if (!given(&RunOptions::noise_cells) && options_.noise_cells > options_.cells)
+    set_text(run_option(&RunOptions::noise_cells), std::to_string(options_.cells));
 }
 
 bool Configuration::from_flag(const std::string& name) const {
   return given(name) && where(name).compare(0, 2, "--") == 0;
 }
 
-long long Configuration::noise_cells() const {
-  const long long own = integer("noise-cells");
-  return own > 0 ? own : std::max(1LL, integer("cells") / 4);
+std::int64_t Configuration::noise_cells() const {
+  return options_.noise_cells > 0 ? options_.noise_cells
+                                  : std::max(std::int64_t{1}, options_.cells / 4);
 }
 
 double Configuration::noise_length() const {
@@ -125,7 +138,7 @@ double Configuration::noise_length() const {
 
 void Configuration::set(const OptionSpec& spec, const GivenValue& value) {
   double unit = 1;
-  if (spec.dimension != Dimension::none && flag("scaled")) {
+  if (spec.dimension != Dimension::none && options_.scaled) {
     Units physical = units();
     physical.scaled = false;
     unit = spec.dimension == Dimension::length ? physical.length() : physical.time();
@@ -155,46 +168,37 @@ void Configuration::set(const OptionSpec& spec, const GivenValue& value) {
       break;
   }
   values_[spec.name] = value;
-  // A run folder stays resumable from everywhere.
-  if (spec.kind == OptionKind::path && !value.text.empty())
-    values_[spec.name].text = std::filesystem::absolute(value.text).string();
-  if (const NamedArguments parts = split_named_arguments(value.text);
-      spec.name == "initial" && parts.name == "restart") {
-    if (parts.arguments.empty())
-      throw InputError(value.where +
-                       ": restart needs the folder of a run, as in restart:runs/earlier");
-    values_[spec.name].text = "restart:" + std::filesystem::absolute(parts.arguments).string();
+  set_text(spec, with_absolute_path(spec, value));
+}
+
+void Configuration::set_text(const OptionSpec& spec, const std::string& text) {
+  values_[spec.name].text = text;
+  if (const auto* member = std::get_if<std::string RunOptions::*>(&spec.member)) {
+    options_.** member = text;
+  } else if (const auto* number = std::get_if<double RunOptions::*>(&spec.member)) {
+    options_.** number = parse_number(spec.name, text);
+  } else if (const auto* integer = std::get_if<std::int64_t RunOptions::*>(&spec.member)) {
+    options_.** integer = static_cast<std::int64_t>(parse_number(spec.name, text));
+  } else if (const auto* flag = std::get_if<bool RunOptions::*>(&spec.member)) {
+    options_.** flag = text == "true";
+  } else if (const auto* list = std::get_if<std::vector<double> RunOptions::*>(&spec.member)) {
+    options_.** list = numbers(spec);
+  } else if (spec.kind == OptionKind::number || spec.kind == OptionKind::integer) {
+    options_.method_numbers[spec.name] = parse_number(spec.name, text);
+  } else {
+    options_.method_words[spec.name] = text;
   }
 }
 
-std::string Configuration::text(const std::string& name) const {
-  return values_.at(name).text;
-}
-
-std::string Configuration::where(const std::string& name) const {
-  return values_.at(name).where;
-}
-
-double Configuration::number(const std::string& name) const {
-  return parse_number(name, text(name));
-}
-
-long long Configuration::integer(const std::string& name) const {
-  return static_cast<long long>(number(name));
-}
-
-bool Configuration::flag(const std::string& name) const {
-  return text(name) == "true";
-}
-
-std::vector<double> Configuration::numbers(const std::string& name) const {
-  std::vector<double> values;
-  for (const std::string& item : split_list(text(name))) values.push_back(parse_number(name, item));
-  return values;
+std::vector<double> Configuration::numbers(const OptionSpec& spec) const {
+  std::vector<double> result;
+  for (const std::string& item : split_list(text(spec.name)))
+    result.push_back(parse_number(spec.name, item));
+  return result;
 }
 
 Units Configuration::units() const {
-  return {number("radius"), number("diffusion"), flag("scaled")};
+  return {options_.radius, options_.diffusion, options_.scaled};
 }
 
 }  // namespace traceraft

@@ -27,26 +27,32 @@ class Configuration {
   // InputError naming the value, where it stands and what is allowed.
   Configuration(const GivenValues& file, const GivenValues& flags);
 
-  std::string text(const std::string& name) const;
-  double number(const std::string& name) const;
-  long long integer(const std::string& name) const;
-  bool flag(const std::string& name) const;
-  std::vector<double> numbers(const std::string& name) const;
+  const RunOptions& options() const { return options_; }
+
+  // The value as the user, the case or the default has it.
+  const std::string& text(const std::string& name) const { return values_.at(name).text; }
+  // Of an option of kind number, integer or numbers.
+  std::vector<double> numbers(const OptionSpec& spec) const;
   // Where a value was given, or "--name" for a default: starts every complaint about it.
-  std::string where(const std::string& name) const;
+  const std::string& where(const std::string& name) const { return values_.at(name).where; }
+  const std::string& where(const OptionMember& m) const { return where(run_option(m).name); }
 
   // Was it given by the user rather than by a case or a default?
   bool given(const std::string& name) const { return given_.count(name) != 0; }
+  bool given(const OptionMember& m) const { return given(run_option(m).name); }
   // And on the command line? A configuration file holds every option.
   bool from_flag(const std::string& name) const;
+  bool from_flag(const OptionMember& m) const { return from_flag(run_option(m).name); }
 
   Units units() const;
-  long long noise_cells() const;  // with 0 resolved
-  double noise_length() const;    // of its mesh, um
+  std::int64_t noise_cells() const;  // with 0 resolved
+  double noise_length() const;       // of its mesh, um
 
  private:
   void set(const OptionSpec& spec, const GivenValue& value);
+  void set_text(const OptionSpec& spec, const std::string& text);
 
+  RunOptions options_;
   std::map<std::string, GivenValue> values_;
   std::set<std::string> given_;
 };

@@ -1,5 +1,8 @@
 #include "drivers/config/options.hpp"
 
+#include <iterator>
+#include <stdexcept>
+
 #include "backends/list.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/named_list.hpp"
@@ -8,22 +11,44 @@ namespace traceraft {
 
 namespace {
 
+OptionKind kind_of(const OptionMember& member) {
+  constexpr OptionKind kinds[] = {OptionKind::text,    OptionKind::text, OptionKind::number,
+                                  OptionKind::integer, OptionKind::flag, OptionKind::numbers};
+  static_assert(std::size(kinds) == std::variant_size_v<OptionMember>);
+  return kinds[member.index()];
+}
+
+OptionSpec spec_of(const IntegratorEntry& integrator, const ParameterSpec& p) {
+  OptionSpec spec;
+  spec.name = integrator_option(integrator, p);
+  spec.kind = p.integer ? OptionKind::integer : OptionKind::number;
+  spec.default_text = format_number(p.default_value);
+  spec.group = "Integrator " + integrator.name;
+  const bool time = p.unit == "s";
+  spec.help = p.meaning + (time ? " (s)" : "");
+  spec.min = p.min;
+  spec.max = p.max;
+  spec.dimension = time ? Dimension::time : Dimension::none;
+  return spec;
+}
+
+OptionSpec spec_of(const LinearSolverEntry& solver, const WordOption& o) {
+  OptionSpec spec;
+  spec.name = linear_solver_option(solver, o);
+  spec.kind = o.file ? OptionKind::path : OptionKind::text;
+  spec.default_text = o.default_word;
+  spec.group = "Linear solver " + solver.name;
+  spec.help = o.meaning;
+  return spec;
+}
+
 // After the general options, those that only one integrator or linear solver has.
 std::vector<OptionSpec> with_own_options(std::vector<OptionSpec> table) {
+  for (OptionSpec& spec : table) spec.kind = kind_of(spec.member);
   for (const IntegratorEntry& integrator : integrators())
-    for (const ParameterSpec& p : integrator.parameters) {
-      const bool time = p.unit == "s";
-      table.push_back({integrator_option(integrator, p),
-                       p.integer ? OptionKind::integer : OptionKind::number,
-                       format_number(p.default_value), "Integrator " + integrator.name,
-                       p.meaning + (time ? " (s)" : ""), p.min, p.max,
-                       time ? Dimension::time : Dimension::none});
-    }
+    for (const ParameterSpec& p : integrator.parameters) table.push_back(spec_of(integrator, p));
   for (const LinearSolverEntry& solver : linear_solvers())
-    for (const WordOption& o : solver.options)
-      table.push_back({linear_solver_option(solver, o),
-                       o.file ? OptionKind::path : OptionKind::text, o.default_word,
-                       "Linear solver " + solver.name, o.meaning});
+    for (const WordOption& o : solver.options) table.push_back(spec_of(solver, o));
   return table;
 }
 
@@ -38,88 +63,90 @@ std::string linear_solver_option(const LinearSolverEntry& solver, const WordOpti
 }
 
 const std::vector<OptionSpec>& run_options() {
-  using K = OptionKind;
+  using R = RunOptions;
   using D = Dimension;
   static const std::vector<OptionSpec> table = with_own_options({
-      {"case", K::text, "guv-2to1", "Case",
+      {"case", &R::case_name, "guv-2to1", "Case",
        "named set of defaults, which may differ from those below (see: traceraft list)"},
-      {"scaled", K::flag, "false", "Case",
+      {"scaled", &R::scaled, "false", "Case",
        "all inputs and outputs in units of R and R^2/D instead of um and s"},
 
-      {"surface", K::text, "sphere", "Surface",
+      {"surface", &R::surface, "sphere", "Surface",
        "surface, with parameters as in torus:major=1,minor=0.4 (units of R), or formula"},
-      {"surface-formula", K::text, "", "Surface",
+      {"surface-formula", &R::surface_formula, "", "Surface",
        "level set phi(x,y,z), negative inside, for --surface formula (units of R)"},
-      {"radius", K::number, "5", "Surface", "surface scale R in um (half a vesicle's diameter)",
+      {"radius", &R::radius, "5", "Surface", "surface scale R in um (half a vesicle's diameter)",
        1e-6, 1e9},
-      {"cells", K::integer, "128", "Surface", "cells per edge of the box [-5/3 R, 5/3 R]^3", 4,
+      {"cells", &R::cells, "128", "Surface", "cells per edge of the box [-5/3 R, 5/3 R]^3", 4,
        4096},
 
-      {"epsilon", K::number, "0.05", "Physics", "width of the phase boundary (um)", 1e-9, 1e9,
+      {"epsilon", &R::epsilon, "0.05", "Physics", "width of the phase boundary (um)", 1e-9, 1e9,
        D::length},
-      {"diffusion", K::number, "1e-5", "Physics", "mobility prefactor D in cm^2/s", 1e-30, 1e30},
-      {"mobility", K::text, "degenerate", "Physics",
+      {"diffusion", &R::diffusion, "1e-5", "Physics", "mobility prefactor D in cm^2/s", 1e-30,
+       1e30},
+      {"mobility", &R::mobility, "degenerate", "Physics",
        "mobility law in units of D: degenerate, degenerate:outside=-1, constant:value=0.25"},
-      {"well", K::text, "rho=0.25,a=0,b=1", "Physics",
+      {"well", &R::well, "rho=0.25,a=0,b=1", "Physics",
        "free energy rho (c-a)^2 (b-c)^2 of a homogeneous mixture"},
-      {"effect", K::text, "", "Physics",
+      {"effect", &R::effect, "", "Physics",
        "what is added to the model, as in exchange:rate=1e-3,target=0.2; several between "
        "semicolons or by several flags (see: traceraft list)",
        0, 0, D::none, true, true},
-      {"potential", K::text, "averaged", "Physics",
+      {"potential", &R::potential, "averaged", "Physics",
        "free energy of an element: from the mean of its square root (averaged: exact line "
        "tension), by quadrature (consistent), or nodal as in the paper's code"},
-      {"stabilisation", K::number, "1", "Physics",
+      {"stabilisation", &R::stabilisation, "1", "Physics",
        "normal-gradient stabilisation, in units of the mesh size", 1e-6, 1e6},
-      {"mass-stabilisation", K::number, "0.3", "Physics",
+      {"mass-stabilisation", &R::mass_stabilisation, "0.3", "Physics",
        "the same of the mass matrix, where it slows short waves; 1 as in the paper's code", 1e-3,
        1e3},
 
-      {"initial", K::text, "noise", "Initial state",
+      {"initial", &R::initial, "noise", "Initial state",
        "noise, band-limited:wavelength=0.3,amplitude=0.05, caps, formula, or restart:DIR"},
-      {"initial-formula", K::text, "", "Initial state",
+      {"initial-formula", &R::initial_formula, "", "Initial state",
        "c(x,y,z) for --initial formula (units of R)"},
-      {"initial-caps", K::text, "", "Initial state",
+      {"initial-caps", &R::initial_caps, "", "Initial state",
        "rafts for --initial caps: \"x y z angle; ...\" with directions and half angles in degrees"},
-      {"raft-fraction", K::number, "0.16", "Initial state",
+      {"raft-fraction", &R::raft_fraction, "0.16", "Initial state",
        "mean of (c-a)/(b-a) for noise, met exactly", 0.0, 1.0},
-      {"noise-cells", K::integer, "0", "Initial state",
+      {"noise-cells", &R::noise_cells, "0", "Initial state",
        "cells per edge of the mesh on which noise is drawn, at most --cells; 0: a quarter of "
        "--cells",
        0, 4096},
-      {"seed", K::integer, "1", "Initial state", "seed of the noise", 0, kLargestSeed},
+      {"seed", &R::seed, "1", "Initial state", "seed of the noise", 0, kLargestSeed},
 
-      {"t-end", K::number, "25000", "Time", "end of the run (s)", 1e-300, 1e300, D::time},
-      {"output-times", K::numbers, "", "Time",
+      {"t-end", &R::t_end, "25000", "Time", "end of the run (s)", 1e-300, 1e300, D::time},
+      {"output-times", &R::output_times, "", "Time",
        "times of fields and observables.csv (s), comma-separated; default: 0 and 16 times up to "
        "the end, evenly spaced in log t",
        0, 1e300, D::time},
-      {"integrator", K::text, "ida", "Time", "time integrator (see: traceraft list)"},
-      {"tolerance", K::number, "1e-3", "Time",
+      {"integrator", &R::integrator, "ida", "Time", "time integrator (see: traceraft list)"},
+      {"tolerance", &R::tolerance, "1e-3", "Time",
        "relative error per step in L2 of the surface; default of euler: 5e-3", 1e-12, 0.5},
-      {"initial-step", K::number, "0", "Time", "first step (s); 0: from the initial state", 0,
-       1e300, D::time},
-      {"min-step", K::number, "0", "Time", "smallest step (s); 0: 1e-14 of the run", 0, 1e300,
+      {"initial-step", &R::initial_step, "0", "Time", "first step (s); 0: from the initial state",
+       0, 1e300, D::time},
+      {"min-step", &R::min_step, "0", "Time", "smallest step (s); 0: 1e-14 of the run", 0, 1e300,
        D::time},
-      {"max-step", K::number, "0", "Time", "largest step (s); 0: unbounded", 0, 1e300, D::time},
-      {"keep", K::text, "second", "Time",
+      {"max-step", &R::max_step, "0", "Time", "largest step (s); 0: unbounded", 0, 1e300, D::time},
+      {"keep", &R::keep, "second", "Time",
        "which solution of the euler pair goes on: second (as in the paper), first, or decaying: "
        "second unless it gains energy"},
 
-      {"energy-guard", K::text, "warn", "Time",
+      {"energy-guard", &R::energy_guard, "warn", "Time",
        "steps that gain energy where the model can only lose it: warn, reject, or off"},
 
-      {"linear-solver", K::text, "block", "Linear algebra", "linear solver (see: traceraft list)"},
-      {"linear-tolerance", K::number, "0", "Linear algebra",
+      {"linear-solver", &R::linear_solver, "block", "Linear algebra",
+       "linear solver (see: traceraft list)"},
+      {"linear-tolerance", &R::linear_tolerance, "0", "Linear algebra",
        "relative residual of each correction; 0: the integrator's choice (euler 1e-4, ida 5e-2, "
        "rosenbrock up to 1e-3)",
        0, 0.5},
-      {"threads", K::integer, "0", "Linear algebra",
+      {"threads", &R::threads, "0", "Linear algebra",
        "threads; 0: all processors, at most 2. Results do not depend on it", 0, 64, D::none, false},
 
-      {"checkpoint-interval", K::number, "30", "Output",
+      {"checkpoint-interval", &R::checkpoint_interval, "30", "Output",
        "wall-clock seconds between checkpoints; 0: after every step", 0, 1e9, D::none, false},
-      {"fields", K::flag, "true", "Output",
+      {"fields", &R::fields, "true", "Output",
        "write fields for ParaView and pictures at the output times (on unless --no-fields)", 0, 0,
        D::none, false},
   });
@@ -136,6 +163,12 @@ const OptionSpec& run_option(const std::string& name) {
   for (const OptionSpec& spec : run_options())
     if (spec.name == name) return spec;
   throw InputError(unknown_name_message("option", name, run_option_names()));
+}
+
+const OptionSpec& run_option(const OptionMember& member) {
+  for (const OptionSpec& spec : run_options())
+    if (spec.member == member) return spec;
+  throw std::logic_error("an option that is not in the list");
 }
 
 }  // namespace traceraft

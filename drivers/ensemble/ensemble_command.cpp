@@ -41,10 +41,10 @@ struct EnsembleRequest {
 Configuration new_configuration(const EnsembleRequest& request, GivenValues file) {
   file.erase("seed");
   const Configuration configuration(file, request.flags);
-  if (configuration.text("initial") == "noise") return configuration;
-  if (configuration.text("initial").compare(0, 12, "band-limited") == 0) return configuration;
+  if (configuration.options().initial == "noise") return configuration;
+  if (configuration.options().initial.compare(0, 12, "band-limited") == 0) return configuration;
   throw InputError(
-      configuration.where("initial") +
+      configuration.where(&RunOptions::initial) +
       ": runs differ in the noise they start from; it has to be noise or band-limited");
 }
 
@@ -113,7 +113,7 @@ int carry_out(const EnsembleRequest& request, const EnsembleFolder& folder,
   if (!request.quiet)
     say("%d runs, %d at a time with %d thread%s each\nfolder %s\n\n", plan.runs, jobs.at_a_time,
         jobs.threads, jobs.threads == 1 ? "" : "s", folder.path());
-  const double t_end = configuration.number("t-end");
+  const double t_end = configuration.options().t_end;
   EnsembleEnd end = work_off(plan, folder, jobs, t_end, request.quiet);
   const FinishedMembers finished = finished_members(folder, units.length(), t_end);
   end.failures.insert(end.failures.end(), finished.damaged.begin(), finished.damaged.end());
@@ -168,9 +168,9 @@ int run_ensemble(const EnsembleRequest& request) {
   const Configuration configuration =
       goes_on ? known_configuration(EnsembleFolder(request.out), request, file)
               : new_configuration(request, file);
-  const EnsembleFolder folder(request.out.empty()
-                                  ? first_free_folder("ensemble-" + configuration.text("case"))
-                                  : request.out);
+  const EnsembleFolder folder(
+      request.out.empty() ? first_free_folder("ensemble-" + configuration.options().case_name)
+                          : request.out);
   const EnsemblePlan plan = plan_of(request, folder);
   std::optional<RunSetup> run;
   if (!goes_on) run = build_run(configuration, InitialState::build);  // or refuses it
@@ -180,7 +180,7 @@ int run_ensemble(const EnsembleRequest& request) {
   folder.save(plan);
   fs::create_directories(folder.path() / "runs");
   if (run && !request.quiet)
-    say("case %s, %s\n", configuration.text("case"), resolution_text(configuration, *run));
+    say("case %s, %s\n", configuration.options().case_name, resolution_text(configuration, *run));
   if (!goes_on) write_durably(folder.config(), config_text(configuration));
   if (!request.array_job) return carry_out(request, folder, plan, configuration);
   write_array_job(request, folder, plan, configuration);

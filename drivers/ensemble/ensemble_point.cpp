@@ -24,8 +24,9 @@ GivenValues settings_until(const Configuration& model, double t_end) {
 }
 
 void refuse_without_noise(const Configuration& model) {
-  if (model.text("initial").compare(0, 5, "noise") != 0)
-    throw InputError(model.where("initial") + ": vesicles differ in the noise they start from");
+  if (model.options().initial.compare(0, 5, "noise") != 0)
+    throw InputError(model.where(&RunOptions::initial) +
+                     ": vesicles differ in the noise they start from");
 }
 
 namespace {
@@ -53,7 +54,7 @@ PointEnd run_point(const std::filesystem::path& path, const Configuration& confi
   if (!holds(folder, plan)) folder.save(plan);
   if (!std::filesystem::exists(folder.config()))
     write_durably(folder.config(), config_text(configuration));
-  const double t_end = configuration.number("t-end");
+  const double t_end = configuration.options().t_end;
   const EnsembleEnd end = work_off(plan, folder, jobs_of(request.jobs, 0), t_end, request.quiet);
   for (const MemberFailure& failure : end.failures)
     if (failure.locked)

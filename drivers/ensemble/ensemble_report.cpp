@@ -4,6 +4,7 @@
 #include "drivers/output/chart.hpp"
 #include "drivers/output/provenance.hpp"
 #include "kernel/core/error.hpp"
+#include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
 
 namespace traceraft {
@@ -40,10 +41,11 @@ ChartSeries band(const EnsembleSummary& summary, Quantity quantity, const char* 
 std::string sentence_on(const Configuration& configuration, const EnsemblePlan& plan,
                         std::size_t finished) {
   return std::to_string(finished) + " of " + std::to_string(plan.runs) + " runs of the case " +
-         configuration.text("case") + ", seeds " + std::to_string(plan.first_seed) + " to " +
+         configuration.options().case_name + ", seeds " + std::to_string(plan.first_seed) + " to " +
          std::to_string(plan.last_seed()) + ": raft fraction " +
-         configuration.text("raft-fraction") + ", epsilon " + configuration.text("epsilon") + ", " +
-         configuration.text("cells") +
+         format_number(configuration.options().raft_fraction) + ", epsilon " +
+         format_number(configuration.options().epsilon) + ", " +
+         std::to_string(configuration.options().cells) +
          " cells. Perimeters are diffuse ones, divided by the radius.";
 }
 

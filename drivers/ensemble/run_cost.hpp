@@ -9,11 +9,11 @@ namespace traceraft {
 // that are narrower with the mesh take more steps. Other times, tolerances and methods do not
 // enter.
 inline double relative_memory(const Configuration& configuration) {
-  const double finer = configuration.number("cells") / 128;
+  const double finer = static_cast<double>(configuration.options().cells) / 128;
   return finer * finer;
 }
 inline double relative_work(const Configuration& configuration) {
-  return relative_memory(configuration) * configuration.number("cells") / 128;
+  return relative_memory(configuration) * static_cast<double>(configuration.options().cells) / 128;
 }
 
 }  // namespace traceraft

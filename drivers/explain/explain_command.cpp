@@ -95,7 +95,7 @@ SeriesSetup read_series_job(const ExplainCommand& command) {
   const GivenValues given = model_said(command.job);
   SeriesSetup setup{std::move(data), given, {given, {}}, {}};
   if (const std::string other = other_membrane(setup.data.composition, setup.model); !other.empty())
-    throw InputError(setup.model.where("case") + ": the model is of " + other);
+    throw InputError(setup.model.where(&RunOptions::case_name) + ": the model is of " + other);
   refuse_series(setup.data, setup.model);
   setup.request = {looks(setup.data),        command.runs,        command.jobs,
                    command.job.processors(), command.job.without, command.quiet};
@@ -136,7 +136,7 @@ bool explain_series_data(const ExplainCommand& command, const SeriesSetup& setup
 
 // Series are held against models without any.
 bool has_effects(const ExplainJob& job) {
-  return !Configuration(model_said(job), {}).text("effect").empty();
+  return !Configuration(model_said(job), {}).options().effect.empty();
 }
 
 // A folder for --data may hold fields, series or both.

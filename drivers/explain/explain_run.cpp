@@ -31,13 +31,13 @@ std::vector<std::string> notes_on(const GivenValues& model, const FieldDataset& 
   std::vector<std::string> notes;
   const Configuration configuration(model, {});
   if (model.count("radius") > 0) {
-    const double own = configuration.number("radius");
+    const double own = configuration.options().radius;
     if (std::fabs(own - data.radius_um) > 1e-6 * data.radius_um)
       notes.push_back("The radius is that of dataset.toml, " + format_number(data.radius_um) +
                       " um, not that of the model, " + format_number(own) + ".");
   }
   if (const std::string note = note_on_distance(data);
-      !note.empty() && configuration.text("surface") == "sphere")
+      !note.empty() && configuration.options().surface == "sphere")
     notes.push_back(note);
   return notes;
 }
@@ -83,7 +83,8 @@ void refuse_far_values(const std::vector<FieldSeries>& vesicles, const DoubleWel
 void refuse_wide_boundaries(const Configuration& model, const CahnHilliardModel& base) {
   constexpr double kWidest = 0.5;
   if (base.epsilon > kWidest)
-    throw InputError(model.where("epsilon") + ": " + model.text("epsilon") +
+    throw InputError(model.where(&RunOptions::epsilon) + ": " +
+                     format_number(model.options().epsilon) +
                      " um is more than half of the radius, " +
                      format_number(model.units().radius_um) + " um by dataset.toml");
 }
@@ -108,8 +109,8 @@ void refuse_uniform_values(const std::vector<FieldSeries>& vesicles, const Doubl
 void refuse_exchanged_phases(const Configuration& model, const std::vector<FieldSeries>& vesicles,
                              const DoubleWell& well) {
   constexpr double kTold = 0.2, kMuchNearer = 4;
-  const double stated = model.number("raft-fraction");
-  if (model.text("initial") != "noise" || std::fabs(1 - 2 * stated) < kTold) return;
+  const double stated = model.options().raft_fraction;
+  if (model.options().initial != "noise" || std::fabs(1 - 2 * stated) < kTold) return;
   double sum = 0, count = 0;
   for (const FieldSeries& vesicle : vesicles)
     for (const FieldSnapshot& snapshot : vesicle.snapshots) {
@@ -119,7 +120,7 @@ void refuse_exchanged_phases(const Configuration& model, const std::vector<Field
   const double measured = (sum / count - well.a) / (well.b - well.a);
   if (kMuchNearer * std::fabs(measured - (1 - stated)) > std::fabs(measured - stated)) return;
   throw InputError(
-      model.where("raft-fraction") + ": the model has " + format_number(stated) +
+      model.where(&RunOptions::raft_fraction) + ": the model has " + format_number(stated) +
       formatted(" of rafts, and the mean of c is %.2f: if c marks the other phase, ", measured) +
       formatted("write 1 - c; if not, say --raft-fraction %.2f", measured));
 }
@@ -128,14 +129,15 @@ void refuse_exchanged_phases(const Configuration& model, const std::vector<Field
 Hypothesis own_effects(const Configuration& model, const std::vector<Candidate>& asked,
                        const std::vector<std::string>& without) {
   const std::vector<EffectTerm> terms = effects_of(model);
-  const Hypothesis own = said_of(model, "effect", [&] { return of_model(terms); });
+  const Hypothesis own =
+      with_option_context(model, &RunOptions::effect, [&] { return of_model(terms); });
   for (const EffectTerm& term : terms) {
     if (std::count(without.begin(), without.end(), term.effect) > 0)
       throw InputError("--without: the model has " + term.effect +
                        ", whose strength is fitted; take it out of the model instead");
     if (std::none_of(asked.begin(), asked.end(),
                      [&](const Candidate& c) { return c.effect == term.effect; }))
-      throw InputError(model.where("effect") + ": effect " + term.effect +
+      throw InputError(model.where(&RunOptions::effect) + ": effect " + term.effect +
                        ": on this surface it does next to nothing, so that no data tell its "
                        "strength; leave it out");
   }
@@ -211,7 +213,7 @@ ExplainSetup read_explain_job(const ExplainJob& job) {
   (void)physical_model(model);  // with its effects it has to be one
   setup.request.base = model_without_effects(model);
   const DoubleWell& well = setup.request.base.well;
-  if (model.text("surface") == "sphere") refuse_points_off_the_sphere(data, job.data);
+  if (model.options().surface == "sphere") refuse_points_off_the_sphere(data, job.data);
   if (const std::string note = note_on_scale(data, well.a, well.b); !note.empty())
     setup.notes.push_back(note);
   setup.series = std::move(data.vesicles);
@@ -222,7 +224,7 @@ ExplainSetup read_explain_job(const ExplainJob& job) {
 
   ExplainRequest& request = setup.request;
   request.surface = surface_of(model);
-  request.cells = static_cast<int>(model.integer("cells"));
+  request.cells = static_cast<int>(model.options().cells);
   request.threads = job.processors();
   request.most_effects = job.effects;
   request.without = job.without;

@@ -37,7 +37,7 @@ void tell(const SeriesEnsemblesRequest& request, const std::string& step) {
 
 Configuration ensemble_model(const Configuration& model, const std::string& effect, double t_end) {
   GivenValues given = settings_until(model, t_end);
-  given["case"] = {model.text("case"), "--case"};
+  given["case"] = {model.options().case_name, "--case"};
   given["effect"] = {effect, "--effect"};
   return {{}, given};
 }
@@ -46,10 +46,10 @@ BlindRequest sizing_request(const Configuration& model, const SeriesEnsemblesReq
   const double time = model.units().time();
   BlindRequest sizing;
   sizing.base = physical_model(model);
-  sizing.raft_fraction = model.number("raft-fraction");
-  sizing.cells = static_cast<int>(model.integer("cells"));
-  sizing.initial = model.text("initial");
-  sizing.noise_cells = model.integer("noise-cells");
+  sizing.raft_fraction = model.options().raft_fraction;
+  sizing.cells = static_cast<int>(model.options().cells);
+  sizing.initial = model.options().initial;
+  sizing.noise_cells = model.options().noise_cells;
   sizing.first = request.looks.begin / time;
   sizing.last = request.looks.end / time;
   sizing.snapshots = 5;
@@ -184,10 +184,10 @@ std::string note_on_looks(const Window& simulated, const Window& measured) {
 
 void refuse_series(const MeasuredVesicles& data, const Configuration& model) {
   refuse_scaled(model);
-  if (model.text("surface") != "sphere")
-    throw InputError(model.where("surface") + ": series are explained on spheres only");
-  if (!model.text("effect").empty())
-    throw InputError(model.where("effect") +
+  if (model.options().surface != "sphere")
+    throw InputError(model.where(&RunOptions::surface) + ": series are explained on spheres only");
+  if (!model.options().effect.empty())
+    throw InputError(model.where(&RunOptions::effect) +
                      ": series are held against a model without effects, one of which at a time is "
                      "then added");
   refuse_without_noise(model);

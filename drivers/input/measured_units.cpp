@@ -90,8 +90,9 @@ double checked_radius(double radius, const std::string& where) {
 }
 
 void refuse_scaled(const Configuration& model) {
-  if (model.flag("scaled"))
-    throw InputError(model.where("scaled") + ": measurements are in seconds and micrometres");
+  if (model.options().scaled)
+    throw InputError(model.where(&RunOptions::scaled) +
+                     ": measurements are in seconds and micrometres");
 }
 
 }  // namespace traceraft

@@ -26,14 +26,16 @@ void refuse_without_model(const std::string& composition, const std::string& mod
 }
 
 std::string other_membrane(const std::string& composition, const Configuration& model) {
-  if (composition.empty() || model.text("case").empty()) return "";
-  const CaseEntry& entry = cases().find(model.text("case"));
+  if (composition.empty() || model.options().case_name.empty()) return "";
+  const CaseEntry& entry = cases().find(model.options().case_name);
   if (entry.composition.empty() || same_membrane(composition, entry.composition)) return "";
   for (const auto& [option, value] : entry.values)
-    if (option == "raft-fraction" && model.number(option) != std::strtod(value.c_str(), nullptr))
+    if (option == "raft-fraction" &&
+        model.options().raft_fraction != std::strtod(value.c_str(), nullptr))
       return "";
-  return entry.composition + " (case " + entry.name + (model.given("case") ? "" : ", by default") +
-         "), the measurements of " + composition;
+  return entry.composition + " (case " + entry.name +
+         (model.given(&RunOptions::case_name) ? "" : ", by default") + "), the measurements of " +
+         composition;
 }
 
 }  // namespace traceraft

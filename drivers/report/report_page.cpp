@@ -110,8 +110,8 @@ void add_summary(Page& page, const fs::path& run, bool scaled) {
 void fill_run(Page& page, const fs::path& folder, const PageRequest& request, Missing& missing) {
   const Configuration configuration(read_config_file(folder / "config.toml"), {});
   const bool scaled = configuration.units().scaled;
-  page.paragraph("A run of the case " + configuration.text("case") + ", seed " +
-                 configuration.text("seed") + ".");
+  page.paragraph("A run of the case " + configuration.options().case_name + ", seed " +
+                 std::to_string(configuration.options().seed) + ".");
   add_surface(page, folder, request, missing);
   page.heading("In time");
   if (request.data)
@@ -166,7 +166,7 @@ void fill_kept(Page& page, const fs::path& path, const PageRequest& request, Mis
   const Configuration configuration = model_of(path);
   const std::vector<History> runs = runs_of(path).histories;
   page.paragraph(formatted("What is kept of %zu runs of the case ", runs.size()) +
-                 configuration.text("case") + ".");
+                 configuration.options().case_name + ".");
   add_all_runs(page, runs, true, request, missing);
   add_settings(page, configuration);
   const std::string first = CsvTable::read(path / kHistoriesFile).text(0, "seed");
@@ -181,13 +181,13 @@ void fill_ensemble(Page& page, const fs::path& path, const PageRequest& request,
   const Configuration configuration(read_config_file(folder.config()), {});
   const Units units = configuration.units();
   const FinishedMembers finished =
-      finished_members(folder, units.length(), configuration.number("t-end"));
+      finished_members(folder, units.length(), configuration.options().t_end);
   const std::vector<History>& runs = finished.histories;
   if (runs.empty()) throw InputError(path.string() + ": no run of this ensemble has finished");
   const fs::path shown = folder.run_of(finished.seeds.front());
   const EnsemblePlan plan = folder.load();
   page.paragraph(formatted("%zu of %d runs of the case ", runs.size(), plan.runs) +
-                 configuration.text("case") + ", seeds " + std::to_string(plan.first_seed) +
+                 configuration.options().case_name + ", seeds " + std::to_string(plan.first_seed) +
                  " to " + std::to_string(plan.last_seed()) + ". Shown is " +
                  shown.filename().string() + ".");
   for (const MemberFailure& failure : finished.damaged)

@@ -15,16 +15,16 @@ constexpr double kLeastPart = 1e-14;
 
 }  // namespace
 
-std::string one_of(const Configuration& configuration, const char* option, const char* kind,
-                   const std::vector<std::string>& words) {
-  const std::string word = configuration.text(option);
+std::string one_of(const Configuration& configuration, std::string RunOptions::*option,
+                   const char* kind, const std::vector<std::string>& words) {
+  const std::string& word = configuration.options().*option;
   if (std::find(words.begin(), words.end(), word) == words.end())
     throw InputError(configuration.where(option) + ": " + unknown_name_message(kind, word, words));
   return word;
 }
 
 void refuse_times_out_of_range(const Configuration& configuration) {
-  const double unit = configuration.units().time(), end = configuration.number("t-end");
+  const double unit = configuration.units().time(), end = configuration.options().t_end;
   const auto require = [&](const OptionSpec& spec, double value, double least) {
     const double most = kLongestTime * unit;
     if ((value == 0 && spec.min == 0) || (value >= least && value <= most)) return;
@@ -34,14 +34,12 @@ void refuse_times_out_of_range(const Configuration& configuration) {
   };
   for (const OptionSpec& spec : run_options()) {
     if (spec.dimension != Dimension::time) continue;
-    const bool several = spec.kind == OptionKind::numbers;
-    const std::vector<double> values = several
-                                           ? configuration.numbers(spec.name)
-                                           : std::vector<double>{configuration.number(spec.name)};
-    for (const double value : values) require(spec, value, kShortestTime * unit);
+    for (const double value : configuration.numbers(spec))
+      require(spec, value, kShortestTime * unit);
   }
   for (const char* longest : {"max-step", "ida-maxstep"})
-    require(run_option(longest), configuration.number(longest), kLeastPart * end);
+    for (const double value : configuration.numbers(run_option(longest)))
+      require(run_option(longest), value, kLeastPart * end);
 }
 
 }  // namespace traceraft

@@ -12,7 +12,8 @@ namespace traceraft {
 
 // Runs `make`, so that what it finds wrong is said of the place where the option was given.
 template <class Make>
-auto said_of(const Configuration& configuration, const char* option, const Make& make) {
+auto with_option_context(const Configuration& configuration, const OptionMember& option,
+                         const Make& make) {
   try {
     return make();
   } catch (const InputError& error) {
@@ -21,8 +22,8 @@ auto said_of(const Configuration& configuration, const char* option, const Make&
 }
 
 // The text of an option that must be one of a few words. Throws InputError.
-std::string one_of(const Configuration& configuration, const char* option, const char* kind,
-                   const std::vector<std::string>& words);
+std::string one_of(const Configuration& configuration, std::string RunOptions::*option,
+                   const char* kind, const std::vector<std::string>& words);
 
 // Refuses times and steps that are too short or too long to compute with, in R²/D: integrators need
 // inverses of steps, and squares of these, as doubles. Throws InputError.

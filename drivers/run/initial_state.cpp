@@ -14,8 +14,8 @@ namespace {
 
 std::vector<CapRaft> parse_caps(const Configuration& configuration) {
   std::vector<CapRaft> caps;
-  std::istringstream list(configuration.text("initial-caps"));
-  const std::string where = configuration.where("initial-caps");
+  std::istringstream list(configuration.options().initial_caps);
+  const std::string where = configuration.where(&RunOptions::initial_caps);
   for (std::string item; std::getline(list, item, ';');) {
     std::istringstream words(item);
     std::vector<double> numbers;
@@ -34,17 +34,17 @@ std::vector<CapRaft> parse_caps(const Configuration& configuration) {
 
 InitialRequest initial_request(const Configuration& configuration, const CahnHilliardModel& model) {
   InitialRequest request;
-  const long long cells = configuration.integer("cells");
-  request.raft_fraction = configuration.number("raft-fraction");
+  const long long cells = configuration.options().cells;
+  request.raft_fraction = configuration.options().raft_fraction;
   request.noise_cells = configuration.noise_cells();
   if (request.noise_cells > cells)
-    throw InputError(configuration.where("noise-cells") + ": " +
+    throw InputError(configuration.where(&RunOptions::noise_cells) + ": " +
                      std::to_string(request.noise_cells) + " is more than --cells " +
                      std::to_string(cells));
-  request.seed = static_cast<std::uint64_t>(configuration.integer("seed"));
+  request.seed = static_cast<std::uint64_t>(configuration.options().seed);
   request.caps = parse_caps(configuration);
-  if (const std::string formula = configuration.text("initial-formula"); !formula.empty())
-    request.formula = parse_formula(configuration.where("initial-formula"), formula);
+  if (const std::string formula = configuration.options().initial_formula; !formula.empty())
+    request.formula = parse_formula(configuration.where(&RunOptions::initial_formula), formula);
   request.surface = surface_of(configuration);
   request.epsilon = model.epsilon;
   request.well = model.well;
@@ -55,9 +55,9 @@ InitialRequest initial_request(const Configuration& configuration, const CahnHil
 
 Vec initial_field(const Configuration& configuration, const CahnHilliardModel& model,
                   const SurfaceSpace& space) {
-  const std::string kind = configuration.text("initial");
+  const std::string kind = configuration.options().initial;
   const InitialRequest request = initial_request(configuration, model);
-  return said_of(configuration, "initial", [&] {
+  return with_option_context(configuration, &RunOptions::initial, [&] {
     const auto [name, folder] = split_named_arguments(kind);
     if (name == "restart") {
       const bool root = space.communicator->root();

@@ -43,10 +43,11 @@ std::string memory_complaint(std::int64_t cells, double need, double there_is) {
 
 void refuse_too_fine(const Configuration& configuration, const LevelSet& surface,
                      const Communicator& ranks) {
-  const std::int64_t cells = configuration.integer("cells");
+  const std::int64_t cells = configuration.options().cells;
   const std::string complaint =
       memory_complaint(cells, least_memory(surface, cells, ranks.size()), physical_memory());
-  if (!complaint.empty()) throw InputError(configuration.where("cells") + ": " + complaint);
+  if (!complaint.empty())
+    throw InputError(configuration.where(&RunOptions::cells) + ": " + complaint);
 }
 
 }  // namespace traceraft

@@ -8,8 +8,8 @@
 namespace traceraft {
 
 DoubleWell double_well(const Configuration& configuration) {
-  return said_of(configuration, "well", [&] {
-    const Parameters p = parse_parameters("double well", configuration.text("well"),
+  return with_option_context(configuration, &RunOptions::well, [&] {
+    const Parameters p = parse_parameters("double well", configuration.options().well,
                                           {{"rho", "", 0.25, 1e-12, 1e12, "height"},
                                            {"a", "", 0, -1e6, 1e6, "first minimum"},
                                            {"b", "", 1, -1e6, 1e6, "second minimum"}});
@@ -19,19 +19,20 @@ DoubleWell double_well(const Configuration& configuration) {
 }
 
 LevelSetPtr surface_of(const Configuration& configuration) {
-  const std::string formula = configuration.text("surface-formula");
-  if (configuration.text("surface") == "formula") {
+  const std::string formula = configuration.options().surface_formula;
+  if (configuration.options().surface == "formula") {
     if (formula.empty())
-      throw InputError(configuration.where("surface") +
+      throw InputError(configuration.where(&RunOptions::surface) +
                        ": formula needs --surface-formula, as in "
                        "--surface-formula \"x^2+y^2+2*z^2-1\"");
     return std::make_shared<FunctionLevelSet>(
-        parse_formula(configuration.where("surface-formula"), formula));
+        parse_formula(configuration.where(&RunOptions::surface_formula), formula));
   }
   if (!formula.empty())
-    throw InputError(configuration.where("surface-formula") + ": it needs --surface formula");
-  return said_of(configuration, "surface", [&] {
-    const std::string specification = configuration.text("surface");
+    throw InputError(configuration.where(&RunOptions::surface_formula) +
+                     ": it needs --surface formula");
+  return with_option_context(configuration, &RunOptions::surface, [&] {
+    const std::string specification = configuration.options().surface;
     (void)surfaces().find(split_named_arguments(specification).name, {"formula"});
     return make_surface(specification);
   });
@@ -40,34 +41,37 @@ LevelSetPtr surface_of(const Configuration& configuration) {
 CahnHilliardModel model_without_effects(const Configuration& configuration) {
   const Units units = configuration.units();
   CahnHilliardModel result;
-  result.mobility = said_of(configuration, "mobility",
-                            [&] { return make_mobility(configuration.text("mobility")); });
+  result.mobility = with_option_context(configuration, &RunOptions::mobility, [&] {
+    return make_mobility(configuration.options().mobility);
+  });
   result.well = double_well(configuration);
   if (!result.mobility->constant() && (result.well.a != 0 || result.well.b != 1))
-    throw InputError(configuration.where("well") +
+    throw InputError(configuration.where(&RunOptions::well) +
                      ": the degenerate mobility c(1-c) belongs to wells at 0 and 1; choose "
                      "--mobility constant:value=0.25");
-  result.epsilon = configuration.number("epsilon") / units.length();
-  const std::string rule =
-      one_of(configuration, "potential", "potential", {"averaged", "consistent", "nodal"});
+  result.epsilon = configuration.options().epsilon / units.length();
+  const std::string rule = one_of(configuration, &RunOptions::potential, "potential",
+                                  {"averaged", "consistent", "nodal"});
   result.rule = rule == "averaged"     ? PotentialRule::averaged
                 : rule == "consistent" ? PotentialRule::consistent
                                        : PotentialRule::nodal;
-  result.stabilisation = configuration.number("stabilisation");
-  result.mass_stabilisation = configuration.number("mass-stabilisation");
-  result.seed = static_cast<std::uint64_t>(configuration.integer("seed"));
+  result.stabilisation = configuration.options().stabilisation;
+  result.mass_stabilisation = configuration.options().mass_stabilisation;
+  result.seed = static_cast<std::uint64_t>(configuration.options().seed);
   return result;
 }
 
 std::vector<EffectTerm> effects_of(const Configuration& configuration) {
-  return said_of(configuration, "effect",
-                 [&] { return read_effects(configuration.text("effect"), configuration.units()); });
+  return with_option_context(configuration, &RunOptions::effect, [&] {
+    return read_effects(configuration.options().effect, configuration.units());
+  });
 }
 
 CahnHilliardModel physical_model(const Configuration& configuration) {
   CahnHilliardModel result = model_without_effects(configuration);
-  said_of(configuration, "effect",
-          [&] { add_effects(configuration.text("effect"), configuration.units(), result); });
+  with_option_context(configuration, &RunOptions::effect, [&] {
+    add_effects(configuration.options().effect, configuration.units(), result);
+  });
   return result;
 }
 

@@ -52,11 +52,11 @@ int carry_out(const Configuration& configuration, RunSetup& run, const RunFolder
   FieldWriter fields(folder, run);
   CheckpointWriter checkpoints(
       folder, run, root ? &*tables : nullptr, numerical_identity(configuration),
-      configuration.number("checkpoint-interval"), checkpoint ? checkpoint->cost : RunCost{});
+      configuration.options().checkpoint_interval, checkpoint ? checkpoint->cost : RunCost{});
   Progress progress(run, quiet);
   std::vector<RunListener*> listeners;
   if (root) listeners.push_back(&*tables);
-  if (configuration.flag("fields")) listeners.push_back(&fields);
+  if (configuration.options().fields) listeners.push_back(&fields);
   listeners.push_back(&checkpoints);
   if (root) listeners.push_back(&progress);
 

@@ -116,7 +116,7 @@ RunFolder shared_folder(const Communicator& ranks, const std::function<RunFolder
 
 RunFolder create_run_folder(const std::string& out, const Configuration& configuration) {
   RunFolder folder;
-  folder.path = out.empty() ? first_free_folder(configuration.text("case")) : out;
+  folder.path = out.empty() ? first_free_folder(configuration.options().case_name) : out;
   try {
     if (fs::exists(folder.path) && !fs::is_directory(folder.path))
       throw InputError("--out: " + folder.path.string() + " is a file");

@@ -18,11 +18,11 @@ namespace traceraft {
 namespace {
 
 int thread_count(const Configuration& configuration, const Communicator& ranks) {
-  const int asked = static_cast<int>(configuration.integer("threads"));
+  const int asked = static_cast<int>(configuration.options().threads);
   if (ranks.size() > 1) {
     // A run of one rank may have had two, and goes on with more ranks.
-    if (asked > 1 && configuration.from_flag("threads"))
-      throw InputError(configuration.where("threads") +
+    if (asked > 1 && configuration.from_flag(&RunOptions::threads))
+      throw InputError(configuration.where(&RunOptions::threads) +
                        ": several ranks have one thread each; start more ranks instead");
     return 1;
   }
@@ -33,8 +33,8 @@ int thread_count(const Configuration& configuration, const Communicator& ranks) 
 // In the user's units, ascending.
 std::vector<double> asked_times(const Configuration& configuration) {
   constexpr int kDefaultTimes = 16;
-  const double end = configuration.number("t-end");
-  std::vector<double> times = configuration.numbers("output-times");
+  const double end = configuration.options().t_end;
+  std::vector<double> times = configuration.options().output_times;
   if (times.empty()) {
     times.push_back(0);
     for (int i = 1; i <= kDefaultTimes; ++i)  // four decades, the end last
@@ -42,8 +42,9 @@ std::vector<double> asked_times(const Configuration& configuration) {
   }
   std::sort(times.begin(), times.end());
   if (times.back() > end)
-    throw InputError(configuration.where("output-times") + ": " + format_number(times.back()) +
-                     " is after the end of the run, " + configuration.text("t-end"));
+    throw InputError(configuration.where(&RunOptions::output_times) + ": " +
+                     format_number(times.back()) + " is after the end of the run, " +
+                     format_number(configuration.options().t_end));
   return times;
 }
 
@@ -67,32 +68,33 @@ RunSetup build_run(const Configuration& configuration, InitialState initial,
   RunSetup run;
   refuse_times_out_of_range(configuration);
   run.units = configuration.units();
-  run.t_end = configuration.number("t-end") / run.units.time();
+  run.t_end = configuration.options().t_end / run.units.time();
   set_output_times(configuration, run);
   const CahnHilliardModel physics = physical_model(configuration);
-  const IntegratorEntry& integrator = said_of(configuration, "integrator", [&] {
-    return std::cref(integrators().find(configuration.text("integrator")));
-  });
+  const IntegratorEntry& integrator = with_option_context(
+      configuration, &RunOptions::integrator,
+      [&] { return std::cref(integrators().find(configuration.options().integrator)); });
   const IntegratorSettings settings = integrator_settings(configuration, integrator, run.units);
-  said_of(configuration, "linear-solver",
-          [&] { return linear_solvers().find(configuration.text("linear-solver")).name; });
+  with_option_context(configuration, &RunOptions::linear_solver, [&] {
+    return linear_solvers().find(configuration.options().linear_solver).name;
+  });
   refuse_idle_options(configuration, compared);
 
   run.ranks = world();
   run.team = std::make_shared<ThreadTeam>(thread_count(configuration, *run.ranks));
   const LevelSetPtr surface = surface_of(configuration);
   refuse_too_fine(configuration, *surface, *run.ranks);
-  run.space = said_of(configuration, "surface", [&] {
-    return std::make_shared<const SurfaceSpace>(*surface, configuration.integer("cells"), run.team,
+  run.space = with_option_context(configuration, &RunOptions::surface, [&] {
+    return std::make_shared<const SurfaceSpace>(*surface, configuration.options().cells, run.team,
                                                 run.ranks, physics.mass_stabilisation);
   });
-  said_of(configuration, "effect", [&] {
+  with_option_context(configuration, &RunOptions::effect, [&] {
     for (const EffectPtr& effect : physics.effects) effect->require_surface(*run.space);
     return 0;
   });
   run.problem = std::make_unique<CahnHilliard>(run.space, physics);
   if (settings.reject_energy_rises && !run.problem->dissipates_energy())
-    throw InputError(configuration.where("energy-guard") +
+    throw InputError(configuration.where(&RunOptions::energy_guard) +
                      ": reject is for models that can only lose energy, and this one need not; "
                      "choose warn or off");
   if (initial == InitialState::build) {

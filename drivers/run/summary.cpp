@@ -40,7 +40,7 @@ std::string energy_text(const Configuration& configuration, const RunSetup& run,
                         const RunState& state) {
   const std::string energy = formatted("%.6g", state.row.energy * run.units.area());
   if (!run.problem->dissipates_energy()) return energy + " (the model need not lose energy)";
-  if (configuration.text("energy-guard") == "off") return energy;
+  if (configuration.options().energy_guard == "off") return energy;
   const long refused = run.integrator->statistics().energy_rises;
   const std::string cut = refused > 0 ? formatted(", %ld steps cut because it grew", refused) : "";
   if (state.monitor.energy_rises() == 0) return energy + ", falls in every step" + cut;
@@ -69,16 +69,16 @@ std::string summary_json(const Configuration& configuration, const RunSetup& run
   if (!result.why.empty()) json["why"] = result.why;
   json["version"] = kVersion;
   json["build"] = program_checksum();
-  json["case"] = configuration.text("case");
-  json["effects"] = configuration.text("effect");
-  json["seed"] = configuration.integer("seed");
-  json["integrator"] = configuration.text("integrator");
-  json["linear_solver"] = configuration.text("linear-solver");
+  json["case"] = configuration.options().case_name;
+  json["effects"] = configuration.options().effect;
+  json["seed"] = configuration.options().seed;
+  json["integrator"] = configuration.options().integrator;
+  json["linear_solver"] = configuration.options().linear_solver;
   json["units"] = {{"scaled", units.scaled},
                    {"radius_um", units.radius_um},
                    {"diffusion_cm2_s", units.diffusion_cm2_s},
                    {"seconds_per_unit", units.seconds_per_unit()}};
-  json["energy_guard"] = configuration.text("energy-guard");
+  json["energy_guard"] = configuration.options().energy_guard;
   json["energy_decay_promised"] = decay_promised(run);
   const RunMoment end(run, state.row, state.row.t * units.time());
   for (const auto& column : run_columns()) put(json, column.name, column.unit, column.value(end));
@@ -103,7 +103,7 @@ std::string resolution_text(const Configuration& configuration, const RunSetup& 
   const double epsilon = model.epsilon, ratio = run.space->h() / epsilon;
   return formatted("epsilon = %g um = %g R, h/epsilon = %.2f, %.1f %% of its energy resolved%s",
                    epsilon * run.units.radius_um, epsilon, ratio, 100 * run.boundary.resolved,
-                   is_as_wide_as(configuration.text("surface"), model)
+                   is_as_wide_as(configuration.options().surface, model)
                        ? "; AS WIDE AS THE VESICLE: take a smaller --epsilon"
                    : ratio > kCoarse ? "; TOO COARSE: take more --cells"
                                      : "");
@@ -111,7 +111,7 @@ std::string resolution_text(const Configuration& configuration, const RunSetup& 
 
 // The length of the noise decides how many rafts survive (docs/guide.md).
 std::string initial_text(const Configuration& configuration, const RunSetup& run) {
-  const std::string kind = configuration.text("initial");
+  const std::string kind = configuration.options().initial;
   if (kind != "noise") return kind;
   const double length = configuration.noise_length();
   return formatted("noise of %.3g um = %.3g epsilon", length,
@@ -128,19 +128,19 @@ std::string repeated_times_text(const RunSetup& run) {
 void print_setup(const Configuration& configuration, const RunSetup& run) {
   const Units& units = run.units;
   say("traceraft %s\n", kVersion);
-  line("case", configuration.text("case"));
+  line("case", configuration.options().case_name);
   line("surface",
-       formatted("%s, R = %g um, area %.6g %s", configuration.text("surface").c_str(),
+       formatted("%s, R = %g um, area %.6g %s", configuration.options().surface.c_str(),
                  units.radius_um, run.space->area * units.area(), units.scaled ? "R^2" : "um^2"));
   const SurfaceSpace::Totals& totals = run.space->totals;
   line("mesh",
        formatted("%lld cells per edge, %lld cut tetrahedra, %lld nodes, %lld unknowns",
-                 configuration.integer("cells"), static_cast<long long>(totals.elements),
+                 configuration.options().cells, static_cast<long long>(totals.elements),
                  static_cast<long long>(totals.nodes), static_cast<long long>(2 * totals.nodes)));
   line("phase boundary", resolution_text(configuration, run));
-  line("mobility", formatted("%s, D = %g cm^2/s", configuration.text("mobility").c_str(),
+  line("mobility", formatted("%s, D = %g cm^2/s", configuration.options().mobility.c_str(),
                              units.diffusion_cm2_s));
-  if (!configuration.text("effect").empty()) line("effects", configuration.text("effect"));
+  if (!configuration.options().effect.empty()) line("effects", configuration.options().effect);
   if (const double longest = run.problem->longest_step(); longest < run.t_end)
     line("steps", formatted("%.0f or more: at most %g %s each, which its effects need",
                             std::ceil(run.t_end / longest), longest * units.time(),
@@ -152,13 +152,14 @@ void print_setup(const Configuration& configuration, const RunSetup& run) {
   if (run.initial.size() > 0)
     line("initial state", formatted("%s, mean concentration %.6f, seed %lld",
                                     initial_text(configuration, run).c_str(), run.initial_mean,
-                                    configuration.integer("seed")));
+                                    configuration.options().seed));
   const int workers = run.ranks->size() > 1 ? run.ranks->size() : run.team->size();
-  line("method",
-       formatted("%s with %s, tolerance %g, %d %s%s, %s", configuration.text("integrator").c_str(),
-                 configuration.text("linear-solver").c_str(), configuration.number("tolerance"),
-                 workers, run.ranks->size() > 1 ? "rank" : "thread", workers == 1 ? "" : "s",
-                 blas_description().c_str()));
+  line(
+      "method",
+      formatted("%s with %s, tolerance %g, %d %s%s, %s", configuration.options().integrator.c_str(),
+                configuration.options().linear_solver.c_str(), configuration.options().tolerance,
+                workers, run.ranks->size() > 1 ? "rank" : "thread", workers == 1 ? "" : "s",
+                blas_description().c_str()));
 }
 
 void print_summary(const Configuration& configuration, const RunSetup& run, const RunState& state,

@@ -2,8 +2,8 @@
 
 #include "backends/posix/durable_file.hpp"
 #include "drivers/exit_codes.hpp"
-#include "drivers/input/model_of_data.hpp"
 #include "drivers/input/json_file.hpp"
+#include "drivers/input/model_of_data.hpp"
 #include "drivers/output/provenance.hpp"
 #include "drivers/text/say.hpp"
 #include "drivers/vesicles/agreement_report.hpp"
@@ -109,8 +109,8 @@ class ComparisonReport {
       notes.push_back("ANOTHER MEMBRANE: the simulations are of " + other + ".");
     for (const std::string& note : cautions(data_, model_.units().length(), runs_, agreements_))
       notes.push_back(note);
-    if (model_.text("surface") != "sphere")
-      notes.push_back("The simulated surface is no sphere: " + model_.text("surface") + ".");
+    if (model_.options().surface != "sphere")
+      notes.push_back("The simulated surface is no sphere: " + model_.options().surface + ".");
     return notes;
   }
 

@@ -142,7 +142,7 @@ EnsembleRuns runs_of(const fs::path& path) {
   const fs::path kept = path / kHistoriesFile;
   if (folder.started()) {
     FinishedMembers finished =
-        finished_members(folder, model.units().length(), model.number("t-end"));
+        finished_members(folder, model.units().length(), model.options().t_end);
     if (!finished.histories.empty()) {
       const std::string missing = missing_of(folder, finished);
       return {std::move(finished.histories), missing};

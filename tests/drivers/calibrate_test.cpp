@@ -237,9 +237,9 @@ TEST(CalibrationPoints, CanBeRun) {
   // No finer than allowed, though values are rounded: 0.05 * 128/212 = 0.030189 to 0.03019.
   const Configuration paper({}, {{"case", {"guv-3to1", "--case"}}});
   EXPECT_EQ(usual_most_cells(paper), 212);
-  EXPECT_EQ(configuration_at(paper, {"epsilon"}, {0.03019}, 1).integer("cells"), 212);
-  EXPECT_EQ(configuration_at(paper, {"epsilon"}, {0.03333}, 1).integer("cells"), 192);
-  EXPECT_EQ(there.integer("noise-cells"), 24);
+  EXPECT_EQ(configuration_at(paper, {"epsilon"}, {0.03019}, 1).options().cells, 212);
+  EXPECT_EQ(configuration_at(paper, {"epsilon"}, {0.03333}, 1).options().cells, 192);
+  EXPECT_EQ(there.options().noise_cells, 24);
   EXPECT_NEAR(values_of(there, {"noise-length"})[0], 5 * 10.0 / 3 / 24, 1e-9);
 }
 

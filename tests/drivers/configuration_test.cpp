@@ -41,11 +41,11 @@ GivenValues read_text(const std::string& text) {
 TEST(Configuration, FlagsBeatTheFileWhichBeatsTheCaseWhichBeatsDefaults) {
   const GivenValues file = read_text("case = \"spinodal\"\ncells = 48\ntolerance = 1e-3\n");
   const Configuration c(file, flags({{"tolerance", "1e-4"}}));
-  EXPECT_EQ(c.number("tolerance"), 1e-4);
-  EXPECT_EQ(c.integer("cells"), 48);
-  EXPECT_EQ(c.number("raft-fraction"), 0.5);
-  EXPECT_EQ(c.text("integrator"), "ida");
-  EXPECT_EQ(Configuration({}, flags({{"integrator", "euler"}})).number("tolerance"), 5e-3);
+  EXPECT_EQ(c.options().tolerance, 1e-4);
+  EXPECT_EQ(c.options().cells, 48);
+  EXPECT_EQ(c.options().raft_fraction, 0.5);
+  EXPECT_EQ(c.options().integrator, "ida");
+  EXPECT_EQ(Configuration({}, flags({{"integrator", "euler"}})).options().tolerance, 5e-3);
 }
 
 TEST(Configuration, KnowsTheFlagsThatRepeatIt) {
@@ -75,14 +75,14 @@ TEST(Configuration, KnowsTheFlagsThatRepeatIt) {
 
 TEST(Configuration, ConvertsDefaultsUnderScaled) {
   const Configuration physical({}, flags({{"case", "guv-3to1"}}));
-  EXPECT_EQ(physical.number("epsilon"), 0.05);
+  EXPECT_EQ(physical.options().epsilon, 0.05);
   EXPECT_NEAR(physical.units().seconds_per_unit(), 0.025, 1e-15);
   const Configuration scaled({}, flags({{"case", "guv-3to1"}, {"scaled", "true"}}));
-  EXPECT_NEAR(scaled.number("epsilon"), 0.01, 1e-15);
-  EXPECT_NEAR(scaled.number("t-end"), 1e6, 1e-6);
+  EXPECT_NEAR(scaled.options().epsilon, 0.01, 1e-15);
+  EXPECT_NEAR(scaled.options().t_end, 1e6, 1e-6);
   const Configuration given({}, flags({{"scaled", "true"}, {"epsilon", "0.05"}, {"t-end", "20"}}));
-  EXPECT_EQ(given.number("epsilon"), 0.05);
-  EXPECT_EQ(given.number("t-end"), 20);
+  EXPECT_EQ(given.options().epsilon, 0.05);
+  EXPECT_EQ(given.options().t_end, 20);
 }
 
 TEST(Configuration, NamesWhatIsWrongAndWhatIsAllowed) {
@@ -165,7 +165,7 @@ TEST(ConfigFile, TheResolvedConfigurationReadsBackAsTheSameRun) {
 
 TEST(ConfigFile, ACasesNoiseOnASmallerMeshReadsBack) {
   const Configuration configuration({}, flags({{"case", "spinodal"}, {"cells", "24"}}));
-  EXPECT_EQ(configuration.integer("noise-cells"), 24);
+  EXPECT_EQ(configuration.options().noise_cells, 24);
   EXPECT_NE(config_text(configuration).find("noise-cells = 24"), std::string::npos);
 }
 

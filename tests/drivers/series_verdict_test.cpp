@@ -66,8 +66,8 @@ TEST_F(SeriesVerdictTest, NamesWhatExplainsMostInPhysicalUnits) {
   EXPECT_EQ(verdict["null"]["replicates"], 199);
 
   const Configuration named(read_config_file(folder.path / "model.toml"), {});
-  EXPECT_NEAR(named.number("diffusion"), 3e-5, 1e-10);
-  const std::string effect = named.text("effect"), name = "uptake:rate=";
+  EXPECT_NEAR(named.options().diffusion, 3e-5, 1e-10);
+  const std::string effect = named.options().effect, name = "uptake:rate=";
   ASSERT_EQ(effect.substr(0, name.size()), name);
   EXPECT_NEAR(std::stod(effect.substr(name.size())), 0.06, 1e-6);
 }
