@@ -1,8 +1,5 @@
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <mutex>
 #include <set>
 
 #include "backends/posix/folder_lock.hpp"
@@ -14,12 +11,10 @@
 #include "drivers/commands.hpp"
 #include "drivers/config/config_file.hpp"
 #include "drivers/config/number_checks.hpp"
-#include "drivers/ensemble/ensemble_runs.hpp"
 #include "drivers/exit_codes.hpp"
-#include "drivers/output/status_line.hpp"
+#include "drivers/explain/explain_run.hpp"
+#include "drivers/jobs/pending_jobs.hpp"
 #include "drivers/output/text_table.hpp"
-#include "drivers/run/job_pool.hpp"
-#include "drivers/run/program_run.hpp"
 #include "drivers/run/run_folder.hpp"
 #include "drivers/text/say.hpp"
 #include "kernel/core/error.hpp"
@@ -101,52 +96,25 @@ int one_case(const CampaignFolder& folder, const std::string& name) {
   throw InputError("--case: this campaign has no case '" + name + "'");
 }
 
-struct WorkEnd {
-  std::vector<CaseFailure> failures;
-  bool stopped = false;  // there is more to do
-};
-
-WorkEnd work_off(const CampaignFolder& folder, const std::vector<CaseId>& cases, int jobs,
-                 bool quiet) {
-  std::vector<CaseId> left;
-  for (const CaseId& id : cases)
-    if (!fs::exists(folder.score_of(id))) left.push_back(id);
-  const std::size_t before = cases.size() - left.size();
-  std::mutex mutex;
-  WorkEnd end_of_work;
-  if (left.empty()) return end_of_work;
-  if (!quiet)
-    say("%zu cases, %d at a time; most take minutes\nfolder %s\n", left.size(), jobs,
+JobsEnd run_cases(const CampaignFolder& folder, const std::vector<CaseId>& left, std::size_t before,
+                  int at_a_time, bool quiet) {
+  if (!quiet && !left.empty())
+    say("%zu cases, %d at a time; most take minutes\nfolder %s\n", left.size(), at_a_time,
         folder.path());
-  JobPool pool(left.size(), [&](std::size_t k) {
+  PendingJobs work;
+  work.count = left.size();
+  work.before = before;
+  work.at_a_time = at_a_time;
+  work.kind = "cases";
+  work.folder = folder.path();
+  work.quiet = quiet;
+  work.run = [&](std::size_t k) {
     fs::create_directories(folder.of(left[k]));
-    const ProgramEnd end =
-        run_program({"campaign", "--out", folder.path().string(), "--case", left[k].name()},
-                    folder.log_of(left[k]));
-    if (end.exit_code == kSuccess) return true;
-    if (end.was_stopped()) return false;
-    if (!end.is_its_own(folder.path())) throw IoError(left[k].name() + ": " + end.reason());
-    const std::lock_guard lock(mutex);
-    end_of_work.failures.push_back({left[k], end.reason()});
-    return true;
-  });
-  StatusLine line(quiet);
-  const Stopwatch watch;
-  pool.start(jobs);
-  do {
-    usleep(100000);
-    if (!line.due()) continue;
-    const auto ended = static_cast<double>(pool.ended());
-    const double all = static_cast<double>(left.size());
-    line.show((static_cast<double>(before) + ended) / static_cast<double>(cases.size()),
-              std::to_string(before + pool.ended()) + "/" + std::to_string(cases.size()) +
-                  " cases  " + clock_text(watch.seconds()) + " elapsed" +
-                  (ended > 0 ? "  ~" + clock_text(watch.seconds() * (all - ended) / ended) + " left"
-                             : ""));
-  } while (pool.busy());
-  end_of_work.stopped = !pool.finish();
-  line.finish();
-  return end_of_work;
+    return run_program({"campaign", "--out", folder.path().string(), "--case", left[k].name()},
+                       folder.log_of(left[k]));
+  };
+  work.name = [&](std::size_t k) { return left[k].name(); };
+  return run_pending_jobs(work);
 }
 
 void report(const CampaignFolder& folder, std::vector<CaseScore> scores,
@@ -190,19 +158,25 @@ int run_campaign(const CampaignRequest& request) {
   folder.save(plan);
   std::set<std::string> done;
   for (const CaseScore& score : scores) done.insert(score.id.name());
-  std::vector<CaseId> cases;
+  std::vector<CaseId> cases, left;
   for (const CaseId& id : cases_of(plan))
     if (done.count(id.name()) == 0) cases.push_back(id);
-  const WorkEnd end = work_off(folder, cases, jobs_of(request.jobs, 1).at_a_time, request.quiet);
+  for (const CaseId& id : cases)
+    if (!fs::exists(folder.score_of(id))) left.push_back(id);
+  const JobsEnd end = run_cases(folder, left, cases.size() - left.size(),
+                                jobs_of(request.jobs, 1).at_a_time, request.quiet);
+  std::vector<CaseFailure> failures;
+  for (const JobFailure& failure : end.failures)
+    failures.push_back({left[failure.job], failure.why});
   for (const CaseId& id : cases)
     if (fs::exists(folder.score_of(id))) scores.push_back(read_score(folder, id));
-  report(folder, scores, end.failures, request.quiet);
-  for (const CaseFailure& failure : end.failures) say_error(failure.id.name() + ": " + failure.why);
+  report(folder, scores, failures, request.quiet);
+  for (const CaseFailure& failure : failures) say_error(failure.id.name() + ": " + failure.why);
   if (end.stopped) {
     if (!request.quiet) say("go on with: %s\n", command_to_go_on(folder, request));
     return kInterrupted;
   }
-  return end.failures.empty() ? kSuccess : kNumericalFailure;
+  return failures.empty() ? kSuccess : kNumericalFailure;
 }
 
 Action define_campaign(CLI::App& app) {

@@ -13,9 +13,9 @@
 #include "backends/zlib/checksum.hpp"
 #include "drivers/config/config_file.hpp"
 #include "drivers/exit_codes.hpp"
+#include "drivers/jobs/program_run.hpp"
 #include "drivers/output/status_line.hpp"
 #include "drivers/run/finished_run.hpp"
-#include "drivers/run/program_run.hpp"
 #include "drivers/run/run_folder.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
@@ -84,7 +84,7 @@ WorkEnd compute(const CompareJob& job, const ComparisonFolder& folder, double ti
     return WorkEnd::done;
   }
   if (end.was_stopped()) return WorkEnd::stopped;
-  if (!end.telling()) throw IoError(job.name() + " could not run: " + end.reason());
+  if (!end.concerns_input()) throw IoError(job.name() + " could not run: " + end.reason());
   folder.record(job, {end.exit_code == kSuccess ? "" : end.reason(), 0});
   return WorkEnd::done;
 }

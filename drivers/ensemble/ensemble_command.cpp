@@ -114,7 +114,7 @@ int carry_out(const EnsembleRequest& request, const EnsembleFolder& folder,
     say("%d runs, %d at a time with %d thread%s each\nfolder %s\n\n", plan.runs, jobs.at_a_time,
         jobs.threads, jobs.threads == 1 ? "" : "s", folder.path());
   const double t_end = configuration.options().t_end;
-  EnsembleEnd end = work_off(plan, folder, jobs, t_end, request.quiet);
+  EnsembleEnd end = run_members(plan, folder, jobs, t_end, request.quiet);
   const FinishedMembers finished = finished_members(folder, units.length(), t_end);
   end.failures.insert(end.failures.end(), finished.damaged.begin(), finished.damaged.end());
   for (const MemberFailure& failure : end.failures)

@@ -55,7 +55,7 @@ PointEnd run_point(const std::filesystem::path& path, const Configuration& confi
   if (!std::filesystem::exists(folder.config()))
     write_durably(folder.config(), config_text(configuration));
   const double t_end = configuration.options().t_end;
-  const EnsembleEnd end = work_off(plan, folder, jobs_of(request.jobs, 0), t_end, request.quiet);
+  const EnsembleEnd end = run_members(plan, folder, jobs_of(request.jobs, 0), t_end, request.quiet);
   for (const MemberFailure& failure : end.failures)
     if (failure.locked)
       throw InputError(

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "drivers/ensemble/ensemble_folder.hpp"
+#include "drivers/jobs/pending_jobs.hpp"
 
 namespace traceraft {
 
@@ -13,17 +14,11 @@ struct EnsembleEnd {
   std::vector<MemberFailure> failures;  // of members that will not end, in the order of the seeds
 };
 
-struct Jobs {
-  int at_a_time, threads;  // threads of each run
-};
-// 0: as many as there are processors, and threads as those leave.
-Jobs jobs_of(int at_a_time, int threads);
-
-// Does what the ensemble still lacks. A run that fails
-// leaves the others alone. `t_end`: of the runs, in the units of their files, for the progress
-// shown. Throws IoError for what no run is to blame for.
-EnsembleEnd work_off(const EnsemblePlan& plan, const EnsembleFolder& folder, const Jobs& jobs,
-                     double t_end, bool quiet);
+// Does what the ensemble still lacks. A run that fails leaves the others alone. `t_end`: of the
+// runs, in the units of their files, for the progress shown. Throws IoError for what no run is to
+// blame for.
+EnsembleEnd run_members(const EnsemblePlan& plan, const EnsembleFolder& folder, const Jobs& jobs,
+                        double t_end, bool quiet);
 
 // One member alone, for the tasks of an array job. Returns the exit code of its run.
 int run_member(const EnsembleFolder& folder, std::uint64_t seed, int threads, bool quiet);

@@ -1,37 +1,32 @@
 #include "drivers/verify/verify_jobs.hpp"
 
-#include <unistd.h>
-
 #include "backends/posix/own_files.hpp"
 #include "backends/posix/process.hpp"
 #include "drivers/exit_codes.hpp"
-#include "drivers/output/status_line.hpp"
-#include "drivers/run/job_pool.hpp"
-#include "drivers/run/program_run.hpp"
+#include "drivers/jobs/pending_jobs.hpp"
 #include "drivers/verify/verify_report.hpp"
 #include "kernel/core/error.hpp"
-#include "kernel/core/stopwatch.hpp"
 
 namespace traceraft {
 namespace {
 
 namespace fs = std::filesystem;
 
-// In a folder of its own, which goes once its result is in that of the verification.
-bool carry_out(const StudyJobs& jobs, const StudyEntry& study, const fs::path& folder) {
-  const fs::path own = folder / ("job-" + study.name), log = own.string() + ".log";
-  std::vector<std::string> arguments{"verify", study.name, "--quiet", "--out", own.string()};
-  arguments.insert(arguments.end(), jobs.flags.begin(), jobs.flags.end());
-  const ProgramEnd end = run_program(arguments, log);
-  if (end.was_stopped()) return false;
-  const auto result = end.exit_code == kSuccess || end.exit_code == kClaimFailed
-                          ? measured_before(own, study, jobs.measured_with)
-                          : std::nullopt;
-  if (!result) throw IoError(study.name + ": " + end.reason() + ", see " + log.string());
+fs::path own_folder(const fs::path& folder, const StudyEntry& study) {
+  return folder / ("job-" + study.name);
+}
+fs::path log_of(const fs::path& folder, const StudyEntry& study) {
+  return own_folder(folder, study).string() + ".log";
+}
+
+// Takes the result of a study into the folder of the verification and removes the study's own.
+void take_over(const StudyJobs& jobs, const StudyEntry& study, const fs::path& folder) {
+  const auto result = measured_before(own_folder(folder, study), study, jobs.measured_with);
+  if (!result)
+    throw IoError(study.name + ": it left no result, see " + log_of(folder, study).string());
   write_study(folder, *result, jobs.measured_with);
-  remove_own_folder(own, files_of_a_verification());
-  fs::remove(log);
-  return true;
+  remove_own_folder(own_folder(folder, study), files_of_a_verification());
+  fs::remove(log_of(folder, study));
 }
 
 }  // namespace
@@ -39,21 +34,31 @@ bool carry_out(const StudyJobs& jobs, const StudyEntry& study, const fs::path& f
 bool carry_out_side_by_side(const StudyJobs& jobs, const fs::path& folder) {
   if (jobs.studies.empty()) return true;
   catch_stop_signals();
-  JobPool pool(jobs.studies.size(),
-               [&](std::size_t k) { return carry_out(jobs, jobs.studies[k], folder); });
-  StatusLine line(jobs.quiet);
-  const Stopwatch watch;
-  pool.start(jobs.at_a_time);
-  do {
-    usleep(100000);
-    if (line.due())
-      line.show(static_cast<double>(pool.ended()) / static_cast<double>(jobs.studies.size()),
-                std::to_string(pool.ended()) + "/" + std::to_string(jobs.studies.size()) +
-                    " studies  " + clock_text(watch.seconds()) + " elapsed");
-  } while (pool.busy());
-  const bool all_done = pool.finish();
-  line.finish();
-  return all_done;
+  PendingJobs work;
+  work.count = jobs.studies.size();
+  work.at_a_time = jobs.at_a_time;
+  work.kind = "studies";
+  work.folder = folder;
+  work.quiet = jobs.quiet;
+  work.run = [&](std::size_t k) {
+    const StudyEntry& study = jobs.studies[k];
+    std::vector<std::string> arguments{"verify", study.name, "--quiet", "--out",
+                                       own_folder(folder, study).string()};
+    arguments.insert(arguments.end(), jobs.flags.begin(), jobs.flags.end());
+    return run_program(arguments, log_of(folder, study));
+  };
+  work.name = [&](std::size_t k) { return jobs.studies[k].name; };
+  work.success = [](const ProgramEnd& end) {
+    return end.exit_code == kSuccess || end.exit_code == kClaimFailed;
+  };
+  work.succeeded = [&](std::size_t k) { take_over(jobs, jobs.studies[k], folder); };
+  const JobsEnd end = run_pending_jobs(work);
+  if (!end.failures.empty()) {
+    const StudyEntry& study = jobs.studies[end.failures[0].job];
+    throw IoError(study.name + ": " + end.failures[0].why + ", see " +
+                  log_of(folder, study).string());
+  }
+  return !end.stopped;
 }
 
 }  // namespace traceraft

@@ -1,4 +1,4 @@
-#include "drivers/run/job_pool.hpp"
+#include "drivers/jobs/job_pool.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "drivers/run/program_run.hpp"
+#include "drivers/jobs/program_run.hpp"
 
 #include <algorithm>
 #include <csignal>
@@ -61,7 +61,7 @@ bool ProgramEnd::was_stopped() const {
   return stop_requested() || exit_code == kInterrupted || signal() == SIGTERM || signal() == SIGINT;
 }
 
-bool ProgramEnd::telling() const {
+bool ProgramEnd::concerns_input() const {
   switch (exit_code) {
     case kSuccess:
     case kBadInput:
@@ -73,9 +73,9 @@ bool ProgramEnd::telling() const {
   }
 }
 
-bool ProgramEnd::is_its_own(const std::filesystem::path& folder) const {
+bool ProgramEnd::harms_no_other(const std::filesystem::path& folder) const {
   constexpr std::uintmax_t kLeastSpace = 64 << 20;  // bytes that a disk has that is not full
-  return telling() ||
+  return concerns_input() ||
          (exit_code == kInputOutput && std::filesystem::space(folder).available >= kLeastSpace);
 }
 

@@ -21,10 +21,10 @@ struct ProgramEnd {
   // Does its end say something of what it was given to do? Bad input (a solver that refuses the
   // mesh), numerical failure, too little memory and crashes do; a full disk, a folder in use or
   // somebody who stopped it do not.
-  bool telling() const;
+  bool concerns_input() const;
   // Is it of no concern to others whose folders are on the same disk? So are telling ends, and
   // damaged files unless the disk of `folder` is full.
-  bool is_its_own(const std::filesystem::path& folder) const;
+  bool harms_no_other(const std::filesystem::path& folder) const;
 };
 
 // Runs this program to its end, under mpirun if on more than one rank. What it prints goes to
