@@ -1,7 +1,6 @@
 #include "drivers/run/run_numbers.hpp"
 
 #include "backends/zlib/checksum.hpp"
-#include "kernel/core/parameters.hpp"
 
 namespace traceraft {
 
@@ -46,10 +45,11 @@ const std::vector<ReportedNumber<RunMoment>>& run_columns() {
       {"dt", U::time, "the step that ends at t, or that t lies in",
        [](M m) { return m.run.integrator->step() * m.units().time(); }},
       {"mass", U::area, "∫ c over the surface", [](M m) { return m.row.mass * m.units().area(); }},
-      {"energy", U::area, "∫ f0(c) + ½ ε² |∇c|², in units of the energy density times area",
+      {"energy", U::area, "∫ f0(c) + ½ ε² \\|∇c\\|², in units of the energy density times area",
        [](M m) { return m.row.energy * m.units().area(); }},
       {"perimeter", U::length,
-       "the diffuse perimeter ∫ ε |∇c|² over the same integral per length of a straight boundary "
+       "the diffuse perimeter ∫ ε \\|∇c\\|² over the same integral per length of a straight "
+       "boundary "
        "at rest on a mesh of this h/ε",
        [](M m) { return m.row.perimeter * m.units().length(); }},
       {"perimeter_level", U::length, "length of the curve c = (a + b)/2",
@@ -138,6 +138,26 @@ const std::vector<ReportedNumber<RunTotals>>& run_totals() {
   return totals;
 }
 
+const std::vector<ReportedNumber<RaftMoment>>& raft_columns() {
+  using R = const RaftMoment&;
+  using U = Unit;
+  static const std::vector<ReportedNumber<RaftMoment>> columns = {
+      {"t", U::time, "output time", [](R r) { return r.t; }},
+      {"raft", U::count, "1 is the largest; equally large ones follow each other as their nodes do",
+       [](R r) { return number(r.number); }},
+      {"area", U::area, "of the raft", [](R r) { return r.raft.area * r.units.area(); }},
+      {"perimeter", U::length, "length of its level curves",
+       [](R r) { return r.raft.perimeter * r.units.length(); }},
+      {"x", U::length, "of its centre of area, which lies below the surface",
+       [](R r) { return r.raft.centre[0] * r.units.length(); }},
+      {"y", U::length, "", [](R r) { return r.raft.centre[1] * r.units.length(); }},
+      {"z", U::length, "", [](R r) { return r.raft.centre[2] * r.units.length(); }},
+      {"distance", U::length, "from the centre to the nearest point of the raft",
+       [](R r) { return r.raft.distance * r.units.length(); }},
+  };
+  return columns;
+}
+
 namespace {
 
 template <class Source>
@@ -148,18 +168,6 @@ const ReportedNumber<Source>* found(const std::vector<ReportedNumber<Source>>& l
   return nullptr;
 }
 
-template <class Source>
-std::string in_markdown(const std::vector<ReportedNumber<Source>>& list) {
-  std::string text = "| name | unit | meaning |\n|---|---|---|\n";
-  for (const ReportedNumber<Source>& number : list) {
-    std::string meaning;
-    for (const char* p = number.meaning; *p; ++p) meaning += *p == '|' ? "\\|" : std::string(1, *p);
-    text += std::string("| ") + number.name + " | " + unit_name(number.unit, false) + " | " +
-            meaning + " |\n";
-  }
-  return text;
-}
-
 }  // namespace
 
 std::string unit_of_number(const std::string& name, bool scaled) {
@@ -168,38 +176,14 @@ std::string unit_of_number(const std::string& name, bool scaled) {
   return "";
 }
 
-std::string column_heading(bool scaled) {
-  std::string text;
-  for (const auto& column : run_columns()) {
-    const std::string unit = unit_name(column.unit, scaled);
-    text += (text.empty() ? "" : ",") + std::string(column.name);
-    if (!unit.empty()) text += " (" + unit + ")";
-  }
-  return text + "\n";
-}
-
-std::string column_values(const RunMoment& moment) {
-  std::string text;
-  for (const auto& column : run_columns())
-    text += (text.empty() ? "" : ",") + format_number(column.value(moment));
-  return text + "\n";
-}
-
 std::uint32_t report_layout() {
   std::string layout;
+  for (const auto& column : raft_columns()) layout += std::string(column.name) + "\n";
   for (const auto& column : run_columns()) layout += std::string(column.name) + "\n";
   for (const std::size_t size : {sizeof(Observables), sizeof(RunMonitor),
                                  sizeof(IntegratorStatistics), sizeof(LinearStatistics)})
     layout += std::to_string(size) + "\n";
   return crc32_of(layout);
-}
-
-std::string columns_in_markdown() {
-  return in_markdown(run_columns());
-}
-
-std::string totals_in_markdown() {
-  return in_markdown(run_totals());
 }
 
 }  // namespace traceraft

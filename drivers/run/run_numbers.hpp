@@ -9,6 +9,7 @@
 
 #include "drivers/run/checkpoint_store.hpp"
 #include "drivers/run/run_setup.hpp"
+#include "kernel/core/parameters.hpp"
 #include "kernel/simulation/run_monitor.hpp"
 
 namespace traceraft {
@@ -48,23 +49,55 @@ struct ReportedNumber {
   double (*value)(const Source&);
 };
 
+// A raft at an output time; the largest is number 1.
+struct RaftMoment {
+  const Raft& raft;
+  int number;
+  double t;  // as the user wrote it
+  const Units& units;
+};
+
 // A column of series.csv and observables.csv, and a number of summary.json.
 const std::vector<ReportedNumber<RunMoment>>& run_columns();
 // Numbers of summary.json alone.
 const std::vector<ReportedNumber<RunTotals>>& run_totals();
 
-// The unit of a number of either list by its name; "" if there is none of that name.
+// Columns of rafts.csv.
+const std::vector<ReportedNumber<RaftMoment>>& raft_columns();
+
+// The unit of a number of a run by its name; "" if there is none of that name.
 std::string unit_of_number(const std::string& name, bool scaled);
 
-// "t (s),mass (um^2),…" and a line end.
-std::string column_heading(bool scaled);
-std::string column_values(const RunMoment& moment);
+// The heading of a table, as in "t (s),mass (um^2)", and a row of it, with line ends.
+template <class Source>
+std::string csv_heading(const std::vector<ReportedNumber<Source>>& columns, bool scaled) {
+  std::string text;
+  for (const auto& column : columns) {
+    const std::string unit = unit_name(column.unit, scaled);
+    text += (text.empty() ? "" : ",") + std::string(column.name);
+    if (!unit.empty()) text += " (" + unit + ")";
+  }
+  return text + "\n";
+}
+template <class Source>
+std::string csv_row(const std::vector<ReportedNumber<Source>>& columns, const Source& source) {
+  std::string text;
+  for (const auto& column : columns)
+    text += (text.empty() ? "" : ",") + format_number(column.value(source));
+  return text + "\n";
+}
 
 // What a checkpoint's numbers depend on: a program that reports others cannot go on with it.
 std::uint32_t report_layout();
 
-// A Markdown table of a list: name, unit, meaning.
-std::string columns_in_markdown();
-std::string totals_in_markdown();
+// A list as a table in Markdown: name, unit, meaning.
+template <class Source>
+std::string in_markdown(const std::vector<ReportedNumber<Source>>& numbers) {
+  std::string text = "| name | unit | meaning |\n|---|---|---|\n";
+  for (const auto& number : numbers)
+    text += std::string("| ") + number.name + " | " + unit_name(number.unit, false) + " | " +
+            number.meaning + " |\n";
+  return text;
+}
 
 }  // namespace traceraft

@@ -13,24 +13,9 @@
 namespace traceraft {
 namespace {
 
-std::string raft_heading(bool scaled) {
-  const std::string length = unit_name(Unit::length, scaled);
-  std::string text =
-      "t (" + unit_name(Unit::time, scaled) + "),raft,area (" + unit_name(Unit::area, scaled) + ")";
-  for (const char* name : {"perimeter", "x", "y", "z", "distance"})
-    text += std::string(",") + name + " (" + length + ")";
-  return text + "\n";
-}
-
 TableExtent extent_of(const TableExtents& extents, const std::string& name) {
   const auto found = extents.find(name);
   return found == extents.end() ? TableExtent{} : found->second;
-}
-
-std::string csv_row(std::initializer_list<double> values) {
-  std::string text;
-  for (const double value : values) text += (text.empty() ? "" : ",") + format_number(value);
-  return text + "\n";
 }
 
 std::size_t output_index(const RunSetup& run, double t) {
@@ -71,28 +56,24 @@ TableWriter::TableWriter(const RunFolder& folder, const RunSetup& run, const Tab
       series_(folder.table("series.csv"), extent_of(extents, "series.csv")),
       observables_(folder.table("observables.csv"), extent_of(extents, "observables.csv")),
       rafts_(folder.table("rafts.csv"), extent_of(extents, "rafts.csv")) {
-  const std::string heading = column_heading(run.units.scaled);
+  const std::string heading = csv_heading(run_columns(), run.units.scaled);
   if (series_.extent().bytes == 0) series_.append(heading);
   if (observables_.extent().bytes == 0) observables_.append(heading);
-  if (rafts_.extent().bytes == 0) rafts_.append(raft_heading(run.units.scaled));
+  if (rafts_.extent().bytes == 0) rafts_.append(csv_heading(raft_columns(), run.units.scaled));
 }
 
 void TableWriter::on_step(const RunState& state) {
-  series_.append(column_values({run_, state.row, state.row.t * run_.units.time()}));
+  series_.append(
+      csv_row(run_columns(), RunMoment(run_, state.row, state.row.t * run_.units.time())));
 }
 
 void TableWriter::on_output(const Observables& row, const RaftReport& rafts, ConstVec) {
-  const Units& units = run_.units;
   const double t = run_.output_labels[output_index(run_, row.t)];
-  observables_.append(column_values({run_, row, t}));
+  observables_.append(csv_row(run_columns(), RunMoment(run_, row, t)));
   std::string text;
   int number = 0;
-  for (const Raft& raft : rafts.rafts) {
-    const Point x = raft.centre * units.length();
-    text += csv_row({t, static_cast<double>(++number), raft.area * units.area(),
-                     raft.perimeter * units.length(), x[0], x[1], x[2],
-                     raft.distance * units.length()});
-  }
+  for (const Raft& raft : rafts.rafts)
+    text += csv_row(raft_columns(), RaftMoment{raft, ++number, t, run_.units});
   rafts_.append(text);
 }
 

@@ -24,7 +24,7 @@ TEST(RunNumbers, AreReadBackWhateverUnitsTheirHeadingsName) {
   const TemporaryFolder folder;
   const auto file = folder.path / "table.csv";
   for (const bool scaled : {false, true}) {
-    const std::string heading = column_heading(scaled);
+    const std::string heading = csv_heading(run_columns(), scaled);
     const auto count = std::count(heading.begin(), heading.end(), ',');
     std::string row = "1";
     for (int k = 0; k < count; ++k) row += "," + std::to_string(k + 2);
@@ -33,8 +33,11 @@ TEST(RunNumbers, AreReadBackWhateverUnitsTheirHeadingsName) {
     double expected = 0;
     for (const auto& column : run_columns()) EXPECT_EQ(table.number(0, column.name), ++expected);
   }
-  EXPECT_EQ(column_heading(false).rfind("steps,t (s),dt (s),mass (um^2),energy (um^2),", 0), 0u);
-  EXPECT_EQ(column_heading(true).rfind("steps,t (R^2/D),dt (R^2/D),mass (R^2),", 0), 0u);
+  EXPECT_EQ(
+      csv_heading(run_columns(), false).rfind("steps,t (s),dt (s),mass (um^2),energy (um^2),", 0),
+      0u);
+  EXPECT_EQ(csv_heading(run_columns(), true).rfind("steps,t (R^2/D),dt (R^2/D),mass (R^2),", 0),
+            0u);
 }
 
 TEST(RunNumbers, AUnitThatIsNotTheProgramsIsPartOfAName) {
@@ -57,8 +60,9 @@ std::string marked(const std::string& text, const std::string& name) {
 
 TEST(RunNumbers, AreInTheDocsAsTheyAreDeclared) {
   const std::string docs = read_file(TRACERAFT_ROOT "/docs/formats.md", 1 << 20);
-  EXPECT_EQ(marked(docs, "columns"), columns_in_markdown());
-  EXPECT_EQ(marked(docs, "totals"), totals_in_markdown());
+  EXPECT_EQ(marked(docs, "columns"), in_markdown(run_columns()));
+  EXPECT_EQ(marked(docs, "totals"), in_markdown(run_totals()));
+  EXPECT_EQ(marked(docs, "rafts"), in_markdown(raft_columns()));
 }
 
 }  // namespace
