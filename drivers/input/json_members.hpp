@@ -7,16 +7,19 @@
 //   }
 #pragma once
 
+#include <Eigen/Core>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "drivers/input/json_file.hpp"
 #include "kernel/core/named_list.hpp"
 #include "kernel/core/parameters.hpp"
+#include "kernel/core/types.hpp"
 
 namespace traceraft {
 
@@ -33,18 +36,39 @@ struct OneOf {
 struct AnyText {};
 struct AnyFlag {};
 struct AsDescribed {};  // an object
+// Whatever the type holds; null is infinity, which JSON has not.
+struct AnyValue {};
 
 // Throw InputError.
 void check_value(const std::string& where, double value, const WithinRange& range);
 void check_value(const std::string& where, const std::string& name, const OneOf& list);
 inline void check_value(const std::string&, const std::string&, const AnyText&) {}
 inline void check_value(const std::string&, bool, const AnyFlag&) {}
+template <class T>
+void check_value(const std::string&, const T&, const AnyValue&) {}
+
+// The words for the values of an enumeration.
+template <class T>
+using Words = std::vector<std::pair<T, std::string>>;
 
 class JsonWriter {
  public:
-  template <class T, class Check>
-  void operator()(const char* name, T& member, const Check&) {
+  static constexpr bool reads = false;
+
+  template <class T, class Check = AnyValue>
+  void operator()(const char* name, T& member, const Check& = {}) {
     json_[name] = json_of(member);
+  }
+  template <class T>
+  void word(const char* name, T& member, const Words<T>& words) {
+    for (const auto& [value, text] : words)
+      if (value == member) json_[name] = text;
+  }
+  // As another type, which has members that a file can hold.
+  template <class T, class ToStored, class FromStored>
+  void stored(const char* name, T& member, const ToStored& to_stored, const FromStored&) {
+    auto copy = to_stored(member);
+    json_[name] = json_of(copy);
   }
   // One that earlier versions did not know: it keeps its value where a file lacks it.
   template <class T, class Check>
@@ -77,6 +101,27 @@ class JsonWriter {
     return json;
   }
   template <class T>
+  static Json object_or_list(std::map<std::size_t, T>& map) {
+    Json json = Json::object();
+    for (auto& [number, value] : map) json[std::to_string(number)] = json_of(value);
+    return json;
+  }
+  template <class T>
+  static Json object_or_list(std::optional<T>& value) {
+    return value ? json_of(*value) : Json();
+  }
+  template <class T, int Rows>
+  static Json object_or_list(Eigen::Matrix<T, Rows, 1>& vector) {
+    Json json = Json::array();
+    for (T& value : vector) json.push_back(json_of(value));
+    return json;
+  }
+  // Column after column.
+  static Json object_or_list(Eigen::MatrixXd& matrix) {
+    Vec values = matrix.reshaped();
+    return {{"rows", matrix.rows()}, {"values", json_of(values)}};
+  }
+  template <class T>
   static Json object_or_list(T& value) {
     JsonWriter writer;
     describe(writer, value);
@@ -93,11 +138,33 @@ class JsonReader {
     if (!json.is_object()) throw DamagedFile(where_ + " is damaged: it holds no object");
   }
 
-  template <class T, class Check>
-  void operator()(const char* name, T& member, const Check& check) {
-    const auto found = json_.find(name);
-    if (found == json_.end()) throw DamagedFile(where_ + " is damaged: there is no " + name);
-    read(*found, where_ + ": " + name, member, check);
+  static constexpr bool reads = true;
+
+  template <class T, class Check = AnyValue>
+  void operator()(const char* name, T& member, const Check& check = {}) {
+    read(at(name), where_ + ": " + name, member, check);
+  }
+  template <class T>
+  void word(const char* name, T& member, const Words<T>& words) {
+    std::string text;
+    (*this)(name, text, AnyText{});
+    for (const auto& [value, word] : words)
+      if (word == text) {
+        member = value;
+        return;
+      }
+    throw DamagedFile(where_ + " is damaged: " + name + " cannot be '" + text + "'");
+  }
+  template <class T, class ToStored, class FromStored>
+  void stored(const char* name, T& member, const ToStored& to_stored,
+              const FromStored& from_stored) {
+    auto copy = to_stored(member);
+    (*this)(name, copy);
+    member = from_stored(copy);
+  }
+  // What is wrong with members beside each other.
+  void require(bool fits, const char* what) const {
+    if (!fits) throw DamagedFile(where_ + " is damaged: " + what);
   }
   template <class T, class Check>
   void later(const char* name, T& member, const Check& check) {
@@ -107,6 +174,11 @@ class JsonReader {
  private:
   [[noreturn]] static void refuse(const std::string& where, const char* needed) {
     throw DamagedFile(where + " is damaged: it is no " + needed);
+  }
+  const Json& at(const char* name) const {
+    const auto found = json_.find(name);
+    if (found == json_.end()) throw DamagedFile(where_ + " is damaged: there is no " + name);
+    return *found;
   }
 
   template <class T, class Check>
@@ -126,8 +198,50 @@ class JsonReader {
       read(value, where + "." + name, map[name], check);
   }
   template <class T, class Check>
+  static void read(const Json& json, const std::string& where, std::map<std::size_t, T>& map,
+                   const Check& check) {
+    std::map<std::string, T> named;
+    read(json, where, named, check);
+    map.clear();
+    for (auto& [name, value] : named) {
+      if (name.empty() || name.size() > 9 ||
+          name.find_first_not_of("0123456789") != std::string::npos)
+        refuse(where + "." + name, "number");
+      map[std::stoul(name)] = std::move(value);
+    }
+  }
+  template <class T, class Check>
+  static void read(const Json& json, const std::string& where, std::optional<T>& value,
+                   const Check& check) {
+    value.reset();
+    if (!json.is_null()) read(json, where, value.emplace(), check);
+  }
+  template <class T, int Rows, class Check>
+  static void read(const Json& json, const std::string& where, Eigen::Matrix<T, Rows, 1>& vector,
+                   const Check& check) {
+    std::vector<T> values;
+    read(json, where, values, check);
+    const auto size = static_cast<Eigen::Index>(values.size());
+    if (Rows != Eigen::Dynamic && size != Rows) refuse(where, "point");
+    vector = Eigen::Map<const Eigen::Matrix<T, Rows, 1>>(values.data(), size);
+  }
+  template <class Check>
+  static void read(const Json& json, const std::string& where, Eigen::MatrixXd& matrix,
+                   const Check& check) {
+    JsonReader reader(json, where);
+    Eigen::Index rows = 0;
+    Vec values;
+    reader("rows", rows);
+    reader("values", values, check);
+    const bool fits = rows > 0 ? values.size() % rows == 0 : rows == 0 && values.size() == 0;
+    reader.require(fits, "it is no matrix");
+    matrix = values.reshaped(rows, rows > 0 ? values.size() / rows : 0);
+  }
+  template <class T, class Check>
   static void read(const Json& json, const std::string& where, T& value, const Check& check) {
-    if constexpr (std::is_same_v<Check, AsDescribed>) {
+    if constexpr (std::is_same_v<Check, AsDescribed> ||
+                  (std::is_same_v<Check, AnyValue> && std::is_class_v<T> &&
+                   !std::is_same_v<T, std::string>)) {
       JsonReader reader(json, where);
       describe(reader, value);
     } else if constexpr (std::is_same_v<T, bool>) {
@@ -155,6 +269,17 @@ class JsonReader {
     check_value(where, number, range);
     if (std::is_integral_v<T> && number != std::floor(number)) refuse(where, "whole number");
     value = json.get<T>();
+  }
+
+  template <class T>
+  static void read_number(const Json& json, const std::string& where, T& value, const AnyValue&) {
+    if (json.is_null() && std::is_floating_point_v<T>) {
+      value = std::numeric_limits<T>::infinity();
+      return;
+    }
+    read_number(json, where, value,
+                WithinRange{static_cast<double>(std::numeric_limits<T>::lowest()),
+                            static_cast<double>(std::numeric_limits<T>::max())});
   }
 
   const Json& json_;

@@ -91,13 +91,13 @@ TEST(SearchJson, RefusesWhatDoesNotFit) {
     bad[Json::json_pointer(pointer)] = value;
     EXPECT_THROW((void)search_from(bad, {}), DamagedFile) << pointer << " " << value;
   };
-  refused("/found/covariance", {1.0, 0.0});
+  refused("/found/covariance", {{"rows", 2}, {"values", {1.0, 0.0}}});
   refused("/found/hypothesis/parts/0/effect", "../../victim");
   refused("/found/hypothesis/parts/0/values", Json::array());
   refused("/found/hypothesis/parts/0/coefficients", {1.0, 2.0});
   refused("/found/hypothesis/known", 7);
   refused("/finding", "x");
-  refused("/turns/0/0", 99);
+  refused("/turns/0/why", "99");
   refused("/disagreements/0/direction", {1.0});
 }
 
