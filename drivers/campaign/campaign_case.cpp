@@ -128,7 +128,7 @@ void write_score(const CampaignFolder& folder, const CampaignGroup& group, const
                    {"floor", floor.heldout > 0 ? Json(floor.heldout) : Json()}}},
                  {"seconds", seconds_of(folder.of(id) / "explain")},
                  {"program", program_checksum()}};
-    const auto strength = strength_error(truth, Configuration(setup.model, {}).units(), v);
+    const auto strength = strength_error(truth, setup.configuration.units(), v);
     json["error"] = strength ? Json(strength->relative) : Json();
     json["deviations"] = strength ? Json(strength->deviations) : Json();
     return json;

@@ -65,7 +65,7 @@ void explain_field_data(const ExplainCommand& command, ExplainSetup& setup, cons
     };
   if (!command.quiet) {
     say("%s\n", data_text(setup));
-    say("the model: %s\n", flags_text(setup.configuration()));
+    say("the model: %s\n", flags_text(setup.configuration));
     for (const std::string& note : setup.notes) say("%s\n", note);
     flush_output();
   }

@@ -32,7 +32,7 @@ class ExplainPage {
       : folder_(folder),
         found_(found),
         setup_(setup),
-        units_(setup.configuration().units()),
+        units_(setup.configuration.units()),
         page_("What the model is missing") {}
 
   std::string write() {
@@ -59,7 +59,7 @@ class ExplainPage {
                     text_of(found_.correlation) + ", " + std::to_string(found_.replicates) +
                     " replicates of noise alone, " +
                     formatted("h/epsilon = %.2f.", found_.h_over_epsilon) + " The model:");
-    page_.code(flags_text(setup_.configuration()));
+    page_.code(flags_text(setup_.configuration));
     if (const std::string run = command_for_found(folder_, found_, setup_); !run.empty()) {
       page_.paragraph(
           "The model with what was found runs, from noise and not from the vesicle that was "

@@ -41,7 +41,7 @@ bool has_model(const Explanation& found) {
 
 void write_explanation(const std::filesystem::path& folder, const Explanation& found,
                        const ExplainSetup& setup) {
-  const Units units = setup.configuration().units();
+  const Units units = setup.configuration.units();
   write_durably(folder / "scores.csv", csv_text(scores_table(found)));
   write_durably(folder / "disagreements.csv", csv_text(disagreements_table(found, setup, units)));
   if (has_model(found))
@@ -61,7 +61,7 @@ std::string command_for_found(const std::filesystem::path& folder, const Explana
 }
 
 void print_explanation(const Explanation& found, const ExplainSetup& setup) {
-  const Units units = setup.configuration().units();
+  const Units units = setup.configuration.units();
   say("\n%s\n\nVerdict: %s\n%s\n\n", data_text(setup),
       verdict_words(found.finding, class_of(found)), verdict_sentence(found));
   print_rows(parameter_rows(found, units));

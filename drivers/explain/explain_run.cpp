@@ -167,21 +167,17 @@ int ExplainJob::processors() const {
                      : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 }
 
-Configuration ExplainSetup::configuration() const {
-  return {model, {}};
-}
-
 double ExplainSetup::last_s() const {
   double last = 0;
   for (const FieldSeries& vesicle : series) last = std::max(last, vesicle.snapshots.back().time);
-  return last * configuration().units().time();
+  return last * configuration.units().time();
 }
 
 std::string data_text(const ExplainSetup& setup) {
   std::size_t snapshots = 0;
   for (const FieldSeries& vesicle : setup.series) snapshots += vesicle.snapshots.size();
   const std::size_t vesicles = setup.series.size();
-  const double radius = setup.configuration().units().length();
+  const double radius = setup.configuration.units().length();
   const double blur = setup.request.filter.blur * radius;
   return setup.name + (setup.synthetic ? " (SYNTHETIC): " : ": ") + std::to_string(vesicles) +
          (vesicles == 1 ? " vesicle, " : " vesicles, ") + std::to_string(snapshots) +
@@ -208,7 +204,7 @@ ExplainSetup read_explain_job(const ExplainJob& job) {
   setup.notes = notes_on(said, data);
   setup.name = data.name;
   setup.synthetic = data.synthetic;
-  const Configuration model = setup.configuration();
+  const Configuration& model = setup.configuration = Configuration(setup.model, {});
   refuse_scaled(model);
   (void)physical_model(model);  // with its effects it has to be one
   setup.request.base = model_without_effects(model);

@@ -23,16 +23,16 @@ struct ExplainJob {
 };
 
 struct ExplainSetup {
-  std::string model_file;  // of the user; empty: none
-  GivenValues model;       // with the radius of the vesicle
+  std::string model_file;                  // of the user; empty: none
+  GivenValues model;                       // with the radius of the vesicle
+  Configuration configuration = {{}, {}};  // of the model
   std::vector<FieldSeries> series;
   ExplainRequest request;
   std::vector<std::string> notes = {};  // what is odd about data and model, and what was made of it
   std::string name = {};                // of the data
   bool synthetic = false;
 
-  Configuration configuration() const;  // of the model
-  double last_s() const;                // the time of the last snapshot
+  double last_s() const;  // the time of the last snapshot
 };
 
 // "my vesicle (SYNTHETIC): 1 vesicle, 8 snapshots, R = 5 um, blurred by 0.1 um"

@@ -90,7 +90,7 @@ std::vector<Row> score_rows(const Round& round) {
 
 std::vector<Row> disagreement_rows(const Explanation& found, const ExplainSetup& setup,
                                    std::size_t most) {
-  const Units base = setup.configuration().units();
+  const Units base = setup.configuration.units();
   std::vector<Row> rows{
       {"vesicle", "time (s)", "where", "around (x, y, z), in R", "standard deviations", "p"}};
   for (const Disagreement& d : found.disagreements) {

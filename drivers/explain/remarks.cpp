@@ -21,7 +21,7 @@ std::string text_of(const FrameChange& change, const ExplainSetup& setup) {
   const FieldSeries& series = setup.series[change.vesicle];
   const double time = series.snapshots[change.snapshot].time;
   return "Vesicle " + series.vesicle + ", snapshot " + std::to_string(change.snapshot + 1) +
-         formatted(" (%.4g s)", time * setup.configuration().units().seconds_per_unit()) +
+         formatted(" (%.4g s)", time * setup.configuration.units().seconds_per_unit()) +
          ": it seems " + joined(ways, ", and ") +
          ". That is more than the search allows for; align and calibrate the images first.";
 }
@@ -64,7 +64,7 @@ void add_assumptions(const Explanation& found, const Units& base, std::vector<st
 
 // Strengths that the model states and these data contradict.
 void add_own(const Explanation& found, const ExplainSetup& setup, std::vector<std::string>& all) {
-  const Units base = setup.configuration().units();
+  const Units base = setup.configuration.units();
   const std::vector<FoundParameter> fitted = found_parameters(fit_shown(found), base);
   const auto contradicts = [](const FoundParameter& p, const FoundParameter& stated) {
     return p.effect == stated.effect && p.name == stated.name && p.sigma &&
@@ -288,9 +288,9 @@ std::vector<std::string> remarks(const Explanation& found, const Units& base) {
 
 std::vector<std::string> remarks_on(const Explanation& found, const ExplainSetup& setup) {
   std::vector<std::string> all = setup.notes;
-  for (std::string& remark : remarks(found, setup.configuration().units()))
+  for (std::string& remark : remarks(found, setup.configuration.units()))
     all.push_back(std::move(remark));
-  add_diffusion(found, setup.configuration().units(), all);
+  add_diffusion(found, setup.configuration.units(), all);
   add_own(found, setup, all);
   add_registered(found, setup, all);
   for (const FrameChange& change : found.changes) all.push_back(text_of(change, setup));

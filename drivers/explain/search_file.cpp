@@ -35,7 +35,7 @@ std::string checksum_of(const std::vector<FieldSeries>& data) {
 Json subject_of(const ExplainSetup& setup) {
   const ExplainRequest& request = setup.request;
   return {{"the build of the program", program_checksum()},
-          {"the model", config_text(Configuration(setup.model, {}))},
+          {"the model", config_text(setup.configuration)},
           {"the data", checksum_of(setup.series)},
           {"the blur of the data", request.blur_stated ? Json(request.filter.blur) : Json()},
           {"the noise of the data",

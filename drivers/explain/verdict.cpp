@@ -63,7 +63,7 @@ Json where_json(const Explanation& found, const ExplainSetup& setup) {
   if (found.disagreements.empty()) return {};
   const Disagreement& most = found.disagreements.front();
   return {{"vesicle", parse_number("vesicle", setup.series[most.vesicle].vesicle)},
-          {"time", most.time * setup.configuration().units().seconds_per_unit()},
+          {"time", most.time * setup.configuration.units().seconds_per_unit()},
           {"region", {most.direction[0], most.direction[1], most.direction[2]}},
           {"state", most.state}};
 }
@@ -120,7 +120,7 @@ Json noise_json(const Explanation& found) {
 }
 
 Json data_json(const ExplainSetup& setup) {
-  const double radius = setup.configuration().units().length();
+  const double radius = setup.configuration.units().length();
   const ExplainRequest& request = setup.request;
   Json snapshots = Json::array();
   for (const FieldSeries& vesicle : setup.series) snapshots.push_back(vesicle.snapshots.size());
@@ -154,7 +154,7 @@ Json parameters_json(const std::vector<FoundParameter>& found) {
 
 Json verdict_json(const Explanation& found, const ExplainSetup& setup) {
   const std::string name = found.found.hypothesis.name(), closest = comes_closest(found);
-  const Configuration model = setup.configuration();
+  const Configuration model = setup.configuration;
   const Units base = model.units();
   return {{"verdict", word_for(found.finding)},
           {"effect", is_named(found) ? Json(name) : Json()},
