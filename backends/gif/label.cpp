@@ -17,13 +17,7 @@ void paint(Image& image, int left, int top, int size) {
                   kInk);
 }
 
-}  // namespace
-
-void write_label(Image& image, const std::string& text) {
-  const int dot = std::max(1, image.height / (kLettersPerHeight * GIF_FONT_HEIGHT));
-  const int width = dot * GIF_FONT_WIDTH * static_cast<int>(text.size());
-  const int top = image.height - dot * (GIF_FONT_HEIGHT + GIF_FONT_HEIGHT / 2);
-  int left = (image.width - width) / 2;
+void write(Image& image, int left, int top, int dot, const std::string& text) {
   for (const char ch : text) {
     const auto code = static_cast<unsigned char>(ch);
     for (int row = 0; code < kAscii && row < GIF_FONT_HEIGHT; ++row)
@@ -32,6 +26,23 @@ void write_label(Image& image, const std::string& text) {
           paint(image, left + column * dot, top + row * dot, dot);
     left += dot * GIF_FONT_WIDTH;
   }
+}
+
+}  // namespace
+
+void write_label(Image& image, const std::string& text) {
+  const int dot = std::max(1, image.height / (kLettersPerHeight * GIF_FONT_HEIGHT));
+  const int top = image.height - dot * (GIF_FONT_HEIGHT + GIF_FONT_HEIGHT / 2);
+  write(image, (image.width - dot * text_width(text)) / 2, top, dot, text);
+}
+
+void write_text(Image& image, int left, int top, const std::string& text) {
+  static_assert(kTextHeight == GIF_FONT_HEIGHT);
+  write(image, left, top, 1, text);
+}
+
+int text_width(const std::string& text) {
+  return GIF_FONT_WIDTH * static_cast<int>(text.size());
 }
 
 }  // namespace traceraft

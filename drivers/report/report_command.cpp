@@ -2,7 +2,7 @@
 
 #include "backends/gif/gif_writer.hpp"
 #include "backends/gif/label.hpp"
-#include "backends/png/png_writer.hpp"
+#include "backends/png/png_file.hpp"
 #include "backends/posix/durable_file.hpp"
 #include "drivers/commands.hpp"
 #include "drivers/config/number_checks.hpp"

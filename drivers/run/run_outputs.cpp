@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "backends/png/png_writer.hpp"
+#include "backends/png/png_file.hpp"
 #include "backends/posix/process.hpp"
 #include "backends/zlib/vtu_writer.hpp"
 #include "drivers/run/run_numbers.hpp"
-#include "kernel/core/parameters.hpp"
+#include "kernel/core/text.hpp"
 #include "kernel/fem/trace.hpp"
 
 namespace traceraft {
@@ -24,6 +24,7 @@ std::size_t output_index(const RunSetup& run, double t) {
 }
 
 constexpr int kViewPixels = 480;
+constexpr std::uint64_t kLargestPicture = 1 << 24;  // bytes
 
 std::string numbered(const char* stem, std::size_t index, const char* extension) {
   char name[40];
@@ -101,6 +102,7 @@ void FieldWriter::on_output(const Observables& row, const RaftReport& rafts, Con
                {{"raft", largest_at_corners(space.surface, rafts.of_point)}}));
   const DoubleWell& well = run_.problem->model().well;
   const Image image = draw_front_and_back(space, c, well.a, well.b, kViewPixels);
+  const double half_width = view_half_width(space) * run_.units.length();
   // Nothing is named before all of it is there.
   if (!ranks.all(true) || !ranks.root()) return;
   if (!alone) {
@@ -113,10 +115,24 @@ void FieldWriter::on_output(const Observables& row, const RaftReport& rafts, Con
   std::filesystem::remove(folder_.fields() / numbered("field", index, alone ? "pvtu" : "vtu"));
   for (int rank = alone ? 0 : ranks.size();; ++rank)
     if (!std::filesystem::remove(folder_.fields() / piece_name(index, rank))) break;
-  const std::string picture = png_bytes(image);
-  write_durably(folder_.fields() / numbered("view", index, "png"), picture);
-  write_durably(folder_.path / "view.png", picture);
+  write_durably(folder_.fields() / numbered("view", index, "png"), png_bytes(image));
+  write_strip(index, {half_width, unit_name(Unit::length, run_.units.scaled), well.a, well.b});
   collect(index);
+}
+
+// Of the pictures that are there up to the newest: those of an earlier process may be gone.
+void FieldWriter::write_strip(std::size_t newest, const StripLegend& legend) const {
+  std::vector<std::size_t> there;
+  for (std::size_t i = 0; i <= newest; ++i)
+    if (std::filesystem::exists(folder_.fields() / numbered("view", i, "png"))) there.push_back(i);
+  std::vector<StripView> views;
+  const std::string unit = unit_name(Unit::time, run_.units.scaled);
+  for (const std::size_t k : strip_choice(there.size())) {
+    const std::filesystem::path file = folder_.fields() / numbered("view", there[k], "png");
+    views.push_back({image_of_png(read_file(file, kLargestPicture)),
+                     "t = " + formatted("%.4g ", run_.output_labels[there[k]]) + unit});
+  }
+  write_durably(folder_.path / "view.png", png_bytes(compose_strip(views, legend)));
 }
 
 // All output times up to the newest, on however many ranks they were written.

@@ -8,6 +8,7 @@
 #include "drivers/run/checkpoint_store.hpp"
 #include "drivers/run/run_folder.hpp"
 #include "drivers/run/run_setup.hpp"
+#include "drivers/run/view_strip.hpp"
 #include "kernel/core/stopwatch.hpp"
 #include "kernel/simulation/run_loop.hpp"
 
@@ -30,7 +31,7 @@ class TableWriter final : public RunListener {
 };
 
 // fields/field-NNNN.vtu with c and mu on Γ_h, collected in fields.pvd, and a picture of front and
-// back as fields/view-NNNN.png; view.png is the newest. Several ranks write a piece each,
+// back as fields/view-NNNN.png; view.png shows up to six of them. Several ranks write a piece each,
 // field-NNNN-RRRR.vtu, joined by field-NNNN.pvtu.
 class FieldWriter final : public RunListener {
  public:
@@ -39,6 +40,7 @@ class FieldWriter final : public RunListener {
 
  private:
   void collect(std::size_t newest) const;
+  void write_strip(std::size_t newest, const StripLegend& legend) const;
 
   const RunFolder& folder_;
   const RunSetup& run_;

@@ -13,6 +13,21 @@ constexpr int kSamples = 2;  // per pixel and direction
 using Colour = std::array<std::uint8_t, 3>;
 constexpr Colour kDark = {38, 70, 120}, kBright = {247, 193, 82}, kWhite = {255, 255, 255};
 
+Colour shaded(double share, double shade) {
+  const double s = std::clamp(share, 0.0, 1.0);
+  Colour colour;
+  for (int channel = 0; channel < 3; ++channel)
+    colour[channel] =
+        static_cast<std::uint8_t>(shade * ((1 - s) * kDark[channel] + s * kBright[channel]) + 0.5);
+  return colour;
+}
+
+double half_width_of(const std::vector<Point>& position, const Communicator& ranks) {
+  double farthest = 0;
+  for (const Point& x : position) farthest = std::max(farthest, x.norm());
+  return 1.05 * ranks.max(farthest);
+}
+
 // The surface seen against `towards_viewer`, nearest piece in front.
 class View {
  public:
@@ -109,10 +124,7 @@ class View {
     const std::size_t at = index(row, column);
     if (!(depth > depth_[at])) return;
     depth_[at] = depth;
-    const double s = std::clamp(share, 0.0, 1.0);
-    for (int channel = 0; channel < 3; ++channel)
-      colour_[at][channel] = static_cast<std::uint8_t>(
-          shade * ((1 - s) * kDark[channel] + s * kBright[channel]) + 0.5);
+    colour_[at] = shaded(share, shade);
   }
 
   int size_;
@@ -124,12 +136,10 @@ class View {
 
 Image draw(const std::vector<Point>& position, const std::vector<std::array<int, 3>>& triangles,
            const Vec& values, double low, double high, int size, const Communicator& ranks) {
-  double farthest = 0;
-  for (const Point& x : position) farthest = std::max(farthest, x.norm());
-  farthest = ranks.max(farthest);
+  const double half_width = half_width_of(position, ranks);
   const Point towards_viewer(1, -0.8, 0.5);
   Image image{2 * size, size, std::vector<std::uint8_t>(6 * static_cast<std::size_t>(size) * size)};
-  View front(size, 1.05 * farthest, towards_viewer), back(size, 1.05 * farthest, -towards_viewer);
+  View front(size, half_width, towards_viewer), back(size, half_width, -towards_viewer);
   for (const auto& [a, b, c] : triangles) {
     const auto share = [&](int p) { return (values[p] - low) / (high - low); };
     for (View* view : {&front, &back})
@@ -143,6 +153,14 @@ Image draw(const std::vector<Point>& position, const std::vector<std::array<int,
 }
 
 }  // namespace
+
+double view_half_width(const SurfaceSpace& space) {
+  return half_width_of(space.surface.position, *space.communicator);
+}
+
+std::array<std::uint8_t, 3> surface_colour(double share) {
+  return shaded(share, 1);
+}
 
 Image draw_front_and_back(const SurfaceSpace& space, const Vec& values, double low, double high,
                           int size) {

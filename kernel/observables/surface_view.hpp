@@ -26,6 +26,11 @@ struct SurfaceMesh {
 Image draw_front_and_back(const SurfaceSpace& space, const Vec& values, double low, double high,
                           int size);
 
+// Half of what each of the two squares shows, in units of R. Collective.
+double view_half_width(const SurfaceSpace& space);
+// The colour of a surface that is lit from the front; share: 0 for `low`, 1 for `high`.
+std::array<std::uint8_t, 3> surface_colour(double share);
+
 Image draw_front_and_back(const SurfaceMesh& mesh, const Vec& values, double low, double high,
                           int size);
 

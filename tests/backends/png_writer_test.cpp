@@ -1,4 +1,4 @@
-#include "backends/png/png_writer.hpp"
+#include "backends/png/png_file.hpp"
 
 #include <gtest/gtest.h>
 #include <png.h>

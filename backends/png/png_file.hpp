@@ -10,4 +10,8 @@ namespace traceraft {
 // The bytes of a PNG file. Throws std::runtime_error if libpng refuses.
 std::string png_bytes(const Image& image);
 
+// The image of such a file. Throws std::runtime_error if it is none, or larger than 2^13 pixels
+// along an edge.
+Image image_of_png(const std::string& bytes);
+
 }  // namespace traceraft
