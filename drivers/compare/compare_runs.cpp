@@ -45,7 +45,7 @@ WorkEnd compute(const Reference& reference, const ComparisonFolder& folder, cons
                 std::string& why) {
   fs::create_directories(reference.folder.parent_path());
   while (!run_finished(reference.folder)) {
-    const ProgramEnd end = run_program(reference_arguments(reference, folder),
+    const ProcessEnd end = run_program(reference_arguments(reference, folder),
                                        folder.path() / "reference.log", 1, 0, tick);
     if (end.was_stopped()) return WorkEnd::stopped;
     if (end.exit_code == kLocked) {
@@ -78,7 +78,7 @@ WorkEnd compute(const CompareJob& job, const ComparisonFolder& folder, double ti
   arguments.insert(arguments.end(), {"--out", run.string(), "--no-fields", "--checkpoint-interval",
                                      "1e9", "--quiet"});
   if (job.ranks > 1) arguments.insert(arguments.end(), {"--threads", "1"});
-  const ProgramEnd end = run_program(arguments, folder.log_of(job), job.ranks, time_limit, tick);
+  const ProcessEnd end = run_program(arguments, folder.log_of(job), job.ranks, time_limit, tick);
   if (end.out_of_time) {
     folder.record(job, {"stopped after " + format_number(time_limit) + " s", time_limit});
     return WorkEnd::done;

@@ -18,7 +18,7 @@ double share_done(double reached, double t_end) {
   return std::min(1.0, 1 - std::log(reached / t_end) / std::log(kFirstShare));
 }
 
-ProgramEnd run_or_resume(const EnsembleFolder& folder, std::uint64_t seed, int threads) {
+ProcessEnd run_or_resume(const EnsembleFolder& folder, std::uint64_t seed, int threads) {
   const std::string run = folder.run_of(seed).string(), thread_text = std::to_string(threads);
   std::vector<std::string> arguments = {"resume", run, "--threads", thread_text, "--quiet"};
   if (folder.member(seed).end == MemberEnd::missing)
@@ -80,7 +80,7 @@ int run_member(const EnsembleFolder& folder, std::uint64_t seed, int threads, bo
   report(std::string(before == MemberEnd::missing ? "begins" : "goes on") +
          ", threads: " + std::to_string(threads));
   const Stopwatch watch;
-  const ProgramEnd end = run_or_resume(folder, seed, threads);
+  const ProcessEnd end = run_or_resume(folder, seed, threads);
   if (end.exit_code == kSuccess) report("finished after " + clock_text(watch.seconds()));
   if (end.exit_code != kSuccess) say_error("seed " + std::to_string(seed) + ": " + end.reason());
   return end.exit_code;

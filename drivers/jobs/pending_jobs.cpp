@@ -20,7 +20,7 @@ class Work {
 
   // Is there a reason to go on with others?
   bool carry_out(std::size_t job) {
-    const ProgramEnd end = jobs_.run(job);
+    const ProcessEnd end = jobs_.run(job);
     if (jobs_.success ? jobs_.success(end) : end.exit_code == kSuccess) {
       if (jobs_.succeeded) jobs_.succeeded(job);
       return true;

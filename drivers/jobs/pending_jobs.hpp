@@ -20,14 +20,14 @@ struct PendingJobs {
   std::filesystem::path folder;  // where all of them work
   bool quiet = false;
 
-  std::function<ProgramEnd(std::size_t)> run;      // in threads of their own
+  std::function<ProcessEnd(std::size_t)> run;      // in threads of their own
   std::function<std::string(std::size_t)> name;    // for complaints: "the run of seed 3"
   // Of all jobs, those done before included, the share that is done. Empty: their number counts.
   std::function<double()> share = {};
   // After a job that succeeded, in its thread. May throw. Empty: nothing is to be done.
   std::function<void(std::size_t)> succeeded = {};
   // Empty: exit code 0.
-  std::function<bool(const ProgramEnd&)> success = {};
+  std::function<bool(const ProcessEnd&)> success = {};
 };
 
 struct JobFailure {

@@ -40,12 +40,12 @@ void remove_scratch(const std::filesystem::path& scratch) {
 }  // namespace
 
 // As shells tell it; 0 if it ended by itself.
-int ProgramEnd::signal() const {
+int ProcessEnd::signal() const {
   constexpr int kMostSignals = 64;  // mpirun has exit codes of its own beyond
   return exit_code > 128 && exit_code <= 128 + kMostSignals ? exit_code - 128 : 0;
 }
 
-std::string ProgramEnd::reason() const {
+std::string ProcessEnd::reason() const {
   if (exit_code == 127) return "mpirun is not there; install the Debian package openmpi-bin";
   if (exit_code == kInterrupted) return "it was stopped; the same command goes on with it";
   if (signal() == SIGKILL) return "it was killed; was there too little memory?";
@@ -57,11 +57,11 @@ std::string ProgramEnd::reason() const {
   return last_line.empty() ? "exit code " + std::to_string(exit_code) : last_line;
 }
 
-bool ProgramEnd::was_stopped() const {
+bool ProcessEnd::was_stopped() const {
   return stop_requested() || exit_code == kInterrupted || signal() == SIGTERM || signal() == SIGINT;
 }
 
-bool ProgramEnd::concerns_input() const {
+bool ProcessEnd::concerns_input() const {
   switch (exit_code) {
     case kSuccess:
     case kBadInput:
@@ -73,13 +73,13 @@ bool ProgramEnd::concerns_input() const {
   }
 }
 
-bool ProgramEnd::harms_no_other(const std::filesystem::path& folder) const {
+bool ProcessEnd::harms_no_other(const std::filesystem::path& folder) const {
   constexpr std::uintmax_t kLeastSpace = 64 << 20;  // bytes that a disk has that is not full
   return concerns_input() ||
          (exit_code == kInputOutput && std::filesystem::space(folder).available >= kLeastSpace);
 }
 
-ProgramEnd run_program(const std::vector<std::string>& arguments, const std::filesystem::path& log,
+ProcessEnd run_program(const std::vector<std::string>& arguments, const std::filesystem::path& log,
                        int ranks, double time_limit, const std::function<void()>& tick) {
   std::vector<std::string> command = program_on(ranks);
   command.insert(command.end(), arguments.begin(), arguments.end());
@@ -100,7 +100,7 @@ RunProgram program_runner(std::filesystem::path scratch) {
     std::vector<std::string> arguments = {"run",         "--scaled", "--out",     folder.string(),
                                           "--no-fields", "--quiet",  "--threads", "1"};
     arguments.insert(arguments.end(), options.begin(), options.end());
-    const ProgramEnd end = run_program(arguments, scratch / "log", ranks);
+    const ProcessEnd end = run_program(arguments, scratch / "log", ranks);
     if (end.exit_code != kSuccess)
       throw std::runtime_error("a run on " + std::to_string(ranks) + " ranks: " + end.reason());
     const ProgramRun run{summary_number(folder, "steps"), summary_number(folder, "mass_drift"),

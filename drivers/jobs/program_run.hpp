@@ -10,7 +10,7 @@
 
 namespace traceraft {
 
-struct ProgramEnd {
+struct ProcessEnd {
   int exit_code = 0;
   bool out_of_time = false;
   std::string last_line;  // of what it printed
@@ -29,7 +29,7 @@ struct ProgramEnd {
 
 // Runs this program to its end, under mpirun if on more than one rank. What it prints goes to
 // `log`. `time_limit` and `tick` as of ChildRequest. Throws IoError if no process can be started.
-ProgramEnd run_program(const std::vector<std::string>& arguments, const std::filesystem::path& log,
+ProcessEnd run_program(const std::vector<std::string>& arguments, const std::filesystem::path& log,
                        int ranks = 1, double time_limit = 0,
                        const std::function<void()>& tick = {});
 

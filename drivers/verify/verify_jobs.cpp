@@ -48,7 +48,7 @@ bool carry_out_side_by_side(const StudyJobs& jobs, const fs::path& folder) {
     return run_program(arguments, log_of(folder, study));
   };
   work.name = [&](std::size_t k) { return jobs.studies[k].name; };
-  work.success = [](const ProgramEnd& end) {
+  work.success = [](const ProcessEnd& end) {
     return end.exit_code == kSuccess || end.exit_code == kClaimFailed;
   };
   work.succeeded = [&](std::size_t k) { take_over(jobs, jobs.studies[k], folder); };
