@@ -9,6 +9,7 @@ namespace {
 
 constexpr std::uint8_t kInk = 40;
 constexpr int kLettersPerHeight = 30, kAscii = 128;
+constexpr int kTextDot = kTextHeight / GIF_FONT_HEIGHT;
 
 void paint(Image& image, int left, int top, int size) {
   for (int y = std::max(top, 0); y < std::min(top + size, image.height); ++y)
@@ -33,16 +34,15 @@ void write(Image& image, int left, int top, int dot, const std::string& text) {
 void write_label(Image& image, const std::string& text) {
   const int dot = std::max(1, image.height / (kLettersPerHeight * GIF_FONT_HEIGHT));
   const int top = image.height - dot * (GIF_FONT_HEIGHT + GIF_FONT_HEIGHT / 2);
-  write(image, (image.width - dot * text_width(text)) / 2, top, dot, text);
+  write(image, (image.width - dot * text_width(text) / kTextDot) / 2, top, dot, text);
 }
 
 void write_text(Image& image, int left, int top, const std::string& text) {
-  static_assert(kTextHeight == GIF_FONT_HEIGHT);
-  write(image, left, top, 1, text);
+  write(image, left, top, kTextDot, text);
 }
 
 int text_width(const std::string& text) {
-  return GIF_FONT_WIDTH * static_cast<int>(text.size());
+  return kTextDot * GIF_FONT_WIDTH * static_cast<int>(text.size());
 }
 
 }  // namespace traceraft

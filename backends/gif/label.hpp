@@ -11,8 +11,8 @@ namespace traceraft {
 // pixels at least. What is wider than the image is cut off.
 void write_label(Image& image, const std::string& text);
 
-// Writes ASCII text from that corner on, in letters of 8 pixels.
-inline constexpr int kTextHeight = 8;
+// Writes ASCII text from that corner on, in letters of 16 pixels.
+inline constexpr int kTextHeight = 16;
 void write_text(Image& image, int left, int top, const std::string& text);
 int text_width(const std::string& text);
 

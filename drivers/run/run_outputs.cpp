@@ -130,7 +130,7 @@ void FieldWriter::write_strip(std::size_t newest, const StripLegend& legend) con
   for (const std::size_t k : strip_choice(there.size())) {
     const std::filesystem::path file = folder_.fields() / numbered("view", there[k], "png");
     views.push_back({image_of_png(read_file(file, kLargestPicture)),
-                     "t = " + formatted("%.4g ", run_.output_labels[there[k]]) + unit});
+                     "t = " + formatted("%.3g ", run_.output_labels[there[k]]) + unit});
   }
   write_durably(folder_.path / "view.png", png_bytes(compose_strip(views, legend)));
 }

@@ -9,7 +9,7 @@
 namespace traceraft {
 namespace {
 
-constexpr int kFooter = 40;  // pixels below the views: times, and below them the legend
+constexpr int kFooter = 56;  // pixels below the views: times, and below them the legend
 constexpr std::uint8_t kInk = 40;
 
 void fill(Image& image, int left, int top, int width, int height,
@@ -49,7 +49,7 @@ void draw_scale_bar(Image& image, int size, int top, const StripLegend& legend) 
   const double length = round_length(0.6 * legend.half_width);
   const int pixels = static_cast<int>(std::lround(length / (2 * legend.half_width) * size));
   constexpr int kLeft = 8;
-  fill(image, kLeft, top + 3, pixels, 3, {kInk, kInk, kInk});
+  fill(image, kLeft, top + 6, pixels, 4, {kInk, kInk, kInk});
   write_text(image, kLeft + pixels + 6, top, format_number(length) + " " + legend.length_unit);
 }
 
@@ -84,10 +84,10 @@ Image compose_strip(const std::vector<StripView>& views, const StripLegend& lege
     const int left = size * static_cast<int>(k);
     copy_half(image, 0, strip, left, 0);
     copy_half(image, image.width / 2, strip, left, size);
-    write_text(strip, left + (size - text_width(label)) / 2, 2 * size + 6, label);
+    write_text(strip, left + (size - text_width(label)) / 2, 2 * size + 8, label);
   }
-  draw_scale_bar(strip, size, 2 * size + 25, legend);
-  draw_colours(strip, 2 * size + 25, legend);
+  draw_scale_bar(strip, size, 2 * size + 34, legend);
+  draw_colours(strip, 2 * size + 34, legend);
   return strip;
 }
 
