@@ -45,10 +45,10 @@ const std::vector<ReportedNumber<RunMoment>>& run_columns() {
       {"dt", U::time, "the step that ends at t, or that t lies in",
        [](M m) { return m.run.integrator->step() * m.units().time(); }},
       {"mass", U::area, "∫ c over the surface", [](M m) { return m.row.mass * m.units().area(); }},
-      {"energy", U::area, "∫ f0(c) + ½ ε² \\|∇c\\|², in units of the energy density times area",
+      {"energy", U::area, "∫ f0(c) + ½ ε² |∇c|², in units of the energy density times area",
        [](M m) { return m.row.energy * m.units().area(); }},
       {"perimeter", U::length,
-       "the diffuse perimeter ∫ ε \\|∇c\\|² over the same integral per length of a straight "
+       "the diffuse perimeter ∫ ε |∇c|² over the same integral per length of a straight "
        "boundary "
        "at rest on a mesh of this h/ε",
        [](M m) { return m.row.perimeter * m.units().length(); }},

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "drivers/output/text_table.hpp"
 #include "drivers/run/checkpoint_store.hpp"
 #include "drivers/run/run_setup.hpp"
 #include "kernel/core/parameters.hpp"
@@ -90,14 +91,13 @@ std::string csv_row(const std::vector<ReportedNumber<Source>>& columns, const So
 // What a checkpoint's numbers depend on: a program that reports others cannot go on with it.
 std::uint32_t report_layout();
 
-// A list as a table in Markdown: name, unit, meaning.
+// A list as a table for the docs: name, unit, meaning.
 template <class Source>
-std::string in_markdown(const std::vector<ReportedNumber<Source>>& numbers) {
-  std::string text = "| name | unit | meaning |\n|---|---|---|\n";
+std::vector<Row> rows_of(const std::vector<ReportedNumber<Source>>& numbers) {
+  std::vector<Row> rows{{"name", "unit", "meaning"}};
   for (const auto& number : numbers)
-    text += std::string("| ") + number.name + " | " + unit_name(number.unit, false) + " | " +
-            number.meaning + " |\n";
-  return text;
+    rows.push_back({number.name, unit_name(number.unit, false), number.meaning});
+  return rows;
 }
 
 }  // namespace traceraft

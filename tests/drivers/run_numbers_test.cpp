@@ -60,9 +60,9 @@ std::string marked(const std::string& text, const std::string& name) {
 
 TEST(RunNumbers, AreInTheDocsAsTheyAreDeclared) {
   const std::string docs = read_file(TRACERAFT_ROOT "/docs/formats.md", 1 << 20);
-  EXPECT_EQ(marked(docs, "columns"), in_markdown(run_columns()));
-  EXPECT_EQ(marked(docs, "totals"), in_markdown(run_totals()));
-  EXPECT_EQ(marked(docs, "rafts"), in_markdown(raft_columns()));
+  EXPECT_EQ(marked(docs, "columns"), markdown_table(rows_of(run_columns())));
+  EXPECT_EQ(marked(docs, "totals"), markdown_table(rows_of(run_totals())));
+  EXPECT_EQ(marked(docs, "rafts"), markdown_table(rows_of(raft_columns())));
 }
 
 }  // namespace

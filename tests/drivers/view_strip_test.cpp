@@ -42,7 +42,7 @@ TEST(ViewStrip, HasFrontsAboveBacksAndALegend) {
   int longest = 0;
   for (int y = kSize; y < strip.height; ++y) {
     int run = 0;
-    for (int x = 0; x < 60; ++x)
+    for (int x = 0; x < 32; ++x)
       longest = std::max(longest, run = red_at(strip, x, y) == 40 ? run + 1 : 0);
   }
   EXPECT_EQ(longest, 20);
