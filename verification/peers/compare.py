@@ -52,7 +52,7 @@ def energies_of(name, output, folder):
                 if w and w[0] == "energy"}
     with open(os.path.join(folder, "observables.csv")) as file:
         rows = csv.DictReader(line for line in file if not line.startswith("#"))
-        return {round(float(row["t"]) * TIME, 6): float(row["energy"]) * LENGTH ** 2 for row in rows}
+        return {round(float(row["t (R^2/D)"]) * TIME, 6): float(row["energy (R^2)"]) * LENGTH ** 2 for row in rows}
 
 
 def nodes_of(name, output, folder):
