@@ -139,7 +139,7 @@ TEST_F(ExplainTest, GoesOnWhereItWasKilled) {
   const pid_t child = testing::start_traceraft(command_of_few(kCells));
   const fs::path saved = folder.path / "out" / "search.json";
   const auto has_a_refit = [&] {
-    return fs::exists(saved) && testing::content(saved).find("\"ahead\":[[") != std::string::npos;
+    return fs::exists(saved) && testing::content(saved).find("\"ahead\":{\"") != std::string::npos;
   };
   while (!has_a_refit() && waitpid(child, nullptr, WNOHANG) == 0) usleep(20000);
   kill(child, SIGKILL);
