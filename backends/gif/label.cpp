@@ -7,16 +7,8 @@
 namespace traceraft {
 namespace {
 
-constexpr std::uint8_t kInk = 40;
 constexpr int kLettersPerHeight = 30, kAscii = 128;
 constexpr int kTextDot = kTextHeight / GIF_FONT_HEIGHT;
-
-void paint(Image& image, int left, int top, int size) {
-  for (int y = std::max(top, 0); y < std::min(top + size, image.height); ++y)
-    for (int x = std::max(left, 0); x < std::min(left + size, image.width); ++x)
-      std::fill_n(image.rgb.begin() + 3 * (static_cast<std::ptrdiff_t>(y) * image.width + x), 3,
-                  kInk);
-}
 
 void write(Image& image, int left, int top, int dot, const std::string& text) {
   for (const char ch : text) {
@@ -24,7 +16,7 @@ void write(Image& image, int left, int top, int dot, const std::string& text) {
     for (int row = 0; code < kAscii && row < GIF_FONT_HEIGHT; ++row)
       for (int column = 0; column < GIF_FONT_WIDTH; ++column)
         if (GifAsciiTable8x8[code][row] & (1 << (GIF_FONT_WIDTH - 1 - column)))
-          paint(image, left + column * dot, top + row * dot, dot);
+          fill(image, left + column * dot, top + row * dot, dot, dot, kInk);
     left += dot * GIF_FONT_WIDTH;
   }
 }

@@ -158,7 +158,7 @@ class SupernodalSolver final : public SpdSolver {
   void solve(ConstVec b, VecRef x, const ThreadTeam& team, int lane) override;
 
  private:
-  // What a lane works with.
+  // The vectors that a lane works with.
   struct Work {
     std::vector<Real> x;
     std::vector<Real> dense[2], above[2];  // of each branch: a supernode's rows; sums for the top

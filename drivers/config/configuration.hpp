@@ -31,7 +31,7 @@ class Configuration {
 
   // The value as the user, the case or the default has it.
   const std::string& text(const std::string& name) const { return values_.at(name).text; }
-  // Of an option of kind number, integer or numbers.
+  // The values of an option of kind number, integer or numbers.
   std::vector<double> numbers(const OptionSpec& spec) const;
   // Where a value was given, or "--name" for a default: starts every complaint about it.
   const std::string& where(const std::string& name) const { return values_.at(name).where; }

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "backends/posix/durable_file.hpp"
 #include "drivers/text/csv.hpp"
+#include "drivers/text/unit_names.hpp"
 #include "drivers/text/utf8.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/named_list.hpp"
@@ -77,17 +77,6 @@ void refuse_other_separators(const std::string& where, const std::vector<std::st
     if (columns.front().find(separator) != std::string::npos)
       throw InputError(where + ": columns are separated by " + name +
                        "; commas are needed (and points in numbers)");
-}
-
-// "t" of "t (s)". A unit that the program does not write stays part of the name, so that nobody's
-// minutes are taken for seconds.
-std::string without_unit(const std::string& heading) {
-  for (const char* unit : {" (s)", " (um)", " (um^2)", " (R)", " (R^2)", " (R^2/D)"}) {
-    const std::size_t length = std::strlen(unit);
-    if (heading.size() > length && heading.compare(heading.size() - length, length, unit) == 0)
-      return heading.substr(0, heading.size() - length);
-  }
-  return heading;
 }
 
 // Line by line, so that every row knows where it stands.

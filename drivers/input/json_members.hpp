@@ -162,7 +162,7 @@ class JsonReader {
     (*this)(name, copy);
     member = from_stored(copy);
   }
-  // What is wrong with members beside each other.
+  // Refuses members that do not fit each other; `what` is wrong with them.
   void require(bool fits, const char* what) const {
     if (!fits) throw DamagedFile(where_ + " is damaged: " + what);
   }

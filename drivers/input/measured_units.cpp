@@ -10,12 +10,12 @@
 namespace traceraft {
 namespace {
 
-struct Unit {
+struct FileUnit {
   std::string name;
   double factor;
 };
 
-double factor(const NamedList<Unit>& units, const TomlTable& toml, const std::string& key) {
+double factor(const NamedList<FileUnit>& units, const TomlTable& toml, const std::string& key) {
   const std::string name = toml.text(key);
   try {
     return units.find(name).factor;
@@ -34,18 +34,18 @@ bool is_synthetic(const TomlTable& toml) {
 }
 
 double length_factor(const TomlTable& toml, const std::string& key) {
-  static const NamedList<Unit> units("unit of length", {{"um", 1},
-                                                        // with the micro sign, and with a mu
-                                                        {"\u00b5m", 1},
-                                                        {"\u03bcm", 1},
-                                                        {"nm", 1e-3},
-                                                        {"mm", 1e3}});
+  static const NamedList<FileUnit> units("unit of length", {{"um", 1},
+                                                            // with the micro sign, and with a mu
+                                                            {"\u00b5m", 1},
+                                                            {"\u03bcm", 1},
+                                                            {"nm", 1e-3},
+                                                            {"mm", 1e3}});
   return factor(units, toml, key);
 }
 
 double time_factor(const TomlTable& toml, const std::string& key) {
-  static const NamedList<Unit> units("unit of time",
-                                     {{"s", 1}, {"ms", 1e-3}, {"min", 60}, {"h", 3600}});
+  static const NamedList<FileUnit> units("unit of time",
+                                         {{"s", 1}, {"ms", 1e-3}, {"min", 60}, {"h", 3600}});
   return factor(units, toml, key);
 }
 

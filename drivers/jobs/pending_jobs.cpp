@@ -19,7 +19,7 @@ class Work {
   explicit Work(const PendingJobs& jobs) : jobs_(jobs) {}
 
   // Is there a reason to go on with others?
-  bool carry_out(std::size_t job) {
+  bool execute(std::size_t job) {
     const ProcessEnd end = jobs_.run(job);
     if (jobs_.success ? jobs_.success(end) : end.exit_code == kSuccess) {
       if (jobs_.succeeded) jobs_.succeeded(job);
@@ -71,7 +71,7 @@ JobsEnd run_pending_jobs(const PendingJobs& jobs) {
   StatusLine line(jobs.quiet);
   const Stopwatch watch;
   const double share_before = share_done(jobs, 0);
-  JobPool pool(jobs.count, [&](std::size_t job) { return work.carry_out(job); });
+  JobPool pool(jobs.count, [&](std::size_t job) { return work.execute(job); });
   pool.start(jobs.at_a_time);
   do {
     usleep(100000);

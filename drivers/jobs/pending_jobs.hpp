@@ -13,16 +13,16 @@
 namespace traceraft {
 
 struct PendingJobs {
-  std::size_t count = 0;       // that are left to do
-  std::size_t before = 0;      // that were done before
+  std::size_t count = 0;   // that are left to do
+  std::size_t before = 0;  // that were done before
   int at_a_time = 1;
-  std::string kind;            // "runs": what the line counts
+  std::string kind;              // "runs": what the line counts
   std::filesystem::path folder;  // where all of them work
   bool quiet = false;
 
-  std::function<ProcessEnd(std::size_t)> run;      // in threads of their own
-  std::function<std::string(std::size_t)> name;    // for complaints: "the run of seed 3"
-  // Of all jobs, those done before included, the share that is done. Empty: their number counts.
+  std::function<ProcessEnd(std::size_t)> run;    // in threads of their own
+  std::function<std::string(std::size_t)> name;  // for complaints: "the run of seed 3"
+  // The share that is done of all jobs, those done before included. Empty: their number counts.
   std::function<double()> share = {};
   // After a job that succeeded, in its thread. May throw. Empty: nothing is to be done.
   std::function<void(std::size_t)> succeeded = {};

@@ -4,23 +4,6 @@
 
 namespace traceraft {
 
-std::string unit_name(Unit unit, bool scaled) {
-  switch (unit) {
-    case Unit::time:
-      return scaled ? "R^2/D" : "s";
-    case Unit::length:
-      return scaled ? "R" : "um";
-    case Unit::area:
-      return scaled ? "R^2" : "um^2";
-    case Unit::seconds:
-      return "s";
-    case Unit::megabytes:
-      return "MB";
-    default:
-      return "";
-  }
-}
-
 RunMoment::RunMoment(const RunSetup& run_, const Observables& row_, double t_)
     : run(run_),
       row(row_),
@@ -49,8 +32,7 @@ const std::vector<ReportedNumber<RunMoment>>& run_columns() {
        [](M m) { return m.row.energy * m.units().area(); }},
       {"perimeter", U::length,
        "the diffuse perimeter ∫ ε |∇c|² over the same integral per length of a straight "
-       "boundary "
-       "at rest on a mesh of this h/ε",
+       "boundary at rest on a mesh of this h/ε",
        [](M m) { return m.row.perimeter * m.units().length(); }},
       {"perimeter_level", U::length, "length of the curve c = (a + b)/2",
        [](M m) { return m.row.perimeter_level * m.units().length(); }},

@@ -10,16 +10,11 @@
 #include "drivers/output/text_table.hpp"
 #include "drivers/run/checkpoint_store.hpp"
 #include "drivers/run/run_setup.hpp"
+#include "drivers/text/unit_names.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/simulation/run_monitor.hpp"
 
 namespace traceraft {
-
-enum class Unit { count, ratio, time, length, area, seconds, megabytes };
-
-// "um^2", or "R^2" where inputs and outputs are scaled; "" of a count or a ratio. The energy is an
-// area: it is measured in units of the energy density.
-std::string unit_name(Unit unit, bool scaled);
 
 // A step or an output time of a run.
 struct RunMoment {
@@ -73,11 +68,8 @@ std::string unit_of_number(const std::string& name, bool scaled);
 template <class Source>
 std::string csv_heading(const std::vector<ReportedNumber<Source>>& columns, bool scaled) {
   std::string text;
-  for (const auto& column : columns) {
-    const std::string unit = unit_name(column.unit, scaled);
-    text += (text.empty() ? "" : ",") + std::string(column.name);
-    if (!unit.empty()) text += " (" + unit + ")";
-  }
+  for (const auto& column : columns)
+    text += (text.empty() ? "" : ",") + with_unit(column.name, column.unit, scaled);
   return text + "\n";
 }
 template <class Source>
@@ -88,7 +80,8 @@ std::string csv_row(const std::vector<ReportedNumber<Source>>& columns, const So
   return text + "\n";
 }
 
-// What a checkpoint's numbers depend on: a program that reports others cannot go on with it.
+// A checksum of the numbers that a checkpoint holds: a program that reports others cannot go on
+// with it.
 std::uint32_t report_layout();
 
 // A list as a table for the docs: name, unit, meaning.

@@ -120,7 +120,8 @@ void FieldWriter::on_output(const Observables& row, const RaftReport& rafts, Con
   collect(index);
 }
 
-// Of the pictures that are there up to the newest: those of an earlier process may be gone.
+// The strip shows pictures that are there, up to the newest: those of an earlier process may be
+// gone.
 void FieldWriter::write_strip(std::size_t newest, const StripLegend& legend) const {
   std::vector<std::size_t> there;
   for (std::size_t i = 0; i <= newest; ++i)

@@ -10,15 +10,6 @@ namespace traceraft {
 namespace {
 
 constexpr int kFooter = 56;  // pixels below the views: times, and below them the legend
-constexpr std::uint8_t kInk = 40;
-
-void fill(Image& image, int left, int top, int width, int height,
-          const std::array<std::uint8_t, 3>& colour) {
-  for (int y = std::max(top, 0); y < std::min(top + height, image.height); ++y)
-    for (int x = std::max(left, 0); x < std::min(left + width, image.width); ++x)
-      std::copy(colour.begin(), colour.end(),
-                image.rgb.begin() + 3 * (static_cast<std::ptrdiff_t>(y) * image.width + x));
-}
 
 // A square of `from` that begins at a column, at half its size.
 void copy_half(const Image& from, int first_column, Image& to, int left, int top) {
@@ -49,7 +40,7 @@ void draw_scale_bar(Image& image, int size, int top, const StripLegend& legend) 
   const double length = round_length(0.6 * legend.half_width);
   const int pixels = static_cast<int>(std::lround(length / (2 * legend.half_width) * size));
   constexpr int kLeft = 8;
-  fill(image, kLeft, top + 6, pixels, 4, {kInk, kInk, kInk});
+  fill(image, kLeft, top + 6, pixels, 4, kInk);
   write_text(image, kLeft + pixels + 6, top, format_number(length) + " " + legend.length_unit);
 }
 

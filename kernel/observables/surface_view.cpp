@@ -154,6 +154,14 @@ Image draw(const std::vector<Point>& position, const std::vector<std::array<int,
 
 }  // namespace
 
+void fill(Image& image, int left, int top, int width, int height,
+          const std::array<std::uint8_t, 3>& colour) {
+  for (int y = std::max(top, 0); y < std::min(top + height, image.height); ++y)
+    for (int x = std::max(left, 0); x < std::min(left + width, image.width); ++x)
+      std::copy(colour.begin(), colour.end(),
+                image.rgb.begin() + 3 * (static_cast<std::ptrdiff_t>(y) * image.width + x));
+}
+
 double view_half_width(const SurfaceSpace& space) {
   return half_width_of(space.surface.position, *space.communicator);
 }

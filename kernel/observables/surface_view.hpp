@@ -14,6 +14,13 @@ struct Image {
   std::vector<std::uint8_t> rgb;  // rows from the top, three bytes a pixel
 };
 
+// The dark grey of letters and lines.
+inline constexpr std::array<std::uint8_t, 3> kInk = {40, 40, 40};
+
+// Colours a rectangle of pixels, as far as it lies in the image.
+void fill(Image& image, int left, int top, int width, int height,
+          const std::array<std::uint8_t, 3>& colour);
+
 // Triangles, counter-clockwise seen from outside, and their corners.
 struct SurfaceMesh {
   std::vector<Point> position;
