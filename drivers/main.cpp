@@ -15,8 +15,8 @@
 #include "drivers/config/text_checks.hpp"
 #include "drivers/exit_codes.hpp"
 #include "drivers/numerical_failure.hpp"
+#include "drivers/output/program.hpp"
 #include "drivers/text/say.hpp"
-#include "drivers/version.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/named_list.hpp"
 
@@ -68,7 +68,7 @@ void refuse_control_characters(int argc, char** argv) {
 int dispatch(int argc, char** argv) {
   refuse_control_characters(argc, argv);
   CLI::App app{"Predicts how lipid rafts form and coarsen on liposomes.", "traceraft"};
-  app.set_version_flag("--version", kVersion);
+  app.set_version_flag("--version", [] { return program_text(); });
   app.require_subcommand(1);
   app.footer("Start with: traceraft run --case two-rafts");
 

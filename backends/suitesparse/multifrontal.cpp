@@ -19,8 +19,9 @@ void ssyrk_(const char* uplo, const char* transpose, const int* n, const int* k,
 namespace traceraft {
 namespace {
 
-// Relative to the entry of the matrix on the diagonal: what a pivot is at least, and how negative
-// one may be by roundoff.
+// Both are relative to the entry of the matrix on the diagonal. A pivot between −kRoundoff and
+// kLeastPivot is zero within roundoff, as that of the constants at long steps, and becomes the
+// latter. A more negative one means that the matrix is not positive definite.
 constexpr float kLeastPivot = 1e-6F, kRoundoff = 1e-4F;
 constexpr int kBlock = 48;  // columns that are factorised without BLAS
 // Below so many multiplications a call of BLAS takes longer than the loops here.
@@ -31,7 +32,7 @@ TRACERAFT_CLONES
 bool factorise_columns(float* a, int m, int n, int stride, const float* diagonal) {
   for (int j = 0; j < n; ++j) {
     float* column = a + static_cast<std::size_t>(j) * stride;
-    if (!(column[j] > -kRoundoff * diagonal[j])) return false;
+    if (!(column[j] > -kRoundoff * diagonal[j]) || !std::isfinite(column[j])) return false;
     const float root = std::sqrt(std::max(column[j], kLeastPivot * diagonal[j]));
     column[j] = root;
     const float scale = 1 / root;

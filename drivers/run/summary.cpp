@@ -38,7 +38,8 @@ void line(const char* label, const std::string& value) {
 // The energy, and what became of steps that gained some.
 std::string energy_text(const Configuration& configuration, const RunSetup& run,
                         const RunState& state) {
-  const std::string energy = formatted("%.6g", state.row.energy * run.units.area());
+  const std::string energy =
+      formatted("%.6g %s", state.row.energy * run.units.area(), run.units.scaled ? "R^2" : "um^2");
   if (!run.problem->dissipates_energy()) return energy + " (the model need not lose energy)";
   if (configuration.options().energy_guard == "off") return energy;
   const long refused = run.integrator->statistics().energy_rises;
@@ -101,12 +102,13 @@ std::string resolution_text(const Configuration& configuration, const RunSetup& 
   constexpr double kCoarse = 4;  // h/epsilon beyond which the mesh shapes the boundaries
   const CahnHilliardModel& model = run.problem->model();
   const double epsilon = model.epsilon, ratio = run.space->h() / epsilon;
-  return formatted("epsilon = %g um = %g R, h/epsilon = %.2f, %.1f %% of its energy resolved%s",
-                   epsilon * run.units.radius_um, epsilon, ratio, 100 * run.boundary.resolved,
-                   is_as_wide_as(configuration.options().surface, model)
-                       ? "; AS WIDE AS THE VESICLE: take a smaller --epsilon"
-                   : ratio > kCoarse ? "; TOO COARSE: take more --cells"
-                                     : "");
+  return formatted(
+      "epsilon = %g um = %g R, h/epsilon = %.2f, %.1f %% of its gradient energy resolved%s",
+      epsilon * run.units.radius_um, epsilon, ratio, 100 * run.boundary.resolved,
+      is_as_wide_as(configuration.options().surface, model)
+          ? "; AS WIDE AS THE VESICLE: take a smaller --epsilon"
+      : ratio > kCoarse ? "; TOO COARSE: take more --cells"
+                        : "");
 }
 
 // The length of the noise decides how many rafts survive (docs/guide.md).
@@ -189,7 +191,8 @@ void print_summary(const Configuration& configuration, const RunSetup& run, cons
       steps.first_order > 0 ? formatted(" (%ld with the first-order solution)", steps.first_order)
                             : "";
   line("steps", formatted("%ld accepted", steps.steps) + first_order +
-                    formatted(", %ld rejected, %ld failed", steps.rejected, steps.failures));
+                    formatted(", and repeated with smaller steps: %ld too inexact, %ld not solved",
+                              steps.rejected, steps.failures));
   if (steps.newton_iterations > 0)
     line("Newton iterations",
          formatted("%ld, order of the last step %d", steps.newton_iterations, steps.order));

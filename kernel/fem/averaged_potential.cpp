@@ -31,12 +31,13 @@ class ElementEnergy {
   }
 
   double value() const {
-    return 0.5 * area_ * (w_ * w_ - kVarianceOfSlope * slope_ * slope_ * variance_);
+    return 0.5 * area_ * (w_ * w_ - kSlopeTimesVariance * slope_ * slope_ * variance_);
   }
 
   Nodes gradient() const {
-    return area_ * ((w_ * slope_ + 2 * kVarianceOfSlope * root_ * slope_ * variance_) * p_ -
-                    (2 * kVarianceInMean * root_ * w_ + kVarianceOfSlope * slope_ * slope_) * z_);
+    return area_ *
+           ((w_ * slope_ + 2 * kSlopeTimesVariance * root_ * slope_ * variance_) * p_ -
+            (2 * kVarianceInMean * root_ * w_ + kSlopeTimesVariance * slope_ * slope_) * z_);
   }
 
   // ∂²E_T = α m + β p pᵀ + γ (p zᵀ + z pᵀ) + δ z zᵀ along a direction,
@@ -66,7 +67,7 @@ class ElementEnergy {
   };
 
   Second coefficients() const {
-    constexpr double xi = kVarianceInMean, eta = kVarianceOfSlope;
+    constexpr double xi = kVarianceInMean, eta = kSlopeTimesVariance;
     const double slope2 = slope_ * slope_, rw = 2 * root_ * w_, r2 = 4 * root_ * root_;
     return {area_ * (-xi * rw - eta * slope2),
             area_ * ((1 + eta) * slope2 + (xi - 1) * rw - eta * r2 * variance_),

@@ -4,11 +4,12 @@
 //   E_T = ½ |Γ_T| (w̄² − η w'(c̄)² V),   w̄ = w(c̄) + ½ ξ w'' V.
 //
 // Why: the energy of a boundary is ½ Σ |Γ_T| (ε|∇c_h| − w̄)² + ε Σ |Γ_T| |∇c_h| w̄. With the mean
-// itself, ξ = 1 and η = 0, the second sum is ε ∫ |∇W(c_h)| with W' = w: the exact line tension,
+// itself, ξ = 1 and η = 0, the second sum is ε ∫ |∇W(c_h)| with W' = w, the exact line tension,
 // wherever the boundary lies in the mesh (in one dimension: Speight and Ward, Nonlinearity 7,
 // 1994). Quadrature of f0(c_h) misses that by ½ Var(w), and boundaries stick to the lattice. In two
-// dimensions ∇c_h errs across a boundary too, which adds g ε² ∫ c''² as V does: 2ξ + η = 2(1 + g).
-// The values below cancel that on average over cuts of the Kuhn mesh: docs/decisions/0019.
+// dimensions ∇c_h errs across a boundary too. That adds g ε² ∫ c''² s², with s² the second moment
+// of the element along the normal, which V is as well: 2ξ + η = 2(1 + g). The values below cancel
+// it on average over cuts of the Kuhn mesh, not in each direction: docs/decisions/0019.
 #pragma once
 
 #include "kernel/fem/surface_space.hpp"
@@ -17,9 +18,9 @@
 namespace traceraft::averaged_potential {
 
 inline constexpr double kVarianceInMean = 1.2;   // ξ
-inline constexpr double kVarianceOfSlope = 0.4;  // η
+inline constexpr double kSlopeTimesVariance = 0.4;  // η
 // Large values of c make E_T ∝ (c̄² + ξV)² − 4η c̄² V ≥ 4 (ξ − η) c̄² V.
-static_assert(kVarianceOfSlope < kVarianceInMean, "the energy has to be bounded from below");
+static_assert(kSlopeTimesVariance < kVarianceInMean, "the energy has to be bounded from below");
 
 // The meaning of potential.hpp; `c` and `v` have ghosts.
 void add(const SurfaceSpace& space, const DoubleWell& well, double factor, ConstVec c, VecRef r);

@@ -48,7 +48,7 @@ class SurfaceSpace {
   CsrMatrix normal;           // S_ij = ∫_cut tets (n·∇φ_i)(n·∇φ_j) dx; S·1 = 0
   CsrMatrix stabilised_mass;  // M̃ = M + mass_stabilisation h S
   Vec node_area;              // w_i = ∫_Γ φ_i, so ∫_Γ c_h = w·c
-  double area;                // |Γ_h|
+  double area;                // Σ w_i: of Γ, by lifted triangles
 
   // Over all ranks.
   struct Totals {
@@ -76,7 +76,7 @@ class SurfaceSpace {
   double integral(ConstVec c) const { return communicator->sum(dot(node_area, c)); }
 
   // Solves A x = b for a symmetric positive definite A by conjugate gradients, to a relative
-  // tolerance. A is as well conditioned as M̃ (14–26 after diagonal scaling), or as K + κ² M̃
+  // tolerance. A is as well conditioned as M̃ (7–9 after diagonal scaling), or as K + κ² M̃
   // (h^(-2), for which roundoff takes some 30/h iterations).
   Status solve_spd(const CsrMatrix& A, ConstVec b, VecRef x, double tolerance) const;
   // M̃ x = b, with ∫x = 1ᵀb exactly up to roundoff.

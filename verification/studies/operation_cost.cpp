@@ -53,6 +53,9 @@ StudyReport run(const Bench& bench) {
   const auto& fine = levels.back();
   const auto& coarse = levels[levels.size() - 2];
   StudyReport report;
+  report.notes = {
+      "\"products\" is the time of an assembly of K_M over that of one product of a matrix with a "
+      "vector."};
   report.tables = {table};
   report.claims = {
       claim_near("nodes, 2n to n: grow like the surface", fine[0] / coarse[0], 4, 0.1),
