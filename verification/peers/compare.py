@@ -16,7 +16,8 @@ import sys
 import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
-# By spherical harmonics. The times are those at which the programs of problem.py report.
+# By spherical harmonics on this branch of the azimuth, [0, 2 pi); `traceraft verify pfhub` has the other
+# one. The times are those at which the programs of problem.py report.
 TIMES = (1.0, 10.0, 100.0, 1000.0)
 ENERGIES = (925.4, 658.3, 390.724, 210.412)
 # What is run: size of the mesh, end, tolerance (FEniCS: first step).
