@@ -17,6 +17,7 @@
 #include "drivers/run/finished_run.hpp"
 #include "drivers/run/physical_model.hpp"
 #include "drivers/run/run_numbers.hpp"
+#include "drivers/text/unit_names.hpp"
 #include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/text.hpp"
@@ -222,7 +223,7 @@ fs::path run_to_show(const fs::path& path) {
 
 std::vector<std::string> time_labels(const fs::path& run_folder, const std::vector<double>& times) {
   const Configuration model(read_config_file(run_folder / "config.toml"), {});
-  const std::string unit = model.units().scaled ? "R^2/D" : "s";
+  const std::string unit = unit_name(Unit::time, model.units().scaled);
   std::vector<std::string> labels;
   for (const double t : times) labels.push_back(formatted("t = %.4g ", t) + unit);
   return labels;

@@ -9,6 +9,7 @@
 #include "drivers/run/progress.hpp"
 #include "drivers/run/run_numbers.hpp"
 #include "drivers/text/say.hpp"
+#include "drivers/text/unit_names.hpp"
 #include "drivers/version.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
@@ -38,8 +39,8 @@ void line(const char* label, const std::string& value) {
 // The energy, and what became of steps that gained some.
 std::string energy_text(const Configuration& configuration, const RunSetup& run,
                         const RunState& state) {
-  const std::string energy =
-      formatted("%.6g %s", state.row.energy * run.units.area(), run.units.scaled ? "R^2" : "um^2");
+  const std::string energy = formatted("%.6g %s", state.row.energy * run.units.area(),
+                                       unit_name(Unit::area, run.units.scaled).c_str());
   if (!run.problem->dissipates_energy()) return energy + " (the model need not lose energy)";
   if (configuration.options().energy_guard == "off") return energy;
   const long refused = run.integrator->statistics().energy_rises;
@@ -131,9 +132,9 @@ void print_setup(const Configuration& configuration, const RunSetup& run) {
   const Units& units = run.units;
   say("traceraft %s\n", kVersion);
   line("case", configuration.options().case_name);
-  line("surface",
-       formatted("%s, R = %g um, area %.6g %s", configuration.options().surface.c_str(),
-                 units.radius_um, run.space->area * units.area(), units.scaled ? "R^2" : "um^2"));
+  line("surface", formatted("%s, R = %g um, area %.6g %s", configuration.options().surface.c_str(),
+                            units.radius_um, run.space->area * units.area(),
+                            unit_name(Unit::area, units.scaled).c_str()));
   const SurfaceSpace::Totals& totals = run.space->totals;
   line("mesh",
        formatted("%lld cells per edge, %lld cut tetrahedra, %lld nodes, %lld unknowns",
@@ -146,7 +147,7 @@ void print_setup(const Configuration& configuration, const RunSetup& run) {
   if (const double longest = run.problem->longest_step(); longest < run.t_end)
     line("steps", formatted("%.0f or more: at most %g %s each, which its effects need",
                             std::ceil(run.t_end / longest), longest * units.time(),
-                            units.scaled ? "R^2/D" : "s"));
+                            unit_name(Unit::time, units.scaled).c_str()));
   line("units", formatted("length R = %g um, time R^2/D = %g s; the run ends at %g s = %g R^2/D",
                           units.radius_um, units.seconds_per_unit(),
                           run.t_end * units.seconds_per_unit(), run.t_end));
@@ -171,7 +172,7 @@ void print_summary(const Configuration& configuration, const RunSetup& run, cons
   const Observables& row = state.row;
   const IntegratorStatistics steps = run.integrator->statistics();
   const LinearStatistics linear = run.integrator->linear_statistics();
-  const char* length = units.scaled ? "R" : "um";
+  const std::string length = unit_name(Unit::length, units.scaled);
   say("\n%s at t = %.6g%s\n", end_name(result.end), row.t * units.time(), units.scaled ? "" : " s");
   if (!result.why.empty()) line("why", result.why);
   line("rafts", formatted("%d", row.rafts) +
@@ -180,8 +181,9 @@ void print_summary(const Configuration& configuration, const RunSetup& run, cons
                          : ""));
   line("raft fraction", formatted("%.4f of the area, mean concentration %.6f", row.raft_fraction,
                                   row.mass / run.space->area));
-  line("perimeter", formatted("%.5g %s (level curve %.5g %s)", row.perimeter * units.length(),
-                              length, row.perimeter_level * units.length(), length));
+  line("perimeter",
+       formatted("%.5g %s (level curve %.5g %s)", row.perimeter * units.length(), length.c_str(),
+                 row.perimeter_level * units.length(), length.c_str()));
   line("energy", energy_text(configuration, run, state));
   line("mass drift",
        formatted("%.1e relative%s", state.monitor.mass_drift(),

@@ -17,7 +17,7 @@
 
 namespace traceraft::averaged_potential {
 
-inline constexpr double kVarianceInMean = 1.2;   // ξ
+inline constexpr double kVarianceInMean = 1.2;      // ξ
 inline constexpr double kSlopeTimesVariance = 0.4;  // η
 // Large values of c make E_T ∝ (c̄² + ξV)² − 4η c̄² V ≥ 4 (ξ − η) c̄² V.
 static_assert(kSlopeTimesVariance < kVarianceInMean, "the energy has to be bounded from below");

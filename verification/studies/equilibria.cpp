@@ -29,10 +29,10 @@ struct Equilibrium {
 const Point kAxis = Point(1, 2, 3).normalized();
 
 // A cap of the given half angle, left to itself.
-Equilibrium relaxed_cap(const Bench& bench, int cells, double epsilon, double angle, double t_end,
-                        const Point& axis = kAxis) {
+Equilibrium relaxed_cap(const Bench& bench, const SpacePtr& space, double epsilon, double angle,
+                        double t_end, const Point& axis = kAxis) {
   Equilibrium result;
-  result.space = bench.space("sphere", cells);
+  result.space = space;
   result.problem = bench.problem(result.space, bench_model(kMobility, epsilon));
   InitialRequest request;
   request.caps = {{axis, angle}};
@@ -75,7 +75,8 @@ void measure_boundary(const Bench& bench, StudyReport& report) {
   Points energy, profile;
   double last_width = 0, level_curve = 0;
   for (int cells = finest / 4; cells <= finest; cells *= 2) {
-    const Equilibrium state = relaxed_cap(bench, cells, epsilon, kPi / 2, 100);
+    const Equilibrium state =
+        relaxed_cap(bench, bench.space("sphere", cells), epsilon, kPi / 2, 100);
     const double h = state.space->h();
     energy.emplace_back(h, state.problem->energy(state.y) / boundary.energy() - 1);
     profile.emplace_back(h, profile_error(state, boundary, kAxis));
@@ -109,13 +110,14 @@ void measure_boundary(const Bench& bench, StudyReport& report) {
 void measure_directions(const Bench& bench, StudyReport& report) {
   constexpr int kCells = 48;
   constexpr double kRatio = 2.6;  // h/ε
-  const double epsilon = bench.space("sphere", kCells)->h() / kRatio;
+  const SpacePtr space = bench.space("sphere", kCells);
+  const double epsilon = space->h() / kRatio;
   const double exact = SphereBoundary(DoubleWell{}, epsilon).energy();
   Table table{"directions", {"axis", "energy"}, {}};
   std::vector<double> energies;
   for (std::uint64_t k = 0; k < 30; ++k) {
     const Point axis = uniform_direction(uniform_random(1, 1, k), uniform_random(1, 2, k));
-    const Equilibrium state = relaxed_cap(bench, kCells, epsilon, kPi / 2, 100, axis);
+    const Equilibrium state = relaxed_cap(bench, space, epsilon, kPi / 2, 100, axis);
     energies.push_back(state.problem->energy(state.y) / exact);
     table.rows.push_back(
         {formatted("(%.2f, %.2f, %.2f)", axis[0], axis[1], axis[2]), energies.back()});
@@ -151,7 +153,7 @@ struct CapErrors {
 };
 
 CapErrors measure_cap(const Bench& bench, int cells, double epsilon, double start, Table& table) {
-  const Equilibrium state = relaxed_cap(bench, cells, epsilon, start, 30);
+  const Equilibrium state = relaxed_cap(bench, bench.space("sphere", cells), epsilon, start, 30);
   if (state.rafts.rafts.size() != 1) throw std::runtime_error("a cap did not stay one raft");
   const double mass = state.problem->mass(state.y);
   const double angle = std::acos(1 - state.rafts.area / (2 * kPi));
