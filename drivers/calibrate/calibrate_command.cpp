@@ -25,7 +25,7 @@
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
 #include "kernel/effects/effects.hpp"
-#include "verification/vesicles/calibration_data.hpp"
+#include "verification/calibration/calibration_data.hpp"
 
 namespace traceraft {
 namespace {
@@ -126,7 +126,7 @@ int calibrate_ensemble(const CalibrateRequest& request, const MeasuredVesicles& 
   const Interval covered{seconds / fastest, seconds * kSlowest};
   end_on_stop_signals(kInterrupted, "give the same command again");
   const Calibration result =
-      calibrate(data, {}, {point}, {std::max(seconds, covered.low), covered});
+      calibrate(data, {}, {point}, UnitPrior::uniform(std::max(seconds, covered.low), covered));
   const fs::path out = folder_for(request);
   const FolderLock lock(out);
   remember(out, "mobility alone, from the runs in " + request.ensemble, request.data, model);

@@ -40,9 +40,9 @@ std::vector<CalibrationFinding> parameters_of(const MeasuredVesicles& data,
 
 std::vector<History> best_runs(const CalibrationRuns& all, const Calibration& result) {
   const auto& fits = result.at_points;
-  const auto best =
-      std::min_element(fits.begin(), fits.end(),
-                       [](const TimeFit& a, const TimeFit& b) { return a.deviance < b.deviance; });
+  const auto best = std::min_element(
+      fits.begin(), fits.end(),
+      [](const EnsembleFit& a, const EnsembleFit& b) { return a.deviance < b.deviance; });
   return runs_in_seconds(all, result, static_cast<std::size_t>(best - fits.begin()));
 }
 
@@ -84,7 +84,7 @@ std::vector<History> runs_in_seconds(const CalibrationRuns& all, const Calibrati
                                      std::size_t choice) {
   std::vector<History> runs = all.points[choice].runs;
   for (History& run : runs)
-    for (double& t : run.time) t *= result.at_points[choice].seconds_per_unit;
+    for (double& t : run.time) t *= result.at_points[choice].seconds_per_unit();
   return runs;
 }
 
@@ -126,7 +126,7 @@ std::string calibration_json(const std::vector<CalibrationFinding>& parameters,
                                       {"undetermined_because", found.open}};
   const std::string best = best_known(result);
   json["best_known"] = best.empty() ? Json() : Json(best);
-  json["scatter_of_ln_perimeter"] = result.best.scatter;
+  json["scatter_of_ln_perimeter"] = result.best.scatter_beyond_runs(Quantity::perimeter);
   json["points_at_bound_of_mobility"] = result.at_bound;
   json["mobility_at_bound"] = result.unit_at_bound;
   json["converged"] = result.converged;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "drivers/config/configuration.hpp"
-#include "verification/vesicles/calibration.hpp"
+#include "verification/calibration/calibration.hpp"
 #include "verification/vesicles/comparison.hpp"
 
 namespace traceraft {

@@ -6,13 +6,14 @@
 #include "drivers/calibrate/calibration_points.hpp"
 #include "drivers/vesicles/agreement_report.hpp"
 #include "kernel/core/text.hpp"
-#include "verification/vesicles/calibration_data.hpp"
+#include "verification/calibration/calibration_data.hpp"
 #include "verification/vesicles/differences.hpp"
 
 namespace traceraft {
 namespace {
 
-constexpr double kAtEnd = 1.01;  // of a range
+constexpr double kAtEnd = 1.01;      // of a range
+constexpr double kNoScatter = 0.01;  // standard deviation that is not worth a word
 
 // Choices at which there mostly is nothing to compare.
 int choices_without_rafts(const MeasuredVesicles& data, const CalibrationRuns& all,
@@ -92,10 +93,11 @@ void add_size(const MeasuredVesicles& data, const CalibrationRuns& runs, const C
 void add_findings(const Calibration& result, Notes& notes) {
   if (const std::string best = best_known(result); !best.empty())
     notes.push_back("The data know best " + best + ".");
-  notes.push_back(result.best.scatter > kAtEnd * kLeastScatter
-                      ? formatted("Perimeters scatter by %.0f %% beyond what runs do.",
-                                  100 * result.best.scatter)
-                      : "Perimeters scatter no more than runs do.");
+  const double scatter = result.best.scatter_beyond_runs(Quantity::perimeter);
+  notes.push_back(
+      scatter > kNoScatter
+          ? formatted("Perimeters scatter by %.0f %% beyond what runs do.", 100 * scatter)
+          : "Perimeters scatter no more than runs do.");
 }
 
 }  // namespace

@@ -7,8 +7,8 @@
 #include "drivers/config/configuration.hpp"
 #include "drivers/ensemble/ensemble_point.hpp"
 #include "kernel/core/named_list.hpp"
+#include "verification/calibration/calibration.hpp"
 #include "verification/measure/fit.hpp"
-#include "verification/vesicles/calibration.hpp"
 
 namespace traceraft {
 

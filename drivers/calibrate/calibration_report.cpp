@@ -35,9 +35,9 @@ Table points_table(const CalibrationRuns& runs, const Calibration& result) {
   for (std::size_t k = 0; k < points.size(); ++k) {
     std::vector<Cell> row;
     for (const double ln : points[k].ln_parameters) row.emplace_back(std::exp(ln));
-    const TimeFit& fit = result.at_points[k];
-    row.emplace_back(diffusion(runs.model, fit.seconds_per_unit));
-    row.emplace_back(fit.scatter);
+    const EnsembleFit& fit = result.at_points[k];
+    row.emplace_back(diffusion(runs.model, fit.seconds_per_unit()));
+    row.emplace_back(fit.scatter_beyond_runs(Quantity::perimeter));
     row.emplace_back(fit.deviance);
     row.emplace_back(static_cast<double>(points[k].runs.size()));
     table.rows.push_back(row);

@@ -41,7 +41,7 @@ bool Calibrator::run() {
   std::vector<double> centre;
   for (const double value : values_of(model_, request_.names)) centre.push_back(std::log(value));
   const double seconds = model_.units().seconds_per_unit();
-  const TimeUnit unit{seconds, {seconds / kFastest, seconds * kSlowest}};
+  const UnitPrior unit = UnitPrior::uniform(seconds, {seconds / kFastest, seconds * kSlowest});
   const double* step = std::begin(kSteps);
   for (int round = 0; round < kMostRounds && step != std::end(kSteps); ++round) {
     const std::vector<double> design = within_range(centre, *step);

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "drivers/calibrate/calibration_points.hpp"
-#include "verification/vesicles/calibration.hpp"
+#include "verification/calibration/calibration.hpp"
 
 namespace traceraft {
 

@@ -35,14 +35,12 @@ namespace fs = std::filesystem;
 // Series are explained with D within this factor of the model's, if nothing else is known of it.
 constexpr double kTimeRange = 8;
 
-UnitRange unit_range(const Configuration& model, double diffusion_error) {
+UnitPrior unit_range(const Configuration& model, double diffusion_error) {
   constexpr double kReach = 2;
-  UnitRange range{model.units().seconds_per_unit(), kTimeRange};
-  if (diffusion_error > 0) {
-    range.factor = std::exp(kNormal95 * diffusion_error);
-    range.reach = kReach;
-  }
-  return range;
+  const double seconds = model.units().seconds_per_unit();
+  if (diffusion_error > 0)
+    return UnitPrior::within_factor(seconds, std::exp(kNormal95 * diffusion_error), kReach);
+  return UnitPrior::within_factor(seconds, kTimeRange);
 }
 
 struct ExplainCommand {

@@ -51,7 +51,8 @@ class SeriesVerdictTest : public ::testing::Test {
 };
 
 TEST_F(SeriesVerdictTest, NamesWhatExplainsMostInPhysicalUnits) {
-  write_series_verdict(folder.path, "", model, ensembles, found, {{0.1, 8}});
+  write_series_verdict(folder.path, "", model, ensembles, found,
+                       {UnitPrior::within_factor(0.1, 8)});
   const Json verdict = json("verdict.json");
   EXPECT_EQ(verdict["verdict"], "ambiguous");
   EXPECT_EQ(verdict["effect"], "uptake");
@@ -77,7 +78,8 @@ TEST_F(SeriesVerdictTest, WritesAModelThatCanBeRun) {
   ensembles.terms = {find_candidate("asymmetry")->term({0.5})};
   found.scores.front().effect = "asymmetry";
   found.scores.front().value = 1e3;
-  write_series_verdict(folder.path, "", model, ensembles, found, {{0.1, 8}});
+  write_series_verdict(folder.path, "", model, ensembles, found,
+                       {UnitPrior::within_factor(0.1, 8)});
   const Configuration named(read_config_file(folder.path / "model.toml"), {});
   EXPECT_EQ(physical_model(named).effects.size(), 1u);
 }
@@ -85,7 +87,8 @@ TEST_F(SeriesVerdictTest, WritesAModelThatCanBeRun) {
 TEST_F(SeriesVerdictTest, ATrendNamesNothing) {
   found.finding = Finding::unnamed;
   found.named = {{"uptake"}};
-  write_series_verdict(folder.path, "", model, ensembles, found, {{0.1, 8}});
+  write_series_verdict(folder.path, "", model, ensembles, found,
+                       {UnitPrior::within_factor(0.1, 8)});
   const Json verdict = json("verdict.json");
   EXPECT_TRUE(verdict["effect"].is_null());
   EXPECT_EQ(verdict["closest"], "uptake");
@@ -98,7 +101,8 @@ TEST_F(SeriesVerdictTest, ATrendNamesNothing) {
 TEST_F(SeriesVerdictTest, SaysWhatWasAssumed) {
   ensembles.terms = {find_candidate("exchange")->term({3e-3, 1e-3})};
   found.scores.front().effect = "exchange";
-  write_series_verdict(folder.path, "", model, ensembles, found, {{0.1, 8}});
+  write_series_verdict(folder.path, "", model, ensembles, found,
+                       {UnitPrior::within_factor(0.1, 8)});
   const Json parameters = json("verdict.json")["parameters"];
   EXPECT_NEAR(parameters["exchange.target"]["value"].get<double>(), 0.25, 1e-12);
   EXPECT_TRUE(parameters["exchange.target"]["sigma"].is_null());

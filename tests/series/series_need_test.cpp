@@ -67,8 +67,8 @@ TEST(SeriesNeed, NoiseOfMoreVesiclesHasThatOfTheRuns) {
         m.values[static_cast<std::size_t>(quantity)] = runs[0].at(quantity, t);
       data.measurements.push_back(m);
     }
-  const UnitRange unit{1, 2};
-  SeriesFit fit;
+  const UnitPrior unit = UnitPrior::within_factor(1, 2);
+  EnsembleFit fit;
   fit.scatter = {{0.02, 0.02, 0.02}, {0.02, 0.02, 0.02}};
   const SeriesNull null = null_of(data, runs, {uptake}, fit, unit, 99);
   const std::vector<SeriesNoise> noise = noise_of_more(data, runs, {uptake}, fit, unit, null);

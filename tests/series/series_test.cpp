@@ -71,7 +71,7 @@ MeasuredVesicles measured(const Law& law, int vesicles, double noise, double sec
 }
 
 SeriesExplanation explained(const MeasuredVesicles& data) {
-  SeriesRequest request{{1, 8}};
+  SeriesRequest request{UnitPrior::within_factor(1, 8)};
   request.replicates = 99;
   return explain_series(data, ensemble({}), candidates(), request);
 }
@@ -87,26 +87,26 @@ void keep_only(Quantity kept, MeasuredVesicles& data) {
       if (quantity != kept) m.values[static_cast<std::size_t>(quantity)].reset();
 }
 
-TEST(SeriesFit, FindsUnitAndStrength) {
+TEST(EnsembleFit, FindsUnitAndStrength) {
   const RunCurves base(ensemble({}), each_once(10));
   const RunCurves changed(ensemble({-1 / 3.0, 0, 0.05}), each_once(10));
-  const auto blocks = blocks_of(measured({-1 / 3.0, 0, 0.025}, 20, 0.02, 3));
-  const SeriesFit fit = fit_series(blocks, {&base, &changed}, {1, 8});
+  const auto blocks = observed_series(measured({-1 / 3.0, 0, 0.025}, 20, 0.02, 3));
+  const EnsembleFit fit = fit_ensemble(blocks, {&base, &changed}, UnitPrior::within_factor(1, 8));
   EXPECT_NEAR(std::exp(fit.ln_unit), 3, 0.3);
   EXPECT_NEAR(fit.amplitude, 0.5, 4 * fit.deviation);
   EXPECT_LT(fit.deviation, 0.1);
-  const SeriesFit without = fit_series(blocks, {&base}, {1, 8});
+  const EnsembleFit without = fit_ensemble(blocks, {&base}, UnitPrior::within_factor(1, 8));
   EXPECT_GT(without.deviance, fit.deviance + 20);
   // 2 ln of the likelihood of all looks together, and of what was known of D.
-  const SeriesModel model{&base, &changed};
-  const SeriesMetric metric = metric_of(blocks, model, fit);
+  const EnsembleModel model{&base, &changed};
+  const ObservationMetric metric = metric_of(blocks, model, fit);
   const Vec r = residual(blocks, model, fit);
-  const double known = std::pow(fit.ln_unit / UnitRange{1, 8}.deviation(), 2);
+  const double known = std::pow(fit.ln_unit / UnitPrior::within_factor(1, 8).deviation, 2);
   EXPECT_NEAR(fit.deviance, metric.product(r, r) + metric.log_determinant() + known, 1e-8);
 }
 
 // One raft and two, where as many are expected: what was counted says nothing of how well.
-TEST(SeriesMetric, CountsAreKnownByTheNumberExpected) {
+TEST(ObservationMetric, CountsAreKnownByTheNumberExpected) {
   const RunCurves base(ensemble({}), each_once(10));
   MeasuredVesicles data;
   for (const double count : {1.0, 2.0, 2.0}) {
@@ -118,18 +118,19 @@ TEST(SeriesMetric, CountsAreKnownByTheNumberExpected) {
     data.measurements.push_back(m);
   }
   data.measurements.back().sigma[static_cast<std::size_t>(Quantity::rafts)] = 0.5;
-  const auto blocks = blocks_of(data);
-  const Vec known = known_variance(blocks, base, 0, traceraft::expected(blocks, {&base}, {}));
+  const auto blocks = observed_series(data);
+  const auto known = known_covariance(blocks, base, 0, traceraft::expected(blocks, {&base}, {}));
   const double ln_t = std::log(30.0), expected = std::exp(base.mean(Quantity::rafts, ln_t));
   const double runs = base.variance(Quantity::rafts, ln_t);
-  EXPECT_NEAR(known[0] - runs, 1 / 12.0 / (expected * expected), 1e-12);
-  EXPECT_NEAR(known[1], known[0], 1e-12);
-  EXPECT_NEAR(known[2] - runs, 0.25 / (expected * expected), 1e-12);  // a stated error, if larger
+  EXPECT_NEAR(known[0](0, 0) - runs, 1 / 12.0 / (expected * expected), 1e-12);
+  EXPECT_NEAR(known[1](0, 0), known[0](0, 0), 1e-12);
+  EXPECT_NEAR(known[2](0, 0) - runs, 0.25 / (expected * expected),
+              1e-12);  // a stated error, if larger
 }
 
 // Errors of two fifths of the mean: what noise makes large is not known better by its logarithm,
 // whose mean is below that of what is expected.
-TEST(SeriesFit, IsNotPulledByErrorsThatAreAbsolute) {
+TEST(EnsembleFit, IsNotPulledByErrorsThatAreAbsolute) {
   MeasuredVesicles data = measured({}, 60, 0, 1);
   const auto fraction = static_cast<std::size_t>(Quantity::fraction);
   std::uint64_t k = 0;
@@ -139,22 +140,22 @@ TEST(SeriesFit, IsNotPulledByErrorsThatAreAbsolute) {
     m.sigma[fraction] = 0.04;
   }
   const RunCurves base(ensemble({}), each_once(10));
-  const auto blocks = blocks_of(data);
-  const SeriesFit fit = fit_series(blocks, {&base}, {1, 8});
+  const auto blocks = observed_series(data);
+  const EnsembleFit fit = fit_ensemble(blocks, {&base}, UnitPrior::within_factor(1, 8));
   const SeriesOffset offset = offsets(blocks, {&base}, fit).at(2);
   EXPECT_NEAR(offset.level, 0, 2.5 * 0.4 / std::sqrt(360));
 }
 
 // Of values that are what is expected: ln(1 + s z) is 0.0956 below that on average for s = 0.4.
-TEST(SeriesFit, ResidualsKnowTheMeanOfLogarithms) {
+TEST(EnsembleFit, ResidualsKnowTheMeanOfLogarithms) {
   const RunCurves base(ensemble({}), each_once(10));
   MeasuredVesicles data = measured({}, 3, 0, 1);
   for (Measurement& m : data.measurements)
     m.sigma[static_cast<std::size_t>(Quantity::fraction)] = 0.04;
-  const auto blocks = blocks_of(data);
+  const auto blocks = observed_series(data);
   const Vec r = residual(blocks, {&base}, {});
   Eigen::Index i = 0;
-  for (const SeriesBlock& block : blocks)
+  for (const ObservedSeries& block : blocks)
     for (Eigen::Index k = 0; k < block.values.size(); ++k, ++i)
       if (block.quantity == Quantity::fraction) {
         EXPECT_NEAR(r[i], 0.0956, 1e-4);
@@ -162,7 +163,7 @@ TEST(SeriesFit, ResidualsKnowTheMeanOfLogarithms) {
 }
 
 // Absolute errors are half as large a part of twice the value.
-TEST(SeriesMetric, ErrorsAreThoseOfTheChangedModel) {
+TEST(ObservationMetric, ErrorsAreThoseOfTheChangedModel) {
   const std::vector<History> alike(3, vesicle({}, 1));
   std::vector<History> twice = alike;
   for (History& run : twice)
@@ -173,9 +174,9 @@ TEST(SeriesMetric, ErrorsAreThoseOfTheChangedModel) {
   look.sigma[static_cast<std::size_t>(Quantity::fraction)] = 0.02;
   MeasuredVesicles data;
   data.measurements = {look};
-  const auto blocks = blocks_of(data);
+  const auto blocks = observed_series(data);
   const auto variance = [&](double amplitude) {
-    SeriesFit fit;
+    EnsembleFit fit;
     fit.amplitude = amplitude;
     return 1 / metric_of(blocks, {&base, &changed}, fit).product(Vec::Ones(1), Vec::Ones(1));
   };
@@ -203,28 +204,29 @@ TEST(RunCurves, RunsWithoutRaftsCountAsHalfARaft) {
   EXPECT_GT(curves.mean(Quantity::fraction, 0), 0.5 * (std::log(0.1) + std::log(1e-3)));
 }
 
-TEST(SeriesMetric, IsThatOfTheDenseCovariance) {
+TEST(ObservationMetric, IsThatOfTheDenseCovariance) {
   const RunCurves base(ensemble({}), each_once(10));
-  std::vector<SeriesBlock> blocks = blocks_of(measured({}, 3, 0.1, 1));
+  std::vector<ObservedSeries> blocks = observed_series(measured({}, 3, 0.1, 1));
   blocks.erase(blocks.begin() + 2, blocks.end());
-  const SeriesScatter scatter{{0.3, 0.2, 0.1}, {0.05, 0.15, 0.25}};
-  SeriesFit fit;
+  const ObservationScatter scatter{{0.3, 0.2, 0.1}, {0.05, 0.15, 0.25}};
+  EnsembleFit fit;
   fit.ln_unit = 0.1;
-  const Vec known = known_variance(blocks, base, 0.1, expected(blocks, {&base}, fit));
-  const SeriesMetric metric(blocks, known, scatter);
+  const auto known = known_covariance(blocks, base, 0.1, expected(blocks, {&base}, fit));
+  const ObservationMetric metric(blocks, known, scatter);
   const Eigen::Index n = blocks[0].values.size(), all = n + blocks[1].values.size();
   Eigen::MatrixXd S = Eigen::MatrixXd::Zero(all, all);
   for (std::size_t b = 0; b < 2; ++b) {
     const Eigen::Index first = b == 0 ? 0 : n, count = blocks[b].values.size();
     const Quantity quantity = blocks[b].quantity;
     const auto q = static_cast<std::size_t>(quantity);
-    S.block(first, first, count, count).setConstant(scatter.vesicle[q] * scatter.vesicle[q]);
+    S.block(first, first, count, count) =
+        base.covariance(quantity, blocks[b].ln_t.array() - 0.1).array() +
+        scatter.vesicle[q] * scatter.vesicle[q];
     for (Eigen::Index i = 0; i < count; ++i) {
       const double t = blocks[b].ln_t[i] - 0.1;
       const double expected = std::exp(base.mean(quantity, t));
       const double stated = quantity == Quantity::rafts ? 1 / 12.0 : 0;
-      S(first + i, first + i) += stated / (expected * expected) +
-                                 scatter.look[q] * scatter.look[q] + base.variance(quantity, t);
+      S(first + i, first + i) += stated / (expected * expected) + scatter.look[q] * scatter.look[q];
     }
   }
   const Vec u = Vec::LinSpaced(all, -1, 2), v = u.array().square();
@@ -233,7 +235,7 @@ TEST(SeriesMetric, IsThatOfTheDenseCovariance) {
   Vec first = v;
   first.tail(all - n).setZero();
   EXPECT_NEAR(metric.product(u, v, blocks[0].quantity), u.dot(S.ldlt().solve(first)), 1e-9);
-  const SeriesMetric alone(blocks, known, scatter, blocks[0].quantity);
+  const ObservationMetric alone(blocks, known, scatter, blocks[0].quantity);
   EXPECT_NEAR(alone.product(u, v), u.dot(S.ldlt().solve(first)), 1e-9);
   EXPECT_NEAR(alone.log_determinant(), std::log(S.topLeftCorner(n, n).determinant()), 1e-9);
 }
@@ -287,7 +289,7 @@ TEST(SeriesExplanation, KnowsErrorsThatAreStated) {
 TEST(SeriesExplanation, KnowsErrorsAsLargeAsTheValues) {
   const auto fraction = static_cast<std::size_t>(Quantity::fraction);
   const std::vector<SeriesCandidate> all = candidates();
-  SeriesRequest request{{1, 8}};
+  SeriesRequest request{UnitPrior::within_factor(1, 8)};
   request.replicates = 99;
   for (const double sigma : {0.1, 0.2}) {
     int alarms = 0;
@@ -348,7 +350,7 @@ TEST(SeriesExplanation, AdmitsATrendThatNothingExplains) {
   EXPECT_LT(std::fabs(found.offsets[2].slope_deviations), 3);
 }
 
-TEST(SeriesFit, SaysHowFarMeasurementsLieBesideIt) {
+TEST(EnsembleFit, SaysHowFarMeasurementsLieBesideIt) {
   const SeriesExplanation found = explained(measured({}, 15, 0.02, 1));
   for (const SeriesOffset& offset : found.offsets) {
     EXPECT_LT(std::fabs(offset.level), 0.1);
@@ -358,11 +360,11 @@ TEST(SeriesFit, SaysHowFarMeasurementsLieBesideIt) {
 
 // Forty vesicles know their mean better than ten runs know that of the model: what lies beside it
 // then is not so many deviations of the vesicles alone, √(1 + 40/10).
-TEST(SeriesFit, CountsDeviationsWithTheScatterOfTheRuns) {
+TEST(EnsembleFit, CountsDeviationsWithTheScatterOfTheRuns) {
   double squares = 0;
   constexpr int kSets = 10;
   for (std::uint64_t set = 1; set <= kSets; ++set) {
-    SeriesRequest request{{1, 1.1}};
+    SeriesRequest request{UnitPrior::within_factor(1, 1.1)};
     request.replicates = 29;
     std::vector<History> runs;
     for (std::uint64_t k = 0; k < 10; ++k) runs.push_back(vesicle({}, 1000 * set + k));
@@ -384,7 +386,7 @@ TEST(SeriesExplanation, SeesWhatAnotherDDoesIfDIsKnown) {
   std::vector<History> slower;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) slower.push_back(vesicle({}, seed, 2));
   const auto explained_with = [&](double factor) {
-    SeriesRequest request{{1, factor}};
+    SeriesRequest request{UnitPrior::within_factor(1, factor)};
     request.replicates = 49;
     return explain_series(data, ensemble({}), {{"bulk-mobility", 1, true, slower}}, request);
   };
@@ -413,12 +415,12 @@ TEST(SeriesExplanation, KnowsHowWellItKnowsDNearAnEnd) {
   looks.erase(
       std::remove_if(looks.begin(), looks.end(), [](const Measurement& m) { return m.time > 150; }),
       looks.end());
-  SeriesRequest request{{1, 8}};
+  SeriesRequest request{UnitPrior::within_factor(1, 8)};
   request.replicates = 199;
   const SeriesExplanation open = compared(data, request);
   const double best = std::exp(open.base.ln_unit);
   for (const double further : {1.02, 10.0}) {
-    request.unit = {best * further / 8, 8};
+    request.unit = UnitPrior::within_factor(best * further / 8, 8);
     const SeriesExplanation found = compared(data, request);
     EXPECT_NEAR(found.unit_deviation, open.unit_deviation, 0.2 * open.unit_deviation) << further;
   }
@@ -437,7 +439,7 @@ TEST(SeriesExplanation, IntervalsOfDHoldTheTruth) {
     MeasuredVesicles data = measured({}, 16, 0.1, 1, 1000 * set + 500);
     for (Measurement& m : data.measurements)
       m.values[static_cast<std::size_t>(Quantity::fraction)].reset();
-    SeriesRequest request{{1, 8}};
+    SeriesRequest request{UnitPrior::within_factor(1, 8)};
     request.replicates = 49;
     const SeriesExplanation found =
         explain_series(data, base, {{"line-tension", 1, true, more_rafts}}, request);
@@ -448,7 +450,7 @@ TEST(SeriesExplanation, IntervalsOfDHoldTheTruth) {
 
 // Of a D that is known to 2 % nothing that fits it is at the end.
 TEST(SeriesExplanation, LooksAroundADThatIsKnown) {
-  SeriesRequest request{{1, std::exp(0.04), 0, 2}};
+  SeriesRequest request{UnitPrior::within_factor(1, std::exp(0.04), 2)};
   request.replicates = 49;
   const SeriesExplanation found =
       explain_series(measured({}, 4, 0.1, 1), ensemble({}), candidates(), request);
@@ -458,7 +460,7 @@ TEST(SeriesExplanation, LooksAroundADThatIsKnown) {
 // Where nothing coarsens, series say nothing of it.
 TEST(SeriesExplanation, KnowsThatItDoesNotKnowD) {
   const Law rest{0};
-  SeriesRequest request{{1, 8}};
+  SeriesRequest request{UnitPrior::within_factor(1, 8)};
   request.replicates = 99;
   std::vector<SeriesCandidate> more_rafts{{"line-tension", 1, true, ensemble({0, 0, 0, 0.3})}};
   const SeriesExplanation found =
@@ -481,7 +483,7 @@ TEST(SeriesExplanation, KnowsThatItDoesNotKnowD) {
 }
 
 // By its logarithm, like the others.
-TEST(SeriesFit, SaysHowFarTheRaftFractionLiesBesideIt) {
+TEST(EnsembleFit, SaysHowFarTheRaftFractionLiesBesideIt) {
   MeasuredVesicles data = measured({}, 15, 0.02, 1);
   for (Measurement& m : data.measurements)
     *m.values[static_cast<std::size_t>(Quantity::fraction)] *= 2;
@@ -518,7 +520,7 @@ TEST(SeriesExplanation, SaysWhatWouldTellClassesApart) {
   constexpr int kVesicles = 8, kMore = 20;
   std::vector<SeriesCandidate> two = {candidates()[0]};                  // a drift of the fraction
   two.push_back({"cooling", 1, true, ensemble({-1 / 3.0, 0.6, 0.05})});  // and a plateau
-  SeriesRequest request{{1, 8}};
+  SeriesRequest request{UnitPrior::within_factor(1, 8)};
   request.replicates = 99;
   const auto explain = [&](const Law& law, int vesicles) {
     return explain_series(measured(law, vesicles, 0.1, 1), ensemble({}), two, request);

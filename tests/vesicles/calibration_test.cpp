@@ -1,6 +1,6 @@
 // Calibration against a simulator that costs nothing: rafts whose number falls as a law says, and
 // scatters as independent rafts do.
-#include "verification/vesicles/calibration.hpp"
+#include "verification/calibration/calibration.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,10 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/random.hpp"
 #include "kernel/core/types.hpp"
-#include "verification/vesicles/calibration_data.hpp"
-#include "verification/vesicles/joint_fit.hpp"
-#include "verification/vesicles/local_regression.hpp"
+#include "verification/calibration/calibration_data.hpp"
+#include "verification/calibration/joint_fit.hpp"
+#include "verification/calibration/local_regression.hpp"
+#include "verification/likelihood/ensemble_likelihood.hpp"
 #include "verification/vesicles/published.hpp"
 
 namespace traceraft {
@@ -66,8 +67,8 @@ MeasuredVesicles measured(bool start, std::uint64_t seed) {
 
 const std::vector<SoughtParameter> kSought = {{"epsilon", {1e-3, 10}}};
 
-TimeUnit around(double seconds) {
-  return {seconds, {seconds / 8, seconds * 8}};
+UnitPrior around(double seconds) {
+  return UnitPrior::uniform(seconds, {seconds / 8, seconds * 8});
 }
 
 // Around the start, then around what is found, as the program does.
@@ -149,7 +150,7 @@ TEST(Calibration, OfTheUnitOfTimeAloneTakesOneEnsemble) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Calibration found = calibrate(measured(true, seed), {}, points, around(2 * kSeconds));
     errors.push_back(std::fabs(std::log(found.parameters[0].value / kSeconds)));
-    scatter.push_back(found.best.scatter);
+    scatter.push_back(found.best.scatter_beyond_runs(Quantity::perimeter));
   }
   EXPECT_LT(quantile(errors, 0.5), 0.15);
   EXPECT_LT(quantile(scatter, 0.5), 0.05);  // beyond what the data say themselves
@@ -159,7 +160,7 @@ TEST(Calibration, SaysWhereItsSearchEnds) {
   const std::vector<CalibrationPoint> points = {{{}, simulate(kEpsilon, true, 40, 77)}};
   const MeasuredVesicles data = measured(true, 1);
   EXPECT_EQ(calibrate(data, {}, points, around(kSeconds)).at_bound, 0);
-  const TimeUnit fast{kSeconds / 8, {kSeconds / 16, kSeconds / 4}};
+  const UnitPrior fast = UnitPrior::uniform(kSeconds / 8, {kSeconds / 16, kSeconds / 4});
   const Calibration found = calibrate(data, {}, points, fast);
   EXPECT_EQ(found.at_bound, 1);
   EXPECT_FALSE(found.parameters[0].determined);
@@ -194,7 +195,7 @@ TEST(Calibration, DeterminesNothingBesideAUnitAtItsEnd) {
   std::vector<CalibrationPoint> points;
   for (const auto& ln : design_around({std::log(kEpsilon)}, 0.25))
     points.push_back({ln, simulate(std::exp(ln[0]), true, 40, 5)});
-  const TimeUnit fast{kSeconds / 4, {kSeconds / 16, kSeconds / 2}};
+  const UnitPrior fast = UnitPrior::uniform(kSeconds / 4, {kSeconds / 16, kSeconds / 2});
   const Calibration found = calibrate(measured(true, 1), kSought, points, fast);
   EXPECT_TRUE(found.unit_at_bound);
   const CalibratedParameter& epsilon = found.parameters[1];
@@ -239,7 +240,7 @@ TEST(Calibration, FindsTheFractionThatWasMeasured) {
 }
 
 // Fractions of runs grow in time: what counts is when each vesicle was looked at.
-TEST(MeasuredFractions, AreHeldAgainstThoseAtTheSameTimes) {
+TEST(EnsembleFit, HoldsFractionsAgainstThoseAtTheSameTimes) {
   const auto with_fraction = [](double fraction) {
     std::vector<History> runs = simulate(kEpsilon, true, 17, 5);
     for (History& run : runs)
@@ -256,12 +257,15 @@ TEST(MeasuredFractions, AreHeldAgainstThoseAtTheSameTimes) {
   early.values[2] = vesicles[0].at(Quantity::fraction, early.time);
   data.measurements.insert(data.measurements.begin(), early);
 
-  const MeasuredFractions fractions(data);
+  const auto blocks = observed_series(data, each_once(17), {Quantity::fraction});
   const auto deviance = [&](double fraction) {
-    const std::vector<History> runs = with_fraction(fraction);
-    const std::vector<int> each = each_once(runs.size());
-    const SampledRuns sampled(runs, common_times(runs, kCurveTimes));
-    return fractions.deviance(each, {sampled, each, scatter_laws({runs})}, kSeconds);
+    const RunCurves curves(with_fraction(fraction), each_once(17));
+    EnsembleFit fit;
+    fit.scatter.vesicle.fill(0.1);
+    fit.scatter.look.fill(0.003);
+    fit.ln_unit = std::log(kSeconds);
+    const UnitPrior unit = UnitPrior::uniform(1, {0.001, 10});
+    return EnsembleLikelihood(blocks, {&curves}, unit).deviance(fit);
   };
   // The parabola's least, and twice its curvature: 17 vesicles tell it to a quarter of a deviation.
   const double low = deviance(0.095), here = deviance(0.1), high = deviance(0.105);
@@ -269,16 +273,16 @@ TEST(MeasuredFractions, AreHeldAgainstThoseAtTheSameTimes) {
   EXPECT_NEAR(best, 0.1, 0.002);
 }
 
-// Of vesicles that all have the same one, as far as it was written down.
-TEST(MeasuredFractions, CountIfTheyAreAllTheSame) {
+// Fractions that are all the same, as far as they were written down, still tell models apart.
+TEST(EnsembleFit, CountsFractionsThatAreAllTheSame) {
   const std::vector<History> runs = simulate(kEpsilon, true, 17, 5);
-  const std::vector<int> each = each_once(runs.size());
-  const RunStatistics statistics({runs, common_times(runs, kCurveTimes)}, each,
-                                 scatter_laws({runs}));
+  const RunCurves curves(runs, each_once(17));
   const auto deviance = [&](double fraction) {
     MeasuredVesicles data = draw_from_runs(design(), runs, 5, 1);
     for (Measurement& m : data.measurements) m.values[2] = fraction;
-    return MeasuredFractions(data).deviance(each, statistics, kSeconds);
+    return fit_ensemble(observed_series(data, each_once(17), {Quantity::fraction}), {&curves},
+                        UnitPrior::uniform(1, {0.1, 10}))
+        .deviance;
   };
   EXPECT_GT(deviance(0.2), deviance(0.11) + 100);
 }
@@ -297,7 +301,7 @@ TEST(Calibration, DeterminesNothingUnlessItConverges) {
 
 // Perimeters known to four tenths of what is expected: by the mean of their logarithms, which is
 // 0.096 lower, they would be 1.33 times as old.
-TEST(TimeFit, IsNotPulledByErrorsThatAreAbsolute) {
+TEST(EnsembleFit, OfPerimetersIsNotPulledByErrorsThatAreAbsolute) {
   History run;
   for (double t = 1; t < 1000; t *= 1.1) {
     run.time.push_back(t);
@@ -316,9 +320,10 @@ TEST(TimeFit, IsNotPulledByErrorsThatAreAbsolute) {
     data.measurements.push_back({std::to_string(v), 27, 5, {value}, {4.0}});
     all.push_back(v);
   }
-  const RunStatistics means({runs, run.time}, each_once(3), scatter_laws({runs}));
-  const TimeFit found = fit_time(data, all, means, {1, {0.3, 3}});
-  EXPECT_NEAR(std::log(found.seconds_per_unit), 0, 2.5 * 3 * 0.4 / std::sqrt(1.0 * kVesicles));
+  const RunCurves curves(runs, each_once(3));
+  const EnsembleFit found = fit_ensemble(observed_series(data, all, {Quantity::perimeter}),
+                                         {&curves}, UnitPrior::uniform(1, {0.3, 3}));
+  EXPECT_NEAR(found.ln_unit, 0, 2.5 * 3 * 0.4 / std::sqrt(1.0 * kVesicles));
 }
 
 // At time zero there is the initial noise, of which the model foretells nothing.

@@ -58,7 +58,7 @@ class SeriesSearch {
         request_(request),
         curves_(base, candidates, each_once(base.size())),
         gains_(gains_of(data, curves_, candidates, request.unit)),
-        responses_(blocks_of(data), curves_, gains_.base, request.unit),
+        responses_(observed_series(data), curves_, gains_.base, request.unit),
         classes_(classes_of(responses_, candidates.size())),
         null_(null_of(data, base, candidates, gains_.base, request.unit, request.replicates)),
         noise_(noise_of_more(data, base, candidates, gains_.base, request.unit, null_)) {}
@@ -72,7 +72,7 @@ class SeriesSearch {
                                      request_.unit.highest() - gains_.base.ln_unit);
     const double range = request_.unit.highest() - request_.unit.lowest();
     result_.unit_at_end = from_end < std::min(kMostAtEnd, kAtEnd * range);
-    result_.unit_told = result_.unit_deviation < kTold * request_.unit.deviation();
+    result_.unit_told = result_.unit_deviation < kTold * request_.unit.deviation;
     result_.offsets = gains_.offsets;
     for (SeriesOffset& offset : result_.offsets) {
       const auto q = static_cast<std::size_t>(offset.quantity);
@@ -100,7 +100,7 @@ class SeriesSearch {
     Squares away, back;
     for (const double drawn : null_.ln_unit)
       (side * (drawn - ln_unit) > 0 ? away : back).add(drawn - ln_unit);
-    const double known = request_.unit.deviation();
+    const double known = request_.unit.deviation;
     if (away.count == 0) return known;  // all of them lie towards the end
     const double both = std::sqrt((away.sum + back.sum) / (away.count + back.count));
     const double own = std::min(above, below) > kFree * both
@@ -111,7 +111,7 @@ class SeriesSearch {
   }
 
   SeriesScore score_of(std::size_t k) {
-    const SeriesFit& fit = gains_.fits[k];
+    const EnsembleFit& fit = gains_.fits[k];
     const SeriesCandidate& candidate = candidates_[k];
     const double gain = gains_.values[static_cast<Eigen::Index>(k)];
     const double noise = null_.mean[static_cast<Eigen::Index>(k)];
@@ -168,10 +168,10 @@ class SeriesSearch {
             result_.scores.begin(), result_.scores.end(),
             [this](const SeriesScore& a, const SeriesScore& b) { return more_telling(a, b); }) -
         result_.scores.begin());
-    const SeriesModel model{&curves_.base, &curves_.changed[best]};
-    result_.trend_p =
-        share_of_noise(null_.trend, lacking ? trend_left(blocks_of(data_), model, gains_.fits[best])
-                                            : gains_.trend);
+    const EnsembleModel model{&curves_.base, &curves_.changed[best]};
+    result_.trend_p = share_of_noise(
+        null_.trend,
+        lacking ? trend_left(observed_series(data_), model, gains_.fits[best]) : gains_.trend);
     if (result_.trend_p <= kTrendLevel * request_.false_alarms) {
       result_.finding = Finding::unnamed;
       if (lacking) result_.named = {{candidates_[best].effect}};
@@ -232,8 +232,9 @@ SeriesExplanation explain_series(const MeasuredVesicles& data, const std::vector
                                  const SeriesRequest& request) {
   refuse(data, base, candidates);
   SeriesRequest covered = request;
-  covered.unit.least = shortest_unit(data, base, candidates);
-  if (covered.unit.least > request.unit.start * request.unit.factor)
+  covered.unit.allowed.low =
+      std::max(request.unit.allowed.low, shortest_unit(data, base, candidates));
+  if (covered.unit.allowed.low > covered.unit.allowed.high)
     throw InputError("series: the runs end before the last measurement, whatever D is");
   return SeriesSearch(data, base, candidates, covered).run();
 }

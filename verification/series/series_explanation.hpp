@@ -12,7 +12,7 @@
 namespace traceraft {
 
 struct SeriesRequest {
-  UnitRange unit;              // R²/D of the model, and the factor within which D is known
+  UnitPrior unit;              // R²/D of the model, and the factor within which D is known
   int replicates = 199;        // of data that the base model would give
   double false_alarms = 0.05;  // with nothing missing, that something seems to be named
 };
@@ -46,7 +46,7 @@ struct SeriesExplanation {
   int vesicles, looks;
   double p;                                       // that the best score is noise
   double trend_p;                                 // that what is left of the best model is
-  SeriesFit base;                                 // without any effect
+  EnsembleFit base;                               // without any effect
   double unit_deviation;                          // of its ln_unit, from data of the base model
   bool unit_at_end;                               // it would be further away if the fit let it
   bool unit_told;                                 // is it known much better than before?

@@ -22,7 +22,7 @@ constexpr std::uint64_t kNext = 1ull << 32;  // number of one look
 
 // The same looks at vesicles of the base model, one run each.
 MeasuredVesicles draw_base(const MeasuredVesicles& data, const StatedErrors& errors,
-                           const std::vector<History>& runs, const SeriesFit& fit,
+                           const std::vector<History>& runs, const EnsembleFit& fit,
                            std::uint64_t replicate) {
   MeasuredVesicles drawn_data = data;
   std::uint64_t vesicle = 0, look = 0;
@@ -57,10 +57,10 @@ MeasuredVesicles draw_base(const MeasuredVesicles& data, const StatedErrors& err
 
 // What is known of D before is a measurement, too. The fit ends where it did: with other ends the
 // data of some sets would lie beyond them.
-UnitRange draw_unit(const SeriesFit& fit, const UnitRange& unit, std::uint64_t replicate) {
-  UnitRange drawn = unit;
+UnitPrior draw_unit(const EnsembleFit& fit, const UnitPrior& unit, std::uint64_t replicate) {
+  UnitPrior drawn = unit;
   drawn.drawn =
-      fit.ln_unit - std::log(unit.start) + unit.deviation() * normal_random(replicate, kUnit, 0);
+      fit.ln_unit - std::log(unit.start) + unit.deviation * normal_random(replicate, kUnit, 0);
   return drawn;
 }
 
@@ -74,15 +74,15 @@ SeriesCurves::SeriesCurves(const std::vector<History>& runs,
 }
 
 SeriesGains gains_of(const MeasuredVesicles& data, const SeriesCurves& curves,
-                     const std::vector<SeriesCandidate>& candidates, const UnitRange& unit) {
-  const std::vector<SeriesBlock> blocks = blocks_of(data);
+                     const std::vector<SeriesCandidate>& candidates, const UnitPrior& unit) {
+  const std::vector<ObservedSeries> blocks = observed_series(data);
   SeriesGains gains;
-  gains.base = fit_series(blocks, {&curves.base}, unit);
+  gains.base = fit_ensemble(blocks, {&curves.base}, unit);
   gains.trend = trend_left(blocks, {&curves.base}, gains.base);
   gains.offsets = offsets(blocks, {&curves.base}, gains.base);
   gains.values.resize(static_cast<Eigen::Index>(candidates.size()));
   for (std::size_t k = 0; k < candidates.size(); ++k) {
-    gains.fits.push_back(fit_series(
+    gains.fits.push_back(fit_ensemble(
         blocks, {&curves.base, &curves.changed[k], candidates[k].two_sided}, unit, gains.base));
     gains.values[static_cast<Eigen::Index>(k)] =
         std::max(0.0, gains.base.deviance - gains.fits[k].deviance);
@@ -93,8 +93,8 @@ SeriesGains gains_of(const MeasuredVesicles& data, const SeriesCurves& curves,
 // Data of the base model, fitted with curves of resampled runs, which hold a third of the runs
 // that data come from not at all and others more than once.
 SeriesNull null_of(const MeasuredVesicles& data, const std::vector<History>& runs,
-                   const std::vector<SeriesCandidate>& candidates, const SeriesFit& fit,
-                   const UnitRange& unit, int replicates) {
+                   const std::vector<SeriesCandidate>& candidates, const EnsembleFit& fit,
+                   const UnitPrior& unit, int replicates) {
   SeriesNull result;
   const StatedErrors errors(data);
   const auto count = static_cast<Eigen::Index>(candidates.size());

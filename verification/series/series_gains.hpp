@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "verification/series/series_fit.hpp"
+#include "verification/likelihood/ensemble_fit.hpp"
 #include "verification/series/series_misfit.hpp"
 
 namespace traceraft {
@@ -30,14 +30,14 @@ struct SeriesCurves {
 };
 
 struct SeriesGains {
-  SeriesFit base;
-  std::vector<SeriesFit> fits;        // with each candidate
+  EnsembleFit base;
+  std::vector<EnsembleFit> fits;      // with each candidate
   Vec values;                         // 2 ln of the likelihood ratios
   double trend;                       // left of the base
   std::vector<SeriesOffset> offsets;  // of the data beside the base
 };
 SeriesGains gains_of(const MeasuredVesicles& data, const SeriesCurves& curves,
-                     const std::vector<SeriesCandidate>& candidates, const UnitRange& unit);
+                     const std::vector<SeriesCandidate>& candidates, const UnitPrior& unit);
 
 // The same of data that the base model would give.
 struct SeriesNull {
@@ -51,7 +51,7 @@ struct SeriesNull {
 };
 // `fit`: of the base model to the data.
 SeriesNull null_of(const MeasuredVesicles& data, const std::vector<History>& runs,
-                   const std::vector<SeriesCandidate>& candidates, const SeriesFit& fit,
-                   const UnitRange& unit, int replicates);
+                   const std::vector<SeriesCandidate>& candidates, const EnsembleFit& fit,
+                   const UnitPrior& unit, int replicates);
 
 }  // namespace traceraft

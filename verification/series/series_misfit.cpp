@@ -9,22 +9,22 @@ namespace {
 constexpr int kTrendDegree = 3;
 
 // (ln t)^power of one quantity, around the middle of all looks.
-Vec power_of_time(const std::vector<SeriesBlock>& blocks, Quantity quantity, int power) {
+Vec power_of_time(const std::vector<ObservedSeries>& blocks, Quantity quantity, int power) {
   double sum = 0, count = 0;
-  for (const SeriesBlock& block : blocks) {
+  for (const ObservedSeries& block : blocks) {
     sum += block.ln_t.sum();
     count += static_cast<double>(block.ln_t.size());
   }
-  return per_look(blocks, [&](const SeriesBlock& block, Eigen::Index i) {
+  return per_look(blocks, [&](const ObservedSeries& block, Eigen::Index i) {
     return block.quantity == quantity ? std::pow(block.ln_t[i] - sum / count, power) : 0.0;
   });
 }
 
 }  // namespace
 
-double trend_left(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
-                  const SeriesFit& fit) {
-  const SeriesMetric metric = metric_of(blocks, model, fit);
+double trend_left(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
+                  const EnsembleFit& fit) {
+  const ObservationMetric metric = metric_of(blocks, model, fit);
   std::vector<Vec> trends;
   for (const Quantity quantity : kQuantities)
     for (int power = 0; power <= kTrendDegree; ++power) {
@@ -39,9 +39,9 @@ double trend_left(const std::vector<SeriesBlock>& blocks, const SeriesModel& mod
   return squares;
 }
 
-std::vector<SeriesOffset> offsets(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
-                                  const SeriesFit& fit) {
-  const SeriesMetric metric = metric_of(blocks, model, fit);
+std::vector<SeriesOffset> offsets(const std::vector<ObservedSeries>& blocks,
+                                  const EnsembleModel& model, const EnsembleFit& fit) {
+  const ObservationMetric metric = metric_of(blocks, model, fit);
   const Vec r = residual(blocks, model, fit);
   std::vector<SeriesOffset> all;
   for (const Quantity quantity : kQuantities) {

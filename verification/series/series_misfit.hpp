@@ -3,14 +3,14 @@
 
 #include <vector>
 
-#include "verification/series/series_fit.hpp"
+#include "verification/likelihood/ensemble_fit.hpp"
 
 namespace traceraft {
 
 // What is left of a fit that polynomials of ln t explain, a cubic for each quantity, in squares of
 // standard deviations.
-double trend_left(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
-                  const SeriesFit& fit);
+double trend_left(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
+                  const EnsembleFit& fit);
 
 // How the logarithms of measurements of a quantity lie beside a fit: on average, and per e-fold of
 // time; and in standard deviations.
@@ -19,7 +19,7 @@ struct SeriesOffset {
   double level, level_deviations, slope, slope_deviations;
 };
 // Of those that were measured.
-std::vector<SeriesOffset> offsets(const std::vector<SeriesBlock>& blocks, const SeriesModel& model,
-                                  const SeriesFit& fit);
+std::vector<SeriesOffset> offsets(const std::vector<ObservedSeries>& blocks,
+                                  const EnsembleModel& model, const EnsembleFit& fit);
 
 }  // namespace traceraft

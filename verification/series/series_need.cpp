@@ -42,7 +42,7 @@ double square(const SeriesProducts& p, double f) {
 std::vector<SeriesNoise> noise_of_more(const MeasuredVesicles& data,
                                        const std::vector<History>& runs,
                                        const std::vector<SeriesCandidate>& candidates,
-                                       const SeriesFit& fit, const UnitRange& unit,
+                                       const EnsembleFit& fit, const UnitPrior& unit,
                                        const SeriesNull& null) {
   const Vec most =
       null_of(repeated(data, kMostTimes), runs, candidates, fit, unit,

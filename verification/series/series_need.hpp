@@ -19,7 +19,7 @@ struct SeriesNoise {
 std::vector<SeriesNoise> noise_of_more(const MeasuredVesicles& data,
                                        const std::vector<History>& runs,
                                        const std::vector<SeriesCandidate>& candidates,
-                                       const SeriesFit& fit, const UnitRange& unit,
+                                       const EnsembleFit& fit, const UnitPrior& unit,
                                        const SeriesNull& null);
 
 // Inner products over the looks that there are, of what an effect does, e, and what another D does,

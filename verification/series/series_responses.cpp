@@ -19,10 +19,11 @@ SeriesResponse operator*(double factor, const SeriesResponse& response) {
   return {factor * response.looks, factor * response.unit};
 }
 
-SeriesResponses::SeriesResponses(const std::vector<SeriesBlock>& blocks, const SeriesCurves& curves,
-                                 const SeriesFit& fit, const UnitRange& unit)
+SeriesResponses::SeriesResponses(const std::vector<ObservedSeries>& blocks,
+                                 const SeriesCurves& curves, const EnsembleFit& fit,
+                                 const UnitPrior& unit)
     : metric_(metric_of(blocks, {&curves.base}, fit)),
-      by_unit_{unit_response(blocks, curves.base, fit.ln_unit), 1 / unit.deviation()} {
+      by_unit_{unit_response(blocks, curves.base, fit.ln_unit), 1 / unit.deviation} {
   const double squares = product(by_unit_, by_unit_);
   for (const RunCurves& changed : curves.changed) {
     const SeriesResponse e{response(blocks, curves.base, changed, fit.ln_unit)};

@@ -18,8 +18,8 @@ SeriesResponse operator*(double factor, const SeriesResponse& response);
 // `fit`: of the base model; `unit`: what was known of D before.
 class SeriesResponses {
  public:
-  SeriesResponses(const std::vector<SeriesBlock>& blocks, const SeriesCurves& curves,
-                  const SeriesFit& fit, const UnitRange& unit);
+  SeriesResponses(const std::vector<ObservedSeries>& blocks, const SeriesCurves& curves,
+                  const EnsembleFit& fit, const UnitPrior& unit);
 
   const SeriesResponse& of(std::size_t k) const { return own_[k]; }
   // What effect k does of which no amount of effect j is capable.
@@ -33,7 +33,7 @@ class SeriesResponses {
  private:
   double product(const SeriesResponse& a, const SeriesResponse& b) const;
 
-  SeriesMetric metric_;
+  ObservationMetric metric_;
   SeriesResponse by_unit_;  // what another D does
   std::vector<SeriesResponse> own_;
 };

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "verification/vesicles/calibration.hpp"
-#include "verification/vesicles/joint_fit.hpp"
+#include "verification/calibration/calibration.hpp"
+#include "verification/calibration/joint_fit.hpp"
 
 namespace traceraft {
 
@@ -19,7 +19,7 @@ class CalibrationFit {
  public:
   // The data and the unit must outlive it. Throws InputError as calibrate.
   CalibrationFit(const MeasuredVesicles& data, const std::vector<SoughtParameter>& sought,
-                 const std::vector<CalibrationPoint>& points, const TimeUnit& unit);
+                 const std::vector<CalibrationPoint>& points, const UnitPrior& unit);
 
   const std::vector<JointFit>& at_points() const { return at_points_; }
   const JointFit& found() const { return found_; }
@@ -32,14 +32,13 @@ class CalibrationFit {
 
  private:
   Evidence evidence(const std::vector<int>& vesicles) const {
-    return {data_, vesicles, with_fractions_ ? &fractions_ : nullptr, unit_};
+    return {observed_series(data_, vesicles, quantities_), unit_};
   }
 
   const MeasuredVesicles& data_;
-  const TimeUnit& unit_;
+  const UnitPrior& unit_;
   std::vector<int> vesicles_;
-  MeasuredFractions fractions_;
-  bool with_fractions_;
+  std::vector<Quantity> quantities_;
   int count_;  // of the runs of each point
   Box box_;
   RunEmulator runs_;

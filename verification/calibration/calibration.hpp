@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "kernel/core/types.hpp"
+#include "verification/calibration/run_emulator.hpp"
+#include "verification/likelihood/ensemble_fit.hpp"
 #include "verification/measure/fit.hpp"
-#include "verification/vesicles/run_emulator.hpp"
 
 namespace traceraft {
 
@@ -32,8 +33,8 @@ struct CalibratedParameter {
 struct Calibration {
   std::vector<CalibratedParameter> parameters;  // R²/D in seconds first
   Eigen::MatrixXd correlation;                  // of the logarithms, in the same order
-  std::vector<TimeFit> at_points;               // where each of them fits best
-  TimeFit best;                                 // the most probable fit
+  std::vector<EnsembleFit> at_points;           // where each of them fits best
+  EnsembleFit best;                             // the most probable fit
   // The best determined product of powers, of D first, the largest power being 1, and its relative
   // deviation.
   std::vector<double> best_powers;
@@ -51,12 +52,12 @@ void mark_unconverged(Calibration& calibration);
 std::vector<double> most_probable(const MeasuredVesicles& data,
                                   const std::vector<SoughtParameter>& sought,
                                   const std::vector<CalibrationPoint>& points,
-                                  const TimeUnit& unit);
+                                  const UnitPrior& unit);
 
 // The parameters of the measurements, with simulations in between the points emulated from these.
 // All points have as many runs. Throws InputError if they are too few, and as telling_vesicles.
 Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtParameter>& sought,
-                      const std::vector<CalibrationPoint>& points, const TimeUnit& unit);
+                      const std::vector<CalibrationPoint>& points, const UnitPrior& unit);
 
 // Where simulations are needed next: a star around the centre with steps of `step` in ln, and for
 // two parameters or more the corners that a parabola needs.

@@ -1,4 +1,4 @@
-#include "verification/vesicles/local_regression.hpp"
+#include "verification/calibration/local_regression.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>

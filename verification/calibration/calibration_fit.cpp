@@ -1,21 +1,20 @@
-#include "verification/vesicles/calibration_fit.hpp"
+#include "verification/calibration/calibration_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "kernel/core/error.hpp"
 #include "kernel/core/random.hpp"
+#include "verification/calibration/calibration_data.hpp"
+#include "verification/calibration/local_regression.hpp"
 #include "verification/measure/fit.hpp"
-#include "verification/vesicles/calibration_data.hpp"
-#include "verification/vesicles/local_regression.hpp"
 
 namespace traceraft {
 namespace {
 
 constexpr int kReplicates = 200;
-constexpr double kOvershoot = 0.5;  // of what was explored, beyond it
-// Of the points, where searches begin.
-constexpr std::size_t kStarts = 3;
+constexpr double kOvershoot = 0.5;  // beyond what was explored, over its width
+constexpr std::size_t kStarts = 3;  // best points, where searches begin
 
 const std::vector<CalibrationPoint>& enough(const std::vector<CalibrationPoint>& points,
                                             const std::vector<SoughtParameter>& sought) {
@@ -31,6 +30,10 @@ std::vector<int> some_of(const std::vector<int>& vesicles, std::uint64_t replica
   return result;
 }
 
+Interval as_probable(const Evidence& evidence, const RunCurves& runs, const EnsembleFit& fit) {
+  return as_probable(evidence.observations, {&runs}, evidence.unit, fit);
+}
+
 // D alone, at each of the points.
 std::vector<JointFit> fit_points(const Evidence& evidence,
                                  const std::vector<CalibrationPoint>& points,
@@ -43,15 +46,19 @@ std::vector<JointFit> fit_points(const Evidence& evidence,
 
 std::vector<JointFit> best_of(std::vector<JointFit> fits) {
   std::sort(fits.begin(), fits.end(),
-            [](const JointFit& a, const JointFit& b) { return a.time.deviance < b.time.deviance; });
+            [](const JointFit& a, const JointFit& b) { return a.fit.deviance < b.fit.deviance; });
   fits.resize(std::min(fits.size(), kStarts));
   return fits;
 }
 
-ScatterLaws scatter_of(const std::vector<CalibrationPoint>& points) {
-  std::vector<std::vector<History>> ensembles;
-  for (const CalibrationPoint& point : points) ensembles.push_back(point.runs);
-  return scatter_laws(ensembles);
+// What a simulation is given says nothing of how it does: fractions count where they are looked
+// for.
+std::vector<Quantity> quantities_for(const std::vector<SoughtParameter>& sought) {
+  std::vector<Quantity> result{Quantity::perimeter, Quantity::rafts};
+  if (std::any_of(sought.begin(), sought.end(),
+                  [](const SoughtParameter& s) { return s.name == "fraction"; }))
+    result.push_back(Quantity::fraction);
+  return result;
 }
 
 }  // namespace
@@ -73,48 +80,46 @@ Box explored(const std::vector<CalibrationPoint>& points,
 }
 
 std::vector<double> estimates(const JointFit& fit) {
-  std::vector<double> ln{std::log(fit.time.seconds_per_unit)};
+  std::vector<double> ln{fit.fit.ln_unit};
   ln.insert(ln.end(), fit.ln_parameters.begin(), fit.ln_parameters.end());
   return ln;
 }
 
 CalibrationFit::CalibrationFit(const MeasuredVesicles& data,
                                const std::vector<SoughtParameter>& sought,
-                               const std::vector<CalibrationPoint>& points, const TimeUnit& unit)
+                               const std::vector<CalibrationPoint>& points, const UnitPrior& unit)
     : data_(data),
       unit_(unit),
       vesicles_(telling_vesicles(data)),
-      fractions_(data),
-      with_fractions_(std::any_of(sought.begin(), sought.end(),
-                                  [](const SoughtParameter& s) { return s.name == "fraction"; })),
+      quantities_(quantities_for(sought)),
       count_(static_cast<int>(enough(points, sought).front().runs.size())),
       box_(explored(points, sought, kOvershoot)),
-      runs_(points, scatter_of(points)),
+      runs_(points),
       at_points_(fit_points(evidence(vesicles_), points, runs_)),
       found_(fit_jointly(evidence(vesicles_), runs_, box_, best_of(at_points_))) {}
 
 Interval CalibrationFit::units() const {
-  return as_probable(data_, vesicles_, runs_.at(found_.ln_parameters), unit_, found_.time);
+  return as_probable(evidence(vesicles_), runs_.at(found_.ln_parameters), found_.fit);
 }
 
 std::vector<std::vector<double>> CalibrationFit::replicates() const {
+  const Evidence measured = evidence(vesicles_);
   std::vector<Interval> units;
   for (std::size_t k = 0; k < at_points_.size(); ++k)
-    units.push_back(as_probable(data_, vesicles_, runs_.at_point(k), unit_, at_points_[k].time));
+    units.push_back(as_probable(measured, runs_.at_point(k), at_points_[k].fit));
   std::vector<std::vector<double>> all;
   for (std::uint64_t r = 1; r <= kReplicates; ++r) {
-    const std::vector<int> some = some_of(vesicles_, r);
-    const Evidence drawn = evidence(some);
+    const Evidence drawn = evidence(some_of(vesicles_, r));
     const RunEmulator others = runs_.with_runs(resample(count_, r, 32));
     // From another point each time, and another D: what is flat is not to be taken for known.
     const std::size_t k = r % at_points_.size();
     JointFit start = at_points_[k];
-    start.time.seconds_per_unit =
-        units[k].low * std::pow(units[k].high / units[k].low, uniform_random(r, 33, 0));
+    start.fit.ln_unit =
+        std::log(units[k].low) + std::log(units[k].high / units[k].low) * uniform_random(r, 33, 0);
     JointFit fit = fit_jointly(drawn, others, box_, {start});
     // It may have stayed in a valley of its own, which is not as deep.
-    const TimeFit at_found = drawn.fit(others.at(found_.ln_parameters), found_.time);
-    if (fit.time.deviance > at_found.deviance + kAboutAsProbable)
+    const EnsembleFit at_found = drawn.fit(others.at(found_.ln_parameters), found_.fit);
+    if (fit.fit.deviance > at_found.deviance + kAboutAsProbable)
       fit = fit_jointly(drawn, others, box_, {found_});
     all.push_back(estimates(fit));
   }

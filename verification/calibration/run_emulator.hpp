@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "verification/vesicles/likelihood.hpp"
+#include "verification/likelihood/run_curves.hpp"
 
 namespace traceraft {
 
@@ -15,23 +15,26 @@ struct CalibrationPoint {
 };
 
 // The mean curves are local parabolas of the parameters: they are smooth where deviances, which
-// compare them with data, are flat in one place and steep in another.
+// compare them with data, are flat in one place and steep in another. The scatter of runs is the
+// mean over the points: the runs of one point alone know it badly.
 class RunEmulator {
  public:
   // As many points as regression_weights wants, all with as many runs.
-  RunEmulator(const std::vector<CalibrationPoint>& points, const ScatterLaws& scatter);
+  explicit RunEmulator(const std::vector<CalibrationPoint>& points);
   // With some of the runs of each point, with repetition: what is common to the seeds cancels in
   // the comparison of points.
   RunEmulator with_runs(const std::vector<int>& sample) const;
 
-  const RunStatistics& at_point(std::size_t point) const { return at_points_[point]; }
-  RunStatistics at(const std::vector<double>& ln_parameters) const;
+  const RunCurves& at_point(std::size_t point) const { return at_points_[point]; }
+  RunCurves at(const std::vector<double>& ln_parameters) const;
 
  private:
-  ScatterLaws scatter_;
+  void set_curves(const std::vector<int>& sample);
+
   std::vector<std::vector<double>> ln_parameters_;
-  std::shared_ptr<std::vector<SampledRuns>> curves_;
-  std::vector<RunStatistics> at_points_;
+  std::shared_ptr<std::vector<RunSamples>> samples_;  // one per point
+  RunScatter scatter_;                                // of one run
+  std::vector<RunCurves> at_points_;
 };
 
 }  // namespace traceraft

@@ -1,10 +1,10 @@
-#include "verification/vesicles/calibration.hpp"
+#include "verification/calibration/calibration.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
-#include "verification/vesicles/calibration_fit.hpp"
+#include "verification/calibration/calibration_fit.hpp"
 
 namespace traceraft {
 namespace {
@@ -68,9 +68,10 @@ void set_best_powers(const Eigen::MatrixXd& spread, double samples, Calibration&
   result.best_powers.assign(powers.data(), powers.data() + powers.size());
 }
 
-int count_at_bound(const std::vector<TimeFit>& fits, const Interval& allowed) {
-  return static_cast<int>(std::count_if(fits.begin(), fits.end(), [&](const TimeFit& fit) {
-    return fit.seconds_per_unit < 1.01 * allowed.low || fit.seconds_per_unit > 0.99 * allowed.high;
+int count_at_bound(const std::vector<EnsembleFit>& fits, const Interval& allowed) {
+  return static_cast<int>(std::count_if(fits.begin(), fits.end(), [&](const EnsembleFit& fit) {
+    return fit.seconds_per_unit() < 1.01 * allowed.low ||
+           fit.seconds_per_unit() > 0.99 * allowed.high;
   }));
 }
 
@@ -84,12 +85,12 @@ void mark_undetermined(Calibration& calibration) {
 std::vector<double> most_probable(const MeasuredVesicles& data,
                                   const std::vector<SoughtParameter>& sought,
                                   const std::vector<CalibrationPoint>& points,
-                                  const TimeUnit& unit) {
+                                  const UnitPrior& unit) {
   return CalibrationFit(data, sought, points, unit).found().ln_parameters;
 }
 
 Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtParameter>& sought,
-                      const std::vector<CalibrationPoint>& points, const TimeUnit& unit) {
+                      const std::vector<CalibrationPoint>& points, const UnitPrior& unit) {
   const CalibrationFit fit(data, sought, points, unit);
   const std::vector<std::vector<double>> replicates = fit.replicates();
   const Box simulated = explored(points, sought, 0);
@@ -108,8 +109,8 @@ Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtPara
       deviation.cwiseInverse().asDiagonal() * spread * deviation.cwiseInverse().asDiagonal();
   result.correlation.diagonal().setOnes();  // also of what did not vary at all
   set_best_powers(spread, fit.samples(), result);
-  for (const JointFit& point : fit.at_points()) result.at_points.push_back(point.time);
-  result.best = fit.found().time;
+  for (const JointFit& point : fit.at_points()) result.at_points.push_back(point.fit);
+  result.best = fit.found().fit;
   result.at_bound = count_at_bound(result.at_points, unit.allowed);
   const double ln_unit = std::log(result.parameters[0].value);
   result.unit_at_bound = ln_unit < std::log(unit.allowed.low) + kUnitEdge ||

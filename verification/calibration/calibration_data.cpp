@@ -1,4 +1,4 @@
-#include "verification/vesicles/calibration_data.hpp"
+#include "verification/calibration/calibration_data.hpp"
 
 #include <algorithm>
 #include <string>

@@ -1,0 +1,66 @@
+#include "verification/calibration/run_emulator.hpp"
+
+#include <algorithm>
+
+#include "verification/calibration/local_regression.hpp"
+#include "verification/measure/fit.hpp"
+
+namespace traceraft {
+namespace {
+
+// Width of the neighbourhood in which curves are parabolas, in ln of the parameters.
+constexpr double kWidth = 0.5;
+
+RunScatter mean_scatter(const std::vector<RunSamples>& samples, const std::vector<int>& all) {
+  const double share = 1 / static_cast<double>(samples.size());
+  RunScatter mean = samples.front().scatter(all);
+  for (std::size_t q = 0; q < kQuantities.size(); ++q) {
+    std::vector<double>& variance = mean.variance[q];
+    std::fill(variance.begin(), variance.end(), 0);
+    mean.correlation[q] = 0;
+  }
+  for (const RunSamples& runs : samples) {
+    const RunScatter more = runs.scatter(all);
+    for (std::size_t q = 0; q < kQuantities.size(); ++q) {
+      mean.correlation[q] += share * more.correlation[q];
+      for (std::size_t i = 0; i < more.variance[q].size(); ++i)
+        mean.variance[q][i] += share * more.variance[q][i];
+    }
+  }
+  return mean;
+}
+
+}  // namespace
+
+RunEmulator::RunEmulator(const std::vector<CalibrationPoint>& points)
+    : samples_(std::make_shared<std::vector<RunSamples>>()) {
+  std::vector<History> all;
+  for (const CalibrationPoint& point : points)
+    all.insert(all.end(), point.runs.begin(), point.runs.end());
+  const std::vector<double> times = common_times(all, kCurveTimes);
+  for (const CalibrationPoint& point : points) {
+    ln_parameters_.push_back(point.ln_parameters);
+    samples_->emplace_back(point.runs, times);
+  }
+  const std::vector<int> each = each_once(points.front().runs.size());
+  scatter_ = mean_scatter(*samples_, each);
+  set_curves(each);
+}
+
+RunEmulator RunEmulator::with_runs(const std::vector<int>& sample) const {
+  RunEmulator result = *this;
+  result.set_curves(sample);
+  return result;
+}
+
+RunCurves RunEmulator::at(const std::vector<double>& ln_parameters) const {
+  return RunCurves::combined(at_points_, regression_weights(ln_parameters_, ln_parameters, kWidth));
+}
+
+void RunEmulator::set_curves(const std::vector<int>& sample) {
+  at_points_.clear();
+  for (const RunSamples& runs : *samples_)
+    at_points_.emplace_back(runs.times(), runs.means(sample), scatter_, sample.size());
+}
+
+}  // namespace traceraft

@@ -1,0 +1,106 @@
+#include "verification/likelihood/run_curves.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "verification/measure/fit.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr double kMostCorrelated = 0.999;
+
+std::vector<double> vector_of(const Vec& values) {
+  return {values.data(), values.data() + values.size()};
+}
+
+RunCurves curves_of(const RunSamples& samples, const std::vector<int>& sample) {
+  return {samples.times(), samples.means(sample), samples.scatter(sample), sample.size()};
+}
+
+}  // namespace
+
+RunSamples::RunSamples(const std::vector<History>& runs, std::vector<double> times)
+    : times_(std::move(times)) {
+  const auto rows = static_cast<Eigen::Index>(times_.size());
+  const auto columns = static_cast<Eigen::Index>(runs.size());
+  for (const Quantity quantity : kQuantities) {
+    Eigen::MatrixXd& values = values_[static_cast<std::size_t>(quantity)];
+    values.resize(rows, columns);
+    for (Eigen::Index j = 0; j < columns; ++j)
+      for (Eigen::Index i = 0; i < rows; ++i)
+        values(i, j) = logarithm_of(quantity, runs[static_cast<std::size_t>(j)].at(
+                                                  quantity, times_[static_cast<std::size_t>(i)]));
+  }
+}
+
+QuantityCurves RunSamples::means(const std::vector<int>& sample) const {
+  QuantityCurves result;
+  for (std::size_t q = 0; q < result.size(); ++q)
+    result[q] = vector_of(values_[q](Eigen::all, sample).rowwise().mean());
+  return result;
+}
+
+RunScatter RunSamples::scatter(const std::vector<int>& sample) const {
+  RunScatter result;
+  const double step = times_.size() > 1 ? std::log(times_[1] / times_[0]) : 1;
+  const auto rows = static_cast<Eigen::Index>(times_.size());
+  const auto lag = std::min<Eigen::Index>(rows - 1, std::lround(1 / step));
+  for (std::size_t q = 0; q < kQuantities.size(); ++q) {
+    const Eigen::MatrixXd some = values_[q](Eigen::all, sample);
+    const Eigen::MatrixXd off = some.colwise() - some.rowwise().mean().eval();
+    const Vec squares = off.rowwise().squaredNorm();
+    result.variance[q] = vector_of(squares / static_cast<double>(sample.size() - 1));
+    const Eigen::Index pairs = rows - lag;
+    const double product = off.topRows(pairs).cwiseProduct(off.bottomRows(pairs)).sum();
+    const double norm = squares.head(pairs).cwiseProduct(squares.tail(pairs)).cwiseSqrt().sum();
+    const double lagged = norm > 0 ? std::clamp(product / norm, 0.0, kMostCorrelated) : 0;
+    result.correlation[q] = std::pow(lagged, 1 / (static_cast<double>(lag) * step));
+  }
+  return result;
+}
+
+RunCurves::RunCurves(const std::vector<History>& runs, const std::vector<int>& sample)
+    : RunCurves(curves_of({runs, common_times(runs, kCurveTimes)}, sample)) {}
+
+RunCurves::RunCurves(const std::vector<double>& times, QuantityCurves mean, RunScatter scatter,
+                     std::size_t count)
+    : grid_(times), mean_(std::move(mean)), scatter_(std::move(scatter)) {
+  const double of_mean = 1 + 1 / static_cast<double>(count);
+  for (std::vector<double>& values : scatter_.variance)
+    for (double& value : values) value *= of_mean;
+}
+
+RunCurves RunCurves::combined(const std::vector<RunCurves>& all,
+                              const std::vector<double>& weights) {
+  RunCurves result = all.front();
+  for (std::size_t q = 0; q < kQuantities.size(); ++q)
+    for (std::size_t i = 0; i < result.mean_[q].size(); ++i) {
+      double& value = result.mean_[q][i] = 0;
+      for (std::size_t k = 0; k < all.size(); ++k) value += weights[k] * all[k].mean_[q][i];
+    }
+  return result;
+}
+
+double RunCurves::correlation(Quantity quantity, double ln_factor) const {
+  return std::pow(scatter_.correlation[static_cast<std::size_t>(quantity)], std::fabs(ln_factor));
+}
+
+Eigen::MatrixXd RunCurves::covariance(Quantity quantity, const Vec& ln_t) const {
+  const Eigen::Index count = ln_t.size();
+  Eigen::MatrixXd result(count, count);
+  for (Eigen::Index i = 0; i < count; ++i)
+    for (Eigen::Index j = 0; j <= i; ++j)
+      result(i, j) = result(j, i) =
+          std::sqrt(variance(quantity, ln_t[i]) * variance(quantity, ln_t[j])) *
+          correlation(quantity, ln_t[i] - ln_t[j]);
+  return result;
+}
+
+double RunCurves::slope(Quantity quantity, double ln_t) const {
+  const double step = grid_.step();
+  return (mean(quantity, ln_t + step) - mean(quantity, ln_t - step)) / (2 * step);
+}
+
+}  // namespace traceraft
