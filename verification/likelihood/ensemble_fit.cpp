@@ -4,96 +4,116 @@
 #include <cmath>
 #include <limits>
 
-#include "backends/nlopt/minimise.hpp"
 #include "verification/likelihood/ensemble_likelihood.hpp"
 #include "verification/measure/fit.hpp"
 
 namespace traceraft {
 namespace {
 
+using Kind = FreeParameter::Kind;
+
 constexpr double kLeastScatter = 0.003, kUsualScatter = 0.1, kLargestScatter = 1;
-constexpr int kMostEvaluations = 400;
-constexpr double kScatterStep = 0.3, kTolerance = 1e-4;
+constexpr int kMostIterations = 60;
+constexpr double kTolerance = 1e-5;  // of the deviance
+constexpr double kHardlyDamped = 1e-2, kMostDamping = 1e6;
+constexpr double kLongestStep = 1, kRoundoff = 1e-9;
 constexpr double kLeastCurvature = 1e-12;  // where curves are flat, no unit is better than another
 
 constexpr std::size_t index(Quantity quantity) {
   return static_cast<std::size_t>(quantity);
 }
 
-// What is free, as a vector of numbers: ln of the unit, the amplitude if there is an effect, and ln
-// of the scatter of each quantity that was measured.
+// Fisher's scoring: Newton's method with the expected second derivatives, damped as Levenberg and
+// Marquardt do until the deviance falls, within bounds.
 class Fitter {
  public:
   Fitter(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
          const UnitPrior& unit)
-      : blocks_(blocks), model_(model), unit_(unit), likelihood_(blocks, model, unit) {
-    for (const ObservedSeries& block : blocks) measured_[index(block.quantity)] = true;
+      : likelihood_(blocks, model, unit) {
+    add({Kind::unit}, unit.lowest(), unit.highest());
+    if (model.changed != nullptr)
+      add({Kind::amplitude}, model.two_sided ? -kLargestAmplitude : 0.0, kLargestAmplitude);
+    for (const Quantity quantity : kQuantities) {
+      if (std::none_of(blocks.begin(), blocks.end(),
+                       [&](const ObservedSeries& block) { return block.quantity == quantity; }))
+        continue;
+      for (const Kind kind : {Kind::vesicle_scatter, Kind::look_scatter})
+        add({kind, quantity}, std::log(kLeastScatter), std::log(kLargestScatter));
+    }
   }
 
-  // `step`: the first one of ln of the unit.
-  EnsembleFit from(const EnsembleFit& start, double step) {
-    request_ = {};
-    add(std::clamp(start.ln_unit, unit_.lowest(), unit_.highest()), unit_.lowest(), unit_.highest(),
-        step);
-    if (model_.changed != nullptr)
-      add(start.amplitude, model_.two_sided ? -kLargestAmplitude : 0.0, kLargestAmplitude, step);
-    const double low = std::log(kLeastScatter), high = std::log(kLargestScatter);
-    for (const Quantity quantity : kQuantities) {
-      if (!measured_[index(quantity)]) continue;
-      add(std::log(start.scatter.vesicle[index(quantity)]), low, high, kScatterStep);
-      add(std::log(start.scatter.look[index(quantity)]), low, high, kScatterStep);
+  EnsembleFit from(EnsembleFit fit) const {
+    for (std::size_t p = 0; p < free_.size(); ++p) free_[p].set(bounded(p, free_[p].get(fit)), fit);
+    double damping = 1e-3;
+    DevianceExpansion here = likelihood_.expand(fit, free_);
+    for (int k = 0; k < kMostIterations; ++k) {
+      const EnsembleFit next = moved(fit, step(here, fit, damping));
+      const double deviance = likelihood_.deviance(next);
+      if (deviance < here.value) {
+        const double gain = here.value - deviance;
+        fit = next;
+        here = likelihood_.expand(fit, free_);
+        damping = std::max(0.1 * damping, 1e-6);
+        if (gain < kTolerance && damping < kHardlyDamped) break;  // a damped step may be short
+      } else {
+        damping *= 8;
+        if (damping > kMostDamping) break;
+      }
     }
-    EnsembleFit at = start;
-    request_.function = [&](const std::vector<double>& x) {
-      set(x, at);
-      return likelihood_.deviance(at);
-    };
-    request_.tolerance = kTolerance;
-    request_.most_evaluations = kMostEvaluations;
-    request_.smooth = true;
-    const Minimum found = minimise(request_);
-    set(found.x, at);
-    at.deviance = found.value;
-    if (model_.changed != nullptr) at.deviation = deviation(at);
-    return at;
+    fit.deviance = here.value;
+    fit.deviation = deviation(here);
+    return fit;
   }
 
  private:
-  void add(double start, double lower, double upper, double step) {
-    request_.start.push_back(std::clamp(start, lower, upper));
-    request_.lower.push_back(lower);
-    request_.upper.push_back(upper);
-    request_.step.push_back(std::min(step, 0.4 * (upper - lower)));
+  void add(const FreeParameter& parameter, double low, double high) {
+    free_.push_back(parameter);
+    bounds_.push_back({low, high});
   }
 
-  void set(const std::vector<double>& x, EnsembleFit& fit) const {
-    auto next = x.begin();
-    fit.ln_unit = *next++;
-    if (model_.changed != nullptr) fit.amplitude = *next++;
-    for (const Quantity quantity : kQuantities) {
-      if (!measured_[index(quantity)]) continue;
-      fit.scatter.vesicle[index(quantity)] = std::exp(*next++);
-      fit.scatter.look[index(quantity)] = std::exp(*next++);
+  double bounded(std::size_t p, double value) const {
+    return std::clamp(value, bounds_[p].low, bounds_[p].high);
+  }
+
+  EnsembleFit moved(EnsembleFit fit, const Vec& by) const {
+    for (std::size_t p = 0; p < free_.size(); ++p)
+      free_[p].set(bounded(p, free_[p].get(fit) + by[static_cast<Eigen::Index>(p)]), fit);
+    return fit;
+  }
+
+  // What would leave its bounds stays where it is.
+  Vec step(const DevianceExpansion& here, const EnsembleFit& fit, double damping) const {
+    Vec gradient = here.gradient;
+    Eigen::MatrixXd hessian = here.hessian;
+    hessian.diagonal() *= 1 + damping;
+    hessian.diagonal().array() += kLeastCurvature;
+    for (std::size_t i = 0; i < free_.size(); ++i) {
+      const auto p = static_cast<Eigen::Index>(i);
+      const double value = free_[i].get(fit), edge = kRoundoff * (bounds_[i].high - bounds_[i].low);
+      const bool leaves =
+          gradient[p] > 0 ? value < bounds_[i].low + edge : value > bounds_[i].high - edge;
+      if (!leaves) continue;
+      gradient[p] = 0;
+      hessian.row(p).setZero();
+      hessian.col(p).setZero();
+      hessian(p, p) = 1;
     }
+    const Vec newton = -hessian.ldlt().solve(gradient);
+    const double longest = newton.cwiseAbs().maxCoeff();
+    return longest > kLongestStep ? Vec(kLongestStep / longest * newton) : newton;
   }
 
-  // Of the amplitude, from the curvature of the deviance, whatever the unit is.
-  double deviation(const EnsembleFit& fit) const {
-    const ObservationMetric metric = metric_of(blocks_, model_, fit);
-    const Vec u = unit_response(blocks_, *model_.base, fit.ln_unit);
-    const Vec e = response(blocks_, *model_.base, *model_.changed, fit.ln_unit);
-    const double known = 1 / (unit_.deviation * unit_.deviation);
-    const double uu = std::max(metric.product(u, u) + known, kLeastCurvature);
-    const double ue = metric.product(u, e);
-    return 1 / std::sqrt(metric.product(e, e) + kLeastCurvature - ue * ue / uu);
+  // Of the amplitude, whatever the unit is; the scatter is independent of both.
+  double deviation(const DevianceExpansion& here) const {
+    if (free_.size() < 2 || free_[1].kind != Kind::amplitude) return 0;
+    const Eigen::MatrixXd& h = here.hessian;
+    const double own = h(1, 1) - h(0, 1) * h(0, 1) / std::max(h(0, 0), kLeastCurvature);
+    return std::sqrt(2 / std::max(own, kLeastCurvature));
   }
 
-  const std::vector<ObservedSeries>& blocks_;
-  const EnsembleModel& model_;
-  const UnitPrior& unit_;
   const EnsembleLikelihood likelihood_;
-  std::array<bool, kQuantities.size()> measured_{};
-  MinimiseRequest request_;
+  std::vector<FreeParameter> free_;
+  std::vector<Interval> bounds_;
 };
 
 }  // namespace
@@ -120,6 +140,10 @@ double UnitPrior::deviance(double ln_unit) const {
   return off * off;
 }
 
+double UnitPrior::slope(double ln_unit) const {
+  return 2 * (ln_unit - std::log(start) - drawn) / (deviation * deviation);
+}
+
 double EnsembleFit::seconds_per_unit() const {
   return std::exp(ln_unit);
 }
@@ -140,7 +164,7 @@ EnsembleFit fit_ensemble(const std::vector<ObservedSeries>& blocks, const Ensemb
   for (const double ln_unit :
        {0.5 * (unit.lowest() + middle), middle, 0.5 * (middle + unit.highest())}) {
     start.ln_unit = ln_unit;
-    const EnsembleFit fit = fitter.from(start, 0.4);
+    const EnsembleFit fit = fitter.from(start);
     if (fit.deviance < best.deviance) best = fit;
   }
   return best;
@@ -148,7 +172,7 @@ EnsembleFit fit_ensemble(const std::vector<ObservedSeries>& blocks, const Ensemb
 
 EnsembleFit fit_ensemble(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
                          const UnitPrior& unit, const EnsembleFit& near) {
-  return Fitter(blocks, model, unit).from(near, 0.1);
+  return Fitter(blocks, model, unit).from(near);
 }
 
 Interval as_probable(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,

@@ -54,6 +54,7 @@ struct UnitPrior {
   double highest() const;
   // −2 ln of the probability density, up to a constant.
   double deviance(double ln_unit) const;
+  double slope(double ln_unit) const;  // its derivative
 };
 EnsembleFit fit_ensemble(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
                          const UnitPrior& unit);

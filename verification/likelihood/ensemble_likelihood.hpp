@@ -1,12 +1,30 @@
-// The likelihood of observations under an ensemble, as a function that is cheap to evaluate many
-// times: what does not depend on the fit is computed once.
+// The likelihood of observations under an ensemble as a function of what is fitted, with its
+// gradient and Fisher's information.
 #pragma once
 
 #include <vector>
 
+#include "kernel/core/types.hpp"
 #include "verification/likelihood/ensemble_fit.hpp"
 
 namespace traceraft {
+
+// A free number of a fit: ln of the unit, the amplitude, or ln of a standard deviation.
+struct FreeParameter {
+  enum class Kind { unit, amplitude, vesicle_scatter, look_scatter };
+  Kind kind;
+  Quantity quantity = Quantity::perimeter;  // of a scatter
+
+  double get(const EnsembleFit& fit) const;
+  void set(double value, EnsembleFit& fit) const;
+};
+
+// A deviance around a fit, with an entry per parameter.
+struct DevianceExpansion {
+  double value;
+  Vec gradient;
+  Eigen::MatrixXd hessian;  // the expected one: twice Fisher's information
+};
 
 class EnsembleLikelihood {
  public:
@@ -14,22 +32,28 @@ class EnsembleLikelihood {
   EnsembleLikelihood(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
                      const UnitPrior& unit);
 
-  // −2 ln of the likelihood at the unit, amplitude and scatter of `at`, and of the prior.
+  // −2 ln of the likelihood and of the prior, up to a constant.
   double deviance(const EnsembleFit& at) const;
+  DevianceExpansion expand(const EnsembleFit& at,
+                           const std::vector<FreeParameter>& parameters) const;
 
  private:
   struct Block {
     const ObservedSeries* series;
-    std::vector<double> correlation;  // of runs, the lower triangle by rows
+    Eigen::MatrixXd correlation;  // of runs, between the times of the looks
   };
-  // Adds Σ r² of the whitened residuals and the diagonal of the Cholesky factor.
-  struct Sums;
-  void add(const Block& block, const EnsembleFit& at, Sums& sums) const;
+  // What looks of a block leave, and their covariance.
+  struct Normal {
+    Vec residual;
+    Eigen::MatrixXd covariance;
+  };
+  Normal normal(const Block& block, const EnsembleFit& at) const;
+  Normal derivative(const Block& block, const EnsembleFit& at,
+                    const FreeParameter& parameter) const;
 
   const EnsembleModel model_;
   const UnitPrior& unit_;
   std::vector<Block> blocks_;
-  std::size_t most_looks_ = 0;  // of a block
 };
 
 }  // namespace traceraft
