@@ -43,7 +43,7 @@ double evaluate(unsigned size, const double* x, double*, void* data) {
 Minimum minimise(const MinimiseRequest& request) {
   const auto size = static_cast<unsigned>(request.start.size());
   const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> optimiser(
-      nlopt_create(request.smooth ? NLOPT_LN_BOBYQA : NLOPT_LN_SBPLX, size), nlopt_destroy);
+      nlopt_create(NLOPT_LN_SBPLX, size), nlopt_destroy);
   if (!optimiser) throw std::runtime_error("NLopt: out of memory");
   Call call{request, optimiser.get(), request.start, 0, 0, nullptr};
   std::vector<double> precision, x = request.start;

@@ -12,7 +12,6 @@ struct MinimiseRequest {
   std::vector<double> step;                                    // first step in each direction, > 0
   double tolerance = 1e-6;                                     // in x, in units of upper − lower
   int most_evaluations = 1000;
-  bool smooth = false;  // a parabola is a good model of it near the minimum; two variables at least
 };
 
 struct Minimum {
@@ -23,8 +22,7 @@ struct Minimum {
 };
 
 // A local minimum within the bounds: Rowan's subplex (SBPLX), robust against functions that are
-// noisy or not smooth, or Powell's BOBYQA of smooth ones, which takes fewer evaluations. Throws
-// what the function throws, std::runtime_error if NLopt fails.
+// noisy or not smooth. Throws what the function throws, std::runtime_error if NLopt fails.
 Minimum minimise(const MinimiseRequest& request);
 
 }  // namespace traceraft

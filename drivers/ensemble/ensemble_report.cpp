@@ -23,10 +23,6 @@ constexpr Statistic kStatistics[] = {
     {"q75", &Distribution::q75},   {"q90", &Distribution::q90},
     {"max", &Distribution::max}};
 
-std::size_t index_of(Quantity quantity) {
-  return static_cast<std::size_t>(quantity);
-}
-
 ChartSeries band(const EnsembleSummary& summary, Quantity quantity, const char* name,
                  double Distribution::*low, double Distribution::*high) {
   ChartSeries series{name, {}, Mark::band};

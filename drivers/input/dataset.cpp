@@ -85,7 +85,7 @@ void write_dataset(const fs::path& folder, const MeasuredVesicles& data,
     csv += csv_cell(m.vesicle) + "," + format_number(m.time) + "," + format_number(m.radius);
     for (const Quantity quantity : kQuantities) {
       const double unit = quantity == Quantity::perimeter ? m.radius : 1;
-      for (const auto& value : {m.of(quantity), m.sigma[static_cast<std::size_t>(quantity)]})
+      for (const auto& value : {m.of(quantity), m.sigma[index_of(quantity)]})
         csv += "," + (value ? format_number(*value * unit) : "");
     }
     csv += "\n";

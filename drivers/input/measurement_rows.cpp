@@ -103,9 +103,9 @@ void read_value(const TableUnits& units, const CsvTable& table, std::size_t row,
   const double value = in_range(table, row, column, 0, highest);
   if (quantity == Quantity::rafts && value != std::floor(value))
     throw InputError(table.where(row, column) + ": a whole number is needed here");
-  m.values[static_cast<std::size_t>(quantity)] = value * unit;
+  m.values[index_of(quantity)] = value * unit;
   if (const auto sigma = sigma_in(units, table, row, column, highest))
-    m.sigma[static_cast<std::size_t>(quantity)] = *sigma * unit;
+    m.sigma[index_of(quantity)] = *sigma * unit;
 }
 
 void check_columns(const CsvTable& table, const std::vector<std::string>& known) {

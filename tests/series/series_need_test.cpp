@@ -64,7 +64,7 @@ TEST(SeriesNeed, NoiseOfMoreVesiclesHasThatOfTheRuns) {
     for (const double t : {2.0, 8.0, 30.0}) {
       Measurement m{std::to_string(v), t, 5, {}, {}};
       for (const Quantity quantity : kQuantities)
-        m.values[static_cast<std::size_t>(quantity)] = runs[0].at(quantity, t);
+        m.values[index_of(quantity)] = runs[0].at(quantity, t);
       data.measurements.push_back(m);
     }
   const UnitPrior unit = UnitPrior::within_factor(1, 2);

@@ -59,7 +59,7 @@ MeasuredVesicles measured(const Law& law, int vesicles, double noise, double sec
       m.time = seconds_per_unit * std::pow(10.0, 0.3 + 0.45 * k + 0.02 * (v % 20));
       m.radius = 5;
       for (const Quantity quantity : kQuantities) {
-        const auto q = static_cast<std::size_t>(quantity);
+        const auto q = index_of(quantity);
         const double scatter =
             noise * normal_random(7 + q, 1, static_cast<std::uint64_t>(10 * v + k));
         m.values[q] = history.at(quantity, m.time) * std::exp(scatter);
@@ -84,7 +84,7 @@ SeriesExplanation compared(const MeasuredVesicles& data, const SeriesRequest& re
 void keep_only(Quantity kept, MeasuredVesicles& data) {
   for (Measurement& m : data.measurements)
     for (const Quantity quantity : kQuantities)
-      if (quantity != kept) m.values[static_cast<std::size_t>(quantity)].reset();
+      if (quantity != kept) m.values[index_of(quantity)].reset();
 }
 
 TEST(EnsembleFit, FindsUnitAndStrength) {
@@ -218,7 +218,7 @@ TEST(ObservationMetric, IsThatOfTheDenseCovariance) {
   for (std::size_t b = 0; b < 2; ++b) {
     const Eigen::Index first = b == 0 ? 0 : n, count = blocks[b].values.size();
     const Quantity quantity = blocks[b].quantity;
-    const auto q = static_cast<std::size_t>(quantity);
+    const auto q = index_of(quantity);
     S.block(first, first, count, count) =
         base.covariance(quantity, blocks[b].ln_t.array() - 0.1).array() +
         scatter.vesicle[q] * scatter.vesicle[q];
@@ -276,7 +276,7 @@ TEST(SeriesExplanation, KnowsErrorsThatAreStated) {
     std::uint64_t k = 0;
     for (Measurement& m : data.measurements)
       for (const Quantity quantity : kQuantities) {
-        const auto q = static_cast<std::size_t>(quantity);
+        const auto q = index_of(quantity);
         m.sigma[q] = 0.2 * *m.values[q];
         m.values[q] = *m.values[q] * std::exp(0.2 * normal_random(50 + set, 1, k++));
       }
@@ -331,7 +331,7 @@ TEST(SeriesExplanation, StaysWithinTheRuns) {
   for (Measurement& m : fast.measurements) {
     const History run = vesicle({}, 3);
     for (const Quantity quantity : kQuantities)
-      m.values[static_cast<std::size_t>(quantity)] = run.at(quantity, std::min(1000.0, 3 * m.time));
+      m.values[index_of(quantity)] = run.at(quantity, std::min(1000.0, 3 * m.time));
   }
   EXPECT_GT(std::exp(explained(fast).base.ln_unit), 0.6);
   for (Measurement& m : fast.measurements) m.time *= 20;

@@ -366,7 +366,7 @@ TEST(Calibration, CountsVesiclesThatShowSomething) {
   const auto leave = [&](std::size_t count) {
     for (std::size_t i = vesicles[count].first; i < data.measurements.size(); ++i)
       for (const Quantity quantity : {Quantity::perimeter, Quantity::rafts})
-        data.measurements[i].values[static_cast<std::size_t>(quantity)] = 0;
+        data.measurements[i].values[index_of(quantity)] = 0;
   };
   leave(3);
   EXPECT_EQ(telling_vesicles(data), (std::vector<int>{0, 1, 2}));

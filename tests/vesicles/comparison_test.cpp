@@ -139,7 +139,7 @@ MeasuredVesicles looked_at(const std::vector<History>& vesicles) {
     for (const double t : {100.0, 300.0, 900.0, 1e5}) {
       Measurement m{"v" + std::to_string(k), t, 5, {}, {}};
       for (const Quantity quantity : kQuantities)
-        m.values[static_cast<std::size_t>(quantity)] = vesicles[k].at(quantity, t);
+        m.values[index_of(quantity)] = vesicles[k].at(quantity, t);
       data.measurements.push_back(m);
     }
   return data;

@@ -18,8 +18,8 @@ MeasuredVesicles data_with(Quantity quantity, double power) {
   MeasuredVesicles data;
   for (const double value : kValues) {
     Measurement m{"a", data.measurements.size() + 1.0, 5, {}, {}};
-    m.values[static_cast<std::size_t>(quantity)] = value;
-    m.sigma[static_cast<std::size_t>(quantity)] = 0.1 * std::pow(value, power);
+    m.values[index_of(quantity)] = value;
+    m.sigma[index_of(quantity)] = 0.1 * std::pow(value, power);
     data.measurements.push_back(m);
   }
   return data;

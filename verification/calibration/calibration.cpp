@@ -32,23 +32,21 @@ Interval logarithms(const Interval& range) {
   return {std::log(range.low), std::log(range.high)};
 }
 
-// All in logarithms. The median of the replicates is a better estimate than the fit to what was
-// measured where that is flat, and takes its minimum from the noise of the runs (bagging: Breiman
-// 1996). `samples`: of vesicles or seeds. `probable`: what the interval cannot leave out.
-// `searched`: of what ends within `edge` of its ends nothing is known.
-CalibratedParameter parameter(const std::string& name, const std::vector<double>& replicates,
-                              int samples, const Interval& probable, const Interval& searched,
-                              double edge) {
-  const double middle = quantile(replicates, 0.5);
+// All in logarithms. `replicates`: estimates from data of the model found. `samples`: of vesicles or
+// seeds. `probable`: what the interval cannot leave out. `searched`: of what ends within `edge` of
+// its ends nothing is known.
+CalibratedParameter parameter(const std::string& name, double found,
+                              const std::vector<double>& replicates, int samples,
+                              const Interval& probable, const Interval& searched, double edge) {
   const Interval percentiles{quantile(replicates, 0.025), quantile(replicates, 0.975)};
-  const Interval wide = widened_for_few(percentiles, middle, samples);
+  const Interval wide = widened_for_few(percentiles, found, samples);
   const double low =
-      std::max(std::min(wide.low, probable.low), std::min(percentiles.low, searched.low));
-  const double high =
-      std::min(std::max(wide.high, probable.high), std::max(percentiles.high, searched.high));
+      std::max(std::min({wide.low, probable.low, found}), std::min(percentiles.low, searched.low));
+  const double high = std::min(std::max({wide.high, probable.high, found}),
+                               std::max(percentiles.high, searched.high));
   const bool within = low > searched.low + edge && high < searched.high - edge;
   return {name,
-          std::exp(middle),
+          std::exp(found),
           {std::exp(low), std::exp(high)},
           within,
           within && high - low < std::log(kDetermined)};
@@ -95,12 +93,14 @@ Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtPara
   const std::vector<std::vector<double>> replicates = fit.replicates();
   const Box simulated = explored(points, sought, 0);
   Calibration result;
-  result.parameters = {parameter("seconds_per_unit", column(replicates, 0), fit.samples(),
-                                 logarithms(fit.units()), logarithms(unit.allowed), kUnitEdge)};
+  const std::vector<double> found = estimates(fit.found());
+  result.parameters = {parameter("seconds_per_unit", found[0], column(replicates, 0),
+                                 fit.samples(), logarithms(fit.units()), logarithms(unit.allowed),
+                                 kUnitEdge)};
   for (std::size_t i = 0; i < sought.size(); ++i) {
     const Interval range{simulated.lower[i], simulated.upper[i]};
-    result.parameters.push_back(parameter(sought[i].name, column(replicates, i + 1), fit.samples(),
-                                          {HUGE_VAL, -HUGE_VAL}, range,
+    result.parameters.push_back(parameter(sought[i].name, found[i + 1], column(replicates, i + 1),
+                                          fit.samples(), {HUGE_VAL, -HUGE_VAL}, range,
                                           kSimulatedEdge * (range.high - range.low)));
   }
   const Eigen::MatrixXd spread = covariance(replicates);

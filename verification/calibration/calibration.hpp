@@ -24,7 +24,7 @@ inline constexpr double kDetermined = 2;
 struct CalibratedParameter {
   std::string name;
   double value;
-  // 95 %, by the bootstrap over vesicles and over runs, widened for few; value: the median of that.
+  // 95 %: what data of the model found would give, with other vesicles and runs, widened for few.
   Interval interval;
   bool within;      // the interval ends within what was explored
   bool determined;  // it does, and spans less than kDetermined

@@ -7,6 +7,7 @@
 #include "kernel/core/random.hpp"
 #include "verification/calibration/calibration_data.hpp"
 #include "verification/calibration/local_regression.hpp"
+#include "verification/likelihood/drawn_vesicles.hpp"
 #include "verification/measure/fit.hpp"
 
 namespace traceraft {
@@ -15,19 +16,13 @@ namespace {
 constexpr int kReplicates = 200;
 constexpr double kOvershoot = 0.5;  // beyond what was explored, over its width
 constexpr std::size_t kStarts = 3;  // best points, where searches begin
+enum Stream : std::uint64_t { kSample = 32, kStart = 33 };
 
 const std::vector<CalibrationPoint>& enough(const std::vector<CalibrationPoint>& points,
                                             const std::vector<SoughtParameter>& sought) {
   if (static_cast<int>(points.size()) < points_of_parabola(static_cast<int>(sought.size())))
     throw InputError("a calibration needs more points");
   return points;
-}
-
-std::vector<int> some_of(const std::vector<int>& vesicles, std::uint64_t replicate) {
-  std::vector<int> result;
-  for (const int k : resample(static_cast<int>(vesicles.size()), replicate, 31))
-    result.push_back(vesicles[k]);
-  return result;
 }
 
 Interval as_probable(const Evidence& evidence, const RunCurves& runs, const EnsembleFit& fit) {
@@ -49,6 +44,21 @@ std::vector<JointFit> best_of(std::vector<JointFit> fits) {
             [](const JointFit& a, const JointFit& b) { return a.fit.deviance < b.fit.deviance; });
   fits.resize(std::min(fits.size(), kStarts));
   return fits;
+}
+
+std::size_t nearest(const std::vector<CalibrationPoint>& points, const std::vector<double>& at) {
+  const auto distance = [&](const CalibrationPoint& point) {
+    double squares = 0;
+    for (std::size_t i = 0; i < at.size(); ++i)
+      squares += (point.ln_parameters[i] - at[i]) * (point.ln_parameters[i] - at[i]);
+    return squares;
+  };
+  return static_cast<std::size_t>(
+      std::min_element(points.begin(), points.end(),
+                       [&](const CalibrationPoint& a, const CalibrationPoint& b) {
+                         return distance(a) < distance(b);
+                       }) -
+      points.begin());
 }
 
 // What a simulation is given says nothing of how it does: fractions count where they are looked
@@ -89,33 +99,47 @@ CalibrationFit::CalibrationFit(const MeasuredVesicles& data,
                                const std::vector<SoughtParameter>& sought,
                                const std::vector<CalibrationPoint>& points, const UnitPrior& unit)
     : data_(data),
+      points_(points),
       unit_(unit),
       vesicles_(telling_vesicles(data)),
       quantities_(quantities_for(sought)),
       count_(static_cast<int>(enough(points, sought).front().runs.size())),
       box_(explored(points, sought, kOvershoot)),
       runs_(points),
-      at_points_(fit_points(evidence(vesicles_), points, runs_)),
-      found_(fit_jointly(evidence(vesicles_), runs_, box_, best_of(at_points_))) {}
+      at_points_(fit_points(evidence(), points, runs_)),
+      found_(fit_jointly(evidence(), runs_, box_, best_of(at_points_))) {}
 
-Interval CalibrationFit::units() const {
-  return as_probable(evidence(vesicles_), runs_.at(found_.ln_parameters), found_.fit);
-}
-
-std::vector<std::vector<double>> CalibrationFit::replicates() const {
-  const Evidence measured = evidence(vesicles_);
+// At each of the points.
+std::vector<Interval> CalibrationFit::probable_units() const {
+  const Evidence measured = evidence();
   std::vector<Interval> units;
   for (std::size_t k = 0; k < at_points_.size(); ++k)
     units.push_back(as_probable(measured, runs_.at_point(k), at_points_[k].fit));
+  return units;
+}
+
+Interval CalibrationFit::units() const {
+  return as_probable(evidence(), runs_.at(found_.ln_parameters), found_.fit);
+}
+
+// The point whose runs are the nearest to what was found, moved there, stand for the vesicles.
+std::vector<std::vector<double>> CalibrationFit::replicates() const {
+  const StatedErrors errors(data_);
+  const std::size_t near = nearest(points_, found_.ln_parameters);
+  const RunCurves there = runs_.at_point(near), here = runs_.at(found_.ln_parameters);
+  const ModelRuns model{&points_[near].runs, &there, &here};
+  const std::vector<Interval> units = probable_units();
   std::vector<std::vector<double>> all;
   for (std::uint64_t r = 1; r <= kReplicates; ++r) {
-    const Evidence drawn = evidence(some_of(vesicles_, r));
-    const RunEmulator others = runs_.with_runs(resample(count_, r, 32));
+    const MeasuredVesicles vesicles = drawn_vesicles(data_, errors, model, found_.fit, r);
+    const UnitPrior unit = drawn_unit(found_.fit, unit_, r);
+    const Evidence drawn{observed_series(vesicles, vesicles_, quantities_), unit};
+    const RunEmulator others = runs_.with_runs(resample(count_, r, kSample));
     // From another point each time, and another D: what is flat is not to be taken for known.
     const std::size_t k = r % at_points_.size();
     JointFit start = at_points_[k];
-    start.fit.ln_unit =
-        std::log(units[k].low) + std::log(units[k].high / units[k].low) * uniform_random(r, 33, 0);
+    start.fit.ln_unit = std::log(units[k].low) +
+                        std::log(units[k].high / units[k].low) * uniform_random(r, kStart, 0);
     JointFit fit = fit_jointly(drawn, others, box_, {start});
     // It may have stayed in a valley of its own, which is not as deep.
     const EnsembleFit at_found = drawn.fit(others.at(found_.ln_parameters), found_.fit);

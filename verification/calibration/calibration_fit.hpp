@@ -17,7 +17,7 @@ std::vector<double> estimates(const JointFit& fit);
 
 class CalibrationFit {
  public:
-  // The data and the unit must outlive it. Throws InputError as calibrate.
+  // The data, the points and the unit must outlive it. Throws InputError as calibrate.
   CalibrationFit(const MeasuredVesicles& data, const std::vector<SoughtParameter>& sought,
                  const std::vector<CalibrationPoint>& points, const UnitPrior& unit);
 
@@ -27,15 +27,15 @@ class CalibrationFit {
   Interval units() const;
   // Vesicles, or seeds if those are fewer: how much estimates scatter is known from so many.
   int samples() const { return std::min(static_cast<int>(vesicles_.size()), count_); }
-  // Estimates of other vesicles and other runs of the same kind.
+  // Estimates from data that the model found would give, with other runs of the same kind.
   std::vector<std::vector<double>> replicates() const;
 
  private:
-  Evidence evidence(const std::vector<int>& vesicles) const {
-    return {observed_series(data_, vesicles, quantities_), unit_};
-  }
+  Evidence evidence() const { return {observed_series(data_, vesicles_, quantities_), unit_}; }
+  std::vector<Interval> probable_units() const;
 
   const MeasuredVesicles& data_;
+  const std::vector<CalibrationPoint>& points_;
   const UnitPrior& unit_;
   std::vector<int> vesicles_;
   std::vector<Quantity> quantities_;

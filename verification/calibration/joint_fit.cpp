@@ -1,39 +1,85 @@
 #include "verification/calibration/joint_fit.hpp"
 
-#include <algorithm>
 #include <cmath>
 
-#include "backends/nlopt/minimise.hpp"
+#include "verification/likelihood/ensemble_likelihood.hpp"
 
 namespace traceraft {
 namespace {
 
-constexpr double kStep = 0.1;  // first step of the logarithms
-constexpr double kTolerance = 1e-3;
-constexpr int kMostEvaluations = 300;
+using Kind = FreeParameter::Kind;
+
+// First what every fit has free, then the parameters that cost simulations.
+class JointLikelihood {
+ public:
+  JointLikelihood(const Evidence& evidence, const RunEmulator& runs, const Box& box)
+      : evidence_(evidence),
+        runs_(runs),
+        free_(evidence.observations, {&runs.at_point(0)}, evidence.unit),
+        sought_(static_cast<Eigen::Index>(box.lower.size())) {
+    const auto joined = [&](const Vec& first, const std::vector<double>& then) {
+      Vec all(first.size() + sought_);
+      all << first, Eigen::Map<const Vec>(then.data(), sought_);
+      return all;
+    };
+    problem_ = {[this](const Vec& x) { return deviance(x); },
+                [this](const Vec& x) { return expand(x); }, joined(free_.lower, box.lower),
+                joined(free_.upper, box.upper)};
+  }
+
+  JointFit from(const JointFit& start) const {
+    Vec x(free_.lower.size() + sought_);
+    x << free_.get(start.fit), Eigen::Map<const Vec>(start.ln_parameters.data(), sought_);
+    const ScoredMinimum found = minimise_by_scoring(problem_, x);
+    JointFit fit{sought(found.x), ensemble(found.x)};
+    fit.fit.deviance = found.at.value;
+    return fit;
+  }
+
+ private:
+  std::vector<double> sought(const Vec& x) const {
+    return {x.data() + free_.lower.size(), x.data() + x.size()};
+  }
+  EnsembleFit ensemble(const Vec& x) const {
+    EnsembleFit fit;
+    free_.set(x, fit);
+    return fit;
+  }
+
+  double deviance(const Vec& x) const {
+    const RunCurves curves = runs_.at(sought(x));
+    return EnsembleLikelihood(evidence_.observations, {&curves}, evidence_.unit)
+        .deviance(ensemble(x));
+  }
+  DevianceExpansion expand(const Vec& x) const {
+    const std::vector<double> ln = sought(x);
+    const RunCurves curves = runs_.at(ln);
+    std::vector<RunCurves> derivatives;
+    for (std::size_t i = 0; i < ln.size(); ++i) derivatives.push_back(runs_.derivative(ln, i));
+    std::vector<FreeParameter> all = free_.all;
+    for (const RunCurves& derivative : derivatives)
+      all.push_back({Kind::curve, Quantity::perimeter, &derivative});
+    return EnsembleLikelihood(evidence_.observations, {&curves}, evidence_.unit)
+        .expand(ensemble(x), all);
+  }
+
+  const Evidence& evidence_;
+  const RunEmulator& runs_;
+  const FreeParameters free_;
+  const Eigen::Index sought_;
+  ScoringProblem problem_;
+};
 
 }  // namespace
 
 JointFit fit_jointly(const Evidence& evidence, const RunEmulator& runs, const Box& box,
                      const std::vector<JointFit>& starts) {
+  const JointLikelihood likelihood(evidence, runs, box);
   JointFit best;
   best.fit.deviance = HUGE_VAL;
   for (const JointFit& start : starts) {
-    EnsembleFit near = start.fit;
-    const auto profile = [&](const std::vector<double>& ln) {
-      const EnsembleFit here = evidence.fit(runs.at(ln), near);
-      near = here;
-      if (here.deviance < best.fit.deviance) best = {ln, here};
-      return here.deviance;
-    };
-    std::vector<double> first = start.ln_parameters;
-    for (std::size_t i = 0; i < first.size(); ++i)
-      first[i] = std::clamp(first[i], box.lower[i], box.upper[i]);
-    if (first.empty())
-      (void)profile(first);
-    else
-      (void)minimise({profile, first, box.lower, box.upper,
-                      std::vector<double>(first.size(), kStep), kTolerance, kMostEvaluations});
+    const JointFit fit = likelihood.from(start);
+    if (fit.fit.deviance < best.fit.deviance) best = fit;
   }
   return best;
 }

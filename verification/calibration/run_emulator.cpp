@@ -57,6 +57,18 @@ RunCurves RunEmulator::at(const std::vector<double>& ln_parameters) const {
   return RunCurves::combined(at_points_, regression_weights(ln_parameters_, ln_parameters, kWidth));
 }
 
+RunCurves RunEmulator::derivative(const std::vector<double>& ln_parameters, std::size_t i) const {
+  constexpr double kStep = 1e-4;
+  std::vector<double> above = ln_parameters, below = ln_parameters;
+  above[i] += kStep;
+  below[i] -= kStep;
+  std::vector<double> weights = regression_weights(ln_parameters_, above, kWidth);
+  const std::vector<double> less = regression_weights(ln_parameters_, below, kWidth);
+  for (std::size_t k = 0; k < weights.size(); ++k)
+    weights[k] = (weights[k] - less[k]) / (2 * kStep);
+  return RunCurves::combined(at_points_, weights);
+}
+
 void RunEmulator::set_curves(const std::vector<int>& sample) {
   at_points_.clear();
   for (const RunSamples& runs : *samples_)

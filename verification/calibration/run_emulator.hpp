@@ -27,6 +27,8 @@ class RunEmulator {
 
   const RunCurves& at_point(std::size_t point) const { return at_points_[point]; }
   RunCurves at(const std::vector<double>& ln_parameters) const;
+  // Of which the mean is the derivative of that by the i-th parameter.
+  RunCurves derivative(const std::vector<double>& ln_parameters, std::size_t i) const;
 
  private:
   void set_curves(const std::vector<int>& sample);

@@ -10,111 +10,32 @@
 namespace traceraft {
 namespace {
 
-using Kind = FreeParameter::Kind;
+constexpr double kUsualScatter = 0.1;
+constexpr double kLeastInformation = 1e-12;
 
-constexpr double kLeastScatter = 0.003, kUsualScatter = 0.1, kLargestScatter = 1;
-constexpr int kMostIterations = 60;
-constexpr double kTolerance = 1e-5;  // of the deviance
-constexpr double kHardlyDamped = 1e-2, kMostDamping = 1e6;
-constexpr double kLongestStep = 1, kRoundoff = 1e-9;
-constexpr double kLeastCurvature = 1e-12;  // where curves are flat, no unit is better than another
-
-constexpr std::size_t index(Quantity quantity) {
-  return static_cast<std::size_t>(quantity);
+// Standard deviation of the amplitude, whatever the unit is; the scatter is independent of both.
+double deviation_of_amplitude(const FreeParameters& free, const Eigen::MatrixXd& h) {
+  if (free.all.size() < 2 || free.all[1].kind != FreeParameter::Kind::amplitude) return 0;
+  const double own = h(1, 1) - h(0, 1) * h(0, 1) / std::max(h(0, 0), kLeastInformation);
+  return std::sqrt(2 / std::max(own, kLeastInformation));
 }
 
-// Fisher's scoring: Newton's method with the expected second derivatives, damped as Levenberg and
-// Marquardt do until the deviance falls, within bounds.
-class Fitter {
- public:
-  Fitter(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
-         const UnitPrior& unit)
-      : likelihood_(blocks, model, unit) {
-    add({Kind::unit}, unit.lowest(), unit.highest());
-    if (model.changed != nullptr)
-      add({Kind::amplitude}, model.two_sided ? -kLargestAmplitude : 0.0, kLargestAmplitude);
-    for (const Quantity quantity : kQuantities) {
-      if (std::none_of(blocks.begin(), blocks.end(),
-                       [&](const ObservedSeries& block) { return block.quantity == quantity; }))
-        continue;
-      for (const Kind kind : {Kind::vesicle_scatter, Kind::look_scatter})
-        add({kind, quantity}, std::log(kLeastScatter), std::log(kLargestScatter));
-    }
-  }
-
-  EnsembleFit from(EnsembleFit fit) const {
-    for (std::size_t p = 0; p < free_.size(); ++p) free_[p].set(bounded(p, free_[p].get(fit)), fit);
-    double damping = 1e-3;
-    DevianceExpansion here = likelihood_.expand(fit, free_);
-    for (int k = 0; k < kMostIterations; ++k) {
-      const EnsembleFit next = moved(fit, step(here, fit, damping));
-      const double deviance = likelihood_.deviance(next);
-      if (deviance < here.value) {
-        const double gain = here.value - deviance;
-        fit = next;
-        here = likelihood_.expand(fit, free_);
-        damping = std::max(0.1 * damping, 1e-6);
-        if (gain < kTolerance && damping < kHardlyDamped) break;  // a damped step may be short
-      } else {
-        damping *= 8;
-        if (damping > kMostDamping) break;
-      }
-    }
-    fit.deviance = here.value;
-    fit.deviation = deviation(here);
+EnsembleFit fit_from(const EnsembleFit& start, const EnsembleLikelihood& likelihood,
+                     const FreeParameters& free) {
+  EnsembleFit fit = start;
+  const auto at = [&](const Vec& x) -> const EnsembleFit& {
+    free.set(x, fit);
     return fit;
-  }
-
- private:
-  void add(const FreeParameter& parameter, double low, double high) {
-    free_.push_back(parameter);
-    bounds_.push_back({low, high});
-  }
-
-  double bounded(std::size_t p, double value) const {
-    return std::clamp(value, bounds_[p].low, bounds_[p].high);
-  }
-
-  EnsembleFit moved(EnsembleFit fit, const Vec& by) const {
-    for (std::size_t p = 0; p < free_.size(); ++p)
-      free_[p].set(bounded(p, free_[p].get(fit) + by[static_cast<Eigen::Index>(p)]), fit);
-    return fit;
-  }
-
-  // What would leave its bounds stays where it is.
-  Vec step(const DevianceExpansion& here, const EnsembleFit& fit, double damping) const {
-    Vec gradient = here.gradient;
-    Eigen::MatrixXd hessian = here.hessian;
-    hessian.diagonal() *= 1 + damping;
-    hessian.diagonal().array() += kLeastCurvature;
-    for (std::size_t i = 0; i < free_.size(); ++i) {
-      const auto p = static_cast<Eigen::Index>(i);
-      const double value = free_[i].get(fit), edge = kRoundoff * (bounds_[i].high - bounds_[i].low);
-      const bool leaves =
-          gradient[p] > 0 ? value < bounds_[i].low + edge : value > bounds_[i].high - edge;
-      if (!leaves) continue;
-      gradient[p] = 0;
-      hessian.row(p).setZero();
-      hessian.col(p).setZero();
-      hessian(p, p) = 1;
-    }
-    const Vec newton = -hessian.ldlt().solve(gradient);
-    const double longest = newton.cwiseAbs().maxCoeff();
-    return longest > kLongestStep ? Vec(kLongestStep / longest * newton) : newton;
-  }
-
-  // Of the amplitude, whatever the unit is; the scatter is independent of both.
-  double deviation(const DevianceExpansion& here) const {
-    if (free_.size() < 2 || free_[1].kind != Kind::amplitude) return 0;
-    const Eigen::MatrixXd& h = here.hessian;
-    const double own = h(1, 1) - h(0, 1) * h(0, 1) / std::max(h(0, 0), kLeastCurvature);
-    return std::sqrt(2 / std::max(own, kLeastCurvature));
-  }
-
-  const EnsembleLikelihood likelihood_;
-  std::vector<FreeParameter> free_;
-  std::vector<Interval> bounds_;
-};
+  };
+  const ScoredMinimum found = minimise_by_scoring(
+      {[&](const Vec& x) { return likelihood.deviance(at(x)); },
+       [&](const Vec& x) { return likelihood.expand(at(x), free.all); }, free.lower, free.upper},
+      free.get(start));
+  free.set(found.x, fit);
+  fit.deviance = found.at.value;
+  fit.deviation = deviation_of_amplitude(free, found.at.hessian);
+  return fit;
+}
 
 }  // namespace
 
@@ -149,12 +70,13 @@ double EnsembleFit::seconds_per_unit() const {
 }
 
 double EnsembleFit::scatter_beyond_runs(Quantity quantity) const {
-  return std::hypot(scatter.vesicle[index(quantity)], scatter.look[index(quantity)]);
+  return std::hypot(scatter.vesicle[index_of(quantity)], scatter.look[index_of(quantity)]);
 }
 
 EnsembleFit fit_ensemble(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
                          const UnitPrior& unit) {
-  Fitter fitter(blocks, model, unit);
+  const EnsembleLikelihood likelihood(blocks, model, unit);
+  const FreeParameters free(blocks, model, unit);
   EnsembleFit best, start;
   best.deviance = std::numeric_limits<double>::infinity();
   start.scatter.vesicle.fill(kUsualScatter);
@@ -164,7 +86,7 @@ EnsembleFit fit_ensemble(const std::vector<ObservedSeries>& blocks, const Ensemb
   for (const double ln_unit :
        {0.5 * (unit.lowest() + middle), middle, 0.5 * (middle + unit.highest())}) {
     start.ln_unit = ln_unit;
-    const EnsembleFit fit = fitter.from(start);
+    const EnsembleFit fit = fit_from(start, likelihood, free);
     if (fit.deviance < best.deviance) best = fit;
   }
   return best;
@@ -172,7 +94,8 @@ EnsembleFit fit_ensemble(const std::vector<ObservedSeries>& blocks, const Ensemb
 
 EnsembleFit fit_ensemble(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
                          const UnitPrior& unit, const EnsembleFit& near) {
-  return Fitter(blocks, model, unit).from(near);
+  return fit_from(near, EnsembleLikelihood(blocks, model, unit),
+                  FreeParameters(blocks, model, unit));
 }
 
 Interval as_probable(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,

@@ -18,8 +18,16 @@ struct EnsembleModel {
 
   // The logarithm at a time (in units of the runs) with the effect at that amplitude.
   double mean(Quantity quantity, double ln_t, double amplitude) const {
-    const double mean = base->mean(quantity, ln_t);
-    return changed == nullptr ? mean : mean + amplitude * (changed->mean(quantity, ln_t) - mean);
+    return base->mean(quantity, ln_t) + amplitude * response(quantity, ln_t);
+  }
+  // Its derivatives by the amplitude and by ln t.
+  double response(Quantity quantity, double ln_t) const {
+    return changed == nullptr ? 0 : changed->mean(quantity, ln_t) - base->mean(quantity, ln_t);
+  }
+  double slope(Quantity quantity, double ln_t, double amplitude) const {
+    const double slope = base->slope(quantity, ln_t);
+    return changed == nullptr ? slope
+                              : slope + amplitude * (changed->slope(quantity, ln_t) - slope);
   }
 };
 

@@ -1,6 +1,7 @@
 #include "verification/likelihood/ensemble_likelihood.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 #include "verification/measure/log_of_product.hpp"
@@ -10,9 +11,7 @@ namespace {
 
 using Kind = FreeParameter::Kind;
 
-constexpr std::size_t index(Quantity quantity) {
-  return static_cast<std::size_t>(quantity);
-}
+constexpr double kLeastScatter = 0.003, kLargestScatter = 1;
 
 double square(double x) {
   return x * x;
@@ -27,9 +26,9 @@ double FreeParameter::get(const EnsembleFit& fit) const {
     case Kind::amplitude:
       return fit.amplitude;
     case Kind::vesicle_scatter:
-      return std::log(fit.scatter.vesicle[index(quantity)]);
+      return std::log(fit.scatter.vesicle[index_of(quantity)]);
     default:
-      return std::log(fit.scatter.look[index(quantity)]);
+      return std::log(fit.scatter.look[index_of(quantity)]);
   }
 }
 
@@ -42,10 +41,10 @@ void FreeParameter::set(double value, EnsembleFit& fit) const {
       fit.amplitude = value;
       break;
     case Kind::vesicle_scatter:
-      fit.scatter.vesicle[index(quantity)] = std::exp(value);
+      fit.scatter.vesicle[index_of(quantity)] = std::exp(value);
       break;
     default:
-      fit.scatter.look[index(quantity)] = std::exp(value);
+      fit.scatter.look[index_of(quantity)] = std::exp(value);
   }
 }
 
@@ -63,34 +62,73 @@ EnsembleLikelihood::EnsembleLikelihood(const std::vector<ObservedSeries>& blocks
   }
 }
 
-EnsembleLikelihood::Normal EnsembleLikelihood::normal(const Block& block,
-                                                      const EnsembleFit& at) const {
+EnsembleLikelihood::Looks EnsembleLikelihood::looks(const Block& block,
+                                                    const EnsembleFit& at) const {
   const ObservedSeries& series = *block.series;
-  const std::size_t q = index(series.quantity);
   const Eigen::Index count = series.values.size();
-  Vec residual(count), deviation(count), own(count);
+  const double scatter = square(at.scatter.look[index_of(series.quantity)]);
+  Looks result{Vec(count), Vec(count), Vec(count)};
   for (Eigen::Index i = 0; i < count; ++i) {
     const double t = series.ln_t[i] - at.ln_unit;
     const double mean = model_.mean(series.quantity, t, at.amplitude);
     const StatedError& stated = series.stated[static_cast<std::size_t>(i)];
-    residual[i] = series.values[i] - mean - stated.bias(mean);
-    deviation[i] = std::sqrt(model_.base->variance(series.quantity, t));
-    own[i] = stated.of_logarithm(mean) + square(at.scatter.look[q]);
+    result.residual[i] = series.values[i] - mean - stated.bias(mean);
+    result.run[i] = std::sqrt(model_.base->variance(series.quantity, t));
+    result.own[i] = stated.of_logarithm(mean) + scatter;
   }
-  Eigen::MatrixXd covariance =
-      (block.correlation.array() * (deviation * deviation.transpose()).array() +
-       square(at.scatter.vesicle[q]))
-          .matrix();
-  covariance.diagonal() += own;
-  return {std::move(residual), std::move(covariance)};
+  return result;
+}
+
+double EnsembleLikelihood::mean_derivative(Quantity quantity, double t, const EnsembleFit& at,
+                                           const FreeParameter& parameter) const {
+  switch (parameter.kind) {
+    case Kind::unit:
+      return -model_.slope(quantity, t, at.amplitude);
+    case Kind::amplitude:
+      return model_.response(quantity, t);
+    default:
+      return parameter.derivative->mean(quantity, t);
+  }
+}
+
+EnsembleLikelihood::Looks EnsembleLikelihood::derivative(const Block& block, const EnsembleFit& at,
+                                                         const FreeParameter& parameter) const {
+  constexpr double kStep = 1e-4;  // of the mean, for what stated errors make of it
+  const ObservedSeries& series = *block.series;
+  const Eigen::Index count = series.values.size();
+  Looks result{Vec(count), Vec::Zero(count), Vec(count)};
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const double t = series.ln_t[i] - at.ln_unit;
+    const double mean = model_.mean(series.quantity, t, at.amplitude);
+    const double change = mean_derivative(series.quantity, t, at, parameter);
+    const StatedError& stated = series.stated[static_cast<std::size_t>(i)];
+    const double above = mean + kStep, below = mean - kStep;
+    const double bias = (stated.bias(above) - stated.bias(below)) / (2 * kStep);
+    result.residual[i] = -(1 + bias) * change;
+    result.own[i] =
+        (stated.of_logarithm(above) - stated.of_logarithm(below)) / (2 * kStep) * change;
+    const double variance = model_.base->variance(series.quantity, t);
+    if (parameter.kind == Kind::unit && variance > 0)
+      result.run[i] =
+          -0.5 * model_.base->variance_slope(series.quantity, t) / std::sqrt(variance);
+  }
+  return result;
+}
+
+Eigen::MatrixXd EnsembleLikelihood::covariance(const Block& block, const Looks& looks,
+                                               const EnsembleFit& at) const {
+  Eigen::MatrixXd result = looks.run.asDiagonal() * block.correlation * looks.run.asDiagonal();
+  result.array() += square(at.scatter.vesicle[index_of(block.series->quantity)]);
+  result.diagonal() += looks.own;
+  return result;
 }
 
 double EnsembleLikelihood::deviance(const EnsembleFit& at) const {
   double squares = 0;
   LogOfProduct diagonal;
   for (const Block& block : blocks_) {
-    const Normal here = normal(block, at);
-    const Eigen::LLT<Eigen::MatrixXd> factor(here.covariance);
+    const Looks here = looks(block, at);
+    const Eigen::LLT<Eigen::MatrixXd> factor(covariance(block, here, at));
     squares += factor.matrixL().solve(here.residual).squaredNorm();
     for (Eigen::Index i = 0; i < here.residual.size(); ++i)
       diagonal.multiply(factor.matrixLLT()(i, i));
@@ -98,66 +136,106 @@ double EnsembleLikelihood::deviance(const EnsembleFit& at) const {
   return squares + 2 * diagonal.value() + unit_.deviance(at.ln_unit);
 }
 
-// The unit and the amplitude by central differences; a scatter changes the covariance alone.
-EnsembleLikelihood::Normal EnsembleLikelihood::derivative(const Block& block, const EnsembleFit& at,
-                                                          const FreeParameter& parameter) const {
-  constexpr double kStep = 1e-4;
+// With the covariance K, α = K⁻¹ r and, for each parameter, B = K⁻¹ ∂K:
+//   ∂(rᵀ K⁻¹ r + ln |K|) = 2 α·∂r − αᵀ ∂K α + tr B,   E ∂∂' = 2 ∂rᵀ K⁻¹ ∂r' + tr(B B')
+void EnsembleLikelihood::add_block(const Block& block, const EnsembleFit& at,
+                                   const std::vector<FreeParameter>& parameters,
+                                   DevianceExpansion& sum) const {
+  struct Own {
+    Eigen::Index parameter;
+    Vec residual;           // ∂r
+    Vec solved;             // K⁻¹ ∂r
+    Eigen::MatrixXd share;  // B
+  };
+  const Quantity quantity = block.series->quantity;
   const Eigen::Index count = block.series->values.size();
-  const std::size_t q = index(block.series->quantity);
-  if (parameter.kind == Kind::vesicle_scatter)
-    return {Vec::Zero(count),
-            Eigen::MatrixXd::Constant(count, count, 2 * square(at.scatter.vesicle[q]))};
-  if (parameter.kind == Kind::look_scatter)
-    return {Vec::Zero(count),
-            2 * square(at.scatter.look[q]) * Eigen::MatrixXd::Identity(count, count)};
-  EnsembleFit below = at, above = at;
-  parameter.set(parameter.get(at) - kStep, below);
-  parameter.set(parameter.get(at) + kStep, above);
-  const Normal a = normal(block, below), b = normal(block, above);
-  return {(b.residual - a.residual) / (2 * kStep), (b.covariance - a.covariance) / (2 * kStep)};
+  const Looks here = looks(block, at);
+  const Eigen::MatrixXd inverse = covariance(block, here, at)
+                                      .llt()
+                                      .solve(Eigen::MatrixXd::Identity(count, count));
+  const Vec alpha = inverse.lazyProduct(here.residual);
+  std::vector<Own> all;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const FreeParameter& parameter = parameters[i];
+    const auto p = static_cast<Eigen::Index>(i);
+    if (parameter.scatters() && parameter.quantity != quantity) continue;
+    Own own{p, Vec::Zero(count), Vec::Zero(count), {}};
+    Eigen::MatrixXd change;  // ∂K
+    if (parameter.scatters()) {
+      const double value = 2 * square(std::exp(parameter.get(at)));
+      change = Eigen::MatrixXd::Zero(count, count);
+      if (parameter.kind == Kind::vesicle_scatter)
+        change.setConstant(value);
+      else
+        change.diagonal().setConstant(value);
+    } else {
+      const Looks by = derivative(block, at, parameter);
+      const Eigen::MatrixXd runs = by.run.lazyProduct(here.run.transpose());
+      change = block.correlation.cwiseProduct(runs + runs.transpose());
+      change.diagonal() += by.own;
+      own.residual = by.residual;
+      own.solved = inverse.lazyProduct(by.residual);
+    }
+    own.share = inverse.lazyProduct(change);
+    sum.gradient[p] += 2 * alpha.dot(own.residual) - alpha.dot(change.lazyProduct(alpha)) +
+                       own.share.trace();
+    all.push_back(std::move(own));
+    for (const Own& other : all) {
+      const double product = 2 * all.back().solved.dot(other.residual) +
+                             all.back().share.cwiseProduct(other.share.transpose()).sum();
+      sum.hessian(p, other.parameter) += product;
+      if (other.parameter != p) sum.hessian(other.parameter, p) += product;
+    }
+  }
 }
 
-// With K = L Lᵀ, z = L⁻¹ r and, for each parameter, w = L⁻¹ ∂r and M = L⁻¹ ∂K L⁻ᵀ:
-//   ∂(rᵀ K⁻¹ r + ln |K|) = 2 z·w − zᵀ M z + tr M,   E ∂∂' = 2 w·w' + tr(M M')
 DevianceExpansion EnsembleLikelihood::expand(const EnsembleFit& at,
                                              const std::vector<FreeParameter>& parameters) const {
   const auto size = static_cast<Eigen::Index>(parameters.size());
   DevianceExpansion result{deviance(at), Vec::Zero(size), Eigen::MatrixXd::Zero(size, size)};
-  std::vector<Normal> white(parameters.size());
-  std::vector<Eigen::Index> own;
-  for (const Block& block : blocks_) {
-    const Normal here = normal(block, at);
-    const Eigen::LLT<Eigen::MatrixXd> factor(here.covariance);
-    const auto L = factor.matrixL();
-    const Vec z = L.solve(here.residual);
-    own.clear();
-    for (Eigen::Index p = 0; p < size; ++p) {
-      const FreeParameter& parameter = parameters[static_cast<std::size_t>(p)];
-      const bool scatter =
-          parameter.kind == Kind::vesicle_scatter || parameter.kind == Kind::look_scatter;
-      if (scatter && parameter.quantity != block.series->quantity) continue;
-      Normal& w = white[static_cast<std::size_t>(p)];
-      w = derivative(block, at, parameter);
-      L.solveInPlace(w.residual);
-      L.solveInPlace(w.covariance);
-      w.covariance = L.solve(w.covariance.transpose()).eval();
-      result.gradient[p] += 2 * z.dot(w.residual) - z.dot(w.covariance * z) + w.covariance.trace();
-      own.push_back(p);
-      for (const Eigen::Index o : own) {
-        const Normal& other = white[static_cast<std::size_t>(o)];
-        const double product =
-            2 * w.residual.dot(other.residual) + w.covariance.cwiseProduct(other.covariance).sum();
-        result.hessian(p, o) += product;
-        if (o != p) result.hessian(o, p) += product;
-      }
-    }
-  }
+  for (const Block& block : blocks_) add_block(block, at, parameters, result);
   for (Eigen::Index p = 0; p < size; ++p)
     if (parameters[static_cast<std::size_t>(p)].kind == Kind::unit) {
       result.gradient[p] += unit_.slope(at.ln_unit);
       result.hessian(p, p) += 2 / square(unit_.deviation);
     }
   return result;
+}
+
+FreeParameters::FreeParameters(const std::vector<ObservedSeries>& blocks,
+                               const EnsembleModel& model, const UnitPrior& unit) {
+  std::vector<Interval> bounds;
+  const auto add = [&](const FreeParameter& parameter, double low, double high) {
+    all.push_back(parameter);
+    bounds.push_back({low, high});
+  };
+  add({Kind::unit}, unit.lowest(), unit.highest());
+  if (model.changed != nullptr)
+    add({Kind::amplitude}, model.two_sided ? -kLargestAmplitude : 0.0, kLargestAmplitude);
+  for (const Quantity quantity : kQuantities)
+    if (std::any_of(blocks.begin(), blocks.end(),
+                    [&](const ObservedSeries& block) { return block.quantity == quantity; }))
+      for (const Kind kind : {Kind::vesicle_scatter, Kind::look_scatter})
+        add({kind, quantity}, std::log(kLeastScatter), std::log(kLargestScatter));
+  const auto count = static_cast<Eigen::Index>(all.size());
+  lower.resize(count);
+  upper.resize(count);
+  for (Eigen::Index p = 0; p < count; ++p) {
+    lower[p] = bounds[static_cast<std::size_t>(p)].low;
+    upper[p] = bounds[static_cast<std::size_t>(p)].high;
+  }
+}
+
+Vec FreeParameters::get(const EnsembleFit& fit) const {
+  Vec values(lower.size());
+  for (std::size_t p = 0; p < all.size(); ++p)
+    values[static_cast<Eigen::Index>(p)] = all[p].get(fit);
+  return values;
+}
+
+void FreeParameters::set(const Vec& values, EnsembleFit& fit) const {
+  for (std::size_t p = 0; p < all.size(); ++p)
+    all[p].set(values[static_cast<Eigen::Index>(p)], fit);
 }
 
 }  // namespace traceraft

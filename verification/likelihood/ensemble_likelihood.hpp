@@ -6,24 +6,22 @@
 
 #include "kernel/core/types.hpp"
 #include "verification/likelihood/ensemble_fit.hpp"
+#include "verification/likelihood/scoring.hpp"
 
 namespace traceraft {
 
-// A free number of a fit: ln of the unit, the amplitude, or ln of a standard deviation.
+// A free number of a fit: ln of the unit, the amplitude, ln of a standard deviation, or another
+// number on which the mean curves depend.
 struct FreeParameter {
-  enum class Kind { unit, amplitude, vesicle_scatter, look_scatter };
+  enum class Kind { unit, amplitude, vesicle_scatter, look_scatter, curve };
   Kind kind;
   Quantity quantity = Quantity::perimeter;  // of a scatter
+  const RunCurves* derivative = nullptr;    // of a curve: its mean is that of the mean curves
 
+  bool scatters() const { return kind == Kind::vesicle_scatter || kind == Kind::look_scatter; }
+  // Not of a curve.
   double get(const EnsembleFit& fit) const;
   void set(double value, EnsembleFit& fit) const;
-};
-
-// A deviance around a fit, with an entry per parameter.
-struct DevianceExpansion {
-  double value;
-  Vec gradient;
-  Eigen::MatrixXd hessian;  // the expected one: twice Fisher's information
 };
 
 class EnsembleLikelihood {
@@ -42,18 +40,36 @@ class EnsembleLikelihood {
     const ObservedSeries* series;
     Eigen::MatrixXd correlation;  // of runs, between the times of the looks
   };
-  // What looks of a block leave, and their covariance.
-  struct Normal {
-    Vec residual;
-    Eigen::MatrixXd covariance;
+  // Per look of a block: what is left of the value, the standard deviation of runs, and the
+  // variance of the look by itself.
+  struct Looks {
+    Vec residual, run, own;
   };
-  Normal normal(const Block& block, const EnsembleFit& at) const;
-  Normal derivative(const Block& block, const EnsembleFit& at,
-                    const FreeParameter& parameter) const;
+  Looks looks(const Block& block, const EnsembleFit& at) const;
+  // Derivatives by a parameter that is no scatter.
+  Looks derivative(const Block& block, const EnsembleFit& at, const FreeParameter& parameter) const;
+  double mean_derivative(Quantity quantity, double t, const EnsembleFit& at,
+                         const FreeParameter& parameter) const;
+  Eigen::MatrixXd covariance(const Block& block, const Looks& looks, const EnsembleFit& at) const;
+  void add_block(const Block& block, const EnsembleFit& at,
+                 const std::vector<FreeParameter>& parameters, DevianceExpansion& sum) const;
 
   const EnsembleModel model_;
   const UnitPrior& unit_;
   std::vector<Block> blocks_;
+};
+
+// What every fit of observations has free, with bounds: the unit, the amplitude of an effect if
+// there is one, and the scatter of each quantity that was observed.
+struct FreeParameters {
+  std::vector<FreeParameter> all;
+  Vec lower, upper;
+
+  FreeParameters(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
+                 const UnitPrior& unit);
+  Vec get(const EnsembleFit& fit) const;
+  // `values`: those of this, first.
+  void set(const Vec& values, EnsembleFit& fit) const;
 };
 
 }  // namespace traceraft

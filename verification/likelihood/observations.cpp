@@ -62,7 +62,7 @@ ObservationMetric::ObservationMetric(const std::vector<ObservedSeries>& blocks,
     const Quantity quantity = blocks[b].quantity;
     const Eigen::Index count = blocks[b].values.size();
     if (!only || quantity == *only) {
-      const auto q = static_cast<std::size_t>(quantity);
+      const auto q = index_of(quantity);
       Eigen::MatrixXd covariance = known[b].array() + scatter.vesicle[q] * scatter.vesicle[q];
       covariance.diagonal().array() += scatter.look[q] * scatter.look[q];
       blocks_.push_back({quantity, first, count, covariance.llt()});

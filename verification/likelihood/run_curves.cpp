@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "kernel/core/error.hpp"
 #include "verification/measure/fit.hpp"
 
 namespace traceraft {
@@ -26,7 +27,7 @@ RunSamples::RunSamples(const std::vector<History>& runs, std::vector<double> tim
   const auto rows = static_cast<Eigen::Index>(times_.size());
   const auto columns = static_cast<Eigen::Index>(runs.size());
   for (const Quantity quantity : kQuantities) {
-    Eigen::MatrixXd& values = values_[static_cast<std::size_t>(quantity)];
+    Eigen::MatrixXd& values = values_[index_of(quantity)];
     values.resize(rows, columns);
     for (Eigen::Index j = 0; j < columns; ++j)
       for (Eigen::Index i = 0; i < rows; ++i)
@@ -61,12 +62,38 @@ RunScatter RunSamples::scatter(const std::vector<int>& sample) const {
   return result;
 }
 
+LogSpline::LogSpline(const std::vector<double>& times) {
+  if (times.size() < 2) throw InputError("the runs of an ensemble have no times in common");
+  begin_ = std::log(times.front());
+  step_ = std::log(times.back() / times.front()) / static_cast<double>(times.size() - 1);
+}
+
+LogSpline::Place LogSpline::place(const std::vector<double>& values, double ln_t) const {
+  const auto last = static_cast<double>(values.size() - 1);
+  const double x = std::clamp((ln_t - begin_) / step_, -0.5, last + 0.5);
+  const auto k = std::min(static_cast<std::size_t>(x + 0.5), values.size() - 1);
+  return {values[k == 0 ? 0 : k - 1], values[k], values[std::min(k + 1, values.size() - 1)],
+          x - static_cast<double>(k)};
+}
+
+double LogSpline::at(const std::vector<double>& values, double ln_t) const {
+  const Place p = place(values, ln_t);
+  const double before = 0.5 - p.offset, after = 0.5 + p.offset;
+  return 0.5 * before * before * p.before + (0.75 - p.offset * p.offset) * p.here +
+         0.5 * after * after * p.after;
+}
+
+double LogSpline::slope(const std::vector<double>& values, double ln_t) const {
+  const Place p = place(values, ln_t);
+  return ((0.5 + p.offset) * (p.after - p.here) + (0.5 - p.offset) * (p.here - p.before)) / step_;
+}
+
 RunCurves::RunCurves(const std::vector<History>& runs, const std::vector<int>& sample)
     : RunCurves(curves_of({runs, common_times(runs, kCurveTimes)}, sample)) {}
 
 RunCurves::RunCurves(const std::vector<double>& times, QuantityCurves mean, RunScatter scatter,
                      std::size_t count)
-    : grid_(times), mean_(std::move(mean)), scatter_(std::move(scatter)) {
+    : spline_(times), mean_(std::move(mean)), scatter_(std::move(scatter)) {
   const double of_mean = 1 + 1 / static_cast<double>(count);
   for (std::vector<double>& values : scatter_.variance)
     for (double& value : values) value *= of_mean;
@@ -84,7 +111,7 @@ RunCurves RunCurves::combined(const std::vector<RunCurves>& all,
 }
 
 double RunCurves::correlation(Quantity quantity, double ln_factor) const {
-  return std::pow(scatter_.correlation[static_cast<std::size_t>(quantity)], std::fabs(ln_factor));
+  return std::pow(scatter_.correlation[index_of(quantity)], std::fabs(ln_factor));
 }
 
 Eigen::MatrixXd RunCurves::covariance(Quantity quantity, const Vec& ln_t) const {
@@ -96,11 +123,6 @@ Eigen::MatrixXd RunCurves::covariance(Quantity quantity, const Vec& ln_t) const 
           std::sqrt(variance(quantity, ln_t[i]) * variance(quantity, ln_t[j])) *
           correlation(quantity, ln_t[i] - ln_t[j]);
   return result;
-}
-
-double RunCurves::slope(Quantity quantity, double ln_t) const {
-  const double step = grid_.step();
-  return (mean(quantity, ln_t + step) - mean(quantity, ln_t - step)) / (2 * step);
 }
 
 }  // namespace traceraft

@@ -36,7 +36,27 @@ class RunSamples {
   std::array<Eigen::MatrixXd, kQuantities.size()> values_;  // a row per time, a column per run
 };
 
-// Curves of the logarithm of each quantity: linear in ln t, constant beyond the ends.
+// Functions of ln t by values at times that are evenly spaced in it: quadratic B-splines with the
+// values as control points (de Boor, "A Practical Guide to Splines", 1978). They have a continuous
+// derivative, which a fit needs, reproduce what is linear, and are constant beyond the ends.
+class LogSpline {
+ public:
+  explicit LogSpline(const std::vector<double>& times);  // at least two
+  // `values`: one for each of the times.
+  double at(const std::vector<double>& values, double ln_t) const;
+  double slope(const std::vector<double>& values, double ln_t) const;
+
+ private:
+  // Three neighbouring values, and where ln t is among them, −1/2 to 1/2 steps from the second.
+  struct Place {
+    double before, here, after, offset;
+  };
+  Place place(const std::vector<double>& values, double ln_t) const;
+
+  double begin_, step_;
+};
+
+// Curves of the logarithm of each quantity.
 class RunCurves {
  public:
   // `runs`: at least two that have times > 0 in common. `sample`: which of them, with repetition.
@@ -48,24 +68,27 @@ class RunCurves {
   // Σ weights[k] × means of the k-th, with the scatter of the first. All have the same times.
   static RunCurves combined(const std::vector<RunCurves>& all, const std::vector<double>& weights);
 
-  double mean(Quantity quantity, double ln_t) const { return at(mean_, quantity, ln_t); }
+  double mean(Quantity quantity, double ln_t) const {
+    return spline_.at(mean_[index_of(quantity)], ln_t);
+  }
   // One more run beside the mean of these: the variance of a run times 1 + 1/count.
   double variance(Quantity quantity, double ln_t) const {
-    return at(scatter_.variance, quantity, ln_t);
+    return spline_.at(scatter_.variance[index_of(quantity)], ln_t);
   }
   // Of two logarithms of one run at times that differ by a factor, whose logarithm is given.
   double correlation(Quantity quantity, double ln_factor) const;
   // The covariance of one more run at several times: a row and a column for each.
   Eigen::MatrixXd covariance(Quantity quantity, const Vec& ln_t) const;
-  // The derivative of the mean by ln t.
-  double slope(Quantity quantity, double ln_t) const;
-
- private:
-  double at(const QuantityCurves& curves, Quantity quantity, double ln_t) const {
-    return grid_.at(curves[static_cast<std::size_t>(quantity)], ln_t);
+  // The derivatives of the mean and of the variance by ln t.
+  double slope(Quantity quantity, double ln_t) const {
+    return spline_.slope(mean_[index_of(quantity)], ln_t);
+  }
+  double variance_slope(Quantity quantity, double ln_t) const {
+    return spline_.slope(scatter_.variance[index_of(quantity)], ln_t);
   }
 
-  LogTimes grid_;
+ private:
+  LogSpline spline_;
   QuantityCurves mean_;
   RunScatter scatter_;
 };

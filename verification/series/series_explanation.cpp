@@ -56,9 +56,11 @@ class SeriesSearch {
       : data_(data),
         candidates_(candidates),
         request_(request),
+        blocks_(observed_series(data)),
         curves_(base, candidates, each_once(base.size())),
-        gains_(gains_of(data, curves_, candidates, request.unit)),
-        responses_(observed_series(data), curves_, gains_.base, request.unit),
+        gains_(gains_of(blocks_, curves_, candidates, request.unit,
+                        fit_ensemble(blocks_, {&curves_.base}, request.unit))),
+        responses_(blocks_, curves_, gains_.base, request.unit),
         classes_(classes_of(responses_, candidates.size())),
         null_(null_of(data, base, candidates, gains_.base, request.unit, request.replicates)),
         noise_(noise_of_more(data, base, candidates, gains_.base, request.unit, null_)) {}
@@ -171,7 +173,7 @@ class SeriesSearch {
     const EnsembleModel model{&curves_.base, &curves_.changed[best]};
     result_.trend_p = share_of_noise(
         null_.trend,
-        lacking ? trend_left(observed_series(data_), model, gains_.fits[best]) : gains_.trend);
+        lacking ? trend_left(blocks_, model, gains_.fits[best]) : gains_.trend);
     if (result_.trend_p <= kTrendLevel * request_.false_alarms) {
       result_.finding = Finding::unnamed;
       if (lacking) result_.named = {{candidates_[best].effect}};
@@ -211,6 +213,7 @@ class SeriesSearch {
   const MeasuredVesicles& data_;
   const std::vector<SeriesCandidate>& candidates_;
   const SeriesRequest& request_;
+  const std::vector<ObservedSeries> blocks_;
   const SeriesCurves curves_;
   const SeriesGains gains_;
   const SeriesResponses responses_;

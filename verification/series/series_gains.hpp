@@ -36,8 +36,10 @@ struct SeriesGains {
   double trend;                       // left of the base
   std::vector<SeriesOffset> offsets;  // of the data beside the base
 };
-SeriesGains gains_of(const MeasuredVesicles& data, const SeriesCurves& curves,
-                     const std::vector<SeriesCandidate>& candidates, const UnitPrior& unit);
+// `base`: the fit of the model without any effect.
+SeriesGains gains_of(const std::vector<ObservedSeries>& blocks, const SeriesCurves& curves,
+                     const std::vector<SeriesCandidate>& candidates, const UnitPrior& unit,
+                     const EnsembleFit& base);
 
 // The same of data that the base model would give.
 struct SeriesNull {

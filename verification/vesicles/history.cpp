@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "kernel/core/error.hpp"
 #include "verification/measure/fit.hpp"
 #include "verification/measure/interpolation.hpp"
 
@@ -31,7 +30,7 @@ double History::at(Quantity quantity, double t) const {
 
 double logarithm_of(Quantity quantity, double value) {
   constexpr std::array<double, 3> kLeast = {0.5, 0.5, 0.0016};
-  return std::log(std::max(value, kLeast[static_cast<std::size_t>(quantity)]));
+  return std::log(std::max(value, kLeast[index_of(quantity)]));
 }
 
 std::vector<double> common_times(const std::vector<History>& histories, int per_decade) {
@@ -47,17 +46,6 @@ std::vector<double> common_times(const std::vector<History>& histories, int per_
   for (int i = 0; i <= steps; ++i) times.push_back(begin * std::pow(end / begin, i * 1.0 / steps));
   times.back() = end;
   return times;
-}
-
-LogTimes::LogTimes(const std::vector<double>& times) {
-  if (times.size() < 2) throw InputError("the runs of an ensemble have no times in common");
-  begin_ = std::log(times.front());
-  step_ = std::log(times.back() / times.front()) / static_cast<double>(times.size() - 1);
-}
-
-double LogTimes::at(const std::vector<double>& values, double ln_t) const {
-  return interpolated(
-      values, std::clamp((ln_t - begin_) / step_, 0.0, static_cast<double>(values.size() - 1)));
 }
 
 double quantile(std::vector<double> values, double share) {

@@ -12,6 +12,9 @@ namespace traceraft {
 enum class Quantity { perimeter, rafts, fraction };
 inline constexpr std::array<Quantity, 3> kQuantities = {Quantity::perimeter, Quantity::rafts,
                                                         Quantity::fraction};
+constexpr std::size_t index_of(Quantity quantity) {
+  return static_cast<std::size_t>(quantity);
+}
 struct QuantityName {
   const char* id;     // in files
   const char* label;  // for people
@@ -23,9 +26,9 @@ struct History {
   std::vector<double> time;
   std::array<std::vector<double>, 3> values;  // in the order of kQuantities
 
-  std::vector<double>& of(Quantity quantity) { return values[static_cast<std::size_t>(quantity)]; }
+  std::vector<double>& of(Quantity quantity) { return values[index_of(quantity)]; }
   const std::vector<double>& of(Quantity quantity) const {
-    return values[static_cast<std::size_t>(quantity)];
+    return values[index_of(quantity)];
   }
   // Linear between the times; the number of rafts is that of the time before. The first or the last
   // value beyond the ends. At least one time.
@@ -42,19 +45,6 @@ inline constexpr int kCurveTimes = 20;
 // Evenly spaced in ln t, `per_decade` of them, within what all histories cover (their first
 // positive times, their last ones). Empty if that is nothing.
 std::vector<double> common_times(const std::vector<History>& histories, int per_decade);
-
-// Such times, at least two of them, to interpolate between: linear in ln t, constant beyond the
-// ends.
-class LogTimes {
- public:
-  explicit LogTimes(const std::vector<double>& times);
-  double step() const { return step_; }  // of ln t
-  // `values`: one for each of the times.
-  double at(const std::vector<double>& values, double ln_t) const;
-
- private:
-  double begin_, step_;
-};
 
 // Of several numbers. Quantiles are linear between order statistics.
 struct Distribution {

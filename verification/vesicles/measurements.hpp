@@ -20,10 +20,10 @@ struct Measurement {
   std::array<std::optional<double>, 3> values, sigma;
 
   const std::optional<double>& of(Quantity quantity) const {
-    return values[static_cast<std::size_t>(quantity)];
+    return values[index_of(quantity)];
   }
   double sigma_of(Quantity quantity) const {
-    return sigma[static_cast<std::size_t>(quantity)].value_or(0);
+    return sigma[index_of(quantity)].value_or(0);
   }
   // Rafts whose perimeter or number was measured.
   bool shows_rafts() const {

@@ -20,7 +20,7 @@ constexpr double kByNoise = 2, kMostByNoise = 0.7;
 
 StatedErrors::StatedErrors(const MeasuredVesicles& data) {
   for (const Quantity quantity : kQuantities)
-    laws_[static_cast<std::size_t>(quantity)] = law_of(data, quantity);
+    laws_[index_of(quantity)] = law_of(data, quantity);
 }
 
 StatedErrors::Law StatedErrors::law_of(const MeasuredVesicles& data, Quantity quantity) {

@@ -42,7 +42,7 @@ class StatedErrors {
   struct Law {
     double power = 0, ln_scale = 0;
   };
-  const Law& law(Quantity quantity) const { return laws_[static_cast<std::size_t>(quantity)]; }
+  const Law& law(Quantity quantity) const { return laws_[index_of(quantity)]; }
   static Law law_of(const MeasuredVesicles& data, Quantity quantity);
 
   std::array<Law, kQuantities.size()> laws_{};

@@ -1,0 +1,70 @@
+#include "verification/likelihood/drawn_vesicles.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/core/random.hpp"
+
+namespace traceraft {
+namespace {
+
+enum Stream : std::uint64_t { kRunOf = 1, kVesicle = 2, kLook = 3, kStated = 5, kUnit = 6 };
+constexpr std::uint64_t kNext = 1ull << 32;  // number of one look
+
+// One quantity of one look. `look`: its number in all random streams.
+double drawn_value(const StatedError& stated, double own, Quantity quantity,
+                   std::uint64_t replicate, std::uint64_t look) {
+  const double value = std::exp(stated.drawn(own, [&](std::uint64_t k) {
+    return normal_random(replicate, kStated, look + k * kNext);
+  }));
+  return quantity == Quantity::rafts ? std::max(1.0, std::round(value)) : value;
+}
+
+}  // namespace
+
+double ModelRuns::logarithm(std::size_t k, Quantity quantity, double t) const {
+  const double own = logarithm_of(quantity, run(k).at(quantity, t));
+  if (from == nullptr) return own;
+  return own + to->mean(quantity, std::log(t)) - from->mean(quantity, std::log(t));
+}
+
+MeasuredVesicles drawn_vesicles(const MeasuredVesicles& data, const StatedErrors& errors,
+                                const ModelRuns& model, const EnsembleFit& fit,
+                                std::uint64_t replicate) {
+  MeasuredVesicles drawn = data;
+  const int runs = static_cast<int>(model.runs->size());
+  std::uint64_t vesicle = 0, look = 0;
+  for (const auto& [first, last] : data.vesicles()) {
+    const auto k = static_cast<std::size_t>(random_index(runs, replicate, kRunOf, vesicle));
+    for (std::size_t i = first; i < last; ++i)
+      for (const Quantity quantity : kQuantities) {
+        const auto q = index_of(quantity);
+        ++look;
+        const Measurement& m = data.measurements[i];
+        const double measured = m.of(quantity).value_or(0);
+        if (!(measured > 0) || !(m.time > 0)) continue;  // it says nothing
+        const double t = m.time / fit.seconds_per_unit();
+        double& value = drawn.measurements[i].values[q].emplace(0);
+        if (model.run(k).at(Quantity::rafts, t) < 1) continue;
+        const double own =
+            model.logarithm(k, quantity, t) +
+            fit.scatter.vesicle[q] * normal_random(replicate, kVesicle, 3 * vesicle + q) +
+            fit.scatter.look[q] * normal_random(replicate, kLook, look);
+        value = drawn_value(errors.of(m, quantity), own, quantity, replicate, look);
+        drawn.measurements[i].sigma[q] =
+            m.sigma_of(quantity) * std::pow(value / measured, errors.power(quantity));
+      }
+    ++vesicle;
+  }
+  return drawn;
+}
+
+UnitPrior drawn_unit(const EnsembleFit& fit, const UnitPrior& unit, std::uint64_t replicate) {
+  UnitPrior drawn = unit;
+  if (std::isfinite(unit.deviation))
+    drawn.drawn =
+        fit.ln_unit - std::log(unit.start) + unit.deviation * normal_random(replicate, kUnit, 0);
+  return drawn;
+}
+
+}  // namespace traceraft
