@@ -161,7 +161,7 @@ Chart curve_chart(Quantity quantity, const MeasuredVesicles& data, const SeriesE
   for (const Measurement& m : data.measurements)
     if (m.of(quantity)) measured.points.emplace_back(m.time, *m.of(quantity));
   chart.series.push_back(measured);
-  const RunCurves base(simulated.base, each_once(simulated.base.size()));
+  const RunCurves base(simulated.base);
   const auto add = [&](const std::string& name, const std::vector<double>& times, double ln_unit,
                        const std::function<double(double)>& ln_mean) {
     ChartSeries series{name, {}, Mark::line};
@@ -174,7 +174,7 @@ Chart curve_chart(Quantity quantity, const MeasuredVesicles& data, const SeriesE
   const SeriesScore& best = found.scores.front();
   for (const SeriesCandidate& candidate : simulated.candidates) {
     if (candidate.effect != best.effect) continue;
-    const RunCurves changed(candidate.runs, each_once(candidate.runs.size()));
+    const RunCurves changed(candidate.runs);
     const double amplitude = best.value / candidate.strength;
     add("with " + candidate.effect, common_times(candidate.runs, kOfCharts), best.ln_unit,
         [&](double ln_t) {

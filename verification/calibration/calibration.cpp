@@ -32,36 +32,39 @@ Interval logarithms(const Interval& range) {
   return {std::log(range.low), std::log(range.high)};
 }
 
-// All in logarithms. `replicates`: estimates from data of the model found. `samples`: of vesicles or
-// seeds. `probable`: what the interval cannot leave out. `searched`: of what ends within `edge` of
-// its ends nothing is known.
+// All in logarithms. `replicates`: estimates from data of the model found. By what they miss it, the
+// estimate is corrected (the basic bootstrap: Davison and Hinkley 1997, section 5.2). `samples`: of
+// vesicles or seeds. `probable`: what the interval cannot leave out. `searched`: of what ends within
+// `edge` of its ends nothing is known.
 CalibratedParameter parameter(const std::string& name, double found,
                               const std::vector<double>& replicates, int samples,
                               const Interval& probable, const Interval& searched, double edge) {
-  const Interval percentiles{quantile(replicates, 0.025), quantile(replicates, 0.975)};
-  const Interval wide = widened_for_few(percentiles, found, samples);
-  const double low =
-      std::max(std::min({wide.low, probable.low, found}), std::min(percentiles.low, searched.low));
-  const double high = std::min(std::max({wide.high, probable.high, found}),
-                               std::max(percentiles.high, searched.high));
+  const auto corrected = [&](double share) { return 2 * found - quantile(replicates, share); };
+  const double middle = std::clamp(corrected(0.5), std::min(found, searched.low),
+                                   std::max(found, searched.high));
+  const double centre = corrected(0.5), factor = student_factor(samples);
+  const Interval wide{centre - factor * (centre - corrected(0.975)),
+                      centre + factor * (corrected(0.025) - centre)};
+  const double low = std::max(std::min({wide.low, probable.low, middle}),
+                              std::min(middle, searched.low));
+  const double high = std::min(std::max({wide.high, probable.high, middle}),
+                               std::max(middle, searched.high));
   const bool within = low > searched.low + edge && high < searched.high - edge;
   return {name,
-          std::exp(found),
+          std::exp(middle),
           {std::exp(low), std::exp(high)},
           within,
           within && high - low < std::log(kDetermined)};
 }
 
-// The variance of resamples of n is (n − 1)/n of what it has to be.
-void set_best_powers(const Eigen::MatrixXd& spread, double samples, Calibration& result) {
+void set_best_powers(const Eigen::MatrixXd& spread, Calibration& result) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> directions(spread);
   Vec powers = directions.eigenvectors().col(0);
   powers[0] = -powers[0];  // of D, not of R²/D
   Eigen::Index largest = 0;
   powers.cwiseAbs().maxCoeff(&largest);
   result.best_deviation =
-      std::sqrt(std::max(0.0, directions.eigenvalues()[0]) * samples / (samples - 1)) /
-      std::fabs(powers[largest]);
+      std::sqrt(std::max(0.0, directions.eigenvalues()[0])) / std::fabs(powers[largest]);
   powers /= powers[largest];
   result.best_powers.assign(powers.data(), powers.data() + powers.size());
 }
@@ -99,8 +102,10 @@ Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtPara
                                  kUnitEdge)};
   for (std::size_t i = 0; i < sought.size(); ++i) {
     const Interval range{simulated.lower[i], simulated.upper[i]};
+    const double deviation = fit.found().deviations[i];
+    const Interval probable{found[i + 1] - deviation, found[i + 1] + deviation};
     result.parameters.push_back(parameter(sought[i].name, found[i + 1], column(replicates, i + 1),
-                                          fit.samples(), {HUGE_VAL, -HUGE_VAL}, range,
+                                          fit.samples(), probable, range,
                                           kSimulatedEdge * (range.high - range.low)));
   }
   const Eigen::MatrixXd spread = covariance(replicates);
@@ -108,7 +113,7 @@ Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtPara
   result.correlation =
       deviation.cwiseInverse().asDiagonal() * spread * deviation.cwiseInverse().asDiagonal();
   result.correlation.diagonal().setOnes();  // also of what did not vary at all
-  set_best_powers(spread, fit.samples(), result);
+  set_best_powers(spread, result);
   for (const JointFit& point : fit.at_points()) result.at_points.push_back(point.fit);
   result.best = fit.found().fit;
   result.at_bound = count_at_bound(result.at_points, unit.allowed);

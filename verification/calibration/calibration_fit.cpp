@@ -16,7 +16,7 @@ namespace {
 constexpr int kReplicates = 200;
 constexpr double kOvershoot = 0.5;  // beyond what was explored, over its width
 constexpr std::size_t kStarts = 3;  // best points, where searches begin
-enum Stream : std::uint64_t { kSample = 32, kStart = 33 };
+enum Stream : std::uint64_t { kOthers = 32, kStart = 33 };
 
 const std::vector<CalibrationPoint>& enough(const std::vector<CalibrationPoint>& points,
                                             const std::vector<SoughtParameter>& sought) {
@@ -35,7 +35,7 @@ std::vector<JointFit> fit_points(const Evidence& evidence,
                                  const RunEmulator& runs) {
   std::vector<JointFit> fits;
   for (std::size_t k = 0; k < points.size(); ++k)
-    fits.push_back({points[k].ln_parameters, evidence.fit(runs.at_point(k))});
+    fits.push_back({points[k].ln_parameters, evidence.fit(runs.at_point(k)), {}});
   return fits;
 }
 
@@ -129,12 +129,13 @@ std::vector<std::vector<double>> CalibrationFit::replicates() const {
   const RunCurves there = runs_.at_point(near), here = runs_.at(found_.ln_parameters);
   const ModelRuns model{&points_[near].runs, &there, &here};
   const std::vector<Interval> units = probable_units();
+  const auto count = static_cast<std::size_t>(count_);
   std::vector<std::vector<double>> all;
   for (std::uint64_t r = 1; r <= kReplicates; ++r) {
     const MeasuredVesicles vesicles = drawn_vesicles(data_, errors, model, found_.fit, r);
     const UnitPrior unit = drawn_unit(found_.fit, unit_, r);
     const Evidence drawn{observed_series(vesicles, vesicles_, quantities_), unit};
-    const RunEmulator others = runs_.with_runs(resample(count_, r, kSample));
+    const RunEmulator others = runs_.with_others(weights_of_other_runs(count, r, kOthers));
     // From another point each time, and another D: what is flat is not to be taken for known.
     const std::size_t k = r % at_points_.size();
     JointFit start = at_points_[k];

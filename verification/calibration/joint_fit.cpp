@@ -1,5 +1,6 @@
 #include "verification/calibration/joint_fit.hpp"
 
+#include <Eigen/LU>
 #include <cmath>
 
 #include "verification/likelihood/ensemble_likelihood.hpp"
@@ -31,12 +32,20 @@ class JointLikelihood {
     Vec x(free_.lower.size() + sought_);
     x << free_.get(start.fit), Eigen::Map<const Vec>(start.ln_parameters.data(), sought_);
     const ScoredMinimum found = minimise_by_scoring(problem_, x);
-    JointFit fit{sought(found.x), ensemble(found.x)};
+    JointFit fit{sought(found.x), ensemble(found.x), deviations(found.at.hessian)};
     fit.fit.deviance = found.at.value;
     return fit;
   }
 
  private:
+  // Where nothing is known they are large, not infinite.
+  std::vector<double> deviations(Eigen::MatrixXd information) const {
+    constexpr double kLeast = 1e-9;
+    information.diagonal().array() += kLeast;
+    const Vec variances = 2 * information.inverse().diagonal();
+    const Vec own = variances.tail(sought_).cwiseMax(0).cwiseSqrt();
+    return {own.data(), own.data() + own.size()};
+  }
   std::vector<double> sought(const Vec& x) const {
     return {x.data() + free_.lower.size(), x.data() + x.size()};
   }

@@ -29,6 +29,7 @@ struct Evidence {
 struct JointFit {
   std::vector<double> ln_parameters;
   EnsembleFit fit;
+  std::vector<double> deviations;  // of ln_parameters, by Fisher's information
 };
 
 // The best one that is found from the starts.

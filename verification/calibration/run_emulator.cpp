@@ -11,16 +11,16 @@ namespace {
 // Width of the neighbourhood in which curves are parabolas, in ln of the parameters.
 constexpr double kWidth = 0.5;
 
-RunScatter mean_scatter(const std::vector<RunSamples>& samples, const std::vector<int>& all) {
+RunScatter mean_scatter(const std::vector<RunSamples>& samples) {
   const double share = 1 / static_cast<double>(samples.size());
-  RunScatter mean = samples.front().scatter(all);
+  RunScatter mean = samples.front().scatter();
   for (std::size_t q = 0; q < kQuantities.size(); ++q) {
     std::vector<double>& variance = mean.variance[q];
     std::fill(variance.begin(), variance.end(), 0);
     mean.correlation[q] = 0;
   }
   for (const RunSamples& runs : samples) {
-    const RunScatter more = runs.scatter(all);
+    const RunScatter more = runs.scatter();
     for (std::size_t q = 0; q < kQuantities.size(); ++q) {
       mean.correlation[q] += share * more.correlation[q];
       for (std::size_t i = 0; i < more.variance[q].size(); ++i)
@@ -42,14 +42,14 @@ RunEmulator::RunEmulator(const std::vector<CalibrationPoint>& points)
     ln_parameters_.push_back(point.ln_parameters);
     samples_->emplace_back(point.runs, times);
   }
-  const std::vector<int> each = each_once(points.front().runs.size());
-  scatter_ = mean_scatter(*samples_, each);
-  set_curves(each);
+  set_curves(*samples_);
 }
 
-RunEmulator RunEmulator::with_runs(const std::vector<int>& sample) const {
+RunEmulator RunEmulator::with_others(const Eigen::MatrixXd& weights) const {
+  std::vector<RunSamples> others;
+  for (const RunSamples& samples : *samples_) others.push_back(samples.others(weights));
   RunEmulator result = *this;
-  result.set_curves(sample);
+  result.set_curves(others);
   return result;
 }
 
@@ -69,10 +69,11 @@ RunCurves RunEmulator::derivative(const std::vector<double>& ln_parameters, std:
   return RunCurves::combined(at_points_, weights);
 }
 
-void RunEmulator::set_curves(const std::vector<int>& sample) {
+void RunEmulator::set_curves(const std::vector<RunSamples>& samples) {
+  const RunScatter scatter = mean_scatter(samples);
   at_points_.clear();
-  for (const RunSamples& runs : *samples_)
-    at_points_.emplace_back(runs.times(), runs.means(sample), scatter_, sample.size());
+  for (const RunSamples& runs : samples)
+    at_points_.emplace_back(runs.times(), runs.means(), scatter, runs.count());
 }
 
 }  // namespace traceraft

@@ -21,9 +21,9 @@ class RunEmulator {
  public:
   // As many points as regression_weights wants, all with as many runs.
   explicit RunEmulator(const std::vector<CalibrationPoint>& points);
-  // With some of the runs of each point, with repetition: what is common to the seeds cancels in
-  // the comparison of points.
-  RunEmulator with_runs(const std::vector<int>& sample) const;
+  // With other runs at each point, by the same weights: what is common to the seeds cancels in the
+  // comparison of points.
+  RunEmulator with_others(const Eigen::MatrixXd& weights) const;
 
   const RunCurves& at_point(std::size_t point) const { return at_points_[point]; }
   RunCurves at(const std::vector<double>& ln_parameters) const;
@@ -31,11 +31,10 @@ class RunEmulator {
   RunCurves derivative(const std::vector<double>& ln_parameters, std::size_t i) const;
 
  private:
-  void set_curves(const std::vector<int>& sample);
+  void set_curves(const std::vector<RunSamples>& samples);
 
   std::vector<std::vector<double>> ln_parameters_;
   std::shared_ptr<std::vector<RunSamples>> samples_;  // one per point
-  RunScatter scatter_;                                // of one run
   std::vector<RunCurves> at_points_;
 };
 

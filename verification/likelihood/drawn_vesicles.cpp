@@ -8,7 +8,7 @@
 namespace traceraft {
 namespace {
 
-enum Stream : std::uint64_t { kRunOf = 1, kVesicle = 2, kLook = 3, kStated = 5, kUnit = 6 };
+enum Stream : std::uint64_t { kRun = 1, kVesicle = 2, kLook = 3, kStated = 5, kUnit = 6 };
 constexpr std::uint64_t kNext = 1ull << 32;  // number of one look
 
 // One quantity of one look. `look`: its number in all random streams.
@@ -22,8 +22,10 @@ double drawn_value(const StatedError& stated, double own, Quantity quantity,
 
 }  // namespace
 
-double ModelRuns::logarithm(std::size_t k, Quantity quantity, double t) const {
-  const double own = logarithm_of(quantity, run(k).at(quantity, t));
+double ModelRuns::logarithm(const Vec& weights, Quantity quantity, double t) const {
+  double own = 0;
+  for (std::size_t k = 0; k < runs->size(); ++k)
+    own += weights[static_cast<Eigen::Index>(k)] * logarithm_of(quantity, (*runs)[k].at(quantity, t));
   if (from == nullptr) return own;
   return own + to->mean(quantity, std::log(t)) - from->mean(quantity, std::log(t));
 }
@@ -32,22 +34,21 @@ MeasuredVesicles drawn_vesicles(const MeasuredVesicles& data, const StatedErrors
                                 const ModelRuns& model, const EnsembleFit& fit,
                                 std::uint64_t replicate) {
   MeasuredVesicles drawn = data;
-  const int runs = static_cast<int>(model.runs->size());
   std::uint64_t vesicle = 0, look = 0;
   for (const auto& [first, last] : data.vesicles()) {
-    const auto k = static_cast<std::size_t>(random_index(runs, replicate, kRunOf, vesicle));
+    const Vec weights = weights_of_another_run(model.runs->size(), replicate, kRun, vesicle);
     for (std::size_t i = first; i < last; ++i)
       for (const Quantity quantity : kQuantities) {
         const auto q = index_of(quantity);
-        ++look;
         const Measurement& m = data.measurements[i];
         const double measured = m.of(quantity).value_or(0);
         if (!(measured > 0) || !(m.time > 0)) continue;  // it says nothing
+        ++look;
         const double t = m.time / fit.seconds_per_unit();
         double& value = drawn.measurements[i].values[q].emplace(0);
-        if (model.run(k).at(Quantity::rafts, t) < 1) continue;
+        if (model.logarithm(weights, Quantity::rafts, t) < std::log(kLeastRafts)) continue;
         const double own =
-            model.logarithm(k, quantity, t) +
+            model.logarithm(weights, quantity, t) +
             fit.scatter.vesicle[q] * normal_random(replicate, kVesicle, 3 * vesicle + q) +
             fit.scatter.look[q] * normal_random(replicate, kLook, look);
         value = drawn_value(errors.of(m, quantity), own, quantity, replicate, look);

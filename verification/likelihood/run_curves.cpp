@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "kernel/core/error.hpp"
+#include "kernel/core/random.hpp"
 #include "verification/measure/fit.hpp"
 
 namespace traceraft {
@@ -16,11 +17,40 @@ std::vector<double> vector_of(const Vec& values) {
   return {values.data(), values.data() + values.size()};
 }
 
-RunCurves curves_of(const RunSamples& samples, const std::vector<int>& sample) {
-  return {samples.times(), samples.means(sample), samples.scatter(sample), sample.size()};
+// Runs lose rafts one by one, so that the mean of few of them has steps, and a likelihood has a
+// minimum at each. Binomial weights of standard deviation 0.16 in ln t take these away and leave
+// what is linear.
+std::vector<double> smoothed(std::vector<double> values) {
+  constexpr int kPasses = 4;  // each adds half a squared step to the variance
+  for (int pass = 0; pass < kPasses; ++pass) {
+    const std::vector<double> before = values;
+    for (std::size_t i = 1; i + 1 < values.size(); ++i)
+      values[i] = 0.25 * before[i - 1] + 0.5 * before[i] + 0.25 * before[i + 1];
+  }
+  return values;
 }
 
 }  // namespace
+
+// The sample covariance of n runs is Σ d dᵀ/(n − 1), with d their deviations from the mean: it is
+// that of Σ z d/√(n − 1), with independent normal z.
+Vec weights_of_another_run(std::size_t runs, std::uint64_t seed, std::uint64_t stream,
+                           std::uint64_t index) {
+  Vec z(static_cast<Eigen::Index>(runs));
+  for (Eigen::Index k = 0; k < z.size(); ++k)
+    z[k] = normal_random(seed, stream, index * runs + static_cast<std::uint64_t>(k));
+  const auto count = static_cast<double>(runs);
+  return (1 / count + (z.array() - z.mean()) / std::sqrt(count - 1)).matrix();
+}
+
+Eigen::MatrixXd weights_of_other_runs(std::size_t runs, std::uint64_t seed, std::uint64_t stream) {
+  const auto size = static_cast<Eigen::Index>(runs);
+  Eigen::MatrixXd weights(size, size);
+  for (Eigen::Index k = 0; k < size; ++k)
+    weights.col(k) =
+        weights_of_another_run(runs, seed, stream, static_cast<std::uint64_t>(k));
+  return weights;
+}
 
 RunSamples::RunSamples(const std::vector<History>& runs, std::vector<double> times)
     : times_(std::move(times)) {
@@ -36,23 +66,28 @@ RunSamples::RunSamples(const std::vector<History>& runs, std::vector<double> tim
   }
 }
 
-QuantityCurves RunSamples::means(const std::vector<int>& sample) const {
-  QuantityCurves result;
-  for (std::size_t q = 0; q < result.size(); ++q)
-    result[q] = vector_of(values_[q](Eigen::all, sample).rowwise().mean());
+RunSamples RunSamples::others(const Eigen::MatrixXd& weights) const {
+  RunSamples result = *this;
+  for (Eigen::MatrixXd& values : result.values_) values = (values * weights).eval();
   return result;
 }
 
-RunScatter RunSamples::scatter(const std::vector<int>& sample) const {
+QuantityCurves RunSamples::means() const {
+  QuantityCurves result;
+  for (std::size_t q = 0; q < result.size(); ++q)
+    result[q] = smoothed(vector_of(values_[q].rowwise().mean()));
+  return result;
+}
+
+RunScatter RunSamples::scatter() const {
   RunScatter result;
   const double step = times_.size() > 1 ? std::log(times_[1] / times_[0]) : 1;
   const auto rows = static_cast<Eigen::Index>(times_.size());
   const auto lag = std::min<Eigen::Index>(rows - 1, std::lround(1 / step));
   for (std::size_t q = 0; q < kQuantities.size(); ++q) {
-    const Eigen::MatrixXd some = values_[q](Eigen::all, sample);
-    const Eigen::MatrixXd off = some.colwise() - some.rowwise().mean().eval();
+    const Eigen::MatrixXd off = values_[q].colwise() - values_[q].rowwise().mean().eval();
     const Vec squares = off.rowwise().squaredNorm();
-    result.variance[q] = vector_of(squares / static_cast<double>(sample.size() - 1));
+    result.variance[q] = smoothed(vector_of(squares / static_cast<double>(off.cols() - 1)));
     const Eigen::Index pairs = rows - lag;
     const double product = off.topRows(pairs).cwiseProduct(off.bottomRows(pairs)).sum();
     const double norm = squares.head(pairs).cwiseProduct(squares.tail(pairs)).cwiseSqrt().sum();
@@ -88,8 +123,11 @@ double LogSpline::slope(const std::vector<double>& values, double ln_t) const {
   return ((0.5 + p.offset) * (p.after - p.here) + (0.5 - p.offset) * (p.here - p.before)) / step_;
 }
 
-RunCurves::RunCurves(const std::vector<History>& runs, const std::vector<int>& sample)
-    : RunCurves(curves_of({runs, common_times(runs, kCurveTimes)}, sample)) {}
+RunCurves::RunCurves(const std::vector<History>& runs)
+    : RunCurves(RunSamples(runs, common_times(runs, kCurveTimes))) {}
+
+RunCurves::RunCurves(const RunSamples& samples)
+    : RunCurves(samples.times(), samples.means(), samples.scatter(), samples.count()) {}
 
 RunCurves::RunCurves(const std::vector<double>& times, QuantityCurves mean, RunScatter scatter,
                      std::size_t count)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "kernel/core/types.hpp"
@@ -20,16 +21,25 @@ struct RunScatter {
   std::array<double, kQuantities.size()> correlation;
 };
 
+// Weights of `runs` runs, two at least, that sum to 1. Logarithms weighted by them are those of
+// another run of the same kind: normal, with the mean of the runs and their covariance between times
+// and between quantities. The `index`-th of such runs.
+Vec weights_of_another_run(std::size_t runs, std::uint64_t seed, std::uint64_t stream,
+                           std::uint64_t index);
+// As many others, a column for each.
+Eigen::MatrixXd weights_of_other_runs(std::size_t runs, std::uint64_t seed, std::uint64_t stream);
+
 // Logarithms of runs at times that are evenly spaced in ln t.
 class RunSamples {
  public:
   RunSamples(const std::vector<History>& runs, std::vector<double> times);
 
   const std::vector<double>& times() const { return times_; }
-  // `sample`: indices of runs, with repetition.
-  QuantityCurves means(const std::vector<int>& sample) const;
-  // `sample`: at least two runs.
-  RunScatter scatter(const std::vector<int>& sample) const;
+  // Of other runs; `weights`: a column for each of them.
+  RunSamples others(const Eigen::MatrixXd& weights) const;
+  QuantityCurves means() const;
+  RunScatter scatter() const;  // at least two runs
+  std::size_t count() const { return static_cast<std::size_t>(values_.front().cols()); }
 
  private:
   std::vector<double> times_;
@@ -59,8 +69,9 @@ class LogSpline {
 // Curves of the logarithm of each quantity.
 class RunCurves {
  public:
-  // `runs`: at least two that have times > 0 in common. `sample`: which of them, with repetition.
-  RunCurves(const std::vector<History>& runs, const std::vector<int>& sample);
+  // `runs`: at least two that have times > 0 in common.
+  explicit RunCurves(const std::vector<History>& runs);
+  explicit RunCurves(const RunSamples& samples);
   // `scatter`: of one run. `count`: how many runs `mean` is the mean of.
   RunCurves(const std::vector<double>& times, QuantityCurves mean, RunScatter scatter,
             std::size_t count);

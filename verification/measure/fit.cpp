@@ -108,13 +108,17 @@ std::vector<Interval> bootstrap_all(
 
 // Student's 97.5 % over the normal one (Abramowitz, Stegun 26.7.5), to 1 % for three degrees of
 // freedom and more.
-double factor_for_few(int count) {
-  const double n = count, nu = n - 1, z = 1.959964;
+double student_factor(int count) {
+  const double nu = count - 1, z = 1.959964;
   const auto power = [z](int k) { return std::pow(z, k); };
   const double t = z + (power(3) + z) / (4 * nu) +
                    (5 * power(5) + 16 * power(3) + 3 * z) / (96 * nu * nu) +
                    (3 * power(7) + 19 * power(5) + 17 * power(3) - 15 * z) / (384 * nu * nu * nu);
-  return t / z * std::sqrt(n / nu);
+  return t / z;
+}
+
+double factor_for_few(int count) {
+  return student_factor(count) * std::sqrt(count / (count - 1.0));
 }
 
 Interval widened_for_few(const Interval& interval, double centre, int count) {

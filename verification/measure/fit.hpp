@@ -64,6 +64,9 @@ std::vector<Interval> bootstrap_all(
 // `centre`, the statistic of all, it is widened.
 Interval widened_for_few(const Interval& interval, double centre, int count);
 double factor_for_few(int count);
+// Student's quantile over the normal one alone: for estimates of which the variance is right on
+// average, but known from so many.
+double student_factor(int count);
 
 // Of errors, which have to be small: NaN is the largest of all.
 double larger(double a, double b);

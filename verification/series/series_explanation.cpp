@@ -57,7 +57,7 @@ class SeriesSearch {
         candidates_(candidates),
         request_(request),
         blocks_(observed_series(data)),
-        curves_(base, candidates, each_once(base.size())),
+        curves_(base, candidates),
         gains_(gains_of(blocks_, curves_, candidates, request.unit,
                         fit_ensemble(blocks_, {&curves_.base}, request.unit))),
         responses_(blocks_, curves_, gains_.base, request.unit),
@@ -109,7 +109,7 @@ class SeriesSearch {
                            ? both
                            : std::sqrt(std::max(away.mean(), back.mean()));
     const int runs = static_cast<int>(candidates_.front().runs.size());
-    return std::min(factor_for_few(runs) * own, known);
+    return std::min(student_factor(runs) * own, known);
   }
 
   SeriesScore score_of(std::size_t k) {

@@ -9,15 +9,26 @@
 namespace traceraft {
 namespace {
 
-constexpr std::uint64_t kSample = 4;  // stream of random numbers: runs that are drawn again
+constexpr std::uint64_t kOthers = 4;  // stream of random numbers
+
+RunCurves others_of(const std::vector<History>& runs, const Eigen::MatrixXd& weights) {
+  return RunCurves(RunSamples(runs, common_times(runs, kCurveTimes)).others(weights));
+}
 
 }  // namespace
 
 SeriesCurves::SeriesCurves(const std::vector<History>& runs,
+                           const std::vector<SeriesCandidate>& candidates)
+    : base(runs) {
+  for (const SeriesCandidate& candidate : candidates) changed.emplace_back(candidate.runs);
+}
+
+SeriesCurves::SeriesCurves(const std::vector<History>& runs,
                            const std::vector<SeriesCandidate>& candidates,
-                           const std::vector<int>& sample)
-    : base(runs, sample) {
-  for (const SeriesCandidate& candidate : candidates) changed.emplace_back(candidate.runs, sample);
+                           const Eigen::MatrixXd& weights)
+    : base(others_of(runs, weights)) {
+  for (const SeriesCandidate& candidate : candidates)
+    changed.push_back(others_of(candidate.runs, weights));
 }
 
 SeriesGains gains_of(const std::vector<ObservedSeries>& blocks, const SeriesCurves& curves,
@@ -37,8 +48,7 @@ SeriesGains gains_of(const std::vector<ObservedSeries>& blocks, const SeriesCurv
   return gains;
 }
 
-// Data of the base model, fitted with curves of resampled runs, which hold a third of the runs
-// that data come from not at all and others more than once.
+// Data of the base model, fitted with the mean of other runs like those that there are.
 SeriesNull null_of(const MeasuredVesicles& data, const std::vector<History>& runs,
                    const std::vector<SeriesCandidate>& candidates, const EnsembleFit& fit,
                    const UnitPrior& unit, int replicates) {
@@ -50,13 +60,13 @@ SeriesNull null_of(const MeasuredVesicles& data, const std::vector<History>& run
   result.ln_unit.resize(replicates);
   for (int r = 0; r < replicates; ++r) {
     const auto replicate = static_cast<std::uint64_t>(r + 1);
-    const std::vector<int> sample = resample(static_cast<int>(runs.size()), replicate, kSample);
     const std::vector<ObservedSeries> blocks =
         observed_series(drawn_vesicles(data, errors, {&runs}, fit, replicate));
     const UnitPrior known = drawn_unit(fit, unit, replicate);
-    const SeriesCurves curves(runs, candidates, sample);
+    const SeriesCurves curves(runs, candidates,
+                              weights_of_other_runs(runs.size(), replicate, kOthers));
     const SeriesGains gains = gains_of(blocks, curves, candidates, known,
-                                       fit_ensemble(blocks, {&curves.base}, known, fit));
+                                       fit_ensemble(blocks, {&curves.base}, known));
     gained.row(r) = gains.values.transpose();
     result.trend[r] = gains.trend;
     result.ln_unit[r] = gains.base.ln_unit;

@@ -20,13 +20,15 @@ struct SeriesCandidate {
   std::vector<History> runs;  // in units of R²/D
 };
 
-// The means of all runs, or of a sample of them.
+// What is known of each ensemble.
 struct SeriesCurves {
   RunCurves base;
   std::vector<RunCurves> changed;  // with each candidate
 
+  SeriesCurves(const std::vector<History>& runs, const std::vector<SeriesCandidate>& candidates);
+  // By other runs, with the same weights in all ensembles.
   SeriesCurves(const std::vector<History>& runs, const std::vector<SeriesCandidate>& candidates,
-               const std::vector<int>& sample);
+               const Eigen::MatrixXd& weights);
 };
 
 struct SeriesGains {
