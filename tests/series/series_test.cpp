@@ -525,7 +525,7 @@ TEST(SeriesExplanation, SaysWhatWouldTellClassesApart) {
   const auto explain = [&](const Law& law, int vesicles) {
     return explain_series(measured(law, vesicles, 0.1, 1), ensemble({}), two, request);
   };
-  const SeriesExplanation found = explain({-1 / 3.0, 0.4, 0.05}, kVesicles);  // between both
+  const SeriesExplanation found = explain({-1 / 3.0, 0.35, 0.05}, kVesicles);  // between both
   EXPECT_EQ(found.finding, Finding::ambiguous);
   ASSERT_EQ(found.named.size(), 2u);
   EXPECT_EQ(found.named[0].front(), "cooling");

@@ -30,9 +30,8 @@ Vec scoring_step(const ScoringProblem& problem, const ScoredMinimum& here, doubl
     hessian.col(p).setZero();
     hessian(p, p) = 1;
   }
-  const Vec newton = -hessian.ldlt().solve(gradient);
-  const double longest = newton.cwiseAbs().maxCoeff();
-  return longest > kLongestStep ? Vec(kLongestStep / longest * newton) : newton;
+  // Each by itself: one of which nothing is known is not to hold up the others.
+  return (-hessian.ldlt().solve(gradient)).cwiseMax(-kLongestStep).cwiseMin(kLongestStep);
 }
 
 }  // namespace
