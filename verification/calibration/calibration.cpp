@@ -94,7 +94,7 @@ Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtPara
                       const std::vector<CalibrationPoint>& points, const UnitPrior& unit) {
   const CalibrationFit fit(data, sought, points, unit);
   const std::vector<std::vector<double>> replicates = fit.replicates();
-  const Box simulated = explored(points, sought, 0);
+  const Box simulated = explored(fit.points(), sought, 0);
   Calibration result;
   const std::vector<double> found = estimates(fit.found());
   result.parameters = {parameter("seconds_per_unit", found[0], column(replicates, 0),

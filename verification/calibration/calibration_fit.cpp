@@ -39,6 +39,24 @@ std::vector<JointFit> fit_points(const Evidence& evidence,
   return fits;
 }
 
+// As many as parabolas need in any case, and two more for each parameter, to go through their middle.
+std::vector<CalibrationPoint> not_excluded(const std::vector<CalibrationPoint>& points,
+                                           const std::vector<JointFit>& fits) {
+  constexpr double kExcluded = 30;  // over the best deviance
+  const int parameters = static_cast<int>(points.front().ln_parameters.size());
+  const auto least =
+      std::min(points.size(),
+               static_cast<std::size_t>(points_of_parabola(parameters) + 2 * parameters));
+  std::vector<double> deviances;
+  for (const JointFit& fit : fits) deviances.push_back(fit.fit.deviance);
+  std::sort(deviances.begin(), deviances.end());
+  const double most = std::max(deviances.front() + kExcluded, deviances[least - 1]);
+  std::vector<CalibrationPoint> kept;
+  for (std::size_t k = 0; k < points.size(); ++k)
+    if (fits[k].fit.deviance <= most) kept.push_back(points[k]);
+  return kept;
+}
+
 std::vector<JointFit> best_of(std::vector<JointFit> fits) {
   std::sort(fits.begin(), fits.end(),
             [](const JointFit& a, const JointFit& b) { return a.fit.deviance < b.fit.deviance; });
@@ -99,14 +117,15 @@ CalibrationFit::CalibrationFit(const MeasuredVesicles& data,
                                const std::vector<SoughtParameter>& sought,
                                const std::vector<CalibrationPoint>& points, const UnitPrior& unit)
     : data_(data),
-      points_(points),
       unit_(unit),
       vesicles_(telling_vesicles(data)),
       quantities_(quantities_for(sought)),
       count_(static_cast<int>(enough(points, sought).front().runs.size())),
-      box_(explored(points, sought, kOvershoot)),
-      runs_(points),
-      at_points_(fit_points(evidence(), points, runs_)),
+      at_all_(fit_points(evidence(), points, RunEmulator(points))),
+      points_(not_excluded(points, at_all_)),
+      box_(explored(points_, sought, kOvershoot)),
+      runs_(points_),
+      at_points_(fit_points(evidence(), points_, runs_)),
       found_(fit_jointly(evidence(), runs_, box_, best_of(at_points_))) {}
 
 // At each of the points.

@@ -17,11 +17,14 @@ std::vector<double> estimates(const JointFit& fit);
 
 class CalibrationFit {
  public:
-  // The data, the points and the unit must outlive it. Throws InputError as calibrate.
+  // The data and the unit must outlive it. Throws InputError as calibrate.
   CalibrationFit(const MeasuredVesicles& data, const std::vector<SoughtParameter>& sought,
                  const std::vector<CalibrationPoint>& points, const UnitPrior& unit);
 
-  const std::vector<JointFit>& at_points() const { return at_points_; }
+  // At each of the points that were given.
+  const std::vector<JointFit>& at_points() const { return at_all_; }
+  // Those that the data do not exclude: what is far away says nothing of what is near.
+  const std::vector<CalibrationPoint>& points() const { return points_; }
   const JointFit& found() const { return found_; }
   // Units of time that are about as probable as that found, with the parameters found.
   Interval units() const;
@@ -35,11 +38,12 @@ class CalibrationFit {
   std::vector<Interval> probable_units() const;
 
   const MeasuredVesicles& data_;
-  const std::vector<CalibrationPoint>& points_;
   const UnitPrior& unit_;
   std::vector<int> vesicles_;
   std::vector<Quantity> quantities_;
   int count_;  // of the runs of each point
+  std::vector<JointFit> at_all_;
+  std::vector<CalibrationPoint> points_;
   Box box_;
   RunEmulator runs_;
   std::vector<JointFit> at_points_;
