@@ -42,7 +42,7 @@ CalibratedParameter parameter(const std::string& name, double found,
   const auto corrected = [&](double share) { return 2 * found - quantile(replicates, share); };
   const double middle = std::clamp(corrected(0.5), std::min(found, searched.low),
                                    std::max(found, searched.high));
-  const double centre = corrected(0.5), factor = student_factor(samples);
+  const double centre = corrected(0.5), factor = factor_for_few(samples);
   const Interval wide{centre - factor * (centre - corrected(0.975)),
                       centre + factor * (corrected(0.025) - centre)};
   const double low = std::max(std::min({wide.low, probable.low, middle}),
