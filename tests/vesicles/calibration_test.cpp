@@ -90,7 +90,7 @@ Calibration calibrated(bool start, std::uint64_t seed, double epsilon_start) {
                    around(1.5 * kSeconds));
 }
 
-// Of five vesicles and five runs the percentiles alone hold the truth in 82 % of 120 sets.
+// Five vesicles and five runs: without the factor for few 81 of 120 sets hold the truth.
 TEST(Calibration, KnowsHowLittleFewSay) {
   constexpr int kSets = 120, kFew = 5;
   PublishedFacts facts = design();
@@ -138,7 +138,9 @@ TEST(Calibration, SaysWhatTheDataDoNotDetermine) {
     EXPECT_FALSE(found.parameters[1].determined) << seed;
     ASSERT_EQ(found.best_powers.size(), 2u);
     EXPECT_NEAR(found.best_powers[0] / found.best_powers[1], 0.5, 0.1) << seed;
-    EXPECT_GT(found.correlation(0, 1), 0.9);  // of R²/D with ε
+    // Of R²/D with ε. Replicates reach along the valley as far as the points do, 0.27 in ln ε and
+    // 0.54 in ln R²/D, and scatter by 0.2 to 0.3 across: 0.88 to 0.94.
+    EXPECT_GT(found.correlation(0, 1), 0.85);
     EXPECT_LT(found.best_deviation, 0.15);
   }
 }

@@ -160,12 +160,11 @@ std::vector<std::vector<double>> CalibrationFit::replicates() const {
     JointFit start = at_points_[k];
     start.fit.ln_unit = std::log(units[k].low) +
                         std::log(units[k].high / units[k].low) * uniform_random(r, kStart, 0);
-    JointFit fit = fit_jointly(drawn, others, box_, {start});
+    const JointFit fit = fit_jointly(drawn, others, box_, {start});
     // It may have stayed in a valley of its own, which is not as deep.
-    const EnsembleFit at_found = drawn.fit(others.at(found_.ln_parameters), found_.fit);
-    if (fit.fit.deviance > at_found.deviance + kAboutAsProbable)
-      fit = fit_jointly(drawn, others, box_, {found_});
-    all.push_back(estimates(fit));
+    const JointFit back = fit_jointly(drawn, others, box_, {found_});
+    const bool as_deep = fit.fit.deviance < back.fit.deviance + kAboutAsProbable;
+    all.push_back(estimates(as_deep ? fit : back));
   }
   return all;
 }

@@ -23,8 +23,7 @@ class JointLikelihood {
       all << first, Eigen::Map<const Vec>(then.data(), sought_);
       return all;
     };
-    problem_ = {[this](const Vec& x) { return deviance(x); },
-                [this](const Vec& x) { return expand(x); }, joined(free_.lower, box.lower),
+    problem_ = {[this](const Vec& x) { return expand(x); }, joined(free_.lower, box.lower),
                 joined(free_.upper, box.upper)};
   }
 
@@ -55,11 +54,6 @@ class JointLikelihood {
     return fit;
   }
 
-  double deviance(const Vec& x) const {
-    const RunCurves curves = runs_.at(sought(x));
-    return EnsembleLikelihood(evidence_.observations, {&curves}, evidence_.unit)
-        .deviance(ensemble(x));
-  }
   DevianceExpansion expand(const Vec& x) const {
     const std::vector<double> ln = sought(x);
     const RunCurves curves = runs_.at(ln);

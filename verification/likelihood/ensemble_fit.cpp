@@ -28,8 +28,7 @@ EnsembleFit fit_from(const EnsembleFit& start, const EnsembleLikelihood& likelih
     return fit;
   };
   const ScoredMinimum found = minimise_by_scoring(
-      {[&](const Vec& x) { return likelihood.deviance(at(x)); },
-       [&](const Vec& x) { return likelihood.expand(at(x), free.all); }, free.lower, free.upper},
+      {[&](const Vec& x) { return likelihood.expand(at(x), free.all); }, free.lower, free.upper},
       free.get(start));
   free.set(found.x, fit);
   fit.deviance = found.at.value;

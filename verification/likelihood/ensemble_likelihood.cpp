@@ -17,6 +17,12 @@ double square(double x) {
   return x * x;
 }
 
+double log_determinant(const Eigen::LLT<Eigen::MatrixXd>& factor) {
+  LogOfProduct diagonal;
+  for (Eigen::Index i = 0; i < factor.cols(); ++i) diagonal.multiply(factor.matrixLLT()(i, i));
+  return 2 * diagonal.value();
+}
+
 }  // namespace
 
 double FreeParameter::get(const EnsembleFit& fit) const {
@@ -26,9 +32,9 @@ double FreeParameter::get(const EnsembleFit& fit) const {
     case Kind::amplitude:
       return fit.amplitude;
     case Kind::vesicle_scatter:
-      return std::log(fit.scatter.vesicle[index_of(quantity)]);
+      return square(fit.scatter.vesicle[index_of(quantity)]);
     default:
-      return std::log(fit.scatter.look[index_of(quantity)]);
+      return square(fit.scatter.look[index_of(quantity)]);
   }
 }
 
@@ -41,10 +47,10 @@ void FreeParameter::set(double value, EnsembleFit& fit) const {
       fit.amplitude = value;
       break;
     case Kind::vesicle_scatter:
-      fit.scatter.vesicle[index_of(quantity)] = std::exp(value);
+      fit.scatter.vesicle[index_of(quantity)] = std::sqrt(value);
       break;
     default:
-      fit.scatter.look[index_of(quantity)] = std::exp(value);
+      fit.scatter.look[index_of(quantity)] = std::sqrt(value);
   }
 }
 
@@ -124,16 +130,13 @@ Eigen::MatrixXd EnsembleLikelihood::covariance(const Block& block, const Looks& 
 }
 
 double EnsembleLikelihood::deviance(const EnsembleFit& at) const {
-  double squares = 0;
-  LogOfProduct diagonal;
+  double sum = unit_.deviance(at.ln_unit);
   for (const Block& block : blocks_) {
     const Looks here = looks(block, at);
     const Eigen::LLT<Eigen::MatrixXd> factor(covariance(block, here, at));
-    squares += factor.matrixL().solve(here.residual).squaredNorm();
-    for (Eigen::Index i = 0; i < here.residual.size(); ++i)
-      diagonal.multiply(factor.matrixLLT()(i, i));
+    sum += factor.matrixL().solve(here.residual).squaredNorm() + log_determinant(factor);
   }
-  return squares + 2 * diagonal.value() + unit_.deviance(at.ln_unit);
+  return sum;
 }
 
 // With the covariance K, α = K⁻¹ r and, for each parameter, B = K⁻¹ ∂K:
@@ -150,10 +153,10 @@ void EnsembleLikelihood::add_block(const Block& block, const EnsembleFit& at,
   const Quantity quantity = block.series->quantity;
   const Eigen::Index count = block.series->values.size();
   const Looks here = looks(block, at);
-  const Eigen::MatrixXd inverse = covariance(block, here, at)
-                                      .llt()
-                                      .solve(Eigen::MatrixXd::Identity(count, count));
+  const Eigen::LLT<Eigen::MatrixXd> factor(covariance(block, here, at));
+  const Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(count, count));
   const Vec alpha = inverse.lazyProduct(here.residual);
+  sum.value += alpha.dot(here.residual) + log_determinant(factor);
   std::vector<Own> all;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const FreeParameter& parameter = parameters[i];
@@ -162,12 +165,10 @@ void EnsembleLikelihood::add_block(const Block& block, const EnsembleFit& at,
     Own own{p, Vec::Zero(count), Vec::Zero(count), {}};
     Eigen::MatrixXd change;  // ∂K
     if (parameter.scatters()) {
-      const double value = 2 * square(std::exp(parameter.get(at)));
-      change = Eigen::MatrixXd::Zero(count, count);
       if (parameter.kind == Kind::vesicle_scatter)
-        change.setConstant(value);
+        change.setOnes(count, count);
       else
-        change.diagonal().setConstant(value);
+        change.setIdentity(count, count);
     } else {
       const Looks by = derivative(block, at, parameter);
       const Eigen::MatrixXd runs = by.run.lazyProduct(here.run.transpose());
@@ -192,7 +193,7 @@ void EnsembleLikelihood::add_block(const Block& block, const EnsembleFit& at,
 DevianceExpansion EnsembleLikelihood::expand(const EnsembleFit& at,
                                              const std::vector<FreeParameter>& parameters) const {
   const auto size = static_cast<Eigen::Index>(parameters.size());
-  DevianceExpansion result{deviance(at), Vec::Zero(size), Eigen::MatrixXd::Zero(size, size)};
+  DevianceExpansion result{unit_.deviance(at.ln_unit), Vec::Zero(size), Eigen::MatrixXd::Zero(size, size)};
   for (const Block& block : blocks_) add_block(block, at, parameters, result);
   for (Eigen::Index p = 0; p < size; ++p)
     if (parameters[static_cast<std::size_t>(p)].kind == Kind::unit) {
@@ -216,7 +217,7 @@ FreeParameters::FreeParameters(const std::vector<ObservedSeries>& blocks,
     if (std::any_of(blocks.begin(), blocks.end(),
                     [&](const ObservedSeries& block) { return block.quantity == quantity; }))
       for (const Kind kind : {Kind::vesicle_scatter, Kind::look_scatter})
-        add({kind, quantity}, std::log(kLeastScatter), std::log(kLargestScatter));
+        add({kind, quantity}, square(kLeastScatter), square(kLargestScatter));
   const auto count = static_cast<Eigen::Index>(all.size());
   lower.resize(count);
   upper.resize(count);

@@ -10,8 +10,9 @@
 
 namespace traceraft {
 
-// A free number of a fit: ln of the unit, the amplitude, ln of a standard deviation, or another
-// number on which the mean curves depend.
+// A free number of a fit: ln of the unit, the amplitude, the variance of a scatter, or another number
+// on which the mean curves depend. Near zero a likelihood is smooth in a variance, but flat in its
+// logarithm.
 struct FreeParameter {
   enum class Kind { unit, amplitude, vesicle_scatter, look_scatter, curve };
   Kind kind;

@@ -8,7 +8,7 @@ namespace traceraft {
 namespace {
 
 constexpr int kMostIterations = 60;
-constexpr double kTolerance = 1e-5;  // of the deviance
+constexpr double kTolerance = 1e-4;  // of the deviance
 constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-6, kMostDamping = 1e6;
 constexpr double kHardlyDamped = 1e-2;  // a damped step may be short for that reason alone
 constexpr double kLongestStep = 1, kRoundoff = 1e-9;
@@ -41,17 +41,17 @@ ScoredMinimum minimise_by_scoring(const ScoringProblem& problem, const Vec& star
     return x.cwiseMax(problem.lower).cwiseMin(problem.upper);
   };
   ScoredMinimum here{bounded(start), {}};
-  here.at = problem.expand(here.x);
+  here.at = problem.deviance(here.x);
   double damping = kFirstDamping;
   for (int k = 0; k < kMostIterations && damping <= kMostDamping; ++k) {
     const Vec x = bounded(here.x + scoring_step(problem, here, damping));
-    const double gain = here.at.value - problem.deviance(x);
+    const DevianceExpansion next = problem.deviance(x);
+    const double gain = here.at.value - next.value;
     if (!(gain > 0)) {
       damping *= 8;
       continue;
     }
-    here.x = x;
-    here.at = problem.expand(x);
+    here = {x, next};
     damping = std::max(0.1 * damping, kLeastDamping);
     if (gain < kTolerance && damping < kHardlyDamped) break;
   }

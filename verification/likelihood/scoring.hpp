@@ -16,8 +16,7 @@ struct DevianceExpansion {
 };
 
 struct ScoringProblem {
-  std::function<double(const Vec&)> deviance;
-  std::function<DevianceExpansion(const Vec&)> expand;
+  std::function<DevianceExpansion(const Vec&)> deviance;
   Vec lower, upper;  // bounds of each parameter
 };
 
