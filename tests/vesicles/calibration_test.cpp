@@ -126,8 +126,8 @@ TEST(Calibration, FindsWhatTheDataDetermine) {
   // vesicle ln t is known to 0.4 at best (x = 4, N = 20), of 17 to 0.1, and a little worse with 40
   // simulations and looks that do not share information as well as that. At a given time ln N goes
   // with −3 ln ε, so that an error of ε makes one of time that is six times as large.
-  EXPECT_LT(quantile(epsilon_errors, 0.5), 0.05);
-  EXPECT_LT(quantile(time_errors, 0.5), 0.25);
+  EXPECT_LT(quantile(epsilon_errors, 0.5), 0.02);
+  EXPECT_LT(quantile(time_errors, 0.5), 0.15);
   EXPECT_GE(held, kSets - 2);
 }
 
