@@ -13,6 +13,7 @@
 #include "verification/calibration/joint_fit.hpp"
 #include "verification/calibration/local_regression.hpp"
 #include "verification/likelihood/ensemble_likelihood.hpp"
+#include "verification/series/series_explanation.hpp"
 #include "verification/vesicles/published.hpp"
 
 namespace traceraft {
@@ -288,6 +289,23 @@ TEST(EnsembleFit, CountsFractionsThatAreAllTheSame) {
         .deviance;
   };
   EXPECT_NEAR(deviance(0.2) - deviance(0.11), 2 * 17 * std::log(std::log(2.0) / std::log(1.1)), 1);
+}
+
+// A calibration and an explanation of the same looks find the same unit of time, and the same scatter.
+TEST(Calibration, FindsWhatAnExplanationFinds) {
+  MeasuredVesicles data = measured(true, 3);
+  for (Measurement& m : data.measurements) m.values[index_of(Quantity::fraction)].reset();
+  const std::vector<History> runs = simulate(kEpsilon, true, 40, 77);
+  SeriesRequest request{UnitPrior::within_factor(1.5 * kSeconds, 8)};
+  request.replicates = 9;
+  const SeriesExplanation explained =
+      explain_series(data, runs, {{"another", 1, true, simulate(1.2 * kEpsilon, true, 40, 77)}},
+                     request);
+  const EnsembleFit found = calibrate(data, {}, {{{}, runs}}, request.unit).best;
+  EXPECT_NEAR(found.ln_unit, explained.base.ln_unit, 1e-3);
+  for (const Quantity quantity : {Quantity::perimeter, Quantity::rafts})
+    EXPECT_NEAR(found.scatter_beyond_runs(quantity), explained.base.scatter_beyond_runs(quantity),
+                1e-3);
 }
 
 TEST(Calibration, DeterminesNothingUnlessItConverges) {
