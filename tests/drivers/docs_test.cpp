@@ -59,10 +59,9 @@ std::string without_markup(std::string text) {
 
 // Lines that belong together. An item of a list stands alone.
 Lines paragraphs(const MarkdownPage& page) {
-  static const std::regex item("(- |\\d+\\. ).*");
   Lines found{""};
   for (const std::string& line : page.lines) {
-    if (!is_prose(line) || std::regex_match(line, item)) found.emplace_back();
+    if (!is_prose(line) || line.rfind("- ", 0) == 0) found.emplace_back();
     if (is_prose(line)) found.back() += line + " ";
   }
   return found;
