@@ -56,7 +56,8 @@ class ExplainPage {
                          : ", curvature sorts nothing where it is the same everywhere."));
     page_.heading("Where this comes from");
     page_.paragraph(program_text() + ". Noise " + formatted("%.3g of c, ", found_.noise) +
-                    text_of(found_.correlation) + ", " + std::to_string(found_.replicates) +
+                    text_of(found_.noise_model.correlation) + ", " +
+                    std::to_string(setup_.request.filter.replicates) +
                     " replicates of noise alone, " +
                     formatted("h/epsilon = %.2f.", found_.h_over_epsilon) + " The model:");
     page_.code(flags_text(setup_.configuration));
@@ -74,9 +75,10 @@ class ExplainPage {
  private:
   // Bounds of effects that have one sign begin at 0.
   std::string chance_text() const {
-    const auto excluding = std::count_if(
-        found_.bounds.begin(), found_.bounds.end(),
-        [](const Bound& bound) { return bound.seen && find_candidate(bound.effect)->two_sided; });
+    const std::vector<Bound> bounds = bounds_of(found_);
+    const auto excluding = std::count_if(bounds.begin(), bounds.end(), [](const Bound& bound) {
+      return bound.seen && find_candidate(bound.effect)->two_sided;
+    });
     if (excluding == 0) return "";
     return formatted(
         " Of the %d effects that may have either sign one excludes 0 by chance in %.0f %% "

@@ -70,7 +70,7 @@ void print_explanation(const Explanation& found, const ExplainSetup& setup) {
   for (const std::string& remark : remarks_on(found, setup)) say("\n%s\n", remark);
   say("\nnoise of the measurements %.3g, %s; patches that disagree significantly with the base "
       "model: %zu\n",
-      found.noise, text_of(found.correlation), found.disagreements.size());
+      found.noise, text_of(found.noise_model.correlation), found.disagreements.size());
 }
 
 }  // namespace traceraft

@@ -52,15 +52,16 @@ std::vector<Row> gap_rows(const Explanation& found) {
   };
   const bool more = found.found.hypothesis.added() > 0;
   const std::string name = is_named(found) ? "what was found" : "what comes closest";
-  add("base model", found.base_gap);
-  if (more) add(name, found.found_gap);
-  if (found.placebo_gap) add("second best", *found.placebo_gap);
-  add("to be expected if nothing is missing", found.floor);
+  add("base model", found.base.gap);
+  if (more) add(name, found.found.gap);
+  if (const auto second = runner_up(found)) add("second best", *second);
+  add("to be expected if nothing is missing", found.found.expected);
   if (more) {
     const auto text = [](const std::optional<double>& share) {
       return share ? formatted("%.0f %%", 100 * *share) : "too little to tell";
     };
-    const SharesClosed closed = shares_closed(found.base_gap, found.found_gap, found.floor);
+    const SharesClosed closed =
+        shares_closed(found.base.gap, found.found.gap, found.found.expected);
     rows.push_back(
         {"closed of what can be closed, in squares", text(closed.train), text(closed.heldout)});
   }

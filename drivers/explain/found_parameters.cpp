@@ -121,7 +121,7 @@ std::optional<DiffusionRange> diffusion_range(const Explanation& found, const Un
 std::vector<FoundBound> found_bounds(const Explanation& found, const Units& base) {
   const Units units = found_units(base, found.found);
   std::vector<FoundBound> result;
-  for (const Bound& bound : found.bounds) {
+  for (const Bound& bound : bounds_of(found)) {
     const ParameterSpec& spec = effects().find(bound.effect).parameters.front();
     const double factor = 1 / to_model_units(spec.unit, units);
     result.push_back(

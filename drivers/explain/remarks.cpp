@@ -14,8 +14,8 @@ namespace {
 // "Vesicle 1, snapshot 3 (12 s): it seems turned by 0.30 rad ..."
 std::string text_of(const FrameChange& change, const ExplainSetup& setup) {
   std::vector<std::string> ways;
-  if (change.turn != 0)
-    ways.push_back(formatted("turned by %.2g rad since the one before", change.turn));
+  if (change.rotation != 0)
+    ways.push_back(formatted("turned by %.2g rad since the one before", change.rotation));
   if (change.gain != 0) ways.push_back(formatted("scaled by %.3g", 1 + change.gain));
   if (change.offset != 0) ways.push_back(formatted("shifted by %.2g", change.offset));
   const FieldSeries& series = setup.series[change.vesicle];
@@ -31,7 +31,7 @@ void add_registered(const Explanation& found, const ExplainSetup& setup,
                     std::vector<std::string>& all) {
   if (found.registered.empty()) return;
   std::vector<std::string> turns;
-  for (const RegisteredTurn& turn : found.registered)
+  for (const RegisteredRotation& turn : found.registered)
     turns.push_back(
         formatted("%.2g rad before snapshot %zu", turn.angle, turn.snapshot + 1) +
         (setup.series.size() > 1 ? " of vesicle " + setup.series[turn.vesicle].vesicle : ""));
@@ -121,19 +121,19 @@ void add_diffusion(const Explanation& found, const Units& base, std::vector<std:
                         "what is missing.");
 }
 
-std::string text_of(const Turn& turn) {
-  switch (turn.why) {
-    case Turn::replaced:
-      return turn.from + " seemed to explain most, until it was compared with " + turn.to + ".";
-    case Turn::left_gap:
-      return turn.from + " came first, but leaves a gap that " + turn.to + " does not leave.";
-    case Turn::foretold:
-      return turn.from + " came first, but with what was held out " + turn.to +
+std::string text_of(const ModelChange& change) {
+  switch (change.reason) {
+    case ModelChange::replaced:
+      return change.from + " seemed to explain most, until it was compared with " + change.to + ".";
+    case ModelChange::left_gap:
+      return change.from + " came first, but leaves a gap that " + change.to + " does not leave.";
+    case ModelChange::foretold:
+      return change.from + " came first, but with what was held out " + change.to +
              " is more probable.";
-    case Turn::is_none:
-      return turn.from + " was found, but " +
-             (turn.to.empty() ? std::string("with the noise of the model that has it")
-                              : "beside " + turn.to) +
+    case ModelChange::is_none:
+      return change.from + " was found, but " +
+             (change.to.empty() ? std::string("with the noise of the model that has it")
+                                : "beside " + change.to) +
              " it turned out to be none.";
   }
   return "";
@@ -141,13 +141,13 @@ std::string text_of(const Turn& turn) {
 
 // What the search thought of before.
 void add_story(const Explanation& found, std::vector<std::string>& all) {
-  for (const Turn& turn : found.turns) {
-    const auto is_from = [&](const ToldApart& t) { return t.effect == turn.from; };
-    const bool said = turn.why == Turn::foretold &&
-                      std::any_of(found.told_apart.begin(), found.told_apart.end(), is_from);
-    if (!said) all.push_back(text_of(turn));
+  for (const ModelChange& change : found.changes) {
+    const auto is_from = [&](const Excluded& t) { return t.effect == change.from; };
+    const bool said = change.reason == ModelChange::foretold &&
+                      std::any_of(found.excluded.begin(), found.excluded.end(), is_from);
+    if (!said) all.push_back(text_of(change));
   }
-  for (const ToldApart& t : found.told_apart)
+  for (const Excluded& t : found.excluded)
     all.push_back(
         t.effect +
         formatted(" explains the snapshots that were fitted about as well, but is less "
@@ -259,15 +259,11 @@ std::vector<std::string> remarks(const Explanation& found, const Units& base) {
   if (found.outliers > 0)
     all.push_back(std::to_string(found.outliers) +
                   " values that are far from all around them were left out.");
-  if (!found.blur_stated)
-    all.push_back(
-        "dataset.toml does not say how blurred the images are (blur, 0 if they are not): "
-        "boundaries that a microscope widens are taken for physics.");
-  if (found.correlation.at_bound)
+  if (found.noise_model.correlation.at_bound)
     all.push_back(formatted(
         "Neighbours share noise over %.2g R, or further, which is not looked for: what is missing "
         "may be taken for such noise, and such noise for what is missing.",
-        found.correlation.length()));
+        found.noise_model.correlation.length()));
   add_pace(found, base, all);
   add_story(found, all);
   add_ends(found, base, all);
@@ -288,12 +284,16 @@ std::vector<std::string> remarks(const Explanation& found, const Units& base) {
 
 std::vector<std::string> remarks_on(const Explanation& found, const ExplainSetup& setup) {
   std::vector<std::string> all = setup.notes;
+  if (!setup.request.blur_stated)
+    all.push_back(
+        "dataset.toml does not say how blurred the images are (blur, 0 if they are not): "
+        "boundaries that a microscope widens are taken for physics.");
   for (std::string& remark : remarks(found, setup.configuration.units()))
     all.push_back(std::move(remark));
   add_diffusion(found, setup.configuration.units(), all);
   add_own(found, setup, all);
   add_registered(found, setup, all);
-  for (const FrameChange& change : found.changes) all.push_back(text_of(change, setup));
+  for (const FrameChange& change : found.frames) all.push_back(text_of(change, setup));
   if (const auto& without = setup.request.without; !without.empty())
     all.push_back("Not looked for, as asked: " + joined(without, ", ") + ".");
   return all;

@@ -65,22 +65,25 @@ void check_against_data(const std::filesystem::path& path, const SearchState& st
     if (vesicle >= series.size() || snapshot >= series[vesicle].snapshots.size())
       refuse(path, "it names a snapshot that the data have not");
   };
-  if (state.noise.size() != series.size()) refuse(path, "it lacks the noise of a vesicle");
+  if (state.so_far.noise_model.levels.size() != series.size())
+    refuse(path, "it lacks the noise of a vesicle");
   for (std::size_t v = 0; v < series.size(); ++v) {
-    if (state.noise[v].size() != series[v].snapshots.size())
+    if (state.so_far.noise_model.levels[v].size() != series[v].snapshots.size())
       refuse(path, "it lacks the noise of a snapshot");
-    for (const double noise : state.noise[v])
+    for (const double noise : state.so_far.noise_model.levels[v])
       if (!(noise > 0)) refuse(path, "a noise is not positive");
   }
   for (const Disagreement& d : state.so_far.disagreements) check(d.vesicle, 0);
-  for (const FrameChange& change : state.so_far.changes) check(change.vesicle, change.snapshot);
+  for (const FrameChange& change : state.so_far.frames) check(change.vesicle, change.snapshot);
   for (const DisagreementMaps* maps : {&state.so_far.base_maps, &state.so_far.found_maps})
     for (const DisagreementMap& map : maps->snapshots) {
       check(map.vesicle, 0);
       if (map.z.size() != maps->snapshots.front().z.size())
         refuse(path, "its maps are of different meshes");
     }
-  if (!state.more && state.so_far.rounds.empty()) refuse(path, "it has ended without a round");
+  const bool early = state.next == SearchStep::start || state.next == SearchStep::calibrate ||
+                     state.next == SearchStep::screen;
+  if (!early && state.so_far.rounds.empty()) refuse(path, "it lacks a round");
   if (!(state.so_far.found.pace > 0)) refuse(path, "its D is not positive");
 }
 

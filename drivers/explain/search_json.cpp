@@ -70,11 +70,20 @@ const Words<Finding>& finding_words() {
   return words;
 }
 
-const Words<Turn::Why>& reasons() {
-  static const Words<Turn::Why> words = {{Turn::replaced, "replaced"},
-                                         {Turn::left_gap, "left-gap"},
-                                         {Turn::foretold, "foretold"},
-                                         {Turn::is_none, "is-none"}};
+const Words<SearchStep>& step_words() {
+  static const Words<SearchStep> words = [] {
+    Words<SearchStep> list;
+    for (const SearchStep step : kSearchSteps) list.emplace_back(step, word_for(step));
+    return list;
+  }();
+  return words;
+}
+
+const Words<ModelChange::Reason>& reasons() {
+  static const Words<ModelChange::Reason> words = {{ModelChange::replaced, "replaced"},
+                                                   {ModelChange::left_gap, "left-gap"},
+                                                   {ModelChange::foretold, "foretold"},
+                                                   {ModelChange::is_none, "is-none"}};
   return words;
 }
 
@@ -184,7 +193,7 @@ template <class Members>
 void describe(Members& members, FrameChange& change) {
   members("vesicle", change.vesicle);
   members("snapshot", change.snapshot);
-  members("turn", change.turn);
+  members("rotation", change.rotation);
   members("gain", change.gain);
   members("offset", change.offset);
 }
@@ -231,40 +240,75 @@ void describe(Members& members, NoiseCorrelation& correlation) {
 }
 
 template <class Members>
-void describe(Members& members, ToldApart& told_apart) {
-  members("effect", told_apart.effect);
-  members("less", told_apart.less);
+void describe(Members& members, NoiseModel& noise) {
+  members("levels", noise.levels);
+  members("first", noise.first);
+  members("correlation", noise.correlation);
 }
 
 template <class Members>
-void describe(Members& members, Turn& turn) {
-  members.word("why", turn.why, reasons());
-  members("from", turn.from);
-  members("to", turn.to);
+void describe(Members& members, ForecastPoint& point) {
+  members("noise", point.noise);
+  members("pace", point.pace);
+  members("hypothesis", point.hypothesis);
+}
+
+template <class Members>
+void describe(Members& members, RegisteredRotation& rotation) {
+  members("vesicle", rotation.vesicle);
+  members("snapshot", rotation.snapshot);
+  members("angle", rotation.angle);
+}
+
+template <class Members>
+void describe(Members& members, Excluded& excluded) {
+  members("effect", excluded.effect);
+  members("less", excluded.less);
+}
+
+template <class Members>
+void describe(Members& members, ModelChange& change) {
+  members.word("reason", change.reason, reasons());
+  members("from", change.from);
+  members("to", change.to);
+}
+
+// Without the mesh of its maps, which the data have.
+template <class Members>
+void describe(Members& members, Explanation& found) {
+  members.word("finding", found.finding, finding_words());
+  members.word("without_gap", found.without_gap, finding_words());
+  members("false_alarms", found.false_alarms);
+  members("pace_doubt", found.pace_doubt);
+  members("h_over_epsilon", found.h_over_epsilon);
+  members("outliers", found.outliers);
+  members("registered", found.registered);
+  members("noise", found.noise);
+  members("noise_model", found.noise_model);
+  members("base", found.base);
+  members("found", found.found);
+  members("rivals", found.rivals);
+  members("excluded", found.excluded);
+  members("changes", found.changes);
+  members("rounds", found.rounds);
+  members("stopped", found.stopped);
+  members("frames", found.frames);
+  members("disagreements", found.disagreements);
+  members("base_maps", found.base_maps);
+  members("found_maps", found.found_maps);
+  members("rerun", found.rerun);
 }
 
 template <class Members>
 void describe(Members& members, SearchState& state) {
-  Explanation& found = state.so_far;
-  members("more", state.more);
-  members("class_weighed", state.told_apart);
-  members("noise", state.noise);
-  members("noise_correlation", state.correlation);
-  members.word("finding", found.finding, finding_words());
-  members.word("without_gap", found.without_gap, finding_words());
-  members("rivals", found.rivals);
-  members("base", found.base);
-  members("found", found.found);
-  members("rounds", found.rounds);
-  members("disagreements", found.disagreements);
-  members("changes", found.changes);
-  members("told_apart", found.told_apart);
-  members("turns", found.turns);
-  members("ahead", state.ahead);
-  members("stopped", found.stopped);
-  members("rerun", found.rerun);
-  members("base_maps", found.base_maps);
-  members("found_maps", found.found_maps);
+  members.word("next", state.next, step_words());
+  members("maps_at", state.maps_at);
+  members("fields_at", state.fields_at);
+  members("weighed", state.weighed);
+  members("eliminated", state.eliminated);
+  members("replacements", state.replacements);
+  members("refits", state.refits);
+  members("so_far", state.so_far);
 }
 
 Json search_json(const SearchState& state) {

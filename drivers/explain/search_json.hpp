@@ -2,7 +2,7 @@
 #pragma once
 
 #include "drivers/input/json_file.hpp"
-#include "verification/explain/search/explanation.hpp"
+#include "verification/explain/search/search_state.hpp"
 
 namespace traceraft {
 

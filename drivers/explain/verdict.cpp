@@ -21,9 +21,9 @@ Json rivals_json(const Explanation& found, const Units& base) {
   return rivals;
 }
 
-Json told_apart_json(const Explanation& found) {
+Json excluded_json(const Explanation& found) {
   Json all = Json::array();
-  for (const ToldApart& t : found.told_apart)
+  for (const Excluded& t : found.excluded)
     all.push_back({{"effect", t.effect}, {"score", -t.less}});
   return all;
 }
@@ -55,7 +55,7 @@ Json closed_json(const Explanation& found) {
   const auto json = [](const std::optional<double>& share) {
     return share ? Json(*share) : Json();
   };
-  const SharesClosed closed = shares_closed(found.base_gap, found.found_gap, found.floor);
+  const SharesClosed closed = shares_closed(found.base.gap, found.found.gap, found.found.expected);
   return {{"train", json(closed.train)}, {"heldout", json(closed.heldout)}};
 }
 
@@ -69,7 +69,7 @@ Json where_json(const Explanation& found, const ExplainSetup& setup) {
 }
 
 Json rounds_json(const Explanation& found) {
-  const bool held_out = found.base_gap.heldout > 0;
+  const bool held_out = found.base.gap.heldout > 0;
   Json rounds = Json::array();
   for (const Round& round : found.rounds) {
     const auto& scores = round.screening.scores;
@@ -111,7 +111,7 @@ Json range_json(const Explanation& found, const Units& base) {
 
 // Length in R.
 Json noise_json(const Explanation& found) {
-  const NoiseCorrelation& shared = found.correlation;
+  const NoiseCorrelation& shared = found.noise_model.correlation;
   return {{"level", found.noise},
           {"share", shared.share()},
           {"length", shared.white() ? Json() : Json(shared.length())},
@@ -163,20 +163,20 @@ Json verdict_json(const Explanation& found, const ExplainSetup& setup) {
           {"parameters", parameters_json(told_parameters(found, fit_shown(found), base))},
           {"diffusion_range", range_json(found, base)},
           {"rivals", rivals_json(found, base)},
-          {"told_apart", told_apart_json(found)},
+          {"told_apart", excluded_json(found)},
           {"bounds", bounds_json(found, base)},
           {"not_looked_for", not_looked_for(found)},
           {"alternatives", alternatives_json(found.rounds.front())},
           {"gap",
-           {{"base", gap_json(found.base_gap)},
-            {"named", gap_json(found.found_gap)},
-            {"placebo", gap_json(found.placebo_gap.value_or(Gaps{}))},
-            {"floor", gap_json(found.floor)}}},
+           {{"base", gap_json(found.base.gap)},
+            {"named", gap_json(found.found.gap)},
+            {"placebo", gap_json(runner_up(found).value_or(Gaps{}))},
+            {"floor", gap_json(found.found.expected)}}},
           {"closed", closed_json(found)},
           {"rerun", rerun_json(found)},
           {"where", where_json(found, setup)},
           {"null",
-           {{"replicates", found.replicates},
+           {{"replicates", setup.request.filter.replicates},
             {"false_alarm_level", found.false_alarms},
             {"p", found.rounds.front().screening.p},
             {"rounds", rounds_json(found)}}},

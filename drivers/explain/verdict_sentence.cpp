@@ -46,7 +46,7 @@ std::string nothing_sentence(const Explanation& found) {
 // An effect that closes next to nothing of the gap is not close to the truth.
 bool closes_something(const Explanation& found, const Refit& fit) {
   constexpr double kLeast = 0.1;
-  const SharesClosed closed = shares_closed(found.base_gap, fit.gap, fit.expected);
+  const SharesClosed closed = shares_closed(found.base.gap, fit.gap, fit.expected);
   return closed.heldout.value_or(closed.train.value_or(0)) >= kLeast;
 }
 

@@ -229,10 +229,10 @@ TEST(Remarks, TellWhatTheSearchThoughtOfBefore) {
   found.found = of_strength("gravity", 0.01);
   found.rounds.resize(1);
   EXPECT_TRUE(remarks(found, kCell).empty());
-  found.turns = {{Turn::replaced, "uptake", "cooling"},
-                 {Turn::left_gap, "cooling", "exchange"},
-                 {Turn::foretold, "exchange", "gravity + uptake"},
-                 {Turn::is_none, "uptake", "gravity"}};
+  found.changes = {{ModelChange::replaced, "uptake", "cooling"},
+                 {ModelChange::left_gap, "cooling", "exchange"},
+                 {ModelChange::foretold, "exchange", "gravity + uptake"},
+                 {ModelChange::is_none, "uptake", "gravity"}};
   const std::vector<std::string> expected{
       "uptake seemed to explain most, until it was compared with cooling.",
       "cooling came first, but leaves a gap that exchange does not leave.",
@@ -240,8 +240,8 @@ TEST(Remarks, TellWhatTheSearchThoughtOfBefore) {
       "uptake was found, but beside gravity it turned out to be none."};
   EXPECT_EQ(remarks(found, kCell), expected);
   // Once is enough.
-  found.turns = {{Turn::foretold, "uptake", "gravity"}};
-  found.told_apart = {{"uptake", 129}};
+  found.changes = {{ModelChange::foretold, "uptake", "gravity"}};
+  found.excluded = {{"uptake", 129}};
   ASSERT_EQ(remarks(found, kCell).size(), 1u);
   EXPECT_NE(remarks(found, kCell)
                 .front()

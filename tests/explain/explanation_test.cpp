@@ -11,8 +11,8 @@
 
 #include "tests/support/small_vesicle.hpp"
 #include "verification/explain/forecast/candidates.hpp"
-#include "verification/explain/search/class_evidence.hpp"
 #include "verification/explain/search/rerun.hpp"
+#include "verification/explain/search/steps.hpp"
 
 namespace traceraft {
 namespace {
@@ -35,6 +35,7 @@ class RivalsTest : public ::testing::Test {
     request_.filter.first_gain = request_.filter.first_offset = 0;
     request_.filter.replicates = 49;
     request_.most_effects = 1;  // what was found, or its rivals
+    request_.confirm = false;
     const std::set<std::string> some{"exchange", "gravity", "line-tension", "uptake"};
     for (const Candidate& candidate : candidates())
       if (some.count(candidate.effect) == 0) request_.without.push_back(candidate.effect);
@@ -55,11 +56,11 @@ class RivalsTest : public ::testing::Test {
   // As if a first round had found the one, and that the others explain the data as well.
   SearchState state_of(const Refit& found, const std::vector<Refit>& rivals) const {
     SearchState state;
+    state.next = SearchStep::calibrate;
     state.so_far.found = state.so_far.base = found;
     state.so_far.rivals = rivals;
     state.so_far.finding = rivals.empty() ? Finding::named : Finding::ambiguous;
-    for (const FilterProblem& data : problems_of(measured(), request_))
-      state.noise.push_back(data.noise);
+    state.so_far.noise_model = noise_model(problems_of(measured(), request_));
     return state;
   }
 
@@ -79,7 +80,7 @@ class RivalsTest : public ::testing::Test {
 
 // The second best: not what was found with something more, nor what failed; by what it leaves, and
 // of the last round that had another one.
-TEST(Placebo, IsTheBestThatIsAnother) {
+TEST(RunnerUp, IsTheBestThatIsAnother) {
   const auto fit = [](const std::vector<std::string>& effects, double gap, double deviance) {
     Refit result;
     for (const std::string& effect : effects)
@@ -90,7 +91,7 @@ TEST(Placebo, IsTheBestThatIsAnother) {
   };
   Explanation found;
   found.found = fit({"gravity", "uptake"}, 0.03, 10);
-  EXPECT_FALSE(placebo_of(found));
+  EXPECT_FALSE(runner_up(found));
   Round first, last;
   first.refits = {fit({"line-tension"}, 0.01, 0)};
   last.refits = {fit({"gravity", "uptake", "cooling"}, 0.02, 1), fit({"gravity"}, 0.045, 2),
@@ -98,12 +99,12 @@ TEST(Placebo, IsTheBestThatIsAnother) {
   last.moves = {fit({"asymmetry"}, 0.01, 5)};
   last.moves[0].failure = "it did not converge";
   found.rounds = {first, last};
-  ASSERT_TRUE(placebo_of(found));
-  EXPECT_EQ(placebo_of(found)->train, 0.04);
+  ASSERT_TRUE(runner_up(found));
+  EXPECT_EQ(runner_up(found)->train, 0.04);
   found.rounds[1].refits.resize(1);
-  EXPECT_EQ(placebo_of(found)->train, 0.01);  // of the first round
+  EXPECT_EQ(runner_up(found)->train, 0.01);  // of the first round
   found.rivals = {fit({"cooling"}, 0.06, 11)};
-  EXPECT_EQ(placebo_of(found)->heldout, 0.12);
+  EXPECT_EQ(runner_up(found)->heldout, 0.12);
 }
 
 TEST_F(RivalsTest, AreTakenIfTheyLeaveNoGap) {
@@ -112,7 +113,7 @@ TEST_F(RivalsTest, AreTakenIfTheyLeaveNoGap) {
   const Explanation left = explained(fit_of("gravity"), {fit_of("uptake")});
   EXPECT_EQ(left.finding, Finding::named);
   EXPECT_EQ(class_of(left), std::vector<std::string>{"uptake"});
-  EXPECT_LT(left.found_gap.heldout, alone.found_gap.heldout);
+  EXPECT_LT(left.found.gap.heldout, alone.found.gap.heldout);
 }
 
 // A gap that nothing explains has to be there on another mesh, too.
@@ -136,12 +137,10 @@ TEST_F(RivalsTest, ARunOnAnotherMeshDecidesWhetherAGapIsThere) {
 // Where nothing was found, too.
 TEST_F(RivalsTest, AGapIsLookedForWhereNothingWasFound) {
   Explanation found;
-  found.false_alarms = request_.false_alarms;
   found.finding = Finding::unnamed;
   found.without_gap = Finding::none;
   found.found.pace = 1;
-  for (const FilterProblem& data : problems_of(measured(), request_))
-    found.noises.push_back(data.noise);
+  found.noise_model = noise_model(problems_of(measured(), request_));
   run_again(measured(), request_, found);
   EXPECT_EQ(found.finding, Finding::unnamed);  // of the uptake
   EXPECT_LT(found.rerun->gap_p.value(), 0.005);
@@ -160,23 +159,22 @@ TEST_F(RivalsTest, AGapIsLookedForBesideWhatTheMeshCouldBe) {
   SearchState state = state_of({}, {fit_of("line-tension")});
   state.so_far.rounds = {
       Round{{request_.base, 1, {}, {}}, {}, {}, {fit_of("gravity"), fit_of("uptake")}, {}, {}}};
-  state.noise[0][1] *= 3;
-  search.go_on_from(state);
-  const std::vector<Refit>& refits = search.result.rounds[0].refits;
-  EXPECT_TRUE(leaves_gap(search, refits[0]));
-  EXPECT_FALSE(leaves_gap(search, refits[1]));
-  // What the search had is there again.
-  EXPECT_TRUE(search.model.hypothesis.parts.empty());
-  EXPECT_TRUE(search.result.found.hypothesis.parts.empty());
-  EXPECT_EQ(search.result.rivals.size(), 1u);
-  EXPECT_EQ(search.result.rounds.size(), 1u);
-  EXPECT_EQ(search.data[0].noise, state.noise[0]);
+  state.so_far.noise_model.levels[0][1] *= 3;
+  const std::vector<Refit>& refits = state.so_far.rounds[0].refits;
+  EXPECT_TRUE(leaves_gap(search, state, refits[0]));
+  EXPECT_FALSE(leaves_gap(search, state, refits[1]));
+  // The noise of the state is there again.
+  EXPECT_EQ(search.data(state)[0].noise, state.so_far.noise_model.levels[0]);
 }
 
-// An interrupted round knows a refit that the mesh could be: less than it would be told from.
+// An interrupted step knows a refit that the mesh could be: less than it would be told from.
 TEST_F(RivalsTest, MoreIsMissingThanWhatTheMeshCouldBe) {
   request_.false_alarms = 1;  // whatever looks best is refitted
   request_.without.insert(request_.without.end(), {"exchange", "line-tension", "uptake"});
+  SearchState screened;
+  request_.save = [&](const SearchState& state) {
+    if (state.next == SearchStep::refit && state.refits.empty()) screened = state;
+  };
   const Explanation weak = explain_fields(measured(), request_, state_of({}, {}));
   const Round& round = weak.rounds[0];
   ASSERT_EQ(round.refits.size(), 1u);
@@ -188,9 +186,9 @@ TEST_F(RivalsTest, MoreIsMissingThanWhatTheMeshCouldBe) {
   ASSERT_LT(criterion(strong, values), criterion(round.without, values));
   ASSERT_GT(certainty(strong, 0), kTelling);
   ASSERT_FALSE(all_resolved(strong, values, round.screening.mesh_error));
-  SearchState state = state_of({}, {});
-  state.ahead[0] = strong;
-  const Explanation found = explain_fields(measured(), request_, state);
+  ASSERT_EQ(screened.next, SearchStep::refit);
+  screened.refits[0] = strong;
+  const Explanation found = explain_fields(measured(), request_, screened);
   EXPECT_EQ(found.finding, Finding::unnamed);
   EXPECT_EQ(found.without_gap, Finding::below_resolution);
   EXPECT_TRUE(found.found.hypothesis.parts.empty());
@@ -203,12 +201,12 @@ TEST_F(RivalsTest, AreToldApartByAllThatWasMeasured) {
   EXPECT_EQ(class_of(explained(right, {right})).size(), 2u);
   const Explanation found = explained(right, {wrong});
   EXPECT_EQ(class_of(found), std::vector<std::string>{"uptake"});
-  ASSERT_EQ(found.told_apart.size(), 1u);
-  EXPECT_EQ(found.told_apart[0].effect, "gravity");
+  ASSERT_EQ(found.excluded.size(), 1u);
+  EXPECT_EQ(found.excluded[0].effect, "gravity");
   const Explanation turned = explained(wrong, {right});
   EXPECT_EQ(turned.finding, Finding::named);
   EXPECT_EQ(class_of(turned), std::vector<std::string>{"uptake"});
-  EXPECT_NEAR(turned.told_apart.at(0).less, found.told_apart[0].less, 2);
+  EXPECT_NEAR(turned.excluded.at(0).less, found.excluded[0].less, 2);
 
   // As a search that holds out nothing has it, but for the noise, which is that of the found model.
   request_.hold_out = false;
@@ -218,7 +216,7 @@ TEST_F(RivalsTest, AreToldApartByAllThatWasMeasured) {
   };
   const double all = criterion_of(wrong) - criterion_of(right),
                counting = wrong.deviance - right.deviance;
-  EXPECT_NEAR(found.told_apart[0].less, all, 0.2 * all);
+  EXPECT_NEAR(found.excluded[0].less, all, 0.2 * all);
   EXPECT_GT(all, 1.2 * counting);  // a third snapshot more
 }
 
@@ -233,14 +231,15 @@ TEST_F(RivalsTest, EffectsThatTurnOutToBeNoneAreDropped) {
   const Explanation found = explain_fields(measured(), request_, state);
   EXPECT_EQ(found.finding, Finding::named);
   EXPECT_EQ(class_of(found), std::vector<std::string>{"uptake"});
-  ASSERT_EQ(found.turns.size(), 1u);
-  EXPECT_EQ(found.turns[0].why, Turn::is_none);
-  EXPECT_EQ(found.turns[0].from, "gravity");
-  EXPECT_EQ(found.turns[0].to, "uptake");
+  ASSERT_EQ(found.changes.size(), 1u);
+  EXPECT_EQ(found.changes[0].reason, ModelChange::is_none);
+  EXPECT_EQ(found.changes[0].from, "gravity");
+  EXPECT_EQ(found.changes[0].to, "uptake");
   // What is left is asked what is lacking beside it, and has the bounds of what was dropped.
   EXPECT_EQ(found.rounds.back().known.hypothesis.name(), "uptake");
   const auto is_of_gravity = [](const Bound& bound) { return bound.effect == "gravity"; };
-  EXPECT_TRUE(std::any_of(found.bounds.begin(), found.bounds.end(), is_of_gravity));
+  const std::vector<Bound> bounds = bounds_of(found);
+  EXPECT_TRUE(std::any_of(bounds.begin(), bounds.end(), is_of_gravity));
 
   both.hypothesis.parts.erase(both.hypothesis.parts.begin());
   state.so_far.found = both;
@@ -259,7 +258,7 @@ class OwnEffectsTest : public RivalsTest {
   }
   Explanation explained_with(const EffectTerm& own) {
     request_.own = of_model({own});
-    return explain_fields(draw_blind_case(asked_).vesicles, request_, {});
+    return explain_fields(draw_blind_case(asked_).vesicles, request_);
   }
   static double deviation(const Explanation& found) {
     return std::sqrt(found.found.covariance(0, 0));
@@ -286,8 +285,8 @@ TEST_F(OwnEffectsTest, AreFittedAndNotFound) {
   EXPECT_EQ(lacking.found.hypothesis.parts[0].candidate.effect, "gravity");
   EXPECT_NEAR(lacking.found.hypothesis.parts[0].coefficients[0], 0, 4 * deviation(lacking));
   EXPECT_LT(deviation(lacking), 0.001);
-  EXPECT_NEAR(lacking.found_gap.train, whole.found_gap.train, 0.02 * whole.found_gap.train);
-  EXPECT_GT(lacking.base_gap.train, 1.02 * lacking.found_gap.train);
+  EXPECT_NEAR(lacking.found.gap.train, whole.found.gap.train, 0.02 * whole.found.gap.train);
+  EXPECT_GT(lacking.base.gap.train, 1.02 * lacking.found.gap.train);
 }
 
 // One so strong that its perturbations cannot be advanced, and of which there is nothing.
@@ -301,34 +300,64 @@ TEST_F(OwnEffectsTest, MayBeNone) {
   EXPECT_LT(deviation(found), 0.05);
 }
 
-// An interrupted round goes on from its last refit, and ends with the same numbers.
-TEST_F(RivalsTest, RefitsOfAnInterruptedRoundAreNotDoneAgain) {
+// The state is all that a search goes on from: whichever step or refit it is interrupted after, it
+// ends with the same numbers.
+TEST_F(OwnEffectsTest, StoppedAfterAnyStepTheResultIsTheSame) {
+  request_.confirm = true;
+  std::vector<SearchState> saved;
+  request_.save = [&](const SearchState& state) { saved.push_back(state); };
+  const std::vector<FieldSeries> vesicles = draw_blind_case(asked_).vesicles;
+  const Explanation whole = explain_fields(vesicles, request_);
+  ASSERT_TRUE(is_named(whole));
+  std::set<SearchStep> steps;
+  for (const SearchState& from : saved) {
+    // One of the refits of a step stands for all of them.
+    if (from.refits.size() > 1) continue;
+    steps.insert(from.next);
+    request_.save = nullptr;
+    const Explanation resumed = explain_fields(vesicles, request_, from);
+    const std::string where = word_for(from.next) + ", " + std::to_string(from.refits.size());
+    EXPECT_EQ(resumed.finding, whole.finding) << where;
+    EXPECT_EQ(class_of(resumed), class_of(whole)) << where;
+    EXPECT_EQ(resumed.found.deviance, whole.found.deviance) << where;
+    EXPECT_EQ(resumed.found.pace, whole.found.pace) << where;
+    EXPECT_EQ(resumed.noise, whole.noise) << where;
+    EXPECT_EQ(resumed.rounds.size(), whole.rounds.size()) << where;
+    EXPECT_EQ(resumed.rounds.back().screening.p, whole.rounds.back().screening.p) << where;
+    EXPECT_EQ(resumed.rounds.back().screening.gap_p, whole.rounds.back().screening.gap_p) << where;
+    EXPECT_EQ(resumed.rerun->gain, whole.rerun->gain) << where;
+  }
+  const std::set<SearchStep> expected{
+      SearchStep::calibrate, SearchStep::eliminate, SearchStep::screen,
+      SearchStep::refit,     SearchStep::choose,    SearchStep::replace,
+      SearchStep::weigh,     SearchStep::confirm,   SearchStep::done};
+  EXPECT_EQ(steps, expected);
+}
+
+// An interrupted step goes on from its last refit.
+TEST_F(RivalsTest, RefitsOfAnInterruptedStepAreNotDoneAgain) {
   constexpr std::size_t kDone = 2;
   request_.false_alarms = 1;  // whatever looks best is refitted
   const SearchState begin = state_of({}, {});
-  std::vector<std::size_t> saved;  // refits that each save has of the round
-  request_.save = [&](const SearchState& state) { saved.push_back(state.ahead.size()); };
-  const Explanation whole = explain_fields(measured(), request_, begin);
+  std::vector<std::size_t> saved;  // refits that each save has of the step
+  request_.save = [&](const SearchState& state) { saved.push_back(state.refits.size()); };
+  (void)explain_fields(measured(), request_, begin);
   const std::vector<std::size_t> all = saved;
   ASSERT_GT(*std::max_element(all.begin(), all.end()), kDone);
 
   SearchState interrupted;
   request_.save = [&](const SearchState& state) {
-    if (interrupted.ahead.size() < kDone) interrupted = state;  // other threads finish theirs
-    if (state.ahead.size() >= kDone) throw std::runtime_error("interrupted");
+    if (interrupted.refits.size() < kDone) interrupted = state;  // other threads finish theirs
+    if (state.refits.size() >= kDone) throw std::runtime_error("interrupted");
   };
   EXPECT_THROW(explain_fields(measured(), request_, begin), std::runtime_error);
-  ASSERT_EQ(interrupted.ahead.size(), kDone);
-  EXPECT_TRUE(interrupted.so_far.rounds.empty());
+  ASSERT_EQ(interrupted.refits.size(), kDone);
 
   saved.clear();
-  request_.save = [&](const SearchState& state) { saved.push_back(state.ahead.size()); };
-  const Explanation resumed = explain_fields(measured(), request_, interrupted);
-  // What whole searches save after those refits.
-  EXPECT_EQ(saved, std::vector<std::size_t>(std::find(all.begin(), all.end(), kDone), all.end()));
-  EXPECT_EQ(class_of(resumed), class_of(whole));
-  EXPECT_EQ(resumed.found.deviance, whole.found.deviance);
-  EXPECT_EQ(resumed.found.pace, whole.found.pace);
+  request_.save = [&](const SearchState& state) { saved.push_back(state.refits.size()); };
+  (void)explain_fields(measured(), request_, interrupted);
+  const auto after = std::find(all.begin(), all.end(), kDone) + 1;
+  EXPECT_EQ(saved, std::vector<std::size_t>(after, all.end()));
 }
 
 }  // namespace

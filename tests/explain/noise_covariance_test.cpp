@@ -89,12 +89,15 @@ TEST(NoiseCovariance, StaysWhiteWhereItIs) {
 TEST(NoiseCovariance, CanBeGivenAndTakenBack) {
   Measured m(0);
   const Vec first = m.data[0].first.field;
-  const std::vector<std::vector<double>> levels{m.data[0].noise};
-  give_noise(levels, gaussian_correlation(0.1, 0.5), m.asked.base, m.settings, m.data);
+  const NoiseModel white = noise_model(m.data);
+  NoiseModel shared = white;
+  shared.correlation = gaussian_correlation(0.1, 0.5);
+  set_noise_model(shared, m.asked.base, m.settings, m.data);
+  EXPECT_TRUE(noise_model(m.data) == shared);
   EXPECT_EQ(m.data[0].correlation.share(), 0.5);
   EXPECT_TRUE(m.data[0].whitening[2]);
   EXPECT_GT((m.data[0].first.field - first).norm(), 0);
-  give_noise(levels, {}, m.asked.base, m.settings, m.data);
+  set_noise_model(white, m.asked.base, m.settings, m.data);
   EXPECT_FALSE(m.data[0].whitening[2]);
   EXPECT_EQ(m.data[0].first.field, first);
 }

@@ -53,6 +53,15 @@ double wendland(double r) {
   return fourth * fourth * (r * (r * (32 * r + 25) + 8) + 1);
 }
 
+bool operator==(const NoiseCorrelation& a, const NoiseCorrelation& b) {
+  const auto same = [](const NoiseCorrelation::Component& p, const NoiseCorrelation::Component& q) {
+    return p.support == q.support && p.share == q.share;
+  };
+  return a.at_bound == b.at_bound && a.error == b.error &&
+         std::equal(a.components.begin(), a.components.end(), b.components.begin(),
+                    b.components.end(), same);
+}
+
 double NoiseCorrelation::share() const {
   double sum = 0;
   for (const Component& c : components) sum += c.share;

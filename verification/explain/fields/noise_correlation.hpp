@@ -34,6 +34,8 @@ struct NoiseCorrelation {
   double length() const;  // of the Gaussian exp(−d²/2ℓ²) with the same integral over the surface
   double at(double distance) const;  // of two values
   double support() const;            // none is correlated any further away
+
+  friend bool operator==(const NoiseCorrelation& a, const NoiseCorrelation& b);
 };
 
 // "white", or "20 % of its variance is shared by neighbours, over 0.05 R".

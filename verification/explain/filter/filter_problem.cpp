@@ -129,6 +129,7 @@ void estimate_first(const CahnHilliardModel& base, const FilterSettings& setting
   const SurfaceSpace& finest = *data.finer->spaces[1];
   NoisyValues resolved = measured;
   resolved.trace = data.finer_traces[1].front();
+  data.first_noise = data.noise.front();
   if (data.correlation.white()) {
     data.first = estimate_field(*data.space, measured, data.prior, wanted);
     data.first_resolved = estimate_field(finest, resolved, data.prior, {}).field;

@@ -57,6 +57,7 @@ struct FilterProblem {
   FieldEstimate first;           // of the first snapshot, whose scale and zero begin its errors
   Vec first_resolved;            // its field on the finest mesh
   std::vector<double> noise;     // of each snapshot, in units of its deviations
+  double first_noise = 0;        // that of the first one as `first` was estimated with
   NoiseCorrelation correlation;  // of that noise, between values of one snapshot
   std::vector<WhiteningPtr> whitening;  // by that, of each snapshot
   // Before each snapshot; nothing where it has turned by no more than the settings' `turn` or so.

@@ -56,13 +56,31 @@ bool is_as_before(const NoiseCorrelation& now, const NoiseCorrelation& before, d
 
 }  // namespace
 
-void give_noise(const std::vector<std::vector<double>>& levels, const NoiseCorrelation& correlation,
-                const CahnHilliardModel& base, const FilterSettings& settings,
-                FilterProblems& data) {
+bool operator==(const NoiseModel& a, const NoiseModel& b) {
+  return a.levels == b.levels && a.first == b.first && a.correlation == b.correlation;
+}
+
+NoiseModel noise_model(const FilterProblems& data) {
+  NoiseModel noise;
+  for (const FilterProblem& vesicle : data) {
+    noise.levels.push_back(vesicle.noise);
+    noise.first.push_back(vesicle.first_noise);
+  }
+  noise.correlation = data.front().correlation;
+  return noise;
+}
+
+void set_noise_model(const NoiseModel& noise, const CahnHilliardModel& base,
+                     const FilterSettings& settings, FilterProblems& data) {
   for (FilterProblem& vesicle : data) {
-    vesicle.noise = levels[vesicle.vesicle];
-    if (!correlation.white() || !vesicle.correlation.white())
-      set_correlation(correlation, base, settings, vesicle);
+    const double first = noise.first[vesicle.vesicle];
+    const bool white = noise.correlation.white() && vesicle.correlation.white();
+    if (!white && !(noise.correlation == vesicle.correlation && first == vesicle.first_noise)) {
+      vesicle.noise.front() = first;
+      set_correlation(noise.correlation, base, settings, vesicle);
+    }
+    vesicle.noise = noise.levels[vesicle.vesicle];
+    vesicle.first_noise = first;
   }
 }
 

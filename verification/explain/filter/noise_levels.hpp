@@ -20,10 +20,19 @@ void fit_noise(FilterProblems& data, const FilterResult& pass);
 // The same from the noise of each vesicle's snapshots but the first, in units of their deviations.
 void set_noise(FilterProblems& data, const std::vector<std::vector<double>>& own);
 
-// A noise that is known: levels as above, of all snapshots, and the correlation.
-void give_noise(const std::vector<std::vector<double>>& levels, const NoiseCorrelation& correlation,
-                const CahnHilliardModel& base, const FilterSettings& settings,
-                FilterProblems& data);
+// All that is estimated of the noise, a vesicle after the other.
+struct NoiseModel {
+  std::vector<std::vector<double>> levels;  // of each snapshot, in units of its deviations
+  std::vector<double> first;                // of the first one, as its field was estimated with
+  NoiseCorrelation correlation;
+
+  friend bool operator==(const NoiseModel& a, const NoiseModel& b);
+};
+
+NoiseModel noise_model(const FilterProblems& data);
+// Throws std::runtime_error if the first fields cannot be estimated with it.
+void set_noise_model(const NoiseModel& noise, const CahnHilliardModel& base,
+                     const FilterSettings& settings, FilterProblems& data);
 
 // The same with what neighbours share of the noise, which is common to all snapshots: as the
 // innovations have it beside what they leave unknown of the states and of the model. True if its

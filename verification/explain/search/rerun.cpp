@@ -16,12 +16,11 @@ constexpr char kOtherIntegrator[] = "rosenbrock";
 // Standard deviations, beyond which one in a hundred truths falls short.
 constexpr double kRefuted = 2.33;
 
-FilterProblems problems_with(const std::vector<std::vector<double>>& noises,
-                             const NoiseCorrelation& correlation,
+FilterProblems problems_with(const std::optional<NoiseModel>& noise,
                              const std::vector<FieldSeries>& series,
                              const ExplainRequest& request) {
   FilterProblems data = problems_of(series, request);
-  if (!noises.empty()) give_noise(noises, correlation, request.base, request.filter, data);
+  if (noise) set_noise_model(*noise, request.base, request.filter, data);
   return data;
 }
 
@@ -67,7 +66,7 @@ void look_for_gap(const FilterProblems& data, const ExplainRequest& other, Expla
   }
   const Screening left = screen(pass, {}, end.hypothesis);
   rerun.gap_p = left.gap_p;
-  if (!has_gap(left, found.false_alarms)) found.finding = found.without_gap;
+  if (!has_gap(left, other.false_alarms)) found.finding = found.without_gap;
 }
 
 // What fails says why.
@@ -127,7 +126,7 @@ void run_again(const std::vector<FieldSeries>& series, const ExplainRequest& req
   Rerun result;
   std::optional<FilterProblems> data;
   std::string no_data;
-  attempt(no_data, [&] { data = problems_with(found.noises, found.correlation, series, other); });
+  attempt(no_data, [&] { data = problems_with(found.noise_model, series, other); });
   if (found.found.hypothesis.added() > 0) {
     result.failure = no_data;
     if (data) attempt(result.failure, [&] { result = compare_both(*data, other, found); });
@@ -139,18 +138,17 @@ void run_again(const std::vector<FieldSeries>& series, const ExplainRequest& req
   result.cells = other.cells;
   result.integrator = kOtherIntegrator;
   if (is_named(found) && result.refutes())
-    found.finding = without_name(found.rounds.front().screening, found.false_alarms);
+    found.finding = without_name(found.rounds.front().screening, request.false_alarms);
   found.rerun = result;
 }
 
 ModelGaps gaps_of_model(const std::vector<FieldSeries>& series, const ExplainRequest& request,
                         double pace, const std::vector<EffectTerm>& effects,
-                        const std::vector<std::vector<double>>& noises,
-                        const NoiseCorrelation& correlation) {
+                        const std::optional<NoiseModel>& noise) {
   ExplainRequest alone = request;
   alone.filter.replicates = 0;
   const FilterResult pass =
-      pass_of_model(problems_with(noises, correlation, series, alone), alone, pace, effects);
+      pass_of_model(problems_with(noise, series, alone), alone, pace, effects);
   return {gaps_of_pass(pass), expected_gaps(pass)};
 }
 

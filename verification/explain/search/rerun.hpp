@@ -1,7 +1,7 @@
 // What was found, held against the data once more: on another mesh and by another integrator.
 #pragma once
 
-#include "verification/explain/search/explanation.hpp"
+#include "verification/explain/search/search.hpp"
 
 namespace traceraft {
 
@@ -19,14 +19,12 @@ void run_again(const std::vector<FieldSeries>& series, const ExplainRequest& req
 Rerun compare_forecasts(const FilterResult& base, const FilterResult& found, double mesh_error);
 
 // The gaps of a model that has these effects already, and what is to be expected of them with this
-// noise of each vesicle's snapshots, in units of their deviations (none: as single fields tell it).
-// Throws std::runtime_error if it cannot be advanced.
+// noise (none: as single fields tell it). Throws std::runtime_error if it cannot be advanced.
 struct ModelGaps {
   Gaps gap, expected;
 };
 ModelGaps gaps_of_model(const std::vector<FieldSeries>& series, const ExplainRequest& request,
                         double pace, const std::vector<EffectTerm>& effects,
-                        const std::vector<std::vector<double>>& noises = {},
-                        const NoiseCorrelation& correlation = {});
+                        const std::optional<NoiseModel>& noise = {});
 
 }  // namespace traceraft

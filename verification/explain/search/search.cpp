@@ -4,174 +4,157 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "kernel/core/text.hpp"
-#include "verification/explain/filter/noise_levels.hpp"
-#include "verification/explain/fit/refit_unknowns.hpp"
-
 namespace traceraft {
 namespace {
 
-// A refit that ends beyond kMapsReach is none of the noise and the errors that it began with.
-constexpr int kMostPasses = 4;
-// A correlation of noise that is not settled by then is near what it should be.
-constexpr int kMostCorrelationPasses = 4;
-// Of strengths that a model cannot be advanced with; then they are 0.
-constexpr int kMostHalvings = 3;
+bool same_hypothesis(const Hypothesis& a, const Hypothesis& b) {
+  return a.known == b.known &&
+         std::equal(a.parts.begin(), a.parts.end(), b.parts.begin(), b.parts.end(),
+                    [](const Hypothesis::Part& p, const Hypothesis::Part& q) {
+                      return p.candidate.effect == q.candidate.effect &&
+                             p.coefficients == q.coefficients;
+                    });
+}
+
+std::string news_of(const Refit& fit, const Refit& found) {
+  const std::string name = fit.hypothesis.added() == 0 ? "no effect" : fit.hypothesis.name();
+  if (!fit.failure.empty()) return "  " + name + " fails";
+  // With one effect more there is nothing to lose.
+  const bool more = fit.hypothesis.added() > found.hypothesis.added();
+  const double difference = found.deviance - fit.deviance;
+  const double gained = more ? std::max(0.0, difference) : difference;
+  return "  " + name + (gained < 0 ? " loses " : " gains ") +
+         std::to_string(std::labs(std::lround(gained)));
+}
 
 }  // namespace
 
-Search::Search(const std::vector<FieldSeries>& series, const ExplainRequest& explain_request)
-    : request(explain_request),
-      data(problems_of(series, request)),
-      candidates(candidates_beside(
+std::string word_for(SearchStep step) {
+  switch (step) {
+    case SearchStep::start:
+      return "start";
+    case SearchStep::calibrate:
+      return "calibrate";
+    case SearchStep::eliminate:
+      return "eliminate";
+    case SearchStep::screen:
+      return "screen";
+    case SearchStep::refit:
+      return "refit";
+    case SearchStep::choose:
+      return "choose";
+    case SearchStep::replace:
+      return "replace";
+    case SearchStep::compare_gaps:
+      return "compare-gaps";
+    case SearchStep::weigh:
+      return "weigh";
+    case SearchStep::confirm:
+      return "confirm";
+    case SearchStep::done:
+      return "done";
+  }
+  return "";
+}
+
+bool operator==(const ForecastPoint& a, const ForecastPoint& b) {
+  return a.pace == b.pace && same_hypothesis(a.hypothesis, b.hypothesis) && a.noise == b.noise;
+}
+
+FilterProblems problems_of(const std::vector<FieldSeries>& series, const ExplainRequest& request) {
+  return make_filter_problems(series, *request.surface, request.base, request.cells,
+                              request.threads, request.hold_out, request.filter);
+}
+
+Search::Search(const std::vector<FieldSeries>& series, const ExplainRequest& request)
+    : series_(series),
+      request_(request),
+      data_(problems_of(series, request)),
+      candidates_(candidates_beside(
           request.own, candidates_for(request.base, *request.surface,
-                                      data.front().space->surface.position, request.without))),
-      model{request.base, 1, {}, candidates} {}
+                                      data_.front().space->surface.position, request.without))) {}
 
-void Search::tell(const std::string& step) const {
-  if (request.progress) request.progress(step);
-}
-
-void Search::set_found(const Refit& fit) {
-  if (!fit.failure.empty()) throw std::runtime_error(fit.failure);
-  result.found = fit;
-  model.hypothesis = fit.hypothesis;
-  model.pace = fit.pace;
-  model.screened.clear();
-  std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(model.screened),
-               [&](const Candidate& c) { return !fit.hypothesis.has(c.effect); });
-}
-
-FilterResult Search::pass_with_own_effects() {
-  for (int half = 0;; ++half) {
-    maps = {};
-    try {
-      return filter_fields(data, model, request.filter, maps);
-    } catch (const std::runtime_error& error) {
-      if (model.hypothesis.parts.empty() || half > kMostHalvings) throw;
-      tell(std::string("  fails with effects as strong as the model has them: ") + error.what());
-    }
-    model = with_strengths(half < kMostHalvings ? 0.5 : 0, model);
-  }
-}
-
-void Search::settle_noise(FilterResult pass) {
-  FilterModel bare = model;
-  bare.screened.clear();
-  for (int k = 0; fit_noise_covariance(data, pass, request.base, request.filter); ++k) {
-    tell("  noise: " + text_of(data.front().correlation));
-    maps = {};
-    if (k == kMostCorrelationPasses) return;
-    pass = filter_fields(data, bare, request.filter, maps);
-  }
-}
-
-FilterResult Search::first_pass() {
-  FilterResult pass;
-  for (int k = 0; k < kMostPasses; ++k) {
-    const double pace = model.pace;
-    tell("  forecasts, and errors of states and of the mesh");
-    settle_noise(pass_with_own_effects());
-    if (request.own.parts.empty()) {
-      tell(formatted("  what %zu effects would change", model.screened.size()));
-      pass = filter_fields(data, model, request.filter, maps);
-    }
-    tell(request.own.parts.empty() ? "  D" : "  D, and its effects");
-    set_found(refit(data, model, request.filter, maps));
-    if (maps_reach(result.found.pace, pace)) break;
-    tell(formatted("  D is rather %.2g times the model's", result.found.pace));
-  }
-  // Strengths may have gone further than first orders reach; D has not.
-  if (request.own.parts.empty())
-    bootstrap(pass, model, result.found);
-  else
-    pass = next_pass();
-  result.disagreements = disagreements(data, pass, request.base.well);
-  result.disagreements.resize(significant(result.disagreements, request.false_alarms));
-  result.base = result.found;
-  return pass;
-}
-
-FilterResult Search::next_pass() {
-  for (int k = 0; k < kMostPasses; ++k) {
-    const double pace = model.pace;
-    maps = {};
-    tell("  forecasts, and errors of states and of the mesh");
-    settle_noise(filter_fields(data, model, request.filter, maps));
-    tell("  D, and its effects");
-    set_found(refit(data, model, request.filter, maps));
-    if (maps_reach(result.found.pace, pace)) break;
-  }
-  tell(formatted("  what %zu effects would change", model.screened.size()));
-  FilterResult pass = filter_fields(data, model, request.filter, maps);
-  bootstrap(pass, model, result.found);
-  return pass;
-}
-
-std::vector<Refit> Search::refit_all(const std::vector<FilterModel>& trials) {
-  const std::size_t first = numbered_;
-  numbered_ += trials.size();
-  std::map<std::size_t, Refit>& ahead = before_.ahead;
-  std::vector<std::size_t> open;
-  std::vector<FilterModel> open_trials;
-  for (std::size_t k = first; k < numbered_; ++k) {
-    const auto known = ahead.find(k);
-    if (known != ahead.end() &&
-        known->second.hypothesis.name() == trials[k - first].hypothesis.name()) {
-      tell_gain(known->second);
-      continue;
-    }
-    open.push_back(k);
-    open_trials.push_back(trials[k - first]);
-  }
-  refit_each(data, open_trials, request.filter, maps, [&](std::size_t which, const Refit& fit) {
-    tell_gain(fit);
-    ahead[open[which]] = fit;
-    save(before_);
-  });
-  std::vector<Refit> refits;
-  for (std::size_t k = first; k < numbered_; ++k) refits.push_back(ahead.at(k));
-  return refits;
-}
-
-void Search::tell_gain(const Refit& fit) const {
-  // With one effect more there is nothing to lose.
-  const bool more = fit.hypothesis.added() > result.found.hypothesis.added();
-  const double difference = result.found.deviance - fit.deviance;
-  const double gained = more ? std::max(0.0, difference) : difference;
-  const std::string change = (gained < 0 ? std::string(" loses ") : std::string(" gains ")) +
-                             std::to_string(std::labs(std::lround(gained)));
-  const std::string name = fit.hypothesis.added() == 0 ? "no effect" : fit.hypothesis.name();
-  tell("  " + name + (fit.failure.empty() ? change : " fails"));
-}
-
-SearchState Search::state(bool more) const {
-  SearchState now{result, {}, {}, more, told_apart, {}};
-  for (const FilterProblem& vesicle : data) now.noise.push_back(vesicle.noise);
-  now.correlation = data.front().correlation;
-  return now;
+void Search::tell(const std::string& news) const {
+  if (request_.progress) request_.progress(news);
 }
 
 void Search::save(const SearchState& state) const {
-  if (request.save) request.save(state);
+  if (request_.save) request_.save(state);
 }
 
-void Search::begin_round(bool more, std::map<std::size_t, Refit> ahead) {
-  before_ = state(more);
-  before_.ahead = std::move(ahead);
-  numbered_ = 0;
-  save(before_);
+FilterProblems& Search::data(const SearchState& state) {
+  if (!(noise_model(data_) == state.so_far.noise_model))
+    set_noise_model(state.so_far.noise_model, request_.base, request_.filter, data_);
+  return data_;
 }
 
-void Search::go_on_from(const SearchState& state) {
-  result = state.so_far;
-  told_apart = state.told_apart;
-  give_noise(state.noise, state.correlation, request.base, request.filter, data);
-  set_found(result.found);
+FilterModel Search::model(const SearchState& state) const {
+  const Refit& found = state.so_far.found;
+  FilterModel model{request_.base, found.pace, found.hypothesis, {}};
+  std::copy_if(candidates_.begin(), candidates_.end(), std::back_inserter(model.screened),
+               [&](const Candidate& c) { return !found.hypothesis.has(c.effect); });
+  return model;
+}
+
+const Forecasts& Search::forecasts(const SearchState& state) {
+  if (forecasts_.maps_at == state.maps_at && forecasts_.fields_at == state.fields_at)
+    return forecasts_;
+  tell("  forecasts, and errors of states and of the mesh");
+  forecasts_ = {};
+  Forecasts again{state.maps_at, state.fields_at, {}, {}};
+  set_noise_model(again.maps_at.noise, request_.base, request_.filter, data_);
+  const ForecastPoint& maps_at = again.maps_at;
+  (void)filter_fields(data_, {request_.base, maps_at.pace, maps_at.hypothesis, {}}, request_.filter,
+                      again.maps);
+  set_noise_model(again.fields_at.noise, request_.base, request_.filter, data_);
+  FilterModel model = Search::model(state);
+  model.pace = again.fields_at.pace;
+  model.hypothesis = again.fields_at.hypothesis;
+  again.fields = filter_fields(data_, model, request_.filter, again.maps);
+  return forecasts_ = std::move(again);
+}
+
+std::vector<Refit> Search::refit_all(SearchState& state, const std::vector<FilterModel>& trials,
+                                     std::size_t first) {
+  std::vector<std::size_t> open;
+  std::vector<FilterModel> open_trials;
+  for (std::size_t k = 0; k < trials.size(); ++k) {
+    const auto known = state.refits.find(first + k);
+    if (known != state.refits.end() &&
+        known->second.hypothesis.name() == trials[k].hypothesis.name()) {
+      tell(news_of(known->second, state.so_far.found));
+      continue;
+    }
+    open.push_back(first + k);
+    open_trials.push_back(trials[k]);
+  }
+  if (!open.empty()) {
+    const std::vector<ErrorMaps>& maps = forecasts(state).maps;
+    refit_each(data(state), open_trials, request_.filter, maps,
+               [&](std::size_t which, const Refit& fit) {
+                 tell(news_of(fit, state.so_far.found));
+                 state.refits[open[which]] = fit;
+                 save(state);
+               });
+  }
+  std::vector<Refit> refits;
+  for (std::size_t k = 0; k < trials.size(); ++k) refits.push_back(state.refits.at(first + k));
+  return refits;
+}
+
+void set_found(const Refit& fit, SearchState& state) {
+  if (!fit.failure.empty()) throw std::runtime_error(fit.failure);
+  state.so_far.found = fit;
 }
 
 bool is_among(const std::vector<std::string>& hypotheses, const Refit& fit) {
   return std::find(hypotheses.begin(), hypotheses.end(), fit.hypothesis.name()) != hypotheses.end();
+}
+
+bool was_dropped(const Explanation& result, const std::string& effect) {
+  return std::any_of(result.changes.begin(), result.changes.end(), [&](const ModelChange& change) {
+    return change.reason == ModelChange::is_none && change.from == effect;
+  });
 }
 
 }  // namespace traceraft

@@ -1,63 +1,74 @@
-// The search for effects: what it has at hand, and what it has found so far.
+// What the steps of a search work with beside its state: the data, the candidates, and forecasts.
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
-#include "verification/explain/search/explanation.hpp"
+#include "verification/explain/search/search_state.hpp"
 
 namespace traceraft {
 
-struct Search {
-  const ExplainRequest& request;  // has to outlive the search
-  FilterProblems data;
-  std::vector<Candidate> candidates;
-  FilterModel model;            // with what was found; the other candidates are screened
-  std::vector<ErrorMaps> maps;  // of its forecasts
-  Explanation result;
-  bool told_apart = false;  // has what is held out been asked about the class?
+FilterProblems problems_of(const std::vector<FieldSeries>& series, const ExplainRequest& request);
 
-  Search(const std::vector<FieldSeries>& series, const ExplainRequest& explain_request);
+// Forecasts of the last calibration.
+struct Forecasts {
+  ForecastPoint maps_at, fields_at;
+  std::vector<ErrorMaps> maps;
+  FilterResult fields;
+};
 
-  double h_over_epsilon() const { return data.front().space->h() / request.base.epsilon; }
-  double values() const { return count_values(data); }
-  // Of the last round's.
-  double mesh_error() const { return result.rounds.back().screening.mesh_error; }
+// Its methods return the same for the same state, whatever was asked before.
+class Search {
+ public:
+  // The request has to outlive the search.
+  Search(const std::vector<FieldSeries>& series, const ExplainRequest& request);
 
-  void tell(const std::string& step) const;
+  const ExplainRequest& request() const { return request_; }
+  const std::vector<FieldSeries>& series() const { return series_; }
+  const std::vector<Candidate>& candidates() const { return candidates_; }
+  double values() const { return count_values(data_); }
+  double h_over_epsilon() const { return data_.front().space->h() / request_.base.epsilon; }
 
-  // The fit is the model from now on. Throws std::runtime_error for one that failed.
-  void set_found(const Refit& fit);
-
-  // What the forecasts of the base model leave, and its refit.
-  FilterResult first_pass();
-  // What those of the model leave, once it is refitted: the noise, and the errors of states and of
-  // the mesh, are its own. Throws std::runtime_error if a forecast fails.
-  FilterResult next_pass();
-
-  // In their order, with news of each; those that an interrupted search has had are not done again.
-  std::vector<Refit> refit_all(const std::vector<FilterModel>& trials);
-
-  SearchState state(bool more) const;
+  void tell(const std::string& news) const;
   void save(const SearchState& state) const;
-  void go_on_from(const SearchState& state);
-  // `ahead`: refits of it that an interrupted search has had.
-  void begin_round(bool more, std::map<std::size_t, Refit> ahead);
+
+  // The data with the noise of a state; at its start, with that of single fields. Throws
+  // std::runtime_error if the first fields cannot be estimated with it.
+  FilterProblems& data(const SearchState& state);
+  FilterProblems& data_at_start() { return data_; }
+
+  // What was found; the candidates that it has not are screened.
+  FilterModel model(const SearchState& state) const;
+
+  // A calibration hands over its forecasts. A search that was interrupted finds them again.
+  void keep(Forecasts forecasts) { forecasts_ = std::move(forecasts); }
+  const Forecasts& forecasts(const SearchState& state);
+
+  // The trials fitted, in their order, with news of each. Those that state.refits has are not
+  // fitted again; the others are added to it and saved. `first`: the number of the first one
+  // among the refits of the step.
+  std::vector<Refit> refit_all(SearchState& state, const std::vector<FilterModel>& trials,
+                               std::size_t first = 0);
 
  private:
-  // The noise is that of the model, which begins with this pass; where neighbours share another
-  // part of it, maps and passes are repeated with that.
-  void settle_noise(FilterResult pass);
-  void tell_gain(const Refit& fit) const;
-  // Weakens effects that the model has until it can be advanced.
-  FilterResult pass_with_own_effects();
-
-  SearchState before_;        // the round, with the refits that it has had
-  std::size_t numbered_ = 0;  // refits of the round
+  const std::vector<FieldSeries>& series_;
+  const ExplainRequest& request_;
+  FilterProblems data_;
+  std::vector<Candidate> candidates_;
+  Forecasts forecasts_;
 };
+
+// Of the last round's screening.
+inline double mesh_error(const SearchState& state) {
+  return state.so_far.rounds.back().screening.mesh_error;
+}
+
+// The fit is the model from now on. Throws std::runtime_error for one that failed.
+void set_found(const Refit& fit, SearchState& state);
 
 // By the names of its effects.
 bool is_among(const std::vector<std::string>& hypotheses, const Refit& fit);
+
+bool was_dropped(const Explanation& result, const std::string& effect);
 
 }  // namespace traceraft
