@@ -93,7 +93,7 @@ void forget_if_unusable(const fs::path& explained, const ExplainSetup& setup) {
 }
 
 // Its steps are told to the case's log.
-void search(const fs::path& explained, ExplainSetup& setup) {
+Explanation search(const fs::path& explained, ExplainSetup& setup) {
   forget_if_unusable(explained, setup);
   const double before = seconds_of(explained);
   const Stopwatch watch;
@@ -103,36 +103,35 @@ void search(const fs::path& explained, ExplainSetup& setup) {
     say("%s  %s\n", clock_text(seconds), step);
     flush_output();
   };
-  (void)search_resumably(explained, setup);
+  Explanation found = search_resumably(explained, setup);
   setup.request.progress("done");
   setup.request.progress = nullptr;
+  return found;
 }
 
 void write_score(const CampaignFolder& folder, const CampaignGroup& group, const CaseId& id,
-                 const ExplainSetup& setup) {
+                 const Explanation& found, const ExplainSetup& setup) {
   const HiddenTruth truth = open_truth(folder.of(id));
-  const Gaps floor = floor_of(setup, truth);
-  const Json score = from_json(folder.of(id) / "explain" / "verdict.json", [&](const Json& v) {
-    const auto heldout = [&](const char* which) { return v.at("gap").at(which).at("heldout"); };
-    Json json = {{"hidden", names_of(truth.effects)},
-                 {"verdict", v.at("verdict")},
-                 {"effect", v.at("effect").is_null() ? Json("") : v.at("effect")},
-                 {"class", v.at("class")},
-                 {"outcome", word_for(outcome_of(group.aim, names_of(truth.effects), v))},
-                 {"p", v.at("null").at("p")},
-                 {"rounds", v.at("null").at("rounds")},
-                 {"heldout",
-                  {{"base", heldout("base")},
-                   {"named", heldout("named")},
-                   {"placebo", heldout("placebo")},
-                   {"floor", floor.heldout > 0 ? Json(floor.heldout) : Json()}}},
-                 {"seconds", seconds_of(folder.of(id) / "explain")},
-                 {"program", program_checksum()}};
-    const auto strength = strength_error(truth, setup.configuration.units(), v);
-    json["error"] = strength ? Json(strength->relative) : Json();
-    json["deviations"] = strength ? Json(strength->deviations) : Json();
-    return json;
-  });
+  const std::string hidden = names_of(truth.effects);
+  const Verdict verdict = verdict_of(found, setup);
+  const auto strength = strength_error(truth, setup.configuration.units(), verdict);
+  const auto heldout = [](const Gaps& gap) { return gap.heldout > 0 ? Json(gap.heldout) : Json(); };
+  const Json score = {{"hidden", hidden},
+                      {"verdict", word_for(verdict.finding)},
+                      {"effect", verdict.members.empty() ? "" : verdict.members.front()},
+                      {"class", verdict.members},
+                      {"outcome", word_for(outcome_of(group.aim, hidden, verdict))},
+                      {"p", verdict.p},
+                      {"rounds", verdict.null_details.at("rounds")},
+                      {"heldout",
+                       {{"base", heldout(verdict.base_gap)},
+                        {"named", heldout(verdict.named_gap)},
+                        {"placebo", heldout(verdict.runner_up_gap)},
+                        {"floor", heldout(floor_of(setup, truth))}}},
+                      {"error", strength ? Json(strength->relative) : Json()},
+                      {"deviations", strength ? Json(strength->deviations) : Json()},
+                      {"seconds", seconds_of(folder.of(id) / "explain")},
+                      {"program", program_checksum()}};
   write_durably(folder.score_of(id), score.dump(2) + "\n");
 }
 
@@ -156,8 +155,8 @@ void carry_out_case(const CampaignFolder& folder, const CampaignPlan& plan, cons
     job.without = effects_like(open_truth(path).effects.front().effect);
   ExplainSetup setup = read_explain_job(job);
   fs::create_directories(path / "explain");
-  search(path / "explain", setup);
-  write_score(folder, group, id, setup);
+  const Explanation found = search(path / "explain", setup);
+  write_score(folder, group, id, found, setup);
 }
 
 CaseScore read_score(const CampaignFolder& folder, const CaseId& id) {

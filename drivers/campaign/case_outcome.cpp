@@ -55,22 +55,23 @@ std::string in_order(const std::string& names) {
   return joined(sorted_parts(names), " + ");
 }
 
-CaseOutcome outcome_of(Aim aim, const std::string& hidden_names, const Json& verdict) {
-  const std::string word = verdict.at("verdict");
-  const bool named = !verdict.at("effect").is_null();
+CaseOutcome outcome_of(Aim aim, const std::string& hidden_names, const Verdict& verdict) {
+  const Finding finding = verdict.finding;
+  const bool named = is_named(finding);
   if (aim == Aim::nothing)
-    return named || word == "unnamed" ? CaseOutcome::wrong
-           : word == "none"           ? CaseOutcome::right
-                                      : CaseOutcome::missed;
+    return named || finding == Finding::unnamed ? CaseOutcome::wrong
+           : finding == Finding::none           ? CaseOutcome::right
+                                                : CaseOutcome::missed;
   if (aim == Aim::unnamed)
-    return named               ? CaseOutcome::wrong
-           : word == "unnamed" ? CaseOutcome::right
-                               : CaseOutcome::missed;
+    return named                         ? CaseOutcome::wrong
+           : finding == Finding::unnamed ? CaseOutcome::right
+                                         : CaseOutcome::missed;
   if (!named) return CaseOutcome::missed;
   const auto hidden = sorted_parts(hidden_names);
-  const std::vector<std::string> found = sorted_parts(verdict.at("effect"));
-  if (found == hidden) return word == "named" ? CaseOutcome::right : CaseOutcome::in_class;
-  for (const std::string equivalent : verdict.at("class"))
+  const std::vector<std::string> found = sorted_parts(verdict.members.front());
+  if (found == hidden)
+    return finding == Finding::named ? CaseOutcome::right : CaseOutcome::in_class;
+  for (const std::string& equivalent : verdict.members)
     if (sorted_parts(equivalent) == hidden) return CaseOutcome::in_class;
   // A part of what was hidden, and nothing else, is no wrong name.
   return std::includes(hidden.begin(), hidden.end(), found.begin(), found.end())
@@ -79,20 +80,22 @@ CaseOutcome outcome_of(Aim aim, const std::string& hidden_names, const Json& ver
 }
 
 std::optional<StrengthError> strength_error(const HiddenTruth& truth, Units units,
-                                            const Json& verdict) {
-  if (truth.effects.empty() || verdict.at("effect").is_null()) return {};
+                                            const Verdict& verdict) {
+  if (truth.effects.empty() || !is_named(verdict.finding)) return {};
   const EffectTerm& term = truth.effects.front();
   const ParameterSpec& strength = effects().find(term.effect).parameters.front();
-  const auto found = verdict.at("parameters").find(term.effect + "." + strength.name);
-  if (found == verdict.at("parameters").end()) return {};
+  const std::vector<FoundParameter>& all = verdict.parameters;
+  const auto found = std::find_if(all.begin(), all.end(), [&](const FoundParameter& p) {
+    return p.effect == term.effect && p.name == strength.name;
+  });
+  if (found == all.end()) return {};
   // A gap that no strength reaches is one at the end of the range, where a search ends, too.
   const double hidden = term.values.front();
   if (strength.unit.empty() && (hidden <= strength.min || hidden >= strength.max)) return {};
   units.diffusion_cm2_s *= truth.pace;
   const double value = hidden / to_model_units(strength.unit, units);
-  const double difference = found->at("value").get<double>() - value;
-  return StrengthError{std::fabs(difference / value),
-                       difference / found->at("sigma").get<double>()};
+  const double difference = found->value - value;
+  return StrengthError{std::fabs(difference / value), difference / found->sigma.value()};
 }
 
 }  // namespace traceraft

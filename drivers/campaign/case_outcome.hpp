@@ -6,7 +6,7 @@
 
 #include "drivers/campaign/campaign_groups.hpp"
 #include "drivers/campaign/hidden_case.hpp"
-#include "drivers/input/json_file.hpp"
+#include "drivers/explain/verdict.hpp"
 
 namespace traceraft {
 
@@ -25,8 +25,8 @@ std::string names_of(const std::vector<EffectTerm>& terms);
 // first.
 std::string in_order(const std::string& names);
 
-// `hidden`: names_of the truth; `verdict`: the content of verdict.json.
-CaseOutcome outcome_of(Aim aim, const std::string& hidden, const Json& verdict);
+// `hidden`: names_of the truth.
+CaseOutcome outcome_of(Aim aim, const std::string& hidden, const Verdict& verdict);
 
 // Of the first hidden effect's strength, if the verdict has it and it is not at the end of its
 // range; relative, and in the standard deviations that the verdict says. `units`: of the model.
@@ -34,6 +34,6 @@ struct StrengthError {
   double relative, deviations;
 };
 std::optional<StrengthError> strength_error(const HiddenTruth& truth, Units units,
-                                            const Json& verdict);
+                                            const Verdict& verdict);
 
 }  // namespace traceraft

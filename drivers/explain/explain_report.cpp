@@ -50,7 +50,7 @@ void write_explanation(const std::filesystem::path& folder, const Explanation& f
                              (setup.request.own.parts.empty()
                                   ? ", with D refitted beside it"
                                   : ", with D and the model's own effects refitted beside it"));
-  write_durably(folder / "verdict.json", verdict_json(found, setup).dump(2) + "\n");
+  write_durably(folder / "verdict.json", verdict_json(verdict_of(found, setup)).dump(2) + "\n");
 }
 
 std::string command_for_found(const std::filesystem::path& folder, const Explanation& found,

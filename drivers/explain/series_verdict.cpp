@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "drivers/explain/extended_model.hpp"
-#include "drivers/explain/verdict.hpp"
 #include "drivers/output/program.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/effects/effects.hpp"
@@ -158,27 +157,21 @@ Json series_json(const Configuration& model, const SeriesEnsembles& ensembles,
           {"program", program_text()}};
 }
 
-Json series_verdict_json(const Configuration& model, const SeriesEnsembles& ensembles,
-                         const SeriesExplanation& found, const SeriesRequest& request) {
-  Json alternatives = Json::array();
-  for (const SeriesScore& s : found.scores)
-    alternatives.push_back({{"effect", s.effect}, {"score", s.gain}});
-  const Json no_gap{{"train", Json()}, {"heldout", Json()}};
-  const bool closest = found.finding == Finding::unnamed && !found.named.empty();
-  return {{"verdict", word_for(found.finding)},
-          {"effect", is_named(found.finding) ? Json(found.scores.front().effect) : Json()},
-          {"class", class_of(found)},
-          {"closest", closest ? Json(found.named.front().front()) : Json()},
-          {"parameters", parameters_json(found_parameters(model, ensembles, found))},
-          {"alternatives", alternatives},
-          {"gap", {{"base", no_gap}, {"named", no_gap}, {"placebo", no_gap}, {"floor", no_gap}}},
-          {"where", Json()},
-          {"null",
-           {{"replicates", request.replicates},
-            {"false_alarm_level", request.false_alarms},
-            {"p", found.p},
-            {"trend_p", found.trend_p}}},
-          {"program", program_text()}};
+Verdict verdict_of(const Configuration& model, const SeriesEnsembles& ensembles,
+                   const SeriesExplanation& found, const SeriesRequest& request) {
+  Verdict verdict;
+  verdict.finding = found.finding;
+  verdict.members = class_of(found);
+  if (found.finding == Finding::unnamed && !found.named.empty())
+    verdict.closest = found.named.front().front();
+  verdict.parameters = found_parameters(model, ensembles, found);
+  for (const SeriesScore& s : found.scores) verdict.alternatives.push_back({s.effect, s.gain});
+  verdict.replicates = request.replicates;
+  verdict.false_alarms = request.false_alarms;
+  verdict.p = found.p;
+  verdict.null_details = {{"trend_p", found.trend_p}};
+  verdict.details = {{"where", Json()}};
+  return verdict;
 }
 
 void write_series_verdict(const std::filesystem::path& folder,
@@ -191,7 +184,7 @@ void write_series_verdict(const std::filesystem::path& folder,
         folder / "model.toml", model_file, named_model(model, ensembles, found),
         "found by traceraft explain: " + found.scores.front().effect + ", with D fitted beside it");
   write_durably(folder / "verdict.json",
-                series_verdict_json(base, ensembles, found, request).dump(2) + "\n");
+                verdict_json(verdict_of(base, ensembles, found, request)).dump(2) + "\n");
 }
 
 }  // namespace traceraft

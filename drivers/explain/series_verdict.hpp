@@ -5,9 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "drivers/explain/found_parameters.hpp"
 #include "drivers/explain/series_ensembles.hpp"
-#include "drivers/input/json_file.hpp"
+#include "drivers/explain/verdict.hpp"
 #include "verification/vesicles/power_law.hpp"
 
 namespace traceraft {
@@ -37,9 +36,8 @@ struct PerimeterExponent {
 Json series_json(const Configuration& model, const SeriesEnsembles& ensembles,
                  const SeriesExplanation& found, const std::vector<PerimeterExponent>& exponents);
 
-// The keys that measured fields have; what series do not tell is null.
-Json series_verdict_json(const Configuration& model, const SeriesEnsembles& ensembles,
-                         const SeriesExplanation& found, const SeriesRequest& request);
+Verdict verdict_of(const Configuration& model, const SeriesEnsembles& ensembles,
+                   const SeriesExplanation& found, const SeriesRequest& request);
 // verdict.json, and model.toml if something was named: the model, here as its user gave it (in
 // `model_file`, if not empty, and flags), with the effect that explains most and D. Throws IoError.
 void write_series_verdict(const std::filesystem::path& folder,

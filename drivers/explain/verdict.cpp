@@ -11,6 +11,15 @@
 namespace traceraft {
 namespace {
 
+// {effect.parameter: {value, sigma, unit}}, D without an effect.
+Json parameters_json(const std::vector<FoundParameter>& found) {
+  Json parameters = Json::object();
+  for (const FoundParameter& p : found)
+    parameters[(p.effect.empty() ? "" : p.effect + ".") + p.name] = {
+        {"value", p.value}, {"sigma", p.sigma ? Json(*p.sigma) : Json()}, {"unit", p.unit}};
+  return parameters;
+}
+
 // Of each other member of the class, as it fits best.
 Json rivals_json(const Explanation& found, const Units& base) {
   Json rivals = Json::array();
@@ -37,11 +46,10 @@ Json bounds_json(const Explanation& found, const Units& base) {
   return bounds;
 }
 
-Json alternatives_json(const Round& round) {
+Json alternatives_json(const std::vector<Verdict::Alternative>& all) {
   Json alternatives = Json::array();
-  for (const Refit& refit : round.refits)
-    alternatives.push_back(
-        {{"effect", refit.hypothesis.name()}, {"score", round.without.deviance - refit.deviance}});
+  for (const auto& [effect, score] : all)
+    alternatives.push_back({{"effect", effect}, {"score", score}});
   return alternatives;
 }
 
@@ -144,53 +152,67 @@ std::vector<std::string> not_looked_for(const Explanation& found) {
   return names;
 }
 
-Json parameters_json(const std::vector<FoundParameter>& found) {
-  Json parameters = Json::object();
-  for (const FoundParameter& p : found)
-    parameters[(p.effect.empty() ? "" : p.effect + ".") + p.name] = {
-        {"value", p.value}, {"sigma", p.sigma ? Json(*p.sigma) : Json()}, {"unit", p.unit}};
-  return parameters;
+Verdict verdict_of(const Explanation& found, const ExplainSetup& setup) {
+  const Configuration& model = setup.configuration;
+  const Units base = model.units();
+  const Round& first = found.rounds.front();
+  Verdict verdict;
+  verdict.finding = found.finding;
+  verdict.members = class_of(found);
+  verdict.closest = comes_closest(found);
+  verdict.parameters = told_parameters(found, fit_shown(found), base);
+  for (const Refit& fit : first.refits)
+    verdict.alternatives.push_back({fit.hypothesis.name(), first.without.deviance - fit.deviance});
+  verdict.base_gap = found.base.gap;
+  verdict.named_gap = found.found.gap;
+  verdict.runner_up_gap = runner_up(found).value_or(Gaps{});
+  verdict.floor_gap = found.found.expected;
+  verdict.replicates = setup.request.filter.replicates;
+  verdict.false_alarms = found.false_alarms;
+  verdict.p = first.screening.p;
+  verdict.null_details = {{"rounds", rounds_json(found)}};
+  verdict.details = {{"diffusion_range", range_json(found, base)},
+                     {"rivals", rivals_json(found, base)},
+                     {"told_apart", excluded_json(found)},
+                     {"bounds", bounds_json(found, base)},
+                     {"not_looked_for", not_looked_for(found)},
+                     {"closed", closed_json(found)},
+                     {"rerun", rerun_json(found)},
+                     {"where", where_json(found, setup)},
+                     {"noise", noise_json(found)},
+                     {"data", data_json(setup)},
+                     {"model",
+                      {{"epsilon_um", model.options().epsilon},
+                       {"diffusion_cm2_s", base.diffusion_cm2_s},
+                       {"effect", model.options().effect},
+                       {"diffusion_error", found.pace_doubt},
+                       {"cells", setup.request.cells},
+                       {"h_over_epsilon", found.h_over_epsilon}}},
+                     {"remarks", remarks_on(found, setup)}};
+  return verdict;
 }
 
-Json verdict_json(const Explanation& found, const ExplainSetup& setup) {
-  const std::string name = found.found.hypothesis.name(), closest = comes_closest(found);
-  const Configuration model = setup.configuration;
-  const Units base = model.units();
-  return {{"verdict", word_for(found.finding)},
-          {"effect", is_named(found) ? Json(name) : Json()},
-          {"class", class_of(found)},
-          {"closest", closest.empty() ? Json() : Json(closest)},
-          {"parameters", parameters_json(told_parameters(found, fit_shown(found), base))},
-          {"diffusion_range", range_json(found, base)},
-          {"rivals", rivals_json(found, base)},
-          {"told_apart", excluded_json(found)},
-          {"bounds", bounds_json(found, base)},
-          {"not_looked_for", not_looked_for(found)},
-          {"alternatives", alternatives_json(found.rounds.front())},
-          {"gap",
-           {{"base", gap_json(found.base.gap)},
-            {"named", gap_json(found.found.gap)},
-            {"placebo", gap_json(runner_up(found).value_or(Gaps{}))},
-            {"floor", gap_json(found.found.expected)}}},
-          {"closed", closed_json(found)},
-          {"rerun", rerun_json(found)},
-          {"where", where_json(found, setup)},
-          {"null",
-           {{"replicates", setup.request.filter.replicates},
-            {"false_alarm_level", found.false_alarms},
-            {"p", found.rounds.front().screening.p},
-            {"rounds", rounds_json(found)}}},
-          {"noise", noise_json(found)},
-          {"data", data_json(setup)},
-          {"model",
-           {{"epsilon_um", model.options().epsilon},
-            {"diffusion_cm2_s", base.diffusion_cm2_s},
-            {"effect", model.options().effect},
-            {"diffusion_error", found.pace_doubt},
-            {"cells", setup.request.cells},
-            {"h_over_epsilon", found.h_over_epsilon}}},
-          {"remarks", remarks_on(found, setup)},
-          {"program", program_text()}};
+Json verdict_json(const Verdict& verdict) {
+  const std::vector<std::string>& members = verdict.members;
+  Json json = {{"verdict", word_for(verdict.finding)},
+               {"effect", members.empty() ? Json() : Json(members.front())},
+               {"class", members},
+               {"closest", verdict.closest.empty() ? Json() : Json(verdict.closest)},
+               {"parameters", parameters_json(verdict.parameters)},
+               {"alternatives", alternatives_json(verdict.alternatives)},
+               {"gap",
+                {{"base", gap_json(verdict.base_gap)},
+                 {"named", gap_json(verdict.named_gap)},
+                 {"placebo", gap_json(verdict.runner_up_gap)},
+                 {"floor", gap_json(verdict.floor_gap)}}},
+               {"null",
+                {{"replicates", verdict.replicates},
+                 {"false_alarm_level", verdict.false_alarms},
+                 {"p", verdict.p}}}};
+  json["null"].update(verdict.null_details);
+  json.update(verdict.details);
+  json["program"] = program_text();
+  return json;
 }
 
 }  // namespace traceraft

@@ -1,4 +1,4 @@
-// What a search has found, for programs.
+// The verdict of an explanation, of fields or of series: verdict.json (docs/formats.md).
 #pragma once
 
 #include "drivers/explain/explain_run.hpp"
@@ -7,13 +7,32 @@
 
 namespace traceraft {
 
+struct Verdict {
+  struct Alternative {
+    std::string effect;
+    double score;  // 2 ln of the likelihood ratio that it gains
+  };
+
+  Finding finding = Finding::none;
+  // What explains the data as well as each other, the best first; none if nothing is named.
+  std::vector<std::string> members;
+  std::string closest;  // if the verdict is `unnamed`; may be ""
+  std::vector<FoundParameter> parameters;
+  std::vector<Alternative> alternatives;  // effects beside the base model
+  // Measured minus forecast, in c; 0: not known.
+  Gaps base_gap, named_gap, runner_up_gap, floor_gap;
+  int replicates = 0;
+  double false_alarms = 0;
+  double p = 1;  // that the best effect is noise
+  // What one kind of data tells beside that: keys of verdict.json, and of its `null`.
+  Json details = Json::object(), null_details = Json::object();
+};
+
+Verdict verdict_of(const Explanation& found, const ExplainSetup& setup);
+
+Json verdict_json(const Verdict& verdict);
+
 // Effects of the kernel that were no candidates: left out, or not to be seen in such data.
 std::vector<std::string> not_looked_for(const Explanation& found);
-
-// {effect.parameter: {value, sigma, unit}}, D without an effect.
-Json parameters_json(const std::vector<FoundParameter>& found);
-
-// verdict.json (docs/formats.md).
-Json verdict_json(const Explanation& found, const ExplainSetup& setup);
 
 }  // namespace traceraft

@@ -133,7 +133,7 @@ std::vector<StudyEntry> not_measured(const std::vector<StudyEntry>& chosen, cons
 
 void print_verdicts(const std::vector<StudyResult>& results) {
   for (const StudyResult& result : results)
-    say("  %-14s %s\n", result.study.name, verdict_text(result.verdict()));
+    say("  %-14s %s\n", result.study.name, outcome_text(result.outcome()));
 }
 
 void refuse_foreign_files(const fs::path& folder) {
@@ -186,7 +186,7 @@ int verify(const VerifyRequest& request) {
       say("  (measured before, in %s)\n\n", folder);
     results.push_back(before ? std::move(*before) : carry_out(study, bench, line));
     if (!request.quiet) print_result(results.back());
-    all = all && results.back().verdict() != Verdict::fails;
+    all = all && results.back().outcome() != StudyOutcome::fails;
     if (!before) write_study(folder, results.back(), context.measured_with);
   }
   const std::string missing = write_verification(folder, context, results);

@@ -41,7 +41,7 @@ Row claim_row(const Claim& claim) {
     row.push_back(short_number(claim.low) + " to " + short_number(claim.high));
     row.push_back("");
   }
-  row.push_back(verdict_text(claim.holds() ? Verdict::holds : Verdict::fails));
+  row.push_back(outcome_text(claim.holds() ? StudyOutcome::holds : StudyOutcome::fails));
   return row;
 }
 
@@ -55,7 +55,7 @@ std::vector<Row> overview_rows(const std::vector<StudyResult>& results) {
   std::vector<Row> rows = {{"study", "what", "claims", "verdict", "seconds"}};
   for (const StudyResult& result : results)
     rows.push_back({result.study.name, result.study.summary,
-                    std::to_string(result.report.claims.size()), verdict_text(result.verdict()),
+                    std::to_string(result.report.claims.size()), outcome_text(result.outcome()),
                     formatted("%.1f", result.seconds)});
   return rows;
 }

@@ -129,17 +129,17 @@ StudyResult result_of(const StudyEntry& study, const Json& json) {
 
 }  // namespace
 
-const char* verdict_text(Verdict verdict) {
-  if (verdict == Verdict::not_measured) return "not measured";
-  return verdict == Verdict::holds ? "holds" : "FAILS";
+const char* outcome_text(StudyOutcome outcome) {
+  if (outcome == StudyOutcome::not_measured) return "not measured";
+  return outcome == StudyOutcome::holds ? "holds" : "FAILS";
 }
 
-Verdict StudyResult::verdict() const {
-  if (!failure.empty()) return Verdict::fails;
-  if (!report.skipped.empty()) return Verdict::not_measured;
+StudyOutcome StudyResult::outcome() const {
+  if (!failure.empty()) return StudyOutcome::fails;
+  if (!report.skipped.empty()) return StudyOutcome::not_measured;
   for (const Claim& claim : report.claims)
-    if (!claim.holds()) return Verdict::fails;
-  return report.claims.empty() ? Verdict::fails : Verdict::holds;
+    if (!claim.holds()) return StudyOutcome::fails;
+  return report.claims.empty() ? StudyOutcome::fails : StudyOutcome::holds;
 }
 
 Json to_json(const StudyResult& result, const std::string& measured_with) {
@@ -147,7 +147,7 @@ Json to_json(const StudyResult& result, const std::string& measured_with) {
   json["study"] = result.study.name;
   json["summary"] = result.study.summary;
   json["measured_with"] = measured_with;
-  json["verdict"] = verdict_text(result.verdict());
+  json["verdict"] = outcome_text(result.outcome());
   json["failure"] = result.failure;
   json["skipped"] = result.report.skipped;
   json["seconds"] = result.seconds;

@@ -10,9 +10,9 @@
 
 namespace traceraft {
 
-enum class Verdict { holds, fails, not_measured };
+enum class StudyOutcome { holds, fails, not_measured };
 
-const char* verdict_text(Verdict verdict);
+const char* outcome_text(StudyOutcome outcome);
 
 struct StudyResult {
   StudyEntry study;
@@ -20,7 +20,7 @@ struct StudyResult {
   std::string failure;  // why it could not be carried out; "" if it was
   double seconds = 0;
 
-  Verdict verdict() const;
+  StudyOutcome outcome() const;
 };
 
 // `measured_with`: whatever decides the numbers, in any words.

@@ -8,55 +8,57 @@
 namespace traceraft {
 namespace {
 
-Json verdict(const std::string& word, const std::string& effect = "",
-             const std::vector<std::string>& others = {}) {
-  std::vector<std::string> all{effect};
-  all.insert(all.end(), others.begin(), others.end());
-  return {{"verdict", word},
-          {"effect", effect.empty() ? Json() : Json(effect)},
-          {"class", effect.empty() ? Json::array() : Json(all)}};
+Verdict verdict(Finding finding, const std::vector<std::string>& members = {}) {
+  Verdict result;
+  result.finding = finding;
+  result.members = members;
+  return result;
 }
 
-CaseOutcome named(const std::string& hidden, const Json& verdict) {
+CaseOutcome named(const std::string& hidden, const Verdict& verdict) {
   return outcome_of(Aim::name, hidden, verdict);
 }
 
 TEST(CaseOutcome, IsRightForTheNameAlone) {
-  EXPECT_EQ(named("gravity", verdict("named", "gravity")), CaseOutcome::right);
-  EXPECT_EQ(named("gravity + uptake", verdict("named", "uptake + gravity")), CaseOutcome::right);
-  EXPECT_EQ(named("gravity", verdict("named", "uptake")), CaseOutcome::wrong);
-  EXPECT_EQ(named("gravity", verdict("named", "gravity + uptake")), CaseOutcome::wrong);
-  EXPECT_EQ(named("gravity", verdict("none")), CaseOutcome::missed);
-  EXPECT_EQ(named("gravity", verdict("unnamed")), CaseOutcome::missed);
+  EXPECT_EQ(named("gravity", verdict(Finding::named, {"gravity"})), CaseOutcome::right);
+  EXPECT_EQ(named("gravity + uptake", verdict(Finding::named, {"uptake + gravity"})),
+            CaseOutcome::right);
+  EXPECT_EQ(named("gravity", verdict(Finding::named, {"uptake"})), CaseOutcome::wrong);
+  EXPECT_EQ(named("gravity", verdict(Finding::named, {"gravity + uptake"})), CaseOutcome::wrong);
+  EXPECT_EQ(named("gravity", verdict(Finding::none)), CaseOutcome::missed);
+  EXPECT_EQ(named("gravity", verdict(Finding::unnamed)), CaseOutcome::missed);
 }
 
 TEST(CaseOutcome, IsInClassWhereOneIsDeclared) {
-  EXPECT_EQ(named("gravity", verdict("ambiguous", "gravity", {"uptake"})), CaseOutcome::in_class);
-  EXPECT_EQ(named("gravity", verdict("ambiguous", "uptake", {"gravity"})), CaseOutcome::in_class);
-  EXPECT_EQ(named("gravity", verdict("ambiguous", "uptake", {"exchange"})), CaseOutcome::wrong);
-  EXPECT_EQ(
-      named("gravity + uptake", verdict("ambiguous", "exchange + gravity", {"uptake + gravity"})),
-      CaseOutcome::in_class);
+  EXPECT_EQ(named("gravity", verdict(Finding::ambiguous, {"gravity", "uptake"})),
+            CaseOutcome::in_class);
+  EXPECT_EQ(named("gravity", verdict(Finding::ambiguous, {"uptake", "gravity"})),
+            CaseOutcome::in_class);
+  EXPECT_EQ(named("gravity", verdict(Finding::ambiguous, {"uptake", "exchange"})),
+            CaseOutcome::wrong);
+  EXPECT_EQ(named("gravity + uptake",
+                  verdict(Finding::ambiguous, {"exchange + gravity", "uptake + gravity"})),
+            CaseOutcome::in_class);
 }
 
 TEST(CaseOutcome, MissesAPartOfWhatIsHidden) {
-  EXPECT_EQ(named("gravity + uptake", verdict("named", "uptake")), CaseOutcome::missed);
-  EXPECT_EQ(named("gravity + uptake", verdict("named", "exchange")), CaseOutcome::wrong);
+  EXPECT_EQ(named("gravity + uptake", verdict(Finding::named, {"uptake"})), CaseOutcome::missed);
+  EXPECT_EQ(named("gravity + uptake", verdict(Finding::named, {"exchange"})), CaseOutcome::wrong);
 }
 
 TEST(CaseOutcome, OfNothingHiddenIsNone) {
-  const auto of = [](const Json& v) { return outcome_of(Aim::nothing, "", v); };
-  EXPECT_EQ(of(verdict("none")), CaseOutcome::right);
-  EXPECT_EQ(of(verdict("unnamed")), CaseOutcome::wrong);
-  EXPECT_EQ(of(verdict("named", "gravity")), CaseOutcome::wrong);
-  EXPECT_EQ(of(verdict("below-solver-resolution")), CaseOutcome::missed);
+  const auto of = [](const Verdict& v) { return outcome_of(Aim::nothing, "", v); };
+  EXPECT_EQ(of(verdict(Finding::none)), CaseOutcome::right);
+  EXPECT_EQ(of(verdict(Finding::unnamed)), CaseOutcome::wrong);
+  EXPECT_EQ(of(verdict(Finding::named, {"gravity"})), CaseOutcome::wrong);
+  EXPECT_EQ(of(verdict(Finding::below_resolution)), CaseOutcome::missed);
 }
 
 TEST(CaseOutcome, OfWhatIsNotLookedForIsUnnamed) {
-  const auto of = [](const Json& v) { return outcome_of(Aim::unnamed, "gravity", v); };
-  EXPECT_EQ(of(verdict("unnamed")), CaseOutcome::right);
-  EXPECT_EQ(of(verdict("none")), CaseOutcome::missed);
-  EXPECT_EQ(of(verdict("ambiguous", "uptake", {"exchange"})), CaseOutcome::wrong);
+  const auto of = [](const Verdict& v) { return outcome_of(Aim::unnamed, "gravity", v); };
+  EXPECT_EQ(of(verdict(Finding::unnamed)), CaseOutcome::right);
+  EXPECT_EQ(of(verdict(Finding::none)), CaseOutcome::missed);
+  EXPECT_EQ(of(verdict(Finding::ambiguous, {"uptake", "exchange"})), CaseOutcome::wrong);
 }
 
 TEST(CaseOutcome, HasWordsThatAreReadBack) {
@@ -73,16 +75,15 @@ TEST(StrengthError, IsInUnitsOfTheTruth) {
   Units own = units;
   own.diffusion_cm2_s *= 1.5;
   const double rate = 0.2 / own.time();
-  Json found = verdict("named", "uptake");
-  found["parameters"]["uptake.rate"] = {{"value", 0.9 * rate}, {"sigma", 0.05 * rate}};
+  Verdict found = verdict(Finding::named, {"uptake"});
+  found.parameters = {{"uptake", "rate", "1/s", 0.9 * rate, 0.05 * rate}};
   const auto error = strength_error(truth, units, found);
   ASSERT_TRUE(error);
   EXPECT_NEAR(error->relative, 0.1, 1e-9);
   EXPECT_NEAR(error->deviations, -2, 1e-9);
-  found["effect"] = nullptr;  // it only comes closest
+  found.finding = Finding::unnamed;  // it only comes closest
   EXPECT_FALSE(strength_error(truth, units, found));
-  found = verdict("named", "exchange");
-  found["parameters"] = Json::object();
+  found = verdict(Finding::named, {"exchange"});
   EXPECT_FALSE(strength_error(truth, units, found));
   truth.effects.clear();
   EXPECT_FALSE(strength_error(truth, units, found));
@@ -91,8 +92,8 @@ TEST(StrengthError, IsInUnitsOfTheTruth) {
 // Where sizing stopped the search has to stop, too: that it does is no success.
 TEST(StrengthError, IsNoneAtTheEndOfARange) {
   const auto of_truth = [](double strength) {
-    Json found = verdict("named", "mobility-contrast");
-    found["parameters"]["mobility-contrast.strength"] = {{"value", 1.0}, {"sigma", 0.1}};
+    Verdict found = verdict(Finding::named, {"mobility-contrast"});
+    found.parameters = {{"mobility-contrast", "strength", "", 1.0, 0.1}};
     return strength_error({{{"mobility-contrast", {strength}}}, 1, 0.03}, {}, found);
   };
   EXPECT_TRUE(of_truth(0.9));

@@ -37,15 +37,16 @@ TEST(Claims, HoldWithinTheirInterval) {
 
 TEST(Verdicts, AreThoseOfTheWorstClaim) {
   const Claim good = claim_at_most("good", 0, 1), bad = claim_at_most("bad", 2, 1);
-  EXPECT_EQ(result_with({good}).verdict(), Verdict::holds);
-  EXPECT_EQ(result_with({good, bad, good}).verdict(), Verdict::fails);
-  EXPECT_EQ(result_with({}).verdict(), Verdict::fails) << "a study without claims shows nothing";
+  EXPECT_EQ(result_with({good}).outcome(), StudyOutcome::holds);
+  EXPECT_EQ(result_with({good, bad, good}).outcome(), StudyOutcome::fails);
+  EXPECT_EQ(result_with({}).outcome(), StudyOutcome::fails)
+      << "a study without claims shows nothing";
   StudyResult failed = result_with({good});
   failed.failure = "it broke";
-  EXPECT_EQ(failed.verdict(), Verdict::fails);
+  EXPECT_EQ(failed.outcome(), StudyOutcome::fails);
   StudyResult skipped;
   skipped.report.skipped = "not built in";
-  EXPECT_EQ(skipped.verdict(), Verdict::not_measured);
+  EXPECT_EQ(skipped.outcome(), StudyOutcome::not_measured);
 }
 
 TEST(VerifyReport, ClaimsAreRowsForPeople) {

@@ -10,34 +10,6 @@
 namespace traceraft {
 namespace {
 
-SearchState next_state(Search& search, SearchState state) {
-  switch (state.next) {
-    case SearchStep::start:
-      return start(search, std::move(state));
-    case SearchStep::calibrate:
-      return calibrate(search, std::move(state));
-    case SearchStep::eliminate:
-      return eliminate(search, std::move(state));
-    case SearchStep::screen:
-      return screen_candidates(search, std::move(state));
-    case SearchStep::refit:
-      return refit_shortlist(search, std::move(state));
-    case SearchStep::choose:
-      return choose(search, std::move(state));
-    case SearchStep::replace:
-      return replace(search, std::move(state));
-    case SearchStep::compare_gaps:
-      return compare_gaps(search, std::move(state));
-    case SearchStep::weigh:
-      return weigh(search, std::move(state));
-    case SearchStep::confirm:
-      return confirm(search, std::move(state));
-    case SearchStep::done:
-      return state;
-  }
-  return state;
-}
-
 // Is it the hypothesis, or that with something more?
 bool has_found(const Hypothesis& hypothesis, const Hypothesis& found) {
   return std::all_of(found.parts.begin(), found.parts.end(),
@@ -96,6 +68,44 @@ SearchState confirm(Search& search, SearchState state) {
   return state;
 }
 
+namespace {
+
+SearchState after_step(Search& search, SearchState state) {
+  switch (state.next) {
+    case SearchStep::start:
+      return start(search, std::move(state));
+    case SearchStep::calibrate:
+      return calibrate(search, std::move(state));
+    case SearchStep::eliminate:
+      return eliminate(search, std::move(state));
+    case SearchStep::screen:
+      return screen_candidates(search, std::move(state));
+    case SearchStep::refit:
+      return refit_shortlist(search, std::move(state));
+    case SearchStep::choose:
+      return choose(search, std::move(state));
+    case SearchStep::replace:
+      return replace(search, std::move(state));
+    case SearchStep::compare_gaps:
+      return compare_gaps(search, std::move(state));
+    case SearchStep::weigh:
+      return weigh(search, std::move(state));
+    case SearchStep::confirm:
+      return confirm(search, std::move(state));
+    case SearchStep::done:
+      return state;
+  }
+  return state;
+}
+
+}  // namespace
+
+SearchState next_state(Search& search, SearchState state) {
+  SearchState next = after_step(search, std::move(state));
+  next.refits.clear();
+  return next;
+}
+
 Explanation explain_fields(const std::vector<FieldSeries>& series, const ExplainRequest& request,
                            SearchState from) {
   Search search(series, request);
@@ -106,7 +116,6 @@ Explanation explain_fields(const std::vector<FieldSeries>& series, const Explain
   SearchState state = std::move(from);
   while (state.next != SearchStep::done) {
     state = next_state(search, std::move(state));
-    state.refits.clear();
     search.save(state);
   }
   const CutSurface& surface = search.data(state).front().space->surface;

@@ -5,6 +5,9 @@
 
 namespace traceraft {
 
+// The step that is next, whichever it is.
+SearchState next_state(Search& search, SearchState state);
+
 // D of the base model, to some percent.
 SearchState start(Search& search, SearchState state);
 
