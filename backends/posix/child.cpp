@@ -106,7 +106,6 @@ ChildResult run_child(const ChildRequest& request) {
       kill(child, SIGKILL);
       result.out_of_time = true;
     }
-    if (request.tick) request.tick();
     usleep(kPause);
   }
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

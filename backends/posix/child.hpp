@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,7 +11,6 @@ struct ChildRequest {
   std::vector<std::string> command;   // program (looked up in PATH) and arguments
   std::filesystem::path log;          // what it prints, errors included, is added to it
   double time_limit = 0;              // seconds of wall time, then it is killed; 0: none
-  std::function<void()> tick;         // called several times a second meanwhile; may be empty
   std::filesystem::path folder = {};  // it works there; empty: where this process does
 };
 

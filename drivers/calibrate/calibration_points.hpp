@@ -8,7 +8,7 @@
 #include "drivers/ensemble/ensemble_point.hpp"
 #include "kernel/core/named_list.hpp"
 #include "verification/calibration/calibration.hpp"
-#include "verification/measure/fit.hpp"
+#include "verification/statistics/bootstrap.hpp"
 
 namespace traceraft {
 

@@ -14,6 +14,7 @@
 #include "kernel/core/random.hpp"
 #include "kernel/core/stopwatch.hpp"
 #include "verification/explain/search/rerun.hpp"
+#include "verification/statistics/random_streams.hpp"
 
 namespace traceraft {
 namespace {
@@ -34,8 +35,8 @@ std::uint64_t seed_of(const CampaignPlan& plan, const CaseId& id) {
 // D of the truth over that of the model.
 double pace_of(const CaseSettings& settings, std::uint64_t seed) {
   if (settings.diffusion_error > 0)
-    return std::exp(settings.diffusion_error * normal_random(seed, 2, 1));
-  return std::exp(0.4 * (uniform_random(seed, 2, 0) - 0.5));
+    return std::exp(settings.diffusion_error * normal_random(seed, stream::diffusion, 1));
+  return std::exp(0.4 * (uniform_random(seed, stream::diffusion, 0) - 0.5));
 }
 
 void draw(const fs::path& folder, const CampaignPlan& plan, const CaseSettings& settings,

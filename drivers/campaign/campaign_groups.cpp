@@ -5,6 +5,7 @@
 #include "kernel/core/random.hpp"
 #include "kernel/effects/effects.hpp"
 #include "verification/explain/blind/effect_size.hpp"
+#include "verification/statistics/random_streams.hpp"
 
 namespace traceraft {
 namespace {
@@ -65,7 +66,7 @@ CaseSettings settings_of(const CampaignGroup& group, int number, std::uint64_t s
   const std::size_t first = static_cast<std::size_t>(number) % all.size();
   if (group.effects > 0) settings.hidden.push_back(all[first]);
   if (group.effects > 1) {
-    const double u = uniform_random(seed, 1, 0);
+    const double u = uniform_random(seed, stream::second_effect, 0);
     const auto further = static_cast<std::size_t>(u * static_cast<double>(all.size() - 1));
     settings.hidden.push_back(all[(first + 1 + further) % all.size()]);
   }

@@ -12,28 +12,20 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/text.hpp"
 #include "verification/explain/fit/refit.hpp"
-#include "verification/measure/fit.hpp"
+#include "verification/statistics/sample.hpp"
 
 namespace traceraft {
 namespace {
 
 using Scores = std::vector<CaseScore>;
 
-double median(std::vector<double> values) {
-  values.erase(
-      std::remove_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }),
-      values.end());
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
-}
-
+// The median of the finite values; NaN without any.
 template <class Value>
 double median_of(const Scores& scores, const Value& value) {
   std::vector<double> values;
-  for (const CaseScore& score : scores) values.push_back(value(score));
-  return median(values);
+  for (const CaseScore& score : scores)
+    if (const double one = value(score); std::isfinite(one)) values.push_back(one);
+  return values.empty() ? std::numeric_limits<double>::quiet_NaN() : quantile(values, 0.5);
 }
 
 Cell cell(double value) {

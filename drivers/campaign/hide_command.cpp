@@ -19,6 +19,7 @@
 #include "kernel/core/random.hpp"
 #include "verification/explain/blind/effect_size.hpp"
 #include "verification/explain/forecast/candidates.hpp"
+#include "verification/statistics/random_streams.hpp"
 
 namespace traceraft {
 namespace {
@@ -49,7 +50,8 @@ std::vector<std::string> effects_of(const std::string& text, std::uint64_t seed)
     return names;
   }
   std::vector<std::string> all = effects_to_hide();
-  const double u = uniform_random(seed, 3, 0) * static_cast<double>(all.size() + 1);
+  const double u =
+      uniform_random(seed, stream::hidden_effect, 0) * static_cast<double>(all.size() + 1);
   const auto index = static_cast<std::size_t>(u);
   return index < all.size() ? std::vector<std::string>{all[index]} : std::vector<std::string>{};
 }

@@ -98,7 +98,7 @@ int carry_out(const CompareRequest& request, const ComparisonFolder& folder,
         plan.integrators.size(), plan.linear_solvers.size(), plan.tolerances.size(), plan.repeat,
         run.problem->size(), folder.path());
   std::string why;
-  switch (work_off(plan, folder, reference, request.quiet, why)) {
+  switch (run_comparison(plan, folder, reference, request.quiet, why)) {
     case WorkEnd::stopped:
       if (!request.quiet)
         say("go on with: traceraft compare --out %s\n", in_shell(folder.path().string()));

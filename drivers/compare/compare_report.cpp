@@ -11,6 +11,7 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
+#include "verification/statistics/sample.hpp"
 
 namespace traceraft {
 namespace {
@@ -29,11 +30,11 @@ Row cells(const WorkPoint& p) {
     row.push_back(p.failure);
     return row;
   }
-  const Spread cpu = spread_of(p.cpu_s), wall = spread_of(p.wall_s);
+  const Sample cpu = sample_of(p.cpu_s), wall = sample_of(p.wall_s);
   row.push_back(formatted("%.2e", p.error));
   row.push_back(formatted("%.2f", cpu.median));
-  row.push_back(formatted("%.2f", wall.median) + " (" + formatted("%.2f", wall.low) + " to " +
-                formatted("%.2f", wall.high) + ")");
+  row.push_back(formatted("%.2f", wall.median) + " (" + formatted("%.2f", wall.min) + " to " +
+                formatted("%.2f", wall.max) + ")");
   for (const char* count : {"steps", "rejected", "failures", "residuals", "jacobians",
                             "linear_setups", "linear_iterations", "threads"})
     row.push_back(formatted("%.0f", p.counts.at(count)));
@@ -61,7 +62,7 @@ Chart work_precision(const std::vector<WorkPoint>& points, const char* clock,
     if (!p.ok() || !(p.error > 0)) continue;  // no place on a logarithmic axis
     const auto [entry, fresh] = index.emplace(p.method(), chart.series.size());
     if (fresh) chart.series.push_back({p.method(), {}});
-    chart.series[entry->second].points.emplace_back(spread_of(p.*times).median, p.error);
+    chart.series[entry->second].points.emplace_back(sample_of(p.*times).median, p.error);
   }
   return chart;
 }
@@ -87,8 +88,8 @@ std::string compare_csv(const std::vector<WorkPoint>& points) {
     }
     csv += "," + format_number(p.error) + "," + std::to_string(p.wall_s.size());
     for (const auto& times : {p.cpu_s, p.wall_s}) {
-      const Spread spread = spread_of(times);
-      for (const double value : {spread.median, spread.low, spread.high})
+      const Sample spread = sample_of(times);
+      for (const double value : {spread.median, spread.min, spread.max})
         csv += "," + format_number(value);
     }
     for (const std::string& name : counts) csv += "," + format_number(p.counts.at(name));

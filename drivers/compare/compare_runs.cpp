@@ -1,20 +1,15 @@
 #include "drivers/compare/compare_runs.hpp"
 
-#include <unistd.h>
-
 #include <cstdio>
-#include <functional>
 
 #include "backends/list.hpp"
 #include "backends/posix/durable_file.hpp"
 #include "backends/posix/folder_lock.hpp"
 #include "backends/posix/own_files.hpp"
-#include "backends/posix/process.hpp"
 #include "backends/zlib/checksum.hpp"
 #include "drivers/config/config_file.hpp"
 #include "drivers/exit_codes.hpp"
-#include "drivers/jobs/program_run.hpp"
-#include "drivers/output/status_line.hpp"
+#include "drivers/jobs/pending_jobs.hpp"
 #include "drivers/run/finished_run.hpp"
 #include "drivers/run/run_folder.hpp"
 #include "kernel/core/error.hpp"
@@ -24,7 +19,6 @@ namespace traceraft {
 namespace {
 
 namespace fs = std::filesystem;
-using Tick = std::function<void()>;
 
 std::vector<std::string> reference_arguments(const Reference& reference,
                                              const ComparisonFolder& folder) {
@@ -41,29 +35,34 @@ std::vector<std::string> reference_arguments(const Reference& reference,
 }
 
 // Another comparison may be at it: then its end is waited for.
-WorkEnd compute(const Reference& reference, const ComparisonFolder& folder, const Tick& tick,
+WorkEnd compute(const Reference& reference, const ComparisonFolder& folder, bool quiet,
                 std::string& why) {
   fs::create_directories(reference.folder.parent_path());
+  PendingJobs job;
+  job.count = 1;
+  job.kind = "reference";
+  job.folder = folder.path();
+  job.quiet = quiet;
+  job.run = [&](std::size_t) {
+    return run_program(reference_arguments(reference, folder), folder.path() / "reference.log");
+  };
+  job.name = [](std::size_t) { return std::string("the reference"); };
   while (!run_finished(reference.folder)) {
-    const ProcessEnd end = run_program(reference_arguments(reference, folder),
-                                       folder.path() / "reference.log", 1, 0, tick);
-    if (end.was_stopped()) return WorkEnd::stopped;
-    if (end.exit_code == kLocked) {
-      tick();
-      usleep(200000);
-      continue;
-    }
-    if (end.exit_code == kNumericalFailure) {
-      why = end.reason();
-      return WorkEnd::reference_failed;
-    }
-    if (end.exit_code != kSuccess) throw IoError("the reference failed: " + end.reason());
+    const JobsEnd end = run_pending_jobs(job);
+    if (end.stopped) return WorkEnd::stopped;
+    if (end.failures.empty() || end.failures.front().locked) continue;
+    why = end.failures.front().why;
+    return WorkEnd::reference_failed;
   }
   return WorkEnd::done;
 }
 
-WorkEnd compute(const CompareJob& job, const ComparisonFolder& folder, double time_limit,
-                const Tick& tick) {
+bool is_result(const ProcessEnd& end) {
+  return end.out_of_time || (!end.was_stopped() && end.concerns_input());
+}
+
+// A result is recorded, a failure with its reason.
+ProcessEnd compute(const CompareJob& job, const ComparisonFolder& folder, double time_limit) {
   const fs::path run = folder.run_of(job);
   if (fs::exists(run)) {
     // What an interruption left: its times mean nothing. Unless a run that outlived its comparison
@@ -78,15 +77,12 @@ WorkEnd compute(const CompareJob& job, const ComparisonFolder& folder, double ti
   arguments.insert(arguments.end(), {"--out", run.string(), "--no-fields", "--checkpoint-interval",
                                      "1e9", "--quiet"});
   if (job.ranks > 1) arguments.insert(arguments.end(), {"--threads", "1"});
-  const ProcessEnd end = run_program(arguments, folder.log_of(job), job.ranks, time_limit, tick);
-  if (end.out_of_time) {
+  ProcessEnd end = run_program(arguments, folder.log_of(job), job.ranks, time_limit);
+  if (end.out_of_time)
     folder.record(job, {"stopped after " + format_number(time_limit) + " s", time_limit});
-    return WorkEnd::done;
-  }
-  if (end.was_stopped()) return WorkEnd::stopped;
-  if (!end.concerns_input()) throw IoError(job.name() + " could not run: " + end.reason());
-  folder.record(job, {end.exit_code == kSuccess ? "" : end.reason(), 0});
-  return WorkEnd::done;
+  else if (is_result(end))
+    folder.record(job, {end.exit_code == kSuccess ? "" : end.reason(), 0});
+  return end;
 }
 
 }  // namespace
@@ -118,42 +114,27 @@ Reference reference_of(const ComparePlan& plan, const ComparisonFolder& folder,
   return reference;
 }
 
-WorkEnd work_off(const ComparePlan& plan, const ComparisonFolder& folder,
-                 const Reference& reference, bool quiet, std::string& why) {
-  const std::vector<CompareJob> jobs = jobs_of(plan);
-  StatusLine line(quiet);
-  const Stopwatch watch;
-  long done = 0, total = static_cast<long>(jobs.size()) + 1, worked = 0;
-  const auto tick_for = [&](const std::string& what) {
-    return [&, what] {
-      if (!line.due()) return;
-      const double left = worked > 0 ? watch.seconds() / static_cast<double>(worked) *
-                                           static_cast<double>(total - done)
-                                     : 0;
-      line.show(static_cast<double>(done) / static_cast<double>(total),
-                std::to_string(done) + "/" + std::to_string(total) + "  " + what + "  " +
-                    clock_text(watch.seconds()) + " elapsed" +
-                    (left > 0 ? "  ~" + clock_text(left) + " left" : ""));
-    };
-  };
-  WorkEnd end = WorkEnd::done;
-  if (!run_finished(reference.folder)) {
-    end = compute(reference, folder,
-                  tick_for("reference: ida at " + format_number(plan.reference())), why);
-    ++worked;
-  }
-  ++done;
-  for (const CompareJob& job : jobs) {
-    if (end == WorkEnd::done && stop_requested()) end = WorkEnd::stopped;
-    if (end != WorkEnd::done) break;
-    if (!folder.done(job, plan)) {
-      end = compute(job, folder, plan.time_limit, tick_for(job.name()));
-      ++worked;
-    }
-    ++done;
-  }
-  line.finish();
-  return end;
+WorkEnd run_comparison(const ComparePlan& plan, const ComparisonFolder& folder,
+                       const Reference& reference, bool quiet, std::string& why) {
+  if (const WorkEnd end = compute(reference, folder, quiet, why); end != WorkEnd::done) return end;
+  const std::vector<CompareJob> all = jobs_of(plan);
+  std::vector<CompareJob> open;
+  for (const CompareJob& job : all)
+    if (!folder.done(job, plan)) open.push_back(job);
+  PendingJobs jobs;
+  jobs.count = open.size();
+  jobs.before = all.size() - open.size();
+  jobs.kind = "runs";
+  jobs.folder = folder.path();
+  jobs.quiet = quiet;
+  jobs.run = [&](std::size_t k) { return compute(open[k], folder, plan.time_limit); };
+  jobs.name = [&](std::size_t k) { return open[k].name(); };
+  jobs.success = is_result;
+  const JobsEnd end = run_pending_jobs(jobs);
+  if (!end.failures.empty())
+    throw IoError(open[end.failures.front().job].name() +
+                  " could not run: " + end.failures.front().why);
+  return end.stopped ? WorkEnd::stopped : WorkEnd::done;
 }
 
 }  // namespace traceraft

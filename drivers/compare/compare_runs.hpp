@@ -24,7 +24,7 @@ enum class WorkEnd { done, stopped, reference_failed };
 
 // Does what the plan still lacks, the reference first. `why`: of a reference that failed. Throws
 // IoError for what no method is to blame for.
-WorkEnd work_off(const ComparePlan& plan, const ComparisonFolder& folder,
-                 const Reference& reference, bool quiet, std::string& why);
+WorkEnd run_comparison(const ComparePlan& plan, const ComparisonFolder& folder,
+                       const Reference& reference, bool quiet, std::string& why);
 
 }  // namespace traceraft

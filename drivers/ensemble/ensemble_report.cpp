@@ -6,6 +6,7 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
+#include "verification/statistics/sample.hpp"
 
 namespace traceraft {
 namespace {
@@ -14,17 +15,15 @@ constexpr int kPerDecade = 24;
 
 struct Statistic {
   const char* name;
-  double Distribution::*value;
+  double Sample::*value;
 };
 constexpr Statistic kStatistics[] = {
-    {"mean", &Distribution::mean}, {"sd", &Distribution::deviation},
-    {"min", &Distribution::min},   {"q10", &Distribution::q10},
-    {"q25", &Distribution::q25},   {"median", &Distribution::median},
-    {"q75", &Distribution::q75},   {"q90", &Distribution::q90},
-    {"max", &Distribution::max}};
+    {"mean", &Sample::mean}, {"sd", &Sample::deviation}, {"min", &Sample::min},
+    {"q10", &Sample::q10},   {"q25", &Sample::q25},      {"median", &Sample::median},
+    {"q75", &Sample::q75},   {"q90", &Sample::q90},      {"max", &Sample::max}};
 
 ChartSeries band(const EnsembleSummary& summary, Quantity quantity, const char* name,
-                 double Distribution::*low, double Distribution::*high) {
+                 double Sample::*low, double Sample::*high) {
   ChartSeries series{name, {}, Mark::band};
   const auto& at = summary.at[index_of(quantity)];
   for (std::size_t i = 0; i < at.size(); ++i) {
@@ -67,7 +66,7 @@ EnsembleSummary summarise(const std::vector<History>& runs) {
   summary.times = common_times(runs, kPerDecade);
   if (summary.times.empty()) throw InputError("the runs of an ensemble have no times in common");
   for (const Quantity quantity : kQuantities)
-    summary.at[index_of(quantity)] = distributions(runs, quantity, summary.times);
+    summary.at[index_of(quantity)] = samples_at(runs, quantity, summary.times);
   return summary;
 }
 
@@ -89,8 +88,8 @@ Chart ensemble_chart(const EnsembleSummary& summary, Quantity quantity, bool sec
   const char* label = name_of(quantity).label;
   Chart chart{label, seconds ? "time (s)" : "time (R^2/D)", label,
               true,  quantity != Quantity::fraction,        {}};
-  chart.series = {band(summary, quantity, "all runs", &Distribution::min, &Distribution::max),
-                  band(summary, quantity, "middle half", &Distribution::q25, &Distribution::q75),
+  chart.series = {band(summary, quantity, "all runs", &Sample::min, &Sample::max),
+                  band(summary, quantity, "middle half", &Sample::q25, &Sample::q75),
                   {"median", {}, Mark::line}};
   const auto& at = summary.at[index_of(quantity)];
   for (std::size_t i = 0; i < at.size(); ++i)

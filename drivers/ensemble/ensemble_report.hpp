@@ -9,6 +9,7 @@
 #include "drivers/output/page.hpp"
 #include "drivers/output/text_table.hpp"
 #include "verification/measure/figures.hpp"
+#include "verification/statistics/sample.hpp"
 #include "verification/vesicles/history.hpp"
 
 namespace traceraft {
@@ -17,7 +18,7 @@ namespace traceraft {
 struct EnsembleSummary {
   std::size_t runs;
   std::vector<double> times;
-  std::array<std::vector<Distribution>, 3> at;  // in the order of kQuantities
+  std::array<std::vector<Sample>, 3> at;  // in the order of kQuantities
 };
 // Throws InputError if they have no times in common.
 EnsembleSummary summarise(const std::vector<History>& runs);

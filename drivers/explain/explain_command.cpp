@@ -25,7 +25,7 @@
 #include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/effects/effects.hpp"
-#include "verification/measure/fit.hpp"
+#include "verification/statistics/sample.hpp"
 
 namespace traceraft {
 namespace {

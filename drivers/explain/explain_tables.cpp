@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "kernel/core/text.hpp"
-#include "verification/measure/fit.hpp"
+#include "verification/statistics/sample.hpp"
 
 namespace traceraft {
 namespace {

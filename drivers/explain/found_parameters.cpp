@@ -6,7 +6,7 @@
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
 #include "kernel/effects/effects.hpp"
-#include "verification/measure/fit.hpp"
+#include "verification/statistics/sample.hpp"
 
 namespace traceraft {
 namespace {

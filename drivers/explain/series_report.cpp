@@ -14,8 +14,9 @@
 #include "drivers/vesicles/agreement_report.hpp"
 #include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/text.hpp"
-#include "verification/measure/fit.hpp"
 #include "verification/series/series_need.hpp"
+#include "verification/statistics/power_law.hpp"
+#include "verification/statistics/sample.hpp"
 #include "verification/vesicles/differences.hpp"
 
 namespace traceraft {

@@ -4,6 +4,7 @@
 
 #include "kernel/core/text.hpp"
 #include "kernel/effects/effects.hpp"
+#include "verification/statistics/sample.hpp"
 
 namespace traceraft {
 namespace {

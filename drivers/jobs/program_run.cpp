@@ -80,11 +80,11 @@ bool ProcessEnd::harms_no_other(const std::filesystem::path& folder) const {
 }
 
 ProcessEnd run_program(const std::vector<std::string>& arguments, const std::filesystem::path& log,
-                       int ranks, double time_limit, const std::function<void()>& tick) {
+                       int ranks, double time_limit) {
   std::vector<std::string> command = program_on(ranks);
   command.insert(command.end(), arguments.begin(), arguments.end());
   const std::uintmax_t before = std::filesystem::exists(log) ? std::filesystem::file_size(log) : 0;
-  const ChildResult result = run_child({command, log, time_limit, tick});
+  const ChildResult result = run_child({command, log, time_limit});
   std::string text = read_file(log, kLargestLog);
   text.erase(0, std::min<std::size_t>(before, text.size()));
   while (!text.empty() && text.back() == '\n') text.pop_back();

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -28,10 +27,9 @@ struct ProcessEnd {
 };
 
 // Runs this program to its end, under mpirun if on more than one rank. What it prints goes to
-// `log`. `time_limit` and `tick` as of ChildRequest. Throws IoError if no process can be started.
+// `log`. `time_limit` as of ChildRequest. Throws IoError if no process can be started.
 ProcessEnd run_program(const std::vector<std::string>& arguments, const std::filesystem::path& log,
-                       int ranks = 1, double time_limit = 0,
-                       const std::function<void()>& tick = {});
+                       int ranks = 1, double time_limit = 0);
 
 // Studies' runs of the program. Each works in the folder `scratch` and removes it at its end.
 RunProgram program_runner(std::filesystem::path scratch);

@@ -203,7 +203,7 @@ std::string draw_chart(const Chart& chart, const std::filesystem::path& stem) {
   const std::string name = plain_name(stem), input = script(chart, name + ".svg");
   refuse_commands(input);
   write_durably(with(".gp"), input);
-  ChildRequest request{{"gnuplot", "--default-settings", name + ".gp"}, with(".log"), 60, nullptr};
+  ChildRequest request{{"gnuplot", "--default-settings", name + ".gp"}, with(".log"), 60};
   request.folder = stem.parent_path();
   const ChildResult result = run_child(request);
   if (result.exit_code == 127) return "";

@@ -8,7 +8,7 @@
 
 #include "drivers/output/chart.hpp"
 #include "drivers/output/text_table.hpp"
-#include "verification/vesicles/power_law.hpp"
+#include "verification/vesicles/perimeter_law.hpp"
 #include "verification/vesicles/published.hpp"
 
 namespace traceraft {

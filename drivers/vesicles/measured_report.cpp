@@ -14,6 +14,8 @@
 #include "drivers/vesicles/law_report.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/text.hpp"
+#include "verification/statistics/power_law.hpp"
+#include "verification/statistics/sample.hpp"
 #include "verification/vesicles/raft_fraction.hpp"
 #include "verification/vesicles/resolvable.hpp"
 
@@ -24,7 +26,7 @@ namespace fs = std::filesystem;
 
 std::string spread(const std::vector<double>& values) {
   if (values.empty()) return "not measured";
-  const Distribution d = distribution(values);
+  const Sample d = sample_of(values);
   return formatted("%.4g +- %.2g, from %.4g to %.4g (%zu measurements)", d.mean, d.deviation, d.min,
                    d.max, values.size());
 }

@@ -7,7 +7,7 @@
 #include "drivers/config/configuration.hpp"
 #include "drivers/ensemble/ensemble_report.hpp"
 #include "verification/vesicles/measurements.hpp"
-#include "verification/vesicles/power_law.hpp"
+#include "verification/vesicles/perimeter_law.hpp"
 
 namespace traceraft {
 

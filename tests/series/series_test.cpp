@@ -7,9 +7,10 @@
 
 #include "kernel/core/error.hpp"
 #include "kernel/core/random.hpp"
-#include "verification/measure/fit.hpp"
 #include "verification/series/series_explanation.hpp"
 #include "verification/series/series_misfit.hpp"
+#include "verification/statistics/bootstrap.hpp"
+#include "verification/statistics/sample.hpp"
 
 namespace traceraft {
 namespace {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "verification/statistics/sample.hpp"
+
 namespace traceraft {
 namespace {
 
@@ -10,14 +12,6 @@ WorkPoint point(const char* integrator, double tolerance, double error, std::vec
   std::vector<double> cpu;
   for (const double seconds : wall) cpu.push_back(1.5 * seconds);
   return {integrator, "block", tolerance, "", error, cpu, wall, {}};
-}
-
-TEST(Spread, IsMedianAndEnds) {
-  const Spread odd = spread_of({3, 1, 2}), even = spread_of({4, 1, 2, 3});
-  EXPECT_EQ(odd.median, 2);
-  EXPECT_EQ(even.median, 2.5);
-  EXPECT_EQ(even.low, 1);
-  EXPECT_EQ(even.high, 4);
 }
 
 TEST(Recommendation, TakesTheCheapestAtTheErrorThatAllReach) {

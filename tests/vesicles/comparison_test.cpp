@@ -8,8 +8,10 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/random.hpp"
 #include "kernel/core/types.hpp"
+#include "verification/statistics/power_law.hpp"
+#include "verification/statistics/sample.hpp"
 #include "verification/vesicles/onset.hpp"
-#include "verification/vesicles/power_law.hpp"
+#include "verification/vesicles/perimeter_law.hpp"
 #include "verification/vesicles/published.hpp"
 
 namespace traceraft {
@@ -54,7 +56,7 @@ TEST(Published, DrawsWhatWasPublished) {
     residuals.push_back(std::log(*m.of(Quantity::perimeter) / many.perimeter.at(m.time)));
     EXPECT_TRUE(many.window.contains(m.time));
   }
-  const Distribution fraction = distribution(fractions), residual = distribution(residuals);
+  const Sample fraction = sample_of(fractions), residual = sample_of(residuals);
   EXPECT_NEAR(fraction.mean, 0.09, 0.001);
   EXPECT_NEAR(fraction.deviation, 0.011, 0.0005);
   EXPECT_NEAR(residual.mean, 0, 0.01);

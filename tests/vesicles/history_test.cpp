@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "verification/statistics/sample.hpp"
+
 namespace traceraft {
 namespace {
 
@@ -32,18 +34,6 @@ TEST(History, CommonTimesAreWhatAllCover) {
   EXPECT_NEAR(times[1], std::sqrt(10), 1e-12);
   EXPECT_TRUE(common_times({history({0, 1}, {1, 1}), history({0, 2, 3}, {1, 1, 1})}, 2).empty());
   EXPECT_TRUE(common_times({}, 2).empty());
-}
-
-TEST(History, DistributionsKnowTheirQuantiles) {
-  const Distribution d = distribution({5, 1, 4, 2, 3});
-  EXPECT_DOUBLE_EQ(d.mean, 3);
-  EXPECT_DOUBLE_EQ(d.deviation, std::sqrt(2.5));
-  EXPECT_DOUBLE_EQ(d.median, 3);
-  EXPECT_DOUBLE_EQ(d.q25, 2);
-  EXPECT_DOUBLE_EQ(d.q90, 4.6);
-  EXPECT_DOUBLE_EQ(d.min, 1);
-  EXPECT_DOUBLE_EQ(d.max, 5);
-  EXPECT_DOUBLE_EQ(distribution({7}).deviation, 0);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include "kernel/core/types.hpp"
 #include "verification/calibration/run_emulator.hpp"
 #include "verification/likelihood/ensemble_fit.hpp"
-#include "verification/measure/fit.hpp"
+#include "verification/statistics/bootstrap.hpp"
 
 namespace traceraft {
 
@@ -24,8 +24,8 @@ inline constexpr double kDetermined = 2;
 struct CalibratedParameter {
   std::string name;
   double value;
-  // 95 %, by what data of the model found would give, with other vesicles and runs; widened for few.
-  // Both are corrected for the bias that such data show.
+  // 95 %, by what data of the model found would give, with other vesicles and runs; widened for
+  // few. Both are corrected for the bias that such data show.
   Interval interval;
   bool within;      // the interval ends within what was explored
   bool determined;  // it does, and spans less than kDetermined

@@ -8,7 +8,8 @@
 #include "verification/calibration/calibration_data.hpp"
 #include "verification/calibration/local_regression.hpp"
 #include "verification/likelihood/drawn_vesicles.hpp"
-#include "verification/measure/fit.hpp"
+#include "verification/statistics/bootstrap.hpp"
+#include "verification/statistics/random_streams.hpp"
 
 namespace traceraft {
 namespace {
@@ -16,7 +17,6 @@ namespace {
 constexpr int kReplicates = 200;
 constexpr double kOvershoot = 0.5;  // beyond what was explored, over its width
 constexpr std::size_t kStarts = 3;  // best points, where searches begin
-enum Stream : std::uint64_t { kOthers = 32, kStart = 33 };
 
 const std::vector<CalibrationPoint>& enough(const std::vector<CalibrationPoint>& points,
                                             const std::vector<SoughtParameter>& sought) {
@@ -39,14 +39,14 @@ std::vector<JointFit> fit_points(const Evidence& evidence,
   return fits;
 }
 
-// As many as parabolas need in any case, and two more for each parameter, to go through their middle.
+// As many as parabolas need in any case, and two more for each parameter, to go through their
+// middle.
 std::vector<CalibrationPoint> not_excluded(const std::vector<CalibrationPoint>& points,
                                            const std::vector<JointFit>& fits) {
   constexpr double kExcluded = 30;  // over the best deviance
   const int parameters = static_cast<int>(points.front().ln_parameters.size());
-  const auto least =
-      std::min(points.size(),
-               static_cast<std::size_t>(points_of_parabola(parameters) + 2 * parameters));
+  const auto least = std::min(
+      points.size(), static_cast<std::size_t>(points_of_parabola(parameters) + 2 * parameters));
   std::vector<double> deviances;
   for (const JointFit& fit : fits) deviances.push_back(fit.fit.deviance);
   std::sort(deviances.begin(), deviances.end());
@@ -154,12 +154,14 @@ std::vector<std::vector<double>> CalibrationFit::replicates() const {
     const MeasuredVesicles vesicles = drawn_vesicles(data_, errors, model, found_.fit, r);
     const UnitPrior unit = drawn_unit(found_.fit, unit_, r);
     const Evidence drawn{observed_series(vesicles, vesicles_, quantities_), unit};
-    const RunEmulator others = runs_.with_others(weights_of_other_runs(count, r, kOthers));
+    const RunEmulator others =
+        runs_.with_others(weights_of_other_runs(count, r, replicate_stream::other_runs));
     // From another point each time, and another D: what is flat is not to be taken for known.
     const std::size_t k = r % at_points_.size();
     JointFit start = at_points_[k];
-    start.fit.ln_unit = std::log(units[k].low) +
-                        std::log(units[k].high / units[k].low) * uniform_random(r, kStart, 0);
+    start.fit.ln_unit =
+        std::log(units[k].low) + std::log(units[k].high / units[k].low) *
+                                     uniform_random(r, replicate_stream::search_start, 0);
     const JointFit fit = fit_jointly(drawn, others, box_, {start});
     // It may have stayed in a valley of its own, which is not as deep.
     const JointFit back = fit_jointly(drawn, others, box_, {found_});

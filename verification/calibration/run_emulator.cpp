@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "verification/calibration/local_regression.hpp"
-#include "verification/measure/fit.hpp"
 
 namespace traceraft {
 namespace {

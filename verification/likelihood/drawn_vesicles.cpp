@@ -4,18 +4,18 @@
 #include <cmath>
 
 #include "kernel/core/random.hpp"
+#include "verification/statistics/random_streams.hpp"
 
 namespace traceraft {
 namespace {
 
-enum Stream : std::uint64_t { kRun = 1, kVesicle = 2, kLook = 3, kStated = 5, kUnit = 6 };
 constexpr std::uint64_t kNext = 1ull << 32;  // number of one look
 
 // One quantity of one look. `look`: its number in all random streams.
 double drawn_value(const StatedError& stated, double own, Quantity quantity,
                    std::uint64_t replicate, std::uint64_t look) {
   const double value = std::exp(stated.drawn(own, [&](std::uint64_t k) {
-    return normal_random(replicate, kStated, look + k * kNext);
+    return normal_random(replicate, replicate_stream::stated_error, look + k * kNext);
   }));
   return quantity == Quantity::rafts ? std::max(1.0, std::round(value)) : value;
 }
@@ -25,7 +25,8 @@ double drawn_value(const StatedError& stated, double own, Quantity quantity,
 double ModelRuns::logarithm(const Vec& weights, Quantity quantity, double t) const {
   double own = 0;
   for (std::size_t k = 0; k < runs->size(); ++k)
-    own += weights[static_cast<Eigen::Index>(k)] * logarithm_of(quantity, (*runs)[k].at(quantity, t));
+    own +=
+        weights[static_cast<Eigen::Index>(k)] * logarithm_of(quantity, (*runs)[k].at(quantity, t));
   if (from == nullptr) return own;
   return own + to->mean(quantity, std::log(t)) - from->mean(quantity, std::log(t));
 }
@@ -36,7 +37,8 @@ MeasuredVesicles drawn_vesicles(const MeasuredVesicles& data, const StatedErrors
   MeasuredVesicles drawn = data;
   std::uint64_t vesicle = 0, look = 0;
   for (const auto& [first, last] : data.vesicles()) {
-    const Vec weights = weights_of_another_run(model.runs->size(), replicate, kRun, vesicle);
+    const Vec weights =
+        weights_of_another_run(model.runs->size(), replicate, replicate_stream::run, vesicle);
     for (std::size_t i = first; i < last; ++i)
       for (const Quantity quantity : kQuantities) {
         const auto q = index_of(quantity);
@@ -49,8 +51,9 @@ MeasuredVesicles drawn_vesicles(const MeasuredVesicles& data, const StatedErrors
         if (model.logarithm(weights, Quantity::rafts, t) < std::log(kLeastRafts)) continue;
         const double own =
             model.logarithm(weights, quantity, t) +
-            fit.scatter.vesicle[q] * normal_random(replicate, kVesicle, 3 * vesicle + q) +
-            fit.scatter.look[q] * normal_random(replicate, kLook, look);
+            fit.scatter.vesicle[q] *
+                normal_random(replicate, replicate_stream::vesicle, 3 * vesicle + q) +
+            fit.scatter.look[q] * normal_random(replicate, replicate_stream::observation, look);
         value = drawn_value(errors.of(m, quantity), own, quantity, replicate, look);
         drawn.measurements[i].sigma[q] =
             m.sigma_of(quantity) * std::pow(value / measured, errors.power(quantity));
@@ -63,8 +66,8 @@ MeasuredVesicles drawn_vesicles(const MeasuredVesicles& data, const StatedErrors
 UnitPrior drawn_unit(const EnsembleFit& fit, const UnitPrior& unit, std::uint64_t replicate) {
   UnitPrior drawn = unit;
   if (std::isfinite(unit.deviation))
-    drawn.drawn =
-        fit.ln_unit - std::log(unit.start) + unit.deviation * normal_random(replicate, kUnit, 0);
+    drawn.drawn = fit.ln_unit - std::log(unit.start) +
+                  unit.deviation * normal_random(replicate, replicate_stream::known_unit, 0);
   return drawn;
 }
 

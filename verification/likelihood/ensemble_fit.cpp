@@ -5,7 +5,8 @@
 #include <limits>
 
 #include "verification/likelihood/ensemble_likelihood.hpp"
-#include "verification/measure/fit.hpp"
+#include "verification/statistics/bootstrap.hpp"
+#include "verification/statistics/sample.hpp"
 
 namespace traceraft {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "verification/likelihood/observations.hpp"
-#include "verification/measure/fit.hpp"
+#include "verification/statistics/bootstrap.hpp"
 
 namespace traceraft {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "verification/measure/log_of_product.hpp"
+#include "verification/statistics/log_of_product.hpp"
 
 namespace traceraft {
 namespace {
@@ -115,8 +115,7 @@ EnsembleLikelihood::Looks EnsembleLikelihood::derivative(const Block& block, con
         (stated.of_logarithm(above) - stated.of_logarithm(below)) / (2 * kStep) * change;
     const double variance = model_.base->variance(series.quantity, t);
     if (parameter.kind == Kind::unit && variance > 0)
-      result.run[i] =
-          -0.5 * model_.base->variance_slope(series.quantity, t) / std::sqrt(variance);
+      result.run[i] = -0.5 * model_.base->variance_slope(series.quantity, t) / std::sqrt(variance);
   }
   return result;
 }
@@ -178,8 +177,8 @@ void EnsembleLikelihood::add_block(const Block& block, const EnsembleFit& at,
       own.solved = inverse.lazyProduct(by.residual);
     }
     own.share = inverse.lazyProduct(change);
-    sum.gradient[p] += 2 * alpha.dot(own.residual) - alpha.dot(change.lazyProduct(alpha)) +
-                       own.share.trace();
+    sum.gradient[p] +=
+        2 * alpha.dot(own.residual) - alpha.dot(change.lazyProduct(alpha)) + own.share.trace();
     all.push_back(std::move(own));
     for (const Own& other : all) {
       const double product = 2 * all.back().solved.dot(other.residual) +
@@ -193,7 +192,8 @@ void EnsembleLikelihood::add_block(const Block& block, const EnsembleFit& at,
 DevianceExpansion EnsembleLikelihood::expand(const EnsembleFit& at,
                                              const std::vector<FreeParameter>& parameters) const {
   const auto size = static_cast<Eigen::Index>(parameters.size());
-  DevianceExpansion result{unit_.deviance(at.ln_unit), Vec::Zero(size), Eigen::MatrixXd::Zero(size, size)};
+  DevianceExpansion result{unit_.deviance(at.ln_unit), Vec::Zero(size),
+                           Eigen::MatrixXd::Zero(size, size)};
   for (const Block& block : blocks_) add_block(block, at, parameters, result);
   for (Eigen::Index p = 0; p < size; ++p)
     if (parameters[static_cast<std::size_t>(p)].kind == Kind::unit) {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "verification/measure/fit.hpp"
-#include "verification/measure/log_of_product.hpp"
+#include "verification/statistics/bootstrap.hpp"
+#include "verification/statistics/log_of_product.hpp"
 
 namespace traceraft {
 

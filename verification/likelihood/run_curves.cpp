@@ -6,7 +6,6 @@
 
 #include "kernel/core/error.hpp"
 #include "kernel/core/random.hpp"
-#include "verification/measure/fit.hpp"
 
 namespace traceraft {
 namespace {
@@ -47,8 +46,7 @@ Eigen::MatrixXd weights_of_other_runs(std::size_t runs, std::uint64_t seed, std:
   const auto size = static_cast<Eigen::Index>(runs);
   Eigen::MatrixXd weights(size, size);
   for (Eigen::Index k = 0; k < size; ++k)
-    weights.col(k) =
-        weights_of_another_run(runs, seed, stream, static_cast<std::uint64_t>(k));
+    weights.col(k) = weights_of_another_run(runs, seed, stream, static_cast<std::uint64_t>(k));
   return weights;
 }
 

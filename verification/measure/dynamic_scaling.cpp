@@ -6,6 +6,7 @@
 
 #include "kernel/core/types.hpp"
 #include "verification/measure/spherical_spectrum.hpp"
+#include "verification/statistics/sample.hpp"
 
 namespace traceraft {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "verification/measure/fit.hpp"
+#include "verification/statistics/power_law.hpp"
 
 namespace traceraft {
 

@@ -1,10 +1,10 @@
 #include "verification/measure/ensemble.hpp"
 
 #include <cmath>
-#include <numeric>
 
 #include "kernel/observables/rafts.hpp"
 #include "verification/measure/spherical_spectrum.hpp"
+#include "verification/statistics/power_law.hpp"
 
 namespace traceraft {
 namespace {
@@ -61,12 +61,6 @@ std::vector<Member> run_ensemble(const Bench& bench, const EnsembleRequest& requ
   return members;
 }
 
-std::vector<int> everyone(const std::vector<Member>& members) {
-  std::vector<int> all(members.size());
-  std::iota(all.begin(), all.end(), 0);
-  return all;
-}
-
 std::vector<double> geometric_mean(const std::vector<Member>& members,
                                    std::vector<double> Member::*quantity,
                                    const std::vector<int>& sample) {
@@ -81,19 +75,23 @@ std::vector<double> geometric_mean(const std::vector<Member>& members,
 
 Exponent fit_exponent(const std::vector<Member>& members, std::vector<double> Member::*quantity,
                       const std::vector<double>& times, double begin, double end, Origin origin) {
-  const auto fit = [&](const std::vector<int>& sample) -> ShiftedPowerLaw {
+  struct Law {
+    double b, offset;
+  };
+  const auto fit = [&](const std::vector<int>& sample) -> Law {
     const std::vector<double> mean = geometric_mean(members, quantity, sample);
     Points points;
     for (std::size_t i = 0; i < times.size(); ++i)
       if (times[i] >= begin && times[i] <= end) points.emplace_back(times[i], mean[i]);
-    if (origin == Origin::fitted) return fit_shifted_power_law(points);
-    return {fit_power_law(points).slope, 0};
+    if (origin == Origin::zero) return {fit_power_law(points).slope, 0};
+    const PowerLaw law = fit_power_law_from(points, 0);
+    return {law.b, -law.t0};
   };
-  const ShiftedPowerLaw all = fit(everyone(members));
   const int count = static_cast<int>(members.size());
+  const Law all = fit(each_once(members.size()));
   const Interval percentiles = bootstrap(
-      count, 1000, 0.95, 1, [&](const std::vector<int>& sample) { return fit(sample).exponent; });
-  return {all.exponent, all.offset, widened_for_few(percentiles, all.exponent, count)};
+      count, 1000, 0.95, 1, [&](const std::vector<int>& sample) { return fit(sample).b; });
+  return {all.b, all.offset, widened_for_few(percentiles, all.b, count)};
 }
 
 }  // namespace traceraft

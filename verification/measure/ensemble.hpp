@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "verification/measure/bench.hpp"
-#include "verification/measure/fit.hpp"
+#include "verification/statistics/bootstrap.hpp"
 
 namespace traceraft {
 
@@ -38,7 +38,6 @@ std::vector<Member> run_ensemble(const Bench& bench, const EnsembleRequest& requ
 std::vector<double> geometric_mean(const std::vector<Member>& members,
                                    std::vector<double> Member::*quantity,
                                    const std::vector<int>& sample);
-std::vector<int> everyone(const std::vector<Member>& members);
 
 // The exponent b of quantity ~ t^b, or of (t + offset)^b with the offset fitted as well, over the
 // common times in [begin, end]; its 95 % interval by the bootstrap over members, which

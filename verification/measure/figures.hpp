@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "verification/measure/fit.hpp"
+#include "verification/statistics/power_law.hpp"
 
 namespace traceraft {
 

@@ -6,6 +6,7 @@
 
 #include "kernel/core/random.hpp"
 #include "kernel/geometry/level_set.hpp"
+#include "verification/statistics/random_streams.hpp"
 
 namespace traceraft {
 
@@ -16,7 +17,9 @@ struct Motion {
   Point shift;
 
   Motion(std::uint64_t number, double largest_shift) {
-    const auto draw = [&](std::uint64_t k) { return uniform_random(number, 71, k); };
+    const auto draw = [&](std::uint64_t k) {
+      return uniform_random(number, position_stream::motion, k);
+    };
     // Shoemake, Graphics Gems III (1992).
     const double u = draw(0), v = 2 * kPi * draw(1), w = 2 * kPi * draw(2);
     turn = Eigen::Quaterniond(std::sqrt(1 - u) * std::sin(v), std::sqrt(1 - u) * std::cos(v),

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "kernel/core/text.hpp"
+#include "verification/statistics/sample.hpp"
 
 namespace traceraft {
 namespace {
@@ -39,15 +40,15 @@ std::string sentence(const std::vector<WorkPoint>& points, const Recommendation&
                            advice.target)
                : std::string("No combination gave a result.");
   const WorkPoint& best = points[advice.cheapest[0]];
-  const Spread wall = spread_of(best.wall_s);
+  const Sample wall = sample_of(best.wall_s);
   std::string advised =
       formatted("For an error of %.1e at the end, use %s: %.3g s wall time, %.3g s CPU",
-                advice.target, describe(best).c_str(), wall.median, spread_of(best.cpu_s).median);
+                advice.target, describe(best).c_str(), wall.median, sample_of(best.cpu_s).median);
   if (advice.cheapest.size() > 1) {
     const WorkPoint& next = points[advice.cheapest[1]];
-    const Spread other = spread_of(next.wall_s);
+    const Sample other = sample_of(next.wall_s);
     advised +=
-        other.low <= wall.high
+        other.min <= wall.max
             ? formatted("; %s is as fast within the spread of the times", describe(next).c_str())
             : formatted("; the next, %s, takes %.1f times as long", describe(next).c_str(),
                         other.median / wall.median);
@@ -63,16 +64,10 @@ bool any_result(const std::vector<WorkPoint>& points) {
                      [](const WorkPoint& point) { return point.ok(); });
 }
 
-Spread spread_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return {0.5 * (values[(n - 1) / 2] + values[n / 2]), values.front(), values.back()};
-}
-
 Recommendation recommend(const std::vector<WorkPoint>& points, double target_error) {
   Recommendation advice;
   advice.target = target_error > 0 ? target_error : common_error(points);
-  const auto wall = [&](int i) { return spread_of(points[i].wall_s).median; };
+  const auto wall = [&](int i) { return sample_of(points[i].wall_s).median; };
   for (const auto& [name, own] : by_method(points)) {
     int cheapest = -1;
     for (const int i : own)

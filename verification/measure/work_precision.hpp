@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "verification/statistics/sample.hpp"
+
 namespace traceraft {
 
 // A method at one tolerance.
@@ -26,11 +28,6 @@ struct WorkPoint {
 };
 
 bool any_result(const std::vector<WorkPoint>& points);
-
-struct Spread {
-  double median = 0, low = 0, high = 0;
-};
-Spread spread_of(std::vector<double> values);  // at least one
 
 // The advice that follows from the numbers.
 struct Recommendation {

@@ -7,9 +7,9 @@
 #include "kernel/core/error.hpp"
 #include "verification/explain/fit/score_test.hpp"
 #include "verification/explain/search/bounds.hpp"
-#include "verification/measure/fit.hpp"
 #include "verification/series/series_need.hpp"
 #include "verification/series/series_responses.hpp"
+#include "verification/statistics/bootstrap.hpp"
 
 namespace traceraft {
 namespace {
@@ -172,8 +172,7 @@ class SeriesSearch {
         result_.scores.begin());
     const EnsembleModel model{&curves_.base, &curves_.changed[best]};
     result_.trend_p = share_of_noise(
-        null_.trend,
-        lacking ? trend_left(blocks_, model, gains_.fits[best]) : gains_.trend);
+        null_.trend, lacking ? trend_left(blocks_, model, gains_.fits[best]) : gains_.trend);
     if (result_.trend_p <= kTrendLevel * request_.false_alarms) {
       result_.finding = Finding::unnamed;
       if (lacking) result_.named = {{candidates_[best].effect}};

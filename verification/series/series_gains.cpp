@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "verification/likelihood/drawn_vesicles.hpp"
-#include "verification/measure/fit.hpp"
 
 namespace traceraft {
 namespace {
@@ -65,8 +64,8 @@ SeriesNull null_of(const MeasuredVesicles& data, const std::vector<History>& run
     const UnitPrior known = drawn_unit(fit, unit, replicate);
     const SeriesCurves curves(runs, candidates,
                               weights_of_other_runs(runs.size(), replicate, kOthers));
-    const SeriesGains gains = gains_of(blocks, curves, candidates, known,
-                                       fit_ensemble(blocks, {&curves.base}, known));
+    const SeriesGains gains =
+        gains_of(blocks, curves, candidates, known, fit_ensemble(blocks, {&curves.base}, known));
     gained.row(r) = gains.values.transpose();
     result.trend[r] = gains.trend;
     result.ln_unit[r] = gains.base.ln_unit;

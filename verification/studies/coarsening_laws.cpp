@@ -23,7 +23,7 @@ Ensemble::Ensemble(const Bench& bench, EnsembleRequest request_)
     : request(std::move(request_)), members(run_ensemble(bench, request)) {}
 
 std::vector<double> Ensemble::mean(std::vector<double> Member::*values) const {
-  return geometric_mean(members, values, everyone(members));
+  return geometric_mean(members, values, each_once(members.size()));
 }
 
 Table exponents_table() {

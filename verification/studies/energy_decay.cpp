@@ -5,7 +5,8 @@
 
 #include "backends/list.hpp"
 #include "verification/measure/bench.hpp"
-#include "verification/measure/fit.hpp"
+#include "verification/statistics/power_law.hpp"
+#include "verification/statistics/sample.hpp"
 #include "verification/studies/studies.hpp"
 
 namespace traceraft {

@@ -6,7 +6,8 @@
 
 #include "kernel/core/parameters.hpp"
 #include "verification/measure/bench.hpp"
-#include "verification/measure/fit.hpp"
+#include "verification/statistics/power_law.hpp"
+#include "verification/statistics/sample.hpp"
 #include "verification/studies/studies.hpp"
 
 namespace traceraft {

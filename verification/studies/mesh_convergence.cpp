@@ -1,6 +1,6 @@
 // Orders of convergence in the mesh size h: stationary problem and full time-dependent system.
-#include "verification/measure/fit.hpp"
 #include "verification/measure/manufactured.hpp"
+#include "verification/statistics/power_law.hpp"
 #include "verification/studies/studies.hpp"
 
 namespace traceraft {

@@ -5,6 +5,7 @@
 #include "kernel/core/stopwatch.hpp"
 #include "kernel/fem/mobility_stiffness.hpp"
 #include "verification/measure/bench.hpp"
+#include "verification/statistics/sample.hpp"
 #include "verification/studies/studies.hpp"
 
 namespace traceraft {
@@ -19,8 +20,7 @@ double median_seconds(int repetitions, const Action& action) {
     action();
     times.push_back(watch.seconds());
   }
-  std::nth_element(times.begin(), times.begin() + repetitions / 2, times.end());
-  return times[repetitions / 2];
+  return quantile(times, 0.5);
 }
 
 StudyReport run(const Bench& bench) {

@@ -11,7 +11,8 @@
 #include "kernel/core/stopwatch.hpp"
 #include "kernel/core/text.hpp"
 #include "verification/measure/bench.hpp"
-#include "verification/measure/fit.hpp"
+#include "verification/statistics/power_law.hpp"
+#include "verification/statistics/sample.hpp"
 #include "verification/studies/studies.hpp"
 
 namespace traceraft {
@@ -59,7 +60,7 @@ Vec projected(const SurfaceSpace& space) {
   return make_initial_field("formula", space, request);
 }
 
-struct Sample {
+struct AtTime {
   double t, energy;
 };
 
@@ -67,7 +68,7 @@ struct Simulation {
   int cells, unknowns, threads;
   double tolerance;
   double steps = 0, wall_s = 0;
-  std::vector<Sample> samples = {};  // at the times of the reference, up to t_end
+  std::vector<AtTime> samples = {};  // at the times of the reference, up to t_end
 };
 
 Simulation simulate(const Bench& bench, int cells, double t_end, double tolerance) {
@@ -112,7 +113,7 @@ void add_energies(const Simulation& run, StudyReport& report) {
   Table table{"energy", {"t", "energy", "spectral", "difference, %"}, {}};
   Points measured, spectral;
   for (std::size_t k = 0; k < run.samples.size(); ++k) {
-    const Sample& at = run.samples[k];
+    const AtTime& at = run.samples[k];
     table.rows.push_back({at.t, at.energy, kSpectral[k].energy, 100 * relative(at.energy, k)});
     measured.emplace_back(at.t, at.energy);
     spectral.emplace_back(at.t, kSpectral[k].energy);

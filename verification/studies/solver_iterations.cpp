@@ -4,16 +4,16 @@
 
 #include "backends/list.hpp"
 #include "verification/measure/bench.hpp"
-#include "verification/measure/fit.hpp"
 #include "verification/measure/motion.hpp"
 #include "verification/measure/shift_range.hpp"
+#include "verification/statistics/sample.hpp"
 #include "verification/studies/studies.hpp"
 
 namespace traceraft {
 namespace {
 
-// The stabilised tangent is solved to what euler asks for, the exact one to a fifth of what ida asks
-// for.
+// The stabilised tangent is solved to what euler asks for, the exact one to a fifth of what ida
+// asks for.
 constexpr double kTolerance[2] = {1e-4, 1e-2};
 // The exact Jacobian of a step far longer than the state allows is indefinite. What is claimed of
 // it is for steps up to twice the one that ida takes there, as it at most doubles a step.
@@ -23,12 +23,12 @@ constexpr double kHardest = 0.01;  // of the widths: the least for the mesh
 
 enum class State { coarsening, late };  // many rafts; one large and one small
 
-struct Sample {
+struct StudiedState {
   Vec y;
   double step;  // that ida takes there
 };
 
-Sample state_at(const Bench& bench, const CahnHilliard& problem, State state, double t_end) {
+StudiedState state_at(const Bench& bench, const CahnHilliard& problem, State state, double t_end) {
   InitialRequest request;
   request.raft_fraction = 0.3;
   request.noise_cells = 16;
@@ -68,7 +68,7 @@ struct Most {
 // A row for each tangent at one state.
 void measure(const Bench& bench, const CahnHilliard& problem, const std::string& mobility,
              State state, Table& table, Most& most) {
-  const Sample sample = state_at(bench, problem, state, 5);
+  const StudiedState sample = state_at(bench, problem, state, 5);
   const Vec b = right_side(problem, sample.y);
   for (const Tangent tangent : {Tangent::stabilised, Tangent::exact}) {
     const bool exact = tangent == Tangent::exact;
@@ -115,13 +115,13 @@ void measure_cuts(const Bench& bench, StudyReport& report) {
   for (std::size_t s = 0; s < shifts.size(); ++s) {
     std::vector<double> values;
     for (const auto& cut : of_cut) values.push_back(cut[s]);
-    const Moments m = moments(values);
+    const Sample m = sample_of(values);
     table.columns.push_back(shift_label(shifts[s]));
-    table.rows[0].push_back(m.low);
+    table.rows[0].push_back(m.min);
     table.rows[1].push_back(m.mean);
-    table.rows[2].push_back(m.high);
-    most = std::max(most, m.high);
-    fewest = std::min(fewest, m.low);
+    table.rows[2].push_back(m.max);
+    most = std::max(most, m.max);
+    fewest = std::min(fewest, m.min);
   }
   report.tables.push_back(table);
   report.claims.push_back(

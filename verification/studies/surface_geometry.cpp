@@ -5,9 +5,10 @@
 
 #include "kernel/fem/sparse_view.hpp"
 #include "verification/measure/bench.hpp"
-#include "verification/measure/fit.hpp"
 #include "verification/measure/manufactured.hpp"
 #include "verification/measure/motion.hpp"
+#include "verification/statistics/power_law.hpp"
+#include "verification/statistics/sample.hpp"
 #include "verification/studies/studies.hpp"
 
 namespace traceraft {
@@ -117,29 +118,29 @@ void measure_cuts(const Bench& bench, StudyReport& report) {
   const auto row = [&](const std::string& what, double Cut::*value) {
     std::vector<double> values;
     for (const Cut& cut : cuts) values.push_back(cut.*value);
-    const Moments m = moments(values);
-    table.rows.push_back({what, m.mean, m.deviation, m.low, m.high});
+    const Sample m = sample_of(values);
+    table.rows.push_back({what, m.mean, m.deviation, m.min, m.max});
     return m;
   };
-  const Moments area = row("area", &Cut::area);
-  const Moments l2 = row("error of the stationary problem in L2", &Cut::l2);
-  const Moments h1 = row("error of the stationary problem in H1", &Cut::h1);
-  const Moments mass = row("condition of M + 0.3 h S, scaled", &Cut::mass_condition);
-  const Moments helmholtz = row("condition of K + M + h S, scaled", &Cut::helmholtz_condition);
+  const Sample area = row("area", &Cut::area);
+  const Sample l2 = row("error of the stationary problem in L2", &Cut::l2);
+  const Sample h1 = row("error of the stationary problem in H1", &Cut::h1);
+  const Sample mass = row("condition of M + 0.3 h S, scaled", &Cut::mass_condition);
+  const Sample helmholtz = row("condition of K + M + h S, scaled", &Cut::helmholtz_condition);
   report.tables.push_back(table);
   const double exact = ellipsoid_area(1.2, 1, 0.8);
   const std::string of = std::to_string(count) + " cuts: ";
   report.claims.push_back(claim_at_most(
       of + "largest relative error of the area",
-      std::max(std::fabs(area.low / exact - 1), std::fabs(area.high / exact - 1)), 1e-4));
+      std::max(std::fabs(area.min / exact - 1), std::fabs(area.max / exact - 1)), 1e-4));
   report.claims.push_back(
-      claim_at_most(of + "largest over mean error in L2", l2.high / l2.mean, 1.25));
+      claim_at_most(of + "largest over mean error in L2", l2.max / l2.mean, 1.25));
   report.claims.push_back(
-      claim_at_most(of + "largest over mean error in H1", h1.high / h1.mean, 1.25));
+      claim_at_most(of + "largest over mean error in H1", h1.max / h1.mean, 1.25));
   report.claims.push_back(
-      claim_at_most(of + "largest condition of M + 0.3 h S, scaled", mass.high, 40));
+      claim_at_most(of + "largest condition of M + 0.3 h S, scaled", mass.max, 40));
   report.claims.push_back(claim_at_most(of + "largest over mean condition of K + M + h S",
-                                        helmholtz.high / helmholtz.mean, 2));
+                                        helmholtz.max / helmholtz.mean, 2));
 }
 
 StudyReport run(const Bench& bench) {

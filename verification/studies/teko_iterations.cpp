@@ -7,6 +7,7 @@
 #include "kernel/core/random.hpp"
 #include "verification/measure/bench.hpp"
 #include "verification/measure/shift_range.hpp"
+#include "verification/statistics/random_streams.hpp"
 #include "verification/studies/studies.hpp"
 
 namespace traceraft {
@@ -30,7 +31,9 @@ std::vector<CapRaft> rafts(int state) {
   if (state == 1) return {{Point(0, 0, 1), 0.9}, {Point(1, 2, -3).normalized(), 0.4}};
   std::vector<CapRaft> caps;
   for (std::uint64_t k = 0; k < 30; ++k) {
-    const auto draw = [&](std::uint64_t which) { return uniform_random(1, 50 + which, k); };
+    const auto draw = [&](std::uint64_t which) {
+      return uniform_random(fixed_seed::test_vectors, 50 + which, k);
+    };
     caps.push_back({uniform_direction(draw(0), draw(1)), 0.1 + 0.15 * draw(2)});
   }
   return caps;

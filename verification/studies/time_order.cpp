@@ -2,8 +2,9 @@
 // run with far smaller steps.
 #include <cmath>
 
-#include "verification/measure/fit.hpp"
 #include "verification/measure/manufactured.hpp"
+#include "verification/statistics/power_law.hpp"
+#include "verification/statistics/sample.hpp"
 #include "verification/studies/studies.hpp"
 
 namespace traceraft {

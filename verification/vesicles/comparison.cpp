@@ -7,7 +7,7 @@
 #include <string>
 
 #include "kernel/core/error.hpp"
-#include "verification/measure/fit.hpp"
+#include "verification/statistics/sample.hpp"
 #include "verification/vesicles/stated_errors.hpp"
 
 namespace traceraft {
@@ -37,7 +37,7 @@ Deviation deviation_of(const Measurement& m, Quantity quantity,
   const bool within = y >= *low && y <= *high;
   if (relative(quantity))
     for (double& value : values) value = logarithm_of(quantity, value);
-  const Moments runs_here = moments(values);
+  const Sample runs_here = sample_of(values);
   const double ln_expected =
       relative(quantity) ? runs_here.mean : logarithm_of(quantity, runs_here.mean);
   const StatedError error = errors.of(m, quantity);
@@ -148,7 +148,7 @@ class Comparison {
     const auto n = static_cast<double>(runs_.size());
     result_.trend = slope.value;
     result_.trend_error =
-        std::hypot(slope.error, moments(without).deviation * (n - 1) / std::sqrt(n));
+        std::hypot(slope.error, sample_of(without).deviation * (n - 1) / std::sqrt(n));
   }
 
   const std::vector<const History*> runs_;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "kernel/core/text.hpp"
+#include "verification/statistics/sample.hpp"
 
 namespace traceraft {
 namespace {
@@ -14,7 +15,7 @@ std::string difference_of_radii(const MeasuredVesicles& data, double radius) {
   std::vector<double> radii;
   for (const auto& [first, last] : data.vesicles())
     radii.push_back(data.measurements[first].radius);
-  const Distribution d = distribution(radii);
+  const Sample d = sample_of(radii);
   if (d.max <= kSameSize * radius && d.min >= radius / kSameSize) return "";
   const double factor = factor_of_size(data, radius);
   return formatted(
@@ -31,7 +32,7 @@ std::string difference_of_fractions(const MeasuredVesicles& data, double fractio
   for (const auto& vesicle : fractions_of_vesicles(data))
     if (vesicle) means.push_back(vesicle->mean);
   if (means.size() < 2) return "";
-  const Distribution d = distribution(means);
+  const Sample d = sample_of(means);
   const double off = std::fabs(d.mean - fraction);
   if (off <= kDeviations * d.deviation || off <= kSameFraction * fraction) return "";
   return formatted(

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "verification/measure/fit.hpp"
-#include "verification/measure/interpolation.hpp"
+#include "verification/statistics/sample.hpp"
 
 namespace traceraft {
 
@@ -48,33 +47,13 @@ std::vector<double> common_times(const std::vector<History>& histories, int per_
   return times;
 }
 
-double quantile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  const double place = share * static_cast<double>(values.size() - 1);
-  if (place >= static_cast<double>(values.size() - 1)) return values.back();
-  return interpolated(values, place);
-}
-
-Distribution distribution(const std::vector<double>& values) {
-  const Moments m = moments(values);
-  return {m.mean,
-          m.deviation,
-          m.low,
-          quantile(values, 0.1),
-          quantile(values, 0.25),
-          quantile(values, 0.5),
-          quantile(values, 0.75),
-          quantile(values, 0.9),
-          m.high};
-}
-
-std::vector<Distribution> distributions(const std::vector<History>& histories, Quantity quantity,
-                                        const std::vector<double>& times) {
-  std::vector<Distribution> result;
+std::vector<Sample> samples_at(const std::vector<History>& histories, Quantity quantity,
+                               const std::vector<double>& times) {
+  std::vector<Sample> result;
   for (const double t : times) {
     std::vector<double> values;
     for (const History& history : histories) values.push_back(history.at(quantity, t));
-    result.push_back(distribution(values));
+    result.push_back(sample_of(values));
   }
   return result;
 }

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "verification/statistics/sample.hpp"
+
 namespace traceraft {
 
 // The three quantities of Zhiliakov et al. (BBA Biomembranes 1863 (2021) 183446): total length of
@@ -27,9 +29,7 @@ struct History {
   std::array<std::vector<double>, 3> values;  // in the order of kQuantities
 
   std::vector<double>& of(Quantity quantity) { return values[index_of(quantity)]; }
-  const std::vector<double>& of(Quantity quantity) const {
-    return values[index_of(quantity)];
-  }
+  const std::vector<double>& of(Quantity quantity) const { return values[index_of(quantity)]; }
   // Linear between the times; the number of rafts is that of the time before. The first or the last
   // value beyond the ends. At least one time.
   double at(Quantity quantity, double t) const;
@@ -46,16 +46,8 @@ inline constexpr int kCurveTimes = 20;
 // positive times, their last ones). Empty if that is nothing.
 std::vector<double> common_times(const std::vector<History>& histories, int per_decade);
 
-// Of several numbers. Quantiles are linear between order statistics.
-struct Distribution {
-  double mean, deviation;  // deviation with n − 1; 0 of a single number
-  double min, q10, q25, median, q75, q90, max;
-};
-double quantile(std::vector<double> values, double share);
-Distribution distribution(const std::vector<double>& values);
-
 // A quantity of several histories at each of the times.
-std::vector<Distribution> distributions(const std::vector<History>& histories, Quantity quantity,
-                                        const std::vector<double>& times);
+std::vector<Sample> samples_at(const std::vector<History>& histories, Quantity quantity,
+                               const std::vector<double>& times);
 
 }  // namespace traceraft

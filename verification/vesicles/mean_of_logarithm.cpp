@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "verification/measure/interpolation.hpp"
+#include "verification/statistics/interpolation.hpp"
 
 namespace traceraft {
 namespace {

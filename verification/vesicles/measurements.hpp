@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "verification/measure/fit.hpp"
+#include "verification/statistics/power_law.hpp"
 #include "verification/vesicles/history.hpp"
 
 namespace traceraft {
@@ -19,12 +19,8 @@ struct Measurement {
   // In the order of kQuantities; nothing where it was not measured. sigma: one standard deviation.
   std::array<std::optional<double>, 3> values, sigma;
 
-  const std::optional<double>& of(Quantity quantity) const {
-    return values[index_of(quantity)];
-  }
-  double sigma_of(Quantity quantity) const {
-    return sigma[index_of(quantity)].value_or(0);
-  }
+  const std::optional<double>& of(Quantity quantity) const { return values[index_of(quantity)]; }
+  double sigma_of(Quantity quantity) const { return sigma[index_of(quantity)].value_or(0); }
   // Rafts whose perimeter or number was measured.
   bool shows_rafts() const {
     return of(Quantity::perimeter).value_or(0) > 0 || of(Quantity::rafts).value_or(0) > 0;

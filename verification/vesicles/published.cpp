@@ -6,6 +6,7 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/random.hpp"
 #include "kernel/core/types.hpp"
+#include "verification/statistics/random_streams.hpp"
 
 namespace traceraft {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 class Draws {
  public:
   explicit Draws(std::uint64_t seed) : seed_(seed) {}
-  double uniform() { return uniform_random(seed_, 17, index_++); }
+  double uniform() { return uniform_random(seed_, stream::drawn_vesicles, index_++); }
   double normal() {
     const double u = uniform();
     return normal_pair(u, uniform())[0];

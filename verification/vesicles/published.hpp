@@ -5,7 +5,7 @@
 #include <string>
 
 #include "verification/vesicles/measurements.hpp"
-#include "verification/vesicles/power_law.hpp"
+#include "verification/vesicles/perimeter_law.hpp"
 
 namespace traceraft {
 

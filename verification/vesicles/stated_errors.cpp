@@ -5,7 +5,8 @@
 #include <limits>
 #include <vector>
 
-#include "verification/measure/fit.hpp"
+#include "verification/statistics/power_law.hpp"
+#include "verification/statistics/sample.hpp"
 #include "verification/vesicles/mean_of_logarithm.hpp"
 
 namespace traceraft {
@@ -19,8 +20,7 @@ constexpr double kByNoise = 2, kMostByNoise = 0.7;
 }  // namespace
 
 StatedErrors::StatedErrors(const MeasuredVesicles& data) {
-  for (const Quantity quantity : kQuantities)
-    laws_[index_of(quantity)] = law_of(data, quantity);
+  for (const Quantity quantity : kQuantities) laws_[index_of(quantity)] = law_of(data, quantity);
 }
 
 StatedErrors::Law StatedErrors::law_of(const MeasuredVesicles& data, Quantity quantity) {
@@ -34,10 +34,10 @@ StatedErrors::Law StatedErrors::law_of(const MeasuredVesicles& data, Quantity qu
     points.emplace_back(ln_values.back(), ln_sigmas.back());
   }
   if (points.empty()) return {};
-  const Moments values = moments(ln_values);
+  const Sample values = sample_of(ln_values);
   const double power =
       values.deviation < kLeastSpread ? 0.0 : std::clamp(fit_line(points).slope, 0.0, 1.0);
-  return {power, moments(ln_sigmas).mean - power * values.mean};
+  return {power, sample_of(ln_sigmas).mean - power * values.mean};
 }
 
 StatedError StatedErrors::of(const Measurement& m, Quantity quantity) const {

@@ -9,6 +9,7 @@
 #include "verification/explain/blind/effect_size.hpp"
 #include "verification/explain/fields/blur.hpp"
 #include "verification/explain/fields/point_trace.hpp"
+#include "verification/statistics/random_streams.hpp"
 
 namespace traceraft {
 namespace {
@@ -65,12 +66,12 @@ class Vesicle {
     Vec result(static_cast<Eigen::Index>(points.size()));
     for (Eigen::Index i = 0; i < result.size(); ++i)
       result[i] =
-          normal_random(request_.seed, blind_stream::noise + number, static_cast<std::uint64_t>(i));
+          normal_random(request_.seed, stream::noise + number, static_cast<std::uint64_t>(i));
     if (request_.noise_share <= 0) return result;
     return std::sqrt(1 - request_.noise_share) * result +
            std::sqrt(request_.noise_share) * noise_waves(points, request_.noise_correlation,
                                                          request_.noise_shape, request_.seed,
-                                                         blind_stream::shared_noise + number);
+                                                         stream::shared_noise + number);
   }
 
   const BlindRequest& request_;

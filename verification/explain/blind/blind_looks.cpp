@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "kernel/core/random.hpp"
+#include "verification/statistics/random_streams.hpp"
 
 namespace traceraft {
 namespace {
@@ -12,7 +13,8 @@ std::vector<double> snapshot_times(const BlindRequest& request) {
   std::vector<double> times;
   for (int k = 0; k < request.snapshots; ++k) {
     const bool end = k == 0 || k + 1 == request.snapshots;
-    const double u = end ? 0 : 0.5 * (uniform_random(request.seed, blind_stream::times, k) - 0.5);
+    const double u =
+        end ? 0 : 0.5 * (uniform_random(request.seed, stream::snapshot_times, k) - 0.5);
     times.push_back(request.first *
                     std::pow(request.last / request.first, (k + u) / (request.snapshots - 1)));
   }
@@ -22,7 +24,7 @@ std::vector<double> snapshot_times(const BlindRequest& request) {
 }  // namespace
 
 Placement::Placement(std::uint64_t seed, double h) {
-  const auto u = [&](std::uint64_t i) { return uniform_random(seed, blind_stream::placement, i); };
+  const auto u = [&](std::uint64_t i) { return uniform_random(seed, stream::placement, i); };
   angle = 2 * kPi * u(0);
   offset = h * Point(u(1) - 0.5, u(2) - 0.5, u(3) - 0.5);
 }
@@ -43,7 +45,7 @@ std::vector<Point> BlindLooks::directions(const BlindRequest& request, int snaps
   for (int i = 0; i < request.points; ++i) {
     const auto u = [&](int j) {
       return uniform_random(request.seed,
-                            blind_stream::points + static_cast<std::uint64_t>(2 * snapshot + j), i);
+                            stream::points + static_cast<std::uint64_t>(2 * snapshot + j), i);
     };
     points.push_back(uniform_direction(u(0), u(1)));
   }

@@ -12,17 +12,6 @@ namespace traceraft {
 
 // Streams of random numbers: what is drawn for one purpose does not depend on how much is drawn for
 // another. Those of points (two) and of noise count up by snapshots.
-namespace blind_stream {
-enum : std::uint64_t {
-  placement = 101,
-  times,
-  effects,
-  points = 300,
-  noise = 500,
-  shared_noise = 700
-};
-}
-
 struct BlindRequest {
   CahnHilliardModel base;            // on the unit sphere
   std::vector<std::string> effects;  // hidden; signs and mixtures are drawn

@@ -7,6 +7,7 @@
 #include "kernel/core/random.hpp"
 #include "verification/explain/forecast/candidates.hpp"
 #include "verification/explain/forecast/resolved_forecast.hpp"
+#include "verification/statistics/random_streams.hpp"
 
 namespace traceraft {
 namespace {
@@ -54,7 +55,7 @@ std::vector<double> EffectSizing::random_coefficients(const Candidate& candidate
                                                       std::uint64_t number) const {
   std::vector<double> coefficients;
   for (int d = 0; d < candidate.directions; ++d) {
-    const double u = uniform_random(request_.seed, blind_stream::effects, 10 * number + d);
+    const double u = uniform_random(request_.seed, stream::hidden_strength, 10 * number + d);
     const double sign = candidate.two_sided && u < 0.5 ? -1 : 1;
     coefficients.push_back(sign * candidate.step * (candidate.directions > 1 ? 0.2 + u : 1));
   }

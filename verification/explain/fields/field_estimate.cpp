@@ -8,6 +8,7 @@
 #include "backends/suitesparse/sparse_cholesky.hpp"
 #include "kernel/core/random.hpp"
 #include "verification/explain/fields/gaussian_field.hpp"
+#include "verification/statistics/random_streams.hpp"
 
 namespace traceraft {
 namespace {
@@ -63,7 +64,7 @@ class FieldRegression {
   Eigen::MatrixXd draws(int count, std::uint64_t stream) const {
     Eigen::MatrixXd z(field_.size(), count);
     for (Eigen::Index i = 0; i < z.size(); ++i)
-      z.data()[i] = normal_random(2, stream, static_cast<std::uint64_t>(i));
+      z.data()[i] = normal_random(fixed_seed::field_errors, stream, static_cast<std::uint64_t>(i));
     return factors_.correlated(z);
   }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 
 #include "kernel/core/random.hpp"
+#include "verification/statistics/random_streams.hpp"
 
 namespace traceraft {
 
@@ -28,7 +29,7 @@ Eigen::MatrixXd GaussianField::root_at(const PointTrace& trace) const {
 Eigen::MatrixXd GaussianField::draws(int count, std::uint64_t stream) const {
   Eigen::MatrixXd z(root_.size(), count);
   for (Eigen::Index i = 0; i < z.size(); ++i)
-    z.data()[i] = normal_random(13, stream, static_cast<std::uint64_t>(i));
+    z.data()[i] = normal_random(fixed_seed::field_draws, stream, static_cast<std::uint64_t>(i));
   return factors_.solve(root_.asDiagonal() * z);
 }
 
@@ -48,7 +49,7 @@ Eigen::MatrixXd important_directions(const FieldMatrices& matrices,
   const Eigen::Index n = matrices.mass.rows();
   Eigen::MatrixXd X(n, std::min<Eigen::Index>(rank + kExtra, n));
   for (Eigen::Index i = 0; i < X.size(); ++i)
-    X.data()[i] = uniform_random(1, 0, static_cast<std::uint64_t>(i)) - 0.5;
+    X.data()[i] = uniform_random(fixed_seed::test_vectors, 0, static_cast<std::uint64_t>(i)) - 0.5;
   for (int k = 0; k < kIterations; ++k) {
     X = covariance(weighted(X)).eval();
     const Eigen::LLT<Eigen::MatrixXd> gram(X.transpose() * weighted(X));

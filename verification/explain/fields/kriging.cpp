@@ -9,6 +9,7 @@
 #include "backends/suitesparse/sparse_cholesky.hpp"
 #include "kernel/core/random.hpp"
 #include "verification/explain/fields/gaussian_field.hpp"
+#include "verification/statistics/random_streams.hpp"
 
 namespace traceraft {
 namespace {
@@ -25,7 +26,8 @@ std::vector<Eigen::Index> some_rows(Eigen::Index all, Eigen::Index wanted, std::
   std::vector<Eigen::Index> rows;
   const double share = static_cast<double>(wanted) / static_cast<double>(all);
   for (Eigen::Index i = 0; i < all; ++i)
-    if (uniform_random(11, stream, static_cast<std::uint64_t>(i)) < share) rows.push_back(i);
+    if (uniform_random(fixed_seed::kriging_rows, stream, static_cast<std::uint64_t>(i)) < share)
+      rows.push_back(i);
   return rows;
 }
 
@@ -160,7 +162,8 @@ FieldEstimate Kriging::estimate(const ErrorRequest& wanted) const {
     const Eigen::MatrixXd before = field.draws(wanted.draws, wanted.stream);
     Eigen::MatrixXd noise(d.centred.size(), wanted.draws);
     for (Eigen::Index i = 0; i < noise.size(); ++i)
-      noise.data()[i] = normal_random(12, wanted.stream, static_cast<std::uint64_t>(i));
+      noise.data()[i] =
+          normal_random(fixed_seed::kriging_noise, wanted.stream, static_cast<std::uint64_t>(i));
     const Eigen::MatrixXd values =
         d.trace * before + d.deviation.asDiagonal() * d.noise.coloured(noise);
     result.draws = field.projected(d.level * (before - across(values)));

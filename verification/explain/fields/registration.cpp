@@ -8,6 +8,7 @@
 #include "kernel/core/random.hpp"
 #include "verification/explain/fields/field_series.hpp"
 #include "verification/explain/fields/point_trace.hpp"
+#include "verification/statistics/random_streams.hpp"
 
 namespace traceraft {
 namespace {
@@ -31,7 +32,9 @@ Point cube_direction(int face, double u, double v) {
 
 // Uniform over all rotations (Shoemake 1992).
 Eigen::Matrix3d random_rotation(std::uint64_t index) {
-  const auto uniform = [&](std::uint64_t i) { return uniform_random(14, 0, 3 * index + i); };
+  const auto uniform = [&](std::uint64_t i) {
+    return uniform_random(fixed_seed::registration, 0, 3 * index + i);
+  };
   const double u = uniform(0), a = 2 * kPi * uniform(1), b = 2 * kPi * uniform(2);
   const double s = std::sqrt(1 - u), t = std::sqrt(u);
   return Eigen::Quaterniond(t * std::cos(b), s * std::sin(a), s * std::cos(a), t * std::sin(b))
@@ -124,8 +127,8 @@ bool is_sphere(const LevelSet& surface) {
   constexpr std::uint64_t kDirections = 50;
   constexpr double kRound = 1e-9;
   for (std::uint64_t k = 0; k < kDirections; ++k) {
-    const Point x =
-        uniform_direction(uniform_random(14, 1, 2 * k), uniform_random(14, 1, 2 * k + 1));
+    const Point x = uniform_direction(uniform_random(fixed_seed::registration, 1, 2 * k),
+                                      uniform_random(fixed_seed::registration, 1, 2 * k + 1));
     if (std::fabs(surface.value(x)) > kRound) return false;
   }
   return true;

@@ -5,6 +5,7 @@
 #include "backends/openblas/dense_algebra.hpp"
 #include "kernel/core/random.hpp"
 #include "kernel/effects/effects.hpp"
+#include "verification/statistics/random_streams.hpp"
 
 namespace traceraft {
 namespace {
@@ -34,9 +35,11 @@ void add_noise(std::size_t vesicle, std::size_t snapshot, double error, Columns&
   const std::uint64_t stream = 10000 * (1000 * vesicle + snapshot);
   for (Eigen::Index j = 0; j < values.cols(); ++j) {
     const auto column = static_cast<std::uint64_t>(j);
-    const double size = std::exp(0.5 * error * normal_random(16, column, 0));
+    const double size =
+        std::exp(0.5 * error * normal_random(fixed_seed::replicate_noise_size, column, 0));
     for (Eigen::Index i = 0; i < values.rows(); ++i)
-      values(i, j) += size * normal_random(7, stream + column, static_cast<std::uint64_t>(i));
+      values(i, j) += size * normal_random(fixed_seed::replicate_values, stream + column,
+                                           static_cast<std::uint64_t>(i));
   }
 }
 

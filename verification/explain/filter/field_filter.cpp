@@ -7,6 +7,7 @@
 #include "backends/openblas/dense_algebra.hpp"
 #include "kernel/core/random.hpp"
 #include "verification/explain/filter/field_comparison.hpp"
+#include "verification/statistics/random_streams.hpp"
 
 namespace traceraft {
 namespace {
@@ -151,7 +152,8 @@ class Filter {
     const std::uint64_t stream = 1000 * data_.vesicle + in.snapshot;
     Columns sizes(patterns, in.replicates.cols());
     for (Eigen::Index i = 0; i < sizes.size(); ++i)
-      sizes.data()[i] = in.model_error * normal_random(8, stream, static_cast<std::uint64_t>(i));
+      sizes.data()[i] = in.model_error * normal_random(fixed_seed::replicate_model_errors, stream,
+                                                       static_cast<std::uint64_t>(i));
     return Columns(weighted.transpose() * in.directions.rightCols(patterns)) * sizes;
   }
 
@@ -197,7 +199,8 @@ void add_known_pace(double ln_pace, double doubt, FilterResult& all) {
   all.score[kPace] -= ln_pace / (doubt * doubt);
   all.deviance += ln_pace * ln_pace / (doubt * doubt);
   for (Eigen::Index r = 0; r < all.null_scores.cols(); ++r)
-    all.null_scores(kPace, r) += normal_random(9, static_cast<std::uint64_t>(r), 0) / doubt;
+    all.null_scores(kPace, r) +=
+        normal_random(fixed_seed::replicate_diffusion, static_cast<std::uint64_t>(r), 0) / doubt;
 }
 
 }  // namespace

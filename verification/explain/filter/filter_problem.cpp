@@ -8,6 +8,7 @@
 #include "verification/explain/fields/kriging.hpp"
 #include "verification/explain/fields/outliers.hpp"
 #include "verification/explain/fields/registration.hpp"
+#include "verification/statistics/random_streams.hpp"
 
 namespace traceraft {
 namespace {
@@ -115,7 +116,8 @@ void add_frame(const FilterSettings& settings, double distance, std::size_t vesi
   first.errors = std::move(errors);
   for (Eigen::Index j = 0; j < first.draws.cols(); ++j) {
     const auto amplitude = [&](std::uint64_t of) {
-      return normal_random(10, vesicle, kFirstFrame * static_cast<std::uint64_t>(j) + of);
+      return normal_random(fixed_seed::replicate_frames, vesicle,
+                           kFirstFrame * static_cast<std::uint64_t>(j) + of);
     };
     first.draws.col(j) += frame * Eigen::Vector2d(amplitude(0), amplitude(1));
   }

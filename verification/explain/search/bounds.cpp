@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "verification/measure/fit.hpp"
+#include "verification/statistics/sample.hpp"
 
 namespace traceraft {
 namespace {

@@ -1,22 +1,14 @@
-// The law of coarsening as microscopists fit it: c (t − t0)^b.
+// The law c (t − t0)^b of perimeters, as microscopists fit it.
 #pragma once
 
 #include <optional>
 
-#include "verification/measure/fit.hpp"
+#include "verification/statistics/bootstrap.hpp"
+#include "verification/statistics/power_law.hpp"
 #include "verification/vesicles/history.hpp"
 #include "verification/vesicles/measurements.hpp"
 
 namespace traceraft {
-
-struct PowerLaw {
-  double c, t0, b;
-  double scatter;  // standard deviation of ln y about it
-  double at(double t) const;
-};
-// Least squares of ln y, t0 between −10 times the first t and just before it. At least four points
-// with t, y > 0.
-PowerLaw fit_power_law_from(const Points& points);
 
 // The law with its 95 % intervals by the bootstrap over vesicles, or over runs, widened for few.
 struct FittedLaw {

@@ -1,11 +1,12 @@
-#include "verification/measure/fit.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
 
 #include "kernel/core/random.hpp"
+#include "verification/statistics/bootstrap.hpp"
+#include "verification/statistics/power_law.hpp"
+#include "verification/statistics/sample.hpp"
 
 namespace traceraft {
 namespace {
@@ -22,13 +23,16 @@ TEST(Fit, LinesAndPowerLawsAreExact) {
   EXPECT_THROW(fit_line({{1, 1}, {1, 2}}), std::runtime_error);
 }
 
-TEST(Fit, AShiftedPowerLawFindsItsOrigin) {
-  for (const double offset : {0.0, 0.7, 3.0}) {
+TEST(Fit, APowerLawFindsItsOrigin) {
+  for (const double t0 : {0.5, 0.0, -0.7, -3.0}) {
     Points points;
-    for (double t = 1; t < 60; t *= 1.1) points.emplace_back(t, 4 * std::pow(t + offset, -1.0 / 3));
-    const ShiftedPowerLaw found = fit_shifted_power_law(points);
-    EXPECT_NEAR(found.exponent, -1.0 / 3, 1e-3) << offset;
-    EXPECT_NEAR(found.offset, offset, 0.03 * offset) << offset;
+    for (double t = 1; t < 60; t *= 1.1) points.emplace_back(t, 4 * std::pow(t - t0, -1.0 / 3));
+    const PowerLaw found = fit_power_law_from(points);
+    EXPECT_NEAR(found.b, -1.0 / 3, 1e-4) << t0;
+    EXPECT_NEAR(found.t0, t0, 1e-3) << t0;
+    EXPECT_NEAR(found.c, 4, 0.01) << t0;
+    // An origin that is not allowed to be that late.
+    EXPECT_NEAR(fit_power_law_from(points, 0).t0, std::min(t0, 0.0), 1e-3) << t0;
   }
 }
 
@@ -86,12 +90,18 @@ TEST(Bootstrap, IsWidenedForFew) {
   EXPECT_NEAR(missed, 0.05 * kTrials, 0.03 * kTrials);
 }
 
-TEST(Fit, Moments) {
-  const Moments m = moments({1, 2, 6});
-  EXPECT_NEAR(m.mean, 3, 1e-14);
-  EXPECT_NEAR(m.deviation, std::sqrt(7.0), 1e-14);
-  EXPECT_EQ(m.low, 1);
-  EXPECT_EQ(m.high, 6);
+TEST(Sample, KnowsItsMomentsAndQuantiles) {
+  const Sample s = sample_of({5, 1, 4, 2, 3});
+  EXPECT_DOUBLE_EQ(s.mean, 3);
+  EXPECT_DOUBLE_EQ(s.deviation, std::sqrt(2.5));
+  EXPECT_DOUBLE_EQ(s.median, 3);
+  EXPECT_DOUBLE_EQ(s.q25, 2);
+  EXPECT_DOUBLE_EQ(s.q90, 4.6);
+  EXPECT_DOUBLE_EQ(s.min, 1);
+  EXPECT_DOUBLE_EQ(s.max, 5);
+  EXPECT_DOUBLE_EQ(sample_of({4, 1, 2, 3}).median, 2.5);
+  EXPECT_DOUBLE_EQ(sample_of({7}).deviation, 0);
+  EXPECT_DOUBLE_EQ(quantile({7}, 0.3), 7);
 }
 
 }  // namespace

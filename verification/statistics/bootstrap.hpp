@@ -1,45 +1,11 @@
-// Lines through measured points, and how far to trust them.
+// How far a statistic of a sample is to be trusted: intervals from samples drawn from it.
 #pragma once
 
 #include <cstdint>
 #include <functional>
-#include <utility>
 #include <vector>
 
 namespace traceraft {
-
-using Points = std::vector<std::pair<double, double>>;
-
-// 95 % of normally distributed values are within so many standard deviations.
-inline constexpr double kNormal95 = 1.96;
-
-// A stretch of times, both ends included.
-struct Window {
-  double begin, end;
-  bool contains(double t) const { return t >= begin && t <= end; }
-};
-
-struct Line {
-  double slope, intercept;
-};
-// Least squares. At least two different x.
-Line fit_line(const Points& points);
-// ln y = slope · ln x + intercept. x, y > 0.
-Line fit_power_law(const Points& points);
-
-// y = C (t + offset)^b by least squares of ln y, the offset among 0 and 1000 values between a
-// thousandth and ten times the first t: what laws like L³ = L₀³ + K t ask for.
-struct ShiftedPowerLaw {
-  double exponent, offset;
-};
-ShiftedPowerLaw fit_shifted_power_law(const Points& points);
-
-// The order p of errors e ~ h^p: between the two finest levels, and how much that differs from the
-// order between the two before them (0 if there are no three).
-struct ObservedOrder {
-  double order, change;
-};
-ObservedOrder observed_order(const Points& size_and_error);
 
 // Samples of 0 … count − 1: each of them once; or as many drawn with replacement, by the random
 // numbers from `first` on.
@@ -67,14 +33,5 @@ double factor_for_few(int count);
 // Student's quantile over the normal one alone: for estimates of which the variance is right on
 // average, but known from so many.
 double student_factor(int count);
-
-// Of errors, which have to be small: NaN is the largest of all.
-double larger(double a, double b);
-
-struct Moments {
-  double mean, deviation;  // of the sample, with n − 1
-  double low, high;
-};
-Moments moments(const std::vector<double>& values);
 
 }  // namespace traceraft
