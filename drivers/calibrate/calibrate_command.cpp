@@ -203,14 +203,19 @@ int run_calibration(CalibrateRequest request) {
 
 Action define_calibrate(CLI::App& app) {
   const auto request = std::make_shared<CalibrateRequest>();
-  app.add_option("--data", request->data, "folder of the measurements (dataset.toml)");
-  app.add_option("--model", request->model, "TOML file with the flags' names as keys");
-  CLI::Option* const ensemble = app.add_option(
-      "--ensemble", request->ensemble,
-      "find the mobility alone, from the runs of an ensemble or what is kept of them");
+  app.add_option("--data", request->data, "folder of the measurements (dataset.toml)")
+      ->type_name("DIR");
+  app.add_option("--model", request->model, "TOML file with the flags' names as keys")
+      ->type_name("FILE");
+  CLI::Option* const ensemble =
+      app.add_option(
+             "--ensemble", request->ensemble,
+             "find the mobility alone, from the runs of an ensemble or what is kept of them")
+          ->type_name("DIR");
   app.add_option("--parameters", request->parameters,
                  "comma-separated, of mobility, epsilon, fraction, noise-length; default: "
                  "mobility,epsilon")
+      ->type_name(joined(calibrated_options().names(), "|") + ",...")
       ->check(
           [](const std::string& text) { return std::string(text.empty() ? "names none" : ""); });
   app.add_option("--runs", request->runs, "seeds that every choice of parameters is run with")
@@ -225,8 +230,8 @@ Action define_calibrate(CLI::App& app) {
   app.add_option("--jobs", request->jobs, "runs at a time; default: one for each processor")
       ->excludes(ensemble)
       ->check(CLI::Range(1, 1024));
-  app.add_option("--out", request->out,
-                 "folder, new or to go on with; default: runs/calibration-N");
+  app.add_option("--out", request->out, "folder, new or to go on with; default: runs/calibration-N")
+      ->type_name("DIR");
   app.add_flag("--quiet", request->quiet, "print nothing but errors");
   add_options(app, request->flags, [](const OptionSpec& spec) {
     return spec.numerical && spec.name != "seed" && spec.name != "output-times";

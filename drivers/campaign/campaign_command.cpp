@@ -182,7 +182,8 @@ int run_campaign(const CampaignRequest& request) {
 Action define_campaign(CLI::App& app) {
   const auto request = std::make_shared<CampaignRequest>();
   app.add_option("--out", request->out,
-                 "folder, new or of a campaign to go on with; default: runs/campaign-<number>");
+                 "folder, new or of a campaign to go on with; default: runs/campaign-<number>")
+      ->type_name("DIR");
   app.add_option("--cases", request->cases, "of each group; default: 11; a campaign can grow")
       ->check(CLI::Range(1, kMostCases));
   app.add_option("--jobs", request->jobs, "cases at a time; default: one for each processor")
@@ -190,11 +191,13 @@ Action define_campaign(CLI::App& app) {
   app.add_option("--elsewhere", request->elsewhere,
                  "folders of campaigns with the same plan: what is in their cases.csv is counted, "
                  "and not repeated; a new campaign takes over the plan")
+      ->type_name("DIR,...")
       ->delimiter(',');
   app.add_option("--case", request->only, "carry out this case alone");
   app.add_flag("--quiet", request->quiet, "print nothing but errors");
   const std::size_t changing = app.get_options().size();
   app.add_option("--groups", request->plan.groups, "what is tried; default: all of them")
+      ->type_name("GROUP,...")
       ->delimiter(',');
   app.add_option("--seed", request->plan.seed, "what chance does")
       ->check(between(0, kLargestSeed))

@@ -98,10 +98,12 @@ int hide_effects(const HideCommand& command) {
 Action define_hide(CLI::App& app) {
   const auto command = std::make_shared<HideCommand>();
   BlindRequest& request = command->request;
-  app.add_option("--model", command->model, "TOML file with the flags' names as keys");
-  app.add_option("--out", command->out, "folder; default: runs/hidden-<number>");
+  app.add_option("--model", command->model, "TOML file with the flags' names as keys")
+      ->type_name("FILE");
+  app.add_option("--out", command->out, "folder; default: runs/hidden-<number>")->type_name("DIR");
   app.add_option("--effects", command->effects,
                  "what is hidden: names with commas between them, none, or random")
+      ->type_name("EFFECT,...")
       ->capture_default_str();
   app.add_option("--gap", request.gap,
                  "change of c that each makes from one snapshot to the next, over the standard "

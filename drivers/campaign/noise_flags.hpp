@@ -5,6 +5,7 @@
 
 #include "drivers/campaign/shared_noise.hpp"
 #include "drivers/config/number_checks.hpp"
+#include "kernel/core/text.hpp"
 
 namespace traceraft {
 
@@ -19,6 +20,7 @@ inline void add_noise_options(CLI::App& command, SharedNoise& noise) {
   command
       .add_option("--noise-shape", noise.shape,
                   "of that correlation: gaussian or exponential; explain assumes neither")
+      ->type_name(joined(shared_noise_shapes(), "|"))
       ->capture_default_str();
 }
 

@@ -165,18 +165,25 @@ int compare(const CompareRequest& request) {
 
 Action define_compare(CLI::App& app) {
   const auto request = std::make_shared<CompareRequest>();
-  app.add_option("--config", request->config_file, "TOML file with the flags' names as keys");
+  app.add_option("--config", request->config_file, "TOML file with the flags' names as keys")
+      ->type_name("FILE");
   app.add_option("--out", request->out,
                  "folder, new or of a comparison to go on with or to extend; default: "
-                 "runs/compare-<case>-<number>");
+                 "runs/compare-<case>-<number>")
+      ->type_name("DIR");
   app.add_option("--references", request->references, "where reference solutions are kept")
+      ->type_name("DIR")
       ->capture_default_str();
-  app.add_option("--integrators", request->integrators, "comma-separated; default: all");
-  app.add_option("--linear-solvers", request->linear_solvers, "comma-separated; default: block");
-  app.add_option("--tolerances", request->tolerances, "comma-separated; default: 1e-2,3e-3,1e-3");
+  app.add_option("--integrators", request->integrators, "comma-separated; default: all")
+      ->type_name("INTEGRATOR,...");
+  app.add_option("--linear-solvers", request->linear_solvers, "comma-separated; default: block")
+      ->type_name("SOLVER,...");
+  app.add_option("--tolerances", request->tolerances, "comma-separated; default: 1e-2,3e-3,1e-3")
+      ->type_name("NUMBER,...");
   app.add_option("--ranks", request->ranks,
                  "comma-separated numbers of ranks for the solvers that work on several; "
-                 "default: 1");
+                 "default: 1")
+      ->type_name("NUMBER,...");
   app.add_option("--repeat", request->repeat, "runs of each combination, for its time; default: 3")
       ->check(CLI::Range(1, kMostRepetitions));
   app.add_option("--time-limit", request->time_limit, "seconds per run; 0: none")

@@ -27,6 +27,7 @@ void add_options(CLI::App& command, GivenValues& values, const Wanted& wanted,
                   [store](std::int64_t count) { store(count > 0 ? "true" : "false"); }, spec.help)
             : command.add_option_function<std::string>(flag, store, spec.help);
     option->group(spec.group);
+    if (!spec.placeholder.empty()) option->type_name(spec.placeholder);
     if (spec.list) option->join(';');
     if (spec.kind == OptionKind::numbers) option->join(',');
     if (const std::string text = defaults.text(spec.name);

@@ -6,6 +6,7 @@
 #include "backends/list.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/named_list.hpp"
+#include "kernel/core/text.hpp"
 
 namespace traceraft {
 
@@ -42,6 +43,55 @@ OptionSpec spec_of(const LinearSolverEntry& solver, const WordOption& o) {
   return spec;
 }
 
+// Texts that are looked up: in a list (drivers/manual/value_lists.hpp) or among a few words.
+struct LookedUp {
+  OptionMember option;
+  std::string list;
+  std::vector<std::string> words = {};
+};
+
+const std::vector<LookedUp>& looked_up() {
+  using R = RunOptions;
+  static const std::vector<LookedUp> options = {
+      {&R::case_name, "CASE"},
+      {&R::surface, "SURFACE"},
+      {&R::mobility, "MOBILITY"},
+      {&R::effect, "EFFECT"},
+      {&R::initial, "INITIAL"},
+      {&R::integrator, "INTEGRATOR"},
+      {&R::linear_solver, "SOLVER"},
+      {&R::potential, "", {"averaged", "consistent", "nodal"}},
+      {&R::keep, "", {"second", "first", "decaying"}},
+      {&R::energy_guard, "", {"warn", "reject", "off"}}};
+  return options;
+}
+
+std::string placeholder_of(OptionKind kind) {
+  switch (kind) {
+    case OptionKind::flag:
+      return "";
+    case OptionKind::path:
+      return "FILE";
+    case OptionKind::number:
+    case OptionKind::integer:
+      return "NUMBER";
+    case OptionKind::numbers:
+      return "NUMBER,...";
+    default:
+      return "TEXT";
+  }
+}
+
+void set_placeholder(OptionSpec& spec) {
+  spec.placeholder = placeholder_of(spec.kind);
+  if (spec.member.index() == 0) return;
+  for (const LookedUp& option : looked_up())
+    if (option.option == spec.member) {
+      spec.words = option.words;
+      spec.placeholder = option.words.empty() ? option.list : joined(option.words, "|");
+    }
+}
+
 // After the general options, those that only one integrator or linear solver has.
 std::vector<OptionSpec> with_own_options(std::vector<OptionSpec> table) {
   for (OptionSpec& spec : table) spec.kind = kind_of(spec.member);
@@ -49,6 +99,7 @@ std::vector<OptionSpec> with_own_options(std::vector<OptionSpec> table) {
     for (const ParameterSpec& p : integrator.parameters) table.push_back(spec_of(integrator, p));
   for (const LinearSolverEntry& solver : linear_solvers())
     for (const WordOption& o : solver.options) table.push_back(spec_of(solver, o));
+  for (OptionSpec& spec : table) set_placeholder(spec);
   return table;
 }
 

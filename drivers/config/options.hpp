@@ -69,6 +69,8 @@ struct OptionSpec {
   bool numerical = true;  // does it change the numbers of a run?
   bool list = false;      // of what stands between semicolons; several flags are joined by them
   OptionKind kind = OptionKind::text;  // of the member, where there is one
+  std::string placeholder = {};  // of its value in the help: NUMBER, FILE, the name of a list, ...
+  std::vector<std::string> words = {};  // the only texts it takes, if they are a few
 };
 
 struct IntegratorEntry;

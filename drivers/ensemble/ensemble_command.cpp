@@ -211,10 +211,12 @@ void add_array_options(CLI::App& app, EnsembleRequest& request) {
 
 Action define_ensemble(CLI::App& app) {
   const auto request = std::make_shared<EnsembleRequest>();
-  app.add_option("--config", request->config_file, "TOML file with the flags' names as keys");
+  app.add_option("--config", request->config_file, "TOML file with the flags' names as keys")
+      ->type_name("FILE");
   app.add_option("--out", request->out,
                  "folder, new or of an ensemble to go on with or to extend; default: "
-                 "runs/ensemble-<case>-<number>");
+                 "runs/ensemble-<case>-<number>")
+      ->type_name("DIR");
   app.add_option("--runs", request->runs, "how many; default: 10")->check(CLI::Range(1, kMostRuns));
   app.add_option("--first-seed", request->first_seed, "seed of the first run; default: 1")
       ->check(between(0, kLargestSeed));

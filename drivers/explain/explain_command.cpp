@@ -197,22 +197,27 @@ Action define_explain(CLI::App& app) {
   const auto command = std::make_shared<ExplainCommand>();
   app.add_option("--data", command->job.data,
                  "folder of measurements: dataset.toml with fields (snapshot_001.csv, ...), series "
-                 "(measurements.csv) or both");
+                 "(measurements.csv) or both")
+      ->type_name("DIR");
   app.add_option("--series", command->series,
                  "folder of series of vesicles, if it is another one (dataset.toml, "
-                 "measurements.csv)");
+                 "measurements.csv)")
+      ->type_name("DIR");
   app.add_option("--runs", command->runs, "for --series: seeds of the model, and of each effect")
       ->check(CLI::Range(3, 1000))
       ->capture_default_str();
   app.add_option("--ensembles", command->ensembles,
                  "for --series: folder 'ensembles' of an earlier explanation of other series by "
                  "the same model, whose simulations are used, and completed")
+      ->type_name("DIR")
       ->excludes("--runs");
   app.add_option("--jobs", command->jobs,
                  "for --series: runs at a time; default: one for each processor")
       ->check(CLI::Range(1, 1024));
-  app.add_option("--model", command->job.model, "TOML file with the flags' names as keys");
-  app.add_option("--out", command->out, "folder for the verdict; default: runs/explain-N");
+  app.add_option("--model", command->job.model, "TOML file with the flags' names as keys")
+      ->type_name("FILE");
+  app.add_option("--out", command->out, "folder for the verdict; default: runs/explain-N")
+      ->type_name("DIR");
   app.add_option("--most-effects", command->job.effects, "to look for, one after the other")
       ->check(CLI::Range(1, kMostNamedEffects))
       ->capture_default_str();
@@ -227,6 +232,7 @@ Action define_explain(CLI::App& app) {
   app.add_option("--threads", command->job.threads, "default: one for each processor")
       ->check(CLI::Range(1, 256));
   app.add_option("--without", command->job.without, "effects that are not looked for")
+      ->type_name("EFFECT,...")
       ->delimiter(',');
   app.add_flag("--quiet", command->quiet, "print nothing but errors");
   add_options(app, command->job.flags, [](const OptionSpec& spec) {

@@ -91,10 +91,13 @@ Action define_report(CLI::App& app) {
   const auto request = std::make_shared<ReportRequest>();
   app.add_option("folder", request->folder,
                  "of a run, ensemble, comparison, calibration, verification, ...")
+      ->type_name("DIR")
       ->required();
   app.add_option("--data", request->data,
-                 "folder of series of vesicles, to be shown beside a run or an ensemble");
-  app.add_option("--out", request->out, "page to write; default: report.html in the folder");
+                 "folder of series of vesicles, to be shown beside a run or an ensemble")
+      ->type_name("DIR");
+  app.add_option("--out", request->out, "page to write; default: report.html in the folder")
+      ->type_name("FILE");
   app.add_option("--frames", request->frames, "at most so many times of the fields")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
@@ -102,8 +105,10 @@ Action define_report(CLI::App& app) {
                  "smallest detail of the surface shown, in units of its size")
       ->check(between(1e-4, 0.2))
       ->capture_default_str();
-  app.add_option("--snapshots", request->snapshots, "folder for pictures (PNG) of all frames");
-  app.add_option("--animation", request->animation, "animation (GIF) of all frames");
+  app.add_option("--snapshots", request->snapshots, "folder for pictures (PNG) of all frames")
+      ->type_name("DIR");
+  app.add_option("--animation", request->animation, "animation (GIF) of all frames")
+      ->type_name("FILE");
   app.add_option("--pixels", request->pixels, "height of pictures and animation")
       ->check(CLI::Range(16, 4096))
       ->capture_default_str();

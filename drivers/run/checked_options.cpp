@@ -16,7 +16,8 @@ constexpr double kLeastPart = 1e-14;
 }  // namespace
 
 std::string one_of(const Configuration& configuration, std::string RunOptions::*option,
-                   const char* kind, const std::vector<std::string>& words) {
+                   const char* kind) {
+  const std::vector<std::string>& words = run_option(option).words;
   const std::string& word = configuration.options().*option;
   if (std::find(words.begin(), words.end(), word) == words.end())
     throw InputError(configuration.where(option) + ": " + unknown_name_message(kind, word, words));

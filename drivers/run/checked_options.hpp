@@ -21,9 +21,9 @@ auto with_option_context(const Configuration& configuration, const OptionMember&
   }
 }
 
-// The text of an option that must be one of a few words. Throws InputError.
+// The text of an option that must be one of its few words. Throws InputError.
 std::string one_of(const Configuration& configuration, std::string RunOptions::*option,
-                   const char* kind, const std::vector<std::string>& words);
+                   const char* kind);
 
 // Refuses times and steps that are too short or too long to compute with, in R²/D: integrators need
 // inverses of steps, and squares of these, as doubles. Throws InputError.

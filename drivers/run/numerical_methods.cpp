@@ -16,10 +16,9 @@ IntegratorSettings integrator_settings(const Configuration& configuration,
   settings.min_step = configuration.options().min_step / units.time();
   settings.max_step = configuration.options().max_step / units.time();
   settings.linear_tolerance = configuration.options().linear_tolerance;
-  settings.kept_solution =
-      one_of(configuration, &RunOptions::keep, "solution", {"decaying", "second", "first"});
-  settings.reject_energy_rises = one_of(configuration, &RunOptions::energy_guard, "guard",
-                                        {"warn", "reject", "off"}) == "reject";
+  settings.kept_solution = one_of(configuration, &RunOptions::keep, "solution");
+  settings.reject_energy_rises =
+      one_of(configuration, &RunOptions::energy_guard, "guard") == "reject";
   for (const char* largest : {"max-step", "ida-maxstep"})
     if (const double most = configuration.numbers(run_option(largest))[0] / units.time();
         most > 0 && settings.min_step > most)

@@ -50,8 +50,7 @@ CahnHilliardModel model_without_effects(const Configuration& configuration) {
                      ": the degenerate mobility c(1-c) belongs to wells at 0 and 1; choose "
                      "--mobility constant:value=0.25");
   result.epsilon = configuration.options().epsilon / units.length();
-  const std::string rule = one_of(configuration, &RunOptions::potential, "potential",
-                                  {"averaged", "consistent", "nodal"});
+  const std::string rule = one_of(configuration, &RunOptions::potential, "potential");
   result.rule = rule == "averaged"     ? PotentialRule::averaged
                 : rule == "consistent" ? PotentialRule::consistent
                                        : PotentialRule::nodal;

@@ -145,8 +145,10 @@ int resume(const ResumeRequest& request) {
 
 Action define_run(CLI::App& app) {
   const auto request = std::make_shared<RunRequest>();
-  app.add_option("--config", request->config_file, "TOML file with the flags' names as keys");
-  app.add_option("--out", request->out, "run folder; default: runs/<case>-<number>");
+  app.add_option("--config", request->config_file, "TOML file with the flags' names as keys")
+      ->type_name("FILE");
+  app.add_option("--out", request->out, "run folder; default: runs/<case>-<number>")
+      ->type_name("DIR");
   app.add_flag("--validate", request->validate, "check everything, then stop");
   app.add_flag("--quiet", request->quiet, "print nothing but errors");
   add_options(app, request->flags, [](const OptionSpec&) { return true; });
@@ -161,7 +163,7 @@ Action define_run(CLI::App& app) {
 
 Action define_resume(CLI::App& app) {
   const auto request = std::make_shared<ResumeRequest>();
-  app.add_option("folder", request->folder, "run folder");
+  app.add_option("folder", request->folder, "run folder")->type_name("DIR");
   app.add_flag("--quiet", request->quiet, "print nothing but errors");
   add_options(app, request->flags, [](const OptionSpec& spec) { return !spec.numerical; });
   return [request] { return resume(*request); };

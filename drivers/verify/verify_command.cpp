@@ -202,21 +202,25 @@ int verify(const VerifyRequest& request) {
 Action define_verify(CLI::App& app) {
   const auto request = std::make_shared<VerifyRequest>();
   app.add_option("studies", request->studies, "studies (list shows them), or all")
+      ->type_name("STUDY")
       ->default_str("all");
   app.add_flag("--quick", request->quick, "coarser meshes: all studies within 3 minutes");
   app.add_option("--integrator", request->integrator,
-                 "to measure with; default: ida, or all where a study compares");
+                 "to measure with; default: ida, or all where a study compares")
+      ->type_name("INTEGRATOR");
   app.add_option("--linear-solver", request->linear_solver,
-                 "to measure with; default: block, or all where a study compares");
+                 "to measure with; default: block, or all where a study compares")
+      ->type_name("SOLVER");
   app.add_option("--threads", request->threads, "default: what the studies at a time leave")
       ->check(CLI::Range(1, 256));
   app.add_option("--jobs", request->jobs,
                  "studies at a time; default: with --quick one for each processor, else 1")
       ->check(CLI::Range(1, 256));
-  app.add_option("--out", request->out,
-                 "folder for tables and page; default: runs/verify-<number>");
+  app.add_option("--out", request->out, "folder for tables and page; default: runs/verify-<number>")
+      ->type_name("DIR");
   app.add_option("--document", request->document,
-                 "Markdown file for the results; its figures go beside it");
+                 "Markdown file for the results; its figures go beside it")
+      ->type_name("FILE");
   app.add_flag("--quiet", request->quiet, "print nothing but errors");
   app.footer(
       "Exit codes: 0 every claim holds, 1 one fails, 2 bad input, 4 input/output,\n"

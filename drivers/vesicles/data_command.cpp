@@ -117,18 +117,25 @@ Action define_data(CLI::App& app) {
   app.add_option("action", request->action,
                  "check: read a folder of measurements and say what is in it; compare: hold an "
                  "ensemble against it; draw: make a synthetic one from published facts")
+      ->type_name(joined(actions().names(), "|"))
       ->required();
-  app.add_option("folder", request->folder, "of the measurements (dataset.toml)")->required();
+  app.add_option("folder", request->folder, "of the measurements (dataset.toml)")
+      ->type_name("DIR")
+      ->required();
   app.add_option("--ensemble", request->ensemble,
-                 "folder of the simulations to compare with, or to draw from");
+                 "folder of the simulations to compare with, or to draw from")
+      ->type_name("DIR");
   app.add_option(
-      "--out", request->out,
-      "folder of a comparison; default: that of the ensemble, or runs/comparison-<number> "
-      "if only its histories are there");
+         "--out", request->out,
+         "folder of a comparison; default: that of the ensemble, or runs/comparison-<number> "
+         "if only its histories are there")
+      ->type_name("DIR");
   app.add_option("--window", request->window, "from which time to which a power law is fitted (s)")
+      ->type_name("NUMBER,NUMBER")
       ->capture_default_str();
   app.add_option("--facts", request->facts,
-                 "TOML file of what is published: to draw from, or to show in a comparison");
+                 "TOML file of what is published: to draw from, or to show in a comparison")
+      ->type_name("FILE");
   app.add_option("--seed", request->seed, "of what is drawn")
       ->check(between(0, kLargestSeed))
       ->capture_default_str();
