@@ -8,6 +8,8 @@ libgtest-dev gnuplot-nox libjs-three"
 rank_packages="libopenmpi-dev openmpi-bin trilinos-all-dev"
 # To see pages as readers do: ./check alone needs them.
 browser_packages="chromium chromium-driver curl"
+# To read the manual page and the completions as they do.
+manual_packages="groff-base bash zsh fish"
 
 say() { printf '%s\n' "$*" >&2; }
 

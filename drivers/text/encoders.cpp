@@ -1,6 +1,7 @@
 #include "drivers/text/encoders.hpp"
 
 #include <cstring>
+#include <map>
 #include <string_view>
 #include <utility>
 
@@ -49,9 +50,17 @@ std::string in_gnuplot(const std::string& text) {
 
 std::string in_shell(const std::string& text) {
   const char* plain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_=.,:/+";
-  if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) return text;
+  const bool is_plain = text.find_first_not_of(plain) == std::string::npos;
+  // zsh puts the path of a program for "=program".
+  if (!text.empty() && is_plain && text[0] != '=') return text;
   std::string quoted = "'";
   for (const char ch : text) quoted += ch == '\'' ? std::string("'\\''") : std::string(1, ch);
+  return quoted + "'";
+}
+
+std::string in_fish(const std::string& text) {
+  std::string quoted = "'";
+  for (const char ch : text) quoted += (ch == '\'' || ch == '\\' ? "\\" : "") + std::string(1, ch);
   return quoted + "'";
 }
 
@@ -80,6 +89,23 @@ std::string in_html(const std::string& text) {
                                        (bytes.size() == 1 && allowed.find(bytes) != allowed.npos));
     return shown ? std::string(bytes) : "\xEF\xBF\xBD";
   });
+}
+
+std::string in_roff(const std::string& text) {
+  // Plain ASCII characters that roff, or a typesetter of it, makes other characters of.
+  static const std::map<char32_t, std::string> named = {
+      {'\\', "\\e"},  {'-', "\\-"},   {'\'', "\\(aq"}, {'`', "\\(ga"},
+      {'^', "\\(ha"}, {'~', "\\(ti"}, {'"', "\\(dq"}};
+  const std::string encoded =
+      each_code_point(text, [&](const CodePoint& point, std::string_view bytes) -> std::string {
+        if (const auto name = named.find(point.value); name != named.end()) return name->second;
+        if (is_control(point.value) && (point.valid || bytes[0] < 0x20)) return " ";
+        if (!point.valid || hides_or_reorders(point.value)) return "\\[uFFFD]";
+        return point.value < 0x80 ? std::string(bytes)
+                                  : formatted("\\[u%04X]", static_cast<unsigned>(point.value));
+      });
+  // A line that begins with a point is a request. Nothing is shown for \&.
+  return encoded.compare(0, 1, ".") == 0 ? "\\&" + encoded : encoded;
 }
 
 std::string in_html_script(const std::string& json) {

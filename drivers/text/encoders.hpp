@@ -12,14 +12,21 @@ namespace traceraft {
 // characters become blanks, since a line break ends a command within quotes, too.
 std::string in_gnuplot(const std::string& text);
 
-// A word of a command of sh, quoted where a shell would make something else of it. Line breaks
-// stay what they are within quotes.
+// A word of a command of sh, bash or zsh, quoted where a shell would make something else of it.
+// Line breaks stay what they are within quotes.
 std::string in_shell(const std::string& text);
+// A word of a command of fish, which reads backslashes within quotes, too. Always quoted.
+std::string in_fish(const std::string& text);
 // The rest of a line that begins with #, in a script of sh, in TOML and in CSV.
 std::string in_comment(const std::string& text);
 
 // Text or the value of an attribute. Control characters but tab and line break become U+FFFD.
 std::string in_html(const std::string& text);
+
+// A piece of a line of a manual page, wherever it stands in that line. Nothing in it is a request
+// or an escape of roff. Line breaks and other control characters become blanks; what is no UTF-8,
+// or hides or reorders other text, becomes U+FFFD.
+std::string in_roff(const std::string& text);
 
 // JSON in a script of a page: no end tag and no comment can stand in it.
 std::string in_html_script(const std::string& json);

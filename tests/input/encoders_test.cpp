@@ -32,14 +32,41 @@ TEST(Encoders, GnuplotGetsOneLiteral) {
 
 // A shell gives back what went in.
 TEST(Encoders, AShellReadsTheSameWord) {
-  for (const std::string& text : testing::hostile_texts()) {
-    if (text.find('\0') != std::string::npos) continue;  // no word of a command can hold it
+  const auto expect_same = [](const std::string& shell, const std::string& text,
+                              std::string (*encoded)(const std::string&)) {
     const testing::TemporaryFolder folder;
     write_durably(folder.path / "script",
-                  "cd " + in_shell(folder.path.string()) + "\nprintf %s " + in_shell(text) + "\n");
-    const testing::ProgramEnd end = testing::shell("sh " + (folder.path / "script").string());
-    EXPECT_EQ(end.output, text);
+                  "cd " + encoded(folder.path.string()) + "\nprintf %s " + encoded(text) + "\n");
+    const testing::ProgramEnd end = testing::shell(shell + " " + (folder.path / "script").string());
+    EXPECT_EQ(end.output, text) << shell;
+    EXPECT_EQ(folder.entries(), 1u) << shell << " executed a command: " << text;
+  };
+  for (const std::string& text : testing::hostile_texts()) {
+    if (text.find('\0') != std::string::npos) continue;  // no word of a command can hold it
+    for (const char* shell : {"sh", "bash", "zsh -f"}) expect_same(shell, text, in_shell);
+    if (is_utf8(text)) expect_same("fish --no-config", text, in_fish);
+  }
+}
+
+// The typesetter of manual pages shows what went in, wherever a line of it begins.
+TEST(Encoders, RoffShowsTheSameText) {
+  const auto shown = [](const std::string& text) {
+    const testing::TemporaryFolder folder;
+    write_durably(folder.path / "page", ".pl 1\n.ll 1000n\n.nf\n" + in_roff(text) + "\n");
+    const testing::ProgramEnd end =
+        testing::shell("cd " + folder.path.string() + " && groff -Tutf8 -ww -P-cbou page");
+    EXPECT_EQ(end.code, 0) << "is groff installed? " << text;
     EXPECT_EQ(folder.entries(), 1u) << "a command was executed: " << text;
+    return end.output.substr(0, end.output.find('\n'));
+  };
+  for (const char* text : {".so x", "'sy x", "a\\fBb\\e", "--flag 'a' \"b\" `c` ^d ~e",
+                           "\xC3\xA9 \xCE\xB5", "\\", "."})
+    EXPECT_EQ(shown(text), text);
+  EXPECT_EQ(in_roff("a\n.so x\tb"), "a .so x b");
+  EXPECT_EQ(in_roff("\xFF\xE2\x80\xAE"), "\\[uFFFD]\\[uFFFD]");
+  for (const std::string& text : testing::hostile_texts()) {
+    EXPECT_FALSE(holds_control(in_roff(text))) << text;
+    EXPECT_EQ(shown(text.substr(0, 500)).find("root:"), std::string::npos) << text;
   }
 }
 
