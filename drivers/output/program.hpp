@@ -8,7 +8,7 @@ namespace traceraft {
 // Of the running program's file, in eight digits. Throws IoError.
 std::string program_checksum();
 
-// "traceraft 0.1.0, build 1a2b3c4d", the latter being that.
+// "traceraft 0.2.0, build 1a2b3c4d", the latter being that.
 std::string program_text();
 
 }  // namespace traceraft
