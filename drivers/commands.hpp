@@ -41,5 +41,7 @@ Command hide_command();
 Command campaign_command();
 Command fraction_command();
 Command list_command();
+Command man_command();
+Command completions_command();
 
 }  // namespace traceraft

@@ -1,0 +1,27 @@
+#include <CLI/CLI.hpp>
+
+#include "drivers/commands.hpp"
+#include "drivers/exit_codes.hpp"
+#include "drivers/manual/manual_page.hpp"
+#include "drivers/text/say.hpp"
+#include "drivers/version.hpp"
+
+namespace traceraft {
+namespace {
+
+Action define_man(CLI::App& app) {
+  app.footer("Example: traceraft man | man -l -");
+  // The whole program: what is defined later is part of it, too.
+  return [program = app.get_parent()] {
+    say_encoded(manual_page(describe(*program), kVersion, kReleaseDate));
+    return kSuccess;
+  };
+}
+
+}  // namespace
+
+Command man_command() {
+  return {"man", "write the manual page, in roff", Ranks::one, define_man};
+}
+
+}  // namespace traceraft
