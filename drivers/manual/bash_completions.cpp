@@ -1,25 +1,15 @@
 #include "drivers/manual/completions.hpp"
-#include "drivers/manual/value_groups.hpp"
+#include "drivers/manual/shell_tables.hpp"
 #include "drivers/text/encoders.hpp"
 
 namespace traceraft {
 namespace {
 
-std::string bash_words(const std::vector<std::string>& texts) {
-  std::string list;
-  for (const std::string& text : texts) list += (list.empty() ? "" : " ") + in_shell(text);
-  return list;
-}
-
-std::string bash_flags(const DescribedProgram& program) {
-  std::string script =
-      "_traceraft_flags() {\n"
-      "    kind=names several='' names=()\n"
-      "    case \"$1\" in\n";
-  for (const DescribedCommand& command : program.commands)
-    script += "        " + in_shell(command.name) + ")\n            names=(" +
-              bash_words(long_flags(command.options)) + ") ;;\n";
-  return script + "    esac\n}\n";
+std::string bash_array(const Meanings& names) {
+  std::string elements;
+  for (const auto& [name, meaning] : names)
+    elements += (elements.empty() ? "" : " ") + in_shell(name);
+  return elements;
 }
 
 // What begins as the word does that is being typed.
@@ -76,17 +66,8 @@ complete -F _traceraft traceraft
 )";
 
 std::string bash_completions(const DescribedProgram& program) {
-  std::vector<std::string> first;
-  for (const DescribedCommand& command : program.commands) first.push_back(command.name);
-  for (const std::string& flag : long_flags(program.options)) first.push_back(flag);
-  return "# Completes the command line of traceraft in bash: traceraft completions bash\n\n"
-         "_traceraft_commands() {\n    names=(" +
-         bash_words(first) + ")\n}\n\n" + bash_flags(program) + "\n" +
-         value_function(program,
-                        [](const std::string& placeholder) {
-                          return bash_words(offered_values(placeholder).names);
-                        }) +
-         kBashOffer + kBashComplete;
+  return "# Completes the command line of traceraft in bash: traceraft completions bash\n\n" +
+         shell_tables(program, bash_array) + kBashOffer + kBashComplete;
 }
 
 }  // namespace

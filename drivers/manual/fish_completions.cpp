@@ -1,14 +1,18 @@
 #include "drivers/manual/completions.hpp"
-#include "drivers/manual/value_groups.hpp"
+#include "drivers/manual/shell_tables.hpp"
+#include "drivers/manual/value_lists.hpp"
 #include "drivers/text/encoders.hpp"
 
 namespace traceraft {
 namespace {
 
-// The argument of --arguments, which fish reads a second time.
+// The argument of --arguments, which fish reads a second time: words, each with a tab and its
+// meaning.
 std::string fish_arguments(const OfferedValues& offered) {
   std::string list;
-  for (const std::string& name : offered.names) list += (list.empty() ? "" : " ") + in_fish(name);
+  for (const auto& [name, meaning] : offered.values)
+    list += (list.empty() ? "" : " ") + in_fish(name) +
+            (meaning.empty() ? "" : "\\t" + in_fish(meaning));
   return in_fish(offered.several ? "(__fish_append , " + list + ")" : list);
 }
 

@@ -59,12 +59,12 @@ OfferedValues offered_values(const std::string& placeholder) {
   } else if (one.find('|') != std::string::npos) {
     offered.kind = OfferedValues::Kind::names;
     std::istringstream words(one);
-    for (std::string word; std::getline(words, word, '|');) offered.names.push_back(word);
+    for (std::string word; std::getline(words, word, '|');) offered.values.emplace_back(word, "");
   } else {
     for (const ValueList& list : value_lists())
       if (list.name == one) {
         offered.kind = OfferedValues::Kind::names;
-        for (const auto& value : list.values) offered.names.push_back(value.first);
+        offered.values = list.values;
       }
   }
   return offered;

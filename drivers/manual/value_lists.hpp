@@ -21,8 +21,8 @@ const NamedList<ValueList>& value_lists();
 struct OfferedValues {
   enum class Kind { names, files, folders, anything };
   Kind kind = Kind::anything;
-  std::vector<std::string> names;
-  bool several = false;  // with commas between them
+  std::vector<std::pair<std::string, std::string>> values;  // names, and what each is, or ""
+  bool several = false;                                     // with commas between them
 };
 
 // `placeholder`: the name of a list, words as in "warn|reject|off", "FILE" or "DIR", each perhaps

@@ -46,9 +46,7 @@ const std::vector<Rule>& rules() {
       // Manual pages and completions of shells.
       {"\\\\fB", {"drivers/manual/manual_page.cpp"}},
       {"\"complete --command", {"drivers/manual/fish_completions.cpp"}},
-      {"    case \\\"$1",
-       {"drivers/manual/value_groups.cpp", "drivers/manual/bash_completions.cpp",
-        "drivers/manual/zsh_completions.cpp"}},
+      {"    case \\\"$1", {"drivers/manual/shell_tables.cpp"}},
       // Markdown: tables and documents.
       {"\"## ", {"drivers/verify/verify_report.cpp"}},
       {"\"![", {"drivers/verify/verify_report.cpp"}},
@@ -96,7 +94,7 @@ TEST(EncoderRule, WhoMayWriteUsesThem) {
       {"drivers/ensemble/array_job.cpp", "in_shell("},
       {"drivers/ensemble/array_job.cpp", "in_comment("},
       {"drivers/manual/manual_page.cpp", "in_roff("},
-      {"drivers/manual/value_groups.cpp", "in_shell("},
+      {"drivers/manual/shell_tables.cpp", "in_shell("},
       {"drivers/manual/bash_completions.cpp", "in_shell("},
       {"drivers/manual/zsh_completions.cpp", "in_shell("},
       {"drivers/manual/fish_completions.cpp", "in_fish("},

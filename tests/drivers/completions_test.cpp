@@ -9,7 +9,8 @@
 
 #include "backends/list.hpp"
 #include "drivers/commands.hpp"
-#include "drivers/manual/value_groups.hpp"
+#include "drivers/manual/shell_tables.hpp"
+#include "drivers/manual/value_lists.hpp"
 #include "drivers/text/encoders.hpp"
 #include "tests/support/hostile.hpp"
 #include "tests/support/program.hpp"
@@ -178,8 +179,8 @@ TEST(Completions, WordsAreAccepted) {
     for (const DescribedOption& option : registered().commands.front().options)
       if (option.flags.front() == flag) {
         const OfferedValues offered = offered_values(option.placeholder);
-        EXPECT_GT(offered.names.size(), 2u) << flag;
-        for (const std::string& word : offered.names)
+        EXPECT_GT(offered.values.size(), 2u) << flag;
+        for (const auto& [word, meaning] : offered.values)
           EXPECT_EQ(traceraft("run --validate --quiet --case two-rafts --cells 12 --epsilon 1 " +
                               std::string(flag) + " " + word)
                         .code,
