@@ -10,15 +10,18 @@ mirror=${MIRROR:-http://deb.debian.org/debian}
 [ ! -e "$root" ] || { echo "$root exists already" >&2; exit 2; }
 ls "$packages"/traceraft_*.deb "$packages"/traceraft-dev_*.deb >/dev/null
 
+# Nothing that is mounted there is deleted.
 clean_up() {
-  umount "$root/proc" 2>/dev/null || true
-  ! mountpoint -q "$root/proc" && rm -rf --one-file-system "$root"
+  for folder in proc sys; do
+    ! mountpoint -q "$root/$folder" || umount "$root/$folder" || return
+  done
+  rm -rf --one-file-system "$root"
 }
 trap clean_up EXIT
 trap 'exit 1' INT TERM
 
 inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive "$@"; }
-# The packages are read by apt as themselves: no sandbox user needs to reach them.
+# Root alone may read the packages where they are, so that apt does, too.
 install() {
   inside apt-get -qq -o APT::Sandbox::User=root install -y --no-install-recommends "$@" >"$root/log" 2>&1 ||
     { cat "$root/log"; exit 1; }
@@ -29,6 +32,7 @@ fail() { echo "FAILED: $*"; exit 1; }
 echo "== a minimal Debian 12 (a minute)"
 debootstrap --variant=minbase bookworm "$root" "$mirror" >/dev/null
 mount -t proc proc "$root/proc"
+mount -t sysfs -o ro sysfs "$root/sys"
 cp /etc/resolv.conf "$root/etc/resolv.conf"
 cp "$packages"/traceraft_*.deb "$root/traceraft.deb"
 cp "$packages"/traceraft-dev_*.deb "$root/traceraft-dev.deb"
@@ -76,7 +80,7 @@ before=$(size)
 install /traceraft-dev.deb cmake g++ ninja-build
 echo "added by libraries, compiler and what they depend on: $(($(size) - before)) MB"
 cp -r "$here" "$root/tmp/project"
-inside sh -ec 'cd /tmp; cmake -G Ninja -S project -B build >/dev/null; cmake --build build >/dev/null; build/consumer'
+inside sh -ec 'cd /tmp; cmake -Wno-dev -G Ninja -S project -B build >/dev/null 2>&1; cmake --build build >/dev/null; build/consumer'
 
 echo "== removal"
 inside apt-get -qq remove -y traceraft >/dev/null 2>&1
