@@ -58,9 +58,10 @@ CLI::Validator positive() {
 
 void check_numbers_first(CLI::App& command) {
   for (CLI::Option* option : command.get_options()) {
-    const std::string type = option->get_type_name();
-    const bool whole = type.compare(0, 3, "INT") == 0 || type.compare(0, 4, "UINT") == 0;
-    if (!whole && type.compare(0, 5, "FLOAT") != 0) continue;
+    // Ranges follow after a colon. INTEGRATOR, the name of a list, begins as INT does.
+    const std::string type = option->get_type_name(), number = type.substr(0, type.find(':'));
+    const bool whole = number == "INT" || number == "UINT";
+    if (!whole && number != "FLOAT") continue;
     option->transform(CLI::Validator(whole ? whole_number : finite_number, ""));
   }
 }
