@@ -25,6 +25,7 @@ inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONT
 install() {
   inside apt-get -qq -o APT::Sandbox::User=root install -y --no-install-recommends "$@" >"$root/log" 2>&1 ||
     { cat "$root/log"; exit 1; }
+  inside apt-get clean
 }
 size() { du -xsm "$root" | cut -f 1; }
 fail() { echo "FAILED: $*"; exit 1; }
