@@ -20,7 +20,7 @@ namespace {
 void require_one_rank(const char* name, const SurfaceSpace& space) {
   if (space.communicator->size() > 1)
     throw InputError(std::string(name) +
-                     " factorises on one rank only; on several choose --linear-solver teko");
+                     " works on one rank only; on several ranks, choose --linear-solver teko");
 }
 
 LinearSolverFactory block(const SurfaceSpace& space, const WordOptions&) {
@@ -81,11 +81,14 @@ const NamedList<LinearSolverEntry>& linear_solvers() {
        "Trilinos: Belos with block preconditioners of Teko, on any number of ranks",
        "",
        teko,
-       {{"preconditioner", "two-solve", "two-solve, gauss-seidel, block-lu, or of the file"},
+       {{"preconditioner", "two-solve",
+         "block preconditioner: two-solve, gauss-seidel, block-lu, or a name from the file"},
         {"inverse", "muelu",
-         "muelu, muelu-ilu (stronger, dearer), ifpack2, direct (one rank), or of the file"},
-        {"method", "fgmres", "fgmres, gmres, gcrodr, bicgstab"},
-        {"renewal", "worn", "new preconditioner: worn (when iterations grow) or always"},
+         "inverse of a block: muelu, muelu-ilu (stronger and more expensive), ifpack2, direct (one "
+         "rank), or a name from the file"},
+        {"method", "fgmres", "Krylov method: fgmres, gmres, gcrodr or bicgstab"},
+        {"renewal", "worn",
+         "when a new preconditioner is computed: worn (when iterations grow) or always"},
         {"parameters", "", "Teuchos XML file with sublists Inverse Library and Belos", true}},
        kWithTrilinos,
        true},

@@ -37,10 +37,13 @@ void print_list_with_parameters(const char* title, const NamedList<Entry>& list)
 int print_lists() {
   print_list("Cases (--case)", cases());
   print_list_with_parameters("Surfaces (--surface)", surfaces());
-  say("  %-14s %s\n\n", "formula", "any level set, from --surface-formula");
+  say("  %-14s %s\n\n", "formula", "any level set, given by --surface-formula");
   print_list_with_parameters("Mobility laws (--mobility)", mobilities());
   print_list_with_parameters("Effects (--effect)", effects());
-  print_list_with_parameters("Initial states (--initial)", initial_fields());
+  print_list_with_parameters(
+      "Initial states (--initial, with --initial-formula, --initial-caps, --raft-fraction and "
+      "--seed)",
+      initial_fields());
   say("  %-14s %s\n\n", "restart:DIR", "the last state of the run in DIR, on the same mesh");
   print_list("Integrators (--integrator)", integrators());
   print_list("Linear solvers (--linear-solver)", linear_solvers());

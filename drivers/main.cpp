@@ -50,7 +50,7 @@ std::string any_of(const std::vector<std::string>& names) {
 
 void refuse_ranks(const Command& command) {
   if (world()->size() > 1 && command.ranks != Ranks::several)
-    throw InputError("only run and resume work on several ranks; start " + command.name +
+    throw InputError("only run and resume can use several ranks; start " + command.name +
                      " without mpirun");
   if (command.ranks == Ranks::starts_them && RankSession::there_is())
     throw InputError(command.name + " starts processes itself; start it without mpirun");
@@ -62,12 +62,14 @@ void refuse_control_characters(int argc, char** argv) {
     if (std::any_of(argv[k], argv[k] + std::strlen(argv[k]),
                     [](char ch) { return static_cast<unsigned char>(ch) < 32 || ch == 127; }))
       throw InputError("argument " + std::to_string(k) +
-                       " holds a control character, such as a line break: " + argv[k]);
+                       " contains a control character, such as a line break: " + argv[k]);
 }
 
 int dispatch(int argc, char** argv) {
   refuse_control_characters(argc, argv);
-  CLI::App app{"Predicts how lipid rafts form and coarsen on liposomes.", "traceraft"};
+  CLI::App app{
+      "Simulates how lipid rafts form and coarsen on liposomes, and compares with measurements.",
+      "traceraft"};
   app.set_version_flag("--version", [] { return program_text(); });
   app.require_subcommand(1);
   app.footer("Start with: traceraft run --case two-rafts");
@@ -93,14 +95,15 @@ int dispatch(int argc, char** argv) {
       throw InputError(app.get_subcommands().front()->get_name() + ": " +
                        std::string(error.what()));
     if (argc > 1) (void)commands().find(argv[1]);
-    throw InputError("say what to do: " + any_of(commands().names()) + " (see traceraft --help)");
+    throw InputError("a command is needed: " + any_of(commands().names()) +
+                     " (see traceraft --help)");
   } catch (const CLI::ExtrasError&) {
     (void)commands().find(argv[1]);
-    throw InputError("one command at a time");
+    throw InputError("give one command at a time");
   } catch (const CLI::ParseError& error) {
     throw InputError(error.what());
   } catch (const std::logic_error&) {  // CLI11 on --no-fields=perhaps: std::stoll's exceptions
-    throw InputError("a flag takes no value but true or false");
+    throw InputError("a flag takes no value except true or false");
   }
   const CLI::App& asked_for = *app.get_subcommands().front();
   refuse_unknown(asked_for);

@@ -19,7 +19,8 @@ FolderLock::FolderLock(const std::filesystem::path& folder) {
   const int error = errno;
   ::close(descriptor_);
   if (error == EWOULDBLOCK)
-    throw LockedError("another run is using " + folder.string() + "; wait for it or choose --out");
+    throw LockedError("another process is using " + folder.string() +
+                      "; wait until it ends, or choose another folder");
   throw IoError("cannot lock " + path.string() + ": " + std::strerror(error));
 }
 

@@ -16,7 +16,7 @@ std::string between(const std::string& text, const std::string& before, const st
   const std::size_t at = text.find(before, begin);
   const std::size_t first = at + before.size();
   const std::size_t last = at == std::string::npos ? at : text.find(after, first);
-  if (last == std::string::npos) throw IoError("this is no file of fields that traceraft wrote");
+  if (last == std::string::npos) throw IoError("this is not a file of fields from traceraft");
   begin = last + after.size();
   return text.substr(first, last - first);
 }
@@ -41,7 +41,7 @@ SurfaceField read_vtu(const std::string& text, const std::string& field) {
   const std::vector<std::int32_t> corners = array<std::int32_t>(text, "connectivity");
   const std::size_t points = values.size();
   if (positions.size() != 3 * points || corners.size() % 3 != 0)
-    throw IoError("the arrays of a file of fields do not belong together");
+    throw IoError("the arrays of a file of fields do not match");
   SurfaceField result;
   for (std::size_t p = 0; p < points; ++p)
     result.mesh.position.emplace_back(positions[3 * p], positions[3 * p + 1], positions[3 * p + 2]);

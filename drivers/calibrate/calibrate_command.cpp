@@ -35,7 +35,7 @@ namespace fs = std::filesystem;
 struct CalibrateRequest {
   GivenValues flags;
   std::string data, model, ensemble, out, parameters;
-  int runs = 8, jobs = 0, most_cells = 0;  // 0: as many as processors; see most_cells_of
+  int runs = 8, jobs = 0, threads = 0, most_cells = 0;  // 0: by processors; see most_cells_of
   bool quiet = false;
 };
 
@@ -44,12 +44,12 @@ std::vector<std::string> costly_parameters(const std::string& text) {
   for (const std::string& name : split_list(text)) {
     (void)calibrated_options().find(name);
     if (std::find(names.begin(), names.end(), name) != names.end())
-      throw InputError("--parameters: " + name + " is there twice");
+      throw InputError("--parameters: " + name + " is given twice");
     names.push_back(name);
   }
   const auto mobility = std::find(names.begin(), names.end(), "mobility");
   if (mobility == names.end())
-    throw InputError("--parameters: mobility has to be among them; it sets the unit of time");
+    throw InputError("--parameters: mobility must be one of them, as it sets the unit of time");
   names.erase(mobility);
   return names;
 }
@@ -75,9 +75,9 @@ void remember(const fs::path& out, const std::string& what, const std::string& d
            numerical_identity({read_config_file(file), {}}) == numerical_identity(model);
   };
   if (fs::exists(file) && !is_same())
-    throw InputError("--out: " + out.string() +
-                     " holds a calibration of another model, or with other measurements; "
-                     "choose another folder");
+    throw InputError(
+        "--out: " + out.string() +
+        " holds a calibration of another model or with other measurements; choose another folder");
   write_durably(file, heading + config_text(model));
 }
 
@@ -89,31 +89,31 @@ void refuse_calibrating(const Configuration& model) {
       if ((is_rate(parameter.unit) || parameter.unit == "s") &&
           effect.find(entry.name + ":") != std::string::npos)
         throw InputError(model.where(&RunOptions::effect) + ": " + entry.name +
-                         " has a time of its own, so that D is more than a unit of time; it cannot "
-                         "be calibrated");
+                         " has its own unit of time; D cannot be calibrated with it");
 }
 
 void refuse_other_membrane(const std::string& flag, const MeasuredVesicles& data,
                            const Configuration& model) {
   if (const std::string other = other_membrane(data.composition, model); !other.empty())
-    throw InputError(flag + ": the simulations are of " + other +
-                     "; D of one membrane is not that of another");
+    throw InputError(flag + ": the simulated membrane is " + other +
+                     "; each membrane has its own D");
 }
 
 // D alone, from runs that there are: it only shifts their time.
 int calibrate_ensemble(const CalibrateRequest& request, const MeasuredVesicles& data) {
   if (request.parameters != "mobility")
-    throw InputError("--parameters: runs of one model tell the mobility alone");
+    throw InputError("--parameters: with --ensemble only mobility can be found");
   for (const auto& [name, value] : request.flags)
-    throw InputError(value.where + ": the model is that of --ensemble");
-  if (!request.model.empty()) throw InputError("--model: the model is that of --ensemble");
+    throw InputError(value.where + ": not allowed with --ensemble, which has its own model");
+  if (!request.model.empty())
+    throw InputError("--model: not allowed with --ensemble, which has its own model");
   const Configuration model = model_of(request.ensemble);
   refuse_other_membrane("--ensemble", data, model);
   refuse_calibrating(model);
   const double seconds = model.units().seconds_per_unit();
   EnsembleRuns ensemble = runs_of(request.ensemble);
   CalibrationPoint point{{}, std::move(ensemble.histories)};
-  if (point.runs.size() < 2) throw InputError("--ensemble: fewer than two runs");
+  if (point.runs.size() < 2) throw InputError("--ensemble: at least two finished runs are needed");
   double shortest = HUGE_VAL;
   for (History& run : point.runs) {
     shortest = std::min(shortest, run.time.back());
@@ -121,18 +121,19 @@ int calibrate_ensemble(const CalibrateRequest& request, const MeasuredVesicles& 
   }
   const double fastest = shortest / looks(data).end;
   if (!(fastest > 1 / kSlowest))
-    throw InputError("--ensemble: its runs end long before the measurements do");
+    throw InputError("--ensemble: its runs end long before the measurements");
   // Runs that end before the measurements do cover these for a smaller D only.
   const Interval covered{seconds / fastest, seconds * kSlowest};
-  end_on_stop_signals(kInterrupted, "give the same command again");
+  end_on_stop_signals(kInterrupted, "repeat the command");
   const Calibration result =
       calibrate(data, {}, {point}, UnitPrior::uniform(std::max(seconds, covered.low), covered));
   const fs::path out = folder_for(request);
   const FolderLock lock(out);
   remember(out, "mobility alone, from the runs in " + request.ensemble, request.data, model);
   const std::string bound = formatted(
-      "D is looked for between %.3g and %.3g cm^2/s: of a larger one, runs that end at %.4g s know "
-      "nothing at the times of the measurements; take an ensemble with a larger --t-end.",
+      "The range searched for D is %.3g to %.3g cm^2/s. For a larger D, the runs, which end at "
+      "%.4g s, would not reach the times of the measurements. Use an ensemble with a larger "
+      "--t-end.",
       model.units().diffusion_cm2_s / kSlowest, model.units().diffusion_cm2_s * fastest, shortest);
   const std::string command = "traceraft calibrate --data " + in_shell(request.data) +
                               " --ensemble " + in_shell(request.ensemble) +
@@ -148,12 +149,12 @@ int most_cells_of(const CalibrateRequest& request, const Configuration& model) {
   if (request.most_cells == 0) return usual_most_cells(model);
   if (request.most_cells >= own) return std::max((own + 3) / 4, request.most_cells / 4) * 4;
   throw InputError("--most-cells: " + std::to_string(request.most_cells) +
-                   " is less than the model's own " + std::to_string(own));
+                   " is less than the model's --cells, " + std::to_string(own));
 }
 
 int run_calibration(CalibrateRequest request) {
   catch_stop_signals();
-  if (request.data.empty()) throw InputError("--data: say which measurements to calibrate with");
+  if (request.data.empty()) throw InputError("--data: a folder of measurements is needed");
   if (request.parameters.empty())
     request.parameters = request.ensemble.empty() ? "mobility,epsilon" : "mobility";
   const std::vector<std::string> costly = costly_parameters(request.parameters);
@@ -176,20 +177,20 @@ int run_calibration(CalibrateRequest request) {
                format_number(end_of_runs(data)) + " s, at most " + std::to_string(most_cells) +
                " cells",
            request.data, model);
-  const CalibratorRequest simulations{out,          costly,       most_cells,
-                                      request.runs, request.jobs, request.quiet};
+  const CalibratorRequest simulations{out,          costly,          most_cells,   request.runs,
+                                      request.jobs, request.threads, request.quiet};
   Calibrator calibrator(simulations, data, model);
   if (!calibrator.run()) {
     if (!request.quiet)
-      say("to go on, give the same command with --out %s\n", in_shell(out.string()));
+      say("to continue, give the same command with --out %s\n", in_shell(out.string()));
     return kInterrupted;
   }
-  end_on_stop_signals(
-      kInterrupted,
-      "all runs are there; to go on, give the same command with --out " + in_shell(out.string()));
+  end_on_stop_signals(kInterrupted,
+                      "all runs are finished; to continue, give the same command with --out " +
+                          in_shell(out.string()));
   const double diffusion = model.units().diffusion_cm2_s;
   const std::string bound =
-      formatted("D is looked for between %.3g and %.3g cm^2/s: begin with another --diffusion.",
+      formatted("The range searched for D is %.3g to %.3g cm^2/s. Start from another --diffusion.",
                 diffusion / kSlowest, diffusion * kFastest);
   const std::string command = "traceraft calibrate --data " + in_shell(request.data) + " --model " +
                               in_shell((out / kIdentityFile).string()) + " --parameters " +
@@ -205,41 +206,43 @@ Action define_calibrate(CLI::App& app) {
   const auto request = std::make_shared<CalibrateRequest>();
   app.add_option("--data", request->data, "folder of the measurements (dataset.toml)")
       ->type_name("DIR");
-  app.add_option("--model", request->model, "TOML file with the flags' names as keys")
+  app.add_option("--model", request->model, "TOML file of the model, with names of flags as keys")
       ->type_name("FILE");
-  CLI::Option* const ensemble =
-      app.add_option(
-             "--ensemble", request->ensemble,
-             "find the mobility alone, from the runs of an ensemble or what is kept of them")
-          ->type_name("DIR");
+  CLI::Option* const ensemble = app.add_option("--ensemble", request->ensemble,
+                                               "folder of an ensemble, or of its kept histories: "
+                                               "find the mobility only, without new simulations")
+                                    ->type_name("DIR");
   app.add_option("--parameters", request->parameters,
-                 "comma-separated, of mobility, epsilon, fraction, noise-length; default: "
-                 "mobility,epsilon")
-      ->type_name(joined(calibrated_options().names(), "|") + ",...")
-      ->check(
-          [](const std::string& text) { return std::string(text.empty() ? "names none" : ""); });
-  app.add_option("--runs", request->runs, "seeds that every choice of parameters is run with")
+                 "parameters to find, comma-separated: mobility and any of epsilon, fraction, "
+                 "noise-length; default: mobility,epsilon, or mobility with --ensemble")->type_name(joined(calibrated_options()
+      ->check([](const std::string& text) {
+    return std::string(text.empty() ? "no parameter is named" : "");
+      });
+  app.add_option("--runs", request->runs, "number of seeds for every choice of parameters")
       ->check(CLI::Range(2, 1000))
       ->excludes(ensemble)
       ->capture_default_str();
   app.add_option("--most-cells", request->most_cells,
-                 "cells that meshes of a smaller epsilon may have, and so how small it may be; "
-                 "default: 1.65 times the model's, 128 at least")
+                 "largest number of cells per edge; a smaller epsilon needs more cells, so that "
+                 "this bounds it from below; default: 1.65 times --cells, at least 128")
       ->excludes(ensemble)
       ->check(between(4, run_option("cells").max));
   app.add_option("--jobs", request->jobs, "runs at a time; default: one for each processor")
       ->excludes(ensemble)
       ->check(CLI::Range(1, 1024));
-  app.add_option("--out", request->out, "folder, new or to go on with; default: runs/calibration-N")
-      ->type_name("DIR");
-  app.add_flag("--quiet", request->quiet, "print nothing but errors");
+  app.add_option("--threads", request->threads, "threads of each run; default: processors / --jobs")
+      ->check(CLI::Range(1, 64));
+  app.add_option("--out", request->out,
+                 "new folder, or folder of a calibration to continue; default: runs/calibration-N")->type_name("DIR");
+  app.add_flag("--quiet", request->quiet, "print errors only");
   add_options(app, request->flags, [](const OptionSpec& spec) {
     return spec.numerical && spec.name != "seed" && spec.name != "output-times";
   });
   app.footer(
       "Example: traceraft calibrate --data my-vesicles --case guv-3to1 --parameters "
       "mobility,epsilon");
-  return [request] { return run_calibration(*request); };
+  return [request] {
+    return run_calibration(*request); };
 }
 
 }  // namespace

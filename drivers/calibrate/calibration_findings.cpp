@@ -64,13 +64,13 @@ std::vector<std::string> why_undetermined(const CalibratedParameter& p, const Ca
   if (p.determined) return why;
   const double span = p.interval.high / p.interval.low;
   if (!result.converged) why.push_back("the search did not converge");
-  if (result.unit_at_bound) why.push_back("D lies at the end of the search");
+  if (result.unit_at_bound) why.push_back("D lies at the end of the range searched");
   const bool is_unit = p.name == "seconds_per_unit";
   if (!p.within && !(is_unit && result.unit_at_bound))
-    why.push_back(std::string("it reaches the end of ") +
-                  (is_unit ? "the search" : "what was simulated"));
+    why.push_back(std::string("its interval reaches the end of ") +
+                  (is_unit ? "the range searched" : "what was simulated"));
   if (span >= kDetermined || why.empty())
-    why.push_back(formatted("95 %% span a factor of %.3g", span));
+    why.push_back(formatted("its interval spans a factor of %.3g", span));
   return why;
 }
 

@@ -32,12 +32,13 @@ void add_search(const CalibrationRuns& runs, const Calibration& result, Notes& n
   if (!runs.missing.empty()) notes.push_back(runs.missing);
   if (!result.converged)
     notes.push_back(
-        "NOT CONVERGED: the last simulations do not surround what was found; begin again from the "
-        "calibrated model.");
+        "NOT CONVERGED: the last simulations do not surround the parameters that were found. Start "
+        "again from the calibrated model.");
   if (result.unit_at_bound)
-    notes.push_back("D LIES AT THE END OF THE SEARCH, and is not known. " + runs.bound);
+    notes.push_back("D IS NOT KNOWN: it lies at the end of the range searched. " + runs.bound);
   else if (result.at_bound > 0)
-    notes.push_back(formatted("At %d of %zu choices D fits best where the search for it ends. ",
+    notes.push_back(formatted("For %d of %zu choices of the other parameters, the best D lies at "
+                              "the end of the range searched. ",
                               result.at_bound, runs.points.size()) +
                     runs.bound);
 }
@@ -47,14 +48,14 @@ void add_unused(const MeasuredVesicles& data, const CalibrationRuns& runs,
                 const Calibration& result, Notes& notes) {
   if (const int nothing = looks_that_tell_nothing(data); nothing > 0)
     notes.push_back(
-        formatted("%d of %zu measurements are of time zero, of no raft, or of neither perimeter "
-                  "nor number: they are not used.",
+        formatted("%d of %zu observations are not used: they are at time zero, show no raft, or "
+                  "have neither perimeter nor number of rafts.",
                   nothing, data.measurements.size()));
   if (const int choices = choices_without_rafts(data, runs, result); choices > 0)
-    notes.push_back(formatted(
-        "At %d of %zu choices the simulated vesicles have no rafts when the measured ones are "
-        "looked at: these choices say nothing of D.",
-        choices, runs.points.size()));
+    notes.push_back(
+        formatted("For %d of %zu choices of parameters, the simulated vesicles have no rafts at "
+                  "the times of observation. These choices say nothing about D.",
+                  choices, runs.points.size()));
 }
 
 // What parameters cannot be, or were not asked to be.
@@ -64,15 +65,15 @@ void add_limits(const CalibrationRuns& runs, const Calibration& result, Notes& n
     const double smallest = range_of(runs.model, p.name, runs.most_cells).low;
     if (p.interval.low < kAtEnd * smallest)
       notes.push_back(
-          formatted("Epsilon may be smaller than what %d cells resolve, %.3g um, below which it is "
-                    "not looked for; take more --most-cells.",
-                    runs.most_cells, smallest));
+          formatted("Epsilon may be smaller than %.3g um, the smallest value that %d cells resolve "
+                    "and the end of the range searched. Choose more --most-cells.",
+                    smallest, runs.most_cells));
   }
   if (!runs.names.empty() &&
       std::find(runs.names.begin(), runs.names.end(), "noise-length") == runs.names.end())
     notes.push_back(
-        "The intervals hold if the initial noise is as long as the model's; if it is not, the "
-        "others take the blame. With noise-length among --parameters it is looked for, too.");
+        "The intervals assume that the length of the initial noise is that of the model. Otherwise "
+        "the other parameters are biased. Add noise-length to --parameters to fit it.");
 }
 
 void add_size(const MeasuredVesicles& data, const CalibrationRuns& runs, const Calibration& result,
@@ -81,23 +82,21 @@ void add_size(const MeasuredVesicles& data, const CalibrationRuns& runs, const C
   const double factor = factor_of_size(data, radius);
   if (const CalibratedParameter& unit = result.parameters.front();
       unit.determined && !size_is_told(factor, unit.interval))
-    notes.push_back(formatted(
-        "THE SIZE OF THE VESICLES decides about D: simulations with --radius %.3g "
-        "--cells %.0f would make it %.2g times as large.",
-        radius * std::pow(factor, 0.25),
-        std::round(static_cast<double>(runs.model.options().cells) * std::pow(factor, 0.25)),
-        factor));
+    notes.push_back(
+        "THE SIZE OF THE VESICLES DECIDES ABOUT D. " + effect_of_size(data, radius) +
+        formatted(" --cells %.0f.", std::round(static_cast<double>(runs.model.options().cells) *
+                                               std::pow(factor, 0.25))));
 }
 
 // For readers: what was found beyond the table.
 void add_findings(const Calibration& result, Notes& notes) {
   if (const std::string best = best_known(result); !best.empty())
-    notes.push_back("The data know best " + best + ".");
+    notes.push_back("The data determine best: " + best + ".");
   const double scatter = result.best.scatter_beyond_runs(Quantity::perimeter);
-  notes.push_back(
-      scatter > kNoScatter
-          ? formatted("Perimeters scatter by %.0f %% beyond what runs do.", 100 * scatter)
-          : "Perimeters scatter no more than runs do.");
+  notes.push_back(scatter > kNoScatter
+                      ? formatted("Beyond the scatter between runs, perimeters scatter by %.0f %%.",
+                                  100 * scatter)
+                      : "Perimeters scatter no more than those of the runs.");
 }
 
 }  // namespace

@@ -17,13 +17,16 @@
 namespace traceraft {
 namespace {
 
-std::vector<Row> rows_of(const std::vector<CalibrationFinding>& parameters) {
+// Between the end of a search and itself there is no interval.
+std::vector<Row> rows_of(const std::vector<CalibrationFinding>& parameters, bool mobility_at_end) {
   std::vector<Row> rows = {
       {"parameter", "value", "95 % interval", "unit", "determined by the data"}};
   for (const CalibrationFinding& found : parameters)
     rows.push_back({found.name, formatted("%.3g", found.value),
-                    formatted("%.3g to %.3g", found.low, found.high), found.unit,
-                    found.determined() ? "yes" : "NO: " + joined(found.open, "; ")});
+                    mobility_at_end && found.name == "mobility"
+                        ? "at the end of the range searched"
+                        : formatted("%.3g to %.3g", found.low, found.high),
+                    found.unit, found.determined() ? "yes" : "NO: " + joined(found.open, "; ")});
   return rows;
 }
 
@@ -51,7 +54,7 @@ void add_fit(Page& page, const std::filesystem::path& folder, const MeasuredVesi
   const EnsembleSummary summary = summarise(best);
   for (const Quantity quantity : {Quantity::perimeter, Quantity::rafts}) {
     Chart chart = comparison_chart(data, summary, quantity);
-    chart.title += ", of the simulations that fit best";
+    chart.title += " and the simulations that fit best";
     add_chart(page, chart, folder / (std::string("fit-") + name_of(quantity).id), missing);
   }
 }
@@ -86,7 +89,7 @@ void add_deviances(Page& page, const std::filesystem::path& folder, const Calibr
 void write_calibration(const std::filesystem::path& folder, const MeasuredVesicles& data,
                        const CalibrationRuns& runs, const Calibration& result, bool quiet) {
   const CalibrationFindings found = findings_of(data, runs, result);
-  const std::vector<Row> rows = rows_of(found.parameters);
+  const std::vector<Row> rows = rows_of(found.parameters, result.unit_at_bound);
   const Configuration model = found_model(runs, found.parameters);
   const std::vector<Row> agreement = agreement_rows(found.agreements);
   const std::vector<std::string> notes = notes_on(data, runs, found, result);
@@ -99,7 +102,7 @@ void write_calibration(const std::filesystem::path& folder, const MeasuredVesicl
   page.table(rows);
   for (const std::string& note : notes) page.paragraph(note);
   Missing missing;
-  page.heading("How well it fits");
+  page.heading("Agreement with the simulations that fit best");
   page.table(agreement);
   page.paragraph(about_agreement(found.best.size()));
   add_fit(page, folder, data, found.best, missing);
@@ -112,14 +115,14 @@ void write_calibration(const std::filesystem::path& folder, const MeasuredVesicl
   say("\n%s\n\n", title_of(data));
   print_rows(rows);
   for (const std::string& note : notes) say("\n%s\n", note);
-  say("\nin the simulations that fit best:\n");
+  say("\nagreement with the simulations that fit best:\n");
   print_rows(agreement);
   say("%s\n", about_agreement(found.best.size()));
   if (!result.unit_at_bound)
     say("\nrun it with: traceraft run --config %s\n",
         in_shell((folder / "calibrated.toml").string()));
   say("open next: %s\n", (folder / "calibration.html"));
-  if (!missing.text().empty()) say("the page lacks: %s\n", missing.text());
+  if (!missing.text().empty()) say("missing from the page: %s\n", missing.text());
 }
 
 }  // namespace traceraft

@@ -35,7 +35,8 @@ double end_of_runs(const MeasuredVesicles& data) {
 
 bool Calibrator::run() {
   if (!request_.quiet && !request_.names.empty())
-    say("%zu to %d rounds of simulations, %zu choices in each, %d runs of each\n",
+    say("%zu to %d rounds of simulations; each round has %zu choices of parameters; each choice "
+        "has %d runs\n",
         std::size(kSteps), kMostRounds,
         design_around(std::vector<double>(request_.names.size()), 0).size(), request_.runs);
   std::vector<double> centre;
@@ -83,7 +84,7 @@ bool Calibrator::add_points(const std::vector<std::vector<double>>& design, int 
   // Differences between points are known better if they are of the same seeds.
   keep_common_seeds(ends_);
   if (ends_.front().runs.size() < 2)
-    throw InputError("fewer than two seeds have finished at all points");
+    throw InputError("fewer than two seeds have finished for all choices of parameters");
   for (std::size_t k = 0; k < points_.size(); ++k) points_[k].runs = ends_[k].runs;
   return true;
 }
@@ -115,7 +116,8 @@ bool Calibrator::add_point(const std::vector<double>& ln, const std::string& num
   const std::filesystem::path folder = request_.out / "points" / name;
   const bool fresh = !std::filesystem::exists(folder);
   const Stopwatch watch;
-  PointEnd end = run_point(folder, here, {request_.runs, request_.jobs, request_.quiet});
+  PointEnd end =
+      run_point(folder, here, {request_.runs, request_.jobs, request_.quiet, request_.threads});
   if (end.stopped) return false;
   if (fresh) seconds_per_work_ = watch.seconds() / relative_work(here);
   for (const MemberFailure& failure : end.failures)

@@ -23,7 +23,7 @@ struct CalibratorRequest {
   std::filesystem::path out;
   std::vector<std::string> names;  // of the parameters that cost simulations
   int most_cells;                  // of the mesh, a multiple of 4
-  int runs, jobs;                  // of each choice; at a time
+  int runs, jobs, threads;         // of each choice; at a time; of each run, 0: what jobs leave
   bool quiet;
 };
 

@@ -66,7 +66,7 @@ Gaps floor_of(const ExplainSetup& setup, const HiddenTruth& truth) {
   try {
     return gaps_of_model(setup.series, setup.request, truth.pace, truth.effects).gap;
   } catch (const std::runtime_error& error) {
-    say_error(std::string("no floor: ") + error.what());
+    say_error(std::string("no forecast by the true model: ") + error.what());
     return {};
   }
 }
@@ -81,7 +81,7 @@ double seconds_of(const fs::path& explained) {
 // One by another build, or that is damaged, is none.
 void forget_if_unusable(const fs::path& explained, const ExplainSetup& setup) {
   const auto forget = [&](const std::exception& why) {
-    say("the search begins anew: %s\n", why.what());
+    say("the search starts again: %s\n", why.what());
     for (const char* file : {"search.json", "time.json"}) fs::remove(explained / file);
   };
   try {

@@ -56,8 +56,8 @@ CampaignPlan grown_plan(const CampaignRequest& request, const CampaignFolder& fo
     const CampaignPlan wanted = new_plan(request);
     if (wanted.groups != plan.groups || !same_but_for_cases(wanted, plan))
       throw InputError(flag + ": " + folder.path().string() +
-                       " holds a campaign of another plan; choose another folder, or leave away "
-                       "--groups, --seed and what else belongs to a plan, to go on with it");
+                       " holds a campaign with another plan; choose another folder; to continue "
+                       "it, leave out --groups, --seed and the other options of the plan");
   }
   plan.cases = std::max(plan.cases, request.cases);
   return plan;
@@ -99,7 +99,7 @@ int one_case(const CampaignFolder& folder, const std::string& name) {
 JobsEnd run_cases(const CampaignFolder& folder, const std::vector<CaseId>& left, std::size_t before,
                   int at_a_time, bool quiet) {
   if (!quiet && !left.empty())
-    say("%zu cases, %d at a time; most take minutes\nfolder %s\n", left.size(), at_a_time,
+    say("%zu cases, %d at a time; most take several minutes\nfolder %s\n", left.size(), at_a_time,
         folder.path());
   PendingJobs work;
   work.count = left.size();
@@ -141,7 +141,7 @@ std::string command_to_go_on(const CampaignFolder& folder, const CampaignRequest
 int run_campaign(const CampaignRequest& request) {
   const bool goes_on = !request.out.empty() && CampaignFolder(request.out).started();
   if (!request.only.empty()) {
-    if (!goes_on) throw InputError("--case: --out has to name a campaign that has begun");
+    if (!goes_on) throw InputError("--case: --out must name an existing campaign");
     return one_case(CampaignFolder(request.out), request.only);
   }
   catch_stop_signals();
@@ -173,7 +173,7 @@ int run_campaign(const CampaignRequest& request) {
   report(folder, scores, failures, request.quiet);
   for (const CaseFailure& failure : failures) say_error(failure.id.name() + ": " + failure.why);
   if (end.stopped) {
-    if (!request.quiet) say("go on with: %s\n", command_to_go_on(folder, request));
+    if (!request.quiet) say("continue with: %s\n", command_to_go_on(folder, request));
     return kInterrupted;
   }
   return failures.empty() ? kSuccess : kNumericalFailure;
@@ -182,33 +182,37 @@ int run_campaign(const CampaignRequest& request) {
 Action define_campaign(CLI::App& app) {
   const auto request = std::make_shared<CampaignRequest>();
   app.add_option("--out", request->out,
-                 "folder, new or of a campaign to go on with; default: runs/campaign-<number>")
+                 "new folder, or folder of a campaign to continue; default: runs/campaign-<number>")
       ->type_name("DIR");
-  app.add_option("--cases", request->cases, "of each group; default: 11; a campaign can grow")
+  app.add_option("--cases", request->cases,
+                 "number of cases of each group; default: 11; a larger number extends a campaign")
       ->check(CLI::Range(1, kMostCases));
   app.add_option("--jobs", request->jobs, "cases at a time; default: one for each processor")
       ->check(CLI::Range(1, 1024));
   app.add_option("--elsewhere", request->elsewhere,
-                 "folders of campaigns with the same plan: what is in their cases.csv is counted, "
-                 "and not repeated; a new campaign takes over the plan")
+                 "folders of campaigns with the same plan, comma-separated; the cases in their "
+                 "cases.csv are counted and not repeated; a new campaign takes over their plan")
       ->type_name("DIR,...")
       ->delimiter(',');
-  app.add_option("--case", request->only, "carry out this case alone");
-  app.add_flag("--quiet", request->quiet, "print nothing but errors");
+  app.add_option("--case", request->only, "carry out this case only");
+  app.add_flag("--quiet", request->quiet, "print errors only");
   const std::size_t changing = app.get_options().size();
-  app.add_option("--groups", request->plan.groups, "what is tried; default: all of them")
+  app.add_option("--groups", request->plan.groups,
+                 "groups of cases, comma-separated (listed below); default: all")
       ->type_name("GROUP,...")
       ->delimiter(',');
-  app.add_option("--seed", request->plan.seed, "what chance does")
+  app.add_option("--seed", request->plan.seed, "seed of all random numbers")
       ->check(between(0, kLargestSeed))
       ->capture_default_str();
-  app.add_option("--points", request->plan.points, "of each snapshot")
+  app.add_option("--points", request->plan.points, "number of points of each snapshot")
       ->check(CLI::Range(kFewestPoints, kMostPoints))
       ->capture_default_str();
-  app.add_option("--replicates", request->plan.replicates, "of noise alone, in each search")
+  app.add_option("--replicates", request->plan.replicates,
+                 "number of data sets with noise alone that give the p values of a search")
       ->check(CLI::Range(kFewestReplicates, kMostReplicates))
       ->capture_default_str();
-  app.add_option("--most-effects", request->plan.effects, "how many a search may name")
+  app.add_option("--most-effects", request->plan.effects,
+                 "largest number of effects that a search may name")
       ->check(CLI::Range(1, kMostNamedEffects))
       ->capture_default_str();
   add_noise_options(app, request->plan.noise);
@@ -226,8 +230,8 @@ Action define_campaign(CLI::App& app) {
 }  // namespace
 
 Command campaign_command() {
-  return {"campaign", "hide effects, let `explain` find them, and count", Ranks::one,
-          define_campaign};
+  return {"campaign", "hide effects in many cases and count how often explain finds them",
+          Ranks::one, define_campaign};
 }
 
 }  // namespace traceraft

@@ -73,7 +73,7 @@ CaseId CaseId::of(const std::string& name) {
   const std::string number = dash == std::string::npos ? "" : name.substr(dash + 1);
   if (number.empty() || number.find_first_not_of("0123456789") != std::string::npos ||
       number.size() > 6)
-    throw InputError("'" + name + "' is no case of a campaign");
+    throw InputError("'" + name + "' is not a case of a campaign");
   return {name.substr(0, dash), std::stoi(number)};
 }
 

@@ -73,7 +73,8 @@ std::string builds_of(const Scores& scores) {
   std::map<std::string, int> cases;
   for (const CaseScore& score : scores) ++cases[score.program];
   if (cases.size() < 2) return "";
-  std::string text = "\nBuilds of the program that explained them:\n\n";
+  std::string text =
+      "\nBuilds of the program that explained these cases, and the number of cases:\n\n";
   for (const auto& [program, count] : cases)
     text +=
         "- " + (program.empty() ? "not known" : in_markdown(program)) + formatted(": %d\n", count);
@@ -154,7 +155,7 @@ void write_campaign(const CampaignFolder& campaign, const Scores& scores,
       text += "\n" + in_markdown(group + ": " + campaign_groups().find(group).summary) + "\n\n" +
               markdown_table(table_rows(alone));
   text += builds_of(scores);
-  if (!failures.empty()) text += "\nNo verdict:\n\n";
+  if (!failures.empty()) text += "\nCases without a verdict:\n\n";
   for (const CaseFailure& failure : failures)
     text += "- " + in_markdown(failure.id.name() + ": " + failure.why) + "\n";
   write_durably(folder / "campaign.md", text);

@@ -71,12 +71,12 @@ void refuse_hiding(const Configuration& model, const BlindRequest& request) {
   refuse_scaled(model);
   if (model.options().surface != "sphere")
     throw InputError(model.where(&RunOptions::surface) +
-                     ": measurements are drawn on spheres only");
+                     ": measurements can be drawn on spheres only");
   if (!model.options().effect.empty())
-    throw InputError(model.where(&RunOptions::effect) + ": effects are hidden with --effects");
+    throw InputError(model.where(&RunOptions::effect) + ": use --effects to hide an effect");
   if (request.cells <= model.options().cells)
     throw InputError("--truth-cells: " + std::to_string(request.cells) +
-                     " has to be more than the model's cells, " +
+                     " must be more than the model's cells, " +
                      std::to_string(model.options().cells));
 }
 
@@ -115,7 +115,7 @@ HiddenTruth open_truth(const fs::path& folder) {
   constexpr std::uint64_t kMaxBytes = 1 << 20;
   const std::string text = read_file(folder / "truth.json", kMaxBytes);
   if (sha256(text) + "\n" != read_file(folder / "data" / "seal.txt", kMaxBytes))
-    throw IoError((folder / "truth.json").string() + " is not what was sealed");
+    throw IoError((folder / "truth.json").string() + " has changed since it was sealed");
   return from_json(folder / "truth.json", [](const Json& json) {
     HiddenTruth truth{{}, json.at("pace"), json.at("noise")};
     for (const Json& hidden : json.at("effects")) {

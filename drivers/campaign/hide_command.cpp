@@ -44,7 +44,8 @@ std::vector<std::string> effects_of(const std::string& text, std::uint64_t seed)
     std::vector<std::string> names = split_list(text);
     for (const std::string& name : names)
       if (name == "none" || name == "random" || std::count(names.begin(), names.end(), name) > 1)
-        throw InputError("--effects: '" + name + "' stands beside others, or twice");
+        throw InputError("--effects: '" + name +
+                         "' cannot be combined with other names or given twice");
       else
         (void)candidate_to_hide(name);
     return names;
@@ -75,88 +76,89 @@ int hide_effects(const HideCommand& command) {
   if (command.last_s > 0) request.last = command.last_s / units.time();
   if (!(request.first < request.last))
     throw InputError("--first: " + format_number(request.first * units.time()) +
-                     " s has to be before --last, " + format_number(request.last * units.time()) +
+                     " s must be before --last, " + format_number(request.last * units.time()) +
                      " s");
   const fs::path out = command.out.empty() ? first_free_folder("hidden") : command.out;
   if (fs::exists(out / "model.toml"))  // which is written last
-    throw InputError("--out: " + out.string() + " holds a hidden truth already");
+    throw InputError("--out: " + out.string() + " already holds a hidden truth");
   refuse_foreign_folder(out, {"truth.json"});
   refuse_hiding(configuration, request);
   fs::create_directories(out);
   const FolderLock lock(out);
-  end_on_stop_signals(kInterrupted, "nothing was hidden; give the same command again");
+  end_on_stop_signals(kInterrupted, "nothing was written; give the same command again");
   say("computing the truth on %d cells\n", request.cells);
   if (2 * request.cells < 5 * configuration.options().cells)
-    say("NOTE: the error of so coarse a truth may be named itself; 4 times --cells is safe\n");
+    say("NOTE: explain may take the error of this coarse mesh for an effect; 4 times --cells is "
+        "safe\n");
   flush_output();
   hide(out, model, request);
-  say("find it with: traceraft explain --data %s --model %s\n", in_shell((out / "data").string()),
-      in_shell((out / "model.toml").string()));
+  say("search for it with: traceraft explain --data %s --model %s\n",
+      in_shell((out / "data").string()), in_shell((out / "model.toml").string()));
   return kSuccess;
 }
 
 Action define_hide(CLI::App& app) {
   const auto command = std::make_shared<HideCommand>();
   BlindRequest& request = command->request;
-  app.add_option("--model", command->model, "TOML file with the flags' names as keys")
+  app.add_option("--model", command->model, "TOML file of the model, with names of flags as keys")
       ->type_name("FILE");
-  app.add_option("--out", command->out, "folder; default: runs/hidden-<number>")->type_name("DIR");
+  app.add_option("--out", command->out, "new folder to write; default: runs/hidden-<number>")
+      ->type_name("DIR");
   app.add_option("--effects", command->effects,
-                 "what is hidden: names with commas between them, none, or random")
+                 "effects to hide: comma-separated names, none, or random (one effect, or none)")
       ->type_name("EFFECT,...")
       ->capture_default_str();
   app.add_option("--gap", request.gap,
-                 "change of c that each makes from one snapshot to the next, over the standard "
-                 "deviation of c")
+                 "size of each effect: the change of c that it causes between two snapshots, "
+                 "divided by the standard deviation of c")
       ->check(between(1e-3, 0.5))
       ->capture_default_str();
-  app.add_option("--noise", request.noise, "of a value, over the standard deviation of c")
+  app.add_option("--noise", request.noise,
+                 "noise of a value of c, divided by the standard deviation of c")
       ->check(between(1e-3, 2))
       ->capture_default_str();
   add_noise_options(app, command->noise);
   app.add_option("--stated", request.stated,
-                 "write a column sigma, the noise, and in every second snapshot this times the "
-                 "noise; 0: no "
-                 "such column")
+                 "write a column sigma with the noise, multiplied by this factor in every second "
+                 "snapshot; 0: no column sigma")
       ->check(between(0, 100))
       ->capture_default_str();
-  app.add_option("--blur", command->blur_um,
-                 "of the images, standard deviation of the point spread function in um")
+  app.add_option("--blur", command->blur_um, "standard deviation of the point spread function (um)")
       ->check(at_least(0))
       ->capture_default_str();
-  app.add_option("--vesicles", request.vesicles, "how many, of one membrane and one radius")
+  app.add_option("--vesicles", request.vesicles, "number of vesicles (same membrane and radius)")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
-  app.add_option("--snapshots", request.snapshots, "of each vesicle")
+  app.add_option("--snapshots", request.snapshots, "number of snapshots of each vesicle")
       ->check(CLI::Range(2, 100))
       ->capture_default_str();
-  app.add_option("--points", request.points, "of each snapshot")
+  app.add_option("--points", request.points, "number of points of each snapshot")
       ->check(CLI::Range(100, 1000000))
       ->capture_default_str();
-  app.add_option("--first", command->first_s, "time of the first snapshot in s; default: 20 R^2/D")
+  app.add_option("--first", command->first_s, "time of the first snapshot (s); default: 20 R^2/D")
       ->check(positive());
-  app.add_option("--last", command->last_s, "time of the last one in s; default: 90 R^2/D")
+  app.add_option("--last", command->last_s, "time of the last snapshot (s); default: 90 R^2/D")
       ->check(positive());
-  app.add_option("--pace", request.pace, "D of the truth over that of the model")
+  app.add_option("--pace", request.pace, "D ratio: D of the truth divided by D of the model")
       ->check(between(0.1, 10))
       ->capture_default_str();
   app.add_option("--truth-cells", command->truth_cells,
-                 "of the mesh that the truth is computed on; default: 4 times --cells")
+                 "cells per edge of the mesh of the truth; default: 4 times --cells")
       ->check(CLI::Range(8, 512));
-  app.add_option("--seed", command->seed, "what chance does; default: nobody knows")
+  app.add_option("--seed", command->seed, "seed of all random numbers; default: a random seed")
       ->check(between(0, kLargestSeed));
   add_vesicle_options(app, command->flags);
   app.footer(
-      "The defaults are those of a vesicle that explain takes some minutes for; with --model they "
-      "are its own.\nExample: traceraft hide --out riddle");
+      "The defaults describe a small vesicle, which explain searches in some minutes. With "
+      "--model, the model's own\nsettings apply.\nExample: traceraft hide --out blind");
   return [command] { return hide_effects(*command); };
 }
 
 }  // namespace
 
 Command hide_command() {
-  return {"hide", "draw measurements with something hidden in them, for explain to find",
-          Ranks::one, define_hide};
+  return {"hide", "draw synthetic measurements with hidden effects, to test explain", Ranks::one,
+          define_hide};
 }
 
 }  // namespace traceraft

@@ -11,15 +11,17 @@ namespace traceraft {
 
 inline void add_noise_options(CLI::App& command, SharedNoise& noise) {
   command
-      .add_option("--noise-correlation", noise.length,
-                  "length in R over which neighbours share noise: the standard deviation of a "
-                  "Gaussian")
+      .add_option(
+          "--noise-correlation", noise.length,
+          "correlation length of shared noise, in units of R: the standard deviation of a Gaussian")
       ->check(between(kShortestDrawn, kLongestDrawn));
-  command.add_option("--noise-share", noise.share, "how much of the noise's variance they share")
+  command
+      .add_option("--noise-share", noise.share,
+                  "share of the noise's variance that is correlated between neighbours")
       ->check(between(0, 1));
   command
       .add_option("--noise-shape", noise.shape,
-                  "of that correlation: gaussian or exponential; explain assumes neither")
+                  "shape of this correlation: gaussian or exponential; explain does not know which")
       ->type_name(joined(shared_noise_shapes(), "|"))
       ->capture_default_str();
 }

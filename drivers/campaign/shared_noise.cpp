@@ -14,13 +14,9 @@ const std::vector<std::string>& shared_noise_shapes() {
 
 void check_shared_noise(const SharedNoise& noise) {
   if (noise.share > 0 && noise.length == 0)
-    throw InputError(
-        "--noise-share: over which length neighbours share noise is not said "
-        "(--noise-correlation)");
+    throw InputError("--noise-share: it needs --noise-correlation");
   if (noise.length > 0 && noise.share == 0)
-    throw InputError(
-        "--noise-correlation: how much of the noise neighbours share is not said "
-        "(--noise-share)");
+    throw InputError("--noise-correlation: it needs --noise-share");
   const std::vector<std::string>& shapes = shared_noise_shapes();
   if (std::find(shapes.begin(), shapes.end(), noise.shape) == shapes.end())
     throw InputError("--noise-shape: " + unknown_name_message("shape", noise.shape, shapes));

@@ -18,6 +18,7 @@
 #include "drivers/run/run_setup.hpp"
 #include "drivers/text/say.hpp"
 #include "kernel/core/error.hpp"
+#include "kernel/core/text.hpp"
 
 namespace traceraft {
 namespace {
@@ -30,7 +31,7 @@ void refuse_varied(const GivenValues& values) {
        {std::pair("integrator", "--integrators"), std::pair("linear-solver", "--linear-solvers"),
         std::pair("tolerance", "--tolerances"), std::pair("ida-rtol", "--tolerances")})
     if (const auto given = values.find(name); given != values.end())
-      throw InputError(given->second.where + ": a comparison takes " + flags);
+      throw InputError(given->second.where + ": for a comparison, give " + flags);
 }
 
 bool decides_numbers(const GivenValues& values) {
@@ -43,7 +44,7 @@ Configuration new_configuration(const GivenValues& file, GivenValues flags,
                                 const std::string& out) {
   if (!decides_numbers(file) && !decides_numbers(flags))
     throw InputError((out.empty() ? "compare: " : "--out: " + out + " holds no comparison; ") +
-                     std::string("say which runs to compare, as in --case spinodal"));
+                     std::string("a model is needed, as in --case spinodal"));
   flags["output-times"] = {format_number(Configuration(file, flags).options().t_end), "--t-end"};
   return {file, flags};
 }
@@ -54,7 +55,7 @@ Configuration known_configuration(const ComparisonFolder& folder, const GivenVal
   Configuration known(read_config_file(folder.config()), {});
   const auto refuse = [&](const std::string& what) {
     throw InputError("--out: " + folder.path().string() + " holds a comparison of " + what +
-                     "; choose another folder, or give only --out to go on with it");
+                     "; choose another folder, or give only --out to continue it");
   };
   if (decides_numbers(file) || decides_numbers(flags))
     if (numerical_identity(new_configuration(file, flags, "")) != numerical_identity(known))
@@ -79,13 +80,15 @@ std::string folder_name(const CompareRequest& request, const Configuration& conf
 
 std::vector<std::string> explanations(const Configuration& configuration, const RunSetup& run,
                                       const ComparePlan& plan) {
-  return {"Errors are those of c at t = " + format_number(configuration.options().t_end) +
+  return {"The error is that of c at t = " + format_number(configuration.options().t_end) +
               (run.units.scaled ? "" : " s") +
-              ", relative in L2 of the surface, against ida with block at tolerance " +
+              ", relative in the L2 norm on the surface. The reference is ida with block at "
+              "tolerance " +
               format_number(plan.reference()) + " and linear tolerance " +
-              kReferenceLinearTolerance + " on the same mesh: of the time integration alone.",
-          "Every run is a process of its own; times are medians of " + std::to_string(plan.repeat) +
-              ", set-up included."};
+              kReferenceLinearTolerance +
+              " on the same mesh. The error measures the time integration alone.",
+          "Every run is a process of its own. Times are medians of " + std::to_string(plan.repeat) +
+              " runs and include the set-up."};
 }
 
 // Everything after the folder is ours.
@@ -93,15 +96,15 @@ int carry_out(const CompareRequest& request, const ComparisonFolder& folder,
               const ComparePlan& plan, const Configuration& configuration, const RunSetup& run) {
   const Reference reference = reference_of(plan, folder, request.references);
   if (!request.quiet)
-    say("comparing %zu integrators, %zu linear solvers and %zu tolerances, %d times, on %d "
-        "unknowns\nfolder %s\n",
-        plan.integrators.size(), plan.linear_solvers.size(), plan.tolerances.size(), plan.repeat,
-        run.problem->size(), folder.path());
+    say("runs: %zu; integrators: %s; linear solvers: %s; tolerances: %zu; repetitions: %d; "
+        "unknowns: %d\nfolder %s\n",
+        jobs_of(plan).size(), joined(plan.integrators, ", "), joined(plan.linear_solvers, ", "),
+        plan.tolerances.size(), plan.repeat, run.problem->size(), folder.path());
   std::string why;
   switch (run_comparison(plan, folder, reference, request.quiet, why)) {
     case WorkEnd::stopped:
       if (!request.quiet)
-        say("go on with: traceraft compare --out %s\n", in_shell(folder.path().string()));
+        say("continue with: traceraft compare --out %s\n", in_shell(folder.path().string()));
       return kInterrupted;
     case WorkEnd::reference_failed:
       say_error("the reference failed: " + why);
@@ -152,8 +155,7 @@ int compare(const CompareRequest& request) {
   plan.initial_state = checksum(run.initial);
   if (before && before->initial_state != plan.initial_state)
     throw InputError("--out: " + folder.path().string() +
-                     " holds a comparison of runs from another initial state; choose another "
-                     "folder");
+                     " holds a comparison with another initial state; choose another folder");
 
   fs::create_directories(folder.path() / "runs");
   if (!lock) lock.emplace(folder.path());
@@ -165,36 +167,40 @@ int compare(const CompareRequest& request) {
 
 Action define_compare(CLI::App& app) {
   const auto request = std::make_shared<CompareRequest>();
-  app.add_option("--config", request->config_file, "TOML file with the flags' names as keys")
+  app.add_option("--config", request->config_file,
+                 "TOML file of settings, with names of flags as keys")
       ->type_name("FILE");
   app.add_option("--out", request->out,
-                 "folder, new or of a comparison to go on with or to extend; default: "
+                 "new folder, or folder of a comparison to continue or extend; default: "
                  "runs/compare-<case>-<number>")
       ->type_name("DIR");
-  app.add_option("--references", request->references, "where reference solutions are kept")
+  app.add_option("--references", request->references, "folder that keeps reference solutions")
       ->type_name("DIR")
       ->capture_default_str();
-  app.add_option("--integrators", request->integrators, "comma-separated; default: all")
+  app.add_option("--integrators", request->integrators,
+                 "integrators, comma-separated; default: all")
       ->type_name("INTEGRATOR,...");
-  app.add_option("--linear-solvers", request->linear_solvers, "comma-separated; default: block")
+  app.add_option("--linear-solvers", request->linear_solvers,
+                 "linear solvers, comma-separated; default: block")
       ->type_name("SOLVER,...");
-  app.add_option("--tolerances", request->tolerances, "comma-separated; default: 1e-2,3e-3,1e-3")
+  app.add_option("--tolerances", request->tolerances,
+                 "tolerances, comma-separated; default: 1e-2,3e-3,1e-3")
       ->type_name("NUMBER,...");
   app.add_option("--ranks", request->ranks,
-                 "comma-separated numbers of ranks for the solvers that work on several; "
-                 "default: 1")
+                 "numbers of ranks, for the solvers that work on several; default: 1")
       ->type_name("NUMBER,...");
-  app.add_option("--repeat", request->repeat, "runs of each combination, for its time; default: 3")
+  app.add_option("--repeat", request->repeat,
+                 "runs of each combination, whose median is its time; default: 3")
       ->check(CLI::Range(1, kMostRepetitions));
-  app.add_option("--time-limit", request->time_limit, "seconds per run; 0: none")
+  app.add_option("--time-limit", request->time_limit, "longest time of a run (s); 0: no limit")
       ->check(at_least(0));
   app.add_option("--target-error", request->target_error,
-                 "error to recommend a method for; 0, the default: the smallest that all reach")
+                 "error at which a method is recommended; default, 0: the smallest that all reach")
       ->check(at_least(0));
   app.add_option("--reference-tolerance", request->reference_tolerance,
-                 "default: a hundredth of the smallest tolerance")
+                 "tolerance of the reference; default: a hundredth of the smallest tolerance")
       ->check(between(1e-12, 0.1));
-  app.add_flag("--quiet", request->quiet, "print nothing but errors");
+  app.add_flag("--quiet", request->quiet, "print errors only");
   add_options(app, request->flags, [](const OptionSpec& spec) {
     return spec.group != "Output" && spec.name != "output-times";
   });

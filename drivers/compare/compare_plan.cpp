@@ -23,7 +23,7 @@ void add_new(std::vector<T>& list, const T& item) {
 std::vector<std::string> words(const char* flag, const std::string& text) {
   std::vector<std::string> items = split_list(text);
   items.erase(std::remove(items.begin(), items.end(), ""), items.end());
-  if (items.empty()) throw InputError(std::string(flag) + ": give at least one");
+  if (items.empty()) throw InputError(std::string(flag) + ": at least one is needed");
   return items;
 }
 
@@ -94,7 +94,7 @@ ComparePlan extended_plan(const CompareRequest& request, const ComparePlan* befo
   const double most = fraction_of_smallest(plan.tolerances, kLeastReferenceFactor);
   if (plan.reference() > most)
     throw InputError("--reference-tolerance: " + format_number(plan.reference()) +
-                     " says nothing of runs at " +
+                     " is too large for runs at " +
                      format_number(fraction_of_smallest(plan.tolerances, 1)) +
                      " (allowed: at most " + format_number(most) + ")");
   return plan;

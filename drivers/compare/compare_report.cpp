@@ -129,12 +129,13 @@ void write_report(const ComparisonFolder& folder, const std::vector<WorkPoint>& 
     try {
       const std::string svg = draw_chart(chart, folder.path() / name);
       if (svg.empty()) missing = "gnuplot is not installed (Debian package gnuplot-nox)";
-      if (!svg.empty()) page.figure(svg, "Each mark is one tolerance. Lower left is better.");
+      if (!svg.empty())
+        page.figure(svg, "Each mark is one tolerance. Marks at the lower left are better.");
     } catch (const IoError& error) {  // the table is worth more than its picture
       missing = error.what();
     }
   }
-  if (!missing.empty()) page.paragraph("Charts are missing: " + missing + ".");
+  if (!missing.empty()) page.paragraph("Missing charts: " + missing + ".");
   page.heading("All runs");
   page.table(table(points));
   write_durably(folder.path() / "compare.html", page.html());

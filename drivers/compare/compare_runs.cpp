@@ -110,7 +110,7 @@ Reference reference_of(const ComparePlan& plan, const ComparisonFolder& folder,
       numerical_identity(Configuration(read_config_file(reference.folder / "config.toml"), {})) !=
           identity)
     throw InputError("--references: " + reference.folder.string() +
-                     " holds another run of the same name; choose another folder");
+                     " holds another run with the same name; choose another folder");
   return reference;
 }
 

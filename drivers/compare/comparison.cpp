@@ -59,7 +59,7 @@ ComparePlan ComparisonFolder::load() const {
     return !json.is_object() || json.contains("integrators");  // else a plan of another command
   });
   if (!of_comparison)
-    throw InputError(path_.string() + " holds no comparison, but something else with a plan");
+    throw InputError(path_.string() + " holds the plan of another command, not a comparison");
   return read_object<ComparePlan>(plan_file());
 }
 
@@ -143,7 +143,7 @@ std::vector<WorkPoint> ComparisonFolder::points(const ComparePlan& plan, const D
   }
   for (WorkPoint& point : points)
     if (point.ok() && !std::isfinite(point.error))
-      point.failure = "its error is no number: the reference is zero";
+      point.failure = "its error is not a number: the reference is zero";
   return points;
 }
 

@@ -162,7 +162,7 @@ void Configuration::set(const OptionSpec& spec, const GivenValue& value) {
       for (const std::string& item : split_list(value.text)) {
         if (item.find_first_of(" ;\t") != std::string::npos)
           throw InputError(value.where + ": '" + item.substr(0, 60) +
-                           "' is no number; commas stand between numbers");
+                           "' is not a number; separate numbers by commas");
         checked_number(spec, value, item, unit);
       }
       break;

@@ -118,88 +118,89 @@ const std::vector<OptionSpec>& run_options() {
   using D = Dimension;
   static const std::vector<OptionSpec> table = with_own_options({
       {"case", &R::case_name, "guv-2to1", "Case",
-       "named set of defaults, which may differ from those below (see: traceraft list)"},
+       "named set of settings (see: traceraft list); the help shows the values of guv-2to1"},
       {"scaled", &R::scaled, "false", "Case",
-       "all inputs and outputs in units of R and R^2/D instead of um and s"},
+       "use R and R^2/D as units of all inputs and outputs, instead of um and s"},
 
       {"surface", &R::surface, "sphere", "Surface",
-       "surface, with parameters as in torus:major=1,minor=0.4 (units of R), or formula"},
+       "surface, with parameters in units of R as in torus:major=1,minor=0.4, or formula"},
       {"surface-formula", &R::surface_formula, "", "Surface",
-       "level set phi(x,y,z), negative inside, for --surface formula (units of R)"},
-      {"radius", &R::radius, "5", "Surface", "surface scale R in um (half a vesicle's diameter)",
-       1e-6, 1e9},
+       "level set phi(x,y,z) for --surface formula, negative inside; coordinates in units of R"},
+      {"radius", &R::radius, "5", "Surface",
+       "length scale R of the surface (um): the radius of a spherical vesicle", 1e-6, 1e9},
       {"cells", &R::cells, "128", "Surface", "cells per edge of the box [-5/3 R, 5/3 R]^3", 4,
        4096},
 
-      {"epsilon", &R::epsilon, "0.05", "Physics", "width of the phase boundary (um)", 1e-9, 1e9,
-       D::length},
-      {"diffusion", &R::diffusion, "1e-5", "Physics", "mobility prefactor D in cm^2/s", 1e-30,
-       1e30},
+      {"epsilon", &R::epsilon, "0.05", "Physics",
+       "width parameter epsilon of the phase boundary (um)", 1e-9, 1e9, D::length},
+      {"diffusion", &R::diffusion, "1e-5", "Physics", "mobility prefactor D (cm^2/s)", 1e-30, 1e30},
       {"mobility", &R::mobility, "degenerate", "Physics",
        "mobility law in units of D: degenerate, degenerate:outside=-1, constant:value=0.25"},
       {"well", &R::well, "rho=0.25,a=0,b=1", "Physics",
-       "free energy rho (c-a)^2 (b-c)^2 of a homogeneous mixture"},
+       "parameters of the free energy rho (c-a)^2 (b-c)^2 of a homogeneous mixture"},
       {"effect", &R::effect, "", "Physics",
-       "what is added to the model, as in exchange:rate=1e-3,target=0.2; several between "
-       "semicolons or by several flags (see: traceraft list)",
+       "effect added to the model, as in exchange:rate=1e-3,target=0.2; separate several by "
+       "semicolons, or repeat the flag (see: traceraft list)",
        0, 0, D::none, true, true},
       {"potential", &R::potential, "averaged", "Physics",
-       "free energy of an element: from the mean of its square root (averaged: exact line "
-       "tension), by quadrature (consistent), or nodal as in the paper's code"},
+       "free energy of an element: averaged (from the mean of its square root: exact line "
+       "tension), consistent (by quadrature) or nodal (as in the paper's code)"},
       {"stabilisation", &R::stabilisation, "1", "Physics",
-       "normal-gradient stabilisation, in units of the mesh size", 1e-6, 1e6},
+       "coefficient of the normal-gradient stabilisation, in units of the mesh size", 1e-6, 1e6},
       {"mass-stabilisation", &R::mass_stabilisation, "0.3", "Physics",
-       "the same of the mass matrix, where it slows short waves; 1 as in the paper's code", 1e-3,
-       1e3},
+       "the same in the mass matrix, where it slows short waves; 1 in the paper's code", 1e-3, 1e3},
 
       {"initial", &R::initial, "noise", "Initial state",
-       "noise, band-limited:wavelength=0.3,amplitude=0.05, caps, formula, or restart:DIR"},
+       "noise, band-limited:wavelength=0.3,amplitude=0.05, caps, formula or restart:DIR"},
       {"initial-formula", &R::initial_formula, "", "Initial state",
-       "c(x,y,z) for --initial formula (units of R)"},
+       "c(x,y,z) for --initial formula; coordinates in units of R"},
       {"initial-caps", &R::initial_caps, "", "Initial state",
-       "rafts for --initial caps: \"x y z angle; ...\" with directions and half angles in degrees"},
+       "rafts for --initial caps: \"x y z angle; ...\", each with direction and half angle "
+       "(degrees)"},
       {"raft-fraction", &R::raft_fraction, "0.16", "Initial state",
-       "mean of (c-a)/(b-a) for noise, met exactly", 0.0, 1.0},
+       "mean of (c-a)/(b-a) for noise; the initial state has exactly this mean", 0.0, 1.0},
       {"noise-cells", &R::noise_cells, "0", "Initial state",
-       "cells per edge of the mesh on which noise is drawn, at most --cells; 0: a quarter of "
-       "--cells",
-       0, 4096},
+       "cells per edge of the mesh of the noise, at most --cells; 0: a quarter of --cells", 0,
+       4096},
       {"seed", &R::seed, "1", "Initial state", "seed of the noise", 0, kLargestSeed},
 
       {"t-end", &R::t_end, "25000", "Time", "end of the run (s)", 1e-300, 1e300, D::time},
       {"output-times", &R::output_times, "", "Time",
-       "times of fields and observables.csv (s), comma-separated; default: 0 and 16 times up to "
-       "the end, evenly spaced in log t",
+       "output times of fields and observables.csv (s), comma-separated; default: 0 and 16 times "
+       "up to the end, evenly spaced in log t",
        0, 1e300, D::time},
       {"integrator", &R::integrator, "ida", "Time", "time integrator (see: traceraft list)"},
       {"tolerance", &R::tolerance, "1e-3", "Time",
-       "relative error per step in L2 of the surface; default of euler: 5e-3", 1e-12, 0.5},
-      {"initial-step", &R::initial_step, "0", "Time", "first step (s); 0: from the initial state",
-       0, 1e300, D::time},
-      {"min-step", &R::min_step, "0", "Time", "smallest step (s); 0: 1e-14 of the run", 0, 1e300,
-       D::time},
+       "relative error of a step, in the L2 norm on the surface; default with euler: 5e-3", 1e-12,
+       0.5},
+      {"initial-step", &R::initial_step, "0", "Time",
+       "first step (s); 0: chosen from the initial state", 0, 1e300, D::time},
+      {"min-step", &R::min_step, "0", "Time",
+       "smallest step (s); 0: 1e-14 of the length of the run", 0, 1e300, D::time},
       {"max-step", &R::max_step, "0", "Time", "largest step (s); 0: unbounded", 0, 1e300, D::time},
       {"keep", &R::keep, "second", "Time",
-       "which solution of the euler pair goes on: second (as in the paper), first, or decaying: "
-       "second unless it gains energy"},
+       "solution of the euler pair that starts the next step: second order (second, as in the "
+       "paper), first order (first), or second order unless the energy grows (decaying)"},
 
       {"energy-guard", &R::energy_guard, "warn", "Time",
-       "steps that gain energy where the model can only lose it: warn, reject, or off"},
+       "treatment of steps that gain energy although the model can only lose it: warn, reject or "
+       "off"},
 
       {"linear-solver", &R::linear_solver, "block", "Linear algebra",
        "linear solver (see: traceraft list)"},
       {"linear-tolerance", &R::linear_tolerance, "0", "Linear algebra",
-       "relative residual of each correction; 0: the integrator's choice (euler 1e-4, ida 5e-2, "
-       "rosenbrock up to 1e-3)",
+       "tolerated relative residual of each linear solve; 0: the integrator's choice (euler 1e-4, "
+       "ida 5e-2, rosenbrock up to 1e-3)",
        0, 0.5},
       {"threads", &R::threads, "0", "Linear algebra",
-       "threads; 0: all processors, at most 2. Results do not depend on it", 0, 64, D::none, false},
+       "number of threads; 0: all processors, at most 2; results do not depend on it", 0, 64,
+       D::none, false},
 
       {"checkpoint-interval", &R::checkpoint_interval, "30", "Output",
-       "wall-clock seconds between checkpoints; 0: after every step", 0, 1e9, D::none, false},
+       "wall-clock time between checkpoints (s); 0: one after every step", 0, 1e9, D::none, false},
       {"fields", &R::fields, "true", "Output",
-       "write fields for ParaView and pictures at the output times (on unless --no-fields)", 0, 0,
-       D::none, false},
+       "write fields for ParaView and pictures at the output times; --no-fields turns this off", 0,
+       0, D::none, false},
   });
   return table;
 }

@@ -43,8 +43,8 @@ std::string array_job_script(const EnsembleFolder& folder, const EnsemblePlan& p
          std::to_string(task.hours) +
          ":00:00\n"
          "#SBATCH --signal=B:TERM@60\n"
-         "# A task that is stopped or killed goes on where it was when it is submitted again.\n"
-         "# When all are done: " +
+         "# Submit the script again to continue tasks that were stopped or killed.\n"
+         "# When all tasks are done: " +
          in_comment(program) +
          "\n"
          "exec " +

@@ -45,7 +45,7 @@ Configuration new_configuration(const EnsembleRequest& request, GivenValues file
   if (configuration.options().initial.compare(0, 12, "band-limited") == 0) return configuration;
   throw InputError(
       configuration.where(&RunOptions::initial) +
-      ": runs differ in the noise they start from; it has to be noise or band-limited");
+      ": the runs of an ensemble differ in their initial noise; choose noise or band-limited");
 }
 
 // Of an ensemble that goes on: its runs have to stay comparable.
@@ -57,12 +57,12 @@ Configuration known_configuration(const EnsembleFolder& folder, const EnsembleRe
   if (numerical_identity(asked) != numerical_identity(known))
     throw InputError("--out: " + folder.path().string() +
                      " holds an ensemble of other runs; choose another folder, or give only --out "
-                     "to go on with it");
+                     "to continue it");
   for (const GivenValues* given : {&file, &request.flags})
     for (const auto& [name, value] : *given)
       if (name != "seed" && config_lines(asked, {name}) != config_lines(known, {name}))
         throw InputError(value.where + ": the runs in " + folder.path().string() + " have '" +
-                         known.text(name) + "', and those that it grows by have it, too");
+                         known.text(name) + "'; new runs must have the same value");
   return known;
 }
 
@@ -71,7 +71,7 @@ EnsemblePlan plan_of(const EnsembleRequest& request, const EnsembleFolder& folde
   if (folder.started()) plan = folder.load();
   if (request.runs > 0 && request.runs < plan.runs && folder.started())
     throw InputError("--runs: " + folder.path().string() + " holds " + std::to_string(plan.runs) +
-                     " runs already; an ensemble can only grow");
+                     " runs already; the number can only grow");
   if (request.runs > 0) plan.runs = request.runs;
   if (request.first_seed >= 0) {
     const auto first = static_cast<std::uint64_t>(request.first_seed);
@@ -121,7 +121,7 @@ int carry_out(const EnsembleRequest& request, const EnsembleFolder& folder,
     say_error("the run of seed " + std::to_string(failure.seed) + " failed: " + failure.why);
   if (end.stopped) {
     if (!request.quiet)
-      say("go on with: traceraft ensemble --out %s\n", in_shell(folder.path().string()));
+      say("continue with: traceraft ensemble --out %s\n", in_shell(folder.path().string()));
     return kInterrupted;
   }
   const std::vector<History>& runs = finished.histories;
@@ -130,7 +130,7 @@ int carry_out(const EnsembleRequest& request, const EnsembleFolder& folder,
   write_histories(folder.path() / kHistoriesFile, finished.seeds, runs, summary.times);
   const std::string missing = write_ensemble(folder, configuration, summary, end, request.quiet);
   if (!request.quiet) {
-    if (!missing.empty()) say("\ncharts are missing: %s\n", missing);
+    if (!missing.empty()) say("\nmissing charts: %s\n", missing);
     say("\nopen next: %s\n", (folder.path() / "ensemble.html"));
   }
   return end.failures.empty() ? kSuccess : kNumericalFailure;
@@ -142,11 +142,12 @@ void write_array_job(const EnsembleRequest& request, const EnsembleFolder& folde
   const ArrayTask task = array_task(configuration, plan, request.limits);
   write_durably(script, array_job_script(folder, plan, task, request.limits));
   if (request.quiet) return;
-  say("%d tasks of 2 processors, %d GB and at most %d h each: see its #SBATCH lines\n", task.tasks,
-      task.gigabytes, task.hours);
+  say("%d tasks of 2 processors, %d GB and at most %d h each: see the #SBATCH lines of the "
+      "script\n",
+      task.tasks, task.gigabytes, task.hours);
   if (task.runs > 1)
-    say("each of them carries out %d runs, one after the other: --array-tasks %d\n", task.runs,
-        request.limits.most_tasks);
+    say("each task carries out %d runs, one after the other, because of --array-tasks %d\n",
+        task.runs, request.limits.most_tasks);
   say("submit it with: sbatch %s\n", in_shell(script.string()));
 }
 
@@ -155,7 +156,7 @@ int run_ensemble(const EnsembleRequest& request) {
   const GivenValues file = read_config_file(request.config_file);
   const bool goes_on = !request.out.empty() && EnsembleFolder(request.out).started();
   if (request.member >= 0) {
-    if (!goes_on) throw InputError("--member: --out has to name an ensemble that has begun");
+    if (!goes_on) throw InputError("--member: --out must name an existing ensemble");
     return some_members(request, EnsembleFolder(request.out), EnsembleFolder(request.out).load());
   }
   if (!goes_on && !request.out.empty()) {
@@ -163,7 +164,7 @@ int run_ensemble(const EnsembleRequest& request) {
     EnsembleFolder(request.out).refuse_other_plan();
     if (file.empty() && request.flags.empty())  // a folder that is mistyped would take hours
       throw InputError("--out: " + request.out +
-                       " holds no ensemble; say which model to run, as in --case guv-3to1");
+                       " holds no ensemble; a new one needs a model, as in --case guv-3to1");
   }
   const Configuration configuration =
       goes_on ? known_configuration(EnsembleFolder(request.out), request, file)
@@ -190,47 +191,50 @@ int run_ensemble(const EnsembleRequest& request) {
 void add_array_options(CLI::App& app, EnsembleRequest& request) {
   CLI::Option* const job = app.add_flag(
       "--array-job", request.array_job,
-      "run nothing, write a script for SLURM's sbatch with a task per run, or per some");
+      "run nothing, but write a script for SLURM's sbatch, with one or more runs per task");
   app.add_option("--array-tasks", request.limits.most_tasks,
-                 "at most so many tasks, each with several runs if there are more: what the "
-                 "cluster allows (MaxArraySize less 1)")
+                 "largest number of tasks that the cluster allows (MaxArraySize less 1); with more "
+                 "runs than tasks, a task has several")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str()
       ->needs(job);
   app.add_option("--array-throttle", request.limits.at_a_time,
-                 "at most so many tasks at a time; default: as many as the cluster likes")
+                 "largest number of tasks at a time; default: no limit")
       ->check(CLI::Range(1, 100000))
       ->needs(job);
-  CLI::Option* const member = app.add_option("--member", request.member,
-                                             "carry out the run of this seed alone (array jobs)")
-                                  ->check(between(0, kLargestSeed));
-  app.add_option("--members", request.members, "and of those after it: so many in all")
+  CLI::Option* const member =
+      app.add_option("--member", request.member, "carry out the run of this seed only (array jobs)")
+          ->check(between(0, kLargestSeed));
+  app.add_option("--members", request.members,
+                 "number of runs to carry out, with seeds from --member on")
       ->check(CLI::Range(1, 100000))
       ->needs(member);
 }
 
 Action define_ensemble(CLI::App& app) {
   const auto request = std::make_shared<EnsembleRequest>();
-  app.add_option("--config", request->config_file, "TOML file with the flags' names as keys")
+  app.add_option("--config", request->config_file,
+                 "TOML file of settings, with names of flags as keys")
       ->type_name("FILE");
   app.add_option("--out", request->out,
-                 "folder, new or of an ensemble to go on with or to extend; default: "
+                 "new folder, or folder of an ensemble to continue or extend; default: "
                  "runs/ensemble-<case>-<number>")
       ->type_name("DIR");
-  app.add_option("--runs", request->runs, "how many; default: 10")->check(CLI::Range(1, kMostRuns));
+  app.add_option("--runs", request->runs, "number of runs; default: 10")
+      ->check(CLI::Range(1, kMostRuns));
   app.add_option("--first-seed", request->first_seed, "seed of the first run; default: 1")
       ->check(between(0, kLargestSeed));
   app.add_option("--jobs", request->jobs, "runs at a time; default: one for each processor")
       ->check(CLI::Range(1, 1024));
-  app.add_option("--threads", request->threads, "of each run; default: what the jobs leave")
+  app.add_option("--threads", request->threads, "threads of each run; default: processors / --jobs")
       ->check(CLI::Range(1, 64));
   add_array_options(app, *request);
-  app.add_flag("--quiet", request->quiet, "print nothing but errors");
+  app.add_flag("--quiet", request->quiet, "print errors only");
   add_options(app, request->flags,
               [](const OptionSpec& spec) { return spec.name != "seed" && spec.name != "threads"; });
   app.footer(
-      "Runs that have been interrupted go on with --out alone. Exit codes: 0 all runs are done,\n"
-      "3 some failed (the others are gathered), 5 interrupted.\n"
+      "Give --out alone to continue an interrupted ensemble. Exit codes: 0 all runs are done,\n3 "
+      "some runs failed (the others are gathered), 5 interrupted.\n"
       "Example: traceraft ensemble --case guv-3to1 --runs 10 --jobs 2");
   return [request] { return run_ensemble(*request); };
 }
@@ -238,8 +242,8 @@ Action define_ensemble(CLI::App& app) {
 }  // namespace
 
 Command ensemble_command() {
-  return {"ensemble", "run one case from many seeds, and gather what is common to them",
-          Ranks::starts_them, define_ensemble};
+  return {"ensemble", "run one model with many seeds and gather the results", Ranks::starts_them,
+          define_ensemble};
 }
 
 }  // namespace traceraft

@@ -17,7 +17,7 @@ namespace {
 
 // What may only be unreadable for the moment is not to be deleted.
 std::string with_advice(const std::string& why, const std::filesystem::path& run) {
-  return "delete " + run.string() + " to have it repeated: " + why;
+  return "delete " + run.string() + " to repeat the run: " + why;
 }
 
 }  // namespace
@@ -48,7 +48,7 @@ void EnsembleFolder::refuse_other_plan() const {
 }
 
 void EnsembleFolder::refuse_plan() const {
-  throw InputError(plan_file().string() + " is no plan of an ensemble; choose another folder");
+  throw InputError(plan_file().string() + " is not the plan of an ensemble; choose another folder");
 }
 
 EnsemblePlan EnsembleFolder::load() const {

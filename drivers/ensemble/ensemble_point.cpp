@@ -26,7 +26,7 @@ GivenValues settings_until(const Configuration& model, double t_end) {
 void refuse_without_noise(const Configuration& model) {
   if (model.options().initial.compare(0, 5, "noise") != 0)
     throw InputError(model.where(&RunOptions::initial) +
-                     ": vesicles differ in the noise they start from");
+                     ": it must be noise, in which simulated vesicles differ");
 }
 
 namespace {
@@ -55,12 +55,13 @@ PointEnd run_point(const std::filesystem::path& path, const Configuration& confi
   if (!std::filesystem::exists(folder.config()))
     write_durably(folder.config(), config_text(configuration));
   const double t_end = configuration.options().t_end;
-  const EnsembleEnd end = run_members(plan, folder, jobs_of(request.jobs, 0), t_end, request.quiet);
+  const EnsembleEnd end =
+      run_members(plan, folder, jobs_of(request.jobs, request.threads), t_end, request.quiet);
   for (const MemberFailure& failure : end.failures)
     if (failure.locked)
       throw InputError(
           folder.run_of(failure.seed).string() +
-          " is in use by another process; wait for its end, and give the same command");
+          " is in use by another process; wait until it ends, then give the same command");
   const Units units = configuration.units();
   FinishedMembers finished = finished_members(folder, units.length(), t_end);
   PointEnd result{end.stopped, end.failures, std::move(finished.histories),

@@ -19,6 +19,7 @@ void refuse_without_noise(const Configuration& model);
 struct PointRequest {
   int runs, jobs;
   bool quiet;
+  int threads = 0;  // of each run; 0: what the jobs leave
 };
 struct PointEnd {
   bool stopped = false;

@@ -41,7 +41,7 @@ std::string sentence_on(const Configuration& configuration, const EnsemblePlan& 
          format_number(configuration.options().raft_fraction) + ", epsilon " +
          format_number(configuration.options().epsilon) + ", " +
          std::to_string(configuration.options().cells) +
-         " cells. Perimeters are diffuse ones, divided by the radius.";
+         " cells. Perimeters are diffuse perimeters, divided by the radius.";
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ std::vector<Row> ensemble_rows(const EnsembleSummary& summary, bool seconds) {
 EnsembleSummary summarise(const std::vector<History>& runs) {
   EnsembleSummary summary{runs.size(), {}, {}};
   summary.times = common_times(runs, kPerDecade);
-  if (summary.times.empty()) throw InputError("the runs of an ensemble have no times in common");
+  if (summary.times.empty()) throw InputError("the runs of the ensemble have no times in common");
   for (const Quantity quantity : kQuantities)
     summary.at[index_of(quantity)] = samples_at(runs, quantity, summary.times);
   return summary;

@@ -74,10 +74,10 @@ int run_member(const EnsembleFolder& folder, std::uint64_t seed, int threads, bo
   };
   const MemberEnd before = folder.member(seed).end;
   if (before == MemberEnd::finished) {
-    report("finished before");
+    report("already finished");
     return kSuccess;
   }
-  report(std::string(before == MemberEnd::missing ? "begins" : "goes on") +
+  report(std::string(before == MemberEnd::missing ? "starts" : "continues") +
          ", threads: " + std::to_string(threads));
   const Stopwatch watch;
   const ProcessEnd end = run_or_resume(folder, seed, threads);

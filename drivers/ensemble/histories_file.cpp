@@ -36,7 +36,7 @@ std::vector<History> read_histories(const std::filesystem::path& file) {
     History& run = runs.back();
     const double t = table.number(row, "t");
     if (same && !(t > run.time.back()))
-      throw InputError(table.where(row, "t") + ": times of a run have to ascend");
+      throw InputError(table.where(row, "t") + ": times of a run must ascend");
     run.time.push_back(t);
     for (const Quantity quantity : kQuantities)
       run.of(quantity).push_back(table.number(row, name_of(quantity).id));
@@ -44,9 +44,9 @@ std::vector<History> read_histories(const std::filesystem::path& file) {
   if (runs.empty()) throw InputError(file.string() + ": no rows");
   const std::vector<double>&first = runs.front().time, &last = runs.back().time;
   if (last.size() < first.size() && std::equal(last.begin(), last.end(), first.begin()))
-    throw InputError(file.string() +
-                     ": the last run ends before the times of the first one do; is the file cut "
-                     "off?");
+    throw InputError(
+        file.string() +
+        ": the last run ends earlier than the first one; is the end of the file missing?");
   return runs;
 }
 

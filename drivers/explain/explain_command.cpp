@@ -51,7 +51,7 @@ struct ExplainCommand {
 };
 
 void print_earlier_model(const fs::path& out) {
-  say("\n%s is that of an earlier explanation\n", (out / "model.toml"));
+  say("\n%s is from an earlier search\n", (out / "model.toml"));
 }
 
 void explain_field_data(const ExplainCommand& command, ExplainSetup& setup, const fs::path& out) {
@@ -73,11 +73,11 @@ void explain_field_data(const ExplainCommand& command, ExplainSetup& setup, cons
   print_explanation(found, setup);
   const std::string run = command_for_found(out, found, setup);
   if (!run.empty())
-    say("\nrun it with: %s\n(it starts from noise, not from the vesicle that was measured)\n", run);
+    say("\nrun it with: %s\n(it starts from noise, not from the measured vesicle)\n", run);
   else if (fs::exists(out / "model.toml"))
     print_earlier_model(out);
   say("\nwritten: %s\n", (out / "explain.html"));
-  if (!missing.empty()) say("the page lacks: %s\n", missing);
+  if (!missing.empty()) say("missing from the page: %s\n", missing);
 }
 
 struct SeriesSetup {
@@ -93,7 +93,8 @@ SeriesSetup read_series_job(const ExplainCommand& command) {
   const GivenValues given = model_said(command.job);
   SeriesSetup setup{std::move(data), given, {given, {}}, {}};
   if (const std::string other = other_membrane(setup.data.composition, setup.model); !other.empty())
-    throw InputError(setup.model.where(&RunOptions::case_name) + ": the model is of " + other);
+    throw InputError(setup.model.where(&RunOptions::case_name) + ": the membrane of the model is " +
+                     other);
   refuse_series(setup.data, setup.model);
   setup.request = {looks(setup.data),        command.runs,        command.jobs,
                    command.job.processors(), command.job.without, command.quiet};
@@ -143,11 +144,11 @@ void find_series(ExplainCommand& command) {
   if (folder.empty() || !holds_series(folder)) return;
   if (holds_fields(folder) && has_effects(command.job)) {
     if (!command.quiet)
-      say("the series of %s are not looked at, as the model has effects\n", folder);
+      say("the series in %s are ignored, because the model has effects\n", folder);
     return;
   }
   if (!command.series.empty())
-    throw InputError("--series: " + folder + " of --data holds series as well; give one of them");
+    throw InputError("--series: " + folder + " of --data also holds series; give one of them");
   command.series = folder;
   if (!holds_fields(folder)) command.job.data.clear();
 }
@@ -160,17 +161,17 @@ void refuse_to_overwrite(const ExplainCommand& command, const fs::path& out) {
     if (holds(out, data))
       throw InputError("--out: " + out.string() + " holds the measurements; choose another folder");
   if (holds(out / "model.toml", command.job.model))
-    throw InputError("--out: " + out.string() +
-                     " holds the model, whose place the one with what was found would take; "
-                     "choose another folder");
+    throw InputError(
+        "--out: " + out.string() +
+        " holds the model, which the extended model would overwrite; choose another folder");
 }
 
 int explain(ExplainCommand command) {
   if (command.job.data.empty() && command.series.empty())
-    throw InputError("--data or --series: say which measurements to explain");
+    throw InputError("--data or --series: a folder of measurements is needed");
   find_series(command);
   if (command.series.empty() && !command.ensembles.empty())
-    throw InputError("--ensembles: there are no series to hold against them");
+    throw InputError("--ensembles: there are no series to compare with them");
   for (const std::string& effect : command.job.without) (void)effects().find(effect);
   std::optional<ExplainSetup> fields;
   std::optional<SeriesSetup> series;
@@ -183,7 +184,8 @@ int explain(ExplainCommand command) {
   const FolderLock lock(out);
   // The search is on disk after every refit.
   const std::string go_on =
-      command.quiet ? "" : "to go on, give the same command with --out " + in_shell(out.string());
+      command.quiet ? ""
+                    : "to continue, give the same command with --out " + in_shell(out.string());
   end_on_stop_signals(kInterrupted, go_on);
   if (fields) explain_field_data(command, *fields, out);
   if (series && !explain_series_data(command, *series, out, go_on)) {
@@ -197,58 +199,62 @@ Action define_explain(CLI::App& app) {
   const auto command = std::make_shared<ExplainCommand>();
   app.add_option("--data", command->job.data,
                  "folder of measurements: dataset.toml with fields (snapshot_001.csv, ...), series "
-                 "(measurements.csv) or both")
+                 "(measurements.csv) or both; this or --series is needed")
       ->type_name("DIR");
   app.add_option("--series", command->series,
-                 "folder of series of vesicles, if it is another one (dataset.toml, "
-                 "measurements.csv)")
+                 "folder of series (dataset.toml, measurements.csv), if they are not in --data")
       ->type_name("DIR");
-  app.add_option("--runs", command->runs, "for --series: seeds of the model, and of each effect")
+  app.add_option("--runs", command->runs,
+                 "for series: number of seeds for the model and for each effect")
       ->check(CLI::Range(3, 1000))
       ->capture_default_str();
   app.add_option("--ensembles", command->ensembles,
-                 "for --series: folder 'ensembles' of an earlier explanation of other series by "
-                 "the same model, whose simulations are used, and completed")
+                 "for series: folder 'ensembles' of an earlier search with the same model; its "
+                 "simulations are reused, and missing ones are added to it")
       ->type_name("DIR")
       ->excludes("--runs");
   app.add_option("--jobs", command->jobs,
-                 "for --series: runs at a time; default: one for each processor")
+                 "for series: runs at a time; default: one for each processor")
       ->check(CLI::Range(1, 1024));
-  app.add_option("--model", command->job.model, "TOML file with the flags' names as keys")
+  app.add_option("--model", command->job.model,
+                 "TOML file of the model, with names of flags as keys")
       ->type_name("FILE");
-  app.add_option("--out", command->out, "folder for the verdict; default: runs/explain-N")
+  app.add_option("--out", command->out,
+                 "folder for the verdict, new or of a search to continue; default: runs/explain-N")
       ->type_name("DIR");
-  app.add_option("--most-effects", command->job.effects, "to look for, one after the other")
+  app.add_option("--most-effects", command->job.effects,
+                 "largest number of effects to search for, one after the other")
       ->check(CLI::Range(1, kMostNamedEffects))
       ->capture_default_str();
   app.add_option("--replicates", command->job.replicates,
-                 "of noise alone, that what is found is judged by")
+                 "number of data sets with noise alone that give the p values")
       ->check(CLI::Range(kFewestReplicates, kMostReplicates))
       ->capture_default_str();
   app.add_option("--diffusion-error", command->job.diffusion_error,
-                 "relative standard error of the model's D, if it was measured; default: D is not "
-                 "known, and fitted freely")
+                 "relative standard error of a measured D; default: D is fitted freely")
       ->check(between(0.001, 1));
-  app.add_option("--threads", command->job.threads, "default: one for each processor")
+  app.add_option("--threads", command->job.threads, "threads; default: one for each processor")
       ->check(CLI::Range(1, 256));
-  app.add_option("--without", command->job.without, "effects that are not looked for")
+  app.add_option("--without", command->job.without, "effects to leave out of the search")
       ->type_name("EFFECT,...")
       ->delimiter(',');
-  app.add_flag("--quiet", command->quiet, "print nothing but errors");
+  app.add_flag("--quiet", command->quiet, "print errors only");
   add_options(app, command->job.flags, [](const OptionSpec& spec) {
     return (spec.group == "Physics" || spec.group == "Surface" || spec.group == "Case" ||
             spec.name == "raft-fraction") &&
            spec.name != "scaled";
   });
-  app.footer("Example: traceraft explain --data my-vesicle --model model.toml --cells 40");
+  app.footer(
+      "Needs --data, --series or both, and a model.\nExample: traceraft explain --data my-vesicle "
+      "--model model.toml --cells 40");
   return [command] { return explain(*command); };
 }
 
 }  // namespace
 
 Command explain_command() {
-  return {"explain", "find what the model is missing, from measured fields or series",
-          Ranks::starts_them, define_explain};
+  return {"explain", "find what a model lacks, from measured fields or series", Ranks::starts_them,
+          define_explain};
 }
 
 }  // namespace traceraft

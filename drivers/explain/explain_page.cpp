@@ -33,7 +33,7 @@ class ExplainPage {
         found_(found),
         setup_(setup),
         units_(setup.configuration.units()),
-        page_("What the model is missing") {}
+        page_("What the model lacks") {}
 
   std::string write() {
     page_.paragraph(data_text(setup_));
@@ -46,26 +46,26 @@ class ExplainPage {
     add_what();
     page_.heading("Effects that were not found");
     page_.paragraph(
-        "95 % bounds of their first parameters, to first order, beside what was found." +
+        "The table has 95 % bounds of their first parameters, to first order, when they are added "
+        "to what was found." +
         chance_text());
     page_.table(bound_rows(found_, units_));
-    page_.paragraph("Not looked for: " + joined(not_looked_for(found_), ", ") +
-                    ". Turns are allowed for between snapshots, thermal noise makes no forecast" +
-                    (sorts_by_curvature()
-                         ? "."
-                         : ", curvature sorts nothing where it is the same everywhere."));
+    page_.paragraph(
+        "Not in the search: " + joined(not_looked_for(found_), ", ") +
+        ". Rotations are corrected between snapshots; thermal noise is random and changes no "
+        "forecast" +
+        (sorts_by_curvature() ? "." : "; a curvature that is the same everywhere has no effect."));
     page_.heading("Where this comes from");
     page_.paragraph(program_text() + ". Noise " + formatted("%.3g of c, ", found_.noise) +
                     text_of(found_.noise_model.correlation) + ", " +
                     std::to_string(setup_.request.filter.replicates) +
-                    " replicates of noise alone, " +
+                    " replicates with noise alone, " +
                     formatted("h/epsilon = %.2f.", found_.h_over_epsilon) + " The model:");
     page_.code(flags_text(setup_.configuration));
     if (const std::string run = command_for_found(folder_, found_, setup_); !run.empty()) {
       page_.paragraph(
-          "The model with what was found runs, from noise and not from the vesicle that was "
-          "measured, "
-          "with:");
+          "This command runs the extended model. It starts from noise, not from the measured "
+          "vesicle:");
       page_.code(run);
     }
     write_durably(folder_ / "explain.html", page_.html());
@@ -81,8 +81,8 @@ class ExplainPage {
     });
     if (excluding == 0) return "";
     return formatted(
-        " Of the %d effects that may have either sign one excludes 0 by chance in %.0f %% "
-        "of data sets.",
+        " %d of these effects may have either sign. By chance, the bounds of one of them exclude 0 "
+        "in %.0f %% of data sets.",
         static_cast<int>(excluding), 100 * (1 - std::pow(0.95, static_cast<double>(excluding))));
   }
 
@@ -94,11 +94,11 @@ class ExplainPage {
   }
 
   void add_gaps() {
-    page_.heading("How the gap shrinks");
+    page_.heading("The gap, measured minus forecast");
     page_.paragraph(
-        "Every snapshot is forecast from those before it. The last one of a vesicle with four or "
-        "more is held out: no parameter was fitted to it, though it decides between effects "
-        "that explain the others as well as each other.");
+        "Every snapshot is forecast from those before it. If a vesicle has four or more, its last "
+        "snapshot is held out: no parameter is fitted to it. It only decides between effects that "
+        "explain the other snapshots equally well.");
     page_.table(gap_rows(found_));
     Chart chart{"measured minus forecast", "time (s)", "root mean square, in c", false, false, {}};
     chart.series = {gap_series("base model", found_.base, false)};
@@ -122,15 +122,17 @@ class ExplainPage {
   }
 
   void add_where() {
-    page_.heading("Where");
+    page_.heading("Places of disagreement");
     const bool both = found_.found.hypothesis.added() > 0 && !found_.found_maps.snapshots.empty();
     page_.paragraph(
-        "Measured minus forecast near each place, in standard deviations of noise: orange where "
-        "more raft was measured, blue where less. Noise alone surpasses " +
-        formatted("%.1f anywhere on the maps in one of twenty data sets; the colours end at -%.0f "
+        "The colours show measured minus forecast near each place, in standard deviations of "
+        "noise: orange where more raft was measured, blue where less. Noise alone exceeds " +
+        formatted("%.1f somewhere on the maps in one of twenty data sets. The colours end at -%.0f "
                   "and %.0f.",
                   found_.base_maps.threshold, kColourEnd, kColourEnd) +
-        (both ? " The base model first, then with " + found_.found.hypothesis.name() + "." : ""));
+        (both ? " The base model comes first, then the model with " +
+                    found_.found.hypothesis.name() + "."
+              : ""));
     std::vector<Vec> frames;
     View view{{}, -kColourEnd, kColourEnd, strongest(found_.base_maps), true};
     const auto add = [&](const std::string& model, const DisagreementMaps& maps) {
@@ -149,17 +151,17 @@ class ExplainPage {
     missing_.add(add_viewer(page_, found_.map_mesh, frames, view));
     if (found_.disagreements.empty()) {
       page_.paragraph(
-          "No patch of the surface, inside rafts, outside or at their boundaries, disagrees "
-          "significantly with the base model by itself; what is said above rests on all together.");
+          "No single patch of the surface (inside rafts, outside or at their boundaries) disagrees "
+          "significantly with the base model. The verdict rests on all patches together.");
       return;
     }
     page_.paragraph(
         std::to_string(found_.disagreements.size()) +
-        " patches of the surface (a twelfth of it, inside rafts, outside or at their "
-        "boundaries, in one "
-        "snapshot) disagree significantly with the base model: of such lists' entries " +
-        formatted("%.0f %% at most are there by chance, on average", 100 * found_.false_alarms) +
-        " (Benjamini and Hochberg). The strongest:");
+        " patches of the surface disagree significantly with the base model. A patch "
+        "is a twelfth of the surface in one snapshot, inside rafts, outside or at "
+        "their boundaries. On average " +
+        formatted("at most %.0f %% of such a list are there by chance", 100 * found_.false_alarms) +
+        " (Benjamini and Hochberg). The strongest are:");
     page_.table(disagreement_rows(found_, setup_, kMostRows));
   }
 
@@ -173,14 +175,14 @@ class ExplainPage {
   }
 
   void add_what() {
-    page_.heading("What");
+    page_.heading("Candidates");
     for (const Round& round : found_.rounds) {
       const std::string known = round.known.hypothesis.name();
       page_.paragraph((known.empty() ? std::string("What the base model lacks")
-                                     : "What is lacking beside " + known) +
-                      ". Noise alone gains as much by any candidate in at most " +
+                                     : "What the model with " + known + " lacks") +
+                      ". With noise alone, any candidate gains as much in at most " +
                       share(round.screening.p) +
-                      " of data sets, and leaves as large a gap of any shape in at most " +
+                      " of data sets, and a gap of any shape is as large in at most " +
                       share(round.screening.gap_p) + ".");
       page_.table(score_rows(round));
     }

@@ -45,11 +45,12 @@ void write_explanation(const std::filesystem::path& folder, const Explanation& f
   write_durably(folder / "scores.csv", csv_text(scores_table(found)));
   write_durably(folder / "disagreements.csv", csv_text(disagreements_table(found, setup, units)));
   if (has_model(found))
-    write_extended_model(folder / "model.toml", setup.model_file, found_model(found, setup.model),
-                         "found by traceraft explain: " + found.found.hypothesis.name() +
-                             (setup.request.own.parts.empty()
-                                  ? ", with D refitted beside it"
-                                  : ", with D and the model's own effects refitted beside it"));
+    write_extended_model(
+        folder / "model.toml", setup.model_file, found_model(found, setup.model),
+        "found by traceraft explain: " + found.found.hypothesis.name() +
+            (setup.request.own.parts.empty()
+                 ? ", with D refitted together with it"
+                 : ", with D and the model's own effects refitted together with it"));
   write_durably(folder / "verdict.json", verdict_json(verdict_of(found, setup)).dump(2) + "\n");
 }
 
@@ -68,7 +69,7 @@ void print_explanation(const Explanation& found, const ExplainSetup& setup) {
   say("\n");
   print_rows(gap_rows(found));
   for (const std::string& remark : remarks_on(found, setup)) say("\n%s\n", remark);
-  say("\nnoise of the measurements %.3g, %s; patches that disagree significantly with the base "
+  say("\nnoise of the measurements: %.3g, %s\npatches that disagree significantly with the base "
       "model: %zu\n",
       found.noise, text_of(found.noise_model.correlation), found.disagreements.size());
 }

@@ -34,7 +34,7 @@ std::vector<std::string> notes_on(const GivenValues& model, const FieldDataset& 
     const double own = configuration.options().radius;
     if (std::fabs(own - data.radius_um) > 1e-6 * data.radius_um)
       notes.push_back("The radius is that of dataset.toml, " + format_number(data.radius_um) +
-                      " um, not that of the model, " + format_number(own) + ".");
+                      " um, instead of that of the model, " + format_number(own) + ".");
   }
   if (const std::string note = note_on_distance(data);
       !note.empty() && configuration.options().surface == "sphere")
@@ -52,10 +52,11 @@ void refuse_points_off_the_sphere(const FieldDataset& data, const std::string& f
         const Point x = data.radius_um * snapshot.points[i];
         const double distance = snapshot.points[i].norm() - 1;
         if (std::fabs(distance) <= kOffSurface) continue;
-        throw InputError(place_of(folder, number, i, "") +
-                         formatted(": (%.4g, %.4g, %.4g) um is %.2g R off the sphere, further than "
-                                   "%g R: are radius and length_unit right, and the centre at 0?",
-                                   x[0], x[1], x[2], std::fabs(distance), kOffSurface));
+        throw InputError(
+            place_of(folder, number, i, "") +
+            formatted(": (%.4g, %.4g, %.4g) um is %.2g R away from the sphere (allowed: %g R). Are "
+                      "radius and length_unit right, and is the centre at 0?",
+                      x[0], x[1], x[2], std::fabs(distance), kOffSurface));
       }
     }
 }
@@ -74,7 +75,7 @@ void refuse_far_values(const std::vector<FieldSeries>& vesicles, const DoubleWel
         throw InputError(place_of(folder, number, static_cast<std::size_t>(i), "c") + ": " +
                          formatted("%.6g", c) + " is far from the phases of the model, " +
                          format_number(well.a) + " and " + format_number(well.b) +
-                         "; leave out what is missing, and put c on their scale");
+                         "; leave out missing values, and scale c so that the phases agree");
       }
     }
 }
@@ -101,7 +102,7 @@ void refuse_uniform_values(const std::vector<FieldSeries>& vesicles, const Doubl
         continue;
       throw InputError((fs::path(folder) / snapshot_file(number)).string() + ": c is " +
                        format_number(snapshot.values[0]) +
-                       " everywhere; there is nothing to explain, leave the snapshot out");
+                       " everywhere, which explains nothing; leave this snapshot out");
     }
 }
 
@@ -121,8 +122,8 @@ void refuse_exchanged_phases(const Configuration& model, const std::vector<Field
   if (kMuchNearer * std::fabs(measured - (1 - stated)) > std::fabs(measured - stated)) return;
   throw InputError(
       model.where(&RunOptions::raft_fraction) + ": the model has " + format_number(stated) +
-      formatted(" of rafts, and the mean of c is %.2f: if c marks the other phase, ", measured) +
-      formatted("write 1 - c; if not, say --raft-fraction %.2f", measured));
+      formatted(" of rafts, but the mean of c is %.2f; if c marks the other phase, ", measured) +
+      formatted("write 1 - c; otherwise give --raft-fraction %.2f", measured));
 }
 
 // What data could not tell from the rest of the model is not fitted beside it.
@@ -134,11 +135,11 @@ Hypothesis own_effects(const Configuration& model, const std::vector<Candidate>&
   for (const EffectTerm& term : terms) {
     if (std::count(without.begin(), without.end(), term.effect) > 0)
       throw InputError("--without: the model has " + term.effect +
-                       ", whose strength is fitted; take it out of the model instead");
+                       ", and fits its strength; remove it from the model instead");
     if (std::none_of(asked.begin(), asked.end(),
                      [&](const Candidate& c) { return c.effect == term.effect; }))
       throw InputError(model.where(&RunOptions::effect) + ": effect " + term.effect +
-                       ": on this surface it does next to nothing, so that no data tell its "
+                       " does almost nothing on this surface, so that no data determine its "
                        "strength; leave it out");
   }
   return own;
@@ -152,11 +153,11 @@ void set_effects(const Configuration& model, ExplainSetup& setup) {
       candidates_for(request.base, *request.surface, places, request.without);
   request.own = own_effects(model, asked, request.without);
   if (candidates_beside(request.own, asked).empty())
-    throw InputError("--without: no effect is left to look for");
+    throw InputError("--without: no effect is left to search for");
   for (const Candidate& candidate : asked)
     for (const Hypothesis::Part& part : request.own.parts)
       if (are_one(candidate, part.candidate))
-        setup.notes.push_back(candidate.effect + " is not looked for: the model's " +
+        setup.notes.push_back(candidate.effect + " is left out of the search: the model's " +
                               part.candidate.effect + " is another form of it.");
 }
 
@@ -214,7 +215,7 @@ ExplainSetup read_explain_job(const ExplainJob& job) {
     setup.notes.push_back(note);
   setup.series = std::move(data.vesicles);
   if (const std::string other = other_membrane(data.composition, model); !other.empty())
-    setup.notes.push_back("ANOTHER MEMBRANE: the model is of " + other + ".");
+    setup.notes.push_back("ANOTHER MEMBRANE: the membrane of the model is " + other + ".");
   for (FieldSeries& vesicle : setup.series)
     for (FieldSnapshot& snapshot : vesicle.snapshots) snapshot.time /= model.units().time();
 

@@ -40,7 +40,7 @@ std::vector<Row> bound_rows(const Explanation& found, const Units& base) {
       rows.push_back(
           {b.effect, b.name, formatted("%.3g", b.low), formatted("%.3g", b.high), b.unit});
     else
-      rows.push_back({b.effect, b.name, "", "not seen in these data", b.unit});
+      rows.push_back({b.effect, b.name, "", "not visible in these data", b.unit});
   return rows;
 }
 
@@ -58,12 +58,12 @@ std::vector<Row> gap_rows(const Explanation& found) {
   add("to be expected if nothing is missing", found.found.expected);
   if (more) {
     const auto text = [](const std::optional<double>& share) {
-      return share ? formatted("%.0f %%", 100 * *share) : "too little to tell";
+      return share ? formatted("%.0f %%", 100 * *share) : "too small to say";
     };
     const SharesClosed closed =
         shares_closed(found.base.gap, found.found.gap, found.found.expected);
-    rows.push_back(
-        {"closed of what can be closed, in squares", text(closed.train), text(closed.heldout)});
+    rows.push_back({"share of the closable gap that is closed (of squares)", text(closed.train),
+                    text(closed.heldout)});
   }
   if (found.rerun && found.rerun->failure.empty()) {
     const Rerun& rerun = *found.rerun;

@@ -88,7 +88,7 @@ namespace {
 DiffusionRange range_of_class(const Explanation& found, double D) {
   std::vector<Refit> members = found.rivals;
   members.push_back(found.found);
-  DiffusionRange range{HUGE_VAL, 0, "all members of the class, each with its own interval"};
+  DiffusionRange range{HUGE_VAL, 0, "it covers the intervals of all members of the class"};
   for (const Refit& fit : members) {
     const double width = std::exp(kNormal95 * fit.pace_deviation);
     range.low = std::min(range.low, D * fit.pace / width);
@@ -102,8 +102,8 @@ DiffusionRange range_beside(const ConfoundedWithPace& confounded, const Refit& f
   const double most = find_candidate(confounded.effect)->most;
   const double width = std::exp(kNormal95 * fit.pace_deviation), known = D * fit.pace;
   return {known / width / (1 + confounded.slope * most), known * width,
-          formatted("these data know D (1 + %.3g s) = %.4g, s being the strength of %s, and the "
-                    "interval of D is that without it",
+          formatted("these data determine D (1 + %.3g s) = %.4g, where s is the strength of %s; "
+                    "the interval of D above is that without it",
                     confounded.slope, known, confounded.effect.c_str())};
 }
 

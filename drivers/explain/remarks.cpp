@@ -11,22 +11,22 @@
 namespace traceraft {
 namespace {
 
-// "Vesicle 1, snapshot 3 (12 s): it seems turned by 0.30 rad ..."
+// "Vesicle 1, snapshot 3 (12 s): it seems to be rotated by 0.30 rad ..."
 std::string text_of(const FrameChange& change, const ExplainSetup& setup) {
   std::vector<std::string> ways;
   if (change.rotation != 0)
-    ways.push_back(formatted("turned by %.2g rad since the one before", change.rotation));
+    ways.push_back(formatted("rotated by %.2g rad since the previous snapshot", change.rotation));
   if (change.gain != 0) ways.push_back(formatted("scaled by %.3g", 1 + change.gain));
   if (change.offset != 0) ways.push_back(formatted("shifted by %.2g", change.offset));
   const FieldSeries& series = setup.series[change.vesicle];
   const double time = series.snapshots[change.snapshot].time;
   return "Vesicle " + series.vesicle + ", snapshot " + std::to_string(change.snapshot + 1) +
          formatted(" (%.4g s)", time * setup.configuration.units().seconds_per_unit()) +
-         ": it seems " + joined(ways, ", and ") +
-         ". That is more than the search allows for; align and calibrate the images first.";
+         ": it seems to be " + joined(ways, ", and ") +
+         ". This is more than the search corrects. Align and calibrate the images first.";
 }
 
-// Turns that were found and taken along.
+// Rotations that were found and corrected.
 void add_registered(const Explanation& found, const ExplainSetup& setup,
                     std::vector<std::string>& all) {
   if (found.registered.empty()) return;
@@ -35,16 +35,17 @@ void add_registered(const Explanation& found, const ExplainSetup& setup,
     turns.push_back(
         formatted("%.2g rad before snapshot %zu", turn.angle, turn.snapshot + 1) +
         (setup.series.size() > 1 ? " of vesicle " + setup.series[turn.vesicle].vesicle : ""));
-  all.push_back("The vesicle has turned between snapshots, which was found and allowed for: " +
-                joined(turns, ", ") + ".");
+  all.push_back(
+      "The vesicle rotated between snapshots. The search found and corrected these rotations: " +
+      joined(turns, ", ") + ".");
 }
 
 void add_failures(const Explanation& found, std::vector<std::string>& all) {
   for (const Round& round : found.rounds)
     for (const Round::Failure& failure : round.failures)
-      all.push_back("A model with " + failure.effect + " could not be refitted: " + failure.why);
+      all.push_back("The refit of a model with " + failure.effect + " failed: " + failure.why);
   if (!found.stopped.empty())
-    all.push_back("The search had to stop beside " + found.found.hypothesis.name() + ": " +
+    all.push_back("The search stopped at the model with " + found.found.hypothesis.name() + ": " +
                   found.stopped);
 }
 
@@ -57,9 +58,9 @@ void add_assumptions(const Explanation& found, const Units& base, std::vector<st
       assumed[p.effect].push_back(p.name + formatted(" = %.4g", p.value) +
                                   (p.unit.empty() ? "" : " " + p.unit));
   for (const auto& [effect, values] : assumed)
-    all.push_back(effect + " is looked for with " + joined(values, ", ") +
-                  " alone: with other values its strength is another one, and what has them may be "
-                  "taken for another effect.");
+    all.push_back(effect + " was searched for with " + joined(values, ", ") +
+                  " only. With other values its strength would differ, and the search might take "
+                  "it for another effect.");
 }
 
 // Strengths that the model states and these data contradict.
@@ -74,14 +75,15 @@ void add_own(const Explanation& found, const ExplainSetup& setup, std::vector<st
     for (const FoundParameter& stated : parameters_of(term, base))
       for (const FoundParameter& p : fitted)
         if (contradicts(p, stated))
-          all.push_back("The model has " + p.effect + " with " + p.name +
-                        formatted(" = %.4g; these data say %.4g (standard error %.2g).",
-                                  stated.value, p.value, *p.sigma));
+          all.push_back(
+              "The model states " + p.effect + " with " + p.name +
+              formatted(" = %.4g. These data contradict it: the fit is %.4g (standard error %.2g).",
+                        stated.value, p.value, *p.sigma));
   const Hypothesis& shown = fit_shown(found).hypothesis;
   const std::vector<EffectTerm> terms = shown.terms();
   for (std::size_t k = 0; k < shown.known; ++k)
     if (terms[k].values.front() == 0)
-      all.push_back("Of the model's " + terms[k].effect + " these data show nothing.");
+      all.push_back("These data show nothing of the model's " + terms[k].effect + ".");
 }
 
 // A mistake in the unit of time looks like another D.
@@ -93,18 +95,18 @@ void add_pace(const Explanation& found, const Units& base, std::vector<std::stri
       found.pace_doubt * found.pace_doubt - found.found.pace_deviation * found.found.pace_deviation;
   if (std::isfinite(square) && square > 0 && log_pace > kSure * std::sqrt(square))
     all.push_back(
-        formatted("The measurements contradict that D is known to %.2g %%: together they make it "
-                  "%.3g cm^2/s, and the model's is %.3g.",
-                  100 * found.pace_doubt, D, base.diffusion_cm2_s));
+        formatted("The measurements contradict the stated D, %.3g cm^2/s, which is said to be "
+                  "known to %.2g %%. The value from both is %.3g cm^2/s.",
+                  base.diffusion_cm2_s, 100 * found.pace_doubt, D));
   if (found.finding == Finding::none && changes_pace(found.found) &&
       !std::isfinite(found.pace_doubt))
     all.push_back(
-        "Effects that another D makes up for, above all bulk-mobility, would not be seen: if D was "
-        "measured, say so by --diffusion and --diffusion-error.");
+        "A different D can hide an effect, above all bulk-mobility. If D was measured, state it by "
+        "--diffusion and --diffusion-error.");
   if (log_pace < std::log(kFarPace) || log_pace < kSure * found.found.pace_deviation) return;
   all.push_back(formatted(
-      "The measurements ask for a D of %.2g cm^2/s, %.3g times %s than the "
-      "model's, %.2g: are time_unit and the model's --diffusion right?",
+      "The measurements need a D of %.2g cm^2/s. This is %.3g times %s than the model's D, %.2g "
+      "cm^2/s. Are time_unit and the model's --diffusion right?",
       D, std::exp(log_pace), found.found.pace < 1 ? "smaller" : "larger", base.diffusion_cm2_s));
 }
 
@@ -115,26 +117,27 @@ void add_diffusion(const Explanation& found, const Units& base, std::vector<std:
                   range->why + ".");
   if (!knows_diffusion(found))
     all.push_back(found.finding == Finding::not_identifiable
-                      ? "The interval of D is not known: the D that fits best may make up for an "
-                        "effect that these data would not show."
-                      : "The interval of D is not known: the D that fits best makes up for part of "
-                        "what is missing.");
+                      ? "The interval of D is not known: the best D may compensate for an effect "
+                        "that these data would not show."
+                      : "The interval of D is not known: the best D compensates for part of what "
+                        "is missing.");
 }
 
 std::string text_of(const ModelChange& change) {
   switch (change.reason) {
     case ModelChange::replaced:
-      return change.from + " seemed to explain most, until it was compared with " + change.to + ".";
+      return change.from + " explained most at first, but " + change.to + " explains more.";
     case ModelChange::left_gap:
-      return change.from + " came first, but leaves a gap that " + change.to + " does not leave.";
+      return change.from + " explained most at first, but leaves a gap that " + change.to +
+             " does not leave.";
     case ModelChange::foretold:
-      return change.from + " came first, but with what was held out " + change.to +
-             " is more probable.";
+      return change.from + " explained most at first, but with the held-out snapshots " +
+             change.to + " is more probable.";
     case ModelChange::is_none:
-      return change.from + " was found, but " +
-             (change.to.empty() ? std::string("with the noise of the model that has it")
+      return change.from + " was found at first, but " +
+             (change.to.empty() ? std::string("with the noise of the model that contains it")
                                 : "beside " + change.to) +
-             " it turned out to be none.";
+             " it is not significant.";
   }
   return "";
 }
@@ -148,11 +151,10 @@ void add_story(const Explanation& found, std::vector<std::string>& all) {
     if (!said) all.push_back(text_of(change));
   }
   for (const Excluded& t : found.excluded)
-    all.push_back(
-        t.effect +
-        formatted(" explains the snapshots that were fitted about as well, but is less "
-                  "probable with the one held out (difference of Schwarz' criterion: %.0f).",
-                  -t.less));
+    all.push_back(t.effect +
+                  formatted(" explains the fitted snapshots about as well, but is less probable "
+                            "with the held-out snapshot (difference of Schwarz' criterion: %.0f).",
+                            -t.less));
 }
 
 // A strength that cannot be larger was wanted larger.
@@ -162,10 +164,9 @@ void add_ends(const Explanation& found, const Units& base, std::vector<std::stri
     const Candidate& own = part.candidate;
     if (own.directions > 1 || a == 0 || (a > own.least && a < own.most)) continue;
     const FoundParameter strength = parameters_of(own.term(part.coefficients), base).front();
-    all.push_back(own.effect + " is as strong as it can be, " + strength.name +
+    all.push_back(own.effect + " is as strong as the search allows, " + strength.name +
                   formatted(" %.4g", strength.value) +
-                  ": something like it may be at work, of "
-                  "another form.");
+                  ". Something similar but of another form may be missing.");
   }
 }
 
@@ -184,55 +185,53 @@ void add_class(const Explanation& found, const Units& base, std::vector<std::str
                        [&](const Refit& b) { return differ(a, b); });
   });
   if (!different) return;
-  std::string text = "What these data do not tell apart asks for different D, " +
+  std::string text = "The effects that these data do not separate need different D: " +
                      found.found.hypothesis.name() + formatted(" for %.3g cm^2/s", D(found.found));
   for (const Refit& rival : found.rivals)
     text += ", " + rival.hypothesis.name() + formatted(" for %.3g", D(rival));
-  all.push_back(text + ": " +
-                (std::isfinite(found.pace_doubt)
-                     ? "a D that is known better may decide."
-                     : "if D was measured, --diffusion and --diffusion-error may "
-                       "decide."));
+  all.push_back(
+      text + ". " +
+      (std::isfinite(found.pace_doubt)
+           ? "A more precise D may decide between them."
+           : "A measured D (--diffusion and --diffusion-error) may decide between them."));
 }
 
 void add_mesh(const Explanation& found, std::vector<std::string>& all) {
   // Where the verdict itself asks for other data, another mesh would not decide.
   const bool noise_decides = found.finding == Finding::not_identifiable;
   if (found.h_over_epsilon > kCoarse)
-    all.push_back(formatted("The mesh is coarse for these phase boundaries, h/epsilon = %.2g",
+    all.push_back(formatted("The mesh is coarse for these phase boundaries: h/epsilon = %.2g",
                             found.h_over_epsilon) +
-                  (noise_decides ? "." : "; with more --cells the verdict would be surer."));
+                  (noise_decides ? "." : ". More --cells would make the verdict more certain."));
 }
 
 void add_rerun(const Explanation& found, std::vector<std::string>& all) {
   if (!found.rerun) return;
   if (!found.rerun->failure.empty())
-    all.push_back("On another mesh and by another integrator it could not be repeated: " +
+    all.push_back("The check on another mesh and by another integrator failed: " +
                   found.rerun->failure);
   else if (found.rerun->refutes())
-    all.push_back(
-        "On another mesh and by another integrator " + found.found.hypothesis.name() +
-        " foretells the measurements worse than the base model, beyond what noise and the mesh do: "
-        "it is no explanation of them, though it came closest in the search.");
+    all.push_back("On another mesh and by another integrator " + found.found.hypothesis.name() +
+                  " forecasts the measurements significantly worse than the base model. It is "
+                  "therefore no explanation, though it came closest in the search.");
   else if (is_named(found) && !found.rerun->confirms())
     all.push_back(
-        "On another mesh and by another integrator what was found foretells the measurements no "
-        "better than the base model, within noise: more snapshots would tell.");
+        "On another mesh and by another integrator, what was found forecasts the measurements no "
+        "better than the base model, within noise. More snapshots would decide.");
   else if (is_named(found) && !found.rerun->heldout())
     all.push_back(
-        "No snapshot is held out of fewer than four: that what was found foretells new ones was "
-        "not tested.");
+        "With fewer than four snapshots none is held out. Forecasts of new snapshots were "
+        "therefore not tested.");
   if (found.rerun->gap_p && found.finding != Finding::unnamed)
     all.push_back(
-        "On the model's own mesh there is a gap that nothing explains; on another mesh and by "
-        "another integrator it is not significant (p = " +
-        formatted("%.2g, and a gap is one below %.2g", *found.rerun->gap_p,
+        "The model's own mesh shows a gap that nothing explains. On another mesh and by another "
+        "integrator it is not significant (p = " +
+        formatted("%.2g; significant is a p below %.2g", *found.rerun->gap_p,
                   kGapLevel * found.false_alarms) +
-        "), so that it may be that of the mesh: repeat with more --cells.");
+        "). It may be an error of the mesh: repeat with more --cells.");
   if (!found.rerun->gap_failure.empty())
     all.push_back(
-        "Whether the gap that nothing explains is there on another mesh, too, is not "
-        "known: " +
+        "A gap remains that nothing explains. The check of this gap on another mesh failed: " +
         found.rerun->gap_failure);
 }
 
@@ -246,10 +245,10 @@ std::string more_effects(const Explanation& found) {
           : std::nullopt;
   if (last && *last < kLeastProgress)
     return formatted(
-        "Something is still lacking. The search ended there, as its last round closed "
-        "%.0f %% of what was left.",
+        "Something is still missing. The search ended because its last round closed only %.0f %% "
+        "of the remaining gap.",
         100 * std::max(0.0, *last));
-  return "Something may still be lacking; more --most-effects would look for it.";
+  return "Something may still be missing. A larger --most-effects would search for it.";
 }
 
 }  // namespace
@@ -258,12 +257,12 @@ std::vector<std::string> remarks(const Explanation& found, const Units& base) {
   std::vector<std::string> all;
   if (found.outliers > 0)
     all.push_back(std::to_string(found.outliers) +
-                  " values that are far from all around them were left out.");
+                  " values were left out, as they are far from all values around them.");
   if (found.noise_model.correlation.at_bound)
-    all.push_back(formatted(
-        "Neighbours share noise over %.2g R, or further, which is not looked for: what is missing "
-        "may be taken for such noise, and such noise for what is missing.",
-        found.noise_model.correlation.length()));
+    all.push_back(
+        formatted("Noise is correlated over %.2g R or more, the largest length that is tried. The "
+                  "search may take a missing effect for noise, and noise for an effect.",
+                  found.noise_model.correlation.length()));
   add_pace(found, base, all);
   add_story(found, all);
   add_ends(found, base, all);
@@ -271,12 +270,12 @@ std::vector<std::string> remarks(const Explanation& found, const Units& base) {
   add_mesh(found, all);
   add_failures(found, all);
   if (!found.found.settled)
-    all.push_back("The parameters were not quite at rest when their refit ended.");
+    all.push_back("The refit of the parameters ended before it converged fully.");
   const Round& last = found.rounds.back();
   if (is_named(found) && found.stopped.empty() && last.screening.p <= found.false_alarms)
     all.push_back(last.refits.empty() && last.failures.empty()
                       ? more_effects(found)
-                      : "Something may still be lacking, too little of it to say what.");
+                      : "Something may still be missing, but too little to say what.");
   add_assumptions(found, base, all);
   add_rerun(found, all);
   return all;
@@ -286,8 +285,8 @@ std::vector<std::string> remarks_on(const Explanation& found, const ExplainSetup
   std::vector<std::string> all = setup.notes;
   if (!setup.request.blur_stated)
     all.push_back(
-        "dataset.toml does not say how blurred the images are (blur, 0 if they are not): "
-        "boundaries that a microscope widens are taken for physics.");
+        "dataset.toml does not state the blur of the images (key blur; 0 for sharp images). The "
+        "search takes boundaries that a microscope widens for physics.");
   for (std::string& remark : remarks(found, setup.configuration.units()))
     all.push_back(std::move(remark));
   add_diffusion(found, setup.configuration.units(), all);
@@ -295,7 +294,7 @@ std::vector<std::string> remarks_on(const Explanation& found, const ExplainSetup
   add_registered(found, setup, all);
   for (const FrameChange& change : found.frames) all.push_back(text_of(change, setup));
   if (const auto& without = setup.request.without; !without.empty())
-    all.push_back("Not looked for, as asked: " + joined(without, ", ") + ".");
+    all.push_back("Left out of the search by --without: " + joined(without, ", ") + ".");
   return all;
 }
 

@@ -63,13 +63,13 @@ void check_against_data(const std::filesystem::path& path, const SearchState& st
                         const std::vector<FieldSeries>& series) {
   const auto check = [&](std::size_t vesicle, std::size_t snapshot) {
     if (vesicle >= series.size() || snapshot >= series[vesicle].snapshots.size())
-      refuse(path, "it names a snapshot that the data have not");
+      refuse(path, "it names a snapshot that is not in the data");
   };
   if (state.so_far.noise_model.levels.size() != series.size())
-    refuse(path, "it lacks the noise of a vesicle");
+    refuse(path, "the noise of a vesicle is missing");
   for (std::size_t v = 0; v < series.size(); ++v) {
     if (state.so_far.noise_model.levels[v].size() != series[v].snapshots.size())
-      refuse(path, "it lacks the noise of a snapshot");
+      refuse(path, "the noise of a snapshot is missing");
     for (const double noise : state.so_far.noise_model.levels[v])
       if (!(noise > 0)) refuse(path, "a noise is not positive");
   }
@@ -83,7 +83,7 @@ void check_against_data(const std::filesystem::path& path, const SearchState& st
     }
   const bool early = state.next == SearchStep::start || state.next == SearchStep::calibrate ||
                      state.next == SearchStep::screen;
-  if (!early && state.so_far.rounds.empty()) refuse(path, "it lacks a round");
+  if (!early && state.so_far.rounds.empty()) refuse(path, "a round is missing");
   if (!(state.so_far.found.pace > 0)) refuse(path, "its D is not positive");
 }
 

@@ -32,7 +32,7 @@ std::vector<StoredPart> stored_parts(const Parts& parts) {
 
 Candidate candidate_of(const std::string& effect) {
   const std::optional<Candidate> found = find_candidate(effect);
-  if (!found) throw DamagedFile("a search names '" + effect + "', which is no candidate");
+  if (!found) throw DamagedFile("a search names '" + effect + "', which is not a candidate");
   return *found;
 }
 
@@ -41,10 +41,10 @@ Parts parts_of(const std::vector<StoredPart>& stored) {
   for (const StoredPart& part : stored) {
     const EffectTerm term{candidate_of(part.effect).effect, part.values};
     if (term.values.size() != effects().find(term.effect).parameters.size())
-      throw DamagedFile("a search has " + term.effect + " with parameters that it has not");
+      throw DamagedFile("a search has " + term.effect + " with unknown parameters");
     parts.push_back({part_of(term).candidate, part.coefficients});
     if (part.coefficients.size() != static_cast<std::size_t>(parts.back().candidate.directions))
-      throw DamagedFile("a search has " + term.effect + " with coefficients that it has not");
+      throw DamagedFile("a search has " + term.effect + " with unknown coefficients");
   }
   return parts;
 }

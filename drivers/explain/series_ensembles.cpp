@@ -84,8 +84,8 @@ Json saved_strengths(const fs::path& file, const Json& header) {
   return from_json(file, [&](const Json& json) {
     if (!is_for(json, header, "identity") || !is_for(json, header, "looks"))
       throw InputError(file.parent_path().string() +
-                       " holds simulations of another model, by an earlier version, or for looks "
-                       "at other times; choose another --out or --ensembles");
+                       " holds simulations of another model, of an earlier version or for other "
+                       "observation times; choose another --out or --ensembles");
     return json.at("strengths");
   });
 }
@@ -125,14 +125,14 @@ std::vector<EffectTerm> sizes(const fs::path& folder, const Configuration& model
         (effects().find(effect).unit_wells && !has_unit_wells(asked.base)))
       continue;
     if (!strengths.contains(effect)) {
-      tell(request, "how strong " + effect + " has to be");
+      tell(request, "sizing the strength of " + effect);
       if (!sizing) sizing.emplace(asked);
       strengths[effect] = sized_term(*sizing, effect, k, asked.raft_fraction).values;
       write_durably(file, saved.dump(2) + "\n");
     }
     terms.push_back(saved_term(file, effect, strengths.at(effect), model.units()));
   }
-  if (terms.empty()) throw InputError("--without: no effect is left to look for");
+  if (terms.empty()) throw InputError("--without: no effect is left to search for");
   return terms;
 }
 
@@ -157,18 +157,19 @@ void take_over_ensembles(const fs::path& folder, const Configuration& model,
   const fs::path file = folder / kStrengths;
   const EnsembleFolder base(folder / "base");
   if (!fs::exists(file) || !base.started())
-    throw InputError("--ensembles: " + folder.string() +
-                     " holds no simulations; it is the folder 'ensembles' of an explanation");
+    throw InputError(
+        "--ensembles: " + folder.string() +
+        " holds no simulations; the folder 'ensembles' of an earlier search is needed");
   request.runs = base.load().runs;
   request.looks = from_json(file, [&](const Json& json) {
     if (!json.contains("looks"))
-      throw InputError("--ensembles: " + folder.string() + " is by an earlier version");
+      throw InputError("--ensembles: " + folder.string() + " was written by an earlier version");
     const Window looks{json.at("looks").at(0), json.at("looks").at(1)};
     if (!(looks.begin > 0 && looks.begin < looks.end && looks.end <= kAnyNumber))
       throw InputError(file.string() + ": looks: two times are needed, the second after the first");
     if (!is_for(json, header_of(model, looks), "identity"))
       throw InputError("--ensembles: " + folder.string() +
-                       " holds simulations of another model, or by an earlier version");
+                       " holds simulations of another model or of an earlier version");
     return looks;
   });
 }
@@ -177,23 +178,23 @@ std::string note_on_looks(const Window& simulated, const Window& measured) {
   constexpr double kFar = 3;
   if (measured.end < kFar * simulated.end && measured.end > simulated.end / kFar) return "";
   return formatted(
-      "The effects are as strong as looks from %.3g to %.3g s would show them, the measurements "
-      "are from %.3g to %.3g s.",
+      "The strengths of the effects were chosen for observations from %.3g to %.3g s, but the "
+      "measurements are from %.3g to %.3g s.",
       simulated.begin, simulated.end, measured.begin, measured.end);
 }
 
 void refuse_series(const MeasuredVesicles& data, const Configuration& model) {
   refuse_scaled(model);
   if (model.options().surface != "sphere")
-    throw InputError(model.where(&RunOptions::surface) + ": series are explained on spheres only");
+    throw InputError(model.where(&RunOptions::surface) +
+                     ": series can be explained on spheres only");
   if (!model.options().effect.empty())
     throw InputError(model.where(&RunOptions::effect) +
-                     ": series are held against a model without effects, one of which at a time is "
-                     "then added");
+                     ": series need a model without effects; the search adds one effect at a time");
   refuse_without_noise(model);
   refuse_vesicles(data);
   if (const Window window = looks(data); !(window.begin < window.end))
-    throw InputError("series: looks at two times at least are needed");
+    throw InputError("series: observations at two or more times are needed");
 }
 
 SeriesEnsembles run_series_ensembles(const fs::path& folder, const Configuration& model,
@@ -224,7 +225,7 @@ SeriesEnsembles run_series_ensembles(const fs::path& folder, const Configuration
     PointEnd end = simulate(term.effect, effect_text({term}, units), label_of(term, units));
     result.stopped = end.stopped;
     if (!end.failures.empty()) {
-      result.notes.push_back(term.effect + " was left out, as the run of seed " +
+      result.notes.push_back(term.effect + " is left out, because the run of seed " +
                              std::to_string(end.failures.front().seed) +
                              " failed: " + end.failures.front().why);
       continue;

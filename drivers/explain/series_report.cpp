@@ -38,15 +38,15 @@ std::string sentence(const SeriesExplanation& found) {
     case Finding::none:
       return "No significant disagreement: the model explains the series within their scatter.";
     case Finding::not_identifiable:
-      return "No significant disagreement, but so few vesicles would not show any of the effects.";
+      return "No significant disagreement, but so few vesicles would not show any effect.";
     case Finding::unnamed:
-      return "There is a trend that none of the effects that were looked for explains" +
+      return "There is a trend that none of the effects in the search explains" +
              (classes.empty() ? "." : "; " + classes.front() + " comes closest.");
     case Finding::named:
       return "The model lacks " + classes.front() + ".";
     default:
       return "The model lacks one of: " + joined(classes, "; or ") +
-             ". Series do not tell these apart.";
+             ". Series do not separate these.";
   }
 }
 
@@ -57,17 +57,17 @@ std::string share(double p) {
 // What the verdict rests on.
 std::string ground(const SeriesExplanation& found, const SeriesEnsembles& ensembles,
                    const SeriesRequest& request) {
-  return "It rests on " + std::to_string(ensembles.base.size()) +
-         " runs of the model and of each of " + std::to_string(ensembles.candidates.size()) +
-         " effects, and on " + std::to_string(request.replicates) +
-         " data sets of the model alone: at most " + share(found.p) +
-         " of these gain as much by any effect, and at most " + share(found.trend_p) +
-         " leave as much of a trend. What counts is at most " + share(request.false_alarms) +
-         ", and " + share(kTrendLevel * request.false_alarms) + " for trends.";
+  return "Basis: " + std::to_string(ensembles.base.size()) +
+         " runs of the model, as many of each of " + std::to_string(ensembles.candidates.size()) +
+         " effects, and " + std::to_string(request.replicates) +
+         " data sets drawn from the model. At most " + share(found.p) +
+         " of these sets gain as much by any effect, and at most " + share(found.trend_p) +
+         " leave as large a trend. The limits for significance are " + share(request.false_alarms) +
+         " for effects and " + share(kTrendLevel * request.false_alarms) + " for trends.";
 }
 
 std::vector<Row> offset_rows(const SeriesExplanation& found) {
-  std::vector<Row> rows{{"measured beside the model", "on average", "deviations",
+  std::vector<Row> rows{{"measured relative to the model", "on average", "deviations",
                          "per e-fold of time", "deviations"}};
   for (const SeriesOffset& o : found.offsets) {
     const auto text = [](double ln) { return formatted("%+.1f %%", 100 * std::expm1(ln)); };
@@ -79,9 +79,9 @@ std::vector<Row> offset_rows(const SeriesExplanation& found) {
 }
 
 std::string advice(const SeriesTie& tie, const SeriesExplanation& found) {
-  return vesicles_text(tie.vesicles, found) + " vesicles like these would tell " + tie.effect +
-         " from " + tie.other + ", above all by their " + name_of(tie.telling).label +
-         "; one vesicle with fields at 8 times tells more (traceraft explain --data).";
+  return vesicles_text(tie.vesicles, found) + " vesicles like these would separate " + tie.effect +
+         " from " + tie.other + ", mainly by their " + name_of(tie.telling).label +
+         ". One vesicle with fields at 8 times says more (traceraft explain --data).";
 }
 
 std::vector<Row> score_rows(const Configuration& model, const SeriesExplanation& found) {
@@ -148,7 +148,7 @@ std::vector<Row> exponent_rows(const std::vector<PerimeterExponent>& laws) {
     const bool determined = !e.law.t0_open && e.law.b.high - e.law.b.low < kWide;
     rows.push_back({e.model, formatted("%.3f", e.law.law.b),
                     formatted("%.3f to %.3f", e.law.b.low, e.law.b.high),
-                    determined ? "" : "not determined: hardly a power law at these times"});
+                    determined ? "" : "not determined: no clear power law at these times"});
   }
   return rows;
 }
@@ -189,14 +189,15 @@ std::string diffusion_sentence(const Configuration& model, const SeriesExplanati
   const double D = found_units(model, found).diffusion_cm2_s;
   if (found.unit_at_end)
     return formatted(
-        "D is not determined: the best one, %.3g cm^2/s, is at the end of what is looked at.", D);
+        "D is not determined: the best one, %.3g cm^2/s, lies at the end of the range searched.",
+        D);
   const std::string range =
-      formatted("%.3g cm^2/s, within a factor of %.3g (95 %%, by scatter alone)", D,
+      formatted("%.3g cm^2/s, within a factor of %.3g (95 %%, from scatter only)", D,
                 std::exp(kNormal95 * found.unit_deviation));
   if (!found.unit_told)
-    return "These series tell hardly more of D than was known before: " + range + ".";
+    return "These series say hardly more about D than was known before: " + range + ".";
   return "D is " + range +
-         (found.finding == Finding::unnamed ? ", if what is missing leaves it alone."
+         (found.finding == Finding::unnamed ? ", if what is missing does not change D."
                                             : ", if nothing is missing.");
 }
 
@@ -211,7 +212,7 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
   const std::string verdict =
       "Verdict of the series: " + verdict_words(found.finding, class_of(found));
   std::vector<std::string> words{title_of(data) + ": " + std::to_string(found.vesicles) +
-                                     " vesicles, " + std::to_string(found.looks) + " looks.",
+                                     " vesicles, " + std::to_string(found.looks) + " observations.",
                                  sentence(found), ground(found, simulated, request)};
   for (const SeriesTie& tie : found.ties) words.push_back(advice(tie, found));
   words.push_back(diffusion_sentence(model, found));
@@ -221,14 +222,15 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
   const SimulatedVesicle vesicle = simulated_vesicle(model.units().length(), ensembles.base, data);
   for (const std::string& note : differences(data, vesicle)) words.push_back(note);
   if (const std::string text = assumed_text(simulated, found_units(model, found)); !text.empty())
-    words.push_back("Of effects with more than one parameter, one each was simulated: " + text +
-                    ".");
+    words.push_back(
+        "For effects with several parameters only the first was varied. Fixed were: " + text + ".");
   for (const auto& members : found.classes)
-    if (members.size() > 1) words.push_back("Alike in series: " + joined(members, ", ") + ".");
+    if (members.size() > 1)
+      words.push_back("These effects look alike in series: " + joined(members, ", ") + ".");
   const std::vector<Row> offset = offset_rows(found), scores = score_rows(model, found),
                          exponent = exponent_rows(laws);
 
-  Page page("What series of vesicles say of the model");
+  Page page("What series of vesicles say about the model");
   page.heading(verdict);
   for (const std::string& line : words) page.paragraph(line);
   page.table(offset);
@@ -254,7 +256,7 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
   say("\n");
   print_rows(exponent);
   say("\nwritten: %s\n", (folder / "series.html"));
-  if (!missing.text().empty()) say("the page lacks: %s\n", missing.text());
+  if (!missing.text().empty()) say("missing from the page: %s\n", missing.text());
 }
 
 }  // namespace traceraft

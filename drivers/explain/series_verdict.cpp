@@ -180,9 +180,9 @@ void write_series_verdict(const std::filesystem::path& folder,
                           const SeriesRequest& request) {
   const Configuration base(model, {});
   if (is_named(found.finding))
-    write_extended_model(
-        folder / "model.toml", model_file, named_model(model, ensembles, found),
-        "found by traceraft explain: " + found.scores.front().effect + ", with D fitted beside it");
+    write_extended_model(folder / "model.toml", model_file, named_model(model, ensembles, found),
+                         "found by traceraft explain: " + found.scores.front().effect +
+                             ", with D fitted together with it");
   write_durably(folder / "verdict.json",
                 verdict_json(verdict_of(base, ensembles, found, request)).dump(2) + "\n");
 }

@@ -31,14 +31,14 @@ std::string class_sentence(const Explanation& found) {
     others += ", or " + fit.hypothesis.name() + " (" + in_words(fit.hypothesis) + ")";
   return lacks(found) + found.found.hypothesis.name() + " (" + in_words(found.found.hypothesis) +
          ")" + others +
-         ": these data do not tell them apart. Numbers and figures are of the first.";
+         ". These data do not separate them. Numbers and figures are those of the first.";
 }
 
 std::string nothing_sentence(const Explanation& found) {
   std::vector<std::string> changes;
   if (changes_pace(found.found)) changes.push_back(formatted("%.3g times its D", found.found.pace));
   if (!found.found.hypothesis.parts.empty())
-    changes.push_back("the strengths of its effects as fitted");
+    changes.push_back("the fitted strengths of its effects");
   return "No significant disagreement: " +
          (changes.empty() ? "" : "with " + joined(changes, " and ") + " ") +
          "the model explains the data within their noise.";
@@ -61,19 +61,20 @@ std::string likeliest(const Explanation& found) {
 std::string doubt_sentence(const Explanation& found) {
   const Screening& first = found.rounds.front().screening;
   if (found.rerun && found.rerun->refutes())
-    return "Something seems to be missing, and what seemed to explain it does not: " +
-           found.found.hypothesis.name() + ", as another mesh and integrator show.";
+    return "Something seems to be missing. " + found.found.hypothesis.name() +
+           " seemed to explain it, but a check on another mesh with another integrator refutes "
+           "this.";
   if (first.p <= found.false_alarms)
-    return "Something seems to be missing, too little of it to say what: " + likeliest(found) +
-           " would explain most of it. More points, less noise or more snapshots would tell.";
+    return "Something seems to be missing, but too little to say what. " + likeliest(found) +
+           " would explain most of it. More points, less noise or more snapshots would decide.";
   if (!tests_kinetics(found.base))
     return formatted(
-        "No significant disagreement, but kinetics were not tested: these data know D "
-        "to a factor of %.2g only. Snapshots from times at which rafts still change, "
-        "and several of them, would tell.",
+        "No significant disagreement, but kinetics were not tested: these data determine D only to "
+        "a factor of %.2g. Several snapshots from times at which rafts still change would test "
+        "them.",
         std::exp(kNormal95 * found.base.pace_deviation));
-  return "No significant disagreement, but these data would hardly show an effect: they need "
-         "more points, less noise, or snapshots that are further apart.";
+  return "No significant disagreement, but these data would hardly show an effect. More points, "
+         "less noise or longer times between snapshots would help.";
 }
 
 }  // namespace
@@ -107,18 +108,15 @@ std::string verdict_sentence(const Explanation& found) {
     case Finding::ambiguous:
       return class_sentence(found);
     case Finding::below_resolution:
-      return "There is a disagreement, but the error of the model's mesh could be all of it: "
-             "repeat with more --cells.";
+      return "There is a disagreement, but the error of the model's mesh could explain all of it. "
+             "Repeat with more --cells.";
     case Finding::not_identifiable:
       return doubt_sentence(found);
     case Finding::unnamed:
       return (found.disagreements.empty()
-                  ? "Measurements and forecasts disagree in a pattern over the whole vesicle, in "
-                    "no "
-                    "single region beyond noise; none of the effects that were looked for explains "
-                    "it"
-                  : "There is a disagreement that none of the effects that were looked for "
-                    "explains") +
+                  ? "Measurements and forecasts disagree over the whole vesicle, but in no single "
+                    "region beyond noise. None of the effects in the search explains this"
+                  : "There is a disagreement that none of the effects in the search explains") +
              (closest.empty() ? "; none comes close." : "; " + closest + " comes closest.");
   }
   return "";

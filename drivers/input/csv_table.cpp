@@ -66,8 +66,8 @@ void refuse_row_as_remark(const std::filesystem::path& path, const Rows& rows,
   const auto columns = static_cast<std::ptrdiff_t>(rows.rows.front().size());
   if (columns > 1 && std::count(remark.begin(), remark.end(), ',') == columns - 1)
     throw InputError(path.string() + ":" + std::to_string(rows.line) +
-                     ": this remark has as many commas as a row; names cannot begin with #, and "
-                     "a row to leave out has to be deleted");
+                     ": this comment has as many commas as a row; names cannot begin with #, and a "
+                     "row to leave out must be deleted");
 }
 
 // As spreadsheets of many countries write tables, with commas within numbers.
@@ -87,7 +87,7 @@ Rows parse(const std::filesystem::path& path, std::string text) {
   Parser parser;
   const auto refuse = [&] {
     throw InputError(path.string() + ":" + std::to_string(rows.line) +
-                     ": this is no CSV (a quote within a cell, or one that does not end)");
+                     ": this is not CSV (a quote within a cell, or a quote that does not end)");
   };
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
@@ -111,7 +111,7 @@ void require_checksum(const std::filesystem::path& path, const std::string& text
   const std::size_t at = text.rfind(kChecksumRemark);
   if (at == std::string::npos) return;
   if (text.substr(at) != checksum_line(text.substr(0, at)))
-    throw DamagedFile(path.string() + " is damaged: its rows are not those that were written");
+    throw DamagedFile(path.string() + " is damaged: its rows have changed");
 }
 
 }  // namespace
@@ -121,7 +121,7 @@ CsvTable CsvTable::read(const std::filesystem::path& path) {
   require_checksum(path, text);
   if (text.find('\0') != std::string::npos)
     throw InputError(path.string() +
-                     " is no plain text, or in UTF-16; save the table as CSV in UTF-8");
+                     " is not plain text, or is in UTF-16; save the table as CSV in UTF-8");
   Rows rows = parse(path, std::move(text));
   CsvTable table;
   table.path_ = path;
@@ -142,7 +142,7 @@ CsvTable CsvTable::read(const std::filesystem::path& path) {
                        " cells, but there are " + std::to_string(table.columns_.size()) +
                        " columns" +
                        (table.cells_[i].size() > table.columns_.size()
-                            ? " (are there commas within numbers, where points are needed?)"
+                            ? " (do numbers have commas instead of points?)"
                             : ""));
   return table;
 }

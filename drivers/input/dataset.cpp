@@ -58,7 +58,7 @@ Dataset read_description(const fs::path& folder) {
 MeasuredVesicles read_dataset(const fs::path& folder) {
   Dataset d = read_description(folder);
   if (!std::filesystem::is_regular_file(d.table))
-    throw InputError(d.table.string() + ": there is no such table of measurements");
+    throw InputError(d.table.string() + ": the table of measurements does not exist");
   const CsvTable table = CsvTable::read(d.table);
   // Fields in the same folder are of one radius, which says nothing of the vesicles of a table.
   if (d.units.radius && table.has("radius") && !holds_fields(folder))

@@ -38,8 +38,8 @@ void check_columns(const CsvTable& table) {
                        unknown_name_message("column", column, known));
   if (table.rows() < kFewestPoints)
     throw InputError(table.path().string() + ": " + std::to_string(table.rows()) +
-                     " points are too few for a field (at least " + std::to_string(kFewestPoints) +
-                     ")");
+                     " points are too few for a field (needed: at least " +
+                     std::to_string(kFewestPoints) + ")");
 }
 
 FieldSnapshot read_snapshot(const CsvTable& table, double time, double to_radius) {
@@ -54,13 +54,12 @@ FieldSnapshot read_snapshot(const CsvTable& table, double time, double to_radius
     if (!table.has("sigma")) continue;
     snapshot.deviation[i] = table.number(row, "sigma");
     if (!(snapshot.deviation[i] > 0))
-      throw InputError(table.where(row, "sigma") + ": a standard deviation has to be positive");
+      throw InputError(table.where(row, "sigma") + ": a standard deviation must be positive");
   }
   // What is a million times as certain as the rest decides alone.
   if (snapshot.deviation.maxCoeff() > kMostUnlike * snapshot.deviation.minCoeff())
     throw InputError(table.path().string() +
-                     ", column sigma: the largest is more than a million times the "
-                     "smallest, " +
+                     ", column sigma: the largest is more than a million times the smallest, " +
                      format_number(snapshot.deviation.minCoeff()));
   return snapshot;
 }
@@ -69,25 +68,25 @@ void read_blur(const TomlTable& toml, double length, FieldDataset& data) {
   if (!toml.has("blur")) return;
   data.blur_um = toml.number("blur") * length;
   if (!(*data.blur_um >= 0 && *data.blur_um < kWidestBlur * data.radius_um))
-    throw InputError(toml.where("blur") + formatted(": it has to be from 0 to %.2g of the radius, "
-                                                    "a standard deviation",
-                                                    kWidestBlur));
+    throw InputError(
+        toml.where("blur") +
+        formatted(": it must be from 0 to %.2g of the radius (a standard deviation)", kWidestBlur));
 }
 
 void read_noise(const TomlTable& toml, double length, FieldDataset& data) {
   const char *size = "noise_correlation", *share = "noise_share";
   if (toml.has(size) != toml.has(share))
-    throw InputError(toml.where(toml.has(size) ? size : share) + ": it stands without " +
+    throw InputError(toml.where(toml.has(size) ? size : share) + ": it needs " +
                      (toml.has(size) ? share : size));
   if (!toml.has(size)) return;
   data.noise_correlation_um = toml.number(size) * length;
   data.noise_share = toml.number(share);
   if (!(data.noise_share >= 0 && data.noise_share <= 1))
-    throw InputError(toml.where(share) + ": it has to be from 0 to 1, a part of the variance");
+    throw InputError(toml.where(share) + ": it must be from 0 to 1, as a share of the variance");
   if (!(data.noise_correlation_um > 0 &&
         data.noise_correlation_um <= kLongestCorrelation * data.radius_um))
     throw InputError(toml.where(size) +
-                     formatted(": it has to be from 0 to %.2g of the radius", kLongestCorrelation));
+                     formatted(": it must be from 0 to %.2g of the radius", kLongestCorrelation));
 }
 
 // Whose each snapshot is.
@@ -109,7 +108,7 @@ FieldSeries& series_of(const TomlTable& toml, const std::string& vesicle, FieldD
   for (const FieldSeries& before : all)
     if (before.vesicle == vesicle)
       throw InputError(toml.where("vesicles") + ": snapshots of vesicle " + vesicle +
-                       " have to follow each other");
+                       " must follow each other");
   all.push_back({vesicle, {}});
   return all.back();
 }
@@ -157,7 +156,7 @@ FieldDataset read_field_dataset(const fs::path& folder) {
     auto& snapshots = series_of(toml, vesicles[k], data).snapshots;
     const double time = checked_time((times[k] + offset) * second, toml.where("times"));
     if (!snapshots.empty() && !(time > snapshots.back().time))
-      throw InputError(toml.where("times") + ": times of a vesicle have to ascend");
+      throw InputError(toml.where("times") + ": times of a vesicle must ascend");
     const fs::path file = folder / snapshot_file(k + 1);
     if (!fs::exists(file))
       throw InputError(toml.where("times") + ": " + std::to_string(times.size()) +
@@ -165,9 +164,9 @@ FieldDataset read_field_dataset(const fs::path& folder) {
     const CsvTable table = CsvTable::read(file);
     if (k == 0) with_sigma = table.has("sigma");
     if (table.has("sigma") != with_sigma)
-      throw InputError(table.path().string() +
-                       ": the column sigma is in some snapshots only, so "
-                       "that nobody knows the noise of the others");
+      throw InputError(
+          table.path().string() +
+          ": only some snapshots have a column sigma; the noise of the others is then unknown");
     snapshots.push_back(read_snapshot(table, time, length / data.radius_um));
   }
   refuse_incomplete(folder, toml, times.size(), data);
@@ -184,8 +183,8 @@ std::string note_on_distance(const FieldDataset& data) {
   std::nth_element(distances.begin(), middle, distances.end());
   if (std::fabs(*middle - 1) <= kFar) return "";
   return formatted(
-      "Half of the points are further than %.4g um from the centre, half are nearer, "
-      "and the radius is said to be %.4g um: is it?",
+      "The median distance of the points from the centre is %.4g um, but the stated radius is %.4g "
+      "um. Is it right?",
       *middle * data.radius_um, data.radius_um);
 }
 
@@ -200,8 +199,8 @@ std::string note_on_scale(const FieldDataset& data, double a, double b) {
     }
   if (far <= kMost * all) return "";
   return formatted(
-      "%.0f %% of the values of c are further from the phases, %g and %g, than half of their "
-      "distance: is c on that scale?",
+      "%.0f %% of the values of c differ from the phases, %g and %g, by more than half of the "
+      "distance of the phases. Is c on this scale?",
       100 * far / all, a, b);
 }
 

@@ -49,16 +49,18 @@ Measurement begin_measurement(const TableUnits& units, const CsvTable& table, st
   if (before.back().vesicle != m.vesicle) finished.insert(before.back().vesicle);
   if (finished.count(m.vesicle))
     throw InputError(table.where(row, "vesicle") + ": vesicle '" + m.vesicle +
-                     "' is there twice; keep its rows together, or give it another name");
+                     "' occurs twice; keep its rows together, or use another name");
   if (before.back().vesicle == m.vesicle && !(m.time > before.back().time))
-    throw InputError(table.where(row, "time") + ": times of a vesicle have to ascend (before it: " +
+    throw InputError(table.where(row, "time") +
+                     ": times of a vesicle must ascend (the time before is " +
                      format_number(before.back().time / units.time - units.time_offset) + ")");
   if (before.back().vesicle == m.vesicle &&
       std::max(m.radius, before.back().radius) >
           kSameRadius * std::min(m.radius, before.back().radius))
     throw InputError(table.where(row, "radius") + ": vesicle '" + m.vesicle + "' had a radius of " +
-                     format_number(before.back().radius) + " um a look before, and has " +
-                     format_number(m.radius) + " um now; are these two vesicles?");
+                     format_number(before.back().radius) +
+                     " um at the observation before, and has " + format_number(m.radius) +
+                     " um now. Are these two vesicles?");
   return m;
 }
 
@@ -149,7 +151,7 @@ std::optional<Cap> cap_of(const TableUnits& units, const CsvTable& table, std::s
     cap.sigma = *sigma * units.length;
   if (cap.base_radius > 0) return cap;
   throw InputError(table.where(row, "cap_radius") +
-                   ": a raft has a size; leave the cell empty for a look that shows no raft");
+                   ": a raft has a size; leave the cell empty for an observation without rafts");
 }
 
 // A row per raft, or one for a look without rafts; those of one look stand together.
@@ -165,19 +167,21 @@ std::vector<Measurement> read_caps(const TableUnits& units, const CsvTable& tabl
            table.number(row, "time") == table.number(first, "time");
          ++row) {
       if (radius_of(units, table, row) != m.radius)
-        throw InputError(table.where(row, "radius") + ": one look at a vesicle, two radii");
+        throw InputError(table.where(row, "radius") +
+                         ": one observation of a vesicle has two radii");
       if (row > first && (table.empty(row, "cap_radius") || table.empty(first, "cap_radius")))
-        throw InputError(table.where(row, "cap_radius") + ": a look without rafts has one row");
+        throw InputError(table.where(row, "cap_radius") +
+                         ": an observation without rafts has one row");
       const auto cap = cap_of(units, table, row, m.radius);
       if (cap && !caps.empty() && cap->sigma.has_value() != caps.front().sigma.has_value())
         throw InputError(table.where(row, "cap_radius_sigma") +
-                         ": of the rafts of one look either all have a sigma or none");
+                         ": within one observation, all rafts or none must have a sigma");
       if (cap) caps.push_back(*cap);
     }
     set_caps(m, caps);
     if (*m.of(Quantity::fraction) > 1)
       throw InputError(table.where(first, "cap_radius") +
-                       ": the caps of this look cover more than the whole vesicle");
+                       ": the caps of this observation cover more than the whole vesicle");
     looks.push_back(m);
   }
   return looks;

@@ -20,9 +20,10 @@ void refuse_without_model(const std::string& composition, const std::string& mod
                           const GivenValues& flags) {
   if (!model.empty() || flags.count("case") > 0) return;
   const std::string own = case_of(composition);
-  throw InputError(
-      "--case or --model: say which model to hold the measurements against" +
-      (own.empty() ? std::string() : "; theirs, " + composition + ", is --case " + own));
+  throw InputError("--case or --model: a model is needed to compare the measurements with" +
+                   (own.empty()
+                        ? std::string()
+                        : "; for their composition, " + composition + ", it is --case " + own));
 }
 
 std::string other_membrane(const std::string& composition, const Configuration& model) {
@@ -34,8 +35,8 @@ std::string other_membrane(const std::string& composition, const Configuration& 
         model.options().raft_fraction != std::strtod(value.c_str(), nullptr))
       return "";
   return entry.composition + " (case " + entry.name +
-         (model.given(&RunOptions::case_name) ? "" : ", by default") + "), the measurements of " +
-         composition;
+         (model.given(&RunOptions::case_name) ? "" : ", by default") +
+         "), but that of the measurements is " + composition;
 }
 
 }  // namespace traceraft

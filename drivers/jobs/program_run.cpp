@@ -46,12 +46,12 @@ int ProcessEnd::signal() const {
 }
 
 std::string ProcessEnd::reason() const {
-  if (exit_code == 127) return "mpirun is not there; install the Debian package openmpi-bin";
-  if (exit_code == kInterrupted) return "it was stopped; the same command goes on with it";
-  if (signal() == SIGKILL) return "it was killed; was there too little memory?";
+  if (exit_code == 127) return "mpirun is not installed (Debian package openmpi-bin)";
+  if (exit_code == kInterrupted) return "it was stopped; the same command continues it";
+  if (signal() == SIGKILL) return "it was killed; memory may have been too small";
   if (signal() > 0)
     return std::string("it crashed: ") + strsignal(signal()) +
-           (last_line.empty() ? "" : "; it had said: " + last_line);
+           (last_line.empty() ? "" : "; its last message: " + last_line);
   const std::string prefix = "traceraft: ";
   if (last_line.rfind(prefix, 0) == 0) return last_line.substr(prefix.size());
   return last_line.empty() ? "exit code " + std::to_string(exit_code) : last_line;

@@ -130,7 +130,7 @@ std::string plain_name(const std::filesystem::path& stem) {
   if (name.empty() || name.size() > kLongestName || name[0] == '-' ||
       name.find_first_not_of(allowed) != std::string::npos)
     throw std::logic_error("'" + name.substr(0, kLongestName) +
-                           "' is no name for the files of a chart");
+                           "' cannot name the files of a chart");
   return name;
 }
 
@@ -212,7 +212,7 @@ std::string draw_chart(const Chart& chart, const std::filesystem::path& stem) {
   std::string svg = read_file(with(".svg"), 1 << 24);
   const std::size_t begin = svg.find("<svg");  // without the XML header: goes into pages
   if (begin == std::string::npos)
-    throw IoError(with(".svg").string() + " is no picture; does another process write it, too?");
+    throw IoError(with(".svg").string() + " is not a picture; another process may be writing it");
   return svg.substr(begin);
 }
 

@@ -24,7 +24,8 @@ std::string command_for(const std::string& command, const Configuration& configu
 void add_provenance(Page& page, const std::filesystem::path& folder, const std::string& command) {
   page.heading("Where this comes from");
   page.paragraph(program_text() + ", from the files in " +
-                 std::filesystem::absolute(folder).lexically_normal().string() + ". To repeat it:");
+                 std::filesystem::absolute(folder).lexically_normal().string() +
+                 ". This command repeats it:");
   page.code(command);
 }
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "backends/posix/process.hpp"
+#include "backends/ranks.hpp"
 #include "drivers/text/say.hpp"
 
 namespace traceraft {
@@ -26,7 +27,9 @@ std::string clock_text(double seconds) {
   return text;
 }
 
-StatusLine::StatusLine(bool quiet) : quiet_(quiet), terminal_(stdout_is_terminal()) {}
+// mpirun gives ranks a terminal of its own, wherever its output goes.
+StatusLine::StatusLine(bool quiet)
+    : quiet_(quiet), terminal_(stdout_is_terminal() && !RankSession::there_is()) {}
 
 bool StatusLine::due() const {
   return !quiet_ && (!shown_ || since_.seconds() >= (terminal_ ? kTerminalPause : kPlainPause));

@@ -57,7 +57,7 @@ void write_pictures(const ReportRequest& request) {
   if (request.quiet) return;
   say("%zu pictures in %s\n", images.size(), request.snapshots);
   if (fs::exists(fs::path(request.snapshots) / frame_name(images.size())))
-    say("later ones there are of another time\n");
+    say("pictures with larger numbers in this folder are from an earlier command\n");
 }
 
 // A slip of the pen must not write over a configuration or a table.
@@ -66,9 +66,9 @@ void refuse_other_files(const ReportRequest& request) {
     return path.extension() == extension;
   };
   if (!request.animation.empty() && !ends_on(request.animation, ".gif"))
-    throw InputError("--animation: " + request.animation + " has to end on .gif, which it will be");
+    throw InputError("--animation: " + request.animation + " must end in .gif");
   if (!request.out.empty() && (!ends_on(request.out, ".html") || fs::is_directory(request.out)))
-    throw InputError("--out: " + request.out + " has to be a file that ends on .html");
+    throw InputError("--out: " + request.out + " must be a file whose name ends in .html");
 }
 
 int report(const ReportRequest& request) {
@@ -81,7 +81,7 @@ int report(const ReportRequest& request) {
        request.data.empty() ? std::nullopt : std::optional(read_dataset(request.data))});
   write_pictures(request);
   if (!request.quiet) {
-    if (!missing.empty()) say("missing in the page: %s\n", missing);
+    if (!missing.empty()) say("missing from the page: %s\n", missing);
     say("open next: %s\n", out);
   }
   return kSuccess;
@@ -90,33 +90,36 @@ int report(const ReportRequest& request) {
 Action define_report(CLI::App& app) {
   const auto request = std::make_shared<ReportRequest>();
   app.add_option("folder", request->folder,
-                 "of a run, ensemble, comparison, calibration, verification, ...")
+                 "folder of a run, ensemble, comparison, calibration, verification, ...")
       ->type_name("DIR")
       ->required();
   app.add_option("--data", request->data,
-                 "folder of series of vesicles, to be shown beside a run or an ensemble")
+                 "folder of measured series, shown in the charts of a run or an ensemble")
       ->type_name("DIR");
-  app.add_option("--out", request->out, "page to write; default: report.html in the folder")
+  app.add_option("--out", request->out, "HTML file to write; default: report.html in the folder")
       ->type_name("FILE");
-  app.add_option("--frames", request->frames, "at most so many times of the fields")
+  app.add_option("--frames", request->frames, "largest number of output times that are shown")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
   app.add_option("--detail", request->detail,
-                 "smallest detail of the surface shown, in units of its size")
+                 "size of the smallest detail of the surface that is shown, in units of the size "
+                 "of the surface")
       ->check(between(1e-4, 0.2))
       ->capture_default_str();
-  app.add_option("--snapshots", request->snapshots, "folder for pictures (PNG) of all frames")
+  app.add_option("--snapshots", request->snapshots,
+                 "folder for pictures (PNG) of all frames, and a table of their times")
       ->type_name("DIR");
-  app.add_option("--animation", request->animation, "animation (GIF) of all frames")
+  app.add_option("--animation", request->animation, "file for an animation (GIF) of all frames")
       ->type_name("FILE");
-  app.add_option("--pixels", request->pixels, "height of pictures and animation")
+  app.add_option("--pixels", request->pixels, "height of pictures and animation, in pixels")
       ->check(CLI::Range(16, 4096))
       ->capture_default_str();
-  app.add_option("--pause", request->pause, "of the animation between frames, in 1/100 s")
+  app.add_option("--pause", request->pause,
+                 "time between two frames of the animation, in units of 1/100 s")
       ->check(CLI::Range(2, 1000))
       ->capture_default_str();
-  app.add_flag("--bare", request->bare, "pictures and animation without the time in them");
-  app.add_flag("--quiet", request->quiet, "print nothing but errors");
+  app.add_flag("--bare", request->bare, "leave the time out of pictures and animation");
+  app.add_flag("--quiet", request->quiet, "print errors only");
   app.footer("Example: traceraft report runs/guv-2to1-1 --animation rafts.gif");
   return [request] { return report(*request); };
 }
@@ -124,7 +127,7 @@ Action define_report(CLI::App& app) {
 }  // namespace
 
 Command report_command() {
-  return {"report", "make a page, pictures and animations of what a folder holds", Ranks::one,
+  return {"report", "write a page, pictures or an animation of the results in a folder", Ranks::one,
           define_report};
 }
 

@@ -79,7 +79,7 @@ Chart series_chart(const CsvTable& series, const Curve& curve, bool scaled) {
 }
 
 void add_surface(Page& page, const fs::path& run, const PageRequest& request, Missing& missing) {
-  if (!fs::exists(run / "fields.pvd")) return missing.add("the run has written no fields");
+  if (!fs::exists(run / "fields.pvd")) return missing.add("the run wrote no fields");
   page.heading("The surface");
   const auto [low, high] = phases_of(run);
   const SurfaceFrames frames = read_frames(run, request.detail, request.frames);
@@ -115,8 +115,7 @@ void fill_run(Page& page, const fs::path& folder, const PageRequest& request, Mi
                  std::to_string(configuration.options().seed) + ".");
   add_surface(page, folder, request, missing);
   page.heading("In time");
-  if (request.data)
-    page.paragraph("Perimeters that were measured are drawn for a vesicle of this one's radius.");
+  if (request.data) page.paragraph("Measured perimeters are scaled to the radius of this vesicle.");
   require_whole_table(folder, "series.csv");
   const CsvTable series = CsvTable::read(folder / "series.csv");
   for (const Curve& curve : curves()) {
@@ -142,7 +141,7 @@ void add_comparison(Page& page, const fs::path& folder, std::size_t runs) {
   });
   if (compared != runs)
     page.paragraph(
-        formatted("OUT OF DATE: made of %zu runs, and there are %zu now; repeat "
+        formatted("OUT OF DATE: this comparison used %zu runs, and there are %zu now. Repeat "
                   "traceraft data compare.",
                   compared, runs));
   page.raw(page_body(read_file(folder / "comparison.html", kLargestPage)));
@@ -166,7 +165,7 @@ void add_all_runs(Page& page, const std::vector<History>& runs, bool physical,
 void fill_kept(Page& page, const fs::path& path, const PageRequest& request, Missing& missing) {
   const Configuration configuration = model_of(path);
   const std::vector<History> runs = runs_of(path).histories;
-  page.paragraph(formatted("What is kept of %zu runs of the case ", runs.size()) +
+  page.paragraph(formatted("Kept histories of %zu runs of the case ", runs.size()) +
                  configuration.options().case_name + ".");
   add_all_runs(page, runs, true, request, missing);
   add_settings(page, configuration);
@@ -189,7 +188,7 @@ void fill_ensemble(Page& page, const fs::path& path, const PageRequest& request,
   const EnsemblePlan plan = folder.load();
   page.paragraph(formatted("%zu of %d runs of the case ", runs.size(), plan.runs) +
                  configuration.options().case_name + ", seeds " + std::to_string(plan.first_seed) +
-                 " to " + std::to_string(plan.last_seed()) + ". Shown is " +
+                 " to " + std::to_string(plan.last_seed()) + ". The surface is that of " +
                  shown.filename().string() + ".");
   for (const MemberFailure& failure : finished.damaged)
     page.paragraph("The run of seed " + std::to_string(failure.seed) +
@@ -204,9 +203,9 @@ void introduce(const MeasuredVesicles& data, const fs::path& folder, Page& page)
   const Configuration model(read_config_file(folder / "config.toml"), {});
   if (model.units().scaled)
     throw InputError("--data: times of " + folder.string() + " are in units of R^2/D, not in s");
-  page.paragraph("Beside " + about_data(data) + ".");
+  page.paragraph("Measurements: " + about_data(data) + ".");
   if (const std::string other = other_membrane(data.composition, model); !other.empty())
-    page.paragraph("ANOTHER MEMBRANE: the simulations are of " + other + ".");
+    page.paragraph("ANOTHER MEMBRANE: the simulated membrane is " + other + ".");
 }
 
 }  // namespace
@@ -218,7 +217,7 @@ fs::path run_to_show(const fs::path& path) {
     for (const std::uint64_t seed : folder.load().seeds())
       if (folder.member(seed).end == MemberEnd::finished) return folder.run_of(seed);
   }
-  throw InputError(path.string() + " holds no run that could be shown");
+  throw InputError(path.string() + " holds no finished run to show");
 }
 
 std::vector<std::string> time_labels(const fs::path& run_folder, const std::vector<double>& times) {
@@ -242,16 +241,18 @@ std::string write_report_page(const fs::path& folder, const fs::path& out,
   };
   if (const std::string page = finished_page(folder); !page.empty()) {
     if (request.data)
-      throw InputError("--data: the page of " + folder.string() +
-                       " is made; measurements are shown beside runs and ensembles");
+      throw InputError(
+          "--data: the page of " + folder.string() +
+          " is already written; measurements can be shown with runs and ensembles only");
     make_folder(out.parent_path());
     write_durably(out, page);
     return "";
   }
   const bool kept = !is_run(folder) && !is_ensemble(folder) && keeps_histories(folder);
   if (!is_run(folder) && !is_ensemble(folder) && !kept)
-    throw InputError(folder.string() +
-                     " holds no run, ensemble, comparison or verification of traceraft");
+    throw InputError(
+        folder.string() +
+        " holds no results of traceraft: no run, ensemble, comparison or verification");
   Page page("traceraft: " + fs::absolute(folder).lexically_normal().filename().string());
   if (request.data) introduce(*request.data, folder, page);
   make_folder(out.parent_path());

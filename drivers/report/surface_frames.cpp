@@ -130,7 +130,8 @@ SurfaceFrames read_frames(const fs::path& run_folder, double detail, int most) {
       std::remove_if(files.begin(), files.end(),
                      [&](const auto& file) { return !fs::exists(run_folder / file.second); }),
       files.end());
-  if (files.empty()) throw InputError(collection.string() + " names no fields that are there");
+  if (files.empty())
+    throw InputError(collection.string() + " names only fields that no longer exist");
   const auto count = static_cast<int>(files.size()), shown = std::min(count, std::max(most, 1));
   SurfaceFrames frames;
   std::optional<Grid> grid;

@@ -88,7 +88,7 @@
     const canvas = renderer.domElement;
     canvas.tabIndex = 0;
     canvas.setAttribute('role', 'img');
-    canvas.setAttribute('aria-label', 'the surface; arrow keys turn it');
+    canvas.setAttribute('aria-label', 'the surface; arrow keys rotate it');
     canvas.addEventListener('keydown', (event) => {
       const keys = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
       const turn = keys[event.key];

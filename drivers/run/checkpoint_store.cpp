@@ -101,16 +101,16 @@ std::string encode(const Checkpoint& checkpoint) {
 
 Checkpoint decode(const std::string& data) {
   if (data.compare(0, kMagicSize, kMagic) != 0)
-    throw IoError("it is no checkpoint of this version");
+    throw IoError("it is not a checkpoint of this version");
   Reader head(std::string_view(data).substr(kMagicSize));
   const auto size = head.number<std::uint64_t>();
   const auto checksum = head.number<std::uint32_t>();
   const std::string_view body = std::string_view(data).substr(kPrefixSize);
-  if (body.size() != size) throw IoError("it is torn");
+  if (body.size() != size) throw IoError("its end is missing");
   if (crc32_of(body) != checksum) throw IoError("it is damaged");
   Reader in(body);
   if (in.number<std::uint32_t>() != report_layout())
-    throw IoError("it is of a version that reports other numbers");
+    throw IoError("it is from a version that reports other numbers");
   Checkpoint checkpoint;
   checkpoint.configuration = in.text();
   for (auto tables = in.number<std::uint64_t>(); tables > 0; --tables) {
@@ -167,7 +167,7 @@ Checkpoint CheckpointStore::newest() const {
   std::vector<std::string> refused;
   Checkpoint checkpoint = newest(refused);
   for (const std::string& why : refused)
-    say_error("refused " + why + "; using the checkpoint before it");
+    say_error("unusable checkpoint: " + why + "; the one before it is used");
   return checkpoint;
 }
 
@@ -175,7 +175,7 @@ Vec concentration_of(const Checkpoint& checkpoint, const std::filesystem::path& 
                      int nodes) {
   if (checkpoint.concentration.size() != static_cast<std::size_t>(nodes))
     throw IoError(run_folder.string() + " has " + std::to_string(checkpoint.concentration.size()) +
-                  " nodes, this run has " + std::to_string(nodes));
+                  " nodes, but this run has " + std::to_string(nodes));
   return Eigen::Map<const Vec>(checkpoint.concentration.data(), nodes);
 }
 
@@ -208,8 +208,8 @@ Vec final_concentration(const std::filesystem::path& run_folder, int nodes,
     const std::string theirs = line_of(checkpoint.configuration, option);
     const std::string ours = line_of(identity, option);
     if (theirs != ours)
-      throw InputError("restart: " + run_folder.string() + " has " + theirs + ", this run has " +
-                       ours);
+      throw InputError("restart: " + run_folder.string() + " has " + theirs +
+                       ", but this run has " + ours);
   }
   return concentration_of(checkpoint, run_folder, nodes);
 }

@@ -23,7 +23,7 @@ TableExtent extent_in(const Json& tables, const std::string& name) {
   std::uint32_t checksum = 0;
   const auto parsed = std::from_chars(digits.data(), digits.data() + digits.size(), checksum, 16);
   if (parsed.ec != std::errc() || parsed.ptr != digits.data() + digits.size())
-    throw DamagedFile("the summary of a run is damaged: '" + digits + "' is no checksum");
+    throw DamagedFile("the summary of a run is damaged: '" + digits + "' is not a checksum");
   return {table.at("bytes").get<std::uint64_t>(), checksum};
 }
 
@@ -48,7 +48,7 @@ Vec concentration_at_end(const std::filesystem::path& run_folder, int nodes) {
   const Checkpoint last = CheckpointStore(run_folder / "checkpoints").newest();
   if (static_cast<double>(last.step) != summary_number(run_folder, "steps"))
     throw IoError(run_folder.string() +
-                  " has lost its last checkpoint; delete that folder to repeat the run");
+                  " has lost its last checkpoint; delete this folder to repeat the run");
   return concentration_of(last, run_folder, nodes);
 }
 

@@ -22,7 +22,7 @@ std::vector<CapRaft> parse_caps(const Configuration& configuration) {
     for (std::string word; words >> word;) numbers.push_back(parse_number(where, word));
     if (numbers.empty()) continue;
     if (numbers.size() != 4)
-      throw InputError(where + ": '" + item + "' needs four numbers, x y z angle");
+      throw InputError(where + ": '" + item + "' must have four numbers, x y z angle");
     const Point direction(numbers[0], numbers[1], numbers[2]);
     if (direction.norm() == 0) throw InputError(where + ": a direction is zero in '" + item + "'");
     if (!(numbers[3] > 0 && numbers[3] < 180))
@@ -57,7 +57,10 @@ Vec initial_field(const Configuration& configuration, const CahnHilliardModel& m
                   const SurfaceSpace& space) {
   const std::string kind = configuration.options().initial;
   const InitialRequest request = initial_request(configuration, model);
-  return with_option_context(configuration, &RunOptions::initial, [&] {
+  const auto option = kind == "formula" ? &RunOptions::initial_formula
+                      : kind == "caps"  ? &RunOptions::initial_caps
+                                        : &RunOptions::initial;
+  return with_option_context(configuration, option, [&] {
     const auto [name, folder] = split_named_arguments(kind);
     if (name == "restart") {
       const bool root = space.communicator->root();

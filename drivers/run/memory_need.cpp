@@ -36,8 +36,8 @@ std::string memory_complaint(std::int64_t cells, double need, double there_is) {
   if (need <= there_is) return "";
   const double fitting = static_cast<double>(cells) * std::sqrt(there_is / need);
   return formatted(
-      "%lld per edge need at least %.0f GB of memory on each rank, and this machine "
-      "has %.0f; take %.0f at most, or ranks on several machines",
+      "%lld per edge need at least %.0f GB of memory on each rank, and this machine has %.0f GB; "
+      "choose %.0f at most, or ranks on several machines",
       static_cast<long long>(cells), need / kGigabyte, there_is / kGigabyte, fitting);
 }
 

@@ -47,8 +47,8 @@ CahnHilliardModel model_without_effects(const Configuration& configuration) {
   result.well = double_well(configuration);
   if (!result.mobility->constant() && (result.well.a != 0 || result.well.b != 1))
     throw InputError(configuration.where(&RunOptions::well) +
-                     ": the degenerate mobility c(1-c) belongs to wells at 0 and 1; choose "
-                     "--mobility constant:value=0.25");
+                     ": the degenerate mobility c(1-c) needs wells at 0 and 1; choose --mobility "
+                     "constant:value=0.25 for others");
   result.epsilon = configuration.options().epsilon / units.length();
   const std::string rule = one_of(configuration, &RunOptions::potential, "potential");
   result.rule = rule == "averaged"     ? PotentialRule::averaged

@@ -80,7 +80,7 @@ int carry_out(const Configuration& configuration, RunSetup& run, const RunFolder
                   summary_json(configuration, run, state, result, cost, memory, tables->extents()));
   if (!quiet) print_summary(configuration, run, state, result, cost, memory, folder);
   if (result.end == RunEnd::stopped && !quiet)
-    say("  go on with             traceraft resume %s\n", in_shell(folder.path.string()));
+    say("  continue with          traceraft resume %s\n", in_shell(folder.path.string()));
   if (result.end == RunEnd::failed && root)
     say_error(formatted("numerical failure at t = %g: ", state.row.t * run.units.time()) +
               result.why);
@@ -95,7 +95,7 @@ std::optional<Checkpoint> last_checkpoint(const RunFolder& folder,
   Checkpoint checkpoint = store.newest();
   if (checkpoint.configuration != numerical_identity(configuration))
     throw InputError(folder.config().string() +
-                     " is not what the checkpoint was written with; restore it, or start a new "
+                     " has changed since the checkpoint was written; restore it, or start a new "
                      "run with --initial restart:" +
                      folder.path.string());
   return checkpoint;
@@ -110,7 +110,7 @@ int run(const RunRequest& request) {
   if (!quiet) print_setup(configuration, run);
   if (request.validate) {
     if (!request.out.empty()) refuse_files_of_a_run(request.out);
-    if (!quiet) say("everything is valid; nothing was run\n");
+    if (!quiet) say("all settings are valid; nothing was run\n");
     return kSuccess;
   }
   const RunFolder folder =
@@ -121,7 +121,8 @@ int run(const RunRequest& request) {
 
 int resume(const ResumeRequest& request) {
   if (request.folder.empty())
-    throw InputError("resume: needs the run folder, as in: traceraft resume runs/guv-2to1-1");
+    throw InputError(
+        "resume: the folder of a run is needed, as in traceraft resume runs/guv-2to1-1");
   end_on_stop_signals(kInterrupted, "");  // before there are threads
   const std::shared_ptr<const Communicator> ranks = world();
   const RunFolder folder = shared_folder(*ranks, [&] { return open_run_folder(request.folder); });
@@ -137,7 +138,7 @@ int resume(const ResumeRequest& request) {
     if (checkpoint)
       say("  %-22s %s from step %ld\n\n", "resumed", folder.path, checkpoint->step);
     else
-      say("  %-22s %s, which has no checkpoint: its steps are taken again\n\n", "begun anew",
+      say("  %-22s %s, which has no checkpoint; the run starts again\n\n", "restarted",
           folder.path);
   }
   return carry_out(configuration, run, folder, checkpoint, quiet);
@@ -145,26 +146,27 @@ int resume(const ResumeRequest& request) {
 
 Action define_run(CLI::App& app) {
   const auto request = std::make_shared<RunRequest>();
-  app.add_option("--config", request->config_file, "TOML file with the flags' names as keys")
+  app.add_option("--config", request->config_file,
+                 "TOML file of settings, with names of flags as keys")
       ->type_name("FILE");
-  app.add_option("--out", request->out, "run folder; default: runs/<case>-<number>")
+  app.add_option("--out", request->out, "new folder of the run; default: runs/<case>-<number>")
       ->type_name("DIR");
-  app.add_flag("--validate", request->validate, "check everything, then stop");
-  app.add_flag("--quiet", request->quiet, "print nothing but errors");
+  app.add_flag("--validate", request->validate,
+               "check all settings and stop before the first step");
+  app.add_flag("--quiet", request->quiet, "print errors only");
   add_options(app, request->flags, [](const OptionSpec&) { return true; });
   app.footer(
-      "Values come from defaults, then the case, then --config, then flags. Exit codes: 0 "
-      "success,\n"
-      "2 bad input, 3 numerical failure, 4 input/output, 5 interrupted (checkpoint written),\n"
-      "6 folder in use.\n"
+      "A flag overrides --config, which overrides the case, which overrides the defaults.\nExit "
+      "codes: 0 success, 2 bad input, 3 numerical failure, 4 input/output,\n5 interrupted "
+      "(checkpoint written), 6 folder in use.\n"
       "Example: traceraft run --case guv-2to1 --cells 64 --epsilon 0.1 --t-end 100");
   return [request] { return run(*request); };
 }
 
 Action define_resume(CLI::App& app) {
   const auto request = std::make_shared<ResumeRequest>();
-  app.add_option("folder", request->folder, "run folder")->type_name("DIR");
-  app.add_flag("--quiet", request->quiet, "print nothing but errors");
+  app.add_option("folder", request->folder, "folder of the run to continue")->type_name("DIR");
+  app.add_flag("--quiet", request->quiet, "print errors only");
   add_options(app, request->flags, [](const OptionSpec& spec) { return !spec.numerical; });
   return [request] { return resume(*request); };
 }
@@ -176,7 +178,7 @@ Command run_command() {
 }
 
 Command resume_command() {
-  return {"resume", "go on with an interrupted run", Ranks::several, define_resume};
+  return {"resume", "continue an interrupted run", Ranks::several, define_resume};
 }
 
 }  // namespace traceraft

@@ -54,8 +54,8 @@ void refuse_files_of_a_run(const fs::path& path) {
     if (fs::exists(fs::symlink_status(ours)))
       throw InputError("--out: " + path.string() + " already holds " + ours.filename().string() +
                        (holds_runs(path)
-                            ? std::string(", of a set of runs")
-                            : "; go on with: traceraft resume " + in_shell(path.string())) +
+                            ? std::string(" of a set of runs")
+                            : "; continue it with: traceraft resume " + in_shell(path.string())) +
                        "; choose another folder");
   refuse_folder_of_others(path);
   refuse_foreign_folder(path, {});
@@ -67,24 +67,24 @@ void refuse_folder_of_others(const fs::path& path) {
                              "comparison.json", "campaign.md", "plan.json", "runs"})
     if (fs::exists(path / others))
       throw InputError("--out: " + path.string() + " holds " + others +
-                       ", of another command; choose another folder");
+                       " of another command; choose another folder");
 }
 
 void refuse_begun(const fs::path& path) {
-  throw InputError("another process has just begun something in " + path.string() +
-                   "; give the command again, or choose a folder by --out");
+  throw InputError("another process has just started to work in " + path.string() +
+                   "; give the command again, or choose a folder with --out");
 }
 
 void refuse_foreign_folder(const fs::path& path, const std::vector<std::string>& own) {
   if (!fs::exists(path)) return;
-  if (!fs::is_directory(path)) throw InputError("--out: " + path.string() + " is no folder");
+  if (!fs::is_directory(path)) throw InputError("--out: " + path.string() + " is not a folder");
   if (std::any_of(own.begin(), own.end(),
                   [&](const std::string& name) { return fs::exists(path / name); }))
     return;
   for (const auto& entry : fs::directory_iterator(path))
     if (entry.path().filename() != kLockFile && !is_temporary_file(entry.path()))
       throw InputError("--out: " + path.string() + " holds " + entry.path().filename().string() +
-                       ", which is nothing of this command; choose another folder");
+                       ", which this command did not write; choose another folder");
 }
 
 RunFolder shared_folder(const Communicator& ranks, const std::function<RunFolder()>& open) {
@@ -136,13 +136,12 @@ RunFolder create_run_folder(const std::string& out, const Configuration& configu
 RunFolder open_run_folder(const fs::path& path) {
   RunFolder folder;
   folder.path = path;
-  if (!fs::is_directory(path)) throw InputError(path.string() + " is no folder");
+  if (!fs::is_directory(path)) throw InputError(path.string() + " is not a folder");
   if (!fs::exists(folder.config()))
     throw InputError(path.string() + " holds no run: there is no config.toml");
   if (holds_runs(path))
     throw InputError(path.string() +
-                     " holds a set of runs; to go on with it, give the command that made it again, "
-                     "with --out " +
+                     " holds a set of runs; to continue it, repeat its command with --out " +
                      in_shell(path.string()));
   folder.lock = std::make_unique<FolderLock>(path);
   create_sub_folders(folder);

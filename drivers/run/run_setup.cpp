@@ -23,7 +23,7 @@ int thread_count(const Configuration& configuration, const Communicator& ranks) 
     // A run of one rank may have had two, and goes on with more ranks.
     if (asked > 1 && configuration.from_flag(&RunOptions::threads))
       throw InputError(configuration.where(&RunOptions::threads) +
-                       ": several ranks have one thread each; start more ranks instead");
+                       ": with several ranks each has one thread; start more ranks instead");
     return 1;
   }
   if (asked > 0) return asked;
@@ -95,8 +95,8 @@ RunSetup build_run(const Configuration& configuration, InitialState initial,
   run.problem = std::make_unique<CahnHilliard>(run.space, physics);
   if (settings.reject_energy_rises && !run.problem->dissipates_energy())
     throw InputError(configuration.where(&RunOptions::energy_guard) +
-                     ": reject is for models that can only lose energy, and this one need not; "
-                     "choose warn or off");
+                     ": reject needs a model that can only lose energy, and this one may gain "
+                     "energy; choose warn or off");
   if (initial == InitialState::build) {
     run.initial = initial_field(configuration, physics, *run.space);
     run.initial_mean = run.space->integral(run.initial) / run.space->area;

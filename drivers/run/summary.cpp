@@ -41,10 +41,11 @@ std::string energy_text(const Configuration& configuration, const RunSetup& run,
                         const RunState& state) {
   const std::string energy = formatted("%.6g %s", state.row.energy * run.units.area(),
                                        unit_name(Unit::area, run.units.scaled).c_str());
-  if (!run.problem->dissipates_energy()) return energy + " (the model need not lose energy)";
+  if (!run.problem->dissipates_energy()) return energy + " (the energy may grow in this model)";
   if (configuration.options().energy_guard == "off") return energy;
   const long refused = run.integrator->statistics().energy_rises;
-  const std::string cut = refused > 0 ? formatted(", %ld steps cut because it grew", refused) : "";
+  const std::string cut =
+      refused > 0 ? formatted(", %ld steps shortened because it grew", refused) : "";
   if (state.monitor.energy_rises() == 0) return energy + ", falls in every step" + cut;
   return energy +
          formatted(", GROWS in %ld steps, by at most %.0e of the initial energy;",
@@ -107,8 +108,8 @@ std::string resolution_text(const Configuration& configuration, const RunSetup& 
       "epsilon = %g um = %g R, h/epsilon = %.2f, %.1f %% of its gradient energy resolved%s",
       epsilon * run.units.radius_um, epsilon, ratio, 100 * run.boundary.resolved,
       is_as_wide_as(configuration.options().surface, model)
-          ? "; AS WIDE AS THE VESICLE: take a smaller --epsilon"
-      : ratio > kCoarse ? "; TOO COARSE: take more --cells"
+          ? "; TOO WIDE FOR THE VESICLE: choose a smaller --epsilon"
+      : ratio > kCoarse ? "; TOO COARSE: choose more --cells"
                         : "");
 }
 
@@ -145,7 +146,7 @@ void print_setup(const Configuration& configuration, const RunSetup& run) {
                              units.diffusion_cm2_s));
   if (!configuration.options().effect.empty()) line("effects", configuration.options().effect);
   if (const double longest = run.problem->longest_step(); longest < run.t_end)
-    line("steps", formatted("%.0f or more: at most %g %s each, which its effects need",
+    line("steps", formatted("at least %.0f: its effects limit a step to %g %s",
                             std::ceil(run.t_end / longest), longest * units.time(),
                             unit_name(Unit::time, units.scaled).c_str()));
   line("units", formatted("length R = %g um, time R^2/D = %g s; the run ends at %g s = %g R^2/D",
@@ -187,13 +188,13 @@ void print_summary(const Configuration& configuration, const RunSetup& run, cons
   line("energy", energy_text(configuration, run, state));
   line("mass drift",
        formatted("%.1e relative%s", state.monitor.mass_drift(),
-                 run.problem->conserves_mass() ? "" : " (the model need not conserve mass)"));
+                 run.problem->conserves_mass() ? "" : " (the mass may change in this model)"));
   line("c on the surface", formatted("%.3f to %.3f", row.c_min, row.c_max));
   const std::string first_order =
       steps.first_order > 0 ? formatted(" (%ld with the first-order solution)", steps.first_order)
                             : "";
   line("steps", formatted("%ld accepted", steps.steps) + first_order +
-                    formatted(", and repeated with smaller steps: %ld too inexact, %ld not solved",
+                    formatted(", %ld rejected (error too large), %ld failed (not solved)",
                               steps.rejected, steps.failures));
   if (steps.newton_iterations > 0)
     line("Newton iterations",
@@ -212,7 +213,8 @@ void print_summary(const Configuration& configuration, const RunSetup& run, cons
     line("open next", (folder.path / "view.png").string() +
                           " (front and back at the latest output time; rafts are yellow)");
     line("or", "paraview " + in_shell((folder.path / "fields.pvd").string()));
-    line("or", "traceraft report " + in_shell(folder.path.string()) + " (a page with charts)");
+    line("or",
+         "traceraft report " + in_shell(folder.path.string()) + " (writes a page with charts)");
   }
 }
 

@@ -21,13 +21,13 @@ std::uint64_t checked_size(const std::filesystem::path& path, const TableExtent&
 void require_extent(const std::filesystem::path& path, const TableExtent& extent) {
   const std::string text = read_file(path, kLargestTable);
   if (text.size() < extent.bytes)
-    throw DamagedFile(path.string() + " has lost rows: it is shorter than the " +
-                      std::to_string(extent.bytes) + " bytes it had");
+    throw DamagedFile(path.string() + " has lost rows: it should have " +
+                      std::to_string(extent.bytes) + " bytes");
   const std::string_view counted = std::string_view(text).substr(0, extent.bytes);
   if (crc32_of(counted) != extent.checksum)
-    throw DamagedFile(path.string() +
-                      " is damaged: its rows are not those that were written; restore it, or begin "
-                      "anew in another folder");
+    throw DamagedFile(
+        path.string() +
+        " is damaged: its rows have changed; restore it, or start again in another folder");
 }
 
 TableFile::TableFile(const std::filesystem::path& path, const TableExtent& extent)

@@ -176,6 +176,11 @@ std::string in_one_line(const std::string& text, std::size_t most) {
     tail = next + tail;
     end = begin;
   }
+  // Between words, unless one is long.
+  constexpr std::size_t kLongWord = 40;
+  if (const std::size_t cut = head.rfind(' '); cut != head.npos && head.size() - cut < kLongWord)
+    head.resize(cut);
+  if (const std::size_t cut = tail.find(' '); cut < kLongWord) tail.erase(0, cut + 1);
   return head + gap + tail;
 }
 

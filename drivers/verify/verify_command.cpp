@@ -49,7 +49,7 @@ std::vector<StudyEntry> chosen_studies(const VerifyRequest& request) {
     if (!holds(chosen, study)) chosen.push_back(study);
   };
   for (const std::string& name : request.studies) {
-    if (name == "list") throw InputError("verify: list stands alone");
+    if (name == "list") throw InputError("verify: list cannot be combined with studies");
     if (name != "all") choose(studies().find(name, {"all", "list"}));
     for (const StudyEntry& study : studies())
       if (name == "all" && !study.by_name_only) choose(study);
@@ -138,21 +138,21 @@ void print_verdicts(const std::vector<StudyResult>& results) {
 
 void refuse_foreign_files(const fs::path& folder) {
   if (!fs::exists(folder)) return;
-  if (!fs::is_directory(folder)) throw InputError("--out: " + folder.string() + " is no folder");
+  if (!fs::is_directory(folder)) throw InputError("--out: " + folder.string() + " is not a folder");
   std::vector<std::string> own = files_of_a_verification();
   for (const std::string& name : files_of_a_verification()) own.push_back("job-*/" + name);
   own.emplace_back("job-*.log");
   if (const fs::path foreign = first_foreign(folder, own); !foreign.empty())
     throw InputError("--out: " + folder.string() + " holds " + foreign.string() +
-                     ", which is nothing of a verification; choose another folder");
+                     ", which verify did not write; choose another folder");
 }
 
 int verify(const VerifyRequest& request) {
   if (request.studies == std::vector<std::string>{"list"}) return list_studies();
   if (!request.document.empty() && !fs::path(request.document).has_extension())
-    throw InputError(
-        "--document: " + request.document +
-        " needs an extension, as in report.md; its figures go into the folder without");
+    throw InputError("--document: " + request.document +
+                     " needs an extension, as in report.md; the figures go into the folder of this "
+                     "name without extension");
   const std::vector<StudyEntry> chosen = chosen_studies(request);
   const bool alone = chosen.size() == 1 || (request.jobs == 0 && !request.quick);
   const Jobs jobs = jobs_of(alone ? 1 : request.jobs, request.threads);
@@ -170,7 +170,7 @@ int verify(const VerifyRequest& request) {
                                context.measured_with, jobs.at_a_time, request.quiet};
   const std::string go_on =
       request.quiet ? ""
-                    : "to go on, give the same command with --out " + in_shell(folder.string());
+                    : "to continue, give the same command with --out " + in_shell(folder.string());
   if (jobs.at_a_time > 1 && !carry_out_side_by_side(side_by_side, folder)) {
     if (!request.quiet) say("%s\n", go_on);
     return kInterrupted;
@@ -183,7 +183,7 @@ int verify(const VerifyRequest& request) {
     if (!request.quiet) say("%s: %s\n\n", study.name, study.summary);
     auto before = measured_before(folder, study, context.measured_with);
     if (before && !holds(left, study) && !request.quiet)
-      say("  (measured before, in %s)\n\n", folder);
+      say("  (measured earlier, in %s)\n\n", folder);
     results.push_back(before ? std::move(*before) : carry_out(study, bench, line));
     if (!request.quiet) print_result(results.back());
     all = all && results.back().outcome() != StudyOutcome::fails;
@@ -193,7 +193,7 @@ int verify(const VerifyRequest& request) {
   if (!request.document.empty()) write_document(request.document, folder, context, results);
   if (!request.quiet) {
     print_verdicts(results);
-    if (!missing.empty()) say("\ncharts are missing: %s\n", missing);
+    if (!missing.empty()) say("\nmissing charts: %s\n", missing);
     say("\nopen next: %s\n", (folder / "verify.html"));
   }
   return all ? kSuccess : kClaimFailed;
@@ -201,30 +201,33 @@ int verify(const VerifyRequest& request) {
 
 Action define_verify(CLI::App& app) {
   const auto request = std::make_shared<VerifyRequest>();
-  app.add_option("studies", request->studies, "studies (list shows them), or all")
+  app.add_option("studies", request->studies, "names of studies, or all; list prints the names")
       ->type_name("STUDY")
       ->default_str("all");
-  app.add_flag("--quick", request->quick, "coarser meshes: all studies within 3 minutes");
-  app.add_option("--integrator", request->integrator,
-                 "to measure with; default: ida, or all where a study compares")
+  app.add_flag("--quick", request->quick, "use coarser meshes: all studies take 3 minutes");
+  app.add_option(
+         "--integrator", request->integrator,
+         "integrator to measure with; default: ida, or all where a study compares integrators")
       ->type_name("INTEGRATOR");
-  app.add_option("--linear-solver", request->linear_solver,
-                 "to measure with; default: block, or all where a study compares")
+  app.add_option(
+         "--linear-solver", request->linear_solver,
+         "linear solver to measure with; default: block, or all where a study compares solvers")
       ->type_name("SOLVER");
-  app.add_option("--threads", request->threads, "default: what the studies at a time leave")
+  app.add_option("--threads", request->threads, "threads of a study; default: processors / --jobs")
       ->check(CLI::Range(1, 256));
   app.add_option("--jobs", request->jobs,
-                 "studies at a time; default: with --quick one for each processor, else 1")
+                 "number of studies at a time; default: 1, or one for each processor with --quick")
       ->check(CLI::Range(1, 256));
-  app.add_option("--out", request->out, "folder for tables and page; default: runs/verify-<number>")
+  app.add_option("--out", request->out,
+                 "folder for tables and page, new or to continue; default: runs/verify-<number>")
       ->type_name("DIR");
   app.add_option("--document", request->document,
-                 "Markdown file for the results; its figures go beside it")
+                 "Markdown file for the results; its figures go into a folder of the same name")
       ->type_name("FILE");
-  app.add_flag("--quiet", request->quiet, "print nothing but errors");
+  app.add_flag("--quiet", request->quiet, "print errors only");
   app.footer(
-      "Exit codes: 0 every claim holds, 1 one fails, 2 bad input, 4 input/output,\n"
-      "5 stopped; the same command with the same --out goes on.\n"
+      "Exit codes: 0 every claim holds, 1 a claim fails, 2 bad input, 4 input/output,\n5 stopped; "
+      "the same command with the same --out continues.\n"
       "Example: traceraft verify mass energy --quick");
   return [request] {
     if (request->studies.empty()) request->studies = {"all"};
@@ -235,7 +238,8 @@ Action define_verify(CLI::App& app) {
 }  // namespace
 
 Command verify_command() {
-  return {"verify", "measure what the program claims", Ranks::one, define_verify};
+  return {"verify", "measure the claims about the program: conservation, convergence, theory",
+          Ranks::one, define_verify};
 }
 
 }  // namespace traceraft

@@ -23,7 +23,7 @@ fs::path log_of(const fs::path& folder, const StudyEntry& study) {
 void take_over(const StudyJobs& jobs, const StudyEntry& study, const fs::path& folder) {
   const auto result = measured_before(own_folder(folder, study), study, jobs.measured_with);
   if (!result)
-    throw IoError(study.name + ": it left no result, see " + log_of(folder, study).string());
+    throw IoError(study.name + ": there is no result; see " + log_of(folder, study).string());
   write_study(folder, *result, jobs.measured_with);
   remove_own_folder(own_folder(folder, study), files_of_a_verification());
   fs::remove(log_of(folder, study));

@@ -45,6 +45,19 @@ Row claim_row(const Claim& claim) {
   return row;
 }
 
+// For readers of the page and of the document.
+constexpr const char* kIntroduction[] = {
+    "A study measures numbers. A claim says what one of them must be. The column expected has the "
+    "value by theory, or a bound. The column tolerance says how far the measured number may differ "
+    "from that value. A measured number may have an uncertainty, half of a 95 % interval, which "
+    "does not enter the verdict. The verdict is holds or FAILS.",
+    "Lengths are in units of the radius R and times in units of R^2/D. Epsilon is the width "
+    "parameter of a phase boundary, h the mesh size, c the concentration.",
+    "If a claim fails, repeat its study alone: claims about times need a machine without other "
+    "load. If it fails again, do not trust results of this build. Compare the tables of the study "
+    "with docs/verification.md, check compiler and libraries, and report the failure with the "
+    "folder of the verification."};
+
 std::string outcome_sentence(const StudyResult& result) {
   if (!result.failure.empty()) return "FAILS: " + result.failure + ".";
   if (!result.report.skipped.empty()) return "Not measured: " + result.report.skipped + ".";
@@ -132,7 +145,8 @@ std::string write_verification(const fs::path& folder, const VerificationContext
                 all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 
   Page page("Verification");
-  page.paragraph(context.conditions + " Repeat it with: " + context.command);
+  page.paragraph(context.conditions + " This command repeats it: " + context.command);
+  for (const char* paragraph : kIntroduction) page.paragraph(paragraph);
   page.table(overview_rows(results));
   std::string missing;
   for (const StudyResult& result : results) {
@@ -144,7 +158,7 @@ std::string write_verification(const fs::path& folder, const VerificationContext
     if (const std::string why = draw_charts(folder, result, page); !why.empty()) missing = why;
     for (const Table& table : result.report.tables) page.table(table_rows(table));
   }
-  if (!missing.empty()) page.paragraph("Charts are missing: " + missing + ".");
+  if (!missing.empty()) page.paragraph("Missing charts: " + missing + ".");
   write_durably(folder / "verify.html", page.html());
   return missing;
 }
@@ -155,8 +169,9 @@ void write_document(const fs::path& path, const fs::path& folder,
   figures.replace_extension();
   fs::create_directories(figures);
   std::string text = "# Verification\n\n" + in_markdown(context.conditions) +
-                     "\nThis document and its figures are written by\n\n    " +
+                     "\nThis command writes this document and its figures:\n\n    " +
                      in_markdown_code(context.command) + "\n\n";
+  for (const char* paragraph : kIntroduction) text += in_markdown(paragraph) + "\n\n";
   text += markdown_table(overview_rows(results), MarkdownLinks::to_headings);
   for (const StudyResult& result : results) {
     text += "## " + result.study.name + "\n\n`traceraft verify " + result.study.name +

@@ -60,7 +60,7 @@ Json to_json(const Table& table) {
 Table table_of(const std::string& name, const Json& json) {
   const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_";
   if (name.empty() || name.find_first_not_of(plain) != std::string::npos)
-    refuse("'" + name + "' is no name of a table");
+    refuse("'" + name + "' is not a name for a table");
   Table table{name, json.at("columns"), {}};
   for (const Json& cells : json.at("rows")) {
     std::vector<Cell>& row = table.rows.emplace_back();
@@ -70,7 +70,7 @@ Table table_of(const std::string& name, const Json& json) {
       else
         row.emplace_back(number_or(cell, kNaN));
     }
-    if (row.size() != table.columns.size()) refuse("a row of " + name + " lacks cells");
+    if (row.size() != table.columns.size()) refuse("a row of " + name + " has too few cells");
   }
   return table;
 }
@@ -109,7 +109,7 @@ Chart chart_of(const Json& json) {
     for (const Json& value : item.at("other")) series.other.push_back(number_or(value, kNaN));
     const bool has_other = series.mark == Mark::band || series.mark == Mark::bars;
     if (series.other.size() != (has_other ? series.points.size() : 0))
-      refuse("a chart lacks values");
+      refuse("a chart has too few values");
     chart.series.push_back(series);
   }
   return chart;

@@ -12,8 +12,8 @@ namespace traceraft {
 namespace {
 
 constexpr char kDeviations[] =
-    "Deviations are those from the mean of the runs, over the scatter between runs and the "
-    "uncertainty of the measurement; of logarithms for perimeters and counts. ";
+    "A deviation is measured minus the mean of the runs, in units of the scatter between runs and "
+    "the uncertainty of the measurement. For perimeters and counts it is one of logarithms. ";
 
 // Where there is nothing to compare, or nothing to measure deviations with, or nothing alike.
 std::vector<std::string> doubts_of(const MeasuredVesicles& data, const std::vector<History>& runs,
@@ -23,38 +23,37 @@ std::vector<std::string> doubts_of(const MeasuredVesicles& data, const std::vect
   if (std::all_of(agreements.begin(), agreements.end(),
                   [](const Agreement& a) { return a.measurements == 0; }))
     sentences.push_back(
-        "NOTHING IS COMPARED: no measurement is of a time that all runs cover. Are time_unit and "
+        "NOTHING IS COMPARED: no measurement lies at a time that all runs cover. Are time_unit and "
         "the time zero right?");
   if (const double share = share_without_rafts(data, runs); share > kSome)
-    sentences.push_back(formatted(
-        "THE SIMULATED VESICLES HAVE NO RAFTS at %.0f %% of the times at which the measured ones "
-        "are looked at: with this raft fraction and epsilon they dissolve, or never form.",
-        100 * share));
+    sentences.push_back(
+        formatted("THE SIMULATED VESICLES HAVE NO RAFTS at %.0f %% of the times of observation. "
+                  "With this raft fraction and epsilon, rafts dissolve or never form.",
+                  100 * share));
   for (const Agreement& a : agreements)
     if (lies_beside(a, runs.size()))
-      sentences.push_back(formatted(
-          "THE MEASUREMENTS LIE BESIDE THE RUNS: of %d values of %s %d lie within their range; if "
-          "nothing were wrong, %.0f %% would.",
-          a.measurements, name_of(a.quantity).label, a.within,
-          100 * same_kind(runs.size()).within));
+      sentences.push_back(
+          formatted("THE MEASUREMENTS LIE OUTSIDE THE RANGE OF THE RUNS: the runs cover only %d of "
+                    "%d measured values (%s). Runs of the right model would cover %.0f %% of them.",
+                    a.within, a.measurements, name_of(a.quantity).label,
+                    100 * same_kind(runs.size()).within));
   for (const Agreement& a : agreements)
     if (a.measurements > 0 && a.scatter < kSmall)
       sentences.push_back(
-          formatted("Runs and measurement scatter by %.2g %% only in %s: what they are "
-                    "compared in units of is next to nothing.",
+          formatted("Runs and measurements scatter by only %.2g %% (%s). This scatter is the unit "
+                    "of the deviations, so that small differences look large.",
                     100 * a.scatter, name_of(a.quantity).label));
   for (const Agreement& a : agreements)
     if (a.without_rafts > 0)
-      sentences.push_back(std::to_string(a.without_rafts) +
-                          (a.without_rafts == 1 ? " look" : " looks") +
-                          " without a raft cannot be compared with the runs in " +
-                          name_of(a.quantity).label + ", whose logarithms are.");
+      sentences.push_back(std::string("Observations without a raft are left out of the ") +
+                          name_of(a.quantity).label + ", which is compared by its logarithm: " +
+                          std::to_string(a.without_rafts) + ".");
   for (const Agreement& a : agreements)
     if (a.has_trend())
       sentences.push_back(
-          formatted("THE SIMULATIONS CHANGE OTHERWISE: deviations of the %s have a trend of %+.2g "
-                    "+- %.1g per e-fold of time, so that a good mean says little. traceraft "
-                    "explain looks for what is missing.",
+          formatted("THE SIMULATIONS AND THE MEASUREMENTS CHANGE DIFFERENTLY: the deviations of "
+                    "the %s have a trend of %+.2g +- %.1g per e-fold of time. A small mean "
+                    "deviation then proves little. traceraft explain searches for what is missing.",
                     name_of(a.quantity).label, a.trend, a.trend_error));
   return sentences;
 }
@@ -65,11 +64,12 @@ std::string about_agreement(std::size_t runs) {
   const SameKind expected = same_kind(runs);
   return kDeviations +
          formatted(
-             "Of vesicles of the same kind as %zu runs, and measured without error, %.0f %% lie "
-             "within the range of the runs",
+             "If vesicles were like these %zu runs and measured without error, %.0f %% of them "
+             "would lie within the range of the runs",
              runs, 100 * expected.within) +
-         (std::isfinite(expected.misfit) ? formatted(", and the misfit is %.2f.", expected.misfit)
-                                         : "; the misfit of so few runs says nothing.");
+         (std::isfinite(expected.misfit)
+              ? formatted(", and the misfit would be %.2f.", expected.misfit)
+              : ". So few runs say nothing about the misfit.");
 }
 
 std::vector<Row> agreement_rows(const std::vector<Agreement>& agreements) {
@@ -118,12 +118,12 @@ std::string onset_note(const MeasuredVesicles& data, const std::vector<History>&
       trends.push_back(formatted("%s %+.2g +- %.1g with a misfit of %.2f",
                                  name_of(a.quantity).label, a.trend, a.trend_error, a.misfit));
   return formatted(
-             "An onset %.3g s %safter the time zero of the measurements would remove the trend (",
+             "An onset %.3g s %safter the time zero of the measurements would remove the trend: ",
              onset->delay, onset->at_end ? "or more " : "") +
          joined(trends, ", ") +
          formatted(
-             "): if the sample may take as long to begin, time_offset = %.4g in dataset.toml "
-             "(in its time_unit; it is %g now) and another calibration say what D is then.",
+             ". If rafts may have formed that late, set time_offset = %.4g in dataset.toml (in its "
+             "time_unit; now it is %g) and calibrate again: this gives the D for that onset.",
              data.time_offset - onset->delay / data.time_unit, data.time_offset);
 }
 

@@ -25,16 +25,15 @@ std::string about(const PublishedFacts& facts) {
                 facts.fraction_sd, facts.measurements, facts.vesicles);
   if (facts.outliers >= 0)
     text += formatted(
-        " Of their numbers of rafts, %d lie outside the range of the published "
-        "simulations.",
+        " %d of their numbers of rafts lie outside the range of the published simulations.",
         facts.outliers);
   return text;
 }
 
 void refuse_other_membrane(const MeasuredVesicles& data, const PublishedFacts& facts) {
   if (data.composition.empty() || same_membrane(data.composition, facts.composition)) return;
-  throw InputError("--facts: they are of " + facts.composition + ", the measurements of " +
-                   data.composition);
+  throw InputError("--facts: their membrane is " + facts.composition +
+                   ", but that of the measurements is " + data.composition);
 }
 
 class ComparisonReport {
@@ -71,7 +70,7 @@ class ComparisonReport {
     for (const std::string& remark : remarks()) say("%s\n", remark);
     for (const std::string& note : notes_) say("\n%s\n", note);
     say("\nopen next: %s\n", (request_.out / "comparison.html"));
-    if (!missing_.text().empty()) say("the page lacks: %s\n", missing_.text());
+    if (!missing_.text().empty()) say("missing from the page: %s\n", missing_.text());
   }
 
  private:
@@ -106,19 +105,20 @@ class ComparisonReport {
     std::vector<std::string> notes;
     if (!ensemble_.missing.empty()) notes.push_back(ensemble_.missing);
     if (const std::string other = other_membrane(data_.composition, model_); !other.empty())
-      notes.push_back("ANOTHER MEMBRANE: the simulations are of " + other + ".");
+      notes.push_back("ANOTHER MEMBRANE: the simulated membrane is " + other + ".");
     for (const std::string& note : cautions(data_, model_.units().length(), runs_, agreements_))
       notes.push_back(note);
     if (model_.options().surface != "sphere")
-      notes.push_back("The simulated surface is no sphere: " + model_.options().surface + ".");
+      notes.push_back("The simulated surface is not a sphere: " + model_.options().surface + ".");
     return notes;
   }
 
   std::vector<std::string> remarks() const {
     std::vector<std::string> remarks = remarks_on({measured_, simulated_});
     if (simulated_ && summary_.times.back() < 0.99 * request_.window.end)
-      remarks.push_back(formatted("The runs end at %.4g s: their law is fitted until then.",
-                                  summary_.times.back()));
+      remarks.push_back(
+          formatted("The runs end at %.4g s. Their law is fitted to the times before.",
+                    summary_.times.back()));
     return remarks;
   }
 

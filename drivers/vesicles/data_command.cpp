@@ -33,9 +33,9 @@ Window window_of(const std::string& text) {
   const std::vector<std::string> ends = split_list(text);
   if (ends.size() != 2) throw InputError("--window: two times are needed, as in 100,1000");
   const Window window{parse_number("--window", ends[0]), parse_number("--window", ends[1])};
-  if (!(window.begin >= 0)) throw InputError("--window: times are 0 or later");
+  if (!(window.begin >= 0)) throw InputError("--window: a time cannot be negative");
   if (!(window.end > window.begin))
-    throw InputError("--window: the second time has to be the later one");
+    throw InputError("--window: the second time must be later than the first");
   return window;
 }
 
@@ -53,7 +53,8 @@ int check(const DataRequest& request) {
 
 int compare(const DataRequest& request) {
   if (request.ensemble.empty())
-    throw InputError("--ensemble: say which simulations to compare with (traceraft ensemble)");
+    throw InputError(
+        "--ensemble: the folder of an ensemble is needed (traceraft ensemble writes it)");
   fs::path out = request.out;
   if (out.empty())
     out = EnsembleFolder(request.ensemble).started() ? request.ensemble
@@ -71,10 +72,10 @@ int compare(const DataRequest& request) {
 
 // Refuses to write over data.
 int draw(const DataRequest& request) {
-  if (request.facts.empty()) throw InputError("--facts: say from which published facts to draw");
+  if (request.facts.empty()) throw InputError("--facts: a file of published facts is needed");
   const fs::path folder = request.folder;
   if (fs::exists(folder / "dataset.toml") || fs::exists(folder / "measurements.csv"))
-    throw InputError(request.folder + " holds data already; choose another folder");
+    throw InputError(request.folder + " already holds data; choose another folder");
   const PublishedFacts facts = read_facts(request.facts);
   const auto seed = static_cast<std::uint64_t>(request.seed);
   const MeasuredVesicles data =
@@ -115,31 +116,31 @@ void refuse_unused(const CLI::App& app, const DataAction& action) {
 Action define_data(CLI::App& app) {
   const auto request = std::make_shared<DataRequest>();
   app.add_option("action", request->action,
-                 "check: read a folder of measurements and say what is in it; compare: hold an "
-                 "ensemble against it; draw: make a synthetic one from published facts")
+                 "check (read a folder of measurements and describe it), compare (compare an "
+                 "ensemble with it) or draw (write synthetic measurements from published facts)")
       ->type_name(joined(actions().names(), "|"))
       ->required();
-  app.add_option("folder", request->folder, "of the measurements (dataset.toml)")
+  app.add_option("folder", request->folder, "folder of the measurements (dataset.toml)")
       ->type_name("DIR")
       ->required();
   app.add_option("--ensemble", request->ensemble,
-                 "folder of the simulations to compare with, or to draw from")
+                 "folder of the ensemble to compare with, or to draw from")
       ->type_name("DIR");
-  app.add_option(
-         "--out", request->out,
-         "folder of a comparison; default: that of the ensemble, or runs/comparison-<number> "
-         "if only its histories are there")
+  app.add_option("--out", request->out,
+                 "folder for the comparison; default: the folder of the ensemble, or "
+                 "runs/comparison-<number> for kept histories")
       ->type_name("DIR");
-  app.add_option("--window", request->window, "from which time to which a power law is fitted (s)")
+  app.add_option("--window", request->window,
+                 "first and last time of the points that a power law is fitted to (s)")
       ->type_name("NUMBER,NUMBER")
       ->capture_default_str();
   app.add_option("--facts", request->facts,
-                 "TOML file of what is published: to draw from, or to show in a comparison")
+                 "TOML file of published facts, to draw from or to show in a comparison")
       ->type_name("FILE");
-  app.add_option("--seed", request->seed, "of what is drawn")
+  app.add_option("--seed", request->seed, "seed of the synthetic measurements")
       ->check(between(0, kLargestSeed))
       ->capture_default_str();
-  app.add_flag("--quiet", request->quiet, "print nothing but errors");
+  app.add_flag("--quiet", request->quiet, "print errors only");
   app.footer(
       "Example: traceraft data compare my-vesicles --ensemble "
       "verification/data/ensembles/guv-3to1");
@@ -153,7 +154,7 @@ Action define_data(CLI::App& app) {
 }  // namespace
 
 Command data_command() {
-  return {"data", "check measurements of vesicles, and hold simulations against them", Ranks::one,
+  return {"data", "check measurements of vesicles and compare simulations with them", Ranks::one,
           define_data};
 }
 

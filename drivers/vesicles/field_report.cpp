@@ -59,9 +59,8 @@ std::vector<std::string> notes_on(const std::filesystem::path& folder, const Fie
         off_sphere =
             place_of(folder, number, static_cast<std::size_t>(far - snapshot.points.begin())) +
             formatted(
-                ": a point is %.2g R off the sphere of that radius, and "
-                "explain refuses more than %g R from the model's surface: "
-                "are radius and length_unit right, and the centre at 0?",
+                ": the distance of a point from the sphere of this radius is %.2g R, and explain "
+                "refuses more than %g R. Are radius and length_unit right, and is the centre at 0?",
                 distance(*far), kOffSurface);
       Eigen::Index row = 0;
       (snapshot.values.array() - 0.5).abs().maxCoeff(&row);
@@ -69,9 +68,8 @@ std::vector<std::string> notes_on(const std::filesystem::path& folder, const Fie
       if (off_scale.empty() && (c < -kFarFromWells || c > 1 + kFarFromWells))
         off_scale = place_of(folder, number, static_cast<std::size_t>(row), "c") +
                     formatted(
-                        ": %g; explain takes it to be about 0 outside "
-                        "rafts and 1 inside (but for another --well): leave out what "
-                        "is missing, and put c on that scale",
+                        ": %g; explain expects about 0 outside rafts and 1 inside (unless --well "
+                        "says otherwise). Leave out missing values, and scale c.",
                         c);
     }
   std::vector<std::string> notes;
@@ -81,7 +79,8 @@ std::vector<std::string> notes_on(const std::filesystem::path& folder, const Fie
   if (const std::string note = note_on_scale(data, 0, 1); !note.empty() && off_scale.empty())
     notes.push_back(note);
   if (!data.blur_um)
-    notes.push_back("how blurred the images are is not said (blur, 0 if they are not)");
+    notes.push_back(
+        "dataset.toml does not state the blur of the images (key blur; 0 for sharp images)");
   return notes;
 }
 
@@ -102,7 +101,7 @@ void print_fields(const std::filesystem::path& folder, const FieldDataset& data)
       table.rows.push_back(row_of(vesicle, snapshot));
   print_rows(table_rows(table));
   if (const std::optional<FieldNoise> noise = noise_of_fields(data.vesicles, 1))
-    say("noise about %.3g, %s (R = %g um), as flat parts of the fields have it\n", noise->level,
+    say("noise in flat parts of the fields: about %.3g, %s (R = %g um)\n", noise->level,
         text_of(noise->correlation), data.radius_um);
   for (const std::string& note : notes_on(folder, data)) say("NOTE: %s\n", note);
 }

@@ -23,10 +23,10 @@ void print_mixture(const char* what, const LipidMixture& mixture) {
 
 int estimate_fraction(const FractionRequest& request) {
   if (request.composition.empty())
-    throw InputError("--composition: say what the membrane is made of, such as 3:1:20");
+    throw InputError("--composition: the composition of the membrane is needed, such as 3:1:20");
   const LipidMixture membrane = membrane_mixture("--composition", request.composition);
   if (request.ordered.empty() != request.disordered.empty())
-    throw InputError("--ordered and --disordered: give both ends of the tie line");
+    throw InputError("--ordered and --disordered: both ends of the tie line are needed");
   RaftFractionEstimate estimate;
   if (request.ordered.empty()) {
     estimate = estimated_raft_fraction(membrane, request.celsius);
@@ -34,7 +34,7 @@ int estimate_fraction(const FractionRequest& request) {
     estimate.phases = CoexistingPhases{phase_mixture("--ordered", request.ordered),
                                        phase_mixture("--disordered", request.disordered)};
     estimate.area = raft_fraction(membrane, *estimate.phases, request.celsius).area;
-    estimate.how = "the tie line given";
+    estimate.how = "the given tie line";
   }
   print_mixture("membrane", membrane);
   say("  %-22s %g C\n", "temperature", request.celsius);
@@ -44,13 +44,12 @@ int estimate_fraction(const FractionRequest& request) {
     const double lipids = raft_fraction(membrane, *estimate.phases, request.celsius).lipids;
     say("  %-22s %.3f ordered, %.3f disordered\n", "lipids", lipids, 1 - lipids);
     if (estimate.phases->ordered.dppc < estimate.phases->disordered.dppc)
-      say("  NOTE: the ordered phase given has less DPPC than the disordered one; are --ordered "
-          "and "
-          "--disordered the right way round?\n");
+      say("  NOTE: this ordered phase has less DPPC than the disordered phase. Are --ordered and "
+          "--disordered exchanged?\n");
   }
   say("  %-22s %.1f %%  (%s)\n", "raft area fraction", 100 * estimate.area, estimate.how);
-  say("  areas per lipid are published ones of DOPC; those of DPPC with cholesterol are "
-      "FITTED to two published raft fractions\n");
+  say("  The area per lipid of DOPC is published. That of DPPC with cholesterol is FITTED to two "
+      "published raft fractions.\n");
   const std::string own = case_of(request.composition);
   say("\nto simulate it: traceraft run %s --raft-fraction %.3f\n",
       own.empty() ? "--diffusion <D of this membrane in cm^2/s>" : ("--case " + own),
@@ -61,14 +60,16 @@ int estimate_fraction(const FractionRequest& request) {
 Action define_fraction(CLI::App& app) {
   const auto request = std::make_shared<FractionRequest>();
   app.add_option("--composition", request->composition,
-                 "parts of DOPC : DPPC : mol % of cholesterol, such as 3:1:20; the area of DPPC is "
-                 "fitted to what is published of such membranes");
-  app.add_option("--temperature", request->celsius, "in degrees Celsius")
+                 "composition of the membrane as DOPC:DPPC:cholesterol, such as 3:1:20: parts of "
+                 "DOPC and DPPC, and mol % of cholesterol");
+  app.add_option("--temperature", request->celsius, "temperature in degrees Celsius")
       ->check(between(-10, 60))
       ->capture_default_str();
   app.add_option("--ordered", request->ordered,
-                 "mol % of DOPC:DPPC:cholesterol in rafts, such as 22:43:35");
-  app.add_option("--disordered", request->disordered, "the same around them");
+                 "composition of the ordered phase (rafts) in mol %, as DOPC:DPPC:cholesterol, "
+                 "such as 22:43:35");
+  app.add_option("--disordered", request->disordered,
+                 "composition of the disordered phase in mol %, as DOPC:DPPC:cholesterol");
   app.footer("Example: traceraft fraction --composition 2:1:20 --temperature 19.2");
   return [request] { return estimate_fraction(*request); };
 }

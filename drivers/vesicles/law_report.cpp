@@ -14,7 +14,7 @@ const Row& law_heading() {
 }
 
 Row law_row(const std::string& of, const std::optional<FittedLaw>& law) {
-  if (!law) return {of, "too few points within the --window", "", "", "", ""};
+  if (!law) return {of, "too few points in the --window", "", "", "", ""};
   const auto with = [](double value, const Interval& interval) {
     return formatted("%.3g (%.3g to %.3g)", value, interval.low, interval.high);
   };
@@ -41,9 +41,9 @@ std::vector<std::string> remarks_on(std::initializer_list<std::optional<FittedLa
   for (const std::optional<FittedLaw>& law : laws)
     if (law && law->t0_open)
       return {
-          "Where t0 has no lower end, it may be earlier than ten times the time before time zero "
-          "of the first point, where it is no longer looked for; b may then be lower and c larger "
-          "than their intervals."};
+          "An interval of t0 without a lower end means that t0 may be earlier than the search "
+          "allows (minus ten times the first time). Then b may be lower, and c larger, than their "
+          "intervals say."};
   return {};
 }
 

@@ -55,8 +55,8 @@ std::string missing_of(const EnsembleFolder& folder, const FinishedMembers& fini
   if (there == static_cast<std::size_t>(planned)) return "";
   std::string text = "ONLY " + std::to_string(there) + " OF " + std::to_string(planned) +
                      " RUNS of " + folder.path().string() +
-                     " have finished: traceraft ensemble --out " +
-                     in_shell(folder.path().string()) + " goes on with the others.";
+                     " have finished. Continue with: traceraft ensemble --out " +
+                     in_shell(folder.path().string()) + ".";
   for (const MemberFailure& damaged : finished.damaged)
     text += " Seed " + std::to_string(damaged.seed) + ": " + damaged.why + ".";
   return text;
@@ -134,7 +134,7 @@ Configuration model_of(const fs::path& path) {
   const Configuration configuration(read_config_file(folder.config()), {});
   if (configuration.units().scaled)
     throw InputError("--ensemble: " + path.string() +
-                     " was run with --scaled; its times cannot be compared with seconds");
+                     " was run with --scaled; its times are not in seconds and cannot be compared");
   return configuration;
 }
 

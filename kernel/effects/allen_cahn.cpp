@@ -6,7 +6,7 @@ namespace traceraft {
 // Lipids that turn into each other, downhill in energy: ċ = … − L μ.
 EffectEntry allen_cahn_effect() {
   return {"allen-cahn",
-          "lipids converted into each other, as the chemical potential tells them",
+          "conversion of lipids into each other, driven by the chemical potential",
           "",
           {{"rate", "1/s", 0, 0, 1e12, "L"}},
           MassClass::drifts,

@@ -24,7 +24,7 @@ class BulkMobility final : public Mobility {
 // Lipids that move within the phases, too, not along boundaries alone.
 EffectEntry bulk_mobility_effect() {
   return {"bulk-mobility",
-          "lipids that diffuse through the phases: a mobility everywhere",
+          "a mobility everywhere, so that lipids diffuse through the phases",
           "",
           {{"strength", "", 0, 0, 10, "m0, in units of D"}},
           MassClass::conserves,

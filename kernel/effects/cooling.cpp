@@ -13,15 +13,15 @@ namespace traceraft {
 // which conserves lipids, but not ∫c. Diffusion slows down by exp(−activation · rate · t).
 EffectEntry cooling_effect() {
   return {"cooling",
-          "a temperature that falls: phases that part further, diffusion that slows down",
-          "a temperature that rises: phases that become more alike, diffusion that speeds up",
-          {{"rate", "K/s", 0, -1e9, 1e9, "of the temperature; negative: it rises"},
+          "a falling temperature, so that the phases differ more and diffusion slows down",
+          "a rising temperature, so that the phases differ less and diffusion speeds up",
+          {{"rate", "K/s", 0, -1e9, 1e9, "fall of the temperature; negative: a rise"},
            {"out", "1/K", 0.02, 0, 1, "gain of c outside rafts"},
            {"in", "1/K", 0.005, 0, 1, "loss of c in rafts"},
            {"activation", "1/K", 0.04, 0, 1, "relative loss of D"}},
           MassClass::drifts,
           EnergyClass::active,
-          "drift of the raft fraction, and a pace that changes",
+          "drift of the raft fraction, and a change of D",
           {"uptake"},
           [](const Parameters& p, CahnHilliardModel& model) {
             const double out = p["rate"] * p["out"], in = p["rate"] * p["in"];

@@ -29,8 +29,8 @@ EffectTerm read_term(const std::string& one, const Units& units) {
       parse_parameters("effect " + entry.name, named.arguments, specs_in(entry, units));
   const ParameterSpec& strength = entry.parameters.front();
   if (given[strength.name] == strength.default_value)
-    throw InputError("effect " + entry.name + ": say how strong it is, as in " + entry.name + ":" +
-                     strength.name + "=...");
+    throw InputError("effect " + entry.name + ": its strength is needed, as in " + entry.name +
+                     ":" + strength.name + "=...");
   EffectTerm term{entry.name, {}};
   for (const ParameterSpec& spec : entry.parameters)
     term.values.push_back(given[spec.name] * to_model_units(spec.unit, units));
@@ -40,7 +40,7 @@ EffectTerm read_term(const std::string& one, const Units& units) {
 void add(const EffectTerm& term, CahnHilliardModel& model) {
   const EffectEntry& entry = effects().find(term.effect);
   if (entry.unit_wells && !has_unit_wells(model))
-    throw InputError("effect " + entry.name + ": it is made for wells at 0 and 1, not at " +
+    throw InputError("effect " + entry.name + ": it needs wells at 0 and 1, not at " +
                      format_number(model.well.a) + " and " + format_number(model.well.b));
   entry.add(Parameters(entry.parameters, term.values), model);
 }

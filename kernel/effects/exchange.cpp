@@ -7,7 +7,7 @@ namespace traceraft {
 // ċ = … − k (c − c*). Foret 2005; Gómez, Sagués, Reigada 2008.
 EffectEntry exchange_effect() {
   return {"exchange",
-          "lipids exchanged with a reservoir: c relaxes to a target",
+          "exchange of lipids with a reservoir, so that c relaxes to a target",
           "",
           {{"rate", "1/s", 0, 0, 1e12, "k"}, {"target", "", 0.5, 0, 1, "c of the reservoir"}},
           MassClass::drifts,

@@ -6,8 +6,8 @@ namespace traceraft {
 // Rafts that are heavier than what they float in: μ = … + λ z.
 EffectEntry gravity_effect() {
   return {"gravity",
-          "rafts that sink: a potential that grows with height",
-          "rafts that rise: a potential that falls with height",
+          "a potential that grows with height, so that rafts sink",
+          "a potential that falls with height, so that rafts rise",
           {{"strength", "", 0, -10, 10, "lambda of lambda z/R"}},
           MassClass::conserves,
           EnergyClass::dissipates,

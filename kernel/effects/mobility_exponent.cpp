@@ -40,7 +40,7 @@ EffectEntry mobility_exponent_effect() {
           {{"excess", "", 0, -0.9, 5, "delta of (c (1-c))^(1 + delta)"}},
           MassClass::conserves,
           EnergyClass::dissipates,
-          "pace of coarsening",
+          "speed of coarsening",
           {"bulk-mobility"},
           [](const Parameters& p, CahnHilliardModel& model) {
             model.mobility = std::make_shared<ExponentMobility>(model.mobility, p["excess"]);

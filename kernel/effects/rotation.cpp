@@ -28,24 +28,24 @@ void require_revolution(const Point& axis, const SurfaceSpace& space) {
   constexpr double kOfTheMesh = 0.01;
   if (const double part = asymmetry_around(axis, space); part > kOfTheMesh)
     throw InputError(
-        "effect rotation: the surface does not turn into itself around the axis x, y, "
-        "z: its moments differ by " +
+        "effect rotation: the surface is not symmetric around the axis x, y, z; its moments differ "
+        "by " +
         format_number(std::round(1000 * part) / 10) +
         " % after a quarter of a turn (allowed: 1 %)");
 }
 
 }  // namespace
 
-// A vesicle that turns under the microscope: u = ω × x. On another body than one of revolution this
-// would not lie in the surface, and what does of it would compress the membrane.
+// A vesicle that rotates under the microscope: u = ω × x. On another body than one of revolution
+// this would not lie in the surface, and what does of it would compress the membrane.
 EffectEntry rotation_effect() {
   return {"rotation",
-          "a vesicle that turns",
-          "a vesicle that turns, the other way round",
+          "a rotating vesicle",
+          "a vesicle that rotates the other way round",
           {{"rate", "1/s", 0, -1e9, 1e9, "angular velocity"},
-           {"x", "", 0, -1, 1, "of the axis"},
-           {"y", "", 0, -1, 1, "of the axis"},
-           {"z", "", 1, -1, 1, "of the axis"}},
+           {"x", "", 0, -1, 1, "component of the axis"},
+           {"y", "", 0, -1, 1, "component of the axis"},
+           {"z", "", 1, -1, 1, "component of the axis"}},
           MassClass::conserves,
           EnergyClass::neutral,
           "place of rafts only",

@@ -8,7 +8,7 @@ EffectEntry uptake_effect() {
   return {"uptake",
           "raft lipids taken up outside rafts",
           "raft lipids lost outside rafts",
-          {{"rate", "1/s", 0, -1e12, 1e12, "s; negative: lost there"}},
+          {{"rate", "1/s", 0, -1e12, 1e12, "s; negative: a loss"}},
           MassClass::drifts,
           EnergyClass::active,
           "drift of the raft fraction",

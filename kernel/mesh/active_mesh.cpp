@@ -180,7 +180,7 @@ ActiveMesh build_active_mesh(const LevelSet& surface, std::int64_t cells,
   require_outside(surface, mesh.cube);
   if (!ranks.all(!cut.empty()))
     throw InputError(std::to_string(ranks.size()) + " ranks are too many for a mesh of " +
-                     std::to_string(cells) + " cells per edge; use fewer, or more --cells");
+                     std::to_string(cells) + " cells per edge; use fewer ranks or more cells");
   const std::vector<std::int64_t> ids = collect_vertices(cut);
   const VertexLookup node(mesh.cube, ids);
   mesh.tets.reserve(cut.size());

@@ -121,7 +121,7 @@ void require_resolution(const ActiveMesh& mesh, const CutSurface& surface,
   text.precision(3);
   text << "cells: " << mesh.cube.cells << " per edge are too coarse for this surface near ("
        << resolution.where[0] << ", " << resolution.where[1] << ", " << resolution.where[2]
-       << "); try --cells " << 2 * mesh.cube.cells;
+       << "); try " << 2 * mesh.cube.cells;
   throw InputError(text.str());
 }
 

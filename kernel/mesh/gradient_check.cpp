@@ -79,8 +79,8 @@ void require_gradient(const LevelSet& surface, const ActiveMesh& mesh, const Cut
   text << "the level set "
        << (worst[1] > 0 ? "has hardly any gradient on its surface" : "jumps at its surface")
        << " near (" << worst[2] << ", " << worst[3] << ", " << worst[4]
-       << "), where the mesh cannot find it; take one that is nearly linear there, as a distance is"
-          " (f for f^3 or for sign(f))";
+       << "), where the mesh cannot find it; it must be nearly linear there, as a distance is (f "
+          "instead of f^3 or sign(f))";
   throw InputError(text.str());
 }
 

@@ -82,7 +82,7 @@ Partition::Partition(const LevelSet& surface, const CubeMesh& mesh, int ranks)
   if (static_cast<int>(first_.size()) < ranks - 1 ||
       std::adjacent_find(first_.begin(), first_.end()) != first_.end())
     throw InputError(std::to_string(ranks) + " ranks are too many for a mesh of " +
-                     std::to_string(mesh.cells) + " cells per edge; use fewer, or more --cells");
+                     std::to_string(mesh.cells) + " cells per edge; use fewer ranks or more cells");
 }
 
 Lattice Partition::block(const Lattice& vertex) const {

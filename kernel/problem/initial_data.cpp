@@ -43,8 +43,8 @@ void require_finite(const SurfaceSpace& space, const Concentration& c, const std
   if (bad.empty()) return;
   std::ostringstream text;
   text.precision(3);
-  text << "initial '" << name << "': --initial-" << name << " is not finite at (" << bad[0] << ", "
-       << bad[1] << ", " << bad[2] << "), a point of the surface";
+  text << "initial '" << name << "': it is not finite at (" << bad[0] << ", " << bad[1] << ", "
+       << bad[2] << "), a point of the surface";
   throw InputError(text.str());
 }
 
@@ -81,28 +81,26 @@ Vec make_initial_field(const std::string& specification, const SurfaceSpace& spa
 
 InitialEntry formula_field() {
   return {"formula",
-          "c(x, y, z) from --initial-formula, coordinates in units of R",
+          "a formula for c(x, y, z), with coordinates in units of R",
           {},
           {},
           [](const InitialRequest& request) {
             if (!request.formula)
-              throw InputError(
-                  "initial 'formula': needs --initial-formula, as in "
-                  "--initial-formula \"0.5+0.1*z\"");
+              throw InputError("initial 'formula': a formula is needed, as in \"0.5+0.1*z\"");
             return request.formula;
           }};
 }
 
 InitialEntry cap_rafts() {
   return {"caps",
-          "spherical-cap rafts from --initial-caps, with equilibrium profiles",
+          "rafts that are spherical caps, with equilibrium profiles",
           {},
           {},
           [](const InitialRequest& request) {
             if (request.caps.empty())
               throw InputError(
-                  "initial 'caps': needs --initial-caps, as in "
-                  "--initial-caps \"0 0 1 40; 1 0 0 25\" (direction and angle)");
+                  "initial 'caps': a direction and an angle for each raft are needed, as in \"0 0 "
+                  "1 40; 1 0 0 25\"");
             return [request](const Point& x) {
               double outside = 1e300;  // arc length to the nearest raft, negative inside
               for (const CapRaft& cap : request.caps) {

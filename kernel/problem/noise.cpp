@@ -141,7 +141,7 @@ Vec band_limited(const SurfaceSpace& space, const InitialRequest& request,
 
 InitialEntry bernoulli_noise() {
   return {"noise",
-          "raft or not at random at every node (--raft-fraction, --noise-cells, --seed)",
+          "raft or not, at random at every node of the noise mesh",
           {},
           [](const SurfaceSpace& space, const InitialRequest& request, const Parameters&) {
             return bernoulli(space, request);
@@ -151,7 +151,7 @@ InitialEntry bernoulli_noise() {
 
 InitialEntry band_limited_noise() {
   return {"band-limited",
-          "smooth noise of one wavelength, the same on every mesh (--raft-fraction, --seed)",
+          "smooth noise of one wavelength, the same on every mesh",
           {{"wavelength", "R", 0.3, 0.01, 10, "typical wavelength"},
            {"amplitude", "b-a", 0.05, 0, 1, "standard deviation"}},
           band_limited,

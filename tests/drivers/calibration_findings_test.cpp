@@ -50,17 +50,17 @@ TEST(CalibrationFindings, SayAllReasonsOnce) {
   for (CalibratedParameter& p : result.parameters) p.determined = false;
   result.parameters[0].within = false;
   result.parameters[0].interval = {0.01, 0.03};
-  EXPECT_EQ(reasons(result, 0),
-            (Reasons{"D lies at the end of the search", "95 % span a factor of 3"}));
-  EXPECT_EQ(reasons(result, 1), Reasons{"D lies at the end of the search"});
+  EXPECT_EQ(reasons(result, 0), (Reasons{"D lies at the end of the range searched",
+                                         "its interval spans a factor of 3"}));
+  EXPECT_EQ(reasons(result, 1), Reasons{"D lies at the end of the range searched"});
   result.unit_at_bound = false;
   result.parameters[1].within = false;
-  EXPECT_EQ(reasons(result, 0),
-            (Reasons{"it reaches the end of the search", "95 % span a factor of 3"}));
-  EXPECT_EQ(reasons(result, 1), Reasons{"it reaches the end of what was simulated"});
+  EXPECT_EQ(reasons(result, 0), (Reasons{"its interval reaches the end of the range searched",
+                                         "its interval spans a factor of 3"}));
+  EXPECT_EQ(reasons(result, 1), Reasons{"its interval reaches the end of what was simulated"});
   mark_unconverged(result);
-  EXPECT_EQ(reasons(result, 1),
-            (Reasons{"the search did not converge", "it reaches the end of what was simulated"}));
+  EXPECT_EQ(reasons(result, 1), (Reasons{"the search did not converge",
+                                         "its interval reaches the end of what was simulated"}));
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ TEST_F(HideTest, RefusesWhatCannotBeHidden) {
   EXPECT_NE(hide("--effects gravitty").output.find("did you mean 'gravity'"), std::string::npos);
   EXPECT_EQ(hide("--effects none --first 2 --last 1").code, 2);
   EXPECT_EQ(hide("--effects gravity,gravity").code, 2);
-  EXPECT_NE(hide("--effects thermal").output.find("none that explain looks for"),
+  EXPECT_NE(hide("--effects thermal").output.find("not one that explain searches for"),
             std::string::npos);
   EXPECT_EQ(hide("--effects none,gravity").code, 2);
   for (const char* effects : {"none", "gravity"}) {
@@ -114,12 +114,13 @@ TEST(CampaignTest, CountsWhatWasFoundAndGoesOn) {
   ASSERT_EQ(again.code, 0) << again.output;
   EXPECT_TRUE(fs::exists(out / "cases" / "naming-000" / "score.json"));
   const std::string log = testing::content(out / "cases" / "naming-000.log");
-  const std::size_t goes_on = log.find("what was found before");
+  const std::size_t goes_on = log.find("continue from the saved state");
   ASSERT_NE(goes_on, std::string::npos) << log;
   EXPECT_EQ(log.find("pace of the base model", goes_on), std::string::npos) << log;
   const auto changed = testing::traceraft(command + " --seed 2");
   EXPECT_EQ(changed.code, 2);
-  EXPECT_NE(changed.output.find("a campaign of another plan"), std::string::npos) << changed.output;
+  EXPECT_NE(changed.output.find("a campaign with another plan"), std::string::npos)
+      << changed.output;
   EXPECT_EQ(testing::traceraft("campaign --out " + out.string()).code, 0);
   EXPECT_EQ(testing::content(out / "cases" / "null-000" / "score.json"), first);
 
@@ -142,7 +143,7 @@ TEST(CampaignTest, CountsWhatWasFoundAndGoesOn) {
   write_durably(out / "cases" / "null-000" / "explain" / "search.json", "{}");
   fs::remove(out / "cases" / "null-000" / "score.json");
   ASSERT_EQ(testing::traceraft(command).code, 0);
-  EXPECT_NE(testing::content(out / "cases" / "null-000.log").find("the search begins anew"),
+  EXPECT_NE(testing::content(out / "cases" / "null-000.log").find("the search starts again"),
             std::string::npos);
 }
 

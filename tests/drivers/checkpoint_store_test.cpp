@@ -80,7 +80,7 @@ TEST(CheckpointStore, PassesOverADamagedOneAndSaysSo) {
   write_durably(newest, read_file(newest, 1 << 20).substr(0, 3000));
   EXPECT_EQ(store.newest(refused).step, 1);
   ASSERT_EQ(refused.size(), 1u);
-  EXPECT_NE(refused[0].find("step-0000000002.ckpt: it is torn"), std::string::npos);
+  EXPECT_NE(refused[0].find("step-0000000002.ckpt: its end is missing"), std::string::npos);
 }
 
 }  // namespace

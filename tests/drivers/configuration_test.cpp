@@ -127,7 +127,7 @@ TEST(Configuration, SaysHowNumbersAreSeparated) {
         complaint([&] {
           Configuration({}, flags({{"output-times", text}}));
         }),
-        std::string("--output-times: '") + text + "' is no number; commas stand between numbers");
+        std::string("--output-times: '") + text + "' is not a number; separate numbers by commas");
 }
 
 TEST(ConfigFile, NamesFileLineAndKey) {

@@ -117,7 +117,7 @@ TEST(DataTest, SaysWhereIntervalsOfALawAreOpen) {
     table.close();
     return traceraft("data check " + folder.path.string()).output;
   };
-  const std::string remark = "b may then be lower and c larger";
+  const std::string remark = "Then b may be lower, and c larger";
   EXPECT_NE(check([](double t) { return 10 * std::exp(-t / 500); }).find(remark),
             std::string::npos);
   EXPECT_EQ(check([](double t) { return 10 * std::pow(t, -0.3); }).find(remark), std::string::npos);

@@ -149,13 +149,13 @@ TEST_F(ExplainTest, GoesOnWhereItWasKilled) {
   const auto end = testing::traceraft(command_of_few(kCells));
   threads = 1;
   ASSERT_EQ(end.code, 0) << end.output;
-  EXPECT_NE(end.output.find("what was found before"), std::string::npos) << end.output;
+  EXPECT_NE(end.output.find("continue from the saved state"), std::string::npos) << end.output;
   EXPECT_EQ(end.output.find("pace of the base model"), std::string::npos) << end.output;
-  EXPECT_NE(end.output.find("once more"), std::string::npos) << end.output;
+  EXPECT_NE(end.output.find("check on another mesh"), std::string::npos) << end.output;
   const nlohmann::json resumed = verdict();
   // A search that is over is only told again.
   const auto again = testing::traceraft(command_of_few(kCells));
-  EXPECT_EQ(again.output.find("once more"), std::string::npos) << again.output;
+  EXPECT_EQ(again.output.find("check on another mesh"), std::string::npos) << again.output;
   EXPECT_EQ(verdict(), resumed);
   fs::remove_all(folder.path / "out");
   ASSERT_EQ(testing::traceraft(command_of_few(kCells)).code, 0);
@@ -227,11 +227,11 @@ TEST_F(ExplainTest, SaysWhatIsOddAboutTheData) {
   const auto end = testing::traceraft(command_of_few(10));
   ASSERT_EQ(end.code, 0) << end.output;
   const std::string remarks = verdict()["remarks"].dump();
-  EXPECT_NE(remarks.find("5 values that are far"), std::string::npos) << remarks;
+  EXPECT_NE(remarks.find("5 values were left out"), std::string::npos) << remarks;
   // Turned before the third snapshot, and back before the fourth.
   EXPECT_NE(remarks.find("rad before snapshot 3, 0."), std::string::npos) << remarks;
   EXPECT_NE(remarks.find("rad before snapshot 4"), std::string::npos) << remarks;
-  EXPECT_EQ(remarks.find("seems turned"), std::string::npos) << remarks;
+  EXPECT_EQ(remarks.find("seems to be rotated"), std::string::npos) << remarks;
 }
 
 TEST_F(ExplainTest, RefusesWhatItCannotUse) {
@@ -265,7 +265,7 @@ TEST_F(ExplainTest, RefusesWhatItCannotUse) {
           .find("holds the model"),
       std::string::npos);
   fs::remove(own);
-  EXPECT_NE(refusal(command(13) + " --effect thermal:strength=0.1,time=1").find("can be fitted"),
+  EXPECT_NE(refusal(command(13) + " --effect thermal:strength=0.1,time=1").find("cannot be fitted"),
             std::string::npos);
   EXPECT_NE(refusal(command(13) + " --effect curvature:strength=0.1").find("on this surface"),
             std::string::npos);
@@ -274,7 +274,7 @@ TEST_F(ExplainTest, RefusesWhatItCannotUse) {
                              " --without allen-cahn,asymmetry,bulk-mobility,cooling,"
                              "exchange,gravity,line-tension,mobility-contrast,mobility-exponent,"
                              "ohta-kawasaki,uptake");
-  EXPECT_NE(text.find("--without: no effect is left to look for"), std::string::npos) << text;
+  EXPECT_NE(text.find("--without: no effect is left to search for"), std::string::npos) << text;
   const auto checked = [&] {
     const auto end = testing::traceraft("data check " + (folder.path / "data").string());
     EXPECT_EQ(end.code, 0) << end.output;
@@ -284,7 +284,11 @@ TEST_F(ExplainTest, RefusesWhatItCannotUse) {
   vesicles[0].snapshots[1].points[7] *= 1.3;
   write(vesicles);
   text = checked();
-  EXPECT_NE(text.find("snapshot_002.csv:9: a point is 0.3 R off"), std::string::npos) << text;
+  EXPECT_NE(
+      text.find(
+          "snapshot_002.csv:9: the distance of a point from the sphere of this radius is 0.3 R"),
+      std::string::npos)
+      << text;
   text = refusal(command(13));
   EXPECT_NE(text.find("snapshot_002.csv:9: ("), std::string::npos) << text;
   vesicles[0].snapshots[1].points[7] /= 1.3;

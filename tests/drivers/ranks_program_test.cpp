@@ -242,7 +242,7 @@ TEST_F(RanksEndTest, TheFirstRankSpeaksForAll) {
   EXPECT_NE(("\n" + taken.output).find("\ntraceraft: --out: "), std::string::npos) << taken.output;
   const ProgramEnd missing = on(2, "resume " + at("nothing"));
   EXPECT_EQ(missing.code, 2);
-  EXPECT_EQ(missing.output, "traceraft: " + at("nothing") + " is no folder\n");
+  EXPECT_EQ(missing.output, "traceraft: " + at("nothing") + " is not a folder\n");
   const ProgramEnd compare = on(1, "compare --case two-rafts --ranks 1,2");
   EXPECT_EQ(compare.code, 2);
   EXPECT_NE(compare.output.find("start it without mpirun"), std::string::npos) << compare.output;

@@ -94,14 +94,14 @@ TEST_F(DatasetTest, ComputesSigmasFromThoseOfCaps) {
       read(heading + "a,1,5000,3000,9.79982\n", "sigma = \"95 % interval\"\n");
   EXPECT_NEAR(halves.measurements[0].sigma_of(Quantity::perimeter), 2 * kPi * 0.001, 1e-9);
   expect_complaint(heading + "a,1,5000,3000,5\na,1,5000,4000,\n",
-                   ":3: column 'cap_radius_sigma': of the rafts of one look either all");
+                   ":3: column 'cap_radius_sigma': within one observation, all rafts");
   expect_complaint(heading + "a,1,5000,3000,-1\n", "column 'cap_radius_sigma': -1 is impossible");
 }
 
 TEST_F(DatasetTest, NamesFileLineAndColumn) {
   const std::string heading = "vesicle,time,radius,perimeter,rafts,fraction\n";
   expect_complaint(heading + "a,2,5000,20000,1,0.1\na,1,5000,20000,1,0.1\n",
-                   "measurements.csv:3: column 'time': times of a vesicle have to ascend");
+                   "measurements.csv:3: column 'time': times of a vesicle must ascend");
   expect_complaint(heading + "a,1,5000,1,1,1.2\n", "column 'fraction': 1.2 is impossible");
   expect_complaint(heading + "a,1,5000,1,1.5,0.2\n", "column 'rafts': a whole number");
   expect_complaint(heading + "a,1,5,1,1,0.2\n", "is length_unit right?");
@@ -109,7 +109,7 @@ TEST_F(DatasetTest, NamesFileLineAndColumn) {
   expect_complaint(heading + "a,-1,5000,1,1,0.2\n", "before time zero");
   expect_complaint(heading + "a,x,5000,1,1,0.2\n", ":2: column 'time': 'x' is not a finite number");
   expect_complaint(heading + "a,1,5000,,1,0.1\nb,1,5000,,1,0.1\na,2,5000,,1,0.1\n",
-                   ":4: column 'vesicle': vesicle 'a' is there twice");
+                   ":4: column 'vesicle': vesicle 'a' occurs twice");
   expect_complaint(heading, "nothing was measured");
   expect_complaint("vesicle,radius,rafts\na,5000,1\n",
                    "measurements.csv:1: there is no column 'time'");
@@ -120,13 +120,13 @@ TEST_F(DatasetTest, NamesFileLineAndColumn) {
                    "5000001 is impossible (allowed: 0 to 5e+06)");
   for (const char* rows : {"a,1,5000,10\na,1,5000,\n", "a,1,5000,\na,1,5000,10\n"})
     expect_complaint(std::string("vesicle,time,radius,cap_radius\n") + rows,
-                     ":3: column 'cap_radius': a look without rafts has one row");
+                     ":3: column 'cap_radius': an observation without rafts has one row");
   expect_complaint("vesicle,time,radius,cap_radius\na,1,5000,0\n", "a raft has a size");
   expect_complaint("vesicle,time,raft\na,1,1\n", "did you mean 'rafts'");
   expect_complaint("vesicle,time,radius,cap_radius\na,1,5000,5001\n",
                    "column 'cap_radius': 5001 is impossible");
   expect_complaint("vesicle,time,radius,cap_radius\na,1,5000,5000\na,1,5000,5000\na,1,5000,1\n",
-                   ":2: column 'cap_radius': the caps of this look cover more");
+                   ":2: column 'cap_radius': the caps of this observation cover more");
   expect_complaint(heading + "a,1,5000,20000,1,0.1\n",
                    "dataset.toml:6: radius: ", "radius = 5000\n");
   expect_complaint(heading + "a,1,5000,20000,1,0.1\n",
@@ -151,7 +151,7 @@ TEST_F(DatasetTest, RefusesWhatContradictsItself) {
   expect_complaint("vesicle,time,radius,rafts,perimeter_sigma\na,1,5000,1,2\n",
                    ":1: there is a column 'perimeter_sigma', but none 'perimeter'");
   expect_complaint(heading + "a,1,5000,,1,\n#1,1,5000,,1,\n",
-                   "measurements.csv:3: this remark has as many commas as a row");
+                   "measurements.csv:3: this comment has as many commas as a row");
   EXPECT_EQ(
       read("# one, two\n" + heading + "# a remark, short\na,1,5000,,1,\n").measurements.size(), 1u);
 }

@@ -60,7 +60,7 @@ class FieldDatasetTest : public ::testing::Test {
 TEST_F(FieldDatasetTest, KeepsVesiclesTogether) {
   std::filesystem::copy(folder.path / "snapshot_001.csv", folder.path / "snapshot_004.csv");
   replace("dataset.toml", description("[1, 1, 2, 2]") + "vesicles = [1, 2, 1, 2]\n");
-  expect_refusal("snapshots of vesicle 1 have to follow each other");
+  expect_refusal("snapshots of vesicle 1 must follow each other");
 }
 
 TEST_F(FieldDatasetTest, ReadsWhatItHasWritten) {
@@ -86,7 +86,7 @@ TEST_F(FieldDatasetTest, ReadsWhatNeighboursShareOfTheNoise) {
   EXPECT_EQ(read_field_dataset(folder.path).noise_share, 0.2);
   EXPECT_NEAR(read_field_dataset(folder.path).noise_correlation_um, 0.25, 1e-12);
   replace("dataset.toml", description("[1, 2, 3]") + "noise_share = 0.2\n");
-  expect_refusal("it stands without noise_correlation");
+  expect_refusal("it needs noise_correlation");
   replace("dataset.toml",
           description("[1, 2, 3]") + "noise_share = 1.2\nnoise_correlation = 0.1\n");
   expect_refusal("from 0 to 1");
@@ -116,7 +116,7 @@ TEST_F(FieldDatasetTest, AsksAboutValuesOnAnotherScale) {
   };
   EXPECT_EQ(note_on_scale(data, 0, 1), "");
   scale(2, 1);
-  EXPECT_NE(note_on_scale(data, 0, 1).find("is c on that scale?"), std::string::npos);
+  EXPECT_NE(note_on_scale(data, 0, 1).find("Is c on this scale?"), std::string::npos);
   EXPECT_EQ(note_on_scale(data, 1, 3), "");
 }
 

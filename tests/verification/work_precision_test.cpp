@@ -22,10 +22,11 @@ TEST(Recommendation, TakesTheCheapestAtTheErrorThatAllReach) {
                 0);
   EXPECT_EQ(advice.target, 1e-2);
   EXPECT_EQ(advice.cheapest, (std::vector<int>{3, 1}));
-  EXPECT_EQ(advice.sentence,
-            "For an error of 1.0e-02 at the end, use ida with block at tolerance 0.001: 2 s wall "
-            "time, 3 s CPU; the next, euler with block at tolerance 0.001, takes 5.0 times as "
-            "long.");
+  EXPECT_EQ(
+      advice.sentence,
+      "For an error of 1.0e-02 at the end, use ida with block at tolerance 0.001: 2 s wall "
+      "time, 3 s CPU; the next method, euler with block at tolerance 0.001, takes 5.0 times as "
+      "long.");
 }
 
 TEST(Recommendation, SaysWhenTheTimesCannotTell) {
@@ -56,7 +57,7 @@ TEST(Recommendation, NamesWhatMissedTheTargetAndSurvivesFailures) {
   EXPECT_NE(strict.sentence.find("not reached by euler with block, rosenbrock with block"),
             std::string::npos);
   EXPECT_NE(recommend(points, 1e-9).sentence.find("No method reached"), std::string::npos);
-  EXPECT_EQ(recommend({failed}, 0).sentence, "No combination gave a result.");
+  EXPECT_EQ(recommend({failed}, 0).sentence, "No combination has a result.");
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ bool tells(const Measurement& m) {
 }  // namespace
 
 std::vector<int> telling_vesicles(const MeasuredVesicles& data) {
-  if (!(looks(data).end > 0)) throw InputError("a calibration needs looks after time zero");
+  if (!(looks(data).end > 0)) throw InputError("a calibration needs observations after time zero");
   std::vector<int> result;
   const auto vesicles = data.vesicles();
   for (std::size_t k = 0; k < vesicles.size(); ++k) {
@@ -28,8 +28,8 @@ std::vector<int> telling_vesicles(const MeasuredVesicles& data) {
   }
   if (result.size() < kLeastVesicles)
     throw InputError(
-        "a calibration needs three vesicles at least, to know how they scatter, with rafts whose "
-        "perimeter or number was measured after time zero; there are " +
+        "a calibration needs at least three vesicles with rafts, whose perimeters or numbers of "
+        "rafts were measured after time zero; there are " +
         std::to_string(result.size()));
   return result;
 }

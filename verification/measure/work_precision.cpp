@@ -36,9 +36,9 @@ std::string describe(const WorkPoint& p) {
 std::string sentence(const std::vector<WorkPoint>& points, const Recommendation& advice) {
   if (advice.cheapest.empty())
     return any_result(points)
-               ? formatted("No method reached an error of %.1e: ask for tighter --tolerances.",
+               ? formatted("No method reached an error of %.1e. Choose smaller --tolerances.",
                            advice.target)
-               : std::string("No combination gave a result.");
+               : std::string("No combination has a result.");
   const WorkPoint& best = points[advice.cheapest[0]];
   const Sample wall = sample_of(best.wall_s);
   std::string advised =
@@ -50,10 +50,11 @@ std::string sentence(const std::vector<WorkPoint>& points, const Recommendation&
     advised +=
         other.min <= wall.max
             ? formatted("; %s is as fast within the spread of the times", describe(next).c_str())
-            : formatted("; the next, %s, takes %.1f times as long", describe(next).c_str(),
+            : formatted("; the next method, %s, takes %.1f times as long", describe(next).c_str(),
                         other.median / wall.median);
   }
-  if (!advice.missed.empty()) advised += "; not reached by " + joined(advice.missed, ", ");
+  if (!advice.missed.empty())
+    advised += "; this error was not reached by " + joined(advice.missed, ", ");
   return advised + ".";
 }
 

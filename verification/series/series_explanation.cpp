@@ -22,7 +22,7 @@ constexpr double kFree = 2;
 void refuse(const MeasuredVesicles& data, const std::vector<History>& base,
             const std::vector<SeriesCandidate>& candidates) {
   refuse_vesicles(data);
-  if (candidates.empty()) throw InputError("series: no effect is left to look for");
+  if (candidates.empty()) throw InputError("series: no effect is left to search for");
   if (base.size() < 3) throw InputError("series need three runs of every model at least");
   for (const SeriesCandidate& candidate : candidates)
     if (candidate.runs.size() != base.size())

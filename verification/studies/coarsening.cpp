@@ -53,7 +53,7 @@ void measure_spectra(const Ensemble& ensemble, const std::string& name, Findings
                                      median_degrees.front().first, median_degrees.back().first,
                                      fit_power_law(median_degrees).slope, "", "", -1.0 / 3});
   findings.report.claims.push_back(
-      claim_at_most(name + ": scaled spectra, largest difference of first and last",
+      claim_at_most(name + ": largest difference between the first and the last scaled spectrum",
                     largest_difference(curves.front(), curves.back()), 0.1));
 }
 
@@ -121,12 +121,12 @@ StudyReport run(const Bench& bench) {
     measure_equal(bench, {192, 0.0133, 6, {0, 0.7}}, 0.03, findings);
     measure_degenerate(bench, {160, 0.016, 4, {0.7, 1}}, findings);
   }
-  return finished_report(findings,
-                         formatted("windows of t + offset begin where it is %.0f widths of a "
-                                   "boundary (and 15, 20), those of t at %.0f; they end at a "
-                                   "perimeter of %.0f great circles. Boundaries that are wide "
-                                   "against lengths make exponents smaller.",
-                                   kWidthsAbsorbed, kWidthsLate, kGreatCirclesAtEnd));
+  return finished_report(
+      findings,
+      formatted("Windows of t + offset begin at a length of %.0f widths of a boundary (15 and 20 "
+                "also), and windows of t at %.0f widths. They end at a perimeter of %.0f great "
+                "circles. Boundaries that are wide compared with lengths make exponents smaller.",
+                kWidthsAbsorbed, kWidthsLate, kGreatCirclesAtEnd));
 }
 
 }  // namespace

@@ -112,8 +112,9 @@ Ensemble measured_ensemble(const Bench& bench, const std::string& name,
 
 StudyReport finished_report(Findings findings, const std::string& windows) {
   findings.report.notes = {
-      "Seeded runs; intervals are by the bootstrap over runs and hold their scatter, not "
-      "corrections to the law. A length is |Gamma|/perimeter: " +
+      "The runs differ in their seed. Intervals come from a bootstrap over runs: they contain the "
+      "scatter of the runs, but not corrections to the law. A length is the area divided by the "
+      "perimeter. " +
       windows};
   findings.report.tables = {findings.exponents, findings.cost};
   return findings.report;

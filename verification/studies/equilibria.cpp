@@ -96,14 +96,14 @@ void measure_boundary(const Bench& bench, StudyReport& report) {
                            true,
                            {{"energy", energy}, {"profile", profile}}});
   report.claims.push_back(
-      claim_near("energy of a boundary over that of the equilibrium on the sphere",
+      claim_near("energy of a boundary / energy of the equilibrium on the sphere",
                  1 + energy.back().second, 1, 0.005));
-  report.claims.push_back(claim_near("energy per length of a boundary over epsilon/(6 sqrt 2)",
+  report.claims.push_back(claim_near("energy per length of a boundary / (epsilon/(6 sqrt 2))",
                                      flat * (1 + energy.back().second), 1, 0.005));
-  report.claims.push_back(claim_near(
-      "width of a boundary over that of the equilibrium on the sphere", last_width, 1, 0.005));
+  report.claims.push_back(claim_near("width of a boundary / width of the equilibrium on the sphere",
+                                     last_width, 1, 0.005));
   report.claims.push_back(
-      claim_near("two equal halves: level curve over 2 pi", level_curve, 1, 0.001));
+      claim_near("two equal halves: length of the level curve / 2 pi R", level_curve, 1, 0.001));
   report.claims.push_back(claim_order(
       "largest distance of c from the equilibrium on the sphere: order in h", profile, 2, 0.4));
 }
@@ -128,10 +128,10 @@ void measure_directions(const Bench& bench, StudyReport& report) {
   report.tables.push_back(table);
   const Sample found = sample_of(energies);
   report.claims.push_back(claim_near(
-      "energy of a boundary at h/epsilon = 2.6 over that of the equilibrium, mean over directions",
+      "energy of a boundary / energy of the equilibrium at h/epsilon = 2.6, mean over directions",
       found.mean, 1, 0.005));
   report.claims.push_back(
-      claim_at_most("the same: standard deviation over directions", found.deviation, 0.006));
+      claim_at_most("standard deviation of this ratio over directions", found.deviation, 0.006));
 }
 
 // Gibbs–Thomson on the sphere, to first order in ε: μ = σ κ_g with σ = ε/(6√2) and the geodesic
@@ -157,7 +157,7 @@ struct CapErrors {
 
 CapErrors measure_cap(const Bench& bench, int cells, double epsilon, double start, Table& table) {
   const Equilibrium state = relaxed_cap(bench, bench.space("sphere", cells), epsilon, start, 30);
-  if (state.rafts.rafts.size() != 1) throw std::runtime_error("a cap did not stay one raft");
+  if (state.rafts.rafts.size() != 1) throw std::runtime_error("a cap did not remain one raft");
   const double mass = state.problem->mass(state.y);
   const double angle = std::acos(1 - state.rafts.area / (2 * kPi));
   const double theory = cap_angle(mass, epsilon), shift = state.rafts.c_max - 1;
@@ -182,14 +182,14 @@ void measure_caps(const Bench& bench, StudyReport& report) {
     const CapErrors coarse = measure_cap(bench, cells / 2, 2 * epsilon, start, table);
     const CapErrors fine = measure_cap(bench, cells, epsilon, start, table);
     const std::string cap = formatted("cap of angle %.2f: ", start);
+    report.claims.push_back(claim_at_most(cap + "relative error of the angle", fine.angle, 0.01));
     report.claims.push_back(
-        claim_at_most(cap + "angle against theory, relative", fine.angle, 0.01));
-    report.claims.push_back(claim_at_most(cap + "the same over that at twice epsilon (theory 1/4)",
-                                          fine.angle / coarse.angle, 0.4));
+        claim_at_most(cap + "error of the angle / error at twice epsilon (theory: 1/4)",
+                      fine.angle / coarse.angle, 0.4));
     report.claims.push_back(
-        claim_at_most(cap + "shift of c against Gibbs-Thomson, relative", fine.shift, 0.1));
-    report.claims.push_back(
-        claim_at_most(cap + "level curve against 2 pi sin(angle)", fine.perimeter, 0.001));
+        claim_at_most(cap + "relative error of the shift of c (Gibbs-Thomson)", fine.shift, 0.1));
+    report.claims.push_back(claim_at_most(
+        cap + "relative error of the level curve against 2 pi sin(angle)", fine.perimeter, 0.001));
   }
   report.tables.push_back(table);
 }
@@ -258,21 +258,22 @@ void measure_dissolution(const Bench& bench, StudyReport& report) {
   const double fine = std::fabs(levels[2].second - levels[1].second);
   const double coarse = std::fabs(levels[1].second - levels[0].second);
   report.claims.push_back(claim_between(
-      "the smaller of two rafts shrinks in every step after t = 1 (1: yes)", shrinks, 1, 1));
+      "the smaller of two rafts shrinks in every step after t = 1 (1 means yes)", shrinks, 1, 1));
+  report.claims.push_back(claim_at_most(
+      "time until it vanishes: change by the last halving of h / change by the halving before",
+      fine / coarse, 0.4));
   report.claims.push_back(
-      claim_at_most("time to its end: change from the last halving of h over the one before",
-                    fine / coarse, 0.4));
-  report.claims.push_back(
-      claim_at_most("time to its end: change from tolerance 1e-4 to 1e-5, relative",
+      claim_at_most("time until it vanishes: relative change from tolerance 1e-4 to 1e-5",
                     std::fabs(loose / levels[1].second - 1), 0.01));
 }
 
 StudyReport run(const Bench& bench) {
   StudyReport report;
   report.notes = {
-      "Caps relaxed with constant mobility to t = 30 (caps) and 100 (boundary). A boundary is "
-      "compared with the equilibrium on the sphere, solved in one dimension; caps with the limit "
-      "of a sharp boundary and its first correction in epsilon."};
+      "Caps relax with constant mobility, to t = 30 for caps and t = 100 for a boundary at the "
+      "equator. The boundary is compared with the equilibrium on the sphere, which is solved in "
+      "one dimension. Caps are compared with the limit of a sharp boundary and its first "
+      "correction in epsilon."};
   measure_boundary(bench, report);
   bench.progress(0.2);
   measure_directions(bench, report);
@@ -286,7 +287,7 @@ StudyReport run(const Bench& bench) {
 }  // namespace
 
 StudyEntry equilibria_study() {
-  return {"equilibria", "profile and energy of a boundary, caps and two rafts against theory", run};
+  return {"equilibria", "a boundary, caps and two rafts against the theory of equilibria", run};
 }
 
 }  // namespace traceraft

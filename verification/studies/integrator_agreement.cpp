@@ -95,7 +95,8 @@ void compare_integrators(const Bench& bench, const Agreement& runs, StudyReport&
         claim_at_most("largest distance at tolerance " + format_number(tightest), apart,
                       2 * tightest));  // the sum of the two tolerances
   else
-    report.notes.push_back("No other integrator was asked for that ida could be held against.");
+    report.notes.push_back(
+        "Only ida was requested, so that there is no integrator to compare it with.");
   report.tables.push_back(table);
   report.charts.push_back(chart);
 }
@@ -127,8 +128,10 @@ void compare_solvers(const Bench& bench, const Agreement& runs, StudyReport& rep
       apart = larger(apart, distance);
     }
   }
-  claim_sameness("largest distance of two solvers at tolerance " + format_number(tolerance), apart,
-                 "No solver was asked for that direct could be held against.", table, report);
+  claim_sameness("largest distance between two solvers at tolerance " + format_number(tolerance),
+                 apart,
+                 "No other solver was requested, so that there is none to compare direct with.",
+                 table, report);
 }
 
 void compare_ranks(const Bench& bench, const Agreement& runs, StudyReport& report) {
@@ -142,16 +145,16 @@ void compare_ranks(const Bench& bench, const Agreement& runs, StudyReport& repor
       table.rows.push_back({name, solver, distance});
       apart = larger(apart, distance);
     }
-  claim_sameness("largest distance of 2 ranks from 1 at t = " + format_number(end), apart,
-                 "This build has no solver that works on ranks.", table, report);
+  claim_sameness("largest distance between 1 and 2 ranks at t = " + format_number(end), apart,
+                 "This build has no solver that works on several ranks.", table, report);
 }
 
 StudyReport run(const Bench& bench) {
   const Agreement runs(bench);
   StudyReport report;
   report.notes = {
-      "40 % rafts from noise, 16 cells, width 0.2, degenerate mobility, to t = 1: rafts "
-      "have formed and coarsen."};
+      "The runs have 40 % rafts from noise, 16 cells, epsilon = 0.2 R and degenerate mobility. "
+      "They end at t = 1, when rafts have formed and coarsen."};
   compare_integrators(bench, runs, report);
   bench.progress(0.6);
   compare_solvers(bench, runs, report);

@@ -113,24 +113,24 @@ StudyReport run(const Bench& bench) {
   }
   StudyReport report;
   report.notes = {
-      "Largest relative change of the mass over all accepted steps; 24 cells, 30 % rafts "
-      "from noise, width 0.2, tolerance 1e-2.",
-      formatted("%zu runs, %.0f accepted steps.", list.size(), steps)};
+      "The drift is the largest relative change of the mass over all accepted steps. The runs have "
+      "24 cells, 30 % rafts from noise, epsilon = 0.2 R and tolerance 1e-2.",
+      formatted("There are %zu runs with %.0f accepted steps.", list.size(), steps)};
   report.tables = {table};
   report.claims = {claim_at_most("largest relative drift of the mass", largest, kBound),
                    claim_at_least("fewest accepted steps of a run", fewest, kEnough)};
   if (!bench.linear_solvers_on_ranks().empty())
-    report.claims.insert(report.claims.begin() + 1,
-                         claim_at_most("the same on two ranks", largest_on_ranks, kBound));
+    report.claims.insert(
+        report.claims.begin() + 1,
+        claim_at_most("largest relative drift of the mass on two ranks", largest_on_ranks, kBound));
   return report;
 }
 
 }  // namespace
 
 StudyEntry mass_balance_study() {
-  return {"mass",
-          "the mass does not drift: surfaces, mobilities, integrators, solvers, ranks, seeds", run,
-          false, true};
+  return {"mass", "the mass is conserved: surfaces, mobilities, integrators, solvers, ranks, seeds",
+          run, false, true};
 }
 
 }  // namespace traceraft

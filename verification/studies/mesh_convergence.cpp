@@ -34,9 +34,10 @@ std::array<double, 6> errors(const Bench& bench, const std::string& surface, int
 StudyReport run(const Bench& bench) {
   StudyReport report;
   report.notes = {
-      "-Laplace(u) + u = f with u = xyz, and the full system with c = 1/2 + cos(t) xyz/4 to "
-      "t = 0.5, degenerate mobility; the order is that between the two finest meshes, its "
-      "uncertainty the change from the pair before."};
+      "The stationary problem is -Laplace(u) + u = f with the solution u = xyz. The full system "
+      "has the solution c = 1/2 + cos(t) xyz/4, to t = 0.5, and degenerate mobility. The order is "
+      "that between the two finest meshes. Its uncertainty is the change from the pair of meshes "
+      "before."};
   Table table{"errors", {"surface", "cells", "h"}, {}};
   for (const char* column : {"L2", "H1", "c_L2", "c_H1", "mu_L2", "mu_H1"})
     table.columns.push_back(column);
@@ -72,7 +73,9 @@ StudyReport run(const Bench& bench) {
 }  // namespace
 
 StudyEntry mesh_convergence_study() {
-  return {"convergence", "orders in the mesh size: manufactured solutions on three surfaces", run};
+  return {"convergence",
+          "orders of convergence in the mesh size, by manufactured solutions on three surfaces",
+          run};
 }
 
 }  // namespace traceraft

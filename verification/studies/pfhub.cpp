@@ -105,7 +105,7 @@ double largest_difference(const Simulation& run, double from, double to) {
   for (std::size_t k = 0; k < run.samples.size(); ++k)
     if (run.samples[k].t >= from && run.samples[k].t <= to)
       largest = larger(largest, std::fabs(relative(run.samples[k].energy, k)));
-  if (!(largest > 0)) throw std::runtime_error("no energy was sampled there");
+  if (!(largest > 0)) throw std::runtime_error("no energy was sampled in this interval");
   return largest;
 }
 
@@ -127,9 +127,9 @@ void add_energies(const Simulation& run, StudyReport& report) {
                            {{"traceraft, " + std::to_string(run.cells) + " cells", measured},
                             {"spherical harmonics", spectral, Mark::line}}});
   report.notes.push_back(
-      formatted("%d cells (h/width %.2f), %d unknowns, tolerance %.3g, %.0f "
-                "steps. Atan2 branch of the initial state; some uploads have "
-                "another.",
+      formatted("The run has %d cells (h/epsilon = %.2f), %d unknowns, tolerance %.3g and %.0f "
+                "steps. Its initial state uses the atan2 branch of the angle; some of the "
+                "published results use another branch.",
                 run.cells, 10.0 / 3 / run.cells * kRadius / std::sqrt(kKappa), run.unknowns,
                 run.tolerance, run.steps));
 }
@@ -144,7 +144,8 @@ void add_cost(const Simulation& run, StudyReport& report) {
     add(upload.name, upload.cores, upload.wall_s, upload.memory_gb);
   report.tables.push_back(cost);
   report.notes.push_back(
-      "Costs of others are what they report; the memory of traceraft is the peak of this process.");
+      "Costs of other programs are those that their authors report. The memory of traceraft is the "
+      "peak of this process.");
 }
 
 // Up to t = 100 all meshes have the same rafts, and errors fall at least with h²: faster while
@@ -172,10 +173,11 @@ void measure_convergence(const Bench& bench, int finest, StudyReport& report) {
   const ObservedOrder order = observed_order(levels);
   report.claims.push_back(claim_at_least("t = 0.1 to 100, tolerance 1e-4: order of the energy in h",
                                          order.order, 1.6, order.change));
-  report.claims.push_back(claim_at_most("the same on the finest mesh: largest relative difference",
+  report.claims.push_back(claim_at_most("t = 0.1 to 100, finest mesh: largest relative difference",
                                         levels.back().second, 0.002));
   report.claims.push_back(
-      claim_at_most("the same, extrapolated from two meshes", extrapolated, 0.002));
+      claim_at_most("t = 0.1 to 100, extrapolated from two meshes: largest relative difference",
+                    extrapolated, 0.002));
 }
 
 StudyReport measure_quickly(const Bench& bench) {
@@ -193,9 +195,9 @@ StudyReport measure(const Bench& bench) {
   const Simulation run = simulate(bench, 208, 1e6, 1e-3);
   add_energies(run, report);
   report.notes.push_back(
-      formatted("Which rafts survive late is decided by small differences early. Between t = 3e3 "
-                "and 3e5 the largest difference is %.0f %%: on this mesh rafts merge at other "
-                "times. Nothing is claimed of it here; pfhub-fine does, on a finer mesh.",
+      formatted("Small early differences decide which rafts survive. Between t = 3e3 and 3e5 the "
+                "largest difference is %.0f %%, because rafts merge at other times on this mesh. "
+                "This study makes no claim about these times; pfhub-fine does, on a finer mesh.",
                 100 * largest_difference(run, 2e3, 5e5)));
   measure_convergence(bench, run.cells, report);
   report.claims.push_back(claim_at_most("t = 0.1 to 1e3: largest relative difference",
@@ -232,7 +234,8 @@ StudyEntry pfhub_study() {
 }
 
 StudyEntry fine_pfhub_study() {
-  return {"pfhub-fine", "the same on a fine mesh: an hour, --quick to t = 1e3 in ten minutes",
+  return {"pfhub-fine",
+          "pfhub on a fine mesh: takes an hour, or ten minutes with --quick (to t = 1e3)",
           measure_finely, true};
 }
 

@@ -31,7 +31,8 @@ void measure_sizes(const Ensemble& runs, const std::string& name, Findings& find
   }
   findings.report.charts.push_back(chart);
   findings.report.claims.push_back(
-      claim_at_most(name + ": scaled radii, difference of first and last over that of chance (5 %)",
+      claim_at_most(name + ": difference between first and last distribution of scaled radii / 5 % "
+                           "quantile of chance",
                     largest_difference(curves.front(), curves.back()) /
                         chance_difference(by_member.front(), by_member.back()),
                     1));
@@ -76,9 +77,10 @@ StudyReport run(const Bench& bench) {
     measure_rafts(bench, {96, 0.0267, 5}, 0.06, findings);
   else
     measure_rafts(bench, {256, 0.01, 6}, 0.03, findings);
-  return finished_report(findings, formatted("windows begin where it is %.0f widths of a "
-                                             "boundary and end at %.0f rafts.",
-                                             kWidthsLate, kRaftsAtEnd));
+  return finished_report(
+      findings,
+      formatted("Windows begin at a length of %.0f widths of a boundary and end at %.0f rafts.",
+                kWidthsLate, kRaftsAtEnd));
 }
 
 }  // namespace

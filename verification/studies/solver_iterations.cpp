@@ -125,9 +125,9 @@ void measure_cuts(const Bench& bench, StudyReport& report) {
   }
   report.tables.push_back(table);
   report.claims.push_back(
-      claim_between("surfaces that lie anyhow in the mesh: most iterations to 1e-4", most, 1, 25));
+      claim_between("random positions of the surface: most iterations to 1e-4", most, 1, 25));
   report.claims.push_back(
-      claim_between("surfaces that lie anyhow in the mesh: fewest (-1: none)", fewest, 0, most));
+      claim_between("random positions of the surface: fewest iterations", fewest, 0, most));
 }
 
 StudyReport measure_meshes(const Bench& bench, int coarsest, int finest) {
@@ -150,14 +150,16 @@ StudyReport measure_meshes(const Bench& bench, int coarsest, int finest) {
   }
   StudyReport report;
   report.notes = {
-      "GMRES of block with fresh factors; s is the shift in D/R^2; -1: more than its limit. The "
-      "exact tangent is held to its claim for steps up to twice the one that ida takes there; "
-      "of longer ones it is counted without --quick."};
+      "Numbers are iterations of GMRES in the solver block, with fresh factors. The shift s, in "
+      "units of D/R^2, is about the inverse of the step. The number -1 means that the limit of "
+      "iterations was reached. The claim about the exact tangent covers steps up to twice that of "
+      "ida at this state. Longer steps are measured only without --quick."};
   report.tables = {table};
   report.claims = {
       claim_between("stabilised tangent: most iterations to 1e-4", most.iterations[0], 1, 25),
-      claim_between("exact, to 2 x ida's step: most to 1e-2", most.iterations[1], 1, 25),
-      claim_at_most("solves that need the fallback", most.failures, 0)};
+      claim_between("exact tangent, up to twice ida's step: most iterations to 1e-2",
+                    most.iterations[1], 1, 25),
+      claim_at_most("solves that need the fallback solver", most.failures, 0)};
   if (finest <= 128) measure_cuts(bench, report);
   return report;
 }
@@ -170,7 +172,7 @@ StudyEntry solver_iterations_study() {
 }
 
 StudyEntry large_solver_iterations_study() {
-  return {"iterations-large", "the same on a fine mesh: a quarter of an hour",
+  return {"iterations-large", "iterations on a fine mesh: takes a quarter of an hour",
           [](const Bench& bench) { return measure_meshes(bench, 256, 256); }, true};
 }
 

@@ -74,20 +74,21 @@ StudyReport run(const Bench& bench) {
     bench.progress(static_cast<double>(step + 1) / steps);
   }
   StudyReport report;
-  report.notes = {formatted(
-      "A sphere on %d cells, epsilon = %g. Parts of a step are summed over threads. Times of one "
-      "and of two cores are taken in turn; the claims need two cores that nothing else uses.",
-      cells, epsilon_on(cells))};
+  report.notes = {
+      formatted("The surface is a sphere on %d cells with epsilon = %g R. The times of the parts "
+                "of a step are summed over threads. Runs on one and on two cores alternate. The "
+                "claims need two cores without other load.",
+                cells, epsilon_on(cells))};
   report.tables = {{"steps",
                     {"solver", "threads", "steps", "median_ms", "mean_ms", "assembly_ms",
                      "setup_ms", "solve_ms", "iterations"},
                     {one.row(), two.row(), direct_one.row(), direct_two.row()}}};
   report.claims = {
-      claim_between("block: time on one core over time on two", one.mean() / two.mean(), 1.2, 2.2),
-      claim_between("direct: time on one core over time on two",
-                    direct_one.mean() / direct_two.mean(), 1.2, 2.2),
-      claim_between("one core: time of direct over time of block", direct_one.mean() / one.mean(),
-                    2, 1e3)};
+      claim_between("block: time on one core / time on two", one.mean() / two.mean(), 1.2, 2.2),
+      claim_between("direct: time on one core / time on two", direct_one.mean() / direct_two.mean(),
+                    1.2, 2.2),
+      claim_between("one core: time of direct / time of block", direct_one.mean() / one.mean(), 2,
+                    1e3)};
   return report;
 }
 

@@ -134,20 +134,21 @@ void measure_cuts(const Bench& bench, StudyReport& report) {
       of + "largest relative error of the area",
       std::max(std::fabs(area.min / exact - 1), std::fabs(area.max / exact - 1)), 1e-4));
   report.claims.push_back(
-      claim_at_most(of + "largest over mean error in L2", l2.max / l2.mean, 1.25));
+      claim_at_most(of + "largest error / mean error, in L2", l2.max / l2.mean, 1.25));
   report.claims.push_back(
-      claim_at_most(of + "largest over mean error in H1", h1.max / h1.mean, 1.25));
+      claim_at_most(of + "largest error / mean error, in H1", h1.max / h1.mean, 1.25));
   report.claims.push_back(
-      claim_at_most(of + "largest condition of M + 0.3 h S, scaled", mass.max, 40));
-  report.claims.push_back(claim_at_most(of + "largest over mean condition of K + M + h S",
+      claim_at_most(of + "largest condition number of M + 0.3 h S", mass.max, 40));
+  report.claims.push_back(claim_at_most(of + "largest / mean condition number of K + M + h S",
                                         helmholtz.max / helmholtz.mean, 2));
 }
 
 StudyReport run(const Bench& bench) {
   StudyReport report;
   report.notes = {
-      "The ellipsoid of the cuts is turned and shifted anyhow against the mesh; errors "
-      "on 20 cells, condition numbers after diagonal scaling on 10."};
+      "A cut is an ellipsoid at a random rotation and shift against the mesh. Errors are those on "
+      "20 cells. Condition numbers are those on 10 cells, after diagonal scaling. M is the mass "
+      "matrix, K the stiffness matrix, S the stabilisation."};
   measure_bodies(bench, report);
   bench.progress(0.5);
   measure_cuts(bench, report);
@@ -157,7 +158,8 @@ StudyReport run(const Bench& bench) {
 }  // namespace
 
 StudyEntry surface_geometry_study() {
-  return {"geometry", "area and curvature of the discrete surface, independence of the cuts", run};
+  return {"geometry", "area and curvature of the discrete surface, for any position in the mesh",
+          run};
 }
 
 }  // namespace traceraft

@@ -91,7 +91,7 @@ struct Mesh {
 StudyReport measure_meshes(const Bench& bench, const std::vector<Mesh>& meshes) {
   StudyReport report;
   if (!linear_solvers().find("teko").built) {
-    report.skipped = "Trilinos was not built in";
+    report.skipped = "this build has no Trilinos";
     return report;
   }
   Table table{"iterations", {"preconditioner, inverse", "cells", "epsilon", "state"}, {}};
@@ -105,14 +105,17 @@ StudyReport measure_meshes(const Bench& bench, const std::vector<Mesh>& meshes) 
     bench.progress(cells * cells / (finest * finest));
   }
   report.notes = {
-      "Belos to 1e-8, fresh preconditioner, stabilised tangent, degenerate mobility; s is the "
-      "shift in D/R^2; -1: more than 200."};
+      "Numbers are iterations of Belos to a relative residual of 1e-8, with a fresh "
+      "preconditioner, the stabilised tangent and degenerate mobility. The shift s is in units of "
+      "D/R^2. The number -1 means more than 200 iterations."};
   report.tables = {table};
   report.claims = {
-      claim_between("two-solve, muelu-ilu: most to 1e-8", most[kOwn].iterations, 1, kGoal),
-      claim_at_most("two-solve, muelu-ilu: systems it does not solve", most[kOwn].failures, 0),
-      claim_between("two-solve, muelu (default): most to 1e-8", most[kDefault].iterations, 1, 150),
-      claim_at_most("two-solve, muelu (default): systems it does not solve",
+      claim_between("two-solve, muelu-ilu: most iterations to 1e-8", most[kOwn].iterations, 1,
+                    kGoal),
+      claim_at_most("two-solve, muelu-ilu: systems that are not solved", most[kOwn].failures, 0),
+      claim_between("two-solve, muelu (default): most iterations to 1e-8",
+                    most[kDefault].iterations, 1, 150),
+      claim_at_most("two-solve, muelu (default): systems that are not solved",
                     most[kDefault].failures, 0)};
   return report;
 }
@@ -137,8 +140,8 @@ StudyEntry teko_iterations_study() {
 }
 
 StudyEntry large_teko_iterations_study() {
-  return {"teko-large", "the same on fine meshes: half an hour, --quick ten minutes", measure_large,
-          true};
+  return {"teko-large", "teko on fine meshes: takes half an hour, or ten minutes with --quick",
+          measure_large, true};
 }
 
 }  // namespace traceraft

@@ -98,7 +98,7 @@ void measure_tolerances(const Bench& bench, const Runs& runs, const Vec& referen
       table.rows.push_back({integrator, tolerance, error});
     }
     report.claims.push_back(
-        claim_at_most(integrator + ": largest error over its tolerance", largest_ratio, 10));
+        claim_at_most(integrator + ": largest error / tolerance", largest_ratio, 10));
     chart.series.push_back({integrator, levels});
   }
   report.tables.push_back(table);
@@ -109,8 +109,8 @@ StudyReport run(const Bench& bench) {
   const Runs runs(bench);
   StudyReport report;
   report.notes = {
-      "Manufactured solution on the sphere, 16 cells, c = 1/2 + cos(t) xyz/4 to t = 1; "
-      "the reference is rosenbrock with far smaller steps on the same mesh."};
+      "The solution is c = 1/2 + cos(t) xyz/4 to t = 1, on a sphere with 16 cells. The reference "
+      "is rosenbrock with far smaller steps on the same mesh."};
   const Vec reference = runs.with_steps(kMethods[3], bench.quick() ? 640 : 1280);
   bench.progress(0.3);
   measure_orders(bench, runs, reference, report);

@@ -17,14 +17,12 @@ std::string difference_of_radii(const MeasuredVesicles& data, double radius) {
     radii.push_back(data.measurements[first].radius);
   const Sample d = sample_of(radii);
   if (d.max <= kSameSize * radius && d.min >= radius / kSameSize) return "";
-  const double factor = factor_of_size(data, radius);
   return formatted(
-      "The vesicles have radii of %.3g to %.3g um (median %.3g), the simulated one %.3g um: at the "
-      "same time larger vesicles have more rafts and a larger perimeter over radius, so that part "
-      "of a deviation may be due to their size. As far as coarsening takes times that go with R^4, "
-      "simulations of their size (--radius %.3g, with as many more --cells) would make D "
-      "%.2g times as large.",
-      d.min, d.max, d.median, radius, radius * std::pow(factor, 0.25), factor);
+             "The vesicles have radii of %.3g to %.3g um (median %.3g um); the simulated one has "
+             "%.3g um. At the same time, larger vesicles have more rafts and a larger perimeter / "
+             "radius. Part of a deviation may be due to this. ",
+             d.min, d.max, d.median, radius) +
+         effect_of_size(data, radius) + " and as many more --cells.";
 }
 
 std::string difference_of_fractions(const MeasuredVesicles& data, double fraction) {
@@ -36,8 +34,8 @@ std::string difference_of_fractions(const MeasuredVesicles& data, double fractio
   const double off = std::fabs(d.mean - fraction);
   if (off <= kDeviations * d.deviation || off <= kSameFraction * fraction) return "";
   return formatted(
-      "Rafts cover %.3g of the vesicles (standard deviation %.2g), but %.3g of the simulated one: "
-      "are these the same membrane and temperature?",
+      "Rafts cover %.3g of the area of the vesicles (standard deviation %.2g), but %.3g of the "
+      "simulated one. Do membrane and temperature agree?",
       d.mean, d.deviation, fraction);
 }
 
@@ -64,6 +62,14 @@ double factor_of_size(const MeasuredVesicles& data, double radius) {
     ++count;
   }
   return count > 0 ? std::exp(4 * sum / count) : 1;
+}
+
+std::string effect_of_size(const MeasuredVesicles& data, double radius) {
+  const double factor = factor_of_size(data, radius);
+  return formatted(
+      "The effective radius, the geometric mean over the observations with rafts, is %.3g um. "
+      "Coarsening times grow like R^4, so that D would be %.2g times as large with --radius %.3g",
+      radius * std::pow(factor, 0.25), factor, radius * std::pow(factor, 0.25));
 }
 
 std::vector<std::string> differences(const MeasuredVesicles& data, const SimulatedVesicle& model) {

@@ -23,6 +23,8 @@ SimulatedVesicle simulated_vesicle(double radius, const std::vector<History>& ru
 // one, were simulated: boundaries of rafts move by diffusion along them, over times that go with R⁴
 // (Cahn, Elliott and Novick-Cohen 1996; runs of 5 and 6.6 µm agree with that, docs/results.md).
 double factor_of_size(const MeasuredVesicles& data, double radius);
+// A sentence on that. It ends on the --radius to simulate with.
+std::string effect_of_size(const MeasuredVesicles& data, double radius);
 
 // Sentences: radii that are further from the simulated one than by a fifth, since at the same time
 // a larger vesicle has more rafts and a longer perimeter over radius; a mean raft fraction that is

@@ -52,8 +52,9 @@ const PublishedMembrane& published(const LipidMixture& membrane) {
     if (equal(membrane, membrane_mixture("", entry.name))) return entry;
     known += (known.empty() ? "" : " and ") + std::string(entry.name);
   }
-  throw InputError("--composition: phase diagrams are known of " + known +
-                   "; traceraft fraction takes the phases of another, --ordered and --disordered");
+  throw InputError(
+      "--composition: tie lines are known only for " + known +
+      "; give the phases of another membrane to traceraft fraction by --ordered and --disordered");
 }
 
 // Of the lipids of one phase, per lipid of the membrane.
@@ -112,13 +113,14 @@ RaftFraction raft_fraction(const LipidMixture& membrane, const CoexistingPhases&
   const double lipids =
       (phases.disordered.dopc - membrane.dopc) / (phases.disordered.dopc - phases.ordered.dopc);
   if (!(lipids >= 0 && lipids <= 1))
-    throw InputError("--composition: its DOPC does not lie between that of the two phases");
+    throw InputError(
+        "--composition: its share of DOPC does not lie between those of the two phases");
   const double dppc = lipids * phases.ordered.dppc + (1 - lipids) * phases.disordered.dppc;
   if (std::fabs(dppc - membrane.dppc) > kOffTieLine)
-    throw InputError(formatted(
-        "--composition: the membrane does not lie on the tie line: of these phases it would have "
-        "%.1f mol %% of DPPC, not %.1f",
-        100 * dppc, 100 * membrane.dppc));
+    throw InputError(
+        formatted("--composition: the membrane does not lie on the tie line; a mixture of these "
+                  "phases has %.1f mol %% of DPPC, not %.1f",
+                  100 * dppc, 100 * membrane.dppc));
   const double ordered = area(phases.ordered, lipids, celsius);
   return {lipids, ordered / (ordered + area(phases.disordered, 1 - lipids, celsius))};
 }
@@ -131,8 +133,8 @@ RaftFractionEstimate estimated_raft_fraction(const LipidMixture& membrane, doubl
   const auto [low, high] = std::minmax(known.celsius, known.other_celsius);
   if (!(celsius >= low - kFarthest && celsius <= high + kFarthest))
     throw InputError(
-        formatted("a temperature of %.4g C is too far from the %.4g to %.4g C of which "
-                  "raft fractions of %s are known; choose %.4g to %.4g",
+        formatted("%.4g C is too far from the %.4g to %.4g C at which raft fractions of %s are "
+                  "known; choose a temperature from %.4g to %.4g C",
                   celsius, low, high, known.name, low - kFarthest, high + kFarthest));
   const double share = (celsius - known.celsius) / (known.other_celsius - known.celsius);
   return {here + share * (known.other_area - here),

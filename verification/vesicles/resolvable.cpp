@@ -63,18 +63,18 @@ std::string unusual_times(const MeasuredVesicles& data) {
   constexpr double kDay = 86400, kSecond = 1;
   const double last = looks(data).end;
   if (last >= kSecond && last <= kDay) return "";
-  return formatted("The last look is %.3g s after time zero. Is time_unit right?", last);
+  return formatted("The last observation is %.3g s after time zero. Is time_unit right?", last);
 }
 
 std::string too_long_boundaries(const MeasuredVesicles& data) {
   const Impossible narrow = below(data, diameter_of, kDiffraction);
   if (narrow.count == 0) return "";
   return formatted(
-      "Of %td of %zu looks the perimeter is so long, or rafts are so many, that even round ones "
-      "would be less than the %.1f um across that light resolves: of vesicle '%s' at %.4g s %.2g "
-      "um. Are the units right?",
-      narrow.count, data.measurements.size(), kDiffraction, narrow.worst->vesicle.c_str(),
-      narrow.worst->time, narrow.least);
+      "In %td of %zu observations the perimeter is very long, or the rafts are very many. Even "
+      "round rafts would then be smaller than the %.1f um that light resolves. The smallest, %.2g "
+      "um, are those of vesicle '%s' at %.4g s. Are the units right?",
+      narrow.count, data.measurements.size(), kDiffraction, narrow.least,
+      narrow.worst->vesicle.c_str(), narrow.worst->time);
 }
 
 std::string too_short_boundaries(const MeasuredVesicles& data) {
@@ -82,11 +82,12 @@ std::string too_short_boundaries(const MeasuredVesicles& data) {
   const Impossible shorter = below(data, length_of, kTooShort);
   if (shorter.count == 0) return "";
   return formatted(
-      "Of %td of %zu looks the perimeter is shorter than any boundary around the raft fraction, of "
-      "vesicle '%s' at %.4g s %.2g times that of a single cap. Is the radius a diameter, or the "
-      "perimeter divided by the radius already?",
-      shorter.count, data.measurements.size(), shorter.worst->vesicle.c_str(), shorter.worst->time,
-      shorter.least);
+      "In %td of %zu observations the perimeter is shorter than the shortest possible one, that of "
+      "a single cap with this raft fraction. The shortest, %.2g times that of the cap, is that of "
+      "vesicle '%s' at %.4g s. Is the radius a diameter, or is the perimeter already divided by "
+      "the radius?",
+      shorter.count, data.measurements.size(), shorter.least, shorter.worst->vesicle.c_str(),
+      shorter.worst->time);
 }
 
 std::vector<std::string> doubts_about(const MeasuredVesicles& data) {

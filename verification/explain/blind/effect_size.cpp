@@ -79,7 +79,8 @@ Candidate candidate_to_hide(const std::string& effect) {
   const auto valid = effects_to_hide(), known = effects().names();
   if (std::find(valid.begin(), valid.end(), effect) == valid.end())
     throw InputError(std::find(known.begin(), known.end(), effect) != known.end()
-                         ? "the effect " + effect + " is none that explain looks for on a sphere"
+                         ? "the effect " + effect +
+                               " is not one that explain searches for on a sphere"
                          : unknown_name_message("effect to hide", effect, valid));
   return *find_candidate(effect);
 }
@@ -94,8 +95,8 @@ std::vector<std::string> effects_to_hide() {
 void refuse_without_rafts(double contrast) {
   if (contrast > kLeastContrast) return;
   throw InputError(
-      "the base model has no rafts at these times: c is the same everywhere; take "
-      "a larger raft fraction (smooth noise of less than 0.21 dissolves), or other times");
+      "the base model has no rafts at these times; choose a larger raft fraction (smooth noise "
+      "below 0.21 dissolves) or other times");
 }
 
 std::vector<EffectTerm> size_effects(const BlindRequest& request) {

@@ -90,7 +90,7 @@ double NoiseCorrelation::support() const {
 
 std::string text_of(const NoiseCorrelation& correlation) {
   if (correlation.white()) return "white";
-  return formatted("%.0f %% of its variance is shared by neighbours, over %.2g R%s",
+  return formatted("%.0f %% of its variance is correlated, over %.2g R%s",
                    100 * correlation.share(), correlation.length(),
                    correlation.at_bound ? " or more" : "");
 }

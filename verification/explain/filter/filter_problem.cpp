@@ -76,9 +76,9 @@ void refuse_outliers(const FilterProblem& data) {
   for (const FieldSnapshot& snapshot : data.series.snapshots) left += snapshot.points.size();
   const auto outliers = static_cast<double>(data.outliers);
   if (outliers > kMostOutliers * (outliers + static_cast<double>(left)))
-    throw InputError("vesicle " + data.series.vesicle + ": " + std::to_string(data.outliers) +
-                     " values of c belong to no field, too many to be slips: each is far from "
-                     "those around it");
+    throw InputError(
+        "vesicle " + data.series.vesicle + ": " + std::to_string(data.outliers) +
+        " values of c are far from all values around them; these are too many for single errors");
 }
 
 // The prior of the first field, the noise of those that count, and what is left without outliers.

@@ -54,7 +54,7 @@ Evaluation evaluate(const FilterProblems& data, const FilterModel& model,
     // At the most probable error of the mesh, which the step takes to be free as well.
     fit.deviance = pass.deviance -
                    std::pow(pass.score[kMeshError], 2) / pass.information(kMeshError, kMeshError);
-    if (!std::isfinite(fit.deviance)) throw std::runtime_error("its likelihood is no number");
+    if (!std::isfinite(fit.deviance)) throw std::runtime_error("its likelihood is not a number");
     fit.gap = gaps_of_pass(pass);
     fit.expected = expected_gaps(pass);
     fit.snapshots = snapshot_gaps(pass);

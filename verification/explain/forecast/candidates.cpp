@@ -122,7 +122,7 @@ std::vector<Candidate> candidates_for(const CahnHilliardModel& base, const Level
 Hypothesis::Part part_of(const EffectTerm& term) {
   const std::optional<Candidate> found = find_candidate(term.effect);
   if (!found)
-    throw InputError("effect " + term.effect + ": it is none whose strength can be fitted (" +
+    throw InputError("effect " + term.effect + ": its strength cannot be fitted (possible: " +
                      joined(names_of(candidates()), ", ") + ")");
   Hypothesis::Part part{*found, {term.values.front()}};
   if (found->directions == 1)

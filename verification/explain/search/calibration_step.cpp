@@ -43,7 +43,7 @@ FilterResult forecast_weakened(Pass& pass) {
       return forecast(pass);
     } catch (const std::runtime_error& error) {
       if (pass.model.hypothesis.parts.empty() || half > kMostHalvings) throw;
-      pass.search.tell(std::string("  fails with effects as strong as the model has them: ") +
+      pass.search.tell(std::string("  fails at the strengths that the model states: ") +
                        error.what());
     }
     pass.model = with_strengths(half < kMostHalvings ? 0.5 : 0, pass.model);
@@ -65,7 +65,7 @@ void settle_noise(Pass& pass, FilterResult forecasts) {
 
 // What candidates would change is forecast as well.
 void screen_forecasts(Pass& pass) {
-  pass.search.tell(formatted("  what %zu effects would change", pass.model.screened.size()));
+  pass.search.tell(formatted("  responses to %zu effects", pass.model.screened.size()));
   pass.forecasts.fields_at = pass.here();
   pass.forecasts.fields =
       filter_fields(pass.data, pass.model, pass.settings(), pass.forecasts.maps);
@@ -80,14 +80,14 @@ bool refit_model(Pass& pass, SearchState& state, const char* what) {
   return maps_reach(pass.model.pace, before);
 }
 
-constexpr char kForecasts[] = "  forecasts, and errors of states and of the mesh";
+constexpr char kForecasts[] = "  forecasts, errors of states and of the mesh";
 
 void calibrate_to_end(Pass& pass, SearchState& state) {
   bool settled = false;
   for (int k = 0; k < kMostPasses && !settled; ++k) {
     pass.search.tell(kForecasts);
     settle_noise(pass, forecast(pass));
-    settled = refit_model(pass, state, "  D, and its effects");
+    settled = refit_model(pass, state, "  fit D and the effects");
   }
   screen_forecasts(pass);
   bootstrap(pass.forecasts.fields, pass.model, state.so_far.found);
@@ -101,9 +101,8 @@ void calibrate_base(Pass& pass, SearchState& state) {
     pass.search.tell(kForecasts);
     settle_noise(pass, forecast_weakened(pass));
     if (!own) screen_forecasts(pass);
-    settled = refit_model(pass, state, own ? "  D, and its effects" : "  D");
-    if (!settled)
-      pass.search.tell(formatted("  D is rather %.2g times the model's", pass.model.pace));
+    settled = refit_model(pass, state, own ? "  fit D and the effects" : "  fit D");
+    if (!settled) pass.search.tell(formatted("  D is %.2g times the model's", pass.model.pace));
   }
   if (own)
     calibrate_to_end(pass, state);
@@ -146,14 +145,14 @@ SearchState start(Search& search, SearchState state) {
   const ExplainRequest& request = search.request();
   Explanation& result = state.so_far;
   const FilterProblems& data = search.data_at_start();
-  search.tell("D of the base model");
+  search.tell("fit D of the base model");
   const FilterModel model =
       with_first_pace(data, {request.base, 1, request.own, {}}, request.filter);
   result.found.pace = model.pace;
   result.found.hypothesis = model.hypothesis;
   const bool far = std::fabs(std::log(model.pace)) > std::log(kFarPace);
   search.tell(formatted("  D is about %.2g times the model's%s", model.pace,
-                        far ? ": are time_unit and the model's --diffusion right?" : ""));
+                        far ? "; are time_unit and the model's --diffusion right?" : ""));
   result.noise_model = noise_model(data);
   result.h_over_epsilon = search.h_over_epsilon();
   result.false_alarms = request.false_alarms;
@@ -177,13 +176,13 @@ SearchState calibrate_found(Search& search, SearchState state) {
 SearchState calibrate(Search& search, SearchState state) {
   const Hypothesis& found = state.so_far.found.hypothesis;
   if (state.so_far.rounds.empty()) {
-    search.tell("what the base model lacks");
+    search.tell("search for what is missing from the base model");
     Pass pass{search, search.data(state), search.model(state)};
     calibrate_base(pass, state);
     state.next = SearchStep::screen;
     return calibrated(pass, std::move(state));
   }
-  search.tell("what is lacking beside " + found.name());
+  search.tell("search for what is missing from the model with " + found.name());
   try {
     SearchState next = calibrate_found(search, state);
     next.next = SearchStep::eliminate;

@@ -83,7 +83,7 @@ void fit_all(const std::vector<Refit>& fits, const FilterProblems& all, const Se
              std::vector<Member>& members) {
   const ExplainRequest& request = search.request();
   for (const Refit& fit : fits) {
-    search.tell("  " + fit.hypothesis.name() + ", with all that was measured");
+    search.tell("  " + fit.hypothesis.name() + ", fitted to all snapshots");
     members.push_back({fit, refit_of(all, request.base, fit, request.filter)});
   }
 }
@@ -177,7 +177,7 @@ bool is_as_probable(Search& search, const SearchState& state, const Refit& one,
 }
 
 bool leaves_gap(Search& search, const SearchState& state, const Refit& fit) {
-  search.tell("what is lacking beside " + fit.hypothesis.name());
+  search.tell("search for what is missing from the model with " + fit.hypothesis.name());
   const std::optional<Beside> there = beside(search, state, fit);
   return there && there->gap;
 }
@@ -186,7 +186,7 @@ SearchState compare_gaps(Search& search, SearchState state) {
   Explanation& result = state.so_far;
   std::vector<Refit> without_gap;
   for (const Refit& rival : result.rivals) {
-    search.tell("instead " + rival.hypothesis.name());
+    search.tell("the same for " + rival.hypothesis.name());
     const std::optional<Beside> there = beside(search, state, rival);
     if (there && !there->gap) without_gap.push_back(there->fit);
   }
@@ -205,7 +205,7 @@ SearchState weigh(Search& search, SearchState state) {
   const bool asked = std::exchange(state.weighed, true);
   state.next = SearchStep::confirm;
   if (asked || !is_open(result) || !holds_out(search.data(state))) return state;
-  search.tell("what is held out says of the class");
+  search.tell("compare the members of the class on the held-out snapshots");
   const FilterProblems all = holding_nothing_out(search.data(state));
   const std::vector<Member> members = members_of(all, search, state);
   if (members.empty()) return state;

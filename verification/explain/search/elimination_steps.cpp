@@ -113,7 +113,7 @@ SearchState eliminate(Search& search, SearchState state) {
   const std::optional<std::size_t> best = best_without(fits, found, values);
   // What is held out may tell that there is one.
   if (best && is_as_probable(search, state, fits[*best], found)) {
-    search.tell("  " + doubtful[*best] + " is none");
+    search.tell("  " + doubtful[*best] + " is not significant");
     state.so_far.changes.push_back(
         {ModelChange::is_none, doubtful[*best], fits[*best].hypothesis.name()});
     set_found(fits[*best], state);
@@ -140,7 +140,7 @@ SearchState replace(Search& search, SearchState state) {
     result.finding = finding_of(result.rivals);
     return state;
   }
-  search.tell("in place of " + result.found.hypothesis.name());
+  search.tell("replace " + result.found.hypothesis.name());
   const std::vector<Refit> fits = search.refit_all(state, trials_near(search, state));
   Round& round = result.rounds.back();
   for (const Refit& fit : fits)

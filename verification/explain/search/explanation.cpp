@@ -63,7 +63,7 @@ std::vector<std::string> class_of(const Explanation& found) {
 SearchState confirm(Search& search, SearchState state) {
   state.next = SearchStep::done;
   if (!search.request().confirm || !is_to_run_again(state.so_far)) return state;
-  search.tell("once more, on another mesh, by another integrator");
+  search.tell("check on another mesh, by another integrator");
   run_again(search.series(), search.request(), state.so_far);
   return state;
 }
@@ -111,8 +111,8 @@ Explanation explain_fields(const std::vector<FieldSeries>& series, const Explain
   Search search(series, request);
   const bool coarse = search.h_over_epsilon() > kCoarse;
   search.tell(formatted("%d cells, h/epsilon = %.2f%s", request.cells, search.h_over_epsilon(),
-                        coarse ? ": COARSE, more --cells would say more" : ""));
-  if (from.next != SearchStep::start) search.tell("what was found before");
+                        coarse ? ": COARSE, choose more --cells" : ""));
+  if (from.next != SearchStep::start) search.tell("continue from the saved state");
   SearchState state = std::move(from);
   while (state.next != SearchStep::done) {
     state = next_state(search, std::move(state));

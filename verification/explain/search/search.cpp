@@ -99,7 +99,7 @@ FilterModel Search::model(const SearchState& state) const {
 const Forecasts& Search::forecasts(const SearchState& state) {
   if (forecasts_.maps_at == state.maps_at && forecasts_.fields_at == state.fields_at)
     return forecasts_;
-  tell("  forecasts, and errors of states and of the mesh");
+  tell("  forecasts, errors of states and of the mesh");
   forecasts_ = {};
   Forecasts again{state.maps_at, state.fields_at, {}, {}};
   set_noise_model(again.maps_at.noise, request_.base, request_.filter, data_);

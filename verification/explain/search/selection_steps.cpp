@@ -42,7 +42,7 @@ bool progresses(const Search& search, const Explanation& result) {
     search.tell(formatted("  %.0f %% of the gap is left", 100 * (1 - *closed)));
   const std::optional<double> last = closed_by_last_round(result);
   if (!last || *last >= kLeastProgress) return true;
-  search.tell(formatted("  the last round closed %.0f %% of what was left: no more are begun",
+  search.tell(formatted("  the last round closed %.0f %% of the remaining gap; the search ends",
                         100 * std::max(0.0, *last)));
   return false;
 }
@@ -63,7 +63,7 @@ std::vector<Refit> refit_from_nothing(Search& search, SearchState& state,
     which.push_back(k);
   }
   if (again.empty()) return fits;
-  search.tell("  from where they do nothing");
+  search.tell("  refits that start from strength 0");
   std::vector<Refit> better = search.refit_all(state, again, trials.size());
   for (std::size_t k = 0; k < which.size(); ++k)
     if (better[k].failure.empty()) fits[which[k]] = std::move(better[k]);
@@ -125,8 +125,7 @@ SearchState screen_candidates(Search& search, SearchState state) {
 
 SearchState refit_shortlist(Search& search, SearchState state) {
   const std::vector<FilterModel> trials = trials_of(search, state);
-  search.tell(
-      formatted("%zu refits: 2 ln of the likelihood ratio that an effect gains", trials.size()));
+  search.tell(formatted("%zu refits (gains are 2 ln of the likelihood ratio)", trials.size()));
   const std::vector<Refit> fits =
       refit_from_nothing(search, state, trials, search.refit_all(state, trials));
   Round& round = state.so_far.rounds.back();
