@@ -6,11 +6,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "tests/support/small_vesicle.hpp"
 #include "tests/support/spaces.hpp"
 #include "verification/explain/fields/mesh_transfer.hpp"
-#include "verification/explain/filter/field_filter.hpp"
-#include "verification/explain/filter/gaps.hpp"
 
 namespace traceraft {
 namespace {
@@ -115,39 +112,6 @@ TEST(MeshTransfer, TurnsFields) {
   EXPECT_LT(std::sqrt(space->inner(difference, difference)), 0.03 * size);
   EXPECT_LT(std::sqrt(space->inner(around, around)), 0.05 * size);
   EXPECT_TRUE(turn.columns(c).col(0).isApprox(turn(c)));
-}
-
-// Measurements of a vesicle that turns by 2 rad between looks are as probable.
-TEST(FieldFilter, TakesATurnAlong) {
-  BlindRequest asked = testing::small_vesicle(3);
-  asked.effects = {};
-  asked.first = 40;  // rafts are much alike from look to look
-  asked.last = 48;
-  std::vector<FieldSeries> series = draw_blind_case(asked).vesicles;
-  FilterSettings settings;
-  settings.rank = 30;
-  settings.replicates = 0;
-  const FilterModel model{asked.base, 1, {}, {}};
-  const auto pass = [&] {
-    const FilterProblems data =
-        make_filter_problems(series, *make_surface("sphere"), asked.base, 12, 1, false, settings);
-    std::vector<ErrorMaps> maps;
-    return std::pair(filter_fields(data, model, settings, maps), data[0].turns);
-  };
-  const auto [still, none] = pass();
-  const Eigen::Matrix3d Q = turn_of(2);
-  for (std::size_t k = 1; k < 3; ++k)
-    for (Point& x : series[0].snapshots[k].points) x = (k == 1 ? Q : Eigen::Matrix3d(Q * Q)) * x;
-  const auto [turned, turns] = pass();
-  EXPECT_FALSE(none[1]);
-  ASSERT_TRUE(turns[1]);
-  // A round raft does not say by how much it turns about its middle: what was measured does.
-  const double gap = gaps_of_pass(still).train;
-  EXPECT_NEAR(gaps_of_pass(turned).train, gap, 0.03 * gap);
-  const double scatter = std::sqrt(2.0 * 2 * asked.points);
-  EXPECT_NEAR(turned.deviance, still.deviance, 2 * scatter);
-  EXPECT_NEAR(turned.information(kPace, kPace), still.information(kPace, kPace),
-              0.2 * still.information(kPace, kPace));
 }
 
 }  // namespace

@@ -64,14 +64,14 @@ TEST(Partition, FollowsAHilbertCurve) {
 TEST(Partition, SharesTheMeshEvenlyAndCompletely) {
   for (const std::string surface : {"sphere", "torus", "biconcave"})
     for (const int ranks : {2, 3, 7}) {
-      const ActiveMesh whole = build_active_mesh(*make_surface(surface), 96);
+      const ActiveMesh whole = build_active_mesh(*make_surface(surface), 64);
       const std::vector<Tet> expected = tets_of(whole, false);
       std::multiset<Tet> owned;
       std::set<std::int64_t> nodes;
       std::size_t most = 0;
       std::mutex mutex;
       run_on_ranks(ranks, [&](const auto& communicator) {
-        const ActiveMesh part = build_active_mesh(*make_surface(surface), 96, *communicator);
+        const ActiveMesh part = build_active_mesh(*make_surface(surface), 64, *communicator);
         const std::vector<Tet> mine = tets_of(part, true);
         const std::lock_guard lock(mutex);
         owned.insert(mine.begin(), mine.end());

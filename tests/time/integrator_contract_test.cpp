@@ -63,14 +63,14 @@ TEST_P(IntegratorContract, EndsExactlyAtTheEndAndGoesNoFurther) {
 }
 
 TEST_P(IntegratorContract, KeepsMassWithEverySolver) {
-  for (const std::string& solver : built_linear_solvers())
-    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-      const IntegratorPtr integrator = make(problem, solver);
-      const testing::StartState start = noise_state(problem, seed, 0.3);
-      ASSERT_TRUE(integrator->start(0, start.y, start.ydot, 20).ok());
-      ASSERT_TRUE(run(*integrator, 20).ok());
-      EXPECT_NEAR(problem.mass(integrator->state()) / problem.mass(start.y), 1, 1e-12) << solver;
-    }
+  std::uint64_t seed = 0;  // each solver has another initial state
+  for (const std::string& solver : built_linear_solvers()) {
+    const IntegratorPtr integrator = make(problem, solver);
+    const testing::StartState start = noise_state(problem, ++seed, 0.3);
+    ASSERT_TRUE(integrator->start(0, start.y, start.ydot, 20).ok());
+    ASSERT_TRUE(run(*integrator, 20).ok());
+    EXPECT_NEAR(problem.mass(integrator->state()) / problem.mass(start.y), 1, 1e-12) << solver;
+  }
 }
 
 TEST_P(IntegratorContract, SolversGiveTheSameTrajectory) {
@@ -219,7 +219,7 @@ TEST_P(IntegratorContract, EndsWhenNoSolverWorksAndKeepsTheLastState) {
 TEST_P(IntegratorContract, CutsTheStepWhenTheModelFailsAndEndsWhenItAlwaysFails) {
   for (const bool silent : {false, true})
     for (const std::string& solver : built_linear_solvers()) {
-      Poisoned late(problem, [](double t) { return t > 0.5; });
+      Poisoned late(problem, [](double t) { return t > 0.05; });
       late.silent = silent;
       const IntegratorPtr integrator = started(late, 2, choose_linear_solver(solver, *space));
       const Status status = run(*integrator, 2);
@@ -228,8 +228,8 @@ TEST_P(IntegratorContract, CutsTheStepWhenTheModelFailsAndEndsWhenItAlwaysFails)
       if (!silent) {
         EXPECT_NE(status.why.find("injected failure"), std::string::npos) << status.why;
       }
-      EXPECT_LE(integrator->time(), 0.5);
-      EXPECT_GT(integrator->time(), 0.49);
+      EXPECT_LE(integrator->time(), 0.05);
+      EXPECT_GT(integrator->time(), 0.049);
       EXPECT_TRUE(integrator->state().allFinite());
     }
 }

@@ -1,5 +1,4 @@
-// Calibration against a simulator that costs nothing: rafts whose number falls as a law says, and
-// scatters as independent rafts do.
+// Calibration against a simulator that costs nothing.
 #include "verification/calibration/calibration.hpp"
 
 #include <gtest/gtest.h>
@@ -7,157 +6,14 @@
 #include <cmath>
 
 #include "kernel/core/error.hpp"
-#include "kernel/core/random.hpp"
-#include "kernel/core/types.hpp"
+#include "tests/support/simulated_rafts.hpp"
 #include "verification/calibration/calibration_data.hpp"
-#include "verification/calibration/joint_fit.hpp"
 #include "verification/calibration/local_regression.hpp"
 #include "verification/likelihood/ensemble_likelihood.hpp"
 #include "verification/series/series_explanation.hpp"
-#include "verification/vesicles/published.hpp"
 
-namespace traceraft {
+namespace traceraft::simulated_rafts {
 namespace {
-
-double normal(std::uint64_t seed, std::uint64_t index) {
-  return std::sqrt(-2 * std::log(uniform_random(seed, 1, index))) *
-         std::cos(2 * kPi * uniform_random(seed, 2, index));
-}
-
-// Rafts at the time t in units of R²/D: from N₀ on, N falls like (1 + ε² t)^(-2/3). If `start` the
-// first number goes with 1/ε², so that ε is seen apart from D.
-std::vector<History> simulate(double epsilon, bool start, int count, std::uint64_t first_seed) {
-  std::vector<History> runs;
-  for (int k = 0; k < count; ++k) {
-    const double own = normal(first_seed + k, 0);
-    const double first = start ? 0.6 / (epsilon * epsilon) : 60;
-    History run;
-    for (double t = 1; t <= 1e5; t *= 1.1) {
-      const double mean = first * std::pow(1 + epsilon * epsilon * t, -2.0 / 3);
-      const double n = std::max(1.0, mean * std::exp(own / std::sqrt(mean)));
-      run.time.push_back(t);
-      run.of(Quantity::rafts).push_back(std::round(n));
-      run.of(Quantity::fraction).push_back(0.1);
-      run.of(Quantity::perimeter).push_back(4 * kPi * std::sqrt(0.1 * (n - 0.1)));
-    }
-    runs.push_back(run);
-  }
-  return runs;
-}
-
-constexpr double kSeconds = 0.025, kEpsilon = 0.1;  // the truth
-
-PublishedFacts design() {
-  PublishedFacts facts;
-  facts.vesicles = 17;
-  facts.measurements = 62;
-  facts.fraction = 0.1;
-  facts.fraction_sd = 0.011;
-  facts.radius_min = facts.radius_max = 5;
-  facts.perimeter.scatter = 0.15;
-  facts.window = {1, 100};
-  return facts;
-}
-
-MeasuredVesicles measured(bool start, std::uint64_t seed) {
-  std::vector<History> vesicles = simulate(kEpsilon, start, 17, 1000 * seed);
-  for (History& vesicle : vesicles)
-    for (double& t : vesicle.time) t *= kSeconds;
-  return draw_from_runs(design(), vesicles, 5, seed);
-}
-
-const std::vector<SoughtParameter> kSought = {{"epsilon", {1e-3, 10}}};
-
-UnitPrior around(double seconds) {
-  return UnitPrior::uniform(seconds, {seconds / 8, seconds * 8});
-}
-
-// Around the start, then around what is found, as the program does.
-std::vector<CalibrationPoint> points_for(const MeasuredVesicles& data, bool start,
-                                         std::uint64_t seed, double epsilon_start) {
-  std::vector<CalibrationPoint> points;
-  std::vector<double> centre{std::log(epsilon_start)};
-  for (const double step : {0.5, 0.25, 0.1}) {
-    for (const auto& ln : design_around(centre, step))
-      points.push_back({ln, simulate(std::exp(ln[0]), start, 40, 500000 + 1000 * seed)});
-    centre = most_probable(data, kSought, points, around(1.5 * kSeconds));
-  }
-  return points;
-}
-
-Calibration calibrated(bool start, std::uint64_t seed, double epsilon_start) {
-  const MeasuredVesicles data = measured(start, seed);
-  return calibrate(data, kSought, points_for(data, start, seed, epsilon_start),
-                   around(1.5 * kSeconds));
-}
-
-// Five vesicles and five runs: without the factor for few 81 of 120 sets hold the truth.
-TEST(Calibration, KnowsHowLittleFewSay) {
-  constexpr int kSets = 120, kFew = 5;
-  PublishedFacts facts = design();
-  facts.vesicles = kFew;
-  facts.measurements = 4 * kFew;
-  int held = 0;
-  for (int seed = 1; seed <= kSets; ++seed) {
-    std::vector<History> vesicles = simulate(kEpsilon, true, kFew, 1000 * seed);
-    for (History& vesicle : vesicles)
-      for (double& t : vesicle.time) t *= kSeconds;
-    const Calibration found = calibrate(
-        draw_from_runs(facts, vesicles, 5, seed), {},
-        {{{}, simulate(kEpsilon, true, kFew, 500000 + 1000 * seed)}}, around(1.5 * kSeconds));
-    held += found.parameters[0].interval.contains(kSeconds);
-  }
-  EXPECT_GE(held, 0.92 * kSets);
-}
-
-// 95 % are to hold the truth; fewer than 14 of 16 do once in 23 times then, with 0.7 in 100 of 101.
-TEST(Calibration, FindsWhatTheDataDetermine) {
-  int held = 0;
-  std::vector<double> time_errors, epsilon_errors;
-  constexpr int kSets = 16;
-  for (int seed = 1; seed <= kSets; ++seed) {
-    const Calibration found = calibrated(true, seed, 0.11);
-    ASSERT_EQ(found.parameters.size(), 2u);
-    EXPECT_TRUE(found.parameters[1].determined) << seed;
-    time_errors.push_back(std::fabs(std::log(found.parameters[0].value / kSeconds)));
-    epsilon_errors.push_back(std::fabs(std::log(found.parameters[1].value / kEpsilon)));
-    held += found.parameters[1].interval.contains(kEpsilon);
-  }
-  // ln N scatters by N^(-1/2) between vesicles, and goes with −2/3 x/(1 + x) ln t, x = ε² t: of one
-  // vesicle ln t is known to 0.4 at best (x = 4, N = 20), of 17 to 0.1, and a little worse with 40
-  // simulations and looks that do not share information as well as that. At a given time ln N goes
-  // with −3 ln ε, so that an error of ε makes one of time that is six times as large.
-  EXPECT_LT(quantile(epsilon_errors, 0.5), 0.02);
-  EXPECT_LT(quantile(time_errors, 0.5), 0.15);
-  EXPECT_GE(held, kSets - 2);
-}
-
-// D and ε enter as D ε² alone.
-TEST(Calibration, SaysWhatTheDataDoNotDetermine) {
-  for (int seed = 1; seed <= 4; ++seed) {
-    const Calibration found = calibrated(false, seed, 0.11);
-    EXPECT_FALSE(found.parameters[1].determined) << seed;
-    ASSERT_EQ(found.best_powers.size(), 2u);
-    EXPECT_NEAR(found.best_powers[0] / found.best_powers[1], 0.5, 0.1) << seed;
-    // Of R²/D with ε. Replicates reach along the valley as far as the points do, 0.27 in ln ε and
-    // 0.54 in ln R²/D, and scatter by 0.2 to 0.3 across: 0.88 to 0.94.
-    EXPECT_GT(found.correlation(0, 1), 0.85);
-    EXPECT_LT(found.best_deviation, 0.15);
-  }
-}
-
-// Without other parameters the unit of time alone is found, from one ensemble.
-TEST(Calibration, OfTheUnitOfTimeAloneTakesOneEnsemble) {
-  const std::vector<CalibrationPoint> points = {{{}, simulate(kEpsilon, true, 40, 77)}};
-  std::vector<double> errors, scatter;
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const Calibration found = calibrate(measured(true, seed), {}, points, around(2 * kSeconds));
-    errors.push_back(std::fabs(std::log(found.parameters[0].value / kSeconds)));
-    scatter.push_back(found.best.scatter_beyond_runs(Quantity::perimeter));
-  }
-  EXPECT_LT(quantile(errors, 0.5), 0.15);
-  EXPECT_LT(quantile(scatter, 0.5), 0.05);  // beyond what the data say themselves
-}
 
 TEST(Calibration, SaysWhereItsSearchEnds) {
   const std::vector<CalibrationPoint> points = {{{}, simulate(kEpsilon, true, 40, 77)}};
@@ -218,30 +74,6 @@ TEST(Calibration, StaysWithinWhatIsAllowed) {
             below.high * 1.0001);
 }
 
-// The raft fraction is what was measured of it, whatever perimeters and numbers say.
-TEST(Calibration, FindsTheFractionThatWasMeasured) {
-  constexpr double kFraction = 0.1;  // that of the data
-  std::vector<CalibrationPoint> points;
-  for (const double step : {0.25, 0.1})
-    for (const auto& ln : design_around({std::log(1.2 * kFraction)}, step)) {
-      points.push_back({ln, simulate(kEpsilon, true, 20, 5)});
-      for (History& run : points.back().runs)
-        for (double& value : run.of(Quantity::fraction)) value = std::exp(ln[0]);
-    }
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    const MeasuredVesicles data = measured(true, seed);
-    double mean = 0, count = 0;
-    for (const auto& vesicle : fractions_of_vesicles(data)) {
-      mean += vesicle->mean;
-      ++count;
-    }
-    mean /= count;
-    const auto found = calibrate(data, {{"fraction", {0.02, 0.9}}}, points, around(kSeconds));
-    EXPECT_NEAR(found.parameters[1].value, mean, 0.02 * mean) << seed;
-    EXPECT_TRUE(found.parameters[1].determined) << seed;
-  }
-}
-
 // Fractions of runs grow in time: what counts is when each vesicle was looked at.
 TEST(EnsembleFit, HoldsFractionsAgainstThoseAtTheSameTimes) {
   const auto with_fraction = [](double fraction) {
@@ -291,16 +123,16 @@ TEST(EnsembleFit, CountsFractionsThatAreAllTheSame) {
   EXPECT_NEAR(deviance(0.2) - deviance(0.11), 2 * 17 * std::log(std::log(2.0) / std::log(1.1)), 1);
 }
 
-// A calibration and an explanation of the same looks find the same unit of time, and the same scatter.
+// A calibration and an explanation of the same looks find the same unit of time, and the same
+// scatter.
 TEST(Calibration, FindsWhatAnExplanationFinds) {
   MeasuredVesicles data = measured(true, 3);
   for (Measurement& m : data.measurements) m.values[index_of(Quantity::fraction)].reset();
   const std::vector<History> runs = simulate(kEpsilon, true, 40, 77);
   SeriesRequest request{UnitPrior::within_factor(1.5 * kSeconds, 8)};
   request.replicates = 9;
-  const SeriesExplanation explained =
-      explain_series(data, runs, {{"another", 1, true, simulate(1.2 * kEpsilon, true, 40, 77)}},
-                     request);
+  const SeriesExplanation explained = explain_series(
+      data, runs, {{"another", 1, true, simulate(1.2 * kEpsilon, true, 40, 77)}}, request);
   const EnsembleFit found = calibrate(data, {}, {{{}, runs}}, request.unit).best;
   EXPECT_NEAR(found.ln_unit, explained.base.ln_unit, 1e-3);
   for (const Quantity quantity : {Quantity::perimeter, Quantity::rafts})
@@ -421,4 +253,4 @@ TEST(LocalRegression, HardlyLooksFarAway) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::simulated_rafts

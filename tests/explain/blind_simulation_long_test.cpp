@@ -1,10 +1,9 @@
-#include "verification/explain/blind/blind_simulation.hpp"
-
 #include <gtest/gtest.h>
 
 #include "backends/list.hpp"
 #include "tests/support/small_vesicle.hpp"
 #include "tests/support/spaces.hpp"
+#include "verification/explain/blind/blind_simulation.hpp"
 
 namespace traceraft {
 namespace {

@@ -1,8 +1,7 @@
-#include "verification/explain/fit/first_pace.hpp"
-
 #include <gtest/gtest.h>
 
 #include "tests/support/small_vesicle.hpp"
+#include "verification/explain/fit/first_pace.hpp"
 
 namespace traceraft {
 namespace {

@@ -1,12 +1,11 @@
 // Taylor tests: what remains after the first order falls with the square of the perturbation.
-#include "verification/explain/forecast/tangent_flow.hpp"
-
 #include <gtest/gtest.h>
 
 #include "backends/list.hpp"
 #include "tests/support/spaces.hpp"
 #include "verification/explain/blind/effect_size.hpp"
 #include "verification/explain/forecast/candidates.hpp"
+#include "verification/explain/forecast/tangent_flow.hpp"
 
 namespace traceraft {
 namespace {

@@ -1,6 +1,4 @@
 // Fields from values whose noise neighbours share.
-#include "verification/explain/fields/kriging.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -8,6 +6,7 @@
 #include "tests/support/spaces.hpp"
 #include "verification/explain/blind/noise_waves.hpp"
 #include "verification/explain/fields/gaussian_field.hpp"
+#include "verification/explain/fields/kriging.hpp"
 
 namespace traceraft {
 namespace {

@@ -1,10 +1,9 @@
-#include "verification/explain/forecast/resolved_forecast.hpp"
-
 #include <gtest/gtest.h>
 
 #include "backends/list.hpp"
 #include "tests/support/spaces.hpp"
 #include "verification/explain/forecast/forecast.hpp"
+#include "verification/explain/forecast/resolved_forecast.hpp"
 
 namespace traceraft {
 namespace {

@@ -1,0 +1,165 @@
+// What series say of what is missing, on vesicles whose curves are formulas.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/core/error.hpp"
+#include "tests/support/law_vesicles.hpp"
+
+namespace traceraft::law_vesicles {
+namespace {
+
+TEST(SeriesExplanation, NamesTheClassOfWhatIsMissing) {
+  const SeriesExplanation found = explained(measured({-1 / 3.0, 0, 0.05}, 15, 0.05, 2));
+  EXPECT_LE(found.p, 0.02);
+  EXPECT_EQ(found.finding, Finding::ambiguous);  // one class of two effects
+  ASSERT_EQ(found.named.size(), 1u);
+  EXPECT_EQ(found.named[0], (std::vector<std::string>{"uptake", "cooling"}));
+  EXPECT_NEAR(std::exp(found.base.ln_unit), 2, 0.5);
+  const auto score = std::find_if(found.scores.begin(), found.scores.end(),
+                                  [](const SeriesScore& s) { return s.effect == "uptake"; });
+  EXPECT_LT(score->low, 2);
+  EXPECT_GT(score->high, 2);
+  EXPECT_EQ(score->telling, Quantity::fraction);
+  EXPECT_LT(score->vesicles, 15);
+}
+
+TEST(SeriesExplanation, NamesASingleEffectThatNothingElseIsLike) {
+  const SeriesExplanation found = explained(measured({-1 / 3.0, 2, 0}, 15, 0.05, 1));
+  EXPECT_EQ(found.finding, Finding::named);
+  EXPECT_EQ(found.named[0], std::vector<std::string>{"ohta-kawasaki"});
+}
+
+TEST(SeriesExplanation, NamesNothingWhereNothingIsMissing) {
+  const SeriesExplanation found = explained(measured({}, 15, 0.05, 1));
+  EXPECT_EQ(found.finding, Finding::none);
+  EXPECT_GT(found.p, 0.05);
+  EXPECT_TRUE(found.named.empty());
+}
+
+// What is zero has no logarithm, and those who state an error of it have said nothing more.
+TEST(SeriesExplanation, LooksWithoutRaftsSayNothing) {
+  MeasuredVesicles data = measured({}, 10, 0.05, 1);
+  const auto rafts = static_cast<std::size_t>(Quantity::rafts);
+  data.measurements.back().values[rafts].reset();
+  const SeriesExplanation without = explained(data);
+  data.measurements.back().values[rafts] = 0;
+  data.measurements.back().sigma[rafts] = 0.5;
+  const SeriesExplanation none = explained(data);
+  EXPECT_EQ(none.p, without.p);
+  EXPECT_EQ(none.trend_p, without.trend_p);
+  EXPECT_EQ(none.base.deviance, without.base.deviance);
+}
+
+// Beyond the end of the runs nothing is known of them.
+TEST(SeriesExplanation, StaysWithinTheRuns) {
+  const SeriesExplanation found = explained(measured({}, 15, 0.05, 0.2));
+  EXPECT_GT(std::exp(found.base.ln_unit), 0.15);
+  // At the same times, of vesicles three times as fast.
+  MeasuredVesicles fast = measured({}, 15, 0.05, 1);
+  for (Measurement& m : fast.measurements) {
+    const History run = vesicle({}, 3);
+    for (const Quantity quantity : kQuantities)
+      m.values[index_of(quantity)] = run.at(quantity, std::min(1000.0, 3 * m.time));
+  }
+  EXPECT_GT(std::exp(explained(fast).base.ln_unit), 0.6);
+  for (Measurement& m : fast.measurements) m.time *= 20;
+  EXPECT_THROW(explained(fast), InputError);
+}
+
+TEST(SeriesExplanation, AdmitsATrendThatNothingExplains) {
+  const SeriesExplanation found = explained(measured({-0.6, 0, 0}, 15, 0.05, 1));
+  EXPECT_EQ(found.finding, Finding::unnamed);
+  EXPECT_LE(found.trend_p, 0.02);
+  // What it is: perimeters that fall faster than t^(-1/3); of rafts one is left soon.
+  ASSERT_EQ(found.offsets.size(), 3u);
+  EXPECT_EQ(found.offsets[0].quantity, Quantity::perimeter);
+  EXPECT_NEAR(found.offsets[0].slope, -0.6 + 1 / 3.0, 0.03);
+  EXPECT_LT(found.offsets[0].slope_deviations, -5);
+  EXPECT_LT(std::fabs(found.offsets[2].slope_deviations), 3);
+}
+
+TEST(EnsembleFit, SaysHowFarMeasurementsLieBesideIt) {
+  const SeriesExplanation found = explained(measured({}, 15, 0.02, 1));
+  for (const SeriesOffset& offset : found.offsets) {
+    EXPECT_LT(std::fabs(offset.level), 0.1);
+    EXPECT_LT(std::fabs(offset.slope), 0.02);
+  }
+}
+
+// What another D does is seen where D is known.
+TEST(SeriesExplanation, SeesWhatAnotherDDoesIfDIsKnown) {
+  MeasuredVesicles data = measured({}, 20, 0.05, 1);
+  for (Measurement& m : data.measurements)  // whole numbers are not quite alike
+    m.values[static_cast<std::size_t>(Quantity::rafts)].reset();
+  std::vector<History> slower;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) slower.push_back(vesicle({}, seed, 2));
+  const auto explained_with = [&](double factor) {
+    SeriesRequest request{UnitPrior::within_factor(1, factor)};
+    request.replicates = 49;
+    return explain_series(data, ensemble({}), {{"bulk-mobility", 1, true, slower}}, request);
+  };
+  const SeriesExplanation unknown = explained_with(8), known = explained_with(1.05);
+  EXPECT_EQ(unknown.finding, Finding::not_identifiable);
+  EXPECT_TRUE(std::isinf(unknown.scores[0].vesicles));
+  EXPECT_EQ(known.finding, Finding::none);
+  EXPECT_LT(known.scores[0].vesicles, 20);
+}
+
+// By its logarithm, like the others.
+TEST(EnsembleFit, SaysHowFarTheRaftFractionLiesBesideIt) {
+  MeasuredVesicles data = measured({}, 15, 0.02, 1);
+  for (Measurement& m : data.measurements)
+    *m.values[static_cast<std::size_t>(Quantity::fraction)] *= 2;
+  const SeriesOffset offset = explained(data).offsets.at(2);
+  EXPECT_EQ(offset.quantity, Quantity::fraction);
+  EXPECT_NEAR(offset.level, std::log(2.0), 0.02);
+}
+
+// An effect is seen in nine cases of ten, at the ensemble's strength, if that is four standard
+// deviations: bounds shrink with the square root of the number of vesicles.
+TEST(SeriesExplanation, CountsVesiclesByTheBoundsOfTheirEffect) {
+  const SeriesExplanation found = explained(measured({}, 15, 0.05, 1));
+  const auto drawn = candidates();
+  for (const SeriesScore& score : found.scores) {
+    const auto candidate = std::find_if(drawn.begin(), drawn.end(), [&](const auto& c) {
+      return c.effect == score.effect && c.two_sided;
+    });
+    if (candidate == drawn.end()) continue;
+    const double deviation = (score.high - score.low) / 2 / 1.96 / candidate->strength;
+    ASSERT_TRUE(std::isfinite(score.vesicles)) << score.effect;
+    EXPECT_NEAR(score.vesicles, 15 * 16 * deviation * deviation, 0.25 * score.vesicles)
+        << score.effect;
+  }
+}
+
+// Classes that are nearly as probable as the best one are named with what would tell them apart.
+TEST(SeriesExplanation, SaysWhatWouldTellClassesApart) {
+  constexpr int kVesicles = 8, kMore = 20;
+  std::vector<SeriesCandidate> two = {candidates()[0]};                  // a drift of the fraction
+  two.push_back({"cooling", 1, true, ensemble({-1 / 3.0, 0.6, 0.05})});  // and a plateau
+  SeriesRequest request{UnitPrior::within_factor(1, 8)};
+  request.replicates = 99;
+  const auto explain = [&](const RaftLaw& law, int vesicles) {
+    return explain_series(measured(law, vesicles, 0.1, 1), ensemble({}), two, request);
+  };
+  const SeriesExplanation found = explain({-1 / 3.0, 0.35, 0.05}, kVesicles);  // between both
+  EXPECT_EQ(found.finding, Finding::ambiguous);
+  ASSERT_EQ(found.named.size(), 2u);
+  EXPECT_EQ(found.named[0].front(), "cooling");
+  ASSERT_EQ(found.ties.size(), 1u);
+  const SeriesTie& tie = found.ties.front();
+  EXPECT_EQ(tie.effect, "cooling");
+  EXPECT_EQ(tie.other, "uptake");
+  EXPECT_NE(tie.telling, Quantity::fraction);
+  // These do not tell them apart, more of one of them do.
+  EXPECT_GT(tie.vesicles, kVesicles);
+  EXPECT_LT(tie.vesicles, kMore);
+  const SeriesExplanation told = explain({-1 / 3.0, 0.6, 0.05}, kMore);
+  EXPECT_EQ(told.finding, Finding::named);
+  EXPECT_EQ(told.named[0], std::vector<std::string>{"cooling"});
+}
+
+}  // namespace
+}  // namespace traceraft::law_vesicles
