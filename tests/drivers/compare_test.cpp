@@ -4,7 +4,6 @@
 #include <cmath>
 #include <csignal>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "backends/posix/durable_file.hpp"
 #include "backends/posix/folder_lock.hpp"
@@ -18,6 +17,7 @@ namespace {
 
 using testing::content;
 using testing::lines_of;
+using testing::names;
 using testing::ProgramEnd;
 using testing::TemporaryFolder;
 using testing::traceraft;
@@ -50,7 +50,7 @@ class CompareTest : public ::testing::Test {
     return std::stod(row(row_number).at(name));
   }
   nlohmann::json summary(const std::string& job) const {
-    return nlohmann::json::parse(content(folder.path / "c/runs" / job / "summary.json"));
+    return testing::json_of(folder.path / "c/runs" / job / "summary.json");
   }
   std::vector<fs::path> all_references() const {
     std::vector<fs::path> found;
@@ -87,13 +87,10 @@ TEST_F(CompareTest, MeasuresRecommendsAndIsExtendedWithoutRepeatingItself) {
                                      "--integrators euler,ida --keep first --tolerances 1e-2,1e-3 "
                                      "--repeat 2");
   ASSERT_EQ(first.code, 0) << first.output;
-  EXPECT_NE(first.output.find("For an error of"), std::string::npos) << first.output;
   ASSERT_EQ(csv().size(), 5u);
   for (std::size_t row = 1; row < 5; ++row)
-    EXPECT_NE(csv()[row].find(row < 3 ? "euler,block," : "ida,block,"), std::string::npos);
-  const std::string page = content(folder.path / "c/compare.html");
-  EXPECT_NE(page.find("For an error of"), std::string::npos);
-  EXPECT_NE(page.find("<svg"), std::string::npos) << "is gnuplot installed?";
+    EXPECT_TRUE(names(csv()[row], row < 3 ? "euler,block," : "ida,block,"));
+  EXPECT_TRUE(names(content(folder.path / "c/compare.html"), "<svg")) << "is gnuplot installed?";
 
   const fs::path done = folder.path / "c/runs/ida-block-0.001-1/summary.json";
   const fs::path reference = fs::directory_iterator(folder.path / "references")->path();
@@ -114,11 +111,11 @@ TEST_F(CompareTest, ErrorsTimesAndCountsAreThoseOfTheRuns) {
                                        "--integrators ida,rosenbrock --tolerances 1e-2,1e-4 "
                                        "--repeat 2 --target-error 3e-3");
   ASSERT_EQ(outcome.code, 0) << outcome.output;
-  EXPECT_NE(outcome.output.find("For an error of 3.0e-03"), std::string::npos) << outcome.output;
+  EXPECT_TRUE(names(outcome.output, "3.0e-03"));
   // That no method reached what was asked for is an answer; so is that nothing is asked for again.
   const ProgramEnd none = traceraft("compare " + out() + references() + "--target-error 1e-15");
   EXPECT_EQ(none.code, 0);
-  EXPECT_NE(none.output.find("No method reached an error of 1.0e-15"), std::string::npos);
+  EXPECT_TRUE(names(none.output, "1.0e-15"));
   ASSERT_EQ(traceraft("compare " + out() + references() + "--target-error 0").code, 0);
   const auto space = testing::make_space(12);
   const auto concentration = [&](const fs::path& run) {
@@ -160,7 +157,7 @@ TEST_F(CompareTest, ATighterToleranceBringsATighterReference) {
   EXPECT_EQ(all_references().size(), 2u);
   EXPECT_NEAR(number(1, "error") / alone, 1, 0.1);
   EXPECT_LT(number(2, "error"), 0.1 * alone);
-  EXPECT_NE(content(folder.path / "c/compare.html").find("at tolerance 1e-06"), std::string::npos);
+  EXPECT_TRUE(names(content(folder.path / "c/compare.html"), "1e-06"));
 }
 
 TEST_F(CompareTest, RunsThatTakeTooLongAreRowsUntilTheyMayTakeLonger) {
@@ -169,7 +166,7 @@ TEST_F(CompareTest, RunsThatTakeTooLongAreRowsUntilTheyMayTakeLonger) {
                 "--case spinodal --cells 16 --integrators euler --tolerances 1e-4 --repeat 2 "
                 "--reference-tolerance 1e-5 --time-limit 0.1");
   EXPECT_EQ(impatient.code, 3) << impatient.output;
-  EXPECT_EQ(row(1).at("failure"), "\"stopped after 0.1 s\"");
+  EXPECT_TRUE(names(row(1).at("failure"), " 0.1 s"));
   EXPECT_FALSE(fs::exists(folder.path / "c/runs/euler-block-1e-04-2"));
   const ProgramEnd patient = traceraft("compare " + out() + references() + "--time-limit 60");
   EXPECT_EQ(patient.code, 0) << patient.output;
@@ -190,7 +187,7 @@ TEST_F(CompareTest, BelievesNoDamagedResult) {
     damage_newest_checkpoint(broken);
     const ProgramEnd outcome = traceraft("compare --quiet " + out() + references());
     EXPECT_EQ(outcome.code, 4) << outcome.output;
-    EXPECT_NE(outcome.output.find("lost its last checkpoint"), std::string::npos) << outcome.output;
+    EXPECT_TRUE(names(outcome.output, broken.filename().string()));
     fs::remove_all(broken);
     fs::copy(kept, broken, fs::copy_options::recursive);
   }
@@ -198,7 +195,7 @@ TEST_F(CompareTest, BelievesNoDamagedResult) {
     std::ofstream(folder.path / "c/runs/ida-block-0.01-1.json") << nonsense;
     const ProgramEnd outcome = traceraft("compare --quiet " + out() + references());
     EXPECT_EQ(outcome.code, 4) << outcome.output;
-    EXPECT_NE(outcome.output.find("is damaged"), std::string::npos) << outcome.output;
+    EXPECT_TRUE(names(outcome.output, "ida-block-0.01-1.json"));
   }
 }
 
@@ -245,9 +242,7 @@ TEST_F(CompareTest, DoesNotMixBuildsOfTheProgram) {
   nlohmann::json plan = nlohmann::json::parse(content(file));
   plan["program"] = "00000000";
   write_durably(file, plan.dump());
-  const ProgramEnd outcome = compare("--repeat 2");
-  EXPECT_EQ(outcome.code, 2) << outcome.output;
-  EXPECT_NE(outcome.output.find("another build"), std::string::npos) << outcome.output;
+  EXPECT_TRUE(testing::refuses(compare("--repeat 2"), "build"));
   EXPECT_EQ(content(file), plan.dump());
 }
 
@@ -269,8 +264,7 @@ TEST_F(CompareTest, NoticesThatTheInitialStateHasChanged) {
   ASSERT_EQ(first.code, 0) << first.output;
   make_source("80");
   const ProgramEnd outcome = traceraft("compare " + out() + references());
-  EXPECT_EQ(outcome.code, 2) << outcome.output;
-  EXPECT_NE(outcome.output.find("another initial state"), std::string::npos);
+  EXPECT_TRUE(testing::refuses(outcome, "initial state"));
 }
 
 TEST_F(CompareTest, AFailingCombinationIsARowWithItsReason) {
@@ -281,9 +275,8 @@ TEST_F(CompareTest, AFailingCombinationIsARowWithItsReason) {
       "--linear-solvers block,klu --tolerances 1e-2 --reference-tolerance 1e-3 --repeat 2");
   ASSERT_EQ(outcome.code, 0) << outcome.output;
   ASSERT_EQ(csv().size(), 3u);
-  EXPECT_NE(row(2).at("failure").find("klu is for small systems"), std::string::npos);
+  for (const char* fact : {"klu", "25000"}) EXPECT_TRUE(names(row(2).at("failure"), fact));
   EXPECT_EQ(row(2).at("error"), "");
-  EXPECT_NE(outcome.output.find("not reached by ida with klu"), std::string::npos);
 }
 
 TEST_F(CompareTest, GoesOnAfterAnInterruption) {
@@ -311,37 +304,33 @@ TEST_F(CompareTest, RefusesWhatDoesNotFit) {
     EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1);
     return outcome.output;
   };
-  EXPECT_NE(complaint(out() + runs + "--integrators eular").find("did you mean 'euler'"),
-            std::string::npos);
-  EXPECT_NE(complaint(out() + runs + "--tolerance 1e-3").find("--tolerances"), std::string::npos);
-  EXPECT_NE(complaint(out() + runs + "--tolerances 7").find("out of range"), std::string::npos);
-  EXPECT_NE(complaint(out() + runs + "--cels 7").find("did you mean '--cells'"), std::string::npos);
-  EXPECT_NE(complaint(out() + runs + "--ida-rtol 1e-3").find("--tolerances"), std::string::npos);
-  EXPECT_NE(
-      complaint(out() + runs + "--integrators ida --keep first").find("needs --integrators euler"),
-      std::string::npos);
-  EXPECT_NE(complaint(out() + runs + "--target-error nan").find("finite"), std::string::npos);
-  EXPECT_NE(complaint(out() + runs + "--tolerances 1e-3 --reference-tolerance 1e-3")
-                .find("at most 1e-04"),
-            std::string::npos);
-  EXPECT_NE(complaint(out()).find("holds no comparison"), std::string::npos);
-  EXPECT_NE(complaint("").find("--case"), std::string::npos);
+  for (const auto& [arguments, fact] :
+       {std::pair(out() + runs + "--integrators eular", "'euler'"),
+        {out() + runs + "--tolerance 1e-3", "--tolerances"},
+        {out() + runs + "--tolerances 7", "--tolerances"},
+        {out() + runs + "--cels 7", "'--cells'"},
+        {out() + runs + "--ida-rtol 1e-3", "--tolerances"},
+        {out() + runs + "--integrators ida --keep first", "--keep"},
+        {out() + runs + "--target-error nan", "'nan'"},
+        {out() + runs + "--tolerances 1e-3 --reference-tolerance 1e-3", "1e-04"},
+        {out(), "--out"},
+        {"", "--case"}})
+    EXPECT_TRUE(names(complaint(arguments), fact));
   EXPECT_FALSE(fs::exists(folder.path / "c"));
   std::ofstream(folder.path / "file") << "text";
-  EXPECT_NE(complaint("--out " + (folder.path / "file").string() + " " + runs).find("is a file"),
-            std::string::npos);
+  const std::string file = (folder.path / "file").string();
+  EXPECT_TRUE(names(complaint("--out " + file + " " + runs), file));
   const std::string run = (folder.path / "run").string();
   ASSERT_EQ(traceraft("run --quiet --no-fields --out " + run + " " + runs).code, 0);
   const std::string config = content(run + "/config.toml");
-  EXPECT_NE(complaint("--out " + run + " --case spinodal --cells 12").find("already holds"),
-            std::string::npos);
+  EXPECT_TRUE(names(complaint("--out " + run + " --case spinodal --cells 12"), run));
   EXPECT_EQ(content(run + "/config.toml"), config);
   ASSERT_EQ(traceraft("compare --quiet " + out() + references() + runs +
                       "--integrators ida --tolerances 1e-2 --repeat 1")
                 .code,
             0);
-  EXPECT_NE(complaint(out() + "--case two-rafts --cells 14").find("other runs"), std::string::npos);
-  EXPECT_NE(complaint(out() + "--threads 7").find("--threads"), std::string::npos);
+  EXPECT_TRUE(names(complaint(out() + "--case two-rafts --cells 14"), "--out"));
+  EXPECT_TRUE(names(complaint(out() + "--threads 7"), "--threads"));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // The program under mpirun as a user meets it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <csignal>
@@ -82,7 +83,7 @@ TEST_F(RanksTest, ARunOnRanksIsTheRunOfOne) {
   ASSERT_EQ(testing::traceraft("run --quiet " + runs + "--out " + at("one")).code, 0);
   const ProgramEnd two = on(2, "run " + runs + "--out " + at("two"));
   ASSERT_EQ(two.code, 0) << two.output;
-  EXPECT_NE(two.output.find("2 ranks"), std::string::npos) << two.output;
+  EXPECT_TRUE(testing::names(two.output, "2 ranks"));
   const std::size_t said = two.output.find("finished at t");
   EXPECT_NE(said, std::string::npos);
   EXPECT_EQ(two.output.rfind("finished at t"), said) << "said by more than one rank";
@@ -97,7 +98,7 @@ TEST_F(RanksTest, ARunOnRanksIsTheRunOfOne) {
   EXPECT_GT(many.at("peak_memory_mb").get<double>(), 1.5 * one.at("peak_memory_mb").get<double>());
   // Every rank has written its piece of the fields, and one file joins them.
   EXPECT_TRUE(fs::exists(at("two") + "/fields/field-0000-0001.vtu"));
-  EXPECT_NE(content(at("two") + "/fields.pvd").find("field-0000.pvtu"), std::string::npos);
+  EXPECT_TRUE(testing::names(content(at("two") + "/fields.pvd"), "field-0000.pvtu"));
   EXPECT_TRUE(fs::exists(at("two") + "/view.png"));
 }
 
@@ -241,26 +242,26 @@ TEST_F(RanksEndTest, TheFirstRankSpeaksForAll) {
   // Before or after the heading: mpirun passes on two streams, in any order.
   EXPECT_NE(("\n" + taken.output).find("\ntraceraft: --out: "), std::string::npos) << taken.output;
   const ProgramEnd missing = on(2, "resume " + at("nothing"));
-  EXPECT_EQ(missing.code, 2);
-  EXPECT_EQ(missing.output, "traceraft: " + at("nothing") + " is not a folder\n");
+  EXPECT_TRUE(testing::refuses(missing, at("nothing")));
+  EXPECT_EQ(std::count(missing.output.begin(), missing.output.end(), '\n'), 1) << missing.output;
   const ProgramEnd compare = on(1, "compare --case two-rafts --ranks 1,2");
   EXPECT_EQ(compare.code, 2);
-  EXPECT_NE(compare.output.find("start it without mpirun"), std::string::npos) << compare.output;
+  EXPECT_TRUE(testing::names(compare.output, "mpirun"));
 }
 
 TEST_F(RanksEndTest, SaysWhatIsWrongOnce) {
   const ProgramEnd flag = on(3, "run --cels 7");
-  EXPECT_EQ(flag.code, 2);
-  EXPECT_EQ(flag.output, "traceraft: unknown flag '--cels'; did you mean '--cells'?\n");
+  EXPECT_TRUE(testing::refuses(flag, "'--cells'"));
+  EXPECT_EQ(std::count(flag.output.begin(), flag.output.end(), '\n'), 1) << flag.output;
   const ProgramEnd solver = on(2, "run --case two-rafts --cells 12 --linear-solver block");
   EXPECT_EQ(solver.code, 2);
-  EXPECT_NE(solver.output.find("choose --linear-solver teko"), std::string::npos) << solver.output;
+  EXPECT_TRUE(testing::names(solver.output, "--linear-solver"));
   const ProgramEnd threads = on(2, "run " + runs + "--threads 2");
   EXPECT_EQ(threads.code, 2);
-  EXPECT_NE(threads.output.find("more ranks"), std::string::npos) << threads.output;
+  EXPECT_TRUE(testing::names(threads.output, "--threads"));
   const ProgramEnd verify = on(2, "verify mass --quick");
   EXPECT_EQ(verify.code, 2);
-  EXPECT_NE(verify.output.find("without mpirun"), std::string::npos) << verify.output;
+  EXPECT_TRUE(testing::names(verify.output, "mpirun"));
 }
 
 TEST_F(RanksTest, AreAnAxisOfComparisons) {
@@ -270,7 +271,7 @@ TEST_F(RanksTest, AreAnAxisOfComparisons) {
       "--threads 2 "  // ranks have one each
       "--linear-solvers block,teko --ranks 1,2 --repeat 1");
   ASSERT_EQ(outcome.code, 0) << outcome.output;
-  EXPECT_NE(outcome.output.find("ida with teko"), std::string::npos);
+  EXPECT_TRUE(testing::names(outcome.output, "ida with teko"));
   for (const auto& [job, ranks] :
        {std::pair("ida-block-0.01-1", 1), std::pair("ida-teko-0.01-1", 1),
         std::pair("ida-teko-2ranks-0.01-1", 2)})
@@ -297,8 +298,8 @@ TEST_F(RanksTest, OneThatFailsEndsAll) {
   fs::create_directories(at("run") + "/fields/field-0016-0001.vtu");
   const ProgramEnd outcome = on(2, "resume --quiet " + at("run"));
   EXPECT_EQ(outcome.code, 4) << outcome.output;
-  EXPECT_NE(outcome.output.find("traceraft: rank 1: "), std::string::npos) << outcome.output;
-  EXPECT_NE(outcome.output.find("field-0016-0001.vtu"), std::string::npos) << outcome.output;
+  EXPECT_TRUE(testing::names(outcome.output, "rank 1"));
+  EXPECT_TRUE(testing::names(outcome.output, "field-0016-0001.vtu"));
   // What was there is still there.
   fs::remove(at("run") + "/fields/field-0016-0001.vtu");
   EXPECT_EQ(on(2, "resume --quiet " + at("run")).code, 0);

@@ -1,12 +1,14 @@
 // The program as tests call it.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "backends/posix/durable_file.hpp"
@@ -45,6 +47,25 @@ inline pid_t start_traceraft(const std::string& arguments) {
 
 inline std::string content(const std::filesystem::path& path) {
   return read_file(path, 1 << 28);
+}
+
+inline nlohmann::json json_of(const std::filesystem::path& path) {
+  return nlohmann::json::parse(content(path));
+}
+
+// Whether a text holds a fact: a name of a file, an option or a parameter, or a number. Sentences
+// may change.
+inline ::testing::AssertionResult names(const std::string& text, const std::string& fact) {
+  if (text.find(fact) != std::string::npos)
+    return ::testing::AssertionSuccess() << "'" << fact << "' is in:\n" << text;
+  return ::testing::AssertionFailure() << "'" << fact << "' is not in:\n" << text;
+}
+
+// Whether bad input was answered by exit code 2 and a message with this fact.
+inline ::testing::AssertionResult refuses(const ProgramEnd& end, const std::string& fact) {
+  if (end.code != 2)
+    return ::testing::AssertionFailure() << "it ended with " << end.code << ":\n" << end.output;
+  return names(end.output, fact);
 }
 
 inline long lines_of(const std::filesystem::path& path) {
