@@ -1,6 +1,8 @@
 // The quick form of every verification study holds.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "verification/measure/bench.hpp"
 #include "verification/studies/studies.hpp"
 
@@ -35,10 +37,39 @@ INSTANTIATE_TEST_SUITE_P(Quick, StudyTest, ::testing::ValuesIn(studies_of_all())
                            return name;
                          });
 
-// Timed studies run; what they measure is not judged here.
-TEST(TimedStudies, Run) {
-  for (const char* name : {"cost", "step-cost"})
-    EXPECT_FALSE(studies().find(name).run(Bench({true, "", "", 1})).claims.empty()) << name;
+// Of timed studies the numbers that are no times.
+TEST(TimedStudies, MeshesGrowLikeTheSurface) {
+  const StudyReport report = studies().find("cost").run(Bench({true, "", "", 1}));
+  ASSERT_EQ(report.tables.size(), 1u);
+  EXPECT_EQ(report.tables[0].rows.size(), 2u);
+  const auto nodes = std::find_if(report.claims.begin(), report.claims.end(), [](const Claim& c) {
+    return c.what.find("nodes") != std::string::npos;
+  });
+  ASSERT_NE(nodes, report.claims.end());
+  EXPECT_TRUE(nodes->holds()) << nodes->measured;
+}
+
+TEST(TimedStudies, StepsAreTheSameOnAnyNumberOfThreads) {
+  const StudyReport report = studies().find("step-cost").run(Bench({true, "", "", 1}));
+  const Table& table = report.tables.at(0);
+  const auto at = [&](std::size_t row, const std::string& column) {
+    const auto found = std::find(table.columns.begin(), table.columns.end(), column);
+    EXPECT_NE(found, table.columns.end()) << column;
+    return table.rows.at(row).at(static_cast<std::size_t>(found - table.columns.begin()));
+  };
+  ASSERT_EQ(table.rows.size(), 4u);
+  for (const std::size_t row : {0, 2}) {  // block, and direct
+    EXPECT_EQ(at(row, "threads").number, 1);
+    EXPECT_EQ(at(row + 1, "threads").number, 2);
+    EXPECT_GT(at(row, "steps").number, 0);
+    EXPECT_GT(at(row, "iterations").number, 0);
+    EXPECT_EQ(at(row, "iterations").number, at(row + 1, "iterations").number) << row;
+    // The parts are of one thread, within the step.
+    EXPECT_LE(
+        at(row, "assembly_ms").number + at(row, "setup_ms").number + at(row, "solve_ms").number,
+        at(row, "mean_ms").number)
+        << row;
+  }
 }
 
 }  // namespace
