@@ -50,9 +50,10 @@ TEST(Rerun, RefutesWhatGoesAwayFromIt) {
 }
 
 // If the found model is the truth, it falls short of that by chance in one case of a hundred only,
-// however little it differs from the base, and however little is known of the state.
+// however little it differs from the base, and however little is known of the state. Of 1,000
+// trials more than 21 do with a probability of 7e-4, and if it were three of a hundred with 95 %.
 TEST(Rerun, SeldomRefutesTheTruth) {
-  constexpr int kTrials = 400;
+  constexpr int kTrials = 1000;
   for (const double unknown : {0.0, 0.3}) {
     int refuted = 0;
     double squares = 0;
@@ -62,7 +63,8 @@ TEST(Rerun, SeldomRefutesTheTruth) {
       refuted += rerun.refutes();
       squares += rerun.shortfall * rerun.shortfall / kTrials;
     }
-    EXPECT_LE(refuted, 12) << unknown;
+    EXPECT_LE(refuted, 21) << unknown;
+    EXPECT_GT(refuted, 0) << unknown;
     EXPECT_NEAR(squares, 1, 0.25) << unknown;
   }
 }
