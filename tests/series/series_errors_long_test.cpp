@@ -5,7 +5,8 @@
 #include <cmath>
 
 #include "tests/support/law_vesicles.hpp"
-#include "verification/measure/fit.hpp"
+#include "verification/statistics/bootstrap.hpp"
+#include "verification/statistics/sample.hpp"
 
 namespace traceraft::law_vesicles {
 namespace {

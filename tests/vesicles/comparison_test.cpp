@@ -10,7 +10,8 @@
 #include "kernel/core/types.hpp"
 #include "tests/support/published_facts.hpp"
 #include "verification/vesicles/onset.hpp"
-#include "verification/vesicles/power_law.hpp"
+#include "verification/vesicles/perimeter_law.hpp"
+#include "verification/statistics/sample.hpp"
 
 namespace traceraft {
 namespace {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/published_facts.hpp"
-#include "verification/vesicles/power_law.hpp"
+#include "verification/vesicles/perimeter_law.hpp"
 
 namespace traceraft {
 namespace {
