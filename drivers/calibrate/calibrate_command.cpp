@@ -214,9 +214,10 @@ Action define_calibrate(CLI::App& app) {
                                     ->type_name("DIR");
   app.add_option("--parameters", request->parameters,
                  "parameters to find, comma-separated: mobility and any of epsilon, fraction, "
-                 "noise-length; default: mobility,epsilon, or mobility with --ensemble")->type_name(joined(calibrated_options()
+                 "noise-length; default: mobility,epsilon, or mobility with --ensemble")
+      ->type_name(joined(calibrated_options().names(), "|") + ",...")
       ->check([](const std::string& text) {
-    return std::string(text.empty() ? "no parameter is named" : "");
+        return std::string(text.empty() ? "no parameter is named" : "");
       });
   app.add_option("--runs", request->runs, "number of seeds for every choice of parameters")
       ->check(CLI::Range(2, 1000))
@@ -233,7 +234,8 @@ Action define_calibrate(CLI::App& app) {
   app.add_option("--threads", request->threads, "threads of each run; default: processors / --jobs")
       ->check(CLI::Range(1, 64));
   app.add_option("--out", request->out,
-                 "new folder, or folder of a calibration to continue; default: runs/calibration-N")->type_name("DIR");
+                 "new folder, or folder of a calibration to continue; default: runs/calibration-N")
+      ->type_name("DIR");
   app.add_flag("--quiet", request->quiet, "print errors only");
   add_options(app, request->flags, [](const OptionSpec& spec) {
     return spec.numerical && spec.name != "seed" && spec.name != "output-times";
@@ -241,8 +243,7 @@ Action define_calibrate(CLI::App& app) {
   app.footer(
       "Example: traceraft calibrate --data my-vesicles --case guv-3to1 --parameters "
       "mobility,epsilon");
-  return [request] {
-    return run_calibration(*request); };
+  return [request] { return run_calibration(*request); };
 }
 
 }  // namespace

@@ -307,7 +307,7 @@ TEST_F(EnsembleTest, RefusesWhatMakesNoEnsemble) {
        {std::pair("--runs 2 --config " + out("other.toml") + " --out " + out("a"),
                   "checkpoint-interval"),
         std::pair("--case two-rafts --out " + out("b"), "noise"),
-        std::pair("--case guv-3to1 --out " + out("a"), out("a")),
+        std::pair("--case guv-3to1 --out " + out("a"), "--out: "),
         std::pair("--first-seed 3 --out " + out("a"), "seed 1"),
         std::pair("--case guv-2to1 --cells 20 --epsilon 0.5 --t-end 100 --checkpoint-interval 5 "
                   "--out " +
