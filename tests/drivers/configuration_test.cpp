@@ -206,7 +206,7 @@ TEST(RunSetup, ChecksEverythingBeforeAnythingRuns) {
   EXPECT_EQ(of({{"well", "a=1,b=0"}}).find("--well: "), 0u);
   EXPECT_EQ(of({{"well", "a=-1,b=1"}}).find("--well: the degenerate"), 0u);
   EXPECT_EQ(of({{"initial", "noize"}}).find("--initial: unknown initial field"), 0u);
-  EXPECT_EQ(of({{"initial", "caps"}}).find("--initial: "), 0u);
+  EXPECT_EQ(of({{"initial", "caps"}}).find("--initial-caps: "), 0u);
   EXPECT_EQ(of({{"initial", "caps"}, {"initial-caps", "0 0 1"}}).find("--initial"), 0u);
   EXPECT_EQ(of({{"initial", "restart:/nonexistent"}}).find("--initial: restart: "), 0u);
   EXPECT_EQ(of({{"noise-cells", "99"}}).find("--noise-cells: "), 0u);

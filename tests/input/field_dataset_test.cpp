@@ -102,8 +102,8 @@ TEST_F(FieldDatasetTest, AsksAboutARadiusThatThePointsContradict) {
   for (FieldSnapshot& snapshot : data.vesicles[0].snapshots)
     for (Point& x : snapshot.points) x *= 0.9;
   const std::string note = note_on_distance(data);
-  EXPECT_NE(note.find("further than 4.5 um"), std::string::npos) << note;
-  EXPECT_NE(note.find("said to be 5 um"), std::string::npos) << note;
+  EXPECT_NE(note.find("from the centre is 4.5 um"), std::string::npos) << note;
+  EXPECT_NE(note.find("stated radius is 5 um"), std::string::npos) << note;
 }
 
 TEST_F(FieldDatasetTest, AsksAboutValuesOnAnotherScale) {

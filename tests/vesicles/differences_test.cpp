@@ -26,11 +26,11 @@ TEST(Differences, AreSilentWhereOneModelStandsForAll) {
 TEST(Differences, NameRadiiAndFractions) {
   const auto large = differences(vesicles({5, 5, 8.5}, {0.09, 0.1, 0.12}), {5, 0.1});
   ASSERT_EQ(large.size(), 1u);
-  EXPECT_NE(large[0].find("5 to 8.5 um (median 5)"), std::string::npos) << large[0];
-  EXPECT_NE(large[0].find("make D 2 times as large"), std::string::npos) << large[0];
+  EXPECT_NE(large[0].find("5 to 8.5 um (median 5 um)"), std::string::npos) << large[0];
+  EXPECT_NE(large[0].find("D would be 2 times as large"), std::string::npos) << large[0];
   const auto other = differences(vesicles({5, 5, 5}, {0.15, 0.16, 0.155}), {5, 0.1});
   ASSERT_EQ(other.size(), 1u);
-  EXPECT_NE(other[0].find("0.155 of the vesicles"), std::string::npos) << other[0];
+  EXPECT_NE(other[0].find("0.155 of the area of the vesicles"), std::string::npos) << other[0];
 }
 
 TEST(Differences, SizeCountsWithItsFourthPower) {
