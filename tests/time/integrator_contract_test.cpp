@@ -219,7 +219,7 @@ TEST_P(IntegratorContract, EndsWhenNoSolverWorksAndKeepsTheLastState) {
 TEST_P(IntegratorContract, CutsTheStepWhenTheModelFailsAndEndsWhenItAlwaysFails) {
   for (const bool silent : {false, true})
     for (const std::string& solver : built_linear_solvers()) {
-      Poisoned late(problem, [](double t) { return t > 0.05; });
+      Poisoned late(problem, [](double t) { return t > 0.5; });
       late.silent = silent;
       const IntegratorPtr integrator = started(late, 2, choose_linear_solver(solver, *space));
       const Status status = run(*integrator, 2);
@@ -228,8 +228,8 @@ TEST_P(IntegratorContract, CutsTheStepWhenTheModelFailsAndEndsWhenItAlwaysFails)
       if (!silent) {
         EXPECT_NE(status.why.find("injected failure"), std::string::npos) << status.why;
       }
-      EXPECT_LE(integrator->time(), 0.05);
-      EXPECT_GT(integrator->time(), 0.049);
+      EXPECT_LE(integrator->time(), 0.5);
+      EXPECT_GT(integrator->time(), 0.49);
       EXPECT_TRUE(integrator->state().allFinite());
     }
 }
