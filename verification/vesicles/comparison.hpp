@@ -22,7 +22,8 @@ struct Agreement {
   // vesicles, looks at one of which are alike, and of the runs. 0 and 0 if there are too few.
   double trend = 0, trend_error = 0;
 
-  bool has_trend() const;  // by more than 3.5 standard errors
+  double trend_deviations() const;  // the trend in standard errors; 0 if it is roundoff
+  bool has_trend() const;           // by more than 3.5 standard errors
 };
 
 // deviation²: the variance between n runs, times 1 + 1/n as their mean scatters, too, and sigma² of

@@ -23,8 +23,7 @@ bool any_trend(const std::vector<Agreement>& agreements) {
 double trends(const std::vector<Agreement>& agreements) {
   double sum = 0;
   for (const Agreement& a : agreements)
-    if (a.quantity != Quantity::fraction && a.trend_error > 0)
-      sum += std::pow(a.trend / a.trend_error, 2);
+    if (a.quantity != Quantity::fraction) sum += std::pow(a.trend_deviations(), 2);
   return sum;
 }
 
