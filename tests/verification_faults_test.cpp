@@ -236,7 +236,7 @@ const Fault kFaults[] = {
      0,
      false,
      broken_program(0, 1e-3),
-     "2 ranks from 1"},
+     "between 1 and 2 ranks"},
     {"iterations", "no stabilisation", {}, {}, {}, "", 0, true, {}, "", "no step size"},
     {"teko",
      "no stabilisation",
