@@ -21,9 +21,10 @@ TEST(MemoryNeed, GrowsWithTheSurfaceAndTheSquareOfTheCells) {
 
 TEST(MemoryNeed, IsComparedWithWhatThereIs) {
   EXPECT_EQ(memory_complaint(4096, 1e11, 2e11), "");
-  EXPECT_EQ(memory_complaint(4096, 1.12e11, 2.5e10),
-            "4096 per edge need at least 112 GB of memory on each rank, and this machine has 25 GB; "
-            "choose 1935 at most, or ranks on several machines");
+  EXPECT_EQ(
+      memory_complaint(4096, 1.12e11, 2.5e10),
+      "4096 per edge need at least 112 GB of memory on each rank, and this machine has 25 GB; "
+      "choose 1935 at most, or ranks on several machines");
   // Nothing is known of a surface that the coarse mesh does not find.
   EXPECT_EQ(least_memory(FunctionLevelSet([](const Point&) { return 1.0; }), 4096, 1), 0);
 }

@@ -32,23 +32,23 @@ Interval logarithms(const Interval& range) {
   return {std::log(range.low), std::log(range.high)};
 }
 
-// All in logarithms. `replicates`: estimates from data of the model found. By what they miss it, the
-// estimate is corrected (the basic bootstrap: Davison and Hinkley 1997, section 5.2). `samples`: of
-// vesicles or seeds. `probable`: what the interval cannot leave out. `searched`: of what ends within
-// `edge` of its ends nothing is known.
+// All in logarithms. `replicates`: estimates from data of the model found. By what they miss it,
+// the estimate is corrected (the basic bootstrap: Davison and Hinkley 1997, section 5.2).
+// `samples`: of vesicles or seeds. `probable`: what the interval cannot leave out. `searched`: of
+// what ends within `edge` of its ends nothing is known.
 CalibratedParameter parameter(const std::string& name, double found,
                               const std::vector<double>& replicates, int samples,
                               const Interval& probable, const Interval& searched, double edge) {
   const auto corrected = [&](double share) { return 2 * found - quantile(replicates, share); };
-  const double middle = std::clamp(corrected(0.5), std::min(found, searched.low),
-                                   std::max(found, searched.high));
+  const double middle =
+      std::clamp(corrected(0.5), std::min(found, searched.low), std::max(found, searched.high));
   const double centre = corrected(0.5), factor = factor_for_few(samples);
   const Interval wide{centre - factor * (centre - corrected(0.975)),
                       centre + factor * (corrected(0.025) - centre)};
-  const double low = std::max(std::min({wide.low, probable.low, middle}),
-                              std::min(middle, searched.low));
-  const double high = std::min(std::max({wide.high, probable.high, middle}),
-                               std::max(middle, searched.high));
+  const double low =
+      std::max(std::min({wide.low, probable.low, middle}), std::min(middle, searched.low));
+  const double high =
+      std::min(std::max({wide.high, probable.high, middle}), std::max(middle, searched.high));
   const bool within = low > searched.low + edge && high < searched.high - edge;
   return {name,
           std::exp(middle),
@@ -97,9 +97,8 @@ Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtPara
   const Box simulated = explored(fit.points(), sought, 0);
   Calibration result;
   const std::vector<double> found = estimates(fit.found());
-  result.parameters = {parameter("seconds_per_unit", found[0], column(replicates, 0),
-                                 fit.samples(), logarithms(fit.units()), logarithms(unit.allowed),
-                                 kUnitEdge)};
+  result.parameters = {parameter("seconds_per_unit", found[0], column(replicates, 0), fit.samples(),
+                                 logarithms(fit.units()), logarithms(unit.allowed), kUnitEdge)};
   for (std::size_t i = 0; i < sought.size(); ++i) {
     const Interval range{simulated.lower[i], simulated.upper[i]};
     const double deviation = fit.found().deviations[i];

@@ -1,5 +1,5 @@
-// Measurements that a model would have given: the looks of data that exist, at vesicles that scatter
-// as runs of the model do, with the scatter of a fit and errors like the stated ones.
+// Measurements that a model would have given: the looks of data that exist, at vesicles that
+// scatter as runs of the model do, with the scatter of a fit and errors like the stated ones.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,8 @@ struct ModelRuns {
   double logarithm(const Vec& weights, Quantity quantity, double t) const;
 };
 
-// Quantities that were not measured are not drawn. Those of a vesicle are zero where it has less than
-// kLeastRafts on average. `replicate`: number of the data set.
+// Quantities that were not measured are not drawn. Those of a vesicle are zero where it has less
+// than kLeastRafts on average. `replicate`: number of the data set.
 inline constexpr double kLeastRafts = 0.75;
 MeasuredVesicles drawn_vesicles(const MeasuredVesicles& data, const StatedErrors& errors,
                                 const ModelRuns& model, const EnsembleFit& fit,

@@ -10,9 +10,9 @@
 
 namespace traceraft {
 
-// A free number of a fit: ln of the unit, the amplitude, the variance of a scatter, or another number
-// on which the mean curves depend. Near zero a likelihood is smooth in a variance, but flat in its
-// logarithm.
+// A free number of a fit: ln of the unit, the amplitude, the variance of a scatter, or another
+// number on which the mean curves depend. Near zero a likelihood is smooth in a variance, but flat
+// in its logarithm.
 struct FreeParameter {
   enum class Kind { unit, amplitude, vesicle_scatter, look_scatter, curve };
   Kind kind;

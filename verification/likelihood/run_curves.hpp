@@ -22,8 +22,8 @@ struct RunScatter {
 };
 
 // Weights of `runs` runs, two at least, that sum to 1. Logarithms weighted by them are those of
-// another run of the same kind: normal, with the mean of the runs and their covariance between times
-// and between quantities. The `index`-th of such runs.
+// another run of the same kind: normal, with the mean of the runs and their covariance between
+// times and between quantities. The `index`-th of such runs.
 Vec weights_of_another_run(std::size_t runs, std::uint64_t seed, std::uint64_t stream,
                            std::uint64_t index);
 // As many others, a column for each.

@@ -22,8 +22,8 @@ Vec scoring_step(const ScoringProblem& problem, const ScoredMinimum& here, doubl
   hessian.diagonal().array() += kLeastCurvature;
   for (Eigen::Index p = 0; p < gradient.size(); ++p) {
     const double edge = kRoundoff * (problem.upper[p] - problem.lower[p]);
-    const bool leaves = gradient[p] > 0 ? here.x[p] < problem.lower[p] + edge
-                                        : here.x[p] > problem.upper[p] - edge;
+    const bool leaves =
+        gradient[p] > 0 ? here.x[p] < problem.lower[p] + edge : here.x[p] > problem.upper[p] - edge;
     if (!leaves) continue;
     gradient[p] = 0;
     hessian.row(p).setZero();
