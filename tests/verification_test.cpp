@@ -37,7 +37,7 @@ INSTANTIATE_TEST_SUITE_P(Quick, StudyTest, ::testing::ValuesIn(studies_of_all())
                            return name;
                          });
 
-// Of timed studies the numbers that are no times.
+// Timed studies are tested by those of their numbers that are no times.
 TEST(TimedStudies, MeshesGrowLikeTheSurface) {
   const StudyReport report = studies().find("cost").run(Bench({true, "", "", 1}));
   ASSERT_EQ(report.tables.size(), 1u);

@@ -232,6 +232,7 @@ Action define_calibrate(CLI::App& app) {
       ->excludes(ensemble)
       ->check(CLI::Range(1, 1024));
   app.add_option("--threads", request->threads, "threads of each run; default: processors / --jobs")
+      ->excludes(ensemble)
       ->check(CLI::Range(1, 64));
   app.add_option("--out", request->out,
                  "new folder, or folder of a calibration to continue; default: runs/calibration-N")

@@ -29,7 +29,7 @@ struct CalibratorRequest {
 
 class Calibrator {
  public:
-  // What it is given must outlive it.
+  // Blocks and model must outlive it.
   Calibrator(const CalibratorRequest& request, const MeasuredVesicles& data,
              const Configuration& model)
       : request_(request), data_(data), model_(model) {}

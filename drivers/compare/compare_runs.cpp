@@ -34,6 +34,11 @@ std::vector<std::string> reference_arguments(const Reference& reference,
   return arguments;
 }
 
+// Nothing is wrong with the method or the model; the machine is to blame.
+[[noreturn]] void blame_machine(const std::string& name, const ProcessEnd& end) {
+  throw IoError(name + ": " + end.reason());
+}
+
 // Another comparison may be at it: then its end is waited for.
 WorkEnd compute(const Reference& reference, const ComparisonFolder& folder, bool quiet,
                 std::string& why) {
@@ -44,7 +49,12 @@ WorkEnd compute(const Reference& reference, const ComparisonFolder& folder, bool
   job.folder = folder.path();
   job.quiet = quiet;
   job.run = [&](std::size_t) {
-    return run_program(reference_arguments(reference, folder), folder.path() / "reference.log");
+    ProcessEnd end =
+        run_program(reference_arguments(reference, folder), folder.path() / "reference.log");
+    const bool known = end.exit_code == kSuccess || end.exit_code == kNumericalFailure ||
+                       end.exit_code == kLocked || end.was_stopped();
+    if (!known) blame_machine("the reference failed", end);
+    return end;
   };
   job.name = [](std::size_t) { return std::string("the reference"); };
   while (!run_finished(reference.folder)) {
@@ -82,6 +92,8 @@ ProcessEnd compute(const CompareJob& job, const ComparisonFolder& folder, double
     folder.record(job, {"stopped after " + format_number(time_limit) + " s", time_limit});
   else if (is_result(end))
     folder.record(job, {end.exit_code == kSuccess ? "" : end.reason(), 0});
+  else if (!end.was_stopped())
+    blame_machine(job.name() + " could not run", end);
   return end;
 }
 
@@ -130,11 +142,7 @@ WorkEnd run_comparison(const ComparePlan& plan, const ComparisonFolder& folder,
   jobs.run = [&](std::size_t k) { return compute(open[k], folder, plan.time_limit); };
   jobs.name = [&](std::size_t k) { return open[k].name(); };
   jobs.success = is_result;
-  const JobsEnd end = run_pending_jobs(jobs);
-  if (!end.failures.empty())
-    throw IoError(open[end.failures.front().job].name() +
-                  " could not run: " + end.failures.front().why);
-  return end.stopped ? WorkEnd::stopped : WorkEnd::done;
+  return run_pending_jobs(jobs).stopped ? WorkEnd::stopped : WorkEnd::done;
 }
 
 }  // namespace traceraft

@@ -73,7 +73,7 @@ const Words<Finding>& finding_words() {
 const Words<SearchStep>& step_words() {
   static const Words<SearchStep> words = [] {
     Words<SearchStep> list;
-    for (const SearchStep step : kSearchSteps) list.emplace_back(step, word_for(step));
+    for (const auto& [step, word] : kSearchSteps) list.emplace_back(step, word);
     return list;
   }();
   return words;

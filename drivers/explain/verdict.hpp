@@ -14,7 +14,7 @@ struct Verdict {
   };
 
   Finding finding = Finding::none;
-  // What explains the data as well as each other, the best first; none if nothing is named.
+  // Effects that explain the data as well as each other, the best first; none if nothing is named.
   std::vector<std::string> members;
   std::string closest;  // if the verdict is `unnamed`; may be ""
   std::vector<FoundParameter> parameters;
@@ -24,7 +24,7 @@ struct Verdict {
   int replicates = 0;
   double false_alarms = 0;
   double p = 1;  // that the best effect is noise
-  // What one kind of data tells beside that: keys of verdict.json, and of its `null`.
+  // Further keys of verdict.json, and of its `null`, that only one kind of data has.
   Json details = Json::object(), null_details = Json::object();
 };
 

@@ -12,7 +12,7 @@ std::string bash_array(const Meanings& names) {
   return elements;
 }
 
-// What begins as the word does that is being typed.
+// Offers the names that begin with the word that is being typed.
 constexpr char kBashOffer[] = R"(
 _traceraft_offer() {
     local name prefix=''

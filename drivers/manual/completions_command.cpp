@@ -24,6 +24,11 @@ Action define_completions(CLI::App& app) {
 
 }  // namespace
 
+const NamedList<ShellEntry>& shells() {
+  static const NamedList<ShellEntry> list("shell", {bash_shell(), zsh_shell(), fish_shell()});
+  return list;
+}
+
 Command completions_command() {
   return {"completions", "write what completes this command line in a shell", Ranks::one,
           define_completions};

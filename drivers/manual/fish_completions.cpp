@@ -16,7 +16,7 @@ std::string fish_arguments(const OfferedValues& offered) {
   return in_fish(offered.several ? "(__fish_append , " + list + ")" : list);
 }
 
-// What is offered for a value.
+// The part of a line of fish that offers values of an option.
 std::string fish_offer(const std::string& placeholder) {
   const OfferedValues offered = offered_values(placeholder);
   switch (offered.kind) {

@@ -71,7 +71,7 @@ bool ends_a_sentence(const std::string& text) {
   return !text.empty() && std::string(".!?").find(text.back()) != std::string::npos;
 }
 
-// What is said of an option beside its help.
+// Default, range and exclusions of an option, to stand after its help.
 std::string notes_on(const DescribedOption& option) {
   std::string notes;
   const auto note = [&](const std::string& text) { notes += (notes.empty() ? "" : "; ") + text; };

@@ -12,7 +12,7 @@ namespace {
 // Options and arguments of all commands whose values may be the same.
 struct ValueGroup {
   std::string placeholder;
-  // Of `case` in a shell: 'run --case', 'data argument 1', 'verify argument '*.
+  // Patterns of a shell's `case`: 'run --case', 'data argument 1', 'verify argument '*.
   std::vector<std::string> patterns;
 };
 

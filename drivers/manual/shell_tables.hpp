@@ -1,4 +1,4 @@
-// What may stand where on the command line: the tables of the completions in bash and zsh.
+// The tables of the completions in bash and zsh: which words may stand where on the command line.
 #pragma once
 
 #include <functional>

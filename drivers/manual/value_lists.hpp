@@ -17,7 +17,7 @@ struct ValueList {
 
 const NamedList<ValueList>& value_lists();
 
-// What the value of an option may be.
+// The values that an option may have.
 struct OfferedValues {
   enum class Kind { names, files, folders, anything };
   Kind kind = Kind::anything;

@@ -42,7 +42,7 @@ TEST(ReleaseFiles, TheCitationSaysTheVersion) {
   const std::vector<std::string> citation = lines_of("CITATION.cff");
   EXPECT_EQ(value_of(citation, "version"), TRACERAFT_VERSION);
   EXPECT_EQ(value_of(citation, "date-released"), TRACERAFT_RELEASE_DATE);
-  // What version 1.2.0 of the format requires.
+  // Version 1.2.0 of the format requires these.
   EXPECT_EQ(value_of(citation, "cff-version"), "1.2.0");
   for (const char* key : {"message", "title", "type", "license"})
     EXPECT_NE(value_of(citation, key), "") << key;

@@ -1,4 +1,4 @@
-// What users type by mistake, in all commands.
+// Typing mistakes of users, in all commands.
 #include <gtest/gtest.h>
 
 #include <algorithm>

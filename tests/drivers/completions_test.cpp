@@ -34,7 +34,7 @@ Names lines(const std::string& text) {
   return result;
 }
 
-// What the program registers, as a parser that no command line has been given to.
+// The registered commands, as a parser that no command line has been given to.
 DescribedProgram registered() {
   CLI::App app{"", "traceraft"};
   for (const Command& command : commands())
@@ -52,7 +52,7 @@ class CompletionsTest : public ::testing::Test {
     ASSERT_EQ(end.code, 0) << end.output;
     write_durably(folder.path / language, end.output);
   }
-  // What `language` prints for a script that reads that file first.
+  // The output of a shell that reads that file before a script.
   std::string said(const std::string& language, const std::string& script) {
     write_durably(folder.path / "script", script);
     return shell("cd " + folder.path.string() + " && " + language + " script").output;
@@ -68,7 +68,7 @@ class CompletionsTest : public ::testing::Test {
                           "_traceraft\n"
                           "printf '%s\\n' \"${COMPREPLY[@]}\"\n"));
   }
-  // What is offered is read from the arrays that _describe is given.
+  // The offered names are read from the arrays that _describe is given.
   Names zsh(const std::string& words) {
     return lines(said("zsh -f", "words=(traceraft " + words +
                                     ") CURRENT=$#words\n"

@@ -101,7 +101,7 @@ std::set<std::string> anchors(const MarkdownPage& page) {
   return found;
 }
 
-// Those to files of the repository.
+// Links to files of the repository.
 Lines relative_links(const MarkdownPage& page) {
   static const std::regex link("\\]\\((?![a-z]+:)([^)\\s]+)\\)");
   Lines found;

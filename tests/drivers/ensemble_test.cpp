@@ -185,7 +185,7 @@ TEST_F(EnsembleTest, GathersTheOthersOfADamagedRun) {
   std::ofstream(folder.path / "a/runs/seed-3/summary.json") << "{";
   const ProgramEnd made = traceraft("ensemble --out " + out("a"));
   EXPECT_EQ(made.code, 3) << made.output;
-  // What to delete is said of each.
+  // Each failure names the folder to delete.
   for (const char* fact : {"seed 1 failed", "seed 2 failed", "seed 3 failed", "a/runs/seed-1 ",
                            "a/runs/seed-2 ", "a/runs/seed-3 "})
     EXPECT_TRUE(names(made.output, fact));

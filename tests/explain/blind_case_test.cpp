@@ -9,7 +9,7 @@
 namespace traceraft {
 namespace {
 
-// What is hidden has to be something that a model may have.
+// A hidden effect has to be one that a model may have.
 TEST(BlindCase, HidesNoMoreThanTheRangeOfAnEffect) {
   BlindRequest asked = testing::small_vesicle(3);
   asked.effects = {"asymmetry"};

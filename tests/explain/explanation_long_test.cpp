@@ -124,7 +124,7 @@ TEST_F(RivalsTest, AreNotIfTheyLeaveOneToo) {
   EXPECT_EQ(left.found.hypothesis.name(), "gravity");
 }
 
-// What the mesh could be is a doubt only where it would explain what is missing.
+// The error of the mesh is a doubt only where it would explain what is missing.
 TEST_F(RivalsTest, AGapIsLookedForBesideWhatTheMeshCouldBe) {
   Search search(measured(), request_);
   SearchState state = state_of({}, {fit_of("line-tension")});
@@ -165,7 +165,7 @@ TEST_F(RivalsTest, MoreIsMissingThanWhatTheMeshCouldBe) {
   EXPECT_TRUE(found.found.hypothesis.parts.empty());
 }
 
-// Of those that leave no gap, too; what is as good stays, and what is better comes first.
+// Rivals that leave no gap are told apart, too. Equally good ones stay; a better one comes first.
 TEST_F(RivalsTest, AreToldApartByAllThatWasMeasured) {
   request_.false_alarms = -1;  // no gap is one
   const Refit right = fit_of("uptake"), wrong = fit_of("gravity");
@@ -191,8 +191,8 @@ TEST_F(RivalsTest, AreToldApartByAllThatWasMeasured) {
   EXPECT_GT(all, 1.2 * counting);  // a third snapshot more
 }
 
-// What seemed to be there with the errors of the model before, but is not with its own. The uptake
-// shows in what is held out only, and there is no gravity.
+// Gravity seems to be there with the errors of the model before, and is not with its own. The
+// uptake shows only in the held-out snapshot.
 TEST_F(RivalsTest, EffectsThatTurnOutToBeNoneAreDropped) {
   request_.most_effects = 2;
   Refit both = fit_of("uptake");
@@ -206,7 +206,7 @@ TEST_F(RivalsTest, EffectsThatTurnOutToBeNoneAreDropped) {
   EXPECT_EQ(found.changes[0].reason, ModelChange::is_none);
   EXPECT_EQ(found.changes[0].from, "gravity");
   EXPECT_EQ(found.changes[0].to, "uptake");
-  // What is left is asked what is lacking beside it, and has the bounds of what was dropped.
+  // The search goes on beside uptake, and gravity, which was dropped, has bounds.
   EXPECT_EQ(found.rounds.back().known.hypothesis.name(), "uptake");
   const auto is_of_gravity = [](const Bound& bound) { return bound.effect == "gravity"; };
   const std::vector<Bound> bounds = bounds_of(found);
@@ -219,7 +219,7 @@ TEST_F(RivalsTest, EffectsThatTurnOutToBeNoneAreDropped) {
   EXPECT_TRUE(nothing.found.hypothesis.parts.empty());
 }
 
-// With noise that is larger than the errors of this mesh, and all that was measured counting.
+// The noise is larger than the errors of this mesh, and no snapshot is held out.
 class OwnEffectsTest : public RivalsTest {
  protected:
   OwnEffectsTest() {

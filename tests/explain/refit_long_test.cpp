@@ -36,7 +36,7 @@ FilterProblems problems(const std::vector<FieldSeries>& vesicles,
 
 class RefitTest : public ::testing::Test {
  protected:
-  // With the uptake of the given rate.
+  // The base model with uptake of the given rate.
   FilterModel model(double rate) const {
     FilterModel result{request().base, 1, {}, {}};
     result.hypothesis.parts = {{find_candidate("uptake").value(), {rate}}};
@@ -53,7 +53,7 @@ TEST_F(RefitTest, FindsTheMostProbableRate) {
   const FilterProblems data = problems(drawn().vesicles);
   std::vector<ErrorMaps> maps;
   (void)filter_fields(data, model(0), settings(), maps);
-  // What a rate is depends on the unit of time, R²/D, which these data hardly know.
+  // A rate depends on the unit of time, R²/D, which these data hardly know.
   const auto rate_of = [](const Refit& fit) {
     return fit.pace * fit.hypothesis.parts[0].coefficients[0];
   };
@@ -100,7 +100,7 @@ TEST(BulkMobility, IsRefittedAlongTheValleyOfThePace) {
   }
 }
 
-// Of D nothing is known, or as much as these data know, or that it is the model's.
+// D is not known, or known as well as these data know it, or known to be the model's.
 TEST(FieldFilter, TakesDAsFarAsItIsKnown) {
   BlindRequest asked = testing::small_vesicle(4);
   asked.first = 2;
@@ -231,8 +231,8 @@ TEST_F(RefitTest, SaysWhichPlaceIsOffTheSurface) {
   }
 }
 
-// What is known to be blurred by the microscope is as far from the forecasts as noise is; what is
-// not known to be, further.
+// Images of stated blur are as far from the forecasts as noise is; images of unstated blur are
+// further.
 TEST(FieldFilter, AllowsForBlurThatIsStated) {
   BlindRequest asked = request();
   asked.effects.clear();

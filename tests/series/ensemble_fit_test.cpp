@@ -70,7 +70,7 @@ TEST(EnsembleFit, IsNotPulledByErrorsThatAreAbsolute) {
   EXPECT_NEAR(offset.level, 0, 2.5 * 0.4 / std::sqrt(360));
 }
 
-// Of values that are what is expected: ln(1 + s z) is 0.0956 below that on average for s = 0.4.
+// Values that agree with the model: ln(1 + s z) is 0.0956 below on average for s = 0.4.
 TEST(EnsembleFit, ResidualsKnowTheMeanOfLogarithms) {
   const RunCurves base(ensemble({}));
   MeasuredVesicles data = measured({}, 3, 0, 1);

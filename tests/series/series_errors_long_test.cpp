@@ -11,12 +11,12 @@
 namespace traceraft::law_vesicles {
 namespace {
 
-// Of 19 replicates one in 20 sets without a signal is as far from the model as none of them: 5 %.
-// Of 155 sets more than 17 are with a probability of 8e-4, and if it were 15 % with 91 %.
+// One in 20 sets without a signal is further from the model than all of 19 replicates: 5 %. More
+// than 17 of 155 sets are so with a probability of 8e-4, and of 91 % if the rate were 15 %.
 constexpr int kQuietSets = 155, kMostAlarms = 17;
 
-// With 19 replicates, and what would explain another fraction, and other numbers. Few vesicles do:
-// what is counted does not depend on how much data there are.
+// The candidates explain another raft fraction and other numbers; 19 replicates. Few vesicles are
+// enough, as the rate of alarms does not depend on how much data there are.
 SeriesExplanation looked_at(const MeasuredVesicles& data) {
   static const std::vector<History> base = ensemble({});
   static const std::vector<SeriesCandidate> two{candidates()[0], candidates()[3]};
@@ -111,7 +111,7 @@ TEST(SeriesExplanation, KnowsHowWellItKnowsDNearAnEnd) {
   }
 }
 
-// Of three runs, drawn for each set anew: without Student's factor 29 of 40 held.
+// Three runs, drawn for each set anew: without Student's factor 29 of 40 held.
 TEST(SeriesExplanation, IntervalsOfDHoldTheTruth) {
   constexpr int kSets = 20, kRuns = 3;
   int held = 0;
@@ -133,7 +133,7 @@ TEST(SeriesExplanation, IntervalsOfDHoldTheTruth) {
   EXPECT_GE(held, kSets * 95 / 100);
 }
 
-// Of a D that is known to 2 % nothing that fits it is at the end.
+// If D is known to 2 %, no D that fits lies at the end of its range.
 TEST(SeriesExplanation, LooksAroundADThatIsKnown) {
   SeriesRequest request{UnitPrior::within_factor(1, std::exp(0.04), 2)};
   request.replicates = 49;

@@ -1,4 +1,4 @@
-// What series say of what is missing, on vesicles whose curves are formulas.
+// Effects found from series, on vesicles whose curves are formulas.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ TEST(SeriesExplanation, NamesNothingWhereNothingIsMissing) {
   EXPECT_TRUE(found.named.empty());
 }
 
-// What is zero has no logarithm, and those who state an error of it have said nothing more.
+// Zero has no logarithm, and a stated error of it adds nothing.
 TEST(SeriesExplanation, LooksWithoutRaftsSayNothing) {
   MeasuredVesicles data = measured({}, 10, 0.05, 1);
   const auto rafts = static_cast<std::size_t>(Quantity::rafts);
@@ -72,7 +72,7 @@ TEST(SeriesExplanation, AdmitsATrendThatNothingExplains) {
   const SeriesExplanation found = explained(measured({-0.6, 0, 0}, 15, 0.05, 1));
   EXPECT_EQ(found.finding, Finding::unnamed);
   EXPECT_LE(found.trend_p, 0.02);
-  // What it is: perimeters that fall faster than t^(-1/3); of rafts one is left soon.
+  // The trend: perimeters fall faster than t^(-1/3), and soon one raft is left.
   ASSERT_EQ(found.offsets.size(), 3u);
   EXPECT_EQ(found.offsets[0].quantity, Quantity::perimeter);
   EXPECT_NEAR(found.offsets[0].slope, -0.6 + 1 / 3.0, 0.03);
@@ -88,7 +88,7 @@ TEST(EnsembleFit, SaysHowFarMeasurementsLieBesideIt) {
   }
 }
 
-// What another D does is seen where D is known.
+// Effects that another D imitates are seen where D is known.
 TEST(SeriesExplanation, SeesWhatAnotherDDoesIfDIsKnown) {
   MeasuredVesicles data = measured({}, 20, 0.05, 1);
   for (Measurement& m : data.measurements)  // whole numbers are not quite alike

@@ -1,4 +1,4 @@
-// What was published of the membrane 3:1.
+// Published facts of the membrane 3:1.
 #pragma once
 
 #include "verification/vesicles/published.hpp"

@@ -1,4 +1,4 @@
-// What calibrations find, over many sets of data.
+// Statistics of calibrations over many sets of data.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -60,8 +60,8 @@ TEST(Calibration, SaysWhatTheDataDoNotDetermine) {
     EXPECT_FALSE(found.parameters[1].determined) << seed;
     ASSERT_EQ(found.best_powers.size(), 2u);
     EXPECT_NEAR(found.best_powers[0] / found.best_powers[1], 0.5, 0.1) << seed;
-    // Of R²/D with ε. Replicates reach along the valley as far as the points do, 0.27 in ln ε and
-    // 0.54 in ln R²/D, and scatter by 0.2 to 0.3 across: 0.88 to 0.94.
+    // The correlation of R²/D with ε. Replicates reach along the valley as far as the points do,
+    // 0.27 in ln ε and 0.54 in ln R²/D, and scatter by 0.2 to 0.3 across: 0.88 to 0.94.
     EXPECT_GT(found.correlation(0, 1), 0.85);
     EXPECT_LT(found.best_deviation, 0.15);
   }

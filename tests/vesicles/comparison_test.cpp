@@ -228,7 +228,7 @@ TEST(Onset, IsFoundWhereItExplainsTheTrend) {
   EXPECT_FALSE(onset->agreements[0].has_trend());
 }
 
-// Of one set the onset is known to 9 s.
+// The onset of one set is known to 9 s.
 TEST(Onset, IsThatOfTheVesiclesOnAverage) {
   constexpr int kSets = 40;
   double mean = 0;

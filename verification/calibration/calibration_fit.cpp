@@ -79,8 +79,7 @@ std::size_t nearest(const std::vector<CalibrationPoint>& points, const std::vect
       points.begin());
 }
 
-// What a simulation is given says nothing of how it does: fractions count where they are looked
-// for.
+// The raft fraction is an input of a simulation: measured fractions count where it is looked for.
 std::vector<Quantity> quantities_for(const std::vector<SoughtParameter>& sought) {
   std::vector<Quantity> result{Quantity::perimeter, Quantity::rafts};
   if (std::any_of(sought.begin(), sought.end(),

@@ -23,7 +23,7 @@ class CalibrationFit {
 
   // At each of the points that were given.
   const std::vector<JointFit>& at_points() const { return at_all_; }
-  // Those that the data do not exclude: what is far away says nothing of what is near.
+  // Points that the data do not exclude: points far away would bend the emulator near the best one.
   const std::vector<CalibrationPoint>& points() const { return points_; }
   const JointFit& found() const { return found_; }
   // Units of time that are about as probable as that found, with the parameters found.

@@ -21,13 +21,13 @@ class RunEmulator {
  public:
   // As many points as regression_weights wants, all with as many runs.
   explicit RunEmulator(const std::vector<CalibrationPoint>& points);
-  // With other runs at each point, by the same weights: what is common to the seeds cancels in the
-  // comparison of points.
+  // An emulator with other runs at each point, by the same weights, so that what seeds have in
+  // common cancels in the comparison of points.
   RunEmulator with_others(const Eigen::MatrixXd& weights) const;
 
   const RunCurves& at_point(std::size_t point) const { return at_points_[point]; }
   RunCurves at(const std::vector<double>& ln_parameters) const;
-  // Of which the mean is the derivative of that by the i-th parameter.
+  // Curves whose mean is the derivative of that by the i-th parameter.
   RunCurves derivative(const std::vector<double>& ln_parameters, std::size_t i) const;
 
  private:

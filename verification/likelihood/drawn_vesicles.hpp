@@ -27,7 +27,7 @@ MeasuredVesicles drawn_vesicles(const MeasuredVesicles& data, const StatedErrors
                                 const ModelRuns& model, const EnsembleFit& fit,
                                 std::uint64_t replicate);
 
-// What is known of the unit before is a measurement, too: it is drawn around the unit of the fit.
+// Prior knowledge of the unit is a measurement, too: it is drawn around the unit of the fit.
 // The fit ends where it did: with other ends the data of some sets would lie beyond them.
 UnitPrior drawn_unit(const EnsembleFit& fit, const UnitPrior& unit, std::uint64_t replicate);
 

@@ -31,7 +31,7 @@ struct EnsembleModel {
   }
 };
 
-// Of an effect, over what has been simulated: a fit does not leave that either.
+// The largest amplitude of an effect in a fit, over that which has been simulated.
 inline constexpr double kLargestAmplitude = 2;
 
 struct EnsembleFit {
@@ -42,7 +42,7 @@ struct EnsembleFit {
   double deviance = 0;  // −2 ln of the likelihood, and of what was known of the unit
 
   double seconds_per_unit() const;
-  // Of ln of one look beyond that of the runs: standard deviation between vesicles and looks.
+  // Standard deviation of ln of one look beyond that of the runs, between vesicles and looks.
   double scatter_beyond_runs(Quantity quantity) const;
 };
 
@@ -53,7 +53,8 @@ struct UnitPrior {
   Interval allowed;  // where a fit may end
   double drawn = 0;  // in data that are drawn: ln of what is said to be known, over start
 
-  // With 95 % confidence within the factor. A fit may end within the `reach`-th power of it.
+  // The unit is within the factor with 95 % confidence. A fit may end within the `reach`-th power
+  // of it.
   static UnitPrior within_factor(double start, double factor, double reach = 1);
   // Each ln of the unit in the interval is as probable as any other.
   static UnitPrior uniform(double start, const Interval& allowed);
@@ -77,17 +78,17 @@ inline constexpr double kAboutAsProbable = 1;
 Interval as_probable(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
                      const UnitPrior& unit, const EnsembleFit& fit);
 
-// With an entry per look: the model.
+// The model, an entry per look.
 Vec expected(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
              const EnsembleFit& fit);
 // In which looks scatter around it.
 ObservationMetric metric_of(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
                             const EnsembleFit& fit);
-// With an entry per look: measured minus what the model and errors like the stated ones make of it
-// on average.
+// Measured minus what the model and errors like the stated ones make of it on average, an entry per
+// look.
 Vec residual(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
              const EnsembleFit& fit);
-// With an entry per look: changed − mean, or the derivative of the mean by ln of the unit of time.
+// Changed − mean, or the derivative of the mean by ln of the unit of time, an entry per look.
 Vec response(const std::vector<ObservedSeries>& blocks, const RunCurves& base,
              const RunCurves& changed, double ln_unit);
 Vec unit_response(const std::vector<ObservedSeries>& blocks, const RunCurves& base, double ln_unit);

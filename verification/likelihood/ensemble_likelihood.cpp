@@ -138,7 +138,7 @@ double EnsembleLikelihood::deviance(const EnsembleFit& at) const {
   return sum;
 }
 
-// With the covariance K, α = K⁻¹ r and, for each parameter, B = K⁻¹ ∂K:
+// Let K be the covariance, α = K⁻¹ r and, for each parameter, B = K⁻¹ ∂K. Then
 //   ∂(rᵀ K⁻¹ r + ln |K|) = 2 α·∂r − αᵀ ∂K α + tr B,   E ∂∂' = 2 ∂rᵀ K⁻¹ ∂r' + tr(B B')
 void EnsembleLikelihood::add_block(const Block& block, const EnsembleFit& at,
                                    const std::vector<FreeParameter>& parameters,

@@ -27,7 +27,7 @@ struct FreeParameter {
 
 class EnsembleLikelihood {
  public:
-  // What it is given must outlive it.
+  // Blocks and model must outlive it.
   EnsembleLikelihood(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
                      const UnitPrior& unit);
 
@@ -60,8 +60,8 @@ class EnsembleLikelihood {
   std::vector<Block> blocks_;
 };
 
-// What every fit of observations has free, with bounds: the unit, the amplitude of an effect if
-// there is one, and the scatter of each quantity that was observed.
+// The free parameters of every fit of observations, with bounds: the unit, the amplitude of an
+// effect if there is one, and the scatter of each quantity that was observed.
 struct FreeParameters {
   std::vector<FreeParameter> all;
   Vec lower, upper;

@@ -1,5 +1,4 @@
-// What simulated vesicles do on average, as functions of time, and how one of them scatters around
-// that.
+// Means of simulated vesicles as functions of time, and how one vesicle scatters around them.
 #pragma once
 
 #include <array>
@@ -35,7 +34,7 @@ class RunSamples {
   RunSamples(const std::vector<History>& runs, std::vector<double> times);
 
   const std::vector<double>& times() const { return times_; }
-  // Of other runs; `weights`: a column for each of them.
+  // Samples of other runs; `weights`: a column for each of them.
   RunSamples others(const Eigen::MatrixXd& weights) const;
   QuantityCurves means() const;
   RunScatter scatter() const;  // at least two runs
@@ -86,7 +85,8 @@ class RunCurves {
   double variance(Quantity quantity, double ln_t) const {
     return spline_.at(scatter_.variance[index_of(quantity)], ln_t);
   }
-  // Of two logarithms of one run at times that differ by a factor, whose logarithm is given.
+  // The correlation of two logarithms of one run at times that differ by a factor, whose logarithm
+  // is given.
   double correlation(Quantity quantity, double ln_factor) const;
   // The covariance of one more run at several times: a row and a column for each.
   Eigen::MatrixXd covariance(Quantity quantity, const Vec& ln_t) const;

@@ -14,7 +14,7 @@ constexpr double kHardlyDamped = 1e-2;  // a damped step may be short for that r
 constexpr double kLongestStep = 1, kRoundoff = 1e-9;
 constexpr double kLeastCurvature = 1e-12;  // where a likelihood is flat
 
-// What would leave its bounds stays where it is.
+// A parameter that would leave its bounds stays where it is.
 Vec scoring_step(const ScoringProblem& problem, const ScoredMinimum& here, double damping) {
   Vec gradient = here.at.gradient;
   Eigen::MatrixXd hessian = here.at.hessian;

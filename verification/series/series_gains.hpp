@@ -20,7 +20,7 @@ struct SeriesCandidate {
   std::vector<History> runs;  // in units of R²/D
 };
 
-// What is known of each ensemble.
+// The curves of each ensemble.
 struct SeriesCurves {
   RunCurves base;
   std::vector<RunCurves> changed;  // with each candidate

@@ -1,4 +1,4 @@
-// What several numbers are together.
+// Summaries of several numbers.
 #pragma once
 
 #include <vector>
@@ -17,7 +17,7 @@ Sample sample_of(const std::vector<double>& values);  // at least one
 // The value below which the share is; at least one value.
 double quantile(std::vector<double> values, double share);
 
-// Of errors, which have to be small: NaN is the largest of all.
+// The larger one of two errors, which have to be small: NaN is the largest of all.
 double larger(double a, double b);
 
 }  // namespace traceraft

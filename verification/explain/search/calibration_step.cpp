@@ -16,7 +16,7 @@ namespace {
 constexpr int kMostPasses = 4;
 // A correlation of noise that is not settled by then is near what it should be.
 constexpr int kMostCorrelationPasses = 4;
-// Of strengths that a model cannot be advanced with; then they are 0.
+// Strengths that a model cannot be advanced with are halved so often; then they are 0.
 constexpr int kMostHalvings = 3;
 
 // A calibration that is not over.
@@ -63,7 +63,7 @@ void settle_noise(Pass& pass, FilterResult forecasts) {
   pass.model.screened = screened;
 }
 
-// What candidates would change is forecast as well.
+// Forecasts of the fields, with the responses to all candidates.
 void screen_forecasts(Pass& pass) {
   pass.search.tell(formatted("  responses to %zu effects", pass.model.screened.size()));
   pass.forecasts.fields_at = pass.here();
@@ -80,12 +80,10 @@ bool refit_model(Pass& pass, SearchState& state, const char* what) {
   return maps_reach(pass.model.pace, before);
 }
 
-constexpr char kForecasts[] = "  forecasts, errors of states and of the mesh";
-
 void calibrate_to_end(Pass& pass, SearchState& state) {
   bool settled = false;
   for (int k = 0; k < kMostPasses && !settled; ++k) {
-    pass.search.tell(kForecasts);
+    pass.search.tell(kForecastNews);
     settle_noise(pass, forecast(pass));
     settled = refit_model(pass, state, "  fit D and the effects");
   }
@@ -98,7 +96,7 @@ void calibrate_base(Pass& pass, SearchState& state) {
   const bool own = !pass.search.request().own.parts.empty();
   bool settled = false;
   for (int k = 0; k < kMostPasses && !settled; ++k) {
-    pass.search.tell(kForecasts);
+    pass.search.tell(kForecastNews);
     settle_noise(pass, forecast_weakened(pass));
     if (!own) screen_forecasts(pass);
     settled = refit_model(pass, state, own ? "  fit D and the effects" : "  fit D");

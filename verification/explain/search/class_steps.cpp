@@ -1,5 +1,5 @@
-// What tells the members of a class apart: the gaps that they leave, and all that was measured,
-// what is held out included.
+// Members of a class are told apart by the gaps that they leave, and by all that was measured, the
+// held-out snapshots included.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -62,8 +62,8 @@ const Refit* refit_in(const Round& round, const Refit& fit) {
   return nullptr;
 }
 
-// What is no other hypothesis than the found one, of which it has a special case, but may be one
-// beside another best. Only deviances of one round are in units of the same noise.
+// Hypotheses that contain the found one as a special case are no rivals of it, but may be rivals of
+// another best one. Only deviances of one round are in units of the same noise.
 std::vector<Refit> shadows(const Search& search, const SearchState& state, const Refit& best) {
   const Refit& found = state.so_far.found;
   const double limit = telling(search.values(), mesh_error(state));
@@ -196,7 +196,7 @@ SearchState compare_gaps(Search& search, SearchState state) {
                             without_gap.front().hypothesis.name()});
   set_found(without_gap.front(), state);
   result.rivals.assign(without_gap.begin() + 1, without_gap.end());
-  result.finding = result.rivals.empty() ? Finding::named : Finding::ambiguous;
+  result.finding = finding_beside(result.rivals.size());
   return state;
 }
 

@@ -80,10 +80,6 @@ void add_rivals(const std::vector<Refit>& fits, double values, double limit, Exp
       result.rivals.push_back(fit);
 }
 
-Finding finding_of(const std::vector<Refit>& rivals) {
-  return rivals.empty() ? Finding::named : Finding::ambiguous;
-}
-
 std::vector<FilterModel> trials_near(const Search& search, const SearchState& state) {
   std::vector<Candidate> open;
   const std::vector<Candidate>& all = search.candidates();
@@ -111,7 +107,7 @@ SearchState eliminate(Search& search, SearchState state) {
   if (!trials.empty()) search.tell("without " + joined(doubtful, ", or without "));
   const std::vector<Refit> fits = search.refit_all(state, trials);
   const std::optional<std::size_t> best = best_without(fits, found, values);
-  // What is held out may tell that there is one.
+  // Held-out snapshots may show that the effect is there.
   if (best && is_as_probable(search, state, fits[*best], found)) {
     search.tell("  " + doubtful[*best] + " is not significant");
     state.so_far.changes.push_back(
@@ -127,7 +123,7 @@ SearchState eliminate(Search& search, SearchState state) {
       if (fit.failure.empty() && explains_as_well(fit, found, values, telling(values, error)))
         rivals.push_back(std::move(fit));
     state.so_far.rivals = std::move(rivals);
-    state.so_far.finding = finding_of(state.so_far.rivals);
+    state.so_far.finding = finding_beside(state.so_far.rivals.size());
   }
   state.next = SearchStep::screen;
   return state;
@@ -137,7 +133,7 @@ SearchState replace(Search& search, SearchState state) {
   Explanation& result = state.so_far;
   state.next = SearchStep::calibrate;
   if (result.found.hypothesis.added() <= 1 && state.replacements == 0) {
-    result.finding = finding_of(result.rivals);
+    result.finding = finding_beside(result.rivals.size());
     return state;
   }
   search.tell("replace " + result.found.hypothesis.name());
@@ -152,7 +148,7 @@ SearchState replace(Search& search, SearchState state) {
       state.replacements < kMostReplacements ? better_one(search, state, fits) : nullptr;
   if (best == nullptr) {
     add_rivals(fits, search.values(), telling(search.values(), mesh_error(state)), result);
-    result.finding = finding_of(result.rivals);
+    result.finding = finding_beside(result.rivals.size());
     return state;
   }
   result.changes.push_back(

@@ -31,6 +31,10 @@ inline constexpr std::array kFindings{Finding::none,
                                       Finding::not_identifiable,
                                       Finding::unnamed};
 std::string word_for(Finding finding);
+// The finding of a hypothesis with so many rivals that explain the data as well.
+inline Finding finding_beside(std::size_t rivals) {
+  return rivals == 0 ? Finding::named : Finding::ambiguous;
+}
 
 // The search for one more effect.
 struct Round {

@@ -19,7 +19,7 @@ bool same_hypothesis(const Hypothesis& a, const Hypothesis& b) {
 std::string news_of(const Refit& fit, const Refit& found) {
   const std::string name = fit.hypothesis.added() == 0 ? "no effect" : fit.hypothesis.name();
   if (!fit.failure.empty()) return "  " + name + " fails";
-  // With one effect more there is nothing to lose.
+  // One effect more cannot lose anything.
   const bool more = fit.hypothesis.added() > found.hypothesis.added();
   const double difference = found.deviance - fit.deviance;
   const double gained = more ? std::max(0.0, difference) : difference;
@@ -30,30 +30,8 @@ std::string news_of(const Refit& fit, const Refit& found) {
 }  // namespace
 
 std::string word_for(SearchStep step) {
-  switch (step) {
-    case SearchStep::start:
-      return "start";
-    case SearchStep::calibrate:
-      return "calibrate";
-    case SearchStep::eliminate:
-      return "eliminate";
-    case SearchStep::screen:
-      return "screen";
-    case SearchStep::refit:
-      return "refit";
-    case SearchStep::choose:
-      return "choose";
-    case SearchStep::replace:
-      return "replace";
-    case SearchStep::compare_gaps:
-      return "compare-gaps";
-    case SearchStep::weigh:
-      return "weigh";
-    case SearchStep::confirm:
-      return "confirm";
-    case SearchStep::done:
-      return "done";
-  }
+  for (const auto& [known, word] : kSearchSteps)
+    if (known == step) return word;
   return "";
 }
 
@@ -99,7 +77,7 @@ FilterModel Search::model(const SearchState& state) const {
 const Forecasts& Search::forecasts(const SearchState& state) {
   if (forecasts_.maps_at == state.maps_at && forecasts_.fields_at == state.fields_at)
     return forecasts_;
-  tell("  forecasts, errors of states and of the mesh");
+  tell(kForecastNews);
   forecasts_ = {};
   Forecasts again{state.maps_at, state.fields_at, {}, {}};
   set_noise_model(again.maps_at.noise, request_.base, request_.filter, data_);

@@ -1,4 +1,4 @@
-// What the steps of a search work with beside its state: the data, the candidates, and forecasts.
+// The tools of a search beside its state: the data, the candidates, and forecasts.
 #pragma once
 
 #include <string>
@@ -9,6 +9,9 @@
 namespace traceraft {
 
 FilterProblems problems_of(const std::vector<FieldSeries>& series, const ExplainRequest& request);
+
+// Told before they are made.
+inline constexpr char kForecastNews[] = "  forecasts, errors of states and of the mesh";
 
 // Forecasts of the last calibration.
 struct Forecasts {
@@ -37,7 +40,7 @@ class Search {
   FilterProblems& data(const SearchState& state);
   FilterProblems& data_at_start() { return data_; }
 
-  // What was found; the candidates that it has not are screened.
+  // The found model; the candidates that it has not are screened.
   FilterModel model(const SearchState& state) const;
 
   // A calibration hands over its forecasts. A search that was interrupted finds them again.
@@ -58,7 +61,7 @@ class Search {
   Forecasts forecasts_;
 };
 
-// Of the last round's screening.
+// That of the last round's screening.
 inline double mesh_error(const SearchState& state) {
   return state.so_far.rounds.back().screening.mesh_error;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <utility>
 
 #include "verification/explain/search/explanation.hpp"
 
@@ -21,10 +22,17 @@ enum class SearchStep {
   confirm,       // on another mesh, by another integrator → done
   done
 };
-inline constexpr std::array kSearchSteps{
-    SearchStep::start, SearchStep::calibrate, SearchStep::eliminate, SearchStep::screen,
-    SearchStep::refit, SearchStep::choose,    SearchStep::replace,   SearchStep::compare_gaps,
-    SearchStep::weigh, SearchStep::confirm,   SearchStep::done};
+inline constexpr std::array kSearchSteps{std::pair{SearchStep::start, "start"},
+                                         std::pair{SearchStep::calibrate, "calibrate"},
+                                         std::pair{SearchStep::eliminate, "eliminate"},
+                                         std::pair{SearchStep::screen, "screen"},
+                                         std::pair{SearchStep::refit, "refit"},
+                                         std::pair{SearchStep::choose, "choose"},
+                                         std::pair{SearchStep::replace, "replace"},
+                                         std::pair{SearchStep::compare_gaps, "compare-gaps"},
+                                         std::pair{SearchStep::weigh, "weigh"},
+                                         std::pair{SearchStep::confirm, "confirm"},
+                                         std::pair{SearchStep::done, "done"}};
 std::string word_for(SearchStep step);
 
 // Forecasts are of a model and a noise.

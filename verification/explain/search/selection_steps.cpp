@@ -14,7 +14,7 @@ namespace {
 constexpr double kUsualChange = 0.06;
 // Rounds beyond the most effects, as effects may be replaced or dropped.
 constexpr std::size_t kMoreRounds = 3;
-// Of means over the neighbourhood, in widths of phase boundaries.
+// Width of the neighbourhood that maps are means over, in widths of phase boundaries.
 constexpr double kMapWidth = 2;
 // Beyond that many standard deviations a snapshot is said to be rotated or scaled.
 constexpr double kChanged = 3;
@@ -152,7 +152,7 @@ SearchState choose(Search& search, SearchState state) {
   if (judgement.taken) return taken(judgement, std::move(state));
   result.without_gap =
       judgement.without_gap == Finding::named ? result.finding : judgement.without_gap;
-  // What could not be told apart before cannot be now.
+  // A class that could not be told apart before cannot be now.
   if (judgement.finding != Finding::named) result.finding = judgement.finding;
   state.next = judgement.finding == Finding::unnamed && !result.rivals.empty()
                    ? SearchStep::compare_gaps

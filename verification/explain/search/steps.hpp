@@ -41,17 +41,17 @@ SearchState compare_gaps(Search& search, SearchState state);
 // if it cannot be forecast with.
 bool leaves_gap(Search& search, const SearchState& state, const Refit& fit);
 
-// What is held out counts, too, between the members of a class that is open; asked once. The search
-// goes on beside another one than was found if that comes first then, by more than hardly anything.
+// Held-out snapshots decide, once, between the members of a class that is open. The search goes on
+// beside another member if that is more probable by more than hardly anything.
 SearchState weigh(Search& search, SearchState state);
-// With all that was measured, what is held out included: is `one` as probable as `other`, each
-// refitted? False where a refit fails.
+// Is `one` as probable as `other`, each refitted to all that was measured, held-out snapshots
+// included? False where a refit fails.
 bool is_as_probable(Search& search, const SearchState& state, const Refit& one, const Refit& other);
 // A hypothesis, refitted to the snapshots that count, with the noise of `data`.
 Refit refit_of(const FilterProblems& data, const CahnHilliardModel& base, const Refit& member,
                FilterSettings settings);
 
-// What was found, on another mesh and by another integrator (rerun.hpp).
+// Repeats the comparison on another mesh and by another integrator (rerun.hpp).
 SearchState confirm(Search& search, SearchState state);
 
 }  // namespace traceraft
