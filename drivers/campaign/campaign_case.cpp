@@ -122,7 +122,7 @@ void write_score(const CampaignFolder& folder, const CampaignGroup& group, const
                       {"effect", verdict.members.empty() ? "" : verdict.members.front()},
                       {"class", verdict.members},
                       {"outcome", word_for(outcome_of(group.aim, hidden, verdict))},
-                      {"p", verdict.p},
+                      {"p", verdict.p ? Json(*verdict.p) : Json()},
                       {"rounds", verdict.null_details.at("rounds")},
                       {"heldout",
                        {{"base", heldout(verdict.base_gap)},

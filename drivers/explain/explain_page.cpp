@@ -39,22 +39,21 @@ class ExplainPage {
     page_.paragraph(data_text(setup_));
     page_.heading("Verdict: " + verdict_words(found_.finding, class_of(found_)));
     page_.paragraph(verdict_sentence(found_));
-    page_.table(parameter_rows(found_, units_));
+    if (!found_.at_rest) page_.table(parameter_rows(found_, units_));
     for (const std::string& remark : remarks_on(found_, setup_)) page_.paragraph(remark);
-    add_gaps();
-    add_where();
-    add_what();
-    page_.heading("Effects that were not found");
-    page_.paragraph(
-        "The table has 95 % bounds of their first parameters, to first order, when they are added "
-        "to what was found." +
-        chance_text());
-    page_.table(bound_rows(found_, units_));
-    page_.paragraph(
-        "Not in the search: " + joined(not_looked_for(found_), ", ") +
-        ". Rotations are corrected between snapshots; thermal noise is random and changes no "
-        "forecast" +
-        (sorts_by_curvature() ? "." : "; a curvature that is the same everywhere has no effect."));
+    if (!found_.at_rest) {
+      add_gaps();
+      add_where();
+      add_what();
+      add_not_found();
+    }
+    add_origin();
+    write_durably(folder_ / "explain.html", page_.html());
+    return missing_.text();
+  }
+
+ private:
+  void add_origin() {
     page_.heading("Where this comes from");
     page_.paragraph(program_text() + ". Noise " + formatted("%.3g of c, ", found_.noise) +
                     text_of(found_.noise_model.correlation) + ", " +
@@ -68,11 +67,22 @@ class ExplainPage {
           "vesicle:");
       page_.code(run);
     }
-    write_durably(folder_ / "explain.html", page_.html());
-    return missing_.text();
   }
 
- private:
+  void add_not_found() {
+    page_.heading("Effects that were not found");
+    page_.paragraph(
+        "The table has 95 % bounds of their first parameters, to first order, when they are added "
+        "to what was found." +
+        chance_text());
+    page_.table(bound_rows(found_, units_));
+    page_.paragraph(
+        "Not in the search: " + joined(not_looked_for(found_), ", ") +
+        ". Rotations are corrected between snapshots; thermal noise is random and changes no "
+        "forecast" +
+        (sorts_by_curvature() ? "." : "; a curvature that is the same everywhere has no effect."));
+  }
+
   // Bounds of effects that have one sign begin at 0.
   std::string chance_text() const {
     const std::vector<Bound> bounds = bounds_of(found_);

@@ -65,13 +65,17 @@ void print_explanation(const Explanation& found, const ExplainSetup& setup) {
   const Units units = setup.configuration.units();
   say("\n%s\n\nVerdict: %s\n%s\n\n", data_text(setup),
       verdict_words(found.finding, class_of(found)), verdict_sentence(found));
-  print_rows(parameter_rows(found, units));
-  say("\n");
-  print_rows(gap_rows(found));
+  if (!found.at_rest) {
+    print_rows(parameter_rows(found, units));
+    say("\n");
+    print_rows(gap_rows(found));
+  }
   for (const std::string& remark : remarks_on(found, setup)) say("\n%s\n", remark);
-  say("\nnoise of the measurements: %.3g, %s\npatches that disagree significantly with the base "
-      "model: %zu\n",
-      found.noise, text_of(found.noise_model.correlation), found.disagreements.size());
+  say("\nnoise of the measurements: %.3g, %s\n", found.noise,
+      text_of(found.noise_model.correlation));
+  if (!found.at_rest)
+    say("patches that disagree significantly with the base model: %zu\n",
+        found.disagreements.size());
 }
 
 }  // namespace traceraft

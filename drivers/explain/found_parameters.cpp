@@ -77,6 +77,7 @@ bool knows_diffusion(const Explanation& found) {
 
 std::vector<FoundParameter> told_parameters(const Explanation& found, const Refit& fit,
                                             const Units& base) {
+  if (found.at_rest) return {};
   std::vector<FoundParameter> all = found_parameters(fit, base);
   if (!knows_diffusion(found)) all.back().sigma.reset();
   return all;

@@ -115,7 +115,7 @@ void add_diffusion(const Explanation& found, const Units& base, std::vector<std:
   if (const auto range = diffusion_range(found, base))
     all.push_back(formatted("D is between %.3g and %.3g cm^2/s: ", range->low, range->high) +
                   range->why + ".");
-  if (!knows_diffusion(found))
+  if (!knows_diffusion(found) && !found.at_rest)
     all.push_back(found.finding == Finding::not_identifiable
                       ? "The interval of D is not known: the best D may compensate for an effect "
                         "that these data would not show."

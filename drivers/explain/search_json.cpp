@@ -282,6 +282,7 @@ void describe(Members& members, Explanation& found) {
   members("pace_doubt", found.pace_doubt);
   members("h_over_epsilon", found.h_over_epsilon);
   members("outliers", found.outliers);
+  members("at_rest", found.at_rest);
   members("registered", found.registered);
   members("noise", found.noise);
   members("noise_model", found.noise_model);

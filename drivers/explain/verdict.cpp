@@ -79,6 +79,7 @@ Json where_json(const Explanation& found, const ExplainSetup& setup) {
 Json rounds_json(const Explanation& found) {
   const bool held_out = found.base.gap.heldout > 0;
   Json rounds = Json::array();
+  if (found.at_rest) return rounds;
   for (const Round& round : found.rounds) {
     const auto& scores = round.screening.scores;
     rounds.push_back({{"known", round.known.hypothesis.name()},
@@ -169,9 +170,10 @@ Verdict verdict_of(const Explanation& found, const ExplainSetup& setup) {
   verdict.floor_gap = found.found.expected;
   verdict.replicates = setup.request.filter.replicates;
   verdict.false_alarms = found.false_alarms;
-  verdict.p = first.screening.p;
+  if (!found.at_rest) verdict.p = first.screening.p;
   verdict.null_details = {{"rounds", rounds_json(found)}};
-  verdict.details = {{"diffusion_range", range_json(found, base)},
+  verdict.details = {{"at_rest", found.at_rest},
+                     {"diffusion_range", range_json(found, base)},
                      {"rivals", rivals_json(found, base)},
                      {"told_apart", excluded_json(found)},
                      {"bounds", bounds_json(found, base)},
@@ -208,7 +210,7 @@ Json verdict_json(const Verdict& verdict) {
                {"null",
                 {{"replicates", verdict.replicates},
                  {"false_alarm_level", verdict.false_alarms},
-                 {"p", verdict.p}}}};
+                 {"p", verdict.p ? Json(*verdict.p) : Json()}}}};
   json["null"].update(verdict.null_details);
   json.update(verdict.details);
   json["program"] = program_text();

@@ -23,7 +23,7 @@ struct Verdict {
   Gaps base_gap, named_gap, runner_up_gap, floor_gap;
   int replicates = 0;
   double false_alarms = 0;
-  double p = 1;  // that the best effect is noise
+  std::optional<double> p;  // that the best effect is noise; none where none was searched for
   // Further keys of verdict.json, and of its `null`, that only one kind of data has.
   Json details = Json::object(), null_details = Json::object();
 };

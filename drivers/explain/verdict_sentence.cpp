@@ -59,6 +59,11 @@ std::string likeliest(const Explanation& found) {
 }
 
 std::string doubt_sentence(const Explanation& found) {
+  if (found.at_rest)
+    return "The rafts are at rest: from snapshot to snapshot nothing changes beyond noise and "
+           "rotation. The model forecasts the same with a tenth of its D and with ten times its D. "
+           "Kinetics were therefore not tested, and no effect was searched for. Take snapshots at "
+           "times at which rafts still change.";
   const Screening& first = found.rounds.front().screening;
   if (found.rerun && found.rerun->refutes())
     return "Something seems to be missing. " + found.found.hypothesis.name() +

@@ -167,23 +167,29 @@ double SphereMap::at(const Point& x) const {
          s * ((1 - t) * sample(1, 0) + t * sample(1, 1));
 }
 
-Registration register_values(const SphereMap& field, const std::vector<Point>& points,
-                             const Vec& values) {
+Eigen::Matrix3d most_alike_rotation(const SphereMap& field, const std::vector<Point>& points,
+                                    const Vec& values) {
   const Alignment alignment(field, points, values);
-  Registration best{Eigen::Matrix3d::Identity(), true, -1};
+  Eigen::Matrix3d best = Eigen::Matrix3d::Identity();
   double least = HUGE_VAL;
   for (const Eigen::Matrix3d& near : most_alike(alignment)) {
     const Eigen::Matrix3d Q = alignment.refined(near);
-    const double correlation = alignment(Q, 1);
-    if (misfit(correlation, Q) >= least) continue;
-    least = misfit(correlation, Q);
-    best = {Q, true, correlation};
+    const double here = misfit(alignment(Q, 1), Q);
+    if (here >= least) continue;
+    least = here;
+    best = Q;
   }
-  const double without = alignment(Eigen::Matrix3d::Identity(), 1);
-  const double left = left_by(best.correlation) / left_by(without);
-  if (best.correlation < kAlike || left > kClearly || angle_of(best.rotation) < kLeastAngle)
-    return {Eigen::Matrix3d::Identity(), false, without};
   return best;
+}
+
+Registration register_values(const SphereMap& field, const std::vector<Point>& points,
+                             const Vec& values) {
+  const Alignment alignment(field, points, values);
+  const Eigen::Matrix3d Q = most_alike_rotation(field, points, values);
+  const double with = alignment(Q, 1), without = alignment(Eigen::Matrix3d::Identity(), 1);
+  if (with < kAlike || left_by(with) > kClearly * left_by(without) || angle_of(Q) < kLeastAngle)
+    return {Eigen::Matrix3d::Identity(), false, without};
+  return {Q, true, with};
 }
 
 }  // namespace traceraft

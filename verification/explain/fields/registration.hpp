@@ -28,7 +28,11 @@ struct Registration {
 };
 
 // The rotation Q that makes the values most like those of a field: v(x) ~ a + b f(Qᵀ x). Searched
-// for over all rotations, then refined. None if no rotation but a small one, which errors of the
+// for over all rotations, then refined.
+Eigen::Matrix3d most_alike_rotation(const SphereMap& field, const std::vector<Point>& points,
+                                    const Vec& values);
+
+// The same rotation. None if no rotation but a small one, which errors of the
 // state allow for, makes them clearly more alike.
 Registration register_values(const SphereMap& field, const std::vector<Point>& points,
                              const Vec& values);

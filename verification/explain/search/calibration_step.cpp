@@ -5,6 +5,7 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/text.hpp"
 #include "verification/explain/fields/registration.hpp"
+#include "verification/explain/filter/rest.hpp"
 #include "verification/explain/fit/first_pace.hpp"
 #include "verification/explain/fit/refit_unknowns.hpp"
 #include "verification/explain/search/steps.hpp"
@@ -137,12 +138,41 @@ SearchState stopped(SearchState state, const std::string& why) {
   return state;
 }
 
+// Nothing is fitted: any D and any effect that leaves the rafts at rest would do. The round has
+// looked for nothing.
+SearchState at_rest(const Search& search, const FilterProblems& data, SearchState state) {
+  search.tell("the rafts are at rest, and the model agrees: nothing tells how fast they change");
+  const ExplainRequest& request = search.request();
+  Explanation& result = state.so_far;
+  result.at_rest = true;
+  result.finding = result.without_gap = Finding::not_identifiable;
+  result.noise = noise_of(data);
+  result.found.hypothesis = request.own;
+  result.found.pace_deviation = std::numeric_limits<double>::infinity();
+  result.found.settled = true;
+  result.base = result.found;
+  result.rounds.push_back({{request.base, 1, request.own, {}}, {}, result.found, {}, {}, {}});
+  state.next = SearchStep::done;
+  return state;
+}
+
+void describe_data(const Search& search, const FilterProblems& data, Explanation& result) {
+  const ExplainRequest& request = search.request();
+  result.noise_model = noise_model(data);
+  result.h_over_epsilon = search.h_over_epsilon();
+  result.false_alarms = request.false_alarms;
+  result.pace_doubt = request.filter.pace_doubt;
+  for (const FilterProblem& vesicle : data) result.outliers += vesicle.outliers;
+}
+
 }  // namespace
 
 SearchState start(Search& search, SearchState state) {
   const ExplainRequest& request = search.request();
   Explanation& result = state.so_far;
   const FilterProblems& data = search.data_at_start();
+  describe_data(search, data, result);
+  if (are_at_rest(data, request.base)) return at_rest(search, data, std::move(state));
   search.tell("fit D of the base model");
   const FilterModel model =
       with_first_pace(data, {request.base, 1, request.own, {}}, request.filter);
@@ -151,16 +181,10 @@ SearchState start(Search& search, SearchState state) {
   const bool far = std::fabs(std::log(model.pace)) > std::log(kFarPace);
   search.tell(formatted("  D is about %.2g times the model's%s", model.pace,
                         far ? "; are time_unit and the model's --diffusion right?" : ""));
-  result.noise_model = noise_model(data);
-  result.h_over_epsilon = search.h_over_epsilon();
-  result.false_alarms = request.false_alarms;
-  result.pace_doubt = request.filter.pace_doubt;
-  for (const FilterProblem& vesicle : data) {
-    result.outliers += vesicle.outliers;
+  for (const FilterProblem& vesicle : data)
     for (std::size_t k = 1; k < vesicle.turns.size(); ++k)
       if (vesicle.turns[k])
         result.registered.push_back({vesicle.vesicle, k, angle_of(vesicle.turns[k]->rotation)});
-  }
   state.next = SearchStep::calibrate;
   return state;
 }

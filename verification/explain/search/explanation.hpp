@@ -99,6 +99,7 @@ struct Explanation {
   double pace_doubt = std::numeric_limits<double>::infinity();  // as requested
   double h_over_epsilon = 0;                                    // of the model's mesh
   std::size_t outliers = 0;                                     // values that were left out
+  bool at_rest = false;  // data and base model (rest.hpp), so that nothing was fitted
   std::vector<RegisteredRotation> registered;
   double noise = 0;  // standard deviation of the values that count
   NoiseModel noise_model;

@@ -10,7 +10,7 @@ namespace traceraft {
 
 // The steps, and what follows each.
 enum class SearchStep {
-  start,         // D of the base model, roughly → calibrate
+  start,         // D of the base model, roughly → calibrate; rafts at rest → done
   calibrate,     // fit noise, D and effects of the model as it stands → eliminate, screen
   eliminate,     // drop an effect that the model does as well without → calibrate, screen
   screen,        // score tests of all candidates → refit, choose
