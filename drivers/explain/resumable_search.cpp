@@ -2,19 +2,36 @@
 
 #include "drivers/explain/explain_report.hpp"
 #include "drivers/explain/search_file.hpp"
+#include "drivers/explain/search_time_left.hpp"
 #include "drivers/numerical_failure.hpp"
+#include "drivers/output/status_line.hpp"
+#include "kernel/core/stopwatch.hpp"
 
 namespace traceraft {
+namespace {
+
+void tell(const ExplainRequest& request, const TimeLeft::Range& left) {
+  if (left.high > 0 && request.progress)
+    request.progress("  " + clock_text(left.low) + " to " + clock_text(left.high) +
+                     " left, depending on what is found");
+}
+
+}  // namespace
 
 Explanation search_resumably(const std::filesystem::path& folder, ExplainSetup& setup) {
   const SearchFile file(folder, setup);
   ExplainRequest& request = setup.request;
+  const SearchState from = numerically([&] { return file.load().value_or(SearchState{}); });
+  const Stopwatch watch;
+  SearchTimeLeft left(request.most_effects);
+  (void)left.note(from, 0);
   request.save = [&](const SearchState& state) {
     file.save(state);
+    if (state.refits.empty()) tell(request, left.note(state, watch.seconds()));
     if (state.next == SearchStep::confirm) write_explanation(folder, state.so_far, setup);
   };
-  const Explanation found = numerically(
-      [&] { return explain_fields(setup.series, request, file.load().value_or(SearchState{})); });
+  const Explanation found =
+      numerically([&] { return explain_fields(setup.series, request, from); });
   request.save = nullptr;
   write_explanation(folder, found, setup);
   return found;
