@@ -135,6 +135,8 @@ int compare(const CompareRequest& request) {
 
   // A folder that exists is locked before anything in it is believed.
   std::optional<FolderLock> lock;
+  if (!request.out.empty() && !ComparisonFolder(request.out).started())
+    refuse_before_lock(request.out);
   if (!request.out.empty() && fs::exists(request.out)) lock.emplace(request.out);
   const bool goes_on = !request.out.empty() && ComparisonFolder(request.out).started();
   if (!goes_on && !request.out.empty()) refuse_files_of_a_run(request.out);

@@ -61,6 +61,10 @@ void refuse_files_of_a_run(const fs::path& path) {
   refuse_foreign_folder(path, {});
 }
 
+void refuse_before_lock(const fs::path& path) {
+  if (fs::exists(path) && !fs::exists(path / kLockFile)) refuse_files_of_a_run(path);
+}
+
 void refuse_folder_of_others(const fs::path& path) {
   for (const char* others : {"dataset.toml", "measurements.csv", "truth.json", "search.json",
                              "series.json", "verdict.json", "calibration-model.toml",
@@ -120,6 +124,7 @@ RunFolder create_run_folder(const std::string& out, const Configuration& configu
   try {
     if (fs::exists(folder.path) && !fs::is_directory(folder.path))
       throw InputError("--out: " + folder.path.string() + " is a file");
+    refuse_before_lock(folder.path);
     fs::create_directories(folder.path);
     folder.lock = std::make_unique<FolderLock>(folder.path);
     refuse_files_of_a_run(folder.path);

@@ -295,6 +295,18 @@ TEST_F(ProgramTest, LeavesForeignFilesAlone) {
   EXPECT_TRUE(fs::exists(folder.path / "a/checkpoints-of-mine"));
 }
 
+TEST_F(ProgramTest, LeavesNothingInAFolderThatItRefuses) {
+  fs::create_directories(folder.path / "a");
+  write_durably(folder.path / "a/notes.txt", "mine");
+  for (const std::string& command :
+       {"run " + quick, "compare " + quick, std::string("ensemble --runs 3 "),
+        std::string("verify conservation "), std::string("hide --effects none ")}) {
+    EXPECT_EQ(traceraft(command + "--out " + out("a")).code, 2) << command;
+    for (const auto& entry : fs::directory_iterator(folder.path / "a"))
+      EXPECT_EQ(entry.path().filename(), "notes.txt") << command;
+  }
+}
+
 TEST_F(ProgramTest, AFullDiskIsAnInputOutputErrorAndKeepsTheOldCheckpoint) {
   // A limit on file sizes (in blocks of 512 bytes), reached by the growing table in mid-run.
   const ProgramEnd run = shell("ulimit -f 100; exec " + std::string(TRACERAFT_PROGRAM) +
