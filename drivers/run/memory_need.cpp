@@ -21,14 +21,18 @@ double physical_memory() {
 
 }  // namespace
 
-double least_memory(const LevelSet& surface, std::int64_t cells, int ranks) {
+double nodes_of_fine_mesh(const LevelSet& surface, std::int64_t cells) {
   if (cells < kFine) return 0;
   try {
     const double finer = static_cast<double>(cells) / static_cast<double>(kCoarse);
-    return kBytesPerNode * build_active_mesh(surface, kCoarse).nodes() * finer * finer / ranks;
+    return build_active_mesh(surface, kCoarse).nodes() * finer * finer;
   } catch (const InputError&) {
-    return 0;  // of the mesh itself it will be said
+    return 0;  // the mesh itself will be refused
   }
+}
+
+double least_memory(const LevelSet& surface, std::int64_t cells, int ranks) {
+  return kBytesPerNode * nodes_of_fine_mesh(surface, cells) / ranks;
 }
 
 std::string memory_complaint(std::int64_t cells, double need, double there_is) {

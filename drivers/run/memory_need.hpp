@@ -9,8 +9,12 @@
 
 namespace traceraft {
 
-// The least memory that the set-up of a run takes on each rank, in bytes, judged by the nodes of a
-// coarse mesh. It is 0 for meshes that fit anywhere, and where the coarse one cannot be made.
+// The number of nodes, judged by a coarse mesh. It is 0 for meshes that are made at once, and where
+// the coarse one cannot be made.
+double nodes_of_fine_mesh(const LevelSet& surface, std::int64_t cells);
+
+// The least memory that the set-up of a run takes on each rank, in bytes, or 0 where that number
+// is 0: such meshes fit anywhere.
 double least_memory(const LevelSet& surface, std::int64_t cells, int ranks);
 
 // A complaint about cells that need more bytes than there are; "" if they fit.

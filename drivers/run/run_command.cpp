@@ -7,6 +7,8 @@
 #include "drivers/config/config_file.hpp"
 #include "drivers/config/option_flags.hpp"
 #include "drivers/exit_codes.hpp"
+#include "drivers/run/memory_need.hpp"
+#include "drivers/run/physical_model.hpp"
 #include "drivers/run/progress.hpp"
 #include "drivers/run/run_outputs.hpp"
 #include "drivers/run/summary.hpp"
@@ -101,15 +103,34 @@ std::optional<Checkpoint> last_checkpoint(const RunFolder& folder,
   return checkpoint;
 }
 
+// A fine mesh takes its time before anything else is said.
+void announce_fine_mesh(const Configuration& configuration) {
+  const LevelSetPtr surface = surface_of(configuration);
+  const double nodes = nodes_of_fine_mesh(*surface, configuration.options().cells);
+  if (nodes == 0 || !world()->root()) return;
+  say("setting up a mesh of about %.2g million nodes\n", nodes / 1e6);
+  flush_output();
+}
+
+// Before anything is set up or said.
+void refuse_used_folder(const std::string& out) {
+  if (out.empty()) return;
+  (void)shared_folder(*world(), [&] {
+    refuse_before_lock(out);
+    return RunFolder{out, nullptr};
+  });
+}
+
 int run(const RunRequest& request) {
   const GivenValues file = read_config_file(request.config_file);
   const Configuration configuration(file, request.flags);
   end_on_stop_signals(kInterrupted, "");  // before there are threads
+  refuse_used_folder(request.out);
+  if (!request.quiet) announce_fine_mesh(configuration);
   RunSetup run = build_run(configuration, InitialState::build);
   const bool quiet = request.quiet || !run.ranks->root();
   if (!quiet) print_setup(configuration, run);
   if (request.validate) {
-    if (!request.out.empty()) refuse_files_of_a_run(request.out);
     if (!quiet) say("all settings are valid; nothing was run\n");
     return kSuccess;
   }

@@ -1,6 +1,7 @@
 #include "drivers/run/run_folder.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "backends/posix/durable_file.hpp"
 #include "backends/posix/own_files.hpp"
@@ -62,7 +63,10 @@ void refuse_files_of_a_run(const fs::path& path) {
 }
 
 void refuse_before_lock(const fs::path& path) {
-  if (fs::exists(path) && !fs::exists(path / kLockFile)) refuse_files_of_a_run(path);
+  if (!fs::is_directory(path)) return;
+  std::optional<FolderLock> lock;
+  if (fs::exists(path / kLockFile)) lock.emplace(path);
+  refuse_files_of_a_run(path);
 }
 
 void refuse_folder_of_others(const fs::path& path) {

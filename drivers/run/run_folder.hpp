@@ -36,7 +36,8 @@ void refuse_folder_of_others(const std::filesystem::path& path);
 
 // The same, and if it holds what a run writes.
 void refuse_files_of_a_run(const std::filesystem::path& path);
-// The same of a folder that nobody has locked so far: no lock file is left where it is refused.
+// The same, if it exists and before it is locked: no lock file is left where it is refused. Throws
+// LockedError, too.
 void refuse_before_lock(const std::filesystem::path& path);
 // Throws InputError: another process has begun something there between choice and lock.
 [[noreturn]] void refuse_begun(const std::filesystem::path& path);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "kernel/core/error.hpp"
+#include "kernel/mesh/active_mesh.hpp"
 
 namespace traceraft {
 namespace {
@@ -16,6 +17,9 @@ TEST(MemoryNeed, GrowsWithTheSurfaceAndTheSquareOfTheCells) {
   // 11.2 million nodes, of 2 to 5 kB each.
   EXPECT_GT(fine, 22e9);
   EXPECT_LT(fine, 56e9);
+  EXPECT_EQ(nodes_of_fine_mesh(*sphere, 256), 0);
+  const auto nodes = static_cast<double>(build_active_mesh(*sphere, 512).nodes());
+  EXPECT_NEAR(nodes_of_fine_mesh(*sphere, 512) / nodes, 1, 0.02);
   EXPECT_LT(least_memory(*make_surface("ellipsoid:a=0.3,b=0.3,c=0.3"), 2048, 1), 0.2 * fine);
 }
 
