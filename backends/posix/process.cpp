@@ -93,6 +93,8 @@ void watch_stop_signals() {
   static std::once_flag once;
   std::call_once(once, [] {
     install(on_stop);  // for threads that are older than this
+    // A write to a pipe that nobody reads fails instead, and the failure is a hang-up.
+    std::signal(SIGPIPE, SIG_IGN);
     const sigset_t set = stop_signals();
     pthread_sigmask(SIG_BLOCK, &set, nullptr);
     std::thread([set] {
@@ -145,8 +147,14 @@ void end_on_stop_signals(int exit_code, const std::string& line) {
 
 void default_stop_signals() {
   for (const int signal : kStopSignals) std::signal(signal, SIG_DFL);
+  std::signal(SIGPIPE, SIG_DFL);
   const sigset_t set = stop_signals();
   pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+}
+
+void hang_up() {
+  // To the process, so that the thread which waits for signals takes it.
+  (void)kill(getpid(), SIGHUP);
 }
 
 bool stop_requested() {

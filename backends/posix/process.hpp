@@ -29,6 +29,8 @@ void end_on_stop_signals(int exit_code, const std::string& line);
 // In a child, before it becomes another program: they do again what they do by default. Safe after
 // a fork.
 void default_stop_signals();
+// Nobody reads the output any longer: the same as the end of a terminal, SIGHUP.
+void hang_up();
 // Writing beyond a file size limit becomes an error of the write instead of a signal.
 void ignore_file_size_signal();
 // Standard input, output or error that are closed would be given to the next file that is opened,

@@ -4,6 +4,8 @@
 #include <cstring>
 #include <mutex>
 
+#include "backends/posix/process.hpp"
+
 namespace traceraft {
 namespace {
 
@@ -13,7 +15,9 @@ int first_error = 0;
 void note_error(bool failed) {
   if (!failed) return;
   const std::lock_guard lock(mutex);
-  if (first_error == 0) first_error = errno != 0 ? errno : EIO;
+  if (first_error != 0) return;
+  first_error = errno != 0 ? errno : EIO;
+  if (first_error == EPIPE) hang_up();
 }
 
 }  // namespace

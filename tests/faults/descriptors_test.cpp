@@ -115,6 +115,16 @@ TEST_F(SurroundingsTest, AHangUpThatIsIgnoredStaysIgnored) {
   EXPECT_EQ(WEXITSTATUS(status), 5);
 }
 
+// As in `traceraft run | head`.
+TEST_F(SurroundingsTest, AnOutputThatNobodyReadsIsARequestToStop) {
+  const std::string code = out + ".code";
+  (void)shell("(" + std::string(TRACERAFT_PROGRAM) + " run --scaled --cells 16 --epsilon 0.3 " +
+              "--t-end 1e9 --max-step 1 --out '" + out + "'; echo $? > '" + code + "') | head -n 3");
+  EXPECT_EQ(content(code), "5\n");
+  EXPECT_EQ(nlohmann::json::parse(content(out + "/summary.json")).at("end"), "stopped");
+  EXPECT_FALSE(fs::is_empty(out + "/checkpoints"));
+}
+
 TEST_F(SurroundingsTest, MessagesAreShortLines) {
   const std::string longest(100000, 'a');
   for (const std::string& arguments :
