@@ -31,7 +31,7 @@ namespace {
 template <class Members>
 void describe(Members& members, StoredPlan& stored) {
   CampaignPlan& plan = stored.plan;
-  members("groups", plan.groups, OneOf{"group", campaign_groups().names()});
+  members("groups", plan.groups, Distinct{OneOf{"group", campaign_groups().names()}});
   members("cases", plan.cases, WithinRange{1, kMostCases});
   members("seed", plan.seed, WithinRange{0, kLargestSeed});
   members("points", plan.points, WithinRange{kFewestPoints, kMostPoints});

@@ -32,10 +32,11 @@ double relative_error(const DaeProblem& problem, const Vec& c, ConstVec referenc
 
 template <class Members>
 void describe(Members& members, ComparePlan& plan) {
-  members("integrators", plan.integrators, OneOf{"integrator", integrators().names()});
-  members("linear_solvers", plan.linear_solvers, OneOf{"linear solver", linear_solvers().names()});
-  members("tolerances", plan.tolerances, WithinRange{kLeastTolerance, kLargestTolerance});
-  members("ranks", plan.ranks, WithinRange{1, kMostRanks});
+  members("integrators", plan.integrators, Distinct{OneOf{"integrator", integrators().names()}});
+  members("linear_solvers", plan.linear_solvers,
+          Distinct{OneOf{"linear solver", linear_solvers().names()}});
+  members("tolerances", plan.tolerances, Distinct{WithinRange{kLeastTolerance, kLargestTolerance}});
+  members("ranks", plan.ranks, Distinct{WithinRange{1, kMostRanks}});
   members("repeat", plan.repeat, WithinRange{1, kMostRepetitions});
   members("reference_tolerance", plan.reference_tolerance, WithinRange{0, kLargestTolerance});
   members("time_limit", plan.time_limit, WithinRange{0, kAnyNumber});

@@ -160,6 +160,8 @@ void Configuration::set(const OptionSpec& spec, const GivenValue& value) {
       break;
     case OptionKind::numbers:
       for (const std::string& item : split_list(value.text)) {
+        if (item.empty())
+          throw InputError(value.where + ": a number is missing between two commas, or at an end");
         if (item.find_first_of(" ;\t") != std::string::npos)
           throw InputError(value.where + ": '" + item.substr(0, 60) +
                            "' is not a number; separate numbers by commas");

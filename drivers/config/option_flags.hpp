@@ -2,10 +2,14 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "drivers/config/configuration.hpp"
 
 namespace traceraft {
+
+// Between the lists of a flag that is given more than once; no argument contains it.
+inline constexpr char kBetweenFlags = '\n';
 
 // Adds every option that `wanted` accepts as a flag whose text goes to `values`, which has to live
 // as long as the command. The help shows what a run has without flags: the values of the default
@@ -17,8 +21,9 @@ void add_options(CLI::App& command, GivenValues& values, const Wanted& wanted,
   for (const OptionSpec& spec : run_options()) {
     if (!wanted(spec)) continue;
     const std::string flag = "--" + spec.name;
-    const auto store = [&values, name = spec.name, flag](const std::string& text) {
-      values[name] = {text, flag};
+    const auto store = [&values, name = spec.name, flag](std::string text) {
+      std::replace(text.begin(), text.end(), kBetweenFlags, ',');
+      values[name] = {std::move(text), flag};
     };
     CLI::Option* option =
         spec.kind == OptionKind::flag
@@ -29,7 +34,8 @@ void add_options(CLI::App& command, GivenValues& values, const Wanted& wanted,
     option->group(spec.group);
     if (!spec.placeholder.empty()) option->type_name(spec.placeholder);
     if (spec.list) option->join(';');
-    if (spec.kind == OptionKind::numbers) option->join(',');
+    // Joined by commas, CLI11 would split lists at commas as well, and drop empty items.
+    if (spec.kind == OptionKind::numbers) option->join(kBetweenFlags);
     if (const std::string text = defaults.text(spec.name);
         !text.empty() && spec.kind != OptionKind::flag)
       option->default_str(text)->run_callback_for_default(false);

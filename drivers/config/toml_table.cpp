@@ -29,10 +29,13 @@ std::string read_text(const std::filesystem::path& path, const std::string& cont
   return text;
 }
 
-std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char ch) { return static_cast<unsigned char>(ch) < 32; }, ' ');
-  return text.substr(0, 200);
+// The parser's complaint, as in "Error while parsing key: expected ...", without its first part.
+std::string without_stage(const std::string& complaint) {
+  const std::string stage = "Error while parsing ";
+  const std::size_t colon = complaint.find(": ");
+  const bool has_stage = complaint.compare(0, stage.size(), stage) == 0;
+  return (has_stage && colon != std::string::npos ? complaint.substr(colon + 2) : complaint)
+      .substr(0, 200);
 }
 
 // The same number as a double, or a complaint.
@@ -73,7 +76,7 @@ TomlTable TomlTable::read(const std::filesystem::path& path, const std::vector<s
     parsed = toml::parse(text, path.string());
   } catch (const toml::parse_error& error) {
     throw InputError(path.string() + ":" + std::to_string(error.source().begin.line) + ": " +
-                     one_line(std::string(error.description())));
+                     "this is no TOML: " + without_stage(std::string(error.description())));
   }
   TomlTable table;
   table.path_ = path;

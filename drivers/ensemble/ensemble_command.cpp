@@ -151,6 +151,16 @@ void write_array_job(const EnsembleRequest& request, const EnsembleFolder& folde
   say("submit it with: sbatch %s\n", in_shell(script.string()));
 }
 
+// A script holds paths from the root, which no argument names.
+void refuse_unwritable_path(const EnsembleFolder& folder) {
+  const std::string path = fs::absolute(folder.path()).string();
+  if (in_comment(path) != path)
+    throw InputError(
+        "--array-job: the path of the folder contains a control character, such as a "
+        "line break, that no shell script can hold: " +
+        path);
+}
+
 int run_ensemble(const EnsembleRequest& request) {
   catch_stop_signals();
   const GivenValues file = read_config_file(request.config_file);
@@ -172,6 +182,7 @@ int run_ensemble(const EnsembleRequest& request) {
   const EnsembleFolder folder(
       request.out.empty() ? first_free_folder("ensemble-" + configuration.options().case_name)
                           : request.out);
+  if (request.array_job) refuse_unwritable_path(folder);
   const EnsemblePlan plan = plan_of(request, folder);
   std::optional<RunSetup> run;
   if (!goes_on) run = build_run(configuration, InitialState::build);  // or refuses it

@@ -18,8 +18,12 @@ auto from_json(const std::filesystem::path& path, const Use& use,
                std::uint64_t max_bytes = 1 << 24) {
   try {
     return use(Json::parse(read_file(path, max_bytes)));
-  } catch (const nlohmann::json::exception& error) {
-    throw DamagedFile(path.string() + " is damaged: " + error.what());
+  } catch (const nlohmann::json::parse_error& error) {
+    throw DamagedFile(path.string() + " is damaged: it is no JSON from byte " +
+                      std::to_string(error.byte) + " on");
+  } catch (const nlohmann::json::exception&) {
+    throw DamagedFile(path.string() +
+                      " is damaged: something that it should hold is missing or of another kind");
   }
 }
 

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -33,6 +34,13 @@ struct OneOf {
   std::string kind;  // "integrator"
   std::vector<std::string> names;
 };
+// Of a list: at least one, none twice, and each as `item` says.
+template <class Check>
+struct Distinct {
+  Check item;
+};
+template <class Check>
+Distinct(Check) -> Distinct<Check>;
 struct AnyText {};
 struct AnyFlag {};
 struct AsDescribed {};  // an object
@@ -168,14 +176,22 @@ class JsonReader {
   }
   template <class T, class Check>
   void later(const char* name, T& member, const Check& check) {
+    names_.push_back(name);
     if (json_.contains(name)) (*this)(name, member, check);
+  }
+  // After all members: refuses what none of them is.
+  void refuse_others() const {
+    for (const auto& [name, value] : json_.items())
+      if (std::find(names_.begin(), names_.end(), name) == names_.end())
+        throw DamagedFile(where_ + " is damaged: " + unknown_name_message("member", name, names_));
   }
 
  private:
   [[noreturn]] static void refuse(const std::string& where, const char* needed) {
     throw DamagedFile(where + " is damaged: it is no " + needed);
   }
-  const Json& at(const char* name) const {
+  const Json& at(const char* name) {
+    names_.push_back(name);
     const auto found = json_.find(name);
     if (found == json_.end()) throw DamagedFile(where_ + " is damaged: there is no " + name);
     return *found;
@@ -188,6 +204,16 @@ class JsonReader {
     list.resize(json.size());
     for (std::size_t k = 0; k < list.size(); ++k)
       read(json[k], where + "[" + std::to_string(k) + "]", list[k], check);
+  }
+  template <class T, class Check>
+  static void read(const Json& json, const std::string& where, std::vector<T>& list,
+                   const Distinct<Check>& check) {
+    read(json, where, list, check.item);
+    if (list.empty()) refuse(where, "list of at least one");
+    for (std::size_t k = 1; k < list.size(); ++k)
+      if (std::find(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(k), list[k]) !=
+          list.begin() + static_cast<std::ptrdiff_t>(k))
+        throw DamagedFile(where + " is damaged: [" + std::to_string(k) + "] repeats another");
   }
   template <class T, class Check>
   static void read(const Json& json, const std::string& where, std::map<std::string, T>& map,
@@ -244,6 +270,7 @@ class JsonReader {
                    !std::is_same_v<T, std::string>)) {
       JsonReader reader(json, where);
       describe(reader, value);
+      reader.refuse_others();
     } else if constexpr (std::is_same_v<T, bool>) {
       if (!json.is_boolean()) refuse(where, "true or false");
       value = json.get<bool>();
@@ -284,6 +311,7 @@ class JsonReader {
 
   const Json& json_;
   std::string where_;
+  std::vector<std::string> names_;  // of the members
 };
 
 template <class T>
@@ -293,12 +321,13 @@ Json object_of(const T& value) {
 }
 
 // Throws IoError if the file cannot be read, DamagedFile unless it holds all members, each of its
-// kind, InputError for a value that is out of range and for a name that is unknown.
+// kind, and no others, InputError for a value that is out of range and for a name that is unknown.
 template <class T>
 T read_object(const std::filesystem::path& file, T value = {}) {
   return from_json(file, [&](const Json& json) {
     JsonReader reader(json, file.string());
     describe(reader, value);
+    reader.refuse_others();
     return value;
   });
 }

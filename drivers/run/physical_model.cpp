@@ -1,5 +1,8 @@
 #include "drivers/run/physical_model.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "backends/list.hpp"
 #include "backends/muparser/formula.hpp"
 #include "drivers/run/checked_options.hpp"
@@ -18,6 +21,22 @@ DoubleWell double_well(const Configuration& configuration) {
   });
 }
 
+namespace {
+
+// Squares of values beyond 1e±150 leave the range of numbers. A factor moves no surface.
+std::function<double(const Point&)> of_usual_size(std::function<double(const Point&)> phi) {
+  constexpr double kUsual = 1e100;
+  double largest = 0;
+  for (const Point& x : {Point(0, 0, 0), Point(1.5, 0, 0), Point(0, 1.5, 0), Point(0, 0, 1.5),
+                         Point(1.5, 1.5, 1.5), Point(-1, -1.5, 0.5)})
+    if (const double value = std::fabs(phi(x)); std::isfinite(value))
+      largest = std::max(largest, value);
+  if (largest == 0 || (largest < kUsual && largest > 1 / kUsual)) return phi;
+  return [phi = std::move(phi), largest](const Point& x) { return phi(x) / largest; };
+}
+
+}  // namespace
+
 LevelSetPtr surface_of(const Configuration& configuration) {
   const std::string formula = configuration.options().surface_formula;
   if (configuration.options().surface == "formula") {
@@ -26,7 +45,7 @@ LevelSetPtr surface_of(const Configuration& configuration) {
                        ": formula needs --surface-formula, as in "
                        "--surface-formula \"x^2+y^2+2*z^2-1\"");
     return std::make_shared<FunctionLevelSet>(
-        parse_formula(configuration.where(&RunOptions::surface_formula), formula));
+        of_usual_size(parse_formula(configuration.where(&RunOptions::surface_formula), formula)));
   }
   if (!formula.empty())
     throw InputError(configuration.where(&RunOptions::surface_formula) +

@@ -35,10 +35,8 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 
 std::string unknown_name_message(std::string_view kind, std::string_view name,
                                  const std::vector<std::string>& valid) {
-  // A name can come from a file: keep the message to one readable line.
-  std::string shown(name.substr(0, 60));
-  for (char& ch : shown)
-    if (static_cast<unsigned char>(ch) < 32) ch = '?';
+  // A name can come from a file: keep the message readable.
+  const std::string shown(name.substr(0, 60));
   std::string message = "unknown " + std::string(kind) + " '" + shown + "'";
   // What shares little with a name is no slip of the pen; the dashes of flags are no letters.
   const std::size_t letters = shown.size() - std::min(shown.size(), shown.find_first_not_of('-'));

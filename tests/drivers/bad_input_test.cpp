@@ -73,8 +73,10 @@ INSTANTIATE_TEST_SUITE_P(
         // A shell script leaves this where a variable is not set.
         Refusal{"run --config ''", "--config: "}, Refusal{"run --out ''", "--out: "},
         Refusal{"run --linear-solver teko --teko-parameters ''", "--teko-parameters: "},
-        Refusal{"run --output-times ''", "--output-times: "}, Refusal{"resume ''", "folder: "},
-        Refusal{"report ''", "folder: "}, Refusal{"data check ''", "folder: "},
+        Refusal{"run --output-times ''", "--output-times: "},
+        Refusal{"run --output-times 0.1,,0.2", "--output-times: "},
+        Refusal{"resume ''", "folder: "}, Refusal{"report ''", "folder: "},
+        Refusal{"data check ''", "folder: "},
         Refusal{"data compare . --ensemble ''", "--ensemble: "},
         Refusal{"verify mass --document ''", "--document: "},
         Refusal{"compare --references ''", "--references: "},

@@ -187,6 +187,21 @@ TEST(ConfigFile, SurvivesRandomDamage) {
   EXPECT_GT(refused, 500);
 }
 
+// A factor moves no surface, even one whose square is no number: by rounding of differences alone.
+TEST(RunSetup, TakesALevelSetOfAnySize) {
+  const auto area = [](const std::string& formula) {
+    return build_run(Configuration({}, flags({{"cells", "16"},
+                                              {"epsilon", "0.8"},
+                                              {"surface", "formula"},
+                                              {"surface-formula", formula}})),
+                     InitialState::build)
+        .space->area;
+  };
+  const double usual = area("x^2+y^2+z^2-1");
+  EXPECT_NEAR(area("1e300*(x^2+y^2+z^2-1)"), usual, 1e-9);
+  EXPECT_NEAR(area("1e-200*(x^2+y^2+z^2-1)"), usual, 1e-9);
+}
+
 TEST(RunSetup, ChecksEverythingBeforeAnythingRuns) {
   const auto of = [](std::initializer_list<std::pair<std::string, std::string>> values) {
     GivenValues given = flags(values);

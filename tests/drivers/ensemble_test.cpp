@@ -253,6 +253,12 @@ TEST_F(EnsembleTest, IsAnArrayJobOfFewTasks) {
   }
   ASSERT_EQ(traceraft("ensemble --quiet --out " + out("there")).code, 0);
   EXPECT_EQ(content(csv("there")), content(csv("here")));
+  // The folder that it is started from has a line break in its name.
+  const ProgramEnd broken = shell("mkdir '" + out("a\nb") + "' && cd '" + out("a\nb") +
+                                  "' && exec " + std::string(TRACERAFT_PROGRAM) + " ensemble " +
+                                  runs + "--runs 2 --array-job --out here");
+  EXPECT_TRUE(refuses(broken, "--array-job")) << broken.output;
+  EXPECT_FALSE(fs::exists(folder.path / "a\nb/here"));
   for (const char* flag : {"--array-tasks 5", "--array-throttle 5", "--members 2"}) {
     const ProgramEnd alone = traceraft("ensemble --case guv-2to1 " + std::string(flag));
     EXPECT_EQ(alone.code, 2) << flag;

@@ -161,6 +161,14 @@ TEST_F(TamperedFilesTest, PlansDeleteNothing) {
   (void)complaint("tolerances", {7}, 2);
   (void)complaint("ranks", {-1}, 2);
   (void)complaint("ranks", "1", 4);
+  (void)complaint("integrators", nlohmann::ordered_json::array(), 4);
+  (void)complaint("tolerances", {0.01, 0.01}, 4);
+  (void)complaint("repeet", 1, 4);
+  EXPECT_NE(complaint("integrators", {"i\x1b[2J"}, 2).find("\\x1b"), std::string::npos);
+  write_durably(at("c/plan.json"), "{\"integrators\": [");
+  const ProgramEnd torn = traceraft(compare);
+  EXPECT_EQ(torn.code, 4);
+  EXPECT_EQ(torn.output.find("json.exception"), std::string::npos) << torn.output;
   EXPECT_EQ(content(at("victim/mine")), "of somebody");
   // A file of somebody in the folder of a run that was interrupted.
   write_durably(at("c/plan.json"), good.dump());
