@@ -6,7 +6,7 @@
 #include <mutex>
 
 #include "tests/support/forwarding.hpp"
-#include "verification/measure/bench.hpp"
+#include "verification/bench/bench.hpp"
 #include "verification/studies/studies.hpp"
 
 namespace traceraft {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "verification/measure/bench.hpp"
+#include "verification/bench/bench.hpp"
 #include "verification/studies/studies.hpp"
 
 namespace traceraft {

@@ -6,7 +6,7 @@
 #include "drivers/calibrate/calibration_points.hpp"
 #include "drivers/input/json_file.hpp"
 #include "kernel/core/text.hpp"
-#include "verification/vesicles/differences.hpp"
+#include "verification/observations/differences.hpp"
 
 namespace traceraft {
 namespace {

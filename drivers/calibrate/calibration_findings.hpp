@@ -7,7 +7,7 @@
 
 #include "drivers/config/configuration.hpp"
 #include "verification/calibration/calibration.hpp"
-#include "verification/vesicles/comparison.hpp"
+#include "verification/observations/comparison.hpp"
 
 namespace traceraft {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "drivers/calibrate/calibration_points.hpp"
-#include "drivers/vesicles/agreement_report.hpp"
+#include "drivers/data/agreement_report.hpp"
 #include "kernel/core/text.hpp"
 #include "verification/calibration/calibration_data.hpp"
-#include "verification/vesicles/differences.hpp"
+#include "verification/observations/differences.hpp"
 
 namespace traceraft {
 namespace {

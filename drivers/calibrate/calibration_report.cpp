@@ -5,13 +5,13 @@
 #include "backends/posix/durable_file.hpp"
 #include "drivers/calibrate/calibration_notes.hpp"
 #include "drivers/config/config_file.hpp"
+#include "drivers/data/agreement_report.hpp"
+#include "drivers/data/measured_report.hpp"
 #include "drivers/output/chart.hpp"
 #include "drivers/output/page.hpp"
 #include "drivers/output/provenance.hpp"
 #include "drivers/output/text_table.hpp"
 #include "drivers/text/say.hpp"
-#include "drivers/vesicles/agreement_report.hpp"
-#include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/text.hpp"
 
 namespace traceraft {

@@ -13,7 +13,7 @@
 #include "drivers/text/say.hpp"
 #include "kernel/core/random.hpp"
 #include "kernel/core/stopwatch.hpp"
-#include "verification/explain/search/rerun.hpp"
+#include "verification/selection/search/rerun.hpp"
 #include "verification/statistics/random_streams.hpp"
 
 namespace traceraft {

@@ -4,7 +4,7 @@
 
 #include "kernel/core/random.hpp"
 #include "kernel/effects/effects.hpp"
-#include "verification/explain/blind/effect_size.hpp"
+#include "verification/selection/blind/effect_size.hpp"
 #include "verification/statistics/random_streams.hpp"
 
 namespace traceraft {

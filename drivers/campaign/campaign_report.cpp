@@ -11,7 +11,7 @@
 #include "drivers/text/encoders.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/text.hpp"
-#include "verification/explain/fit/refit.hpp"
+#include "verification/selection/fit/refit.hpp"
 #include "verification/statistics/sample.hpp"
 
 namespace traceraft {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "drivers/campaign/campaign_case.hpp"
-#include "verification/measure/figures.hpp"
+#include "verification/bench/figures.hpp"
 
 namespace traceraft {
 

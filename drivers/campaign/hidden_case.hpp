@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "drivers/config/configuration.hpp"
-#include "verification/explain/blind/blind_case.hpp"
+#include "verification/selection/blind/blind_case.hpp"
 
 namespace traceraft {
 

@@ -17,8 +17,8 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/random.hpp"
-#include "verification/explain/blind/effect_size.hpp"
-#include "verification/explain/forecast/candidates.hpp"
+#include "verification/assimilation/forecast/candidates.hpp"
+#include "verification/selection/blind/effect_size.hpp"
 #include "verification/statistics/random_streams.hpp"
 
 namespace traceraft {

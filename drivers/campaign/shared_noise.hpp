@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "verification/explain/blind/blind_request.hpp"
+#include "verification/selection/blind/blind_request.hpp"
 
 namespace traceraft {
 

@@ -8,7 +8,7 @@
 
 #include "drivers/compare/compare_plan.hpp"
 #include "kernel/problem/dae_problem.hpp"
-#include "verification/measure/work_precision.hpp"
+#include "verification/bench/work_precision.hpp"
 
 namespace traceraft {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "verification/vesicles/history.hpp"
+#include "verification/observations/history.hpp"
 
 namespace traceraft {
 

@@ -8,9 +8,9 @@
 #include "drivers/ensemble/ensemble_runs.hpp"
 #include "drivers/output/page.hpp"
 #include "drivers/output/text_table.hpp"
-#include "verification/measure/figures.hpp"
+#include "verification/bench/figures.hpp"
+#include "verification/observations/history.hpp"
 #include "verification/statistics/sample.hpp"
-#include "verification/vesicles/history.hpp"
 
 namespace traceraft {
 

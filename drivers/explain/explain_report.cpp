@@ -9,7 +9,7 @@
 #include "drivers/output/text_table.hpp"
 #include "drivers/text/say.hpp"
 #include "kernel/core/text.hpp"
-#include "verification/measure/figures.hpp"
+#include "verification/bench/figures.hpp"
 
 namespace traceraft {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "drivers/config/configuration.hpp"
-#include "verification/explain/search/explanation.hpp"
+#include "verification/selection/search/explanation.hpp"
 
 namespace traceraft {
 

@@ -6,7 +6,7 @@
 
 #include "drivers/explain/explain_run.hpp"
 #include "drivers/input/json_file.hpp"
-#include "verification/explain/search/search_state.hpp"
+#include "verification/selection/search/search_state.hpp"
 
 namespace traceraft {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "drivers/output/time_left.hpp"
-#include "verification/explain/search/search_state.hpp"
+#include "verification/selection/search/search_state.hpp"
 
 namespace traceraft {
 

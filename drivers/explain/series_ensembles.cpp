@@ -18,8 +18,8 @@
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
 #include "kernel/effects/effects.hpp"
-#include "verification/explain/blind/effect_size.hpp"
-#include "verification/explain/forecast/candidates.hpp"
+#include "verification/assimilation/forecast/candidates.hpp"
+#include "verification/selection/blind/effect_size.hpp"
 
 namespace traceraft {
 namespace {

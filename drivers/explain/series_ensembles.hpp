@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "drivers/config/configuration.hpp"
-#include "verification/series/series_explanation.hpp"
+#include "verification/selection/series/series_explanation.hpp"
 
 namespace traceraft {
 

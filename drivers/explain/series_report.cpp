@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 
+#include "drivers/data/agreement_report.hpp"
+#include "drivers/data/measured_report.hpp"
 #include "drivers/explain/series_verdict.hpp"
 #include "drivers/explain/verdict_sentence.hpp"
 #include "drivers/output/chart.hpp"
@@ -11,13 +13,11 @@
 #include "drivers/output/program.hpp"
 #include "drivers/output/text_table.hpp"
 #include "drivers/text/say.hpp"
-#include "drivers/vesicles/agreement_report.hpp"
-#include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/text.hpp"
-#include "verification/series/series_need.hpp"
+#include "verification/observations/differences.hpp"
+#include "verification/selection/series/series_need.hpp"
 #include "verification/statistics/power_law.hpp"
 #include "verification/statistics/sample.hpp"
-#include "verification/vesicles/differences.hpp"
 
 namespace traceraft {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "drivers/explain/series_ensembles.hpp"
 #include "drivers/explain/verdict.hpp"
-#include "verification/vesicles/perimeter_law.hpp"
+#include "verification/observations/perimeter_law.hpp"
 
 namespace traceraft {
 

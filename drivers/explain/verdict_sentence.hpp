@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "verification/explain/search/explanation.hpp"
+#include "verification/selection/search/explanation.hpp"
 
 namespace traceraft {
 

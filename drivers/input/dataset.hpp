@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "verification/vesicles/measurements.hpp"
+#include "verification/observations/measurements.hpp"
 
 namespace traceraft {
 

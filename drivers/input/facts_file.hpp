@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "verification/vesicles/published.hpp"
+#include "verification/observations/published.hpp"
 
 namespace traceraft {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "drivers/input/measured_folder.hpp"
-#include "verification/explain/fields/field_series.hpp"
+#include "verification/assimilation/fields/field_series.hpp"
 
 namespace traceraft {
 

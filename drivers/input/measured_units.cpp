@@ -5,7 +5,7 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/named_list.hpp"
 #include "kernel/core/parameters.hpp"
-#include "verification/vesicles/raft_fraction.hpp"
+#include "verification/observations/raft_fraction.hpp"
 
 namespace traceraft {
 namespace {

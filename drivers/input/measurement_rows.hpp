@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "drivers/input/csv_table.hpp"
-#include "verification/vesicles/measurements.hpp"
+#include "verification/observations/measurements.hpp"
 
 namespace traceraft {
 

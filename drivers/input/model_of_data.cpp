@@ -4,7 +4,7 @@
 
 #include "drivers/config/cases.hpp"
 #include "kernel/core/error.hpp"
-#include "verification/vesicles/raft_fraction.hpp"
+#include "verification/observations/raft_fraction.hpp"
 
 namespace traceraft {
 

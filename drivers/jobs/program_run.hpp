@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "verification/measure/bench.hpp"
+#include "verification/bench/bench.hpp"
 
 namespace traceraft {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "drivers/output/page.hpp"
-#include "verification/measure/figures.hpp"
+#include "verification/bench/figures.hpp"
 
 namespace traceraft {
 

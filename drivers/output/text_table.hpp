@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "verification/measure/figures.hpp"
+#include "verification/bench/figures.hpp"
 
 namespace traceraft {
 

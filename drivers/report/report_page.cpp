@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "drivers/config/config_file.hpp"
+#include "drivers/data/measured_report.hpp"
 #include "drivers/ensemble/ensemble_report.hpp"
 #include "drivers/ensemble/histories_file.hpp"
 #include "drivers/input/csv_table.hpp"
@@ -18,7 +19,6 @@
 #include "drivers/run/physical_model.hpp"
 #include "drivers/run/run_numbers.hpp"
 #include "drivers/text/unit_names.hpp"
-#include "drivers/vesicles/measured_report.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/text.hpp"
 

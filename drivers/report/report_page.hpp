@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "drivers/report/surface_frames.hpp"
-#include "verification/vesicles/measurements.hpp"
+#include "verification/observations/measurements.hpp"
 
 namespace traceraft {
 

@@ -20,7 +20,7 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/stopwatch.hpp"
 #include "kernel/core/text.hpp"
-#include "verification/measure/bench.hpp"
+#include "verification/bench/bench.hpp"
 #include "verification/studies/studies.hpp"
 
 namespace traceraft {

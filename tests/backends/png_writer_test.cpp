@@ -1,10 +1,9 @@
-#include "backends/png/png_file.hpp"
-
 #include <gtest/gtest.h>
 #include <png.h>
 
 #include <numeric>
 
+#include "backends/png/png_file.hpp"
 #include "tests/support/spaces.hpp"
 
 namespace traceraft {

@@ -1,5 +1,5 @@
 // A calibration as a user meets it: from files to files, interrupted, refused. What it finds is
-// tested in tests/vesicles/calibration_test.cpp.
+// tested in tests/observations/calibration_test.cpp.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>

@@ -8,8 +8,8 @@
 #include "kernel/physics/units.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "verification/explain/blind/blind_case.hpp"
-#include "verification/measure/bench.hpp"
+#include "verification/bench/bench.hpp"
+#include "verification/selection/blind/blind_case.hpp"
 
 namespace traceraft {
 namespace {

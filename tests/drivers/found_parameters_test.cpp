@@ -11,7 +11,7 @@
 #include "drivers/explain/verdict_sentence.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/text.hpp"
-#include "verification/explain/forecast/candidates.hpp"
+#include "verification/assimilation/forecast/candidates.hpp"
 
 namespace traceraft {
 namespace {

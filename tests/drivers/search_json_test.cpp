@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "verification/measure/bench.hpp"
+#include "verification/bench/bench.hpp"
 
 namespace traceraft {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "verification/explain/forecast/candidates.hpp"
+#include "verification/assimilation/forecast/candidates.hpp"
 
 namespace traceraft {
 namespace {

@@ -8,7 +8,7 @@
 #include "drivers/config/config_file.hpp"
 #include "drivers/run/physical_model.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "verification/explain/forecast/candidates.hpp"
+#include "verification/assimilation/forecast/candidates.hpp"
 
 namespace traceraft {
 namespace {

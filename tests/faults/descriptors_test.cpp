@@ -119,7 +119,8 @@ TEST_F(SurroundingsTest, AHangUpThatIsIgnoredStaysIgnored) {
 TEST_F(SurroundingsTest, AnOutputThatNobodyReadsIsARequestToStop) {
   const std::string code = out + ".code";
   (void)shell("(" + std::string(TRACERAFT_PROGRAM) + " run --scaled --cells 16 --epsilon 0.3 " +
-              "--t-end 1e9 --max-step 1 --out '" + out + "'; echo $? > '" + code + "') | head -n 3");
+              "--t-end 1e9 --max-step 1 --out '" + out + "'; echo $? > '" + code +
+              "') | head -n 3");
   EXPECT_EQ(content(code), "5\n");
   EXPECT_EQ(nlohmann::json::parse(content(out + "/summary.json")).at("end"), "stopped");
   EXPECT_FALSE(fs::is_empty(out + "/checkpoints"));

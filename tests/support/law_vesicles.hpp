@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kernel/core/random.hpp"
-#include "verification/series/series_explanation.hpp"
+#include "verification/selection/series/series_explanation.hpp"
 
 namespace traceraft::law_vesicles {
 

@@ -1,7 +1,7 @@
 // Published facts of the membrane 3:1.
 #pragma once
 
-#include "verification/vesicles/published.hpp"
+#include "verification/observations/published.hpp"
 
 namespace traceraft::testing {
 

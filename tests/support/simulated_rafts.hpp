@@ -10,7 +10,7 @@
 #include "verification/calibration/calibration.hpp"
 #include "verification/calibration/joint_fit.hpp"
 #include "verification/calibration/local_regression.hpp"
-#include "verification/vesicles/published.hpp"
+#include "verification/observations/published.hpp"
 
 namespace traceraft::simulated_rafts {
 

@@ -1,8 +1,8 @@
 // A blind case that takes seconds: a small vesicle, measured with little noise.
 #pragma once
 
-#include "verification/explain/blind/blind_case.hpp"
-#include "verification/measure/bench.hpp"
+#include "verification/bench/bench.hpp"
+#include "verification/selection/blind/blind_case.hpp"
 
 namespace traceraft::testing {
 

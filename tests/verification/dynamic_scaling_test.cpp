@@ -1,4 +1,4 @@
-#include "verification/measure/dynamic_scaling.hpp"
+#include "verification/bench/dynamic_scaling.hpp"
 
 #include <gtest/gtest.h>
 

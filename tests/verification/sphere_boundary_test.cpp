@@ -1,4 +1,4 @@
-#include "verification/measure/sphere_boundary.hpp"
+#include "verification/analytic/sphere_boundary.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "verification/measure/spherical_spectrum.hpp"
+#include "verification/bench/spherical_spectrum.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "verification/measure/surface_calculus.hpp"
+#include "verification/analytic/surface_calculus.hpp"
 
 #include <gtest/gtest.h>
 
-#include "verification/measure/manufactured.hpp"
+#include "verification/analytic/manufactured.hpp"
 
 namespace traceraft {
 namespace {

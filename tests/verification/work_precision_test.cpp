@@ -1,4 +1,4 @@
-#include "verification/measure/work_precision.hpp"
+#include "verification/bench/work_precision.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "verification/vesicles/measurements.hpp"
+#include "verification/observations/measurements.hpp"
 
 namespace traceraft {
 

@@ -9,8 +9,8 @@
 
 #include "kernel/core/types.hpp"
 #include "verification/likelihood/run_curves.hpp"
-#include "verification/vesicles/measurements.hpp"
-#include "verification/vesicles/stated_errors.hpp"
+#include "verification/observations/measurements.hpp"
+#include "verification/observations/stated_errors.hpp"
 
 namespace traceraft {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kernel/core/types.hpp"
-#include "verification/vesicles/history.hpp"
+#include "verification/observations/history.hpp"
 
 namespace traceraft {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "kernel/core/text.hpp"
-#include "verification/measure/dynamic_scaling.hpp"
-#include "verification/measure/spherical_spectrum.hpp"
+#include "verification/bench/dynamic_scaling.hpp"
+#include "verification/bench/spherical_spectrum.hpp"
 #include "verification/studies/coarsening_laws.hpp"
 #include "verification/studies/studies.hpp"
 

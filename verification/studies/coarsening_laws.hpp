@@ -1,7 +1,7 @@
 // Power laws of coarsening: where they are looked for, what is found, and how it is drawn.
 #pragma once
 
-#include "verification/measure/ensemble.hpp"
+#include "verification/bench/ensemble.hpp"
 #include "verification/studies/study.hpp"
 
 namespace traceraft {

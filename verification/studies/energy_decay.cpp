@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "backends/list.hpp"
-#include "verification/measure/bench.hpp"
+#include "verification/bench/bench.hpp"
 #include "verification/statistics/power_law.hpp"
 #include "verification/statistics/sample.hpp"
 #include "verification/studies/studies.hpp"

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "kernel/core/parameters.hpp"
-#include "verification/measure/bench.hpp"
+#include "verification/bench/bench.hpp"
 #include "verification/statistics/power_law.hpp"
 #include "verification/statistics/sample.hpp"
 #include "verification/studies/studies.hpp"

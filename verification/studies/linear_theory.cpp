@@ -7,7 +7,7 @@
 
 #include "kernel/core/text.hpp"
 #include "kernel/fem/sparse_view.hpp"
-#include "verification/measure/bench.hpp"
+#include "verification/bench/bench.hpp"
 #include "verification/statistics/power_law.hpp"
 #include "verification/studies/studies.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
-#include "verification/measure/bench.hpp"
+#include "verification/bench/bench.hpp"
 #include "verification/statistics/sample.hpp"
 #include "verification/studies/studies.hpp"
 

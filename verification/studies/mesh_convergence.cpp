@@ -1,5 +1,5 @@
 // Orders of convergence in the mesh size h: stationary problem and full time-dependent system.
-#include "verification/measure/manufactured.hpp"
+#include "verification/analytic/manufactured.hpp"
 #include "verification/statistics/power_law.hpp"
 #include "verification/studies/studies.hpp"
 

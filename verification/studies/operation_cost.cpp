@@ -4,7 +4,7 @@
 #include "backends/posix/process.hpp"
 #include "kernel/core/stopwatch.hpp"
 #include "kernel/fem/mobility_stiffness.hpp"
-#include "verification/measure/bench.hpp"
+#include "verification/bench/bench.hpp"
 #include "verification/statistics/sample.hpp"
 #include "verification/studies/studies.hpp"
 

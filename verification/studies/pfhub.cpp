@@ -10,7 +10,7 @@
 #include "backends/posix/process.hpp"
 #include "kernel/core/stopwatch.hpp"
 #include "kernel/core/text.hpp"
-#include "verification/measure/bench.hpp"
+#include "verification/bench/bench.hpp"
 #include "verification/statistics/power_law.hpp"
 #include "verification/statistics/sample.hpp"
 #include "verification/studies/studies.hpp"

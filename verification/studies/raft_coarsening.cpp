@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "kernel/core/text.hpp"
-#include "verification/measure/dynamic_scaling.hpp"
+#include "verification/bench/dynamic_scaling.hpp"
 #include "verification/studies/coarsening_laws.hpp"
 #include "verification/studies/studies.hpp"
 

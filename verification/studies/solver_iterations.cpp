@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "backends/list.hpp"
-#include "verification/measure/bench.hpp"
-#include "verification/measure/motion.hpp"
-#include "verification/measure/shift_range.hpp"
+#include "verification/bench/bench.hpp"
+#include "verification/bench/motion.hpp"
+#include "verification/bench/shift_range.hpp"
 #include "verification/statistics/sample.hpp"
 #include "verification/studies/studies.hpp"
 

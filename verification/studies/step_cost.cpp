@@ -4,7 +4,7 @@
 
 #include "kernel/core/stopwatch.hpp"
 #include "kernel/core/text.hpp"
-#include "verification/measure/bench.hpp"
+#include "verification/bench/bench.hpp"
 #include "verification/studies/studies.hpp"
 
 namespace traceraft {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "verification/measure/figures.hpp"
+#include "verification/bench/figures.hpp"
 
 namespace traceraft {
 

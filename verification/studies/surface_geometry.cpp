@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "kernel/fem/sparse_view.hpp"
-#include "verification/measure/bench.hpp"
-#include "verification/measure/manufactured.hpp"
-#include "verification/measure/motion.hpp"
+#include "verification/analytic/manufactured.hpp"
+#include "verification/bench/bench.hpp"
+#include "verification/bench/motion.hpp"
 #include "verification/statistics/power_law.hpp"
 #include "verification/statistics/sample.hpp"
 #include "verification/studies/studies.hpp"

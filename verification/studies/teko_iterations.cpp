@@ -5,8 +5,8 @@
 
 #include "backends/list.hpp"
 #include "kernel/core/random.hpp"
-#include "verification/measure/bench.hpp"
-#include "verification/measure/shift_range.hpp"
+#include "verification/bench/bench.hpp"
+#include "verification/bench/shift_range.hpp"
 #include "verification/statistics/random_streams.hpp"
 #include "verification/studies/studies.hpp"
 

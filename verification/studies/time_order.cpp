@@ -2,7 +2,7 @@
 // run with far smaller steps.
 #include <cmath>
 
-#include "verification/measure/manufactured.hpp"
+#include "verification/analytic/manufactured.hpp"
 #include "verification/statistics/power_law.hpp"
 #include "verification/statistics/sample.hpp"
 #include "verification/studies/studies.hpp"

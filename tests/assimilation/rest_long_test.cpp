@@ -1,0 +1,92 @@
+// Rafts at rest say nothing of kinetics, and rafts that move do, however little.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "tests/support/small_vesicle.hpp"
+#include "verification/assimilation/filter/rest.hpp"
+#include "verification/selection/search/search_state.hpp"
+
+namespace traceraft {
+namespace {
+
+constexpr int kRestCells = 20;
+
+// Three snapshots of rafts with nothing hidden, 5 % noise.
+BlindRequest rafts_between(double first, double last) {
+  BlindRequest asked = testing::small_vesicle(3);
+  asked.effects.clear();
+  asked.first = first;
+  asked.last = last;
+  return asked;
+}
+
+bool rest(const std::vector<FieldSeries>& vesicles, const CahnHilliardModel& base) {
+  return are_at_rest(
+      make_filter_problems(vesicles, *make_surface("sphere"), base, kRestCells, 2, false, {}),
+      base);
+}
+
+const BlindCase& late() {
+  static const BlindCase drawn = draw_blind_case(rafts_between(4000, 9000));
+  return drawn;
+}
+const std::vector<FieldSeries>& late_vesicle() {
+  return late().vesicles;
+}
+
+TEST(Rest, IsSeenAlsoOfAVesicleThatTurns) {
+  const CahnHilliardModel base = testing::small_vesicle(3).base;
+  EXPECT_TRUE(rest(late_vesicle(), base));
+  std::vector<FieldSeries> turned = late_vesicle();
+  double angle = 0;
+  for (FieldSnapshot& snapshot : turned.front().snapshots) {
+    const Eigen::Matrix3d Q =
+        Eigen::AngleAxisd(angle, Point(1, -2, 0.5).normalized()).toRotationMatrix();
+    for (Point& x : snapshot.points) x = Q * x;
+    angle += 0.7;
+  }
+  EXPECT_TRUE(rest(turned, base));
+}
+
+// One vesicle that changes is enough.
+TEST(Rest, IsNotWhereRaftsChange) {
+  BlindRequest asked = rafts_between(20, 60);
+  const std::vector<FieldSeries> moving = draw_blind_case(asked).vesicles;
+  EXPECT_FALSE(rest(moving, asked.base));
+  std::vector<FieldSeries> both = late_vesicle();
+  both.push_back(moving.front());
+  EXPECT_FALSE(rest(both, asked.base));
+}
+
+// Rafts that the model would coarsen, but stay; and boundaries of another width than its.
+TEST(Rest, IsNotWhereTheModelDoesNotRest) {
+  BlindRequest asked = rafts_between(20, 20.002);
+  std::vector<FieldSeries> arrested = draw_blind_case(asked).vesicles;
+  for (std::size_t k = 0; k < 3; ++k)
+    arrested.front().snapshots[k].time = 20 + 1000 * static_cast<double>(k);
+  EXPECT_FALSE(rest(arrested, asked.base));
+
+  CahnHilliardModel wider = asked.base;
+  wider.epsilon *= 1.4;
+  EXPECT_FALSE(rest(late_vesicle(), wider));
+}
+
+// Nothing is fitted then, and the search ends at once.
+TEST(Rest, EndsTheSearch) {
+  ExplainRequest request;
+  request.base = testing::small_vesicle(3).base;
+  request.surface = make_surface("sphere");
+  request.cells = kRestCells;
+  int states = 0;
+  request.save = [&](const SearchState&) { ++states; };
+  const Explanation found = explain_fields(late_vesicle(), request);
+  EXPECT_TRUE(found.at_rest);
+  EXPECT_EQ(found.finding, Finding::not_identifiable);
+  EXPECT_EQ(states, 1);
+  EXPECT_TRUE(bounds_of(found).empty());
+  EXPECT_NEAR(found.noise, late().noise, 0.05 * late().noise);
+}
+
+}  // namespace
+}  // namespace traceraft

@@ -1,0 +1,41 @@
+// Manufactured solutions on curved surfaces, and the errors they show.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "verification/bench/bench.hpp"
+#include "verification/bench/error_norms.hpp"
+
+namespace traceraft {
+
+// What manufactured problems need of u = xyz at a point of the surface. On the unit sphere u is a
+// spherical harmonic of degree 3: Δ_Γ u = −12 u.
+struct SurfacePoint {
+  double u, laplacian, bilaplacian;    // u, L = Δ_Γ u, Δ_Γ L
+  Point gradient, laplacian_gradient;  // ∇_Γ u, ∇_Γ L
+};
+
+// The surfaces for which derivatives are known: "sphere", "ellipsoid", "torus" with their default
+// parameters. Takes points near the surface to it. Throws std::logic_error for another.
+using SurfaceFunction = std::function<SurfacePoint(const Point&)>;
+SurfaceFunction surface_function(const std::string& surface);
+
+// −Δ_Γ u + u = f with the matrices M, K and S of the program.
+ErrorNorms stationary_error(const SurfaceSpace& space, const SurfaceFunction& u);
+
+// The full system with c = ½ + ¼ cos(t) u and μ = f0'(c) − ε² Δ_Γ c, driven by the source that
+// makes them a solution. `surface` is that of the space.
+struct ManufacturedCahnHilliard {
+  std::string surface;
+  ProblemPtr problem;
+
+  ManufacturedCahnHilliard(const Bench& bench, SpacePtr space, std::string surface, double epsilon);
+  const SurfaceSpace& space() const { return problem->space(); }
+  ExactFunction c(double t) const;
+  ExactFunction mu(double t) const;
+  StartState initial_state() const;  // nodal values of c(0), consistent μ
+};
+
+}  // namespace traceraft

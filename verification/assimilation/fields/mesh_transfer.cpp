@@ -1,0 +1,36 @@
+#include "verification/assimilation/fields/mesh_transfer.hpp"
+
+#include "kernel/fem/density_load.hpp"
+
+namespace traceraft {
+
+MeshTransfer::MeshTransfer(const SurfaceSpace& from, SpacePtr to, const Eigen::Matrix3d& rotation)
+    : to_(std::move(to)) {
+  const CutSurface& surface = to_->surface;
+  std::vector<Point> points;
+  std::vector<SurfacePlace> places;
+  Vec weights(static_cast<Eigen::Index>(surface.triangles.size() * kDegreeFourRule.size()));
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    for (std::size_t p = 0; p < kDegreeFourRule.size(); ++p) {
+      const auto& [at, weight] = kDegreeFourRule[p];
+      weights[static_cast<Eigen::Index>(points.size())] = weight * surface.triangle_area[t];
+      points.push_back(rotation.transpose() * quadrature_point(surface, t, p).x);
+      places.push_back({static_cast<int>(t), at});
+    }
+  load_ = trace_at(*to_, places).transpose() * weights.asDiagonal() *
+          point_trace(from, points, from.h() + to_->h());
+}
+
+Vec MeshTransfer::operator()(ConstVec c) const {
+  Vec projected(to_->nodes());
+  require(to_->solve_mass(load_ * c, projected));
+  return projected;
+}
+
+Eigen::MatrixXd MeshTransfer::columns(const Eigen::MatrixXd& X) const {
+  Eigen::MatrixXd result(to_->nodes(), X.cols());
+  for (Eigen::Index k = 0; k < X.cols(); ++k) result.col(k) = (*this)(X.col(k));
+  return result;
+}
+
+}  // namespace traceraft

@@ -1,0 +1,64 @@
+// Holds a model against a series of measured fields: forecasts every snapshot from those before it,
+// compares, corrects, and keeps account of what the comparison can and cannot blame on the state.
+//
+// The extended Kalman filter with the covariance of the state in a moving basis of a few hundred
+// directions. Beside the state it carries its derivatives by parameters θ of the model; the product
+// of the probabilities of all innovations is then, to first order in θ, the likelihood of θ with
+// the unknown state integrated out.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "verification/assimilation/filter/filter_problem.hpp"
+#include "verification/assimilation/filter/innovation.hpp"
+#include "verification/assimilation/forecast/candidates.hpp"
+
+namespace traceraft {
+
+// Linear maps of errors along one series of forecasts: found once, used again for all that stay
+// close to it.
+struct ErrorMaps {
+  std::vector<Columns> basis, image;  // per interval; the basis is orthonormal in M̃
+  std::vector<Columns> replicates;    // errors of the forecast at its end, a column for each
+  std::vector<ResolvedForecast::End> mesh_error;  // what the forecast's own mesh does of it lacks
+
+  std::size_t intervals() const { return basis.size(); }
+};
+
+// Of ln D: further away errors of states grow and fade in another way, and maps are found anew.
+inline constexpr double kMapsReach = 0.5;
+inline bool maps_reach(double pace, double pace_of_maps) {
+  return std::fabs(std::log(pace / pace_of_maps)) < kMapsReach;
+}
+
+struct FilterResult {
+  std::vector<Innovation> innovations;
+  Eigen::MatrixXd information;  // Σ Xᵀ S⁻¹ X
+  Vec score;                    // Σ Xᵀ S⁻¹ ν
+  Eigen::MatrixXd null_scores;  // the same of the replicates, a column for each
+  double deviance = 0;          // Σ νᵀ S⁻¹ ν + ln |S|
+  // Of every snapshot, explained_parts of its values, its parameters and its replicates: of those
+  // that count, and of those that are held out.
+  std::vector<Columns> gap_parts, heldout_gap_parts;
+};
+
+// What is held against the measurements.
+struct FilterModel {
+  CahnHilliardModel base;
+  double pace = 1;                  // D over that of the base model
+  Hypothesis hypothesis;            // effects that the model has
+  std::vector<Candidate> screened;  // effects it might have: derivatives at 0
+};
+
+// Standard deviation of the share by which extrapolation to infinitely fine meshes is wrong.
+inline constexpr double kMeshDoubt = 0.5;
+
+// Vesicles have a state each and share the parameters. Model errors are sized by the innovations
+// themselves, snapshot by snapshot. `maps`, one per vesicle, are filled if there are none.
+// Replicates, and what is counted of them, only where the settings want some. Throws
+// std::runtime_error if a forecast fails.
+FilterResult filter_fields(const FilterProblems& data, const FilterModel& model,
+                           const FilterSettings& settings, std::vector<ErrorMaps>& maps);
+
+}  // namespace traceraft

@@ -1,0 +1,90 @@
+// What a model is held against: a series of measured fields, on the mesh of the model.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "kernel/linear/linear_solver.hpp"
+#include "kernel/problem/cahn_hilliard.hpp"
+#include "verification/assimilation/fields/blur.hpp"
+#include "verification/assimilation/fields/noise_correlation.hpp"
+#include "verification/assimilation/forecast/gap_patterns.hpp"
+#include "verification/assimilation/forecast/resolved_forecast.hpp"
+
+namespace traceraft {
+
+struct FilterSettings {
+  int rank = 240;         // directions in which the state is uncertain
+  int replicates = 199;   // of the noise, through everything that is linear
+  int tangent_steps = 3;  // between two snapshots, for derivatives by parameters
+  int error_steps = 2;    // the same for errors of the state
+  double gain = 0.1;      // standard deviations of the scale and of the zero of each snapshot's
+  double offset = 0.1;  // values, as far as they are unknown; the latter of the distance of phases
+  double first_gain = 0.1, first_offset = 0.1;  // of the first snapshot, which forecasts begin with
+  double blur = 0;  // of the point spread function of the images, in R: they have it, or none
+  NoiseCorrelation correlation = {};  // of the noise, that its estimate begins with
+  double turn = 0.05;  // of the angle by which a vesicle may have turned between two snapshots
+  int gap_degree = 6;  // of the polynomials that gaps are sought as
+  // Standard deviation of ln D of the base model, as far as D is known from elsewhere.
+  double pace_doubt = std::numeric_limits<double>::infinity();
+  std::string integrator = "ida";  // of forecasts
+};
+
+// Directions of errors of the first snapshot's state that are of its scale and its zero.
+inline constexpr Eigen::Index kFirstFrame = 2;
+
+// By which a vesicle has turned since the snapshot before, on the model's mesh and on the finest.
+struct SnapshotTurn {
+  Eigen::Matrix3d rotation;
+  MeshTransfer own, finest;
+};
+
+// Everything about the series of one vesicle that does not depend on parameters.
+struct FilterProblem {
+  std::size_t vesicle;  // its number
+  FieldSeries series;   // without outliers
+  std::size_t outliers = 0;
+  std::shared_ptr<const ThreadTeam> team;
+  SpacePtr space;       // of one thread
+  bool sphere = false;  // is that what the surface is?
+  std::shared_ptr<const FinerMeshes> finer;
+  EigenMatrix mass;                    // stabilised, on `space`
+  std::vector<NoisyValues> snapshots;  // of the series, on `space`
+  FinerTraces finer_traces;
+  std::size_t train = 0;         // snapshots that count
+  FieldPrior prior{};            // of the first field, as white noise would have it
+  FieldEstimate first;           // of the first snapshot, whose scale and zero begin its errors
+  Vec first_resolved;            // its field on the finest mesh
+  std::vector<double> noise;     // of each snapshot, in units of its deviations
+  double first_noise = 0;        // that of the first one as `first` was estimated with
+  NoiseCorrelation correlation;  // of that noise, between values of one snapshot
+  std::vector<WhiteningPtr> whitening;  // by that, of each snapshot
+  // Before each snapshot; nothing where it has turned by no more than the settings' `turn` or so.
+  std::vector<std::shared_ptr<const SnapshotTurn>> turns;
+  std::shared_ptr<const GapPatterns> patterns;
+  std::shared_ptr<const Blur> blur;  // if the images have one
+  LinearSolverFactory tangent_solver;
+  MakeForecaster make_integrator;
+
+  double time(std::size_t snapshot) const { return series.snapshots[snapshot].time; }
+};
+
+using FilterProblems = std::vector<FilterProblem>;
+
+// That were measured and count, first snapshots aside.
+double count_values(const FilterProblems& data);
+
+// From now on the noise of its snapshots, whose levels are known, has that correlation; the first
+// field is estimated anew. Throws std::runtime_error if it cannot be.
+void set_correlation(const NoiseCorrelation& correlation, const CahnHilliardModel& base,
+                     const FilterSettings& settings, FilterProblem& data);
+
+// Of all vesicles, on the same meshes. `hold_out`: the last of four snapshots or more is forecast,
+// but counts for nothing. Throws InputError for places that are off the surface, and where more
+// than a twentieth of the values are outliers.
+FilterProblems make_filter_problems(const std::vector<FieldSeries>& series, const LevelSet& surface,
+                                    const CahnHilliardModel& base, int cells, int threads,
+                                    bool hold_out, const FilterSettings& settings);
+
+}  // namespace traceraft

@@ -1,0 +1,44 @@
+// How noisy a series of fields is, by what it states of that and by how far it lies from forecasts.
+#pragma once
+
+#include "verification/assimilation/filter/field_filter.hpp"
+
+namespace traceraft {
+
+// Standard deviation of the values that count, in c: their root mean square. Without the first
+// snapshots, of whose own noise nothing is known.
+double noise_of(const FilterProblems& data);
+
+// Standard deviation of c over all measured values, without the noise.
+double contrast_of(const FilterProblems& data);
+
+// The noise that the innovations of a pass have becomes that of the measurements: one for all of a
+// vesicle's snapshots, in units of the deviations that they state, but for those that state them
+// wrongly.
+void fit_noise(FilterProblems& data, const FilterResult& pass);
+
+// The same from the noise of each vesicle's snapshots but the first, in units of their deviations.
+void set_noise(FilterProblems& data, const std::vector<std::vector<double>>& own);
+
+// All that is estimated of the noise, a vesicle after the other.
+struct NoiseModel {
+  std::vector<std::vector<double>> levels;  // of each snapshot, in units of its deviations
+  std::vector<double> first;                // of the first one, as its field was estimated with
+  NoiseCorrelation correlation;
+
+  friend bool operator==(const NoiseModel& a, const NoiseModel& b);
+};
+
+NoiseModel noise_model(const FilterProblems& data);
+// Throws std::runtime_error if the first fields cannot be estimated with it.
+void set_noise_model(const NoiseModel& noise, const CahnHilliardModel& base,
+                     const FilterSettings& settings, FilterProblems& data);
+
+// The same with what neighbours share of the noise, which is common to all snapshots: as the
+// innovations have it beside what they leave unknown of the states and of the model. True if its
+// correlation is another one now, so that forecasts and their errors have to be found anew; the
+// first fields are. Throws std::runtime_error if they cannot be.
+bool fit_noise_covariance(FilterProblems& data, const FilterResult& pass,
+                          const CahnHilliardModel& base, const FilterSettings& settings);
+
+}  // namespace traceraft

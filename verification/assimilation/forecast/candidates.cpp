@@ -1,0 +1,237 @@
+#include "verification/assimilation/forecast/candidates.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "kernel/core/error.hpp"
+#include "kernel/core/text.hpp"
+#include "verification/assimilation/forecast/curvature_contrast.hpp"
+#include "verification/bench/bench.hpp"
+
+namespace traceraft {
+namespace {
+
+// Of parameters that are lengths and are not looked for: R.
+constexpr double kLength = 1;
+// Contrast of the curvature, below which it sorts nothing.
+constexpr double kCurved = 0.05;
+
+// The strength is the only coefficient; the other parameters keep their values.
+std::function<EffectTerm(const std::vector<double>&)> strength_of(EffectTerm term) {
+  return [term = std::move(term)](const std::vector<double>& a) {
+    EffectTerm result = term;
+    result.values.front() = a[0];
+    return result;
+  };
+}
+
+EffectTerm by_default(const EffectEntry& entry) {
+  EffectTerm term{entry.name, {}};
+  for (const ParameterSpec& spec : entry.parameters)
+    term.values.push_back(spec.unit == "um" ? kLength : spec.default_value);
+  return term;
+}
+
+Candidate by_strength(const std::string& effect, double step, bool two_sided) {
+  // Ranges of rates are there to catch slips of the pen, and have another unit.
+  const ParameterSpec& strength = effects().find(effect).parameters.front();
+  const bool pure = strength.unit.empty();
+  const double any = std::numeric_limits<double>::infinity();
+  const double least = pure ? strength.min : two_sided ? -any : 0, most = pure ? strength.max : any;
+  return {effect,
+          1,
+          strength_of(by_default(effects().find(effect))),
+          step,
+          is_rate(strength.unit),
+          two_sided,
+          least,
+          most};
+}
+
+Candidate of_mobility(const std::string& effect, double step, bool two_sided) {
+  Candidate candidate = by_strength(effect, step, two_sided);
+  candidate.like_pace = true;
+  return candidate;
+}
+
+std::vector<double> coefficients_of_exchange(double rate, double target) {
+  return {rate - rate * target, rate * target};
+}
+
+// k (c − c*) = a0 c + a1 (c − 1) with k = a0 + a1, c* = a1/k; uptake where a0 = 0.
+Candidate exchange() {
+  return {"exchange",
+          2,
+          [](const std::vector<double>& a) {
+            const double rate = a[0] + a[1];
+            return EffectTerm{"exchange", {rate, rate != 0 ? a[1] / rate : 0}};
+          },
+          1e-3,
+          true,
+          false,
+          0,
+          std::numeric_limits<double>::infinity(),
+          false,
+          "uptake"};
+}
+
+std::vector<std::string> names_of(const std::vector<Candidate>& some) {
+  std::vector<std::string> names;
+  for (const Candidate& candidate : some) names.push_back(candidate.effect);
+  return names;
+}
+
+}  // namespace
+
+double Candidate::within_range(double coefficient) const {
+  return std::clamp(coefficient, least, most);
+}
+
+std::vector<Candidate> candidates() {
+  return {
+      by_strength("allen-cahn", 1e-3, false),       by_strength("asymmetry", 1e-3, true),
+      of_mobility("bulk-mobility", 1e-3, false),    by_strength("cooling", 1e-5, true),
+      by_strength("curvature", 1e-3, true),         exchange(),
+      by_strength("gravity", 1e-3, true),           by_strength("line-tension", 1e-3, true),
+      by_strength("mobility-contrast", 1e-3, true), of_mobility("mobility-exponent", 1e-3, true),
+      by_strength("ohta-kawasaki", 1e-3, false),    by_strength("uptake", 1e-3, true)};
+}
+
+std::optional<Candidate> find_candidate(const std::string& effect) {
+  for (const Candidate& candidate : candidates())
+    if (candidate.effect == effect) return candidate;
+  return {};
+}
+
+std::vector<Candidate> candidates_for(const CahnHilliardModel& base, const LevelSet& surface,
+                                      const std::vector<Point>& places,
+                                      const std::vector<std::string>& without) {
+  const bool curved = curvature_contrast(surface, places) > kCurved;
+  std::vector<Candidate> result;
+  for (const Candidate& candidate : candidates()) {
+    const bool left_out =
+        std::find(without.begin(), without.end(), candidate.effect) != without.end();
+    const bool fits = has_unit_wells(base) || !effects().find(candidate.effect).unit_wells;
+    if (!left_out && fits && (curved || candidate.effect != "curvature"))
+      result.push_back(candidate);
+  }
+  return result;
+}
+
+Hypothesis::Part part_of(const EffectTerm& term) {
+  const std::optional<Candidate> found = find_candidate(term.effect);
+  if (!found)
+    throw InputError("effect " + term.effect + ": its strength cannot be fitted (possible: " +
+                     joined(names_of(candidates()), ", ") + ")");
+  Hypothesis::Part part{*found, {term.values.front()}};
+  if (found->directions == 1)
+    part.candidate.term = strength_of(term);
+  else
+    part.coefficients = coefficients_of_exchange(term.values[0], term.values[1]);
+  return part;
+}
+
+Hypothesis of_model(const std::vector<EffectTerm>& own) {
+  Hypothesis result;
+  for (const EffectTerm& term : own) result.parts.push_back(part_of(term));
+  result.known = result.parts.size();
+  return result;
+}
+
+bool are_one(const Candidate& a, const Candidate& b) {
+  return a.special_case == b.effect || b.special_case == a.effect;
+}
+
+std::vector<Candidate> candidates_beside(const Hypothesis& own, std::vector<Candidate> all) {
+  const auto taken = [&](const Candidate& candidate) {
+    return std::any_of(own.parts.begin(), own.parts.end(), [&](const Hypothesis::Part& part) {
+      return candidate.effect == part.candidate.effect || are_one(candidate, part.candidate);
+    });
+  };
+  all.erase(std::remove_if(all.begin(), all.end(), taken), all.end());
+  return all;
+}
+
+std::vector<EffectTerm> Hypothesis::terms() const {
+  std::vector<EffectTerm> result;
+  for (const Part& part : parts) result.push_back(part.candidate.term(part.coefficients));
+  return result;
+}
+
+Eigen::Index Hypothesis::coefficients() const {
+  Eigen::Index count = 0;
+  for (const Part& part : parts) count += part.candidate.directions;
+  return count;
+}
+
+std::string Hypothesis::name() const {
+  std::string text;
+  for (std::size_t k = known; k < parts.size(); ++k)
+    text += (text.empty() ? "" : " + ") + parts[k].candidate.effect;
+  return text;
+}
+
+bool Hypothesis::has(const std::string& effect) const {
+  return std::any_of(parts.begin(), parts.end(),
+                     [&](const Part& part) { return part.candidate.effect == effect; });
+}
+
+bool Hypothesis::contains(const Hypothesis& other) const {
+  return std::equal(parts.begin(), parts.end(), other.parts.begin(), other.parts.end(),
+                    [](const Part& own, const Part& others) {
+                      const std::string& effect = others.candidate.effect;
+                      return own.candidate.effect == effect || own.candidate.special_case == effect;
+                    });
+}
+
+CoefficientForcing::CoefficientForcing(const CahnHilliard& problem, const CahnHilliardModel& model,
+                                       const Hypothesis& hypothesis,
+                                       const std::vector<Candidate>& more)
+    : problem_(problem) {
+  const auto space = std::shared_ptr<const SurfaceSpace>(&problem.space(), [](auto*) {});
+  const auto changed = [&](const Hypothesis& h) {
+    return std::make_shared<const CahnHilliard>(space, with_effects(model, h.terms()));
+  };
+  Hypothesis extended = hypothesis;
+  const auto add_pairs = [&](std::size_t part) {
+    const Candidate& candidate = extended.parts[part].candidate;
+    for (int d = 0; d < candidate.directions; ++d) {
+      double& a = extended.parts[part].coefficients[d];
+      const double at = a, step = std::max(candidate.step, 1e-3 * std::fabs(at));
+      Pair pair;
+      a = at + step;
+      pair.plus = changed(extended);
+      pair.distance = step;
+      if (candidate.two_sided || at >= step) {
+        a = at - step;
+        pair.minus = changed(extended);
+        pair.distance = 2 * step;
+      }
+      a = at;
+      pairs_.push_back(pair);
+    }
+  };
+  for (std::size_t part = 0; part < hypothesis.parts.size(); ++part) add_pairs(part);
+  for (const Candidate& candidate : more) {
+    extended.parts.push_back({candidate, std::vector<double>(candidate.directions, 0.0)});
+    add_pairs(extended.parts.size() - 1);
+    extended.parts.pop_back();
+  }
+}
+
+Columns CoefficientForcing::operator()(double t, ConstVec y) const {
+  const Vec no_rate = Vec::Zero(problem_.size());
+  Columns forcing(problem_.size(), static_cast<Eigen::Index>(pairs_.size()));
+  Vec here(problem_.size()), minus(problem_.size()), plus(problem_.size());
+  require(problem_.residual(t, y, no_rate, here));
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    require(pairs_[k].plus->residual(t, y, no_rate, plus));
+    if (pairs_[k].minus) require(pairs_[k].minus->residual(t, y, no_rate, minus));
+    forcing.col(static_cast<Eigen::Index>(k)) =
+        (plus - (pairs_[k].minus ? minus : here)) / pairs_[k].distance;
+  }
+  return forcing;
+}
+
+}  // namespace traceraft

@@ -1,0 +1,90 @@
+// Effects as small changes of a model: what a data set is asked to choose from.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "kernel/effects/effects.hpp"
+#include "verification/assimilation/forecast/tangent_flow.hpp"
+
+namespace traceraft {
+
+// A candidate has one coefficient per direction. Its terms are linear in the coefficients near 0:
+// the effect at coefficients a is term(a).
+struct Candidate {
+  std::string effect;
+  int directions;
+  std::function<EffectTerm(const std::vector<double>& coefficients)> term;
+  // Coefficients that are small: for the derivative at 0.
+  double step;
+  bool rate;           // are the coefficients rates? They go with 1/time.
+  bool two_sided;      // may the coefficients be negative?
+  double least, most;  // that each of them may be
+  // Does it make the mobility as a whole larger or smaller? Another D takes its place near 0, so
+  // there is next to nothing to gain there, however much there is further on.
+  bool like_pace = false;
+  std::string special_case = {};  // an effect that it is at the limit of its coefficients
+
+  double within_range(double coefficient) const;
+};
+
+// All effects of the kernel that deterministic data of one vesicle can tell from the base model.
+// Left out: rotation (always a nuisance) and thermal (random).
+std::vector<Candidate> candidates();
+std::optional<Candidate> find_candidate(const std::string& effect);
+
+// Those that a model on a surface may lack, near `places`, but for effects that are not to be
+// looked for. On a mesh even a sphere is curved differently from place to place, in a pattern that
+// resembles nothing but is not noise: where curvature hardly varies it is none of them.
+std::vector<Candidate> candidates_for(const CahnHilliardModel& base, const LevelSet& surface,
+                                      const std::vector<Point>& places,
+                                      const std::vector<std::string>& without);
+
+// Effects with coefficients: those that a model has, and what is held to be missing in it.
+struct Hypothesis {
+  struct Part {
+    Candidate candidate;
+    std::vector<double> coefficients;
+  };
+  std::vector<Part> parts;
+  std::size_t known = 0;  // so many of them, the first, are the model's own
+
+  std::size_t added() const { return parts.size() - known; }
+  std::vector<EffectTerm> terms() const;
+  Eigen::Index coefficients() const;
+  std::string name() const;  // of the effects that it adds
+  bool has(const std::string& effect) const;
+  // Is the other one this one at a limit of its coefficients?
+  bool contains(const Hypothesis& other) const;
+};
+
+// Is one a special case of the other? Beside each other data do not tell their strengths.
+bool are_one(const Candidate& a, const Candidate& b);
+// Without what a model has, and what is one with that.
+std::vector<Candidate> candidates_beside(const Hypothesis& own, std::vector<Candidate> all);
+
+// One of a model's own: its strength is a coefficient, other parameters stay as they are. Throws
+// InputError for an effect that is none of the candidates.
+Hypothesis::Part part_of(const EffectTerm& term);
+Hypothesis of_model(const std::vector<EffectTerm>& own);  // all of them known
+
+// ∂F/∂coefficient: for all coefficients of a hypothesis, then for those of more candidates at 0.
+// By differences, which are exact where F is linear in a coefficient.
+class CoefficientForcing {
+ public:
+  // `problem` has the model with the hypothesis' effects, and must outlive this object.
+  CoefficientForcing(const CahnHilliard& problem, const CahnHilliardModel& model,
+                     const Hypothesis& hypothesis, const std::vector<Candidate>& more);
+  Columns operator()(double t, ConstVec y) const;
+
+ private:
+  struct Pair {
+    std::shared_ptr<const CahnHilliard> plus, minus;  // no minus: the problem itself
+    double distance;
+  };
+  const CahnHilliard& problem_;
+  std::vector<Pair> pairs_;
+};
+
+}  // namespace traceraft

@@ -1,0 +1,58 @@
+// Forecasts free of the error of the model's mesh, as far as two finer meshes can tell.
+#pragma once
+
+#include <array>
+#include <functional>
+
+#include "kernel/geometry/level_set.hpp"
+#include "verification/assimilation/fields/field_estimate.hpp"
+#include "verification/assimilation/fields/field_series.hpp"
+#include "verification/assimilation/fields/mesh_transfer.hpp"
+
+namespace traceraft {
+
+// The integrator of all forecasts.
+using MakeForecaster = std::function<IntegratorPtr(const DaeProblem&, const SurfaceSpace&)>;
+
+// Of one thread, which its matrices and solvers use.
+SpacePtr serial_space(const LevelSet& surface, int cells,
+                      double mass_stabilisation = kMassStabilisation);
+
+// What does not depend on the model.
+struct FinerMeshes {
+  std::array<SpacePtr, 2> spaces;       // the finest last
+  MeshTransfer to_finest, from_finest;  // from and to the model's mesh
+  MeshTransfer up, down;                // between the two
+};
+FinerMeshes finer_meshes(const LevelSet& surface, const SpacePtr& own, int cells);
+
+// On each of them, where the snapshots were measured.
+using FinerTraces = std::array<std::vector<PointTrace>, 2>;
+FinerTraces finer_traces(const FinerMeshes& meshes, const FieldSeries& series);
+
+// A state on the finest mesh. On the mesh of a model phase boundaries may be as wide as a cell:
+// what it lacks of their shape then acts on the flow like a line tension.
+class ResolvedForecast {
+ public:
+  ResolvedForecast(const FinerMeshes& meshes, const FinerTraces& traces,
+                   const CahnHilliardModel& model, Vec c, const MakeForecaster& make_integrator);
+
+  // Errors of order h² are extrapolated (Richardson); `doubt`: by how much.
+  struct End {
+    Vec field, doubt;          // at the nodes of the model's mesh
+    Vec values, values_doubt;  // where snapshot k was measured
+  };
+  // `turn`: by which the vesicle turns at the end, on the finest mesh; may be null. Throws
+  // std::runtime_error if the flow cannot be advanced.
+  End advance(std::size_t k, double begin, double end, const MeshTransfer* turn = nullptr);
+  void correct(ConstVec increment) { c_ += meshes_.to_finest(increment); }  // of the model's mesh
+
+ private:
+  const FinerMeshes& meshes_;
+  const FinerTraces& traces_;
+  std::array<CahnHilliard, 2> problems_;
+  MakeForecaster make_integrator_;
+  Vec c_;
+};
+
+}  // namespace traceraft

@@ -1,0 +1,33 @@
+#include "verification/bench/error_norms.hpp"
+
+#include <cmath>
+
+#include "kernel/fem/density_load.hpp"
+#include "verification/bench/surface_gradients.hpp"
+
+namespace traceraft {
+
+ErrorNorms error_norms(const SurfaceSpace& space, ConstVec nodal, const ExactFunction& exact) {
+  const Vec values = trace(space, nodal);
+  const std::vector<Point> gradients = surface_gradients(space, nodal);
+  double l2 = 0, h1 = 0;
+  for (std::size_t k = 0; k < space.surface.triangles.size(); ++k) {
+    const auto& corner = space.surface.triangles[k];
+    const double area = space.surface.triangle_area[k];
+    const Point normal = cut_normal(space.mesh, space.mesh.tets[space.surface.triangle_tet[k]]);
+    for (std::size_t p = 0; p < kDegreeFourRule.size(); ++p) {
+      const auto& [at, weight] = kDegreeFourRule[p];
+      const Point point = quadrature_point(space.surface, k, p).x;
+      double value = 0;
+      for (int v = 0; v < 3; ++v) value += at[v] * values[corner[v]];
+      const double difference = value - exact.value(point);
+      Point slope = gradients[k] - exact.gradient(point);
+      slope -= slope.dot(normal) * normal;
+      l2 += weight * area * difference * difference;
+      h1 += weight * area * slope.squaredNorm();
+    }
+  }
+  return {std::sqrt(l2), std::sqrt(h1)};
+}
+
+}  // namespace traceraft

@@ -1,0 +1,54 @@
+// How much better each candidate explains a series than the model without it, and how much of that
+// is to be expected of noise.
+#pragma once
+
+#include "verification/assimilation/filter/field_filter.hpp"
+
+namespace traceraft {
+
+// p = (1 + the number of replicates that reach it) / (1 + their number).
+double share_of_noise(const Vec& replicates, double value);
+
+// The same beyond what so few replicates can count, for sums of many squares: p of the gamma
+// distribution with their mean and variance (Satterthwaite 1946).
+double gamma_tail(const Vec& replicates, double value);
+
+struct CandidateScore {
+  std::string effect;
+  std::vector<double> coefficients;  // most probable ones, to first order, within their signs
+  double score;      // 2 ln of the likelihood gained, to first order; pace and mesh error are free
+  double null_mean;  // the same of noise alone, on average over the replicates
+  double p;          // share of replicates in which any candidate gains more, in units of its own
+                     // average
+  double response;   // root mean square change of c that it makes, in units of the noise
+  // Of the coefficients, nuisances being free; 0 for those on which nothing that was measured
+  // depends in a way of its own.
+  Eigen::MatrixXd covariance;
+  double resolution;  // response to one standard deviation of the coefficient that is known best
+};
+
+// An effect that only makes the mobility larger, so that D makes up for nearly all of it: data know
+// D (1 + slope · strength), to first order, and little of the two by themselves.
+struct ConfoundedWithPace {
+  std::string effect;
+  double slope;        // ∂ ln D/∂ strength along which next to nothing that is measured changes
+  double correlation;  // of the two responses, all else being at its best
+};
+inline constexpr double kConfounded = 0.9;
+
+struct Screening {
+  std::vector<CandidateScore> scores;  // most probable first
+  double p = 1;                        // that the most telling of them is noise
+  // That there is a gap of any shape is noise, nuisances being at their best: in the snapshots that
+  // count, in those that are held out (1 if none is), and in both.
+  double train_gap_p = 1, heldout_gap_p = 1, gap_p = 1;
+  double pace_change, pace_deviation;  // of ln D, if nothing else is missing
+  double mesh_error;                   // root mean square of what a finer mesh changes, in noise
+  std::vector<ConfoundedWithPace> confounded = {};  // correlated by more than kConfounded
+};
+
+// `known`: the hypothesis of the model whose pass the result is.
+Screening screen(const FilterResult& result, const std::vector<Candidate>& screened,
+                 const Hypothesis& known);
+
+}  // namespace traceraft

@@ -1,0 +1,60 @@
+#include "verification/selection/search/neighbours.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace traceraft {
+namespace {
+
+// Of the deviance that an effect gained when it was taken, what one that came near it gained.
+constexpr double kNear = 0.5;
+// Over what the criterion asks. Certainties are of the linearised model, and it is not linear.
+constexpr double kCertain = 2;
+
+// What was refitted in the round in which this effect was.
+std::vector<Hypothesis::Part> rivals(const std::string& effect, const std::vector<Round>& rounds) {
+  std::vector<Hypothesis::Part> result;
+  for (const Round& round : rounds) {
+    const auto is = [](const std::string& name) {
+      return
+          [name](const Refit& fit) { return fit.hypothesis.parts.back().candidate.effect == name; };
+    };
+    const auto own = std::find_if(round.refits.begin(), round.refits.end(), is(effect));
+    if (own == round.refits.end()) continue;
+    const double gained = round.without.deviance - own->deviance;
+    for (const Refit& fit : round.refits)
+      if (!is(effect)(fit) && round.without.deviance - fit.deviance >= kNear * gained)
+        result.push_back(fit.hypothesis.parts.back());
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<Hypothesis> neighbours(const Refit& fit, const std::vector<Round>& rounds,
+                                   double values, const std::vector<Candidate>& allowed) {
+  std::vector<Hypothesis> result;
+  const Hypothesis& here = fit.hypothesis;
+  const auto may_be_taken = [&](const std::string& effect) {
+    return !here.has(effect) && std::any_of(allowed.begin(), allowed.end(),
+                                            [&](const Candidate& c) { return c.effect == effect; });
+  };
+  for (std::size_t k = here.known; k < here.parts.size(); ++k) {
+    const Candidate& own = here.parts[k].candidate;
+    if (here.added() > 1 && certainty(fit, k) < kCertain * own.directions * std::log(values)) {
+      result.push_back(here);
+      result.back().parts.erase(result.back().parts.begin() + static_cast<std::ptrdiff_t>(k));
+    }
+    std::vector<std::string> tried;
+    for (const Hypothesis::Part& rival : rivals(own.effect, rounds)) {
+      const std::string& effect = rival.candidate.effect;
+      if (!may_be_taken(effect) || std::count(tried.begin(), tried.end(), effect) > 0) continue;
+      tried.push_back(effect);
+      result.push_back(here);
+      result.back().parts[k] = rival;
+    }
+  }
+  return result;
+}
+
+}  // namespace traceraft

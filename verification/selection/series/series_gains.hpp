@@ -1,0 +1,61 @@
+// How much better each effect explains series than the model without it, and how much of that is to
+// be expected of vesicles that lack nothing.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "verification/likelihood/ensemble_fit.hpp"
+#include "verification/selection/series/series_misfit.hpp"
+
+namespace traceraft {
+
+// Simulated vesicles that differ in their seeds, the same seeds in all ensembles.
+struct SeriesCandidate {
+  std::string effect;
+  double strength;  // of its first parameter, with its sign
+  bool two_sided;
+  std::vector<History> runs;  // in units of R²/D
+};
+
+// The curves of each ensemble.
+struct SeriesCurves {
+  RunCurves base;
+  std::vector<RunCurves> changed;  // with each candidate
+
+  SeriesCurves(const std::vector<History>& runs, const std::vector<SeriesCandidate>& candidates);
+  // By other runs, with the same weights in all ensembles.
+  SeriesCurves(const std::vector<History>& runs, const std::vector<SeriesCandidate>& candidates,
+               const Eigen::MatrixXd& weights);
+};
+
+struct SeriesGains {
+  EnsembleFit base;
+  std::vector<EnsembleFit> fits;      // with each candidate
+  Vec values;                         // 2 ln of the likelihood ratios
+  double trend;                       // left of the base
+  std::vector<SeriesOffset> offsets;  // of the data beside the base
+};
+// `base`: the fit of the model without any effect.
+SeriesGains gains_of(const std::vector<ObservedSeries>& blocks, const SeriesCurves& curves,
+                     const std::vector<SeriesCandidate>& candidates, const UnitPrior& unit,
+                     const EnsembleFit& base);
+
+// The same of data that the base model would give.
+struct SeriesNull {
+  Vec mean;     // of each candidate's gain, half a unit at least
+  Vec highest;  // of each replicate: the largest gain over its mean
+  Vec trend;    // of each replicate: what is left of the base
+  Vec ln_unit;  // of each replicate: that of the base
+  // Of each quantity: root mean squares of the deviations of its level and its slope, more than 1,
+  // as the model's mean is that of a few runs.
+  std::array<double, kQuantities.size()> levels{}, slopes{};
+};
+// `fit`: of the base model to the data.
+SeriesNull null_of(const MeasuredVesicles& data, const std::vector<History>& runs,
+                   const std::vector<SeriesCandidate>& candidates, const EnsembleFit& fit,
+                   const UnitPrior& unit, int replicates);
+
+}  // namespace traceraft

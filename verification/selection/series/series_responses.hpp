@@ -1,0 +1,45 @@
+// What effects do to series, as far as another D does not do the same.
+#pragma once
+
+#include <vector>
+
+#include "verification/selection/series/series_gains.hpp"
+#include "verification/selection/series/series_need.hpp"
+
+namespace traceraft {
+
+// To every look, and to what was known of D before: one look more, in its standard deviations.
+struct SeriesResponse {
+  Vec looks;
+  double unit = 0;
+};
+SeriesResponse operator*(double factor, const SeriesResponse& response);
+
+// `fit`: of the base model; `unit`: what was known of D before.
+class SeriesResponses {
+ public:
+  SeriesResponses(const std::vector<ObservedSeries>& blocks, const SeriesCurves& curves,
+                  const EnsembleFit& fit, const UnitPrior& unit);
+
+  const SeriesResponse& of(std::size_t k) const { return own_[k]; }
+  // What effect k does of which no amount of effect j is capable.
+  SeriesResponse beyond(std::size_t k, std::size_t j) const;
+  double correlation(std::size_t j, std::size_t k) const;
+  // Without what was known of D before.
+  SeriesProducts products(const SeriesResponse& e) const;
+  // The quantity that shows most of it.
+  Quantity telling(const SeriesResponse& e) const;
+
+ private:
+  double product(const SeriesResponse& a, const SeriesResponse& b) const;
+
+  ObservationMetric metric_;
+  SeriesResponse by_unit_;  // what another D does
+  std::vector<SeriesResponse> own_;
+};
+
+// Numbers of effects: every two members of a class change series alike.
+using SeriesClasses = std::vector<std::vector<std::size_t>>;
+SeriesClasses classes_of(const SeriesResponses& responses, std::size_t effects);
+
+}  // namespace traceraft
