@@ -23,7 +23,7 @@ class BrokenProblem : public ForwardingProblem {
   double shift = 1;     // factor of the shift in the Jacobian
   bool uphill = false;  // the flux has the wrong sign
 
-  Status residual(double t, ConstVec y, ConstVec ydot, VecRef r) const override {
+  Status residual(double t, VecView y, VecView ydot, VecRef r) const override {
     const Status status = ForwardingProblem::residual(t, y, clock * ydot, r);
     r.head(block_size()).array() -= leak;
     if (uphill) {
@@ -33,12 +33,12 @@ class BrokenProblem : public ForwardingProblem {
     }
     return status;
   }
-  Status jacobian(double t, ConstVec y, ConstVec ydot, double sigma, Tangent tangent,
+  Status jacobian(double t, VecView y, VecView ydot, double sigma, Tangent tangent,
                   BlockJacobian& J) const override {
     return ForwardingProblem::jacobian(t, y, clock * ydot, clock * shift * sigma, tangent, J);
   }
-  Status jacobian_product(double t, ConstVec y, ConstVec ydot, double sigma, Tangent tangent,
-                          ConstVec v, VecRef product) const override {
+  Status jacobian_product(double t, VecView y, VecView ydot, double sigma, Tangent tangent,
+                          VecView v, VecRef product) const override {
     return ForwardingProblem::jacobian_product(t, y, clock * ydot, clock * shift * sigma, tangent,
                                                v, product);
   }
@@ -99,7 +99,8 @@ class BrokenBench final : public Bench {
         FunctionLevelSet([&](const Point& x) { return surface.value(x) - fault_.inflation; }),
         cells, std::make_shared<ThreadTeam>(threads), std::make_shared<SerialCommunicator>());
     if (fault_.no_stabilisation) {
-      std::fill(result->normal.values.begin(), result->normal.values.end(), 0.0);
+      std::fill(result->normal_stiffness.values.begin(), result->normal_stiffness.values.end(),
+                0.0);
       result->stabilised_mass = result->mass;
     }
     return result;

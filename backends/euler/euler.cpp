@@ -23,7 +23,7 @@ class Euler final : public ControlledIntegrator {
 
   std::string name() const override { return "euler"; }
 
-  Status start(double t0, ConstVec y0, ConstVec ydot0, double t_end) override {
+  Status start(double t0, VecView y0, VecView ydot0, double t_end) override {
     energy_ = problem_.energy(y0);
     rate_ = ydot0;
     return ControlledIntegrator::start(t0, y0, ydot0, t_end);

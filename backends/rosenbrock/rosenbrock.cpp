@@ -67,7 +67,7 @@ class Rosenbrock final : public ControlledIntegrator {
   bool promises_energy_decay() const override { return false; }
 
  private:
-  Status residual(double t, ConstVec y, ConstVec ydot, Vec& r) {
+  Status residual(double t, VecView y, VecView ydot, Vec& r) {
     const ScopedTimer timer(statistics_.assembly_seconds);
     ++statistics_.residuals;
     r.resize(problem_.size());

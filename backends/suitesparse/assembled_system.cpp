@@ -38,7 +38,7 @@ void AssembledSystem::fill(const BlockJacobian& J) {
   }
 }
 
-Vec AssembledSystem::right_side(const BlockJacobian& J, ConstVec b) const {
+Vec AssembledSystem::right_side(const BlockJacobian& J, VecView b) const {
   const int n = pattern_->rows();
   Vec right(2 * n);
   right.head(n) = -b.tail(n);
@@ -46,7 +46,7 @@ Vec AssembledSystem::right_side(const BlockJacobian& J, ConstVec b) const {
   return right;
 }
 
-void AssembledSystem::take_solution(const BlockJacobian& J, ConstVec b, ConstVec solution,
+void AssembledSystem::take_solution(const BlockJacobian& J, VecView b, VecView solution,
                                     VecRef x) const {
   const int n = pattern_->rows();
   x.head(n) = solution.head(n);

@@ -25,9 +25,9 @@ class AssembledSystem {
   double* values() { return values_.data(); }
 
   void fill(const BlockJacobian& J);  // σ > 0
-  Vec right_side(const BlockJacobian& J, ConstVec b) const;
+  Vec right_side(const BlockJacobian& J, VecView b) const;
   // x of the block system from a solution of this one, with the mass of b restored.
-  void take_solution(const BlockJacobian& J, ConstVec b, ConstVec solution, VecRef x) const;
+  void take_solution(const BlockJacobian& J, VecView b, VecView solution, VecRef x) const;
 
  private:
   void build_rows();

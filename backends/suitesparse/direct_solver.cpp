@@ -60,7 +60,7 @@ class Lane {
 
   // The contract: never report a wrong x as ok. LU of a poorly scaled system is checked, too, and
   // refined if it has to be.
-  SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance) {
+  SolveReport solve(const BlockJacobian& J, VecView b, VecRef x, double tolerance) {
     const ScopedTimer timer(statistics.solve_seconds);
     ++statistics.solves;
     if (!ready_) return {Status::retry(name_ + ": there is no factorisation")};
@@ -83,7 +83,7 @@ class Lane {
   }
 
  private:
-  Status solve_factors(const BlockJacobian& J, ConstVec b, Vec& x) {
+  Status solve_factors(const BlockJacobian& J, VecView b, Vec& x) {
     Vec solution;
     const Status status = lu_->solve(system_, system_.right_side(J, b), solution);
     if (status.ok()) system_.take_solution(J, b, solution, x);
@@ -112,7 +112,7 @@ class DirectSolver final : public LinearSolver {
   bool shares_factors() const override { return false; }
   bool wants_setup(const BlockJacobian&, int) const override { return true; }
   Status setup(const BlockJacobian& J, int lane) override { return lanes_[lane]->setup(J); }
-  SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance,
+  SolveReport solve(const BlockJacobian& J, VecView b, VecRef x, double tolerance,
                     int lane) override {
     return lanes_[lane]->solve(J, b, x, tolerance);
   }

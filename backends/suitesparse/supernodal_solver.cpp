@@ -155,7 +155,7 @@ class SupernodalSolver final : public SpdSolver {
  public:
   SupernodalSolver(std::shared_ptr<const SupernodalStructure> structure, int lanes);
   Status factorise(const CsrMatrix& A) override;
-  void solve(ConstVec b, VecRef x, const ThreadTeam& team, int lane) override;
+  void solve(VecView b, VecRef x, const ThreadTeam& team, int lane) override;
 
  private:
   // The vectors that a lane works with.
@@ -217,7 +217,7 @@ void SupernodalSolver::backward(int supernode, Real* x, Real* work) const {
   std::copy(work, work + node.columns, own);
 }
 
-void SupernodalSolver::solve(ConstVec b, VecRef x, const ThreadTeam& team, int lane) {
+void SupernodalSolver::solve(VecView b, VecRef x, const ThreadTeam& team, int lane) {
   Work& work = work_[lane];
   const std::vector<int>& permutation = structure_->permutation;
   const int* branch_begin = structure_->branch_begin;

@@ -22,7 +22,7 @@ class Ida final : public Integrator {
       : problem_(problem),
         settings_(settings),
         equations_(problem, solvers, std::move(team), settings_),
-        space_{[this](ConstVec half) { return problem_.field_norm(half); }, problem.ranks()} {
+        space_{[this](VecView half) { return problem_.field_norm(half); }, problem.ranks()} {
     if (SUNContext_Create(nullptr, &context_) != 0)
       throw std::runtime_error("SUNDIALS: no context");
   }
@@ -35,7 +35,7 @@ class Ida final : public Integrator {
 
   std::string name() const override { return "ida"; }
 
-  Status start(double t0, ConstVec y0, ConstVec ydot0, double t_end) override {
+  Status start(double t0, VecView y0, VecView ydot0, double t_end) override {
     t_end_ = t_end;
     span_ = t_end - t0;
     first_step_ = choose_first_step(y0, ydot0);
@@ -115,7 +115,7 @@ class Ida final : public Integrator {
   }
 
  private:
-  double choose_first_step(ConstVec y, ConstVec ydot) const {
+  double choose_first_step(VecView y, VecView ydot) const {
     if (settings_.option("initstep") > 0) return settings_.option("initstep");
     const int n = problem_.block_size();
     // A tenth of the tolerance is the whole change of the first step.
@@ -130,7 +130,7 @@ class Ida final : public Integrator {
     for (VectorPtr* v : {&yy_, &yp_, &id_, &between_}) v->reset();
   }
 
-  void create(double t0, ConstVec y0, ConstVec ydot0) {
+  void create(double t0, VecView y0, VecView ydot0) {
     release();
     const Eigen::Index size = problem_.size();
     for (VectorPtr* v : {&yy_, &yp_, &id_, &between_})

@@ -40,7 +40,7 @@ class IdaEquations {
   const std::string& message() const { return message_; }
 
   // Of the energy guard: y begins the run; the state judged last is accepted.
-  void start(ConstVec y) { guard_.start(y); }
+  void start(VecView y) { guard_.start(y); }
   void accept() { guard_.accept(); }
 
   // An integrator's statistics with what happened here.

@@ -29,7 +29,7 @@ std::vector<ParameterSpec> ida_parameters() {
 
 IdaSettings::IdaSettings(const IntegratorSettings& settings) : settings_(settings) {
   for (const ParameterSpec& spec : ida_parameters())
-    settings_.own.emplace(spec.name, spec.default_value);
+    settings_.method_options.emplace(spec.name, spec.default_value);
 }
 
 double IdaSettings::linear_tolerance(int correction) const {

@@ -18,7 +18,7 @@ class IdaSettings {
 
   const IntegratorSettings& general() const { return settings_; }
   // By its name in ida_parameters().
-  double option(const char* name) const { return settings_.own.at(name); }
+  double option(const char* name) const { return settings_.method_options.at(name); }
   double rtol() const { return either("rtol", settings_.tolerance); }
   double atol() const { return either("atol", 1e-10); }
   // Of the first correction of a step, and of those after it, which are smaller and need not be as

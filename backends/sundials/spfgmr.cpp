@@ -62,7 +62,7 @@ class Spfgmr final : public KrylovMethod {
     SUNContext_Free(&context_);
   }
 
-  SolveReport solve(const LinearOperator& A, const LinearOperator& preconditioner, ConstVec b,
+  SolveReport solve(const LinearOperator& A, const LinearOperator& preconditioner, VecView b,
                     VecRef x, double tolerance, int max_iterations) override {
     Operators operators{A, preconditioner, nullptr};
     const double norm = std::sqrt(dot(b, b));

@@ -14,7 +14,7 @@ namespace traceraft {
 struct StateSpace {
   // The norm of one half, over all ranks and independent of the mesh. SUNDIALS' own mean over all
   // entries counts a node whose basis function hardly touches the surface like any other.
-  std::function<double(ConstVec half)> norm;
+  std::function<double(VecView half)> norm;
   const Communicator& ranks;
 };
 

@@ -97,7 +97,7 @@ class TekoSolver final : public LinearSolver {
     return setting_->chosen.always_new || shared_.worn(J.shift);
   }
 
-  SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance,
+  SolveReport solve(const BlockJacobian& J, VecView b, VecRef x, double tolerance,
                     int lane_number) override {
     // Trilinos keeps what it computes with in its objects.
     const std::lock_guard lock(one_at_a_time_);
@@ -163,7 +163,7 @@ class TekoSolver final : public LinearSolver {
   static RCP<Thyra::VectorBase<double>> block(Thyra::VectorBase<double>& vector, int which) {
     return dynamic_cast<Thyra::ProductVectorBase<double>&>(vector).getNonconstVectorBlock(which);
   }
-  static void copy_halves(ConstVec field, double first_scale, Thyra::VectorBase<double>& vector) {
+  static void copy_halves(VecView field, double first_scale, Thyra::VectorBase<double>& vector) {
     const Eigen::Index n = field.size() / 2;
     copy_to(first_scale * field.head(n), *block(vector, 0));
     copy_to(field.tail(n), *block(vector, 1));

@@ -85,7 +85,7 @@ const TpetraMatrix& as_matrix(const ThyraOperator& op) {
   return dynamic_cast<const TpetraMatrix&>(*tpetra);
 }
 
-void copy_to(ConstVec field, Thyra::VectorBase<double>& vector) {
+void copy_to(VecView field, Thyra::VectorBase<double>& vector) {
   const auto target =
       Thyra::TpetraOperatorVectorExtraction<double>::getTpetraVector(Teuchos::rcpFromRef(vector));
   const auto values = target->getLocalViewHost(Tpetra::Access::OverwriteAll);

@@ -40,7 +40,7 @@ ThyraOperator as_operator(const Teuchos::RCP<const TpetraMatrix>& matrix);
 const TpetraMatrix& as_matrix(const ThyraOperator& op);
 
 // Between a field of this rank and a Thyra vector on the map.
-void copy_to(ConstVec field, Thyra::VectorBase<double>& vector);
+void copy_to(VecView field, Thyra::VectorBase<double>& vector);
 void copy_from(const Thyra::VectorBase<double>& vector, VecRef field);
 
 }  // namespace traceraft

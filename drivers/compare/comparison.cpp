@@ -21,7 +21,7 @@ constexpr const char* kCounts[] = {"steps",         "rejected",
                                    "mass_drift",    "energy_rises",
                                    "ranks",         "threads"};
 
-double relative_error(const DaeProblem& problem, const Vec& c, ConstVec reference) {
+double relative_error(const DaeProblem& problem, const Vec& c, VecView reference) {
   Vec difference = Vec::Zero(problem.size()), exact = difference;
   difference.head(c.size()) = c - reference;
   exact.head(c.size()) = reference;
@@ -97,7 +97,7 @@ bool ComparisonFolder::done(const CompareJob& job, const ComparePlan& plan) cons
   return record && settled(*record);
 }
 
-void ComparisonFolder::add(const CompareJob& job, const DaeProblem& problem, ConstVec reference,
+void ComparisonFolder::add(const CompareJob& job, const DaeProblem& problem, VecView reference,
                            WorkPoint& point) const {
   const auto record = recorded(job);
   if (!record) return;
@@ -120,7 +120,7 @@ void ComparisonFolder::add(const CompareJob& job, const DaeProblem& problem, Con
 }
 
 std::vector<WorkPoint> ComparisonFolder::points(const ComparePlan& plan, const DaeProblem& problem,
-                                                ConstVec reference) const {
+                                                VecView reference) const {
   std::vector<WorkPoint> points;
   for (const CompareJob& job : jobs_of(plan)) {
     const auto same = [&](const WorkPoint& p) {

@@ -38,13 +38,13 @@ class ComparisonFolder {
   // What the recorded jobs gave: a point per combination, in the order of the plan. Errors are
   // against the concentration of the reference.
   std::vector<WorkPoint> points(const ComparePlan& plan, const DaeProblem& problem,
-                                ConstVec reference) const;
+                                VecView reference) const;
 
  private:
   std::filesystem::path plan_file() const { return path_ / "plan.json"; }
   std::filesystem::path record_of(const CompareJob& job) const;
   std::optional<Record> recorded(const CompareJob& job) const;
-  void add(const CompareJob& job, const DaeProblem& problem, ConstVec reference,
+  void add(const CompareJob& job, const DaeProblem& problem, VecView reference,
            WorkPoint& point) const;
 
   std::filesystem::path path_;

@@ -8,7 +8,7 @@ IntegratorSettings integrator_settings(const Configuration& configuration,
                                        const IntegratorEntry& integrator, const Units& units) {
   IntegratorSettings settings;
   for (const ParameterSpec& parameter : integrator.parameters)
-    settings.own[parameter.name] =
+    settings.method_options[parameter.name] =
         configuration.options().method_numbers.at(integrator_option(integrator, parameter)) /
         (parameter.unit == "s" ? units.time() : 1);
   settings.tolerance = configuration.options().tolerance;

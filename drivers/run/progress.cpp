@@ -16,7 +16,7 @@ void Progress::on_step(const RunState& state) {
       formatted("t %.4g%s  step %ld  dt %.2g%s  mass drift %.0e  rafts %d  %s elapsed",
                 integrator.time() * run_.units.time(), unit, integrator.statistics().steps,
                 integrator.step() * run_.units.time(), unit, state.monitor.mass_drift(),
-                state.row.rafts, clock_text(elapsed).c_str()) +
+                state.observables.rafts, clock_text(elapsed).c_str()) +
           (left.high > 0 ? "  " + clock_text(left.low) + " to " + clock_text(left.high) + " left"
                          : ""));
 }

@@ -44,8 +44,8 @@ int exit_code(const RunResult& result) {
 
 // Runs or goes on with a run, from a checkpoint if there is one. On every rank; `quiet` on all but
 // the first, which alone has the checkpoint.
-int carry_out(const Configuration& configuration, RunSetup& run, const RunFolder& folder,
-              const std::optional<Checkpoint>& checkpoint, bool quiet) {
+int execute_run(const Configuration& configuration, RunSetup& run, const RunFolder& folder,
+                const std::optional<Checkpoint>& checkpoint, bool quiet) {
   const bool root = run.ranks->root();
   catch_stop_signals();
   RunState state{*run.integrator, {}, 0, {}};
@@ -84,7 +84,7 @@ int carry_out(const Configuration& configuration, RunSetup& run, const RunFolder
   if (result.end == RunEnd::stopped && !quiet)
     say("  continue with          traceraft resume %s\n", in_shell(folder.path.string()));
   if (result.end == RunEnd::failed && root)
-    say_error(formatted("numerical failure at t = %g: ", state.row.t * run.units.time()) +
+    say_error(formatted("numerical failure at t = %g: ", state.observables.t * run.units.time()) +
               result.why);
   return exit_code(result);
 }
@@ -137,7 +137,7 @@ int run(const RunRequest& request) {
   const RunFolder folder =
       shared_folder(*run.ranks, [&] { return create_run_folder(request.out, configuration); });
   if (!quiet) say("  %-22s %s\n\n", "folder", folder.path);
-  return carry_out(configuration, run, folder, std::nullopt, quiet);
+  return execute_run(configuration, run, folder, std::nullopt, quiet);
 }
 
 int resume(const ResumeRequest& request) {
@@ -162,7 +162,7 @@ int resume(const ResumeRequest& request) {
       say("  %-22s %s, which has no checkpoint; the run starts again\n\n", "restarted",
           folder.path);
   }
-  return carry_out(configuration, run, folder, checkpoint, quiet);
+  return execute_run(configuration, run, folder, checkpoint, quiet);
 }
 
 Action define_run(CLI::App& app) {

@@ -19,12 +19,12 @@ namespace traceraft {
 // A step or an output time of a run.
 struct RunMoment {
   const RunSetup& run;
-  const Observables& row;
+  const Observables& observables;
   double t;  // in the units of the outputs; at an output time, as the user wrote it
   IntegratorStatistics steps;
   LinearStatistics linear;
 
-  RunMoment(const RunSetup& run, const Observables& row, double t);
+  RunMoment(const RunSetup& run, const Observables& observables, double t);
   const Units& units() const { return run.units; }
 };
 

@@ -64,11 +64,11 @@ TableWriter::TableWriter(const RunFolder& folder, const RunSetup& run, const Tab
 }
 
 void TableWriter::on_step(const RunState& state) {
-  series_.append(
-      csv_row(run_columns(), RunMoment(run_, state.row, state.row.t * run_.units.time())));
+  series_.append(csv_row(
+      run_columns(), RunMoment(run_, state.observables, state.observables.t * run_.units.time())));
 }
 
-void TableWriter::on_output(const Observables& row, const RaftReport& rafts, ConstVec) {
+void TableWriter::on_output(const Observables& row, const RaftReport& rafts, VecView) {
   const double t = run_.output_labels[output_index(run_, row.t)];
   observables_.append(csv_row(run_columns(), RunMoment(run_, row, t)));
   std::string text;
@@ -88,7 +88,7 @@ TableExtents TableWriter::extents() const {
           {"rafts.csv", rafts_.extent()}};
 }
 
-void FieldWriter::on_output(const Observables& row, const RaftReport& rafts, ConstVec y) {
+void FieldWriter::on_output(const Observables& row, const RaftReport& rafts, VecView y) {
   const Communicator& ranks = *run_.ranks;
   const SurfaceSpace& space = *run_.space;
   const std::size_t index = output_index(run_, row.t);

@@ -21,7 +21,7 @@ class TableWriter final : public RunListener {
   // `extents`: as a checkpoint recorded them; empty for a new run. Throws IoError.
   TableWriter(const RunFolder& folder, const RunSetup& run, const TableExtents& extents);
   void on_step(const RunState& state) override;
-  void on_output(const Observables& row, const RaftReport& rafts, ConstVec y) override;
+  void on_output(const Observables& row, const RaftReport& rafts, VecView y) override;
   void sync();
   TableExtents extents() const;
 
@@ -36,7 +36,7 @@ class TableWriter final : public RunListener {
 class FieldWriter final : public RunListener {
  public:
   FieldWriter(const RunFolder& folder, const RunSetup& run) : folder_(folder), run_(run) {}
-  void on_output(const Observables& row, const RaftReport& rafts, ConstVec y) override;
+  void on_output(const Observables& row, const RaftReport& rafts, VecView y) override;
 
  private:
   void collect(std::size_t newest) const;

@@ -39,7 +39,7 @@ void line(const char* label, const std::string& value) {
 // The energy, and what became of steps that gained some.
 std::string energy_text(const Configuration& configuration, const RunSetup& run,
                         const RunState& state) {
-  const std::string energy = formatted("%.6g %s", state.row.energy * run.units.area(),
+  const std::string energy = formatted("%.6g %s", state.observables.energy * run.units.area(),
                                        unit_name(Unit::area, run.units.scaled).c_str());
   if (!run.problem->dissipates_energy()) return energy + " (the energy may grow in this model)";
   if (configuration.options().energy_guard == "off") return energy;
@@ -83,7 +83,7 @@ std::string summary_json(const Configuration& configuration, const RunSetup& run
                    {"seconds_per_unit", units.seconds_per_unit()}};
   json["energy_guard"] = configuration.options().energy_guard;
   json["energy_decay_promised"] = decay_promised(run);
-  const RunMoment end(run, state.row, state.row.t * units.time());
+  const RunMoment end(run, state.observables, state.observables.t * units.time());
   for (const auto& column : run_columns()) put(json, column.name, column.unit, column.value(end));
   const RunTotals totals{end, state.monitor, cost, memory_mb};
   for (const auto& total : run_totals()) put(json, total.name, total.unit, total.value(totals));
@@ -170,7 +170,7 @@ void print_summary(const Configuration& configuration, const RunSetup& run, cons
                    const RunResult& result, const RunCost& cost, double memory_mb,
                    const RunFolder& folder) {
   const Units& units = run.units;
-  const Observables& row = state.row;
+  const Observables& row = state.observables;
   const IntegratorStatistics steps = run.integrator->statistics();
   const LinearStatistics linear = run.integrator->linear_statistics();
   const std::string length = unit_name(Unit::length, units.scaled);

@@ -20,7 +20,7 @@ GlobalOrder::GlobalOrder(const std::vector<std::int64_t>& ids,
       id = std::lower_bound(all.begin(), all.end(), id) - all.begin();
 }
 
-Vec GlobalOrder::gathered(ConstVec local) const {
+Vec GlobalOrder::gathered(VecView local) const {
   if (ranks_->size() == 1) return local;
   const Lists<double> parts =
       gather(*ranks_, std::vector<double>(local.data(), local.data() + local.size()));
@@ -30,7 +30,7 @@ Vec GlobalOrder::gathered(ConstVec local) const {
   return whole;
 }
 
-Vec GlobalOrder::scattered(ConstVec whole) const {
+Vec GlobalOrder::scattered(VecView whole) const {
   if (ranks_->size() == 1) return whole;
   Lists<double> parts;
   for (const auto& of_rank : position_) {

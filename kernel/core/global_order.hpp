@@ -21,9 +21,9 @@ class GlobalOrder {
   const Communicator& ranks() const { return *ranks_; }
 
   // The whole field on the first rank, nothing on the others.
-  Vec gathered(ConstVec local) const;
+  Vec gathered(VecView local) const;
   // This rank's part of a field that the first rank gives.
-  Vec scattered(ConstVec whole) const;
+  Vec scattered(VecView whole) const;
 
  private:
   std::shared_ptr<const Communicator> ranks_;

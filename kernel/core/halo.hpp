@@ -14,7 +14,7 @@ struct Halo {
   std::shared_ptr<const Communicator> ranks;
 
   // The field with its ghosts, in `buffer`; refers to `field` where there are none.
-  Eigen::Ref<const Vec> with_ghosts(ConstVec field, Vec& buffer) const {
+  Eigen::Ref<const Vec> with_ghosts(VecView field, Vec& buffer) const {
     if (local == owned) return field;
     buffer.resize(local);
     buffer.head(owned) = field;

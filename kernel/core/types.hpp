@@ -6,10 +6,10 @@
 
 namespace traceraft {
 
-using Point = Eigen::Vector3d;                  // coordinates in units of the surface scale R
-using Vec = Eigen::VectorXd;                    // owned, contiguous
-using VecRef = Eigen::Ref<Eigen::VectorXd>;     // written in place
-using ConstVec = const Eigen::Ref<const Vec>&;  // read only, no copy of contiguous data
+using Point = Eigen::Vector3d;                 // coordinates in units of the surface scale R
+using Vec = Eigen::VectorXd;                   // owned, contiguous
+using VecRef = Eigen::Ref<Eigen::VectorXd>;    // written in place
+using VecView = const Eigen::Ref<const Vec>&;  // read only, no copy of contiguous data
 
 constexpr double kPi = 3.14159265358979323846;
 

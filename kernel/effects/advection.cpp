@@ -22,18 +22,18 @@ class Advection final : public Effect {
     if (require_surface_) require_surface_(space);
   }
 
-  void add_residual(const SurfaceSpace& space, double t, ConstVec c, ConstVec, VecRef residual_c,
+  void add_residual(const SurfaceSpace& space, double t, VecView c, VecView, VecRef residual_c,
                     VecRef) const override {
     CsrMatrix matrix(space.pattern);
     add_matrix(space, t, matrix);
     matrix.multiply_add(1, c, residual_c, *space.team);
   }
-  void add_tangent(const SurfaceSpace& space, double t, ConstVec, ConstVec,
+  void add_tangent(const SurfaceSpace& space, double t, VecView, VecView,
                    BlockJacobian& J) const override {
     add_matrix(space, t, J.cc);
   }
-  void add_tangent_product(const SurfaceSpace& space, double t, ConstVec c, ConstVec mu,
-                           ConstVec direction_c, ConstVec, VecRef product_c,
+  void add_tangent_product(const SurfaceSpace& space, double t, VecView c, VecView mu,
+                           VecView direction_c, VecView, VecRef product_c,
                            VecRef product_mu) const override {
     (void)c;
     add_residual(space, t, direction_c, mu, product_c, product_mu);

@@ -32,7 +32,7 @@ Vec mean_curvature(const SurfaceSpace& space) {
   Vec curvature = Vec::Zero(n), x(n), load(n), vector(n), normal(n), buffer;
   Vec squares = Vec::Zero(n);
   // ∇_Γ x errs by O(h), and its divergence by O(1). All of h S is needed to smooth that.
-  const CsrMatrix smoothing = combine(1, space.mass, space.h(), space.normal);
+  const CsrMatrix smoothing = combine(1, space.mass, space.h(), space.normal_stiffness);
   const auto solve = [&](const Vec& right, Vec& solution) {
     if (const Status status = space.solve_spd(smoothing, right, solution, 1e-14); !status.ok())
       throw std::runtime_error("the curvature of the surface: " + status.why);
@@ -69,7 +69,7 @@ EffectEntry curvature_effect() {
         });
         model.effects.push_back(nodal_potential(
             {"curvature", -p["strength"], false,
-             [curvature](const SurfaceSpace& space, ConstVec) { return *curvature->on(space); }}));
+             [curvature](const SurfaceSpace& space, VecView) { return *curvature->on(space); }}));
       }};
 }
 

@@ -18,7 +18,7 @@ class LocalDensityEffect final : public Effect {
     return density_.dissipates_energy && density_.slot == Slot::potential;
   }
 
-  void add_residual(const SurfaceSpace& space, double t, ConstVec c, ConstVec mu, VecRef residual_c,
+  void add_residual(const SurfaceSpace& space, double t, VecView c, VecView mu, VecRef residual_c,
                     VecRef residual_mu) const override {
     const Values at(*this, space, t, c, mu);
     add_density_load(
@@ -26,7 +26,7 @@ class LocalDensityEffect final : public Effect {
         density_.slot == Slot::source ? residual_c : residual_mu);
   }
 
-  void add_tangent(const SurfaceSpace& space, double t, ConstVec c, ConstVec mu,
+  void add_tangent(const SurfaceSpace& space, double t, VecView c, VecView mu,
                    BlockJacobian& J) const override {
     const Values at(*this, space, t, c, mu);
     const bool source = density_.slot == Slot::source;
@@ -39,8 +39,8 @@ class LocalDensityEffect final : public Effect {
                            {source ? &J.cc : &J.mc, source ? &J.cm : &J.mm});
   }
 
-  void add_tangent_product(const SurfaceSpace& space, double t, ConstVec c, ConstVec mu,
-                           ConstVec direction_c, ConstVec direction_mu, VecRef product_c,
+  void add_tangent_product(const SurfaceSpace& space, double t, VecView c, VecView mu,
+                           VecView direction_c, VecView direction_mu, VecRef product_c,
                            VecRef product_mu) const override {
     const Values at(*this, space, t, c, mu);
     const Vec along_c = trace(space, direction_c), along_mu = trace(space, direction_mu);
@@ -54,7 +54,7 @@ class LocalDensityEffect final : public Effect {
         density_.slot == Slot::source ? product_c : product_mu);
   }
 
-  double energy(const SurfaceSpace& space, ConstVec c) const override {
+  double energy(const SurfaceSpace& space, VecView c) const override {
     if (density_.slot == Slot::source) return 0;
     const Values at(*this, space, 0, c, Vec::Zero(c.size()));
     Vec load = Vec::Zero(space.nodes());
@@ -67,8 +67,8 @@ class LocalDensityEffect final : public Effect {
   // The density at the points of the quadrature.
   class Values {
    public:
-    Values(const LocalDensityEffect& effect, const SurfaceSpace& space, double t, ConstVec c,
-           ConstVec mu)
+    Values(const LocalDensityEffect& effect, const SurfaceSpace& space, double t, VecView c,
+           VecView mu)
         : value_(effect.density_.value),
           space_(space),
           t_(t),

@@ -18,12 +18,12 @@ class MobilityFlux final : public Effect {
   bool conserves_mass() const override { return true; }
   bool dissipates_energy() const override { return dissipates_; }
 
-  void add_residual(const SurfaceSpace& space, double t, ConstVec c, ConstVec mu, VecRef residual_c,
+  void add_residual(const SurfaceSpace& space, double t, VecView c, VecView mu, VecRef residual_c,
                     VecRef) const override {
     add_mobility_flux(space, scaled(mobility_integrals(space, *law_, c), t), mu, residual_c);
   }
 
-  void add_tangent(const SurfaceSpace& space, double t, ConstVec c, ConstVec mu,
+  void add_tangent(const SurfaceSpace& space, double t, VecView c, VecView mu,
                    BlockJacobian& J) const override {
     std::vector<std::array<double, 4>> gradient;
     const std::vector<double> integral = scaled(mobility_integrals(space, *law_, c, gradient), t);
@@ -33,8 +33,8 @@ class MobilityFlux final : public Effect {
     add_mobility_derivative(space, factor_(t), mu, gradient, J.cc);
   }
 
-  void add_tangent_product(const SurfaceSpace& space, double t, ConstVec c, ConstVec mu,
-                           ConstVec direction_c, ConstVec direction_mu, VecRef product_c,
+  void add_tangent_product(const SurfaceSpace& space, double t, VecView c, VecView mu,
+                           VecView direction_c, VecView direction_mu, VecRef product_c,
                            VecRef) const override {
     std::vector<std::array<double, 4>> gradient;
     add_mobility_flux(space, scaled(mobility_integrals(space, *law_, c, gradient), t), direction_mu,
@@ -43,12 +43,12 @@ class MobilityFlux final : public Effect {
                       product_c);
   }
 
-  void add_stabilised(const SurfaceSpace& space, double t, ConstVec c,
+  void add_stabilised(const SurfaceSpace& space, double t, VecView c,
                       BlockJacobian& J) const override {
     add_stiffness(space, scaled(mobility_integrals(space, *law_, c), t), J);
   }
-  void add_stabilised_product(const SurfaceSpace& space, double t, ConstVec c,
-                              ConstVec direction_mu, VecRef product_c) const override {
+  void add_stabilised_product(const SurfaceSpace& space, double t, VecView c, VecView direction_mu,
+                              VecRef product_c) const override {
     add_mobility_flux(space, scaled(mobility_integrals(space, *law_, c), t), direction_mu,
                       product_c);
   }

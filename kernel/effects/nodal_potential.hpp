@@ -14,7 +14,7 @@ struct NodalPotential {
   std::string name;
   double strength;
   bool linear;
-  std::function<Vec(const SurfaceSpace&, ConstVec)> field;  // owned c to owned u
+  std::function<Vec(const SurfaceSpace&, VecView)> field;  // owned c to owned u
 };
 EffectPtr nodal_potential(NodalPotential potential);
 

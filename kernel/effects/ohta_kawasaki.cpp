@@ -12,7 +12,7 @@ namespace {
 using Factors = Eigen::SimplicialLLT<EigenMatrix>;
 
 CsrMatrix screened_stiffness(const SurfaceSpace& space, double kappa) {
-  return combine(1, combine(1, space.stiffness, space.h(), space.normal), kappa * kappa,
+  return combine(1, combine(1, space.stiffness, space.h(), space.normal_stiffness), kappa * kappa,
                  space.stabilised_mass);
 }
 
@@ -28,7 +28,7 @@ std::shared_ptr<const Factors> factors_of(const SurfaceSpace& space, double kapp
 
 // φ with (κ² − Δ_Γ) φ = c − mean(c), to roundoff. `factors`: on one rank.
 Vec screened_potential(const SurfaceSpace& space, double kappa, PerSpace<Factors>& factors,
-                       ConstVec c) {
+                       VecView c) {
   const Vec deviation = c.array() - space.integral(c) / space.area;
   Vec load = Vec::Zero(space.nodes()), potential(space.nodes()), buffer;
   space.stabilised_mass.multiply_add(1, space.with_ghosts(deviation, buffer), load, *space.team);
@@ -63,7 +63,7 @@ EffectEntry ohta_kawasaki_effect() {
                 [kappa](const SurfaceSpace& space) { return factors_of(space, kappa); });
             model.effects.push_back(
                 nodal_potential({"ohta-kawasaki", p["strength"], true,
-                                 [kappa, factors](const SurfaceSpace& space, ConstVec c) {
+                                 [kappa, factors](const SurfaceSpace& space, VecView c) {
                                    return screened_potential(space, kappa, *factors, c);
                                  }}));
           }};

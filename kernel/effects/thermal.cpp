@@ -42,14 +42,14 @@ class ThermalNoise final : public Effect {
   bool dissipates_energy() const override { return false; }
   double longest_step() const override { return 0.5 * tau_; }
 
-  void add_residual(const SurfaceSpace& space, double t, ConstVec c, ConstVec, VecRef residual_c,
+  void add_residual(const SurfaceSpace& space, double t, VecView c, VecView, VecRef residual_c,
                     VecRef) const override {
     const std::vector<double> integral = mobility_integrals(space, *law_, c);
     for (std::size_t e = 0; e < space.elements.size(); ++e)
       add_flux(space, e, std::sqrt(integral[e]), t, residual_c);
   }
 
-  void add_tangent(const SurfaceSpace& space, double t, ConstVec c, ConstVec,
+  void add_tangent(const SurfaceSpace& space, double t, VecView c, VecView,
                    BlockJacobian& J) const override {
     std::vector<std::array<double, 4>> gradient;
     const std::vector<double> integral = mobility_integrals(space, *law_, c, gradient);
@@ -61,9 +61,8 @@ class ThermalNoise final : public Effect {
         J.cc);
   }
 
-  void add_tangent_product(const SurfaceSpace& space, double t, ConstVec c, ConstVec,
-                           ConstVec direction_c, ConstVec, VecRef product_c,
-                           VecRef) const override {
+  void add_tangent_product(const SurfaceSpace& space, double t, VecView c, VecView,
+                           VecView direction_c, VecView, VecRef product_c, VecRef) const override {
     std::vector<std::array<double, 4>> gradient;
     const std::vector<double> integral = mobility_integrals(space, *law_, c, gradient);
     for (std::size_t e = 0; e < space.elements.size(); ++e) {

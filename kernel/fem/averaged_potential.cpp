@@ -8,7 +8,7 @@ namespace {
 
 using Nodes = Eigen::Vector4d;  // a number per node of a tetrahedron
 
-Nodes values_at(const CutElement& element, ConstVec field) {
+Nodes values_at(const CutElement& element, VecView field) {
   return {field[element.node[0]], field[element.node[1]], field[element.node[2]],
           field[element.node[3]]};
 }
@@ -16,7 +16,7 @@ Nodes values_at(const CutElement& element, ConstVec field) {
 // E_T and its derivatives by the nodal values of c.
 class ElementEnergy {
  public:
-  ElementEnergy(const SurfaceSpace& space, std::size_t e, const DoubleWell& well, ConstVec c)
+  ElementEnergy(const SurfaceSpace& space, std::size_t e, const DoubleWell& well, VecView c)
       : area_(space.elements[e].area),
         mass_(space.moments[e].mass),
         p_(space.moments[e].mean.data()),
@@ -109,12 +109,12 @@ void add_element_loads(const SurfaceSpace& space, double factor, const Local& lo
 
 }  // namespace
 
-void add(const SurfaceSpace& space, const DoubleWell& well, double factor, ConstVec c, VecRef r) {
+void add(const SurfaceSpace& space, const DoubleWell& well, double factor, VecView c, VecRef r) {
   add_element_loads(
       space, factor, [&](std::size_t e) { return ElementEnergy(space, e, well, c).gradient(); }, r);
 }
 
-void add_tangent(const SurfaceSpace& space, const DoubleWell& well, double factor, ConstVec c,
+void add_tangent(const SurfaceSpace& space, const DoubleWell& well, double factor, VecView c,
                  CsrMatrix& matrix) {
   add_element_matrices(
       space,
@@ -125,7 +125,7 @@ void add_tangent(const SurfaceSpace& space, const DoubleWell& well, double facto
 }
 
 void add_tangent_product(const SurfaceSpace& space, const DoubleWell& well, double factor,
-                         ConstVec c, ConstVec v, VecRef r) {
+                         VecView c, VecView v, VecRef r) {
   add_element_loads(
       space, factor,
       [&](std::size_t e) {
@@ -134,7 +134,7 @@ void add_tangent_product(const SurfaceSpace& space, const DoubleWell& well, doub
       r);
 }
 
-double energy(const SurfaceSpace& space, const DoubleWell& well, ConstVec c) {
+double energy(const SurfaceSpace& space, const DoubleWell& well, VecView c) {
   return space.team->sum(space.elements.size(), [&](std::size_t e, double& total) {
     if (space.mesh.owns(space.mesh.tets[e])) total += ElementEnergy(space, e, well, c).value();
   });

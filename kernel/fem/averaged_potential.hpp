@@ -23,11 +23,11 @@ inline constexpr double kSlopeTimesVariance = 0.4;  // η
 static_assert(kSlopeTimesVariance < kVarianceInMean, "the energy has to be bounded from below");
 
 // The meaning of potential.hpp; `c` and `v` have ghosts.
-void add(const SurfaceSpace& space, const DoubleWell& well, double factor, ConstVec c, VecRef r);
-void add_tangent(const SurfaceSpace& space, const DoubleWell& well, double factor, ConstVec c,
+void add(const SurfaceSpace& space, const DoubleWell& well, double factor, VecView c, VecRef r);
+void add_tangent(const SurfaceSpace& space, const DoubleWell& well, double factor, VecView c,
                  CsrMatrix& matrix);
 void add_tangent_product(const SurfaceSpace& space, const DoubleWell& well, double factor,
-                         ConstVec c, ConstVec v, VecRef r);
-double energy(const SurfaceSpace& space, const DoubleWell& well, ConstVec c);
+                         VecView c, VecView v, VecRef r);
+double energy(const SurfaceSpace& space, const DoubleWell& well, VecView c);
 
 }  // namespace traceraft::averaged_potential

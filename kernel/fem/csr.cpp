@@ -40,7 +40,7 @@ PatternPtr build_pattern(const ActiveMesh& mesh, std::shared_ptr<const Communica
   return pattern;
 }
 
-void CsrMatrix::multiply_add(double factor, ConstVec x, VecRef y, const ThreadTeam& team) const {
+void CsrMatrix::multiply_add(double factor, VecView x, VecRef y, const ThreadTeam& team) const {
   const SparsityPattern& p = *pattern;
   team.for_range(p.rows(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -51,12 +51,12 @@ void CsrMatrix::multiply_add(double factor, ConstVec x, VecRef y, const ThreadTe
   });
 }
 
-void CsrMatrix::multiply(ConstVec x, VecRef y, const ThreadTeam& team) const {
+void CsrMatrix::multiply(VecView x, VecRef y, const ThreadTeam& team) const {
   y.setZero();
   multiply_add(1.0, x, y, team);
 }
 
-double CsrMatrix::quadratic(ConstVec x, ConstVec y, const ThreadTeam& team) const {
+double CsrMatrix::quadratic(VecView x, VecView y, const ThreadTeam& team) const {
   Vec product = Vec::Zero(pattern->rows());
   multiply_add(1.0, y, product, team);
   return dot(x.head(pattern->rows()), product);
@@ -69,7 +69,7 @@ CsrMatrix combine(double a, const CsrMatrix& A, double b, const CsrMatrix& B) {
   return result;
 }
 
-double dot(ConstVec x, ConstVec y) {
+double dot(VecView x, VecView y) {
   // Four running sums: vectorisable without letting the compiler reorder anything.
   double sum[4] = {0, 0, 0, 0};
   const Eigen::Index quarter = x.size() / 4 * 4;

@@ -36,17 +36,17 @@ struct CsrMatrix {
   explicit CsrMatrix(PatternPtr p) : pattern(std::move(p)), values(pattern->entries(), 0.0) {}
 
   // y += factor · A x; x has ghosts
-  void multiply_add(double factor, ConstVec x, VecRef y, const ThreadTeam& team) const;
+  void multiply_add(double factor, VecView x, VecRef y, const ThreadTeam& team) const;
   // y = A x
-  void multiply(ConstVec x, VecRef y, const ThreadTeam& team) const;
+  void multiply(VecView x, VecRef y, const ThreadTeam& team) const;
   // xᵀ A y on the owned rows
-  double quadratic(ConstVec x, ConstVec y, const ThreadTeam& team) const;
+  double quadratic(VecView x, VecView y, const ThreadTeam& team) const;
 };
 
 // a·A + b·B on the common pattern
 CsrMatrix combine(double a, const CsrMatrix& A, double b, const CsrMatrix& B);
 
 // xᵀy in one fixed order, so that a resumed run repeats it bitwise.
-double dot(ConstVec x, ConstVec y);
+double dot(VecView x, VecView y);
 
 }  // namespace traceraft

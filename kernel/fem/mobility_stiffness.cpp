@@ -8,7 +8,7 @@ namespace traceraft {
 namespace {
 
 // G_T μ_T: the flux through the nodes of an element whose mobility integrates to one.
-std::array<double, 4> unit_flux(const CutElement& element, ConstVec mu) {
+std::array<double, 4> unit_flux(const CutElement& element, VecView mu) {
   std::array<double, 4> flux{};
   for (int k = 0; k < 6; ++k) {
     const auto& [i, j] = kTetEdges[k];
@@ -63,7 +63,7 @@ void add_integrals(const SurfaceSpace& space, const Mobility& law, const Vec& po
   }
 }
 
-std::vector<double> evaluate_integrals(const SurfaceSpace& space, const Mobility& law, ConstVec c,
+std::vector<double> evaluate_integrals(const SurfaceSpace& space, const Mobility& law, VecView c,
                                        std::vector<std::array<double, 4>>* gradient) {
   const std::size_t elements = space.elements.size();
   const Vec point_value = trace(space, c);
@@ -101,11 +101,11 @@ std::vector<double> edge_weights(const SurfaceSpace& space, const std::vector<do
 
 }  // namespace
 
-std::vector<double> mobility_integrals(const SurfaceSpace& space, const Mobility& law, ConstVec c) {
+std::vector<double> mobility_integrals(const SurfaceSpace& space, const Mobility& law, VecView c) {
   return evaluate_integrals(space, law, c, nullptr);
 }
 
-std::vector<double> mobility_integrals(const SurfaceSpace& space, const Mobility& law, ConstVec c,
+std::vector<double> mobility_integrals(const SurfaceSpace& space, const Mobility& law, VecView c,
                                        std::vector<std::array<double, 4>>& gradient) {
   return evaluate_integrals(space, law, c, &gradient);
 }
@@ -115,7 +115,7 @@ void assemble_mobility_stiffness(const SurfaceSpace& space, const std::vector<do
   fill_zero_row_sum(edge_weights(space, integral), space.blocks, *space.team, matrix);
 }
 
-void add_mobility_flux(const SurfaceSpace& space, const std::vector<double>& integral, ConstVec u,
+void add_mobility_flux(const SurfaceSpace& space, const std::vector<double>& integral, VecView u,
                        VecRef r) {
   const SparsityPattern& pattern = *space.pattern;
   const std::vector<double> weight = edge_weights(space, integral);
@@ -132,7 +132,7 @@ void add_mobility_flux(const SurfaceSpace& space, const std::vector<double>& int
 
 std::vector<double> mobility_change(const SurfaceSpace& space,
                                     const std::vector<std::array<double, 4>>& gradient,
-                                    ConstVec direction) {
+                                    VecView direction) {
   std::vector<double> change(gradient.size(), 0);
   space.team->for_range(change.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e)
@@ -142,7 +142,7 @@ std::vector<double> mobility_change(const SurfaceSpace& space,
   return change;
 }
 
-void add_mobility_derivative(const SurfaceSpace& space, double factor, ConstVec mu,
+void add_mobility_derivative(const SurfaceSpace& space, double factor, VecView mu,
                              const std::vector<std::array<double, 4>>& gradient,
                              CsrMatrix& matrix) {
   add_element_matrices(

@@ -11,10 +11,10 @@
 namespace traceraft {
 
 // I_T by the edge-midpoint rule on each triangle (exact for quadratic M). `c` has ghosts.
-std::vector<double> mobility_integrals(const SurfaceSpace& space, const Mobility& law, ConstVec c);
+std::vector<double> mobility_integrals(const SurfaceSpace& space, const Mobility& law, VecView c);
 
 // The same with ∂I_T/∂c_i at the four nodes of each element (zero where floored).
-std::vector<double> mobility_integrals(const SurfaceSpace& space, const Mobility& law, ConstVec c,
+std::vector<double> mobility_integrals(const SurfaceSpace& space, const Mobility& law, VecView c,
                                        std::vector<std::array<double, 4>>& gradient);
 
 // Σ_T I_T G_T. Rows sum to zero exactly, so 1ᵀ K_M = 0 conserves mass to roundoff.
@@ -22,16 +22,16 @@ void assemble_mobility_stiffness(const SurfaceSpace& space, const std::vector<do
                                  CsrMatrix& matrix);
 
 // r += Σ_T I_T G_T u without assembling; each edge's flux is added once and subtracted once.
-void add_mobility_flux(const SurfaceSpace& space, const std::vector<double>& integral, ConstVec u,
+void add_mobility_flux(const SurfaceSpace& space, const std::vector<double>& integral, VecView u,
                        VecRef r);
 
 // How the integrals change along a direction of c (with ghosts).
 std::vector<double> mobility_change(const SurfaceSpace& space,
                                     const std::vector<std::array<double, 4>>& gradient,
-                                    ConstVec direction);
+                                    VecView direction);
 
 // matrix += factor · ∂(Σ_T I_T G_T μ)/∂c.
-void add_mobility_derivative(const SurfaceSpace& space, double factor, ConstVec mu,
+void add_mobility_derivative(const SurfaceSpace& space, double factor, VecView mu,
                              const std::vector<std::array<double, 4>>& gradient, CsrMatrix& matrix);
 
 }  // namespace traceraft

@@ -17,7 +17,7 @@ void for_each_point(double area, const std::array<double, 3>& corner, const Use&
     use(between_corners(corner, at), at, weight * area);
 }
 
-void add_nodal_tangent(const SurfaceSpace& space, const DoubleWell& well, double factor, ConstVec c,
+void add_nodal_tangent(const SurfaceSpace& space, const DoubleWell& well, double factor, VecView c,
                        CsrMatrix& matrix) {
   for (std::size_t k = 0; k < matrix.values.size(); ++k)
     matrix.values[k] += factor * space.mass.values[k] * well.second(c[matrix.pattern->column[k]]);
@@ -26,7 +26,7 @@ void add_nodal_tangent(const SurfaceSpace& space, const DoubleWell& well, double
 }  // namespace
 
 void add_potential(const SurfaceSpace& space, const DoubleWell& well, PotentialRule rule,
-                   double factor, ConstVec c, VecRef r) {
+                   double factor, VecView c, VecRef r) {
   if (rule == PotentialRule::averaged) return averaged_potential::add(space, well, factor, c, r);
   if (rule == PotentialRule::nodal) {
     const Vec derivative = c.unaryExpr([&](double value) { return well.derivative(value); });
@@ -48,7 +48,7 @@ void add_potential(const SurfaceSpace& space, const DoubleWell& well, PotentialR
 }
 
 void add_potential_tangent(const SurfaceSpace& space, const DoubleWell& well, PotentialRule rule,
-                           double factor, ConstVec c, CsrMatrix& matrix) {
+                           double factor, VecView c, CsrMatrix& matrix) {
   if (rule == PotentialRule::averaged)
     return averaged_potential::add_tangent(space, well, factor, c, matrix);
   if (rule == PotentialRule::nodal) return add_nodal_tangent(space, well, factor, c, matrix);
@@ -63,7 +63,7 @@ void add_potential_tangent(const SurfaceSpace& space, const DoubleWell& well, Po
 }
 
 void add_potential_tangent_product(const SurfaceSpace& space, const DoubleWell& well,
-                                   PotentialRule rule, double factor, ConstVec c, ConstVec v,
+                                   PotentialRule rule, double factor, VecView c, VecView v,
                                    VecRef r) {
   if (rule == PotentialRule::averaged)
     return averaged_potential::add_tangent_product(space, well, factor, c, v, r);
@@ -89,7 +89,7 @@ void add_potential_tangent_product(const SurfaceSpace& space, const DoubleWell& 
 }
 
 double potential_energy(const SurfaceSpace& space, const DoubleWell& well, PotentialRule rule,
-                        ConstVec c) {
+                        VecView c) {
   if (rule == PotentialRule::averaged) return averaged_potential::energy(space, well, c);
   const Vec point_value = trace(space, c);
   const std::vector<double>& area = space.surface.triangle_area;

@@ -146,8 +146,8 @@ SurfaceSpace::SurfaceSpace(Geometry geometry, std::shared_ptr<const ThreadTeam> 
       mass_stabilisation(mass_stabilisation_),
       mass(mass_matrix(*this)),
       stiffness(stiffness_matrix(*this)),
-      normal(normal_matrix(*this)),
-      stabilised_mass(combine(1.0, mass, mass_stabilisation * h(), normal)),
+      normal_stiffness(normal_matrix(*this)),
+      stabilised_mass(combine(1.0, mass, mass_stabilisation * h(), normal_stiffness)),
       node_area(Vec::Zero(nodes())),
       totals(totals_of(mesh, surface, *communicator)),
       order({mesh.node_id.begin(), mesh.node_id.begin() + mesh.owned_nodes}, communicator) {
@@ -155,12 +155,12 @@ SurfaceSpace::SurfaceSpace(Geometry geometry, std::shared_ptr<const ThreadTeam> 
   area = communicator->sum(node_area.sum());
 }
 
-double SurfaceSpace::bilinear(const CsrMatrix& A, ConstVec u, ConstVec v) const {
+double SurfaceSpace::bilinear(const CsrMatrix& A, VecView u, VecView v) const {
   Vec buffer;
   return communicator->sum(A.quadratic(u, with_ghosts(v, buffer), *team));
 }
 
-Status SurfaceSpace::solve_spd(const CsrMatrix& A, ConstVec b, VecRef x, double tolerance) const {
+Status SurfaceSpace::solve_spd(const CsrMatrix& A, VecView b, VecRef x, double tolerance) const {
   const auto global_dot = [&](const Vec& u, const Vec& v) { return communicator->sum(dot(u, v)); };
   Vec inverse_diagonal(nodes());
   for (int i = 0; i < nodes(); ++i) inverse_diagonal[i] = 1 / A.values[pattern->diagonal[i]];
@@ -184,7 +184,7 @@ Status SurfaceSpace::solve_spd(const CsrMatrix& A, ConstVec b, VecRef x, double 
   return {};
 }
 
-Status SurfaceSpace::solve_mass(ConstVec b, VecRef x) const {
+Status SurfaceSpace::solve_mass(VecView b, VecRef x) const {
   if (Status status = solve_spd(stabilised_mass, b, x, 1e-14); !status.ok()) return status;
   const double defect = communicator->sum(b.sum()) - integral(x);
   x.array() += defect / area;

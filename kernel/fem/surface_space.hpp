@@ -43,12 +43,12 @@ class SurfaceSpace {
   const PatternPtr pattern;
   const double mass_stabilisation;
 
-  CsrMatrix mass;             // M_ij = ∫_Γ φ_i φ_j: singular, see stabilised_mass
-  CsrMatrix stiffness;        // K_ij = ∫_Γ ∇_Γφ_i·∇_Γφ_j
-  CsrMatrix normal;           // S_ij = ∫_cut tets (n·∇φ_i)(n·∇φ_j) dx; S·1 = 0
-  CsrMatrix stabilised_mass;  // M̃ = M + mass_stabilisation h S
-  Vec node_area;              // w_i = ∫_Γ φ_i, so ∫_Γ c_h = w·c
-  double area;                // Σ w_i: of Γ, by lifted triangles
+  CsrMatrix mass;              // M_ij = ∫_Γ φ_i φ_j: singular, see stabilised_mass
+  CsrMatrix stiffness;         // K_ij = ∫_Γ ∇_Γφ_i·∇_Γφ_j
+  CsrMatrix normal_stiffness;  // S_ij = ∫_cut tets (n·∇φ_i)(n·∇φ_j) dx; S·1 = 0
+  CsrMatrix stabilised_mass;   // M̃ = M + mass_stabilisation h S
+  Vec node_area;               // w_i = ∫_Γ φ_i, so ∫_Γ c_h = w·c
+  double area;                 // Σ w_i: of Γ, by lifted triangles
 
   // Over all ranks.
   struct Totals {
@@ -63,24 +63,24 @@ class SurfaceSpace {
   bool owns_triangle(std::size_t t) const { return mesh.owns(mesh.tets[surface.triangle_tet[t]]); }
 
   // Local field (ghosts included) of an owned one; refers to `owned` where there are no ghosts.
-  Eigen::Ref<const Vec> with_ghosts(ConstVec owned, Vec& buffer) const {
+  Eigen::Ref<const Vec> with_ghosts(VecView owned, Vec& buffer) const {
     return pattern->halo.with_ghosts(owned, buffer);
   }
 
   // uᵀ A v over all ranks, for owned nodal fields.
-  double bilinear(const CsrMatrix& A, ConstVec u, ConstVec v) const;
-  double quadratic(const CsrMatrix& A, ConstVec u) const { return bilinear(A, u, u); }
+  double bilinear(const CsrMatrix& A, VecView u, VecView v) const;
+  double quadratic(const CsrMatrix& A, VecView u) const { return bilinear(A, u, u); }
   // ∫_Γ u v over all ranks.
-  double inner(ConstVec u, ConstVec v) const { return bilinear(mass, u, v); }
+  double inner(VecView u, VecView v) const { return bilinear(mass, u, v); }
   // ∫_Γ c over all ranks.
-  double integral(ConstVec c) const { return communicator->sum(dot(node_area, c)); }
+  double integral(VecView c) const { return communicator->sum(dot(node_area, c)); }
 
   // Solves A x = b for a symmetric positive definite A by conjugate gradients, to a relative
   // tolerance. A is as well conditioned as M̃ (7–9 after diagonal scaling), or as K + κ² M̃
   // (h^(-2), for which roundoff takes some 30/h iterations).
-  Status solve_spd(const CsrMatrix& A, ConstVec b, VecRef x, double tolerance) const;
+  Status solve_spd(const CsrMatrix& A, VecView b, VecRef x, double tolerance) const;
   // M̃ x = b, with ∫x = 1ᵀb exactly up to roundoff.
-  Status solve_mass(ConstVec b, VecRef x) const;
+  Status solve_mass(VecView b, VecRef x) const;
 
  private:
   SurfaceSpace(Geometry geometry, std::shared_ptr<const ThreadTeam> team,

@@ -2,7 +2,7 @@
 
 namespace traceraft {
 
-Vec trace(const SurfaceSpace& space, ConstVec nodal) {
+Vec trace(const SurfaceSpace& space, VecView nodal) {
   const std::vector<CutPoint>& points = space.surface.points;
   Vec values(points.size());
   space.team->for_range(points.size(), [&](std::size_t begin, std::size_t end) {

@@ -9,7 +9,7 @@
 namespace traceraft {
 
 // P c. `nodal` has ghosts.
-Vec trace(const SurfaceSpace& space, ConstVec nodal);
+Vec trace(const SurfaceSpace& space, VecView nodal);
 
 // r += factor · Pᵀ load.
 void add_trace_transpose(const SurfaceSpace& space, double factor, const Vec& load, VecRef r);

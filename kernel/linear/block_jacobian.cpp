@@ -2,7 +2,7 @@
 
 namespace traceraft {
 
-void BlockJacobian::multiply(ConstVec x, VecRef y, const ThreadTeam& team) const {
+void BlockJacobian::multiply(VecView x, VecRef y, const ThreadTeam& team) const {
   const SparsityPattern& p = *cc.pattern;
   const int n = p.rows();
   Vec c_buffer, mu_buffer;

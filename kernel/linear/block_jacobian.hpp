@@ -32,7 +32,7 @@ struct BlockJacobian {
   const Communicator& ranks() const { return *cc.pattern->halo.ranks; }
 
   // y = J x; collective
-  void multiply(ConstVec x, VecRef y, const ThreadTeam& team) const;
+  void multiply(VecView x, VecRef y, const ThreadTeam& team) const;
 };
 
 }  // namespace traceraft

@@ -37,7 +37,7 @@ class BlockSolver final : public LinearSolver {
 
   bool wants_setup(const BlockJacobian& J, int) const override { return shared_.worn(J.shift); }
 
-  SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance,
+  SolveReport solve(const BlockJacobian& J, VecView b, VecRef x, double tolerance,
                     int lane_number) override {
     Lane& lane = lanes_[lane_number];
     LinearStatistics& statistics = shared_.of_lane(lane_number);
@@ -46,12 +46,12 @@ class BlockSolver final : public LinearSolver {
     if (!shared_.ready()) return {Status::retry("there are no factors")};
     const int n = J.block_size();
     const double row_scale = J.shift > 0 ? 1 / J.shift : 1.0;
-    const auto apply = [&](ConstVec in, VecRef out) {
+    const auto apply = [&](VecView in, VecRef out) {
       J.multiply(in, out, *team_);
       out.head(n) *= row_scale;
       return Status{};
     };
-    const auto precondition = [&](ConstVec in, VecRef out) {
+    const auto precondition = [&](VecView in, VecRef out) {
       lane.scaled = in;
       lane.scaled.head(n) /= row_scale;
       preconditioner_.apply(J, lane.scaled, out, *team_, lane_number);

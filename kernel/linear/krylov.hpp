@@ -11,7 +11,7 @@
 namespace traceraft {
 
 // out = A in, or out = P⁻¹ in. retry if it cannot be applied.
-using LinearOperator = std::function<Status(ConstVec in, VecRef out)>;
+using LinearOperator = std::function<Status(VecView in, VecRef out)>;
 
 // A Krylov method with a right (flexible) preconditioner, so that the residual it stops on is the
 // true one. ok only if ‖b − A x‖₂ ≤ tolerance · ‖b‖₂; x comes in as the initial guess, and is the
@@ -20,7 +20,7 @@ class KrylovMethod {
  public:
   virtual ~KrylovMethod() = default;
   virtual SolveReport solve(const LinearOperator& A, const LinearOperator& preconditioner,
-                            ConstVec b, VecRef x, double tolerance, int max_iterations) = 0;
+                            VecView b, VecRef x, double tolerance, int max_iterations) = 0;
 };
 
 // Factorises symmetric positive definite matrices of one pattern, again and again. Different
@@ -30,7 +30,7 @@ class SpdSolver {
   virtual ~SpdSolver() = default;
   virtual Status factorise(const CsrMatrix& A) = 0;  // retry: not positive definite
   // With the threads of the team, if it is not inside a task of it already.
-  virtual void solve(ConstVec b, VecRef x, const ThreadTeam& team, int lane) = 0;
+  virtual void solve(VecView b, VecRef x, const ThreadTeam& team, int lane) = 0;
 };
 
 using KrylovFactory = std::function<std::unique_ptr<KrylovMethod>()>;

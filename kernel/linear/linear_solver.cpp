@@ -14,14 +14,14 @@ LinearStatistics operator+(const LinearStatistics& a, const LinearStatistics& b)
           a.solve_seconds + b.solve_seconds};
 }
 
-double scaled_norm(const BlockJacobian& J, ConstVec b) {
+double scaled_norm(const BlockJacobian& J, VecView b) {
   const int n = J.block_size();
   const double scale = J.shift > 0 ? 1 / J.shift : 1.0;
   return std::sqrt(
       J.ranks().sum(scale * scale * dot(b.head(n), b.head(n)) + dot(b.tail(n), b.tail(n))));
 }
 
-Status judged_by_residual(const Status& said, const BlockJacobian& J, ConstVec b, ConstVec x,
+Status judged_by_residual(const Status& said, const BlockJacobian& J, VecView b, VecView x,
                           double tolerance, const ThreadTeam& team) {
   constexpr double kSlack = 1.01;
   Vec residual(b.size());
@@ -32,7 +32,7 @@ Status judged_by_residual(const Status& said, const BlockJacobian& J, ConstVec b
   return said.ok() ? Status::retry("the residual is larger than the method says") : said;
 }
 
-void restore_mass(const BlockJacobian& J, ConstVec b, VecRef x) {
+void restore_mass(const BlockJacobian& J, VecView b, VecRef x) {
   const int n = J.block_size();
   const SparsityPattern& pattern = *J.cc.pattern;
   Vec c_buffer, mu_buffer;

@@ -47,7 +47,7 @@ class LinearSolver {
   virtual bool shares_factors() const = 0;
   virtual Status setup(const BlockJacobian& J, int lane = 0) = 0;
   virtual bool wants_setup(const BlockJacobian& J, int lane = 0) const = 0;
-  virtual SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance,
+  virtual SolveReport solve(const BlockJacobian& J, VecView b, VecRef x, double tolerance,
                             int lane = 0) = 0;
   virtual LinearStatistics statistics() const = 0;
   virtual void save(CheckpointOut out) const = 0;
@@ -65,16 +65,16 @@ struct LinearSolverChoice {
 };
 
 // D of the contract: the first block row is divided by the shift so that one norm judges both.
-double scaled_norm(const BlockJacobian& J, ConstVec b);
+double scaled_norm(const BlockJacobian& J, VecView b);
 
 // The explicit residual b − J x of the last iterate decides, not what an iterative method says of
 // it. The status is ok if the residual is as small as the contract says, up to rounding. Otherwise
 // it is what the method said, or that it was mistaken. Collective.
-Status judged_by_residual(const Status& said, const BlockJacobian& J, ConstVec b, ConstVec x,
+Status judged_by_residual(const Status& said, const BlockJacobian& J, VecView b, VecView x,
                           double tolerance, const ThreadTeam& team);
 
 // Shifts the differential half of x by a constant so that 1ᵀ(cc δc + cm δμ) = 1ᵀb₁ exactly. The
 // stiffness terms drop out of that sum, so it is the mass balance of the step.
-void restore_mass(const BlockJacobian& J, ConstVec b, VecRef x);
+void restore_mass(const BlockJacobian& J, VecView b, VecRef x);
 
 }  // namespace traceraft

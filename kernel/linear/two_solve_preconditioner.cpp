@@ -54,7 +54,7 @@ Status TwoSolvePreconditioner::factorise(const BlockJacobian& J, const ThreadTea
   return status[0].ok() ? status[1] : status[0];
 }
 
-void TwoSolvePreconditioner::apply(const BlockJacobian& J, ConstVec r, VecRef z,
+void TwoSolvePreconditioner::apply(const BlockJacobian& J, VecView r, VecRef z,
                                    const ThreadTeam& team, int lane) {
   const int n = J.block_size();
   auto& [right, v] = work_[lane];

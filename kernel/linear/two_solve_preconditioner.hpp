@@ -43,7 +43,7 @@ class TwoSolvePreconditioner {
   Status setup(const BlockJacobian& J, const ThreadTeam& team);
 
   // z ≈ J⁻¹ r, with M taken from `J`. Lanes may be used at the same time.
-  void apply(const BlockJacobian& J, ConstVec r, VecRef z, const ThreadTeam& team, int lane);
+  void apply(const BlockJacobian& J, VecView r, VecRef z, const ThreadTeam& team, int lane);
 
  private:
   Status factorise(const BlockJacobian& J, const ThreadTeam& team);  // with p_ and q_

@@ -32,7 +32,7 @@ inline double triangle_area(const Point& a, const Point& b, const Point& c) {
 struct CutPoint {
   int low, high;  // nodes of the edge
   double s;       // x = (1 − s) x_low + s x_high
-  double trace(ConstVec nodal) const { return (1 - s) * nodal[low] + s * nodal[high]; }
+  double trace(VecView nodal) const { return (1 - s) * nodal[low] + s * nodal[high]; }
 };
 
 struct CutSurface {

@@ -14,11 +14,11 @@ double Observer::mass_scale() const {
   return problem_.space().area * (problem_.model().well.b - problem_.model().well.a);
 }
 
-RaftReport Observer::rafts(ConstVec y) const {
+RaftReport Observer::rafts(VecView y) const {
   return finder_.find(problem_.c_of(y), level());
 }
 
-Observables Observer::measure(double t, ConstVec y, const RaftReport& report) const {
+Observables Observer::measure(double t, VecView y, const RaftReport& report) const {
   const SurfaceSpace& space = problem_.space();
   const auto c = problem_.c_of(y);
   const double gradient = problem_.model().epsilon * space.quadratic(space.stiffness, c);

@@ -31,9 +31,9 @@ class Observer {
   Observer(const CahnHilliard& problem, std::shared_ptr<const SurfaceSpace> space,
            double interface_energy);
 
-  Observables measure(double t, ConstVec y) const { return measure(t, y, rafts(y)); }
-  Observables measure(double t, ConstVec y, const RaftReport& rafts) const;
-  RaftReport rafts(ConstVec y) const;
+  Observables measure(double t, VecView y) const { return measure(t, y, rafts(y)); }
+  Observables measure(double t, VecView y, const RaftReport& rafts) const;
+  RaftReport rafts(VecView y) const;
   double level() const;
   double mass_scale() const;  // |Γ| (b − a)
   double energy_scale() const { return problem_.energy_scale(); }

@@ -231,7 +231,7 @@ std::vector<int> by_size(const std::vector<Sums>& rafts) {
 
 RaftFinder::RaftFinder(std::shared_ptr<const SurfaceSpace> space) : space_(std::move(space)) {}
 
-RaftReport RaftFinder::find(ConstVec c, double level) const {
+RaftReport RaftFinder::find(VecView c, double level) const {
   Vec buffer;
   const Vec value = trace(*space_, space_->with_ghosts(c, buffer));
   const Pieces pieces = find_pieces(*space_, value, level);
@@ -255,7 +255,7 @@ RaftReport RaftFinder::find(ConstVec c, double level) const {
   return report;
 }
 
-int RaftFinder::regions_below(ConstVec c, double level) const {
+int RaftFinder::regions_below(VecView c, double level) const {
   Vec buffer;
   const Vec value = -trace(*space_, space_->with_ghosts(c, buffer));
   return static_cast<int>(merge(*space_, find_pieces(*space_, value, -level)).rafts.size());

@@ -29,9 +29,9 @@ struct RaftReport {
 class RaftFinder {
  public:
   explicit RaftFinder(std::shared_ptr<const SurfaceSpace> space);
-  RaftReport find(ConstVec c, double level) const;
+  RaftReport find(VecView c, double level) const;
   // The number of connected components of {c < level}.
-  int regions_below(ConstVec c, double level) const;
+  int regions_below(VecView c, double level) const;
 
  private:
   std::shared_ptr<const SurfaceSpace> space_;

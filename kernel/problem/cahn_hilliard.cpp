@@ -9,7 +9,7 @@
 namespace traceraft {
 CsrMatrix gradient_energy_matrix(const SurfaceSpace& space, const CahnHilliardModel& model) {
   const double e2 = model.epsilon * model.epsilon;
-  return combine(e2, space.stiffness, e2 * model.stabilisation * space.h(), space.normal);
+  return combine(e2, space.stiffness, e2 * model.stabilisation * space.h(), space.normal_stiffness);
 }
 
 CahnHilliard::CahnHilliard(std::shared_ptr<const SurfaceSpace> space, CahnHilliardModel model)
@@ -21,7 +21,7 @@ double CahnHilliard::flux_stabilisation() const {
   return model_.stabilisation * space_->h() * model_.mobility->scale();
 }
 
-Status CahnHilliard::residual(double t, ConstVec y, ConstVec ydot, VecRef r) const {
+Status CahnHilliard::residual(double t, VecView y, VecView ydot, VecRef r) const {
   const SurfaceSpace& space = *space_;
   const int n = block_size();
   Vec c_buffer, mu_buffer, rate_buffer;
@@ -33,7 +33,7 @@ Status CahnHilliard::residual(double t, ConstVec y, ConstVec ydot, VecRef r) con
 
   space.stabilised_mass.multiply_add(1, rate, first, *space.team);
   add_mobility_flux(space, mobility_integrals(space, *model_.mobility, c), mu, first);
-  space.normal.multiply_add(flux_stabilisation(), mu, first, *space.team);
+  space.normal_stiffness.multiply_add(flux_stabilisation(), mu, first, *space.team);
 
   space.stabilised_mass.multiply_add(1, mu, second, *space.team);
   add_potential(space, model_.well, model_.rule, -1, c, second);
@@ -45,7 +45,7 @@ Status CahnHilliard::residual(double t, ConstVec y, ConstVec ydot, VecRef r) con
   return {};
 }
 
-void CahnHilliard::fill_curvature(ConstVec c, Tangent tangent, BlockJacobian& J) const {
+void CahnHilliard::fill_curvature(VecView c, Tangent tangent, BlockJacobian& J) const {
   const double beta = tangent == Tangent::stabilised ? model_.beta() : 0;
   space_->team->for_range(J.mc.values.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
@@ -69,7 +69,7 @@ double CahnHilliard::mean_mobility(const CsrMatrix& mobility_stiffness) const {
   return ranks().sum(weighted) / ranks().sum(unweighted);
 }
 
-Status CahnHilliard::jacobian(double t, ConstVec y, ConstVec, double shift, Tangent tangent,
+Status CahnHilliard::jacobian(double t, VecView y, VecView, double shift, Tangent tangent,
                               BlockJacobian& J) const {
   const SurfaceSpace& space = *space_;
   if (!std::isfinite(ranks().sum(dot(y, y)))) return Status::retry("the state is not finite");
@@ -106,13 +106,14 @@ Status CahnHilliard::jacobian(double t, ConstVec y, ConstVec, double shift, Tang
   J.mobility = mean_mobility(J.cm);
   const double rho = flux_stabilisation();
   space.team->for_range(entries, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) J.cm.values[k] += rho * space.normal.values[k];
+    for (std::size_t k = begin; k < end; ++k)
+      J.cm.values[k] += rho * space.normal_stiffness.values[k];
   });
   return {};
 }
 
-Status CahnHilliard::jacobian_product(double t, ConstVec y, ConstVec, double shift, Tangent tangent,
-                                      ConstVec v, VecRef product) const {
+Status CahnHilliard::jacobian_product(double t, VecView y, VecView, double shift, Tangent tangent,
+                                      VecView v, VecRef product) const {
   const SurfaceSpace& space = *space_;
   const int n = block_size();
   Vec buffers[4];
@@ -123,7 +124,7 @@ Status CahnHilliard::jacobian_product(double t, ConstVec y, ConstVec, double shi
   product.setZero();
   VecRef first = product.head(n), second = product.tail(n);
   space.stabilised_mass.multiply_add(shift, vc, first, *space.team);
-  space.normal.multiply_add(flux_stabilisation(), vmu, first, *space.team);
+  space.normal_stiffness.multiply_add(flux_stabilisation(), vmu, first, *space.team);
   space.stabilised_mass.multiply_add(1, vmu, second, *space.team);
   gradient_energy_.multiply_add(-1, vc, second, *space.team);
 
@@ -159,15 +160,15 @@ Status CahnHilliard::consistent_initial_state(double t, VecRef y, VecRef ydot) c
   return {};
 }
 
-double CahnHilliard::norm(ConstVec y) const {
+double CahnHilliard::norm(VecView y) const {
   return std::sqrt(std::max(0.0, space_->inner(c_of(y), c_of(y))));
 }
 
-double CahnHilliard::field_norm(ConstVec half) const {
+double CahnHilliard::field_norm(VecView half) const {
   return std::sqrt(std::max(0.0, space_->quadratic(space_->stabilised_mass, half)));
 }
 
-double CahnHilliard::energy(ConstVec y) const {
+double CahnHilliard::energy(VecView y) const {
   Vec buffer;
   const auto c = space_->with_ghosts(c_of(y), buffer);
   double energy = ranks().sum(potential_energy(*space_, model_.well, model_.rule, c)) +

@@ -44,18 +44,18 @@ class CahnHilliard final : public DaeProblem {
   CahnHilliard(std::shared_ptr<const SurfaceSpace> space, CahnHilliardModel model);
 
   int block_size() const override { return space_->nodes(); }
-  Status residual(double t, ConstVec y, ConstVec ydot, VecRef r) const override;
-  Status jacobian(double t, ConstVec y, ConstVec ydot, double shift, Tangent tangent,
+  Status residual(double t, VecView y, VecView ydot, VecRef r) const override;
+  Status jacobian(double t, VecView y, VecView ydot, double shift, Tangent tangent,
                   BlockJacobian& J) const override;
-  Status jacobian_product(double t, ConstVec y, ConstVec ydot, double shift, Tangent tangent,
-                          ConstVec v, VecRef product) const override;
+  Status jacobian_product(double t, VecView y, VecView ydot, double shift, Tangent tangent,
+                          VecView v, VecRef product) const override;
   BlockJacobian make_jacobian() const override { return BlockJacobian(space_->pattern); }
   Status consistent_initial_state(double t, VecRef y, VecRef ydot) const override;
-  double norm(ConstVec y) const override;
-  double field_norm(ConstVec half) const override;  // √(vᵀ M̃ v)
-  double mass(ConstVec y) const override { return space_->integral(c_of(y)); }
+  double norm(VecView y) const override;
+  double field_norm(VecView half) const override;  // √(vᵀ M̃ v)
+  double mass(VecView y) const override { return space_->integral(c_of(y)); }
   bool conserves_mass() const override;
-  double energy(ConstVec y) const override;
+  double energy(VecView y) const override;
   bool dissipates_energy() const override;
   bool dissipates_in_stabilised_steps() const override;
   double longest_step() const override;
@@ -66,13 +66,13 @@ class CahnHilliard final : public DaeProblem {
   const CahnHilliardModel& model() const { return model_; }
 
   // Halves of a state vector.
-  Eigen::Ref<const Vec> c_of(ConstVec y) const { return y.head(block_size()); }
-  Eigen::Ref<const Vec> mu_of(ConstVec y) const { return y.tail(block_size()); }
+  Eigen::Ref<const Vec> c_of(VecView y) const { return y.head(block_size()); }
+  Eigen::Ref<const Vec> mu_of(VecView y) const { return y.tail(block_size()); }
 
  private:
   double flux_stabilisation() const;
   double mean_mobility(const CsrMatrix& mobility_stiffness) const;
-  void fill_curvature(ConstVec c, Tangent tangent, BlockJacobian& J) const;
+  void fill_curvature(VecView c, Tangent tangent, BlockJacobian& J) const;
 
   std::shared_ptr<const SurfaceSpace> space_;
   CahnHilliardModel model_;

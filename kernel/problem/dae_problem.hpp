@@ -24,15 +24,15 @@ class DaeProblem {
   int size() const { return 2 * block_size(); }
 
   // r = F(t, y, ẏ). retry: y is outside the domain of the model or not finite.
-  virtual Status residual(double t, ConstVec y, ConstVec ydot, VecRef r) const = 0;
+  virtual Status residual(double t, VecView y, VecView ydot, VecRef r) const = 0;
 
   // Assembles J at (t, y, ẏ) with the shift σ and the given tangent.
-  virtual Status jacobian(double t, ConstVec y, ConstVec ydot, double shift, Tangent tangent,
+  virtual Status jacobian(double t, VecView y, VecView ydot, double shift, Tangent tangent,
                           BlockJacobian& J) const = 0;
 
   // product = J v without assembling J.
-  virtual Status jacobian_product(double t, ConstVec y, ConstVec ydot, double shift,
-                                  Tangent tangent, ConstVec v, VecRef product) const = 0;
+  virtual Status jacobian_product(double t, VecView y, VecView ydot, double shift, Tangent tangent,
+                                  VecView v, VecRef product) const = 0;
 
   // An empty Jacobian with the pattern of this problem.
   virtual BlockJacobian make_jacobian() const = 0;
@@ -42,18 +42,18 @@ class DaeProblem {
   virtual Status consistent_initial_state(double t, VecRef y, VecRef ydot) const = 0;
 
   // Norm of the differential part in L²(Γ_h): independent of the mesh.
-  virtual double norm(ConstVec y) const = 0;
+  virtual double norm(VecView y) const = 0;
 
   // Norm of one half of a state vector, c or μ, that sees every mode of it (in L²(Γ_h) a function
   // that vanishes on the surface has none) and does not depend on the mesh.
-  virtual double field_norm(ConstVec half) const = 0;
+  virtual double field_norm(VecView half) const = 0;
 
   // A linear functional of y that every solution keeps (the mass), and whether the model keeps it.
-  virtual double mass(ConstVec y) const = 0;
+  virtual double mass(VecView y) const = 0;
   virtual bool conserves_mass() const = 0;
 
   // A functional that does not grow along solutions, and whether the model promises that.
-  virtual double energy(ConstVec y) const = 0;
+  virtual double energy(VecView y) const = 0;
   virtual bool dissipates_energy() const = 0;
   // Whether steps of first order with the stabilised tangent let it fall, too.
   virtual bool dissipates_in_stabilised_steps() const { return dissipates_energy(); }

@@ -24,10 +24,10 @@ class Effect {
   virtual bool dissipates_energy() const = 0;
   // The part that the stabilised tangent needs to be stable, with c frozen: a flux that is linear
   // in μ. Adds to J.cm and, for a direction of μ, to the product.
-  virtual void add_stabilised(const SurfaceSpace&, double /*t*/, ConstVec /*c*/,
+  virtual void add_stabilised(const SurfaceSpace&, double /*t*/, VecView /*c*/,
                               BlockJacobian&) const {}
-  virtual void add_stabilised_product(const SurfaceSpace&, double /*t*/, ConstVec /*c*/,
-                                      ConstVec /*direction_mu*/, VecRef /*product_c*/) const {}
+  virtual void add_stabilised_product(const SurfaceSpace&, double /*t*/, VecView /*c*/,
+                                      VecView /*direction_mu*/, VecRef /*product_c*/) const {}
   // Is the assembled tangent all of it? Effects that couple distant points leave their part of the
   // Jacobian to add_tangent_product; with the assembled one Newton's method then converges
   // linearly.
@@ -40,14 +40,14 @@ class Effect {
   // Throws InputError if the effect is not made for this surface.
   virtual void require_surface(const SurfaceSpace&) const {}
   // What the effect adds to the energy, over all ranks; F2 is the gradient of the sum.
-  virtual double energy(const SurfaceSpace&, ConstVec /*c*/) const { return 0; }
+  virtual double energy(const SurfaceSpace&, VecView /*c*/) const { return 0; }
 
-  virtual void add_residual(const SurfaceSpace& space, double t, ConstVec c, ConstVec mu,
+  virtual void add_residual(const SurfaceSpace& space, double t, VecView c, VecView mu,
                             VecRef residual_c, VecRef residual_mu) const = 0;
-  virtual void add_tangent(const SurfaceSpace& space, double t, ConstVec c, ConstVec mu,
+  virtual void add_tangent(const SurfaceSpace& space, double t, VecView c, VecView mu,
                            BlockJacobian& J) const = 0;
-  virtual void add_tangent_product(const SurfaceSpace& space, double t, ConstVec c, ConstVec mu,
-                                   ConstVec direction_c, ConstVec direction_mu, VecRef product_c,
+  virtual void add_tangent_product(const SurfaceSpace& space, double t, VecView c, VecView mu,
+                                   VecView direction_c, VecView direction_mu, VecRef product_c,
                                    VecRef product_mu) const = 0;
 };
 

@@ -21,7 +21,7 @@ const NamedList<InitialEntry>& initial_fields() {
 
 namespace {
 
-Vec projected_load(const SurfaceSpace& space, ConstVec load) {
+Vec projected_load(const SurfaceSpace& space, VecView load) {
   if (!std::isfinite(space.communicator->sum(load.sum())))
     throw InputError("initial: the concentration is not finite everywhere on the surface");
   Vec projected(space.nodes());
@@ -63,7 +63,7 @@ Vec projected_concentration(const SurfaceSpace& space, const InitialEntry& entry
 
 }  // namespace
 
-Vec project(const SurfaceSpace& space, ConstVec nodal) {
+Vec project(const SurfaceSpace& space, VecView nodal) {
   Vec load(space.nodes()), buffer;
   space.mass.multiply(space.with_ghosts(nodal, buffer), load, *space.team);
   return projected_load(space, load);

@@ -53,6 +53,6 @@ Vec make_initial_field(const std::string& specification, const SurfaceSpace& spa
 
 // L² projection of nodal values with the stabilised mass matrix: M̃ c = M nodal. Throws InputError
 // if the data are not finite.
-Vec project(const SurfaceSpace& space, ConstVec nodal);
+Vec project(const SurfaceSpace& space, VecView nodal);
 
 }  // namespace traceraft

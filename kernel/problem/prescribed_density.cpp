@@ -14,17 +14,16 @@ class PrescribedDensity final : public Effect {
   bool conserves_mass() const override { return slot_ != Slot::source; }
   bool dissipates_energy() const override { return false; }
 
-  void add_residual(const SurfaceSpace& space, double t, ConstVec, ConstVec, VecRef residual_c,
+  void add_residual(const SurfaceSpace& space, double t, VecView, VecView, VecRef residual_c,
                     VecRef residual_mu) const override {
     VecRef target = slot_ == Slot::source ? residual_c : residual_mu;
     const double sign = slot_ == Slot::source ? 1 : -1;
     add_density_load(
         space, sign, [&](const QuadraturePoint& at) { return density_(at, t); }, target);
   }
-  void add_tangent(const SurfaceSpace&, double, ConstVec, ConstVec, BlockJacobian&) const override {
-  }
-  void add_tangent_product(const SurfaceSpace&, double, ConstVec, ConstVec, ConstVec, ConstVec,
-                           VecRef, VecRef) const override {}
+  void add_tangent(const SurfaceSpace&, double, VecView, VecView, BlockJacobian&) const override {}
+  void add_tangent_product(const SurfaceSpace&, double, VecView, VecView, VecView, VecView, VecRef,
+                           VecRef) const override {}
 
  private:
   std::string name_;

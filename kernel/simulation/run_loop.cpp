@@ -7,7 +7,7 @@ namespace traceraft {
 void RunState::save(CheckpointOut out) const {
   write_binary(out, monitor);
   write_binary(out, static_cast<std::uint64_t>(next_output));
-  write_binary(out, row);
+  write_binary(out, observables);
   integrator.save(out);
 }
 
@@ -15,7 +15,7 @@ void RunState::load(CheckpointIn in) {
   std::uint64_t next = 0;
   read_binary(in, monitor);
   read_binary(in, next);
-  read_binary(in, row);
+  read_binary(in, observables);
   next_output = static_cast<std::size_t>(next);
   integrator.load(in);
 }
@@ -24,13 +24,13 @@ void begin_run(RunState& state, const Observer& observer, const std::vector<doub
                const std::vector<RunListener*>& listeners) {
   const Integrator& integrator = state.integrator;
   const RaftReport rafts = observer.rafts(integrator.state());
-  state.row = observer.measure(integrator.time(), integrator.state(), rafts);
-  state.monitor.start(state.row, observer.mass_scale(), observer.energy_scale());
+  state.observables = observer.measure(integrator.time(), integrator.state(), rafts);
+  state.monitor.start(state.observables, observer.mass_scale(), observer.energy_scale());
   for (; state.next_output < output_times.size() &&
          output_times[state.next_output] <= integrator.time();
        ++state.next_output)
     for (RunListener* listener : listeners)
-      listener->on_output(state.row, rafts, integrator.state());
+      listener->on_output(state.observables, rafts, integrator.state());
   for (RunListener* listener : listeners) listener->on_step(state);
 }
 
@@ -42,8 +42,8 @@ RunResult continue_run(RunState& state, const Observer& observer, double t_end,
   while (integrator.time() < t_end) {
     if (stop()) return {RunEnd::stopped, ""};
     if (Status status = integrator.advance(); !status.ok()) return {RunEnd::failed, status.why};
-    state.row = observer.measure(integrator.time(), integrator.state());
-    state.monitor.accept(state.row);
+    state.observables = observer.measure(integrator.time(), integrator.state());
+    state.monitor.accept(state.observables);
     for (; state.next_output < output_times.size() &&
            output_times[state.next_output] <= integrator.time();
          ++state.next_output) {

@@ -16,7 +16,7 @@ struct RunState {
   Integrator& integrator;
   RunMonitor monitor;
   std::size_t next_output = 0;  // first requested time not yet delivered
-  Observables row;              // at the last accepted step
+  Observables observables;      // at the last accepted step
 
   void save(CheckpointOut out) const;
   void load(CheckpointIn in);  // throws IoError
@@ -30,7 +30,7 @@ class RunListener {
   // After every accepted step, and once before the first one.
   virtual void on_step(const RunState&) {}
   // At a requested time, interpolated within the last step: results never bend the steps.
-  virtual void on_output(const Observables&, const RaftReport&, ConstVec /*y*/) {}
+  virtual void on_output(const Observables&, const RaftReport&, VecView /*y*/) {}
 };
 
 enum class RunEnd { finished, stopped, failed };

@@ -18,7 +18,7 @@ ControlledIntegrator::ControlledIntegrator(const DaeProblem& problem,
       first_change_(first_change),
       guard_(problem, settings) {}
 
-Status ControlledIntegrator::start(double t0, ConstVec y0, ConstVec ydot0, double t_end) {
+Status ControlledIntegrator::start(double t0, VecView y0, VecView ydot0, double t_end) {
   history_.clear();
   history_.add(t0, y0);
   guard_.start(y0);

@@ -16,7 +16,7 @@ namespace traceraft {
 // for interpolation, and saves and loads.
 class ControlledIntegrator : public Integrator {
  public:
-  Status start(double t0, ConstVec y0, ConstVec ydot0, double t_end) override;
+  Status start(double t0, VecView y0, VecView ydot0, double t_end) override;
   Status advance() final;
   Status interpolate(double t, VecRef y) const final;
 

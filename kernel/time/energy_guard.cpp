@@ -4,13 +4,13 @@
 
 namespace traceraft {
 
-void EnergyGuard::start(ConstVec y) {
+void EnergyGuard::start(VecView y) {
   if (!active_) return;
   energy_ = candidate_ = problem_.energy(y);
   allowed_ = allowed_rise(energy_, problem_.energy_scale());
 }
 
-Status EnergyGuard::judge(ConstVec y) {
+Status EnergyGuard::judge(VecView y) {
   if (!active_) return {};
   candidate_ = problem_.energy(y);
   if (candidate_ <= energy_ + allowed_) return {};  // not if it is NaN

@@ -23,9 +23,9 @@ class EnergyGuard {
       : problem_(problem), active_(settings.reject_energy_rises && problem.dissipates_energy()) {}
 
   bool active() const { return active_; }
-  void start(ConstVec y);
+  void start(VecView y);
   // retry if the energy of y, the result of a step, is larger than that of the last accepted state.
-  Status judge(ConstVec y);
+  Status judge(VecView y);
   // The state judged last is accepted.
   void accept() { energy_ = candidate_; }
 

@@ -20,7 +20,8 @@ struct IntegratorSettings {
   double linear_tolerance = 0;  // relative residual of each correction; 0: the method's choice
   std::string kept_solution = "second";  // euler: which of its pair goes on
   bool reject_energy_rises = false;      // of a model that can only lose energy
-  std::map<std::string, double> own;     // options of one method only, by its names for them
+  std::map<std::string, double>
+      method_options;  // options of one method only, by its names for them
 
   double linear_tolerance_or(double choice) const {
     return linear_tolerance > 0 ? linear_tolerance : choice;
@@ -54,7 +55,7 @@ class Integrator {
  public:
   virtual ~Integrator() = default;
   virtual std::string name() const = 0;
-  virtual Status start(double t0, ConstVec y0, ConstVec ydot0, double t_end) = 0;
+  virtual Status start(double t0, VecView y0, VecView ydot0, double t_end) = 0;
   virtual Status advance() = 0;
   virtual Status interpolate(double t, VecRef y) const = 0;
 

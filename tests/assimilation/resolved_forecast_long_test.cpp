@@ -24,7 +24,7 @@ Vec rafts(const SurfaceSpace& space) {
   return project(space, nodal);
 }
 
-double mean(const SurfaceSpace& space, ConstVec c) {
+double mean(const SurfaceSpace& space, VecView c) {
   return space.integral(c) / space.area;
 }
 

@@ -23,7 +23,7 @@ class TangentFlowTest : public ::testing::Test {
     along = advance(base, c, kBegin, kEnd, kSteps);
   }
 
-  Forecast advance(const CahnHilliard& problem, ConstVec from, double begin, double end,
+  Forecast advance(const CahnHilliard& problem, VecView from, double begin, double end,
                    int steps) const {
     const auto make_integrator = [this](const DaeProblem& p) {
       IntegratorSettings settings;
@@ -91,7 +91,7 @@ TEST_F(TangentFlowTest, IsExactWhereDistantPointsAreCoupled) {
   const auto with = [&](double strength) {
     return CahnHilliard(space, with_effects(base.model(), {repulsion.term({strength})}));
   };
-  const auto end = [&](double strength, ConstVec from) {
+  const auto end = [&](double strength, VecView from) {
     return advance(with(strength), from, kBegin, kEnd, kSteps).end;
   };
   const CahnHilliard problem = with(kStrength);
@@ -102,7 +102,7 @@ TEST_F(TangentFlowTest, IsExactWhereDistantPointsAreCoupled) {
   S << direction, Vec::Zero(space->nodes());
   TangentFlow flow(problem, choose_linear_solver("direct", *space).primary,
                    std::make_shared<ThreadTeam>(2));
-  flow.advance(path.paths.front(), S, [&](double t, ConstVec y) { return forcing(t, y); });
+  flow.advance(path.paths.front(), S, [&](double t, VecView y) { return forcing(t, y); });
   const double step = 1e-3;
   const Vec by_state =
       (end(kStrength, c + step * direction) - end(kStrength, c - step * direction)) / (2 * step);
@@ -118,7 +118,7 @@ TEST_P(TangentOfEffect, IsTheDerivativeOfTheForecast) {
   const Candidate candidate = find_candidate(GetParam()).value();
   const CoefficientForcing forcing(base, base.model(), {}, {candidate});
   const Columns slopes = derivative(Columns::Zero(space->nodes(), candidate.directions),
-                                    [&](double t, ConstVec y) { return forcing(t, y); });
+                                    [&](double t, VecView y) { return forcing(t, y); });
   for (int d = 0; d < candidate.directions; ++d) {
     const Vec slope = slopes.col(d);
     // Small enough that the floor of the mobility, where it is not smooth, does not matter.

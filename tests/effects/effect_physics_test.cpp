@@ -99,7 +99,7 @@ TEST_F(EffectPhysics, CoolingSlowsDiffusionDown) {
   const CahnHilliard base(space, make_model());
   Vec flux(2 * n);
   ASSERT_TRUE(base.residual(0, y, Vec::Zero(2 * n), flux).ok());
-  space->normal.multiply_add(-space->h(), y.tail(n), flux.head(n), *space->team);
+  space->normal_stiffness.multiply_add(-space->h(), y.tail(n), flux.head(n), *space->team);
   const Vec change =
       contribution(space, "cooling:rate=1,out=0,in=0,activation=0.5", y, std::log(4.0));
   EXPECT_LT((change.head(n) + 0.5 * flux.head(n)).norm(), 1e-12 * flux.head(n).norm());
@@ -225,8 +225,9 @@ TEST_F(EffectPhysics, MobilitiesAreTheLawsTheySay) {
   ASSERT_TRUE(other.residual(0, y, Vec::Zero(2 * n), s).ok());
   const Vec mu = y.tail(n);
   Vec stabilisation = Vec::Zero(n);  // which knows the scale of the law
-  space->normal.multiply_add((whole.mobility->scale() - sum.mobility->scale()) * space->h(), mu,
-                             stabilisation, *space->team);
+  space->normal_stiffness.multiply_add(
+      (whole.mobility->scale() - sum.mobility->scale()) * space->h(), mu, stabilisation,
+      *space->team);
   EXPECT_LT((s.head(n) - r.head(n) - stabilisation).norm(), 1e-12 * s.norm());
 }
 
@@ -264,7 +265,7 @@ TEST_F(EffectPhysics, ThermalNoiseHasTheVarianceOfItsDissipation) {
     Vec flux = y, response(2 * n);
     flux.tail(n) = v;
     EXPECT_TRUE(base.residual(0, flux, Vec::Zero(2 * n), response).ok());
-    space->normal.multiply_add(-space->h(), v, response.head(n), *space->team);
+    space->normal_stiffness.multiply_add(-space->h(), v, response.head(n), *space->team);
     return Vec(response.head(n));
   };
   Eigen::MatrixXd directions(n, kDirections);  // vᵀ K_M v = 1, and 0 of two of them

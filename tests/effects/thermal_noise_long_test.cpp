@@ -39,7 +39,8 @@ Vec variances(const CahnHilliard& base, const Vec& y, const Eigen::MatrixXd& of)
   EXPECT_TRUE(base.jacobian(0, y, Vec::Zero(y.size()), 0, Tangent::exact, J).ok());
   const SurfaceSpace& space = base.space();
   const Eigen::MatrixXd M = dense(J.mm), A = dense(J.cm);
-  const Eigen::MatrixXd K = A - space.h() * base.model().mobility->scale() * dense(space.normal);
+  const Eigen::MatrixXd K =
+      A - space.h() * base.model().mobility->scale() * dense(space.normal_stiffness);
   const SymmetricEigen B = symmetric_eigen(-dense(J.mc));
   const Vec root = B.values.cwiseSqrt();
   const Eigen::MatrixXd L = B.vectors * root.asDiagonal(), half = M.llt().solve(L);

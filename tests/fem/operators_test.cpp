@@ -58,12 +58,12 @@ TEST_P(OperatorTest, MatricesAreTheIntegralsTheyStandFor) {
 
 TEST_P(OperatorTest, MatricesAreSymmetricAndVanishOnConstants) {
   const Vec one = Vec::Ones(space->nodes());
-  for (const CsrMatrix* matrix : {&space->stiffness, &space->normal}) {
+  for (const CsrMatrix* matrix : {&space->stiffness, &space->normal_stiffness}) {
     Vec r(space->nodes());
     matrix->multiply(one, r, *space->team);
     EXPECT_LT(r.cwiseAbs().maxCoeff(), 1e-13);
   }
-  for (const CsrMatrix* matrix : {&space->mass, &space->stiffness, &space->normal}) {
+  for (const CsrMatrix* matrix : {&space->mass, &space->stiffness, &space->normal_stiffness}) {
     const Eigen::MatrixXd full = dense(*matrix);
     EXPECT_EQ((full - full.transpose()).cwiseAbs().maxCoeff(), 0);
   }

@@ -190,7 +190,7 @@ class Mistaken final : public KrylovMethod {
  public:
   Mistaken(int size, double factor, Status said)
       : factor_(factor), said_(std::move(said)), method_(make_spfgmr(size)) {}
-  SolveReport solve(const LinearOperator& A, const LinearOperator& preconditioner, ConstVec b,
+  SolveReport solve(const LinearOperator& A, const LinearOperator& preconditioner, VecView b,
                     VecRef x, double tolerance, int max_iterations) override {
     SolveReport report = method_->solve(A, preconditioner, b, x, 0.01 * tolerance, max_iterations);
     x *= factor_;
@@ -303,7 +303,7 @@ class DenseSolver final : public SpdSolver {
     factor_.compute(testing::dense(A));
     return factor_.info() == Eigen::Success ? Status{} : Status::retry("not positive definite");
   }
-  void solve(ConstVec b, VecRef x, const ThreadTeam&, int) override { x = factor_.solve(b); }
+  void solve(VecView b, VecRef x, const ThreadTeam&, int) override { x = factor_.solve(b); }
 
  private:
   Eigen::LLT<Eigen::MatrixXd> factor_;

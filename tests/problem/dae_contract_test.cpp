@@ -79,7 +79,7 @@ TEST_P(DaeContract, StabilisedTangentIsTheDerivativeWithMobilityAndCurvatureFroz
   space.stabilised_mass.multiply_add(shift, v.head(n), expected.head(n), *space.team);
   const double e2 = problem->model().epsilon * problem->model().epsilon;
   space.stiffness.multiply_add(-e2, v.head(n), expected.tail(n), *space.team);
-  space.normal.multiply_add(-e2 * space.h(), v.head(n), expected.tail(n), *space.team);
+  space.normal_stiffness.multiply_add(-e2 * space.h(), v.head(n), expected.tail(n), *space.team);
   space.stabilised_mass.multiply_add(-problem->model().beta(), v.head(n), expected.tail(n),
                                      *space.team);
   Vec product(2 * n);

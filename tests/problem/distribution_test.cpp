@@ -59,7 +59,7 @@ void expect_rows_within(const std::map<std::int64_t, Row>& part,
   for (const auto& [id, row] : part) EXPECT_EQ(row, whole.at(id)) << what << ", row " << id;
 }
 
-std::map<std::int64_t, double> entries_of(const SurfaceSpace& space, ConstVec field) {
+std::map<std::int64_t, double> entries_of(const SurfaceSpace& space, VecView field) {
   std::map<std::int64_t, double> entries;
   for (int i = 0; i < space.nodes(); ++i) entries[space.mesh.node_id[i]] = field[i];
   return entries;
@@ -75,12 +75,12 @@ TEST_P(Distribution, MatricesAreBitwiseThoseOfOneRank) {
   const auto whole = make_space(kCells);
   const auto expected_mass = rows_of(*whole, whole->mass);
   const auto expected_stiffness = rows_of(*whole, whole->stiffness);
-  const auto expected_normal = rows_of(*whole, whole->normal);
+  const auto expected_normal = rows_of(*whole, whole->normal_stiffness);
   run_on_ranks(GetParam(), [&](const auto& ranks) {
     const auto part = part_of(ranks);
     expect_rows_within(rows_of(*part, part->mass), expected_mass, "M");
     expect_rows_within(rows_of(*part, part->stiffness), expected_stiffness, "K");
-    expect_rows_within(rows_of(*part, part->normal), expected_normal, "S");
+    expect_rows_within(rows_of(*part, part->normal_stiffness), expected_normal, "S");
     EXPECT_EQ(part->totals.nodes, whole->totals.nodes);
     EXPECT_EQ(part->totals.elements, whole->totals.elements);
     EXPECT_EQ(part->totals.euler_characteristic, 2);

@@ -87,7 +87,7 @@ TEST(Judgement, SaysWhatExplainsThemAsWell) {
   const Judgement judgement = judged(round);
   EXPECT_EQ(judgement.finding, Finding::ambiguous);
   EXPECT_EQ(judgement.equivalent, (std::vector<std::string>{"gravity", "uptake"}));
-  const double limit = telling(kMeasuredValues, round.screening.mesh_error);
+  const double limit = discrimination_limit(kMeasuredValues, round.screening.mesh_error);
   EXPECT_GT(limit, kTelling);
   round.refits[1].deviance = 900 + 0.99 * limit;
   EXPECT_EQ(judged(round).finding, Finding::ambiguous);
@@ -99,8 +99,8 @@ TEST(Judgement, SaysWhatExplainsThemAsWell) {
 // difference of two hypotheses has to be that much larger than what noise can make.
 TEST(Judgement, DoubtsTheMeshInItsWorstShape) {
   EXPECT_NEAR(mesh_doubt(10000, 0.02), 1, 1e-12);
-  EXPECT_NEAR(std::sqrt(telling(10000, 0.02)), std::sqrt(kTelling) + 1, 1e-12);
-  EXPECT_NEAR(telling(10000, 0), kTelling, 1e-12);
+  EXPECT_NEAR(std::sqrt(discrimination_limit(10000, 0.02)), std::sqrt(kTelling) + 1, 1e-12);
+  EXPECT_NEAR(discrimination_limit(10000, 0), kTelling, 1e-12);
 }
 
 TEST(Judgement, LetsASecondCoefficientEarnItsPlace) {

@@ -27,7 +27,7 @@ class Faulty final : public ForwardingSolver {
   bool wants_setup(const BlockJacobian& J, int lane) const override {
     return !plan_.lazy && ForwardingSolver::wants_setup(J, lane);
   }
-  SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance,
+  SolveReport solve(const BlockJacobian& J, VecView b, VecRef x, double tolerance,
                     int lane) override {
     if (plan_.solve_fails(solves_++)) {
       x.setConstant(std::nan(""));  // as a failed solve may leave anything behind
@@ -46,7 +46,7 @@ class Poisoned final : public ForwardingProblem {
  public:
   Poisoned(const DaeProblem& inner, std::function<bool(double)> poisoned_at)
       : ForwardingProblem(inner), poisoned_at_(std::move(poisoned_at)) {}
-  Status residual(double t, ConstVec y, ConstVec ydot, VecRef r) const override {
+  Status residual(double t, VecView y, VecView ydot, VecRef r) const override {
     if (poisoned_at_(t) && !silent) return Status::retry("injected failure");
     const Status status = ForwardingProblem::residual(t, y, ydot, r);
     if (poisoned_at_(t)) r[r.size() / 3] = std::nan("");

@@ -11,26 +11,26 @@ class ForwardingProblem : public DaeProblem {
  public:
   explicit ForwardingProblem(const DaeProblem& inner) : inner_(inner) {}
   int block_size() const override { return inner_.block_size(); }
-  Status residual(double t, ConstVec y, ConstVec ydot, VecRef r) const override {
+  Status residual(double t, VecView y, VecView ydot, VecRef r) const override {
     return inner_.residual(t, y, ydot, r);
   }
-  Status jacobian(double t, ConstVec y, ConstVec ydot, double shift, Tangent tangent,
+  Status jacobian(double t, VecView y, VecView ydot, double shift, Tangent tangent,
                   BlockJacobian& J) const override {
     return inner_.jacobian(t, y, ydot, shift, tangent, J);
   }
-  Status jacobian_product(double t, ConstVec y, ConstVec ydot, double shift, Tangent tangent,
-                          ConstVec v, VecRef product) const override {
+  Status jacobian_product(double t, VecView y, VecView ydot, double shift, Tangent tangent,
+                          VecView v, VecRef product) const override {
     return inner_.jacobian_product(t, y, ydot, shift, tangent, v, product);
   }
   BlockJacobian make_jacobian() const override { return inner_.make_jacobian(); }
   Status consistent_initial_state(double t, VecRef y, VecRef ydot) const override {
     return inner_.consistent_initial_state(t, y, ydot);
   }
-  double norm(ConstVec y) const override { return inner_.norm(y); }
-  double field_norm(ConstVec half) const override { return inner_.field_norm(half); }
-  double mass(ConstVec y) const override { return inner_.mass(y); }
+  double norm(VecView y) const override { return inner_.norm(y); }
+  double field_norm(VecView half) const override { return inner_.field_norm(half); }
+  double mass(VecView y) const override { return inner_.mass(y); }
   bool conserves_mass() const override { return inner_.conserves_mass(); }
-  double energy(ConstVec y) const override { return inner_.energy(y); }
+  double energy(VecView y) const override { return inner_.energy(y); }
   bool dissipates_energy() const override { return inner_.dissipates_energy(); }
   bool dissipates_in_stabilised_steps() const override {
     return inner_.dissipates_in_stabilised_steps();
@@ -52,7 +52,7 @@ class ForwardingSolver : public LinearSolver {
   bool wants_setup(const BlockJacobian& J, int lane) const override {
     return inner_->wants_setup(J, lane);
   }
-  SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance,
+  SolveReport solve(const BlockJacobian& J, VecView b, VecRef x, double tolerance,
                     int lane) override {
     return inner_->solve(J, b, x, tolerance, lane);
   }

@@ -115,7 +115,7 @@ TEST(Euler, OneStepIsTheHandAssembledStabilisedScheme) {
       system(i, n + p.column[k]) = J.cm.values[k];
       system(n + i, n + p.column[k]) = space->stabilised_mass.values[k];
       system(n + i, p.column[k]) =
-          -0.04 * (space->stiffness.values[k] + space->h() * space->normal.values[k]) -
+          -0.04 * (space->stiffness.values[k] + space->h() * space->normal_stiffness.values[k]) -
           space->stabilised_mass.values[k];
     }
   Vec right = Vec::Zero(2 * n);

@@ -34,13 +34,13 @@ struct Fault {
 class FaultyProblem final : public testing::ForwardingProblem {
  public:
   FaultyProblem(const DaeProblem& inner, Fault& fault) : ForwardingProblem(inner), fault_(fault) {}
-  Status residual(double t, ConstVec y, ConstVec ydot, VecRef r) const override {
+  Status residual(double t, VecView y, VecView ydot, VecRef r) const override {
     if (fault_.strikes(Site::residual)) return Status::retry("injected failure");
     const Status status = ForwardingProblem::residual(t, y, ydot, r);
     if (fault_.strikes(Site::silent_residual)) r[r.size() / 3] = std::nan("");
     return status;
   }
-  Status jacobian(double t, ConstVec y, ConstVec ydot, double shift, Tangent tangent,
+  Status jacobian(double t, VecView y, VecView ydot, double shift, Tangent tangent,
                   BlockJacobian& J) const override {
     if (fault_.strikes(Site::jacobian)) return Status::retry("injected failure");
     return ForwardingProblem::jacobian(t, y, ydot, shift, tangent, J);
@@ -58,7 +58,7 @@ class FaultySolver final : public testing::ForwardingSolver {
     if (fault_.strikes(Site::setup)) return Status::retry("injected failure");
     return ForwardingSolver::setup(J, lane);
   }
-  SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance,
+  SolveReport solve(const BlockJacobian& J, VecView b, VecRef x, double tolerance,
                     int lane) override {
     if (fault_.strikes(Site::solve)) {
       x.setConstant(1e68);  // as a failed solve may leave anything behind

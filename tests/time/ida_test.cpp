@@ -49,7 +49,7 @@ TEST(Ida, SolvesEveryCorrectionAsItPromises) {
    public:
     Watching(LinearSolverPtr inner, std::vector<double>& asked)
         : ForwardingSolver(std::move(inner)), asked_(asked) {}
-    SolveReport solve(const BlockJacobian& J, ConstVec b, VecRef x, double tolerance,
+    SolveReport solve(const BlockJacobian& J, VecView b, VecRef x, double tolerance,
                       int lane) override {
       asked_.push_back(tolerance);
       return ForwardingSolver::solve(J, b, x, tolerance, lane);

@@ -83,7 +83,7 @@ SurfaceFunction surface_function(const std::string& surface) {
 }
 
 ErrorNorms stationary_error(const SurfaceSpace& space, const SurfaceFunction& function) {
-  const CsrMatrix stiffness = combine(1, space.stiffness, space.h(), space.normal);
+  const CsrMatrix stiffness = combine(1, space.stiffness, space.h(), space.normal_stiffness);
   const CsrMatrix A = combine(1, stiffness, 1, space.mass);
   Vec b = Vec::Zero(space.nodes());
   add_density_load(

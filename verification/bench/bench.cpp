@@ -90,7 +90,7 @@ CahnHilliardModel bench_model(const std::string& mobility, double epsilon) {
   return model;
 }
 
-StartState consistent_state(const CahnHilliard& problem, ConstVec c) {
+StartState consistent_state(const CahnHilliard& problem, VecView c) {
   StartState start{Vec::Zero(problem.size()), Vec::Zero(problem.size())};
   start.y.head(problem.block_size()) = c;
   require(problem.consistent_initial_state(0, start.y, start.ydot));

@@ -83,7 +83,7 @@ void require(const Status& status);
 struct StartState {
   Vec y, ydot;
 };
-StartState consistent_state(const CahnHilliard& problem, ConstVec c);
+StartState consistent_state(const CahnHilliard& problem, VecView c);
 // `initial` as in --initial; ε and the well are the problem's.
 StartState initial_state(const CahnHilliard& problem, const std::string& initial,
                          InitialRequest request);

@@ -7,7 +7,7 @@
 
 namespace traceraft {
 
-ErrorNorms error_norms(const SurfaceSpace& space, ConstVec nodal, const ExactFunction& exact) {
+ErrorNorms error_norms(const SurfaceSpace& space, VecView nodal, const ExactFunction& exact) {
   const Vec values = trace(space, nodal);
   const std::vector<Point> gradients = surface_gradients(space, nodal);
   double l2 = 0, h1 = 0;

@@ -17,6 +17,6 @@ struct ErrorNorms {
   double h1;  // ‖∇_Γ(u_h − u)‖ in L²(Γ_h)
 };
 
-ErrorNorms error_norms(const SurfaceSpace& space, ConstVec nodal, const ExactFunction& exact);
+ErrorNorms error_norms(const SurfaceSpace& space, VecView nodal, const ExactFunction& exact);
 
 }  // namespace traceraft

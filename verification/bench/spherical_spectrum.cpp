@@ -47,7 +47,7 @@ class Legendre {
 
 }  // namespace
 
-std::vector<double> spherical_spectrum(const SurfaceSpace& space, ConstVec c, int highest) {
+std::vector<double> spherical_spectrum(const SurfaceSpace& space, VecView c, int highest) {
   const CutSurface& surface = space.surface;
   const Vec values = trace(space, c);
   const Legendre legendre(highest);

@@ -2,7 +2,7 @@
 
 namespace traceraft {
 
-std::vector<Point> surface_gradients(const SurfaceSpace& space, ConstVec nodal) {
+std::vector<Point> surface_gradients(const SurfaceSpace& space, VecView nodal) {
   std::vector<Point> gradients;
   for (const int number : space.surface.triangle_tet) {
     const ActiveTet& tet = space.mesh.tets[number];

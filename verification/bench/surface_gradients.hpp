@@ -6,6 +6,6 @@
 namespace traceraft {
 
 // ∇_Γ u_h, which is constant on every triangle.
-std::vector<Point> surface_gradients(const SurfaceSpace& space, ConstVec nodal);
+std::vector<Point> surface_gradients(const SurfaceSpace& space, VecView nodal);
 
 }  // namespace traceraft

@@ -89,7 +89,7 @@ double identity_residual(const Bench& bench, const Setup& setup, const Vec& y0,
   settings.tolerance = 0.5;  // all steps of the size asked for
   settings.initial_step = settings.max_step = span / steps;
   settings.linear_tolerance = 1e-11;
-  if (name == "ida") settings.own["maxord"] = 2;
+  if (name == "ida") settings.method_options["maxord"] = 2;
   const IntegratorPtr integrator =
       bench.make_integrator(problem, problem.space(), name, bench.linear_solver(), settings);
   const StartState start = consistent_state(problem, problem.c_of(y0));

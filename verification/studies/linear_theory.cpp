@@ -34,7 +34,7 @@ Vec harmonic(const SurfaceSpace& space, int degree) {
 class RitzProjection {
  public:
   explicit RitzProjection(const SurfaceSpace& space) : space_(space) {
-    const CsrMatrix stiffness = combine(1, space.stiffness, space.h(), space.normal);
+    const CsrMatrix stiffness = combine(1, space.stiffness, space.h(), space.normal_stiffness);
     factors_.compute(as_eigen(space, combine(1, stiffness, 1, space.mass)));
     if (factors_.info() != Eigen::Success) throw std::runtime_error("no factors of K + M + h S");
   }

@@ -104,7 +104,7 @@ Cut measure_cut(const Bench& bench, std::uint64_t number) {
   const SpacePtr space = bench.space(moved(ellipsoid, motion), kCells, 1);
   const ErrorNorms errors = stationary_error(*space, moved(surface_function("ellipsoid"), motion));
   const SpacePtr coarse = bench.space(moved(ellipsoid, motion), kCoarse, 1);
-  const CsrMatrix stiffness = combine(1, coarse->stiffness, coarse->h(), coarse->normal);
+  const CsrMatrix stiffness = combine(1, coarse->stiffness, coarse->h(), coarse->normal_stiffness);
   return {space->area, errors.l2, errors.h1, scaled_condition(*coarse, coarse->stabilised_mass),
           scaled_condition(*coarse, combine(1, stiffness, 1, coarse->mass))};
 }

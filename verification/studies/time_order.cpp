@@ -34,7 +34,7 @@ class Runs {
     settings.initial_step = settings.max_step = kEnd / steps;
     settings.linear_tolerance = 1e-12;
     settings.kept_solution = method.kept;
-    if (method.integrator == std::string("ida")) settings.own["maxord"] = method.order;
+    if (method.integrator == std::string("ida")) settings.method_options["maxord"] = method.order;
     return solve(method.integrator, settings);
   }
   Vec with_tolerance(const std::string& integrator, double tolerance) const {

@@ -21,7 +21,7 @@ MeshTransfer::MeshTransfer(const SurfaceSpace& from, SpacePtr to, const Eigen::M
           point_trace(from, points, from.h() + to_->h());
 }
 
-Vec MeshTransfer::operator()(ConstVec c) const {
+Vec MeshTransfer::operator()(VecView c) const {
   Vec projected(to_->nodes());
   require(to_->solve_mass(load_ * c, projected));
   return projected;

@@ -17,7 +17,7 @@ class MeshTransfer {
   MeshTransfer(const SurfaceSpace& from, SpacePtr to,
                const Eigen::Matrix3d& rotation = Eigen::Matrix3d::Identity());
 
-  Vec operator()(ConstVec c) const;  // nodal values on `from` to those on `to`
+  Vec operator()(VecView c) const;  // nodal values on `from` to those on `to`
   Eigen::MatrixXd columns(const Eigen::MatrixXd& X) const;
 
  private:

@@ -69,7 +69,7 @@ class Filter {
         product(maps_.image[k], transposed_product(maps_.basis[k], data_.mass * belief_.errors));
     belief_.replicates = maps_.replicates[k].leftCols(settings_.replicates);
     flow_.advance(way.paths[0], belief_.parameters,
-                  [&](double t, ConstVec y) { return forcing(begin, end, t, y); });
+                  [&](double t, VecView y) { return forcing(begin, end, t, y); });
     belief_.parameters.col(kPace) += (end - begin) * way.end_rate;
     if (turn) belief_.parameters = turn->own.columns(belief_.parameters);
     const Vec there = turn ? turn->own(way.end) : way.end;
@@ -81,7 +81,7 @@ class Filter {
   // ∂F/∂θ of all parameters. With F = F(pace t, …) the derivative S of c by ln pace has two parts:
   // (t − begin) ċ, which is added at the end, and what an F that changes in time does at another
   // time of the vesicle, begin ∂F/∂t.
-  Columns forcing(double begin, double end, double t, ConstVec y) const {
+  Columns forcing(double begin, double end, double t, VecView y) const {
     const double step = 1e-4 * (end - begin);
     const Vec no_rate = Vec::Zero(problem_.size());
     Vec before(problem_.size()), after(problem_.size());
@@ -93,7 +93,7 @@ class Filter {
     return all;
   }
 
-  void map_mesh(std::size_t k, ResolvedForecast::End&& resolved, ConstVec end) {
+  void map_mesh(std::size_t k, ResolvedForecast::End&& resolved, VecView end) {
     resolved.field -= end;
     resolved.values -= data_.snapshots[k + 1].trace * end;
     maps_.mesh_error.push_back(std::move(resolved));

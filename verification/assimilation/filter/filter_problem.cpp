@@ -65,7 +65,7 @@ FilterProblem on_meshes(const LevelSet& surface, const CahnHilliardModel& base, 
     const IntegratorEntry& entry = integrators().find(name);
     IntegratorSettings integrator;
     integrator.tolerance = kForecastTolerance * entry.tolerance;
-    integrator.own["epslin"] = kForecastLinearTolerance;
+    integrator.method_options["epslin"] = kForecastLinearTolerance;
     return entry.make(problem, choose_linear_solver("block", space), space.team, integrator);
   };
   return data;

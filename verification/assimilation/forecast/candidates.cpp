@@ -220,7 +220,7 @@ CoefficientForcing::CoefficientForcing(const CahnHilliard& problem, const CahnHi
   }
 }
 
-Columns CoefficientForcing::operator()(double t, ConstVec y) const {
+Columns CoefficientForcing::operator()(double t, VecView y) const {
   const Vec no_rate = Vec::Zero(problem_.size());
   Columns forcing(problem_.size(), static_cast<Eigen::Index>(pairs_.size()));
   Vec here(problem_.size()), minus(problem_.size()), plus(problem_.size());

@@ -76,7 +76,7 @@ class CoefficientForcing {
   // `problem` has the model with the hypothesis' effects, and must outlive this object.
   CoefficientForcing(const CahnHilliard& problem, const CahnHilliardModel& model,
                      const Hypothesis& hypothesis, const std::vector<Candidate>& more);
-  Columns operator()(double t, ConstVec y) const;
+  Columns operator()(double t, VecView y) const;
 
  private:
   struct Pair {

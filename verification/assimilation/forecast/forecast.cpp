@@ -23,7 +23,7 @@ TangentGrid TangentGrid::graded(double begin, double end, int steps) {
   return grid;
 }
 
-Forecast forecast(const CahnHilliard& problem, const MakeIntegrator& make_integrator, ConstVec c,
+Forecast forecast(const CahnHilliard& problem, const MakeIntegrator& make_integrator, VecView c,
                   double begin, double end, const std::vector<int>& tangent_steps, int most_steps) {
   Vec y = Vec::Zero(problem.size()), ydot = Vec::Zero(problem.size());
   y.head(problem.block_size()) = c;

@@ -39,7 +39,7 @@ inline constexpr int kMostTrialSteps = 1000;
 
 // Advances the nodal field c from `begin` to `end`, with a path for each number of tangent steps.
 // Throws std::runtime_error if that fails, or takes more steps.
-Forecast forecast(const CahnHilliard& problem, const MakeIntegrator& make_integrator, ConstVec c,
+Forecast forecast(const CahnHilliard& problem, const MakeIntegrator& make_integrator, VecView c,
                   double begin, double end, const std::vector<int>& tangent_steps = {},
                   int most_steps = kMostTrialSteps);
 

@@ -45,7 +45,7 @@ class ResolvedForecast {
   // `turn`: by which the vesicle turns at the end, on the finest mesh; may be null. Throws
   // std::runtime_error if the flow cannot be advanced.
   End advance(std::size_t k, double begin, double end, const MeshTransfer* turn = nullptr);
-  void correct(ConstVec increment) { c_ += meshes_.to_finest(increment); }  // of the model's mesh
+  void correct(VecView increment) { c_ += meshes_.to_finest(increment); }  // of the model's mesh
 
  private:
   const FinerMeshes& meshes_;

@@ -40,7 +40,7 @@ void TangentFlow::advance(const TangentPath& along, Columns& S, const Forcing& f
   }
 }
 
-Columns TangentFlow::solve_stage(double t, ConstVec y, double shift, const Columns& G,
+Columns TangentFlow::solve_stage(double t, VecView y, double shift, const Columns& G,
                                  const Forcing& forcing) {
   const int n = problem_.block_size();
   const Vec no_rate = Vec::Zero(problem_.size());
@@ -77,7 +77,7 @@ Columns TangentFlow::solve(const Columns& right) {
   return X;
 }
 
-void TangentFlow::refine(double t, ConstVec y, double shift, const Columns& right, Columns& X) {
+void TangentFlow::refine(double t, VecView y, double shift, const Columns& right, Columns& X) {
   const Vec no_rate = Vec::Zero(problem_.size());
   Columns left(right.rows(), right.cols());
   for (int k = 0; k < kMostRefinements; ++k) {

@@ -15,7 +15,7 @@ inline constexpr double kTangentGamma = 0.2928932188134524756;  // 1 − 1/√2
 using Columns = Eigen::MatrixXd;
 
 // The change of F per unit of a parameter at (t, y): 2n × forced columns.
-using Forcing = std::function<Columns(double t, ConstVec y)>;
+using Forcing = std::function<Columns(double t, VecView y)>;
 
 // Along a solution, the DAE F(t, y, ẏ; θ) = 0 changes by M̃ δċ + ∂F/∂y δy + ∂F/∂θ = 0: advances the
 // columns of S over the path's grid. The last ones, as many as `forcing` returns, are forced;
@@ -30,11 +30,11 @@ class TangentFlow {
 
  private:
   // Solves M̃ (X − G) shift + ∂F/∂y X + forcing = 0 for the differential part.
-  Columns solve_stage(double t, ConstVec y, double shift, const Columns& G, const Forcing& forcing);
+  Columns solve_stage(double t, VecView y, double shift, const Columns& G, const Forcing& forcing);
   // By the factors of the assembled Jacobian: (c, μ), a column for each.
   Columns solve(const Columns& right);
   // Iterative refinement: what effects that couple distant points leave out of these.
-  void refine(double t, ConstVec y, double shift, const Columns& right, Columns& X);
+  void refine(double t, VecView y, double shift, const Columns& right, Columns& X);
 
   const CahnHilliard& problem_;
   std::shared_ptr<const ThreadTeam> team_;

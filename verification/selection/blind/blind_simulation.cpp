@@ -41,12 +41,12 @@ std::vector<Vec> BlindSimulation::run(const std::vector<double>& times) const {
   return result;
 }
 
-Vec BlindSimulation::advance(ConstVec c, double begin, double end) const {
+Vec BlindSimulation::advance(VecView c, double begin, double end) const {
   constexpr int kMostSteps = 100000;  // from noise to a few rafts takes thousands
   return forecast(problem_, make_integrator_, c, begin, end, {}, kMostSteps).end;
 }
 
-double spread(const SurfaceSpace& space, ConstVec c) {
+double spread(const SurfaceSpace& space, VecView c) {
   const double mean = space.integral(c) / space.area;
   return std::sqrt(std::max(0.0, space.inner(c, c) / space.area - mean * mean));
 }

@@ -23,7 +23,7 @@ class BlindSimulation {
 
   // c at the times, which begin after 0.
   std::vector<Vec> run(const std::vector<double>& times) const;
-  Vec advance(ConstVec c, double begin, double end) const;
+  Vec advance(VecView c, double begin, double end) const;
 
  private:
   const BlindRequest& request_;
@@ -32,6 +32,6 @@ class BlindSimulation {
 };
 
 // Standard deviation of c over the surface.
-double spread(const SurfaceSpace& space, ConstVec c);
+double spread(const SurfaceSpace& space, VecView c);
 
 }  // namespace traceraft

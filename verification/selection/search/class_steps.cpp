@@ -66,7 +66,7 @@ const Refit* refit_in(const Round& round, const Refit& fit) {
 // another best one. Only deviances of one round are in units of the same noise.
 std::vector<Refit> shadows(const Search& search, const SearchState& state, const Refit& best) {
   const Refit& found = state.so_far.found;
-  const double limit = telling(search.values(), mesh_error(state));
+  const double limit = discrimination_limit(search.values(), mesh_error(state));
   std::vector<Refit> result;
   for (const Round& round : state.so_far.rounds) {
     const Refit *own = refit_in(round, found), *other = refit_in(round, best);
@@ -104,7 +104,7 @@ std::vector<Member> members_of(const FilterProblems& all, const Search& search,
 // Members are rivals of the best one, or excluded, by all that was measured.
 void judge_members(const Search& search, const std::vector<Member>& members, std::size_t best,
                    double values, Explanation& result) {
-  const double limit = telling(values, result.rounds.back().screening.mesh_error);
+  const double limit = discrimination_limit(values, result.rounds.back().screening.mesh_error);
   result.rivals.clear();
   for (std::size_t k = 0; k < members.size(); ++k) {
     const std::string name = members[k].fit.hypothesis.name();

@@ -120,7 +120,8 @@ SearchState eliminate(Search& search, SearchState state) {
   if (state.eliminated) {
     std::vector<Refit> rivals;
     for (Refit& fit : search.refit_all(state, rivals_without_dropped(search, state), trials.size()))
-      if (fit.failure.empty() && explains_as_well(fit, found, values, telling(values, error)))
+      if (fit.failure.empty() &&
+          explains_as_well(fit, found, values, discrimination_limit(values, error)))
         rivals.push_back(std::move(fit));
     state.so_far.rivals = std::move(rivals);
     state.so_far.finding = finding_beside(state.so_far.rivals.size());
@@ -147,7 +148,8 @@ SearchState replace(Search& search, SearchState state) {
   const Refit* best =
       state.replacements < kMostReplacements ? better_one(search, state, fits) : nullptr;
   if (best == nullptr) {
-    add_rivals(fits, search.values(), telling(search.values(), mesh_error(state)), result);
+    add_rivals(fits, search.values(), discrimination_limit(search.values(), mesh_error(state)),
+               result);
     result.finding = finding_beside(result.rivals.size());
     return state;
   }

@@ -55,13 +55,13 @@ double mesh_doubt(double values, double mesh_error) {
   return kMeshDoubt * mesh_error * std::sqrt(values);
 }
 
-double telling(double values, double mesh_error) {
+double discrimination_limit(double values, double mesh_error) {
   const double noise_and_mesh = std::sqrt(kTelling) + mesh_doubt(values, mesh_error);
   return noise_and_mesh * noise_and_mesh;
 }
 
 bool resolved(const Refit& fit, std::size_t effect, double values, double mesh_error) {
-  return certainty(fit, effect) >= telling(values, mesh_error);
+  return certainty(fit, effect) >= discrimination_limit(values, mesh_error);
 }
 
 bool all_resolved(const Refit& fit, double values, double mesh_error) {
@@ -114,7 +114,7 @@ Judgement judge(const Round& round, double values, double false_alarms, double u
         false, more ? Finding::unnamed : Finding::below_resolution, Finding::below_resolution, {}};
   }
   Judgement taken{true, Finding::named, Finding::named, {best.hypothesis.name()}};
-  const double limit = telling(values, round.screening.mesh_error);
+  const double limit = discrimination_limit(values, round.screening.mesh_error);
   for (std::size_t k = 1; k < round.refits.size(); ++k)
     if (explains_as_well(round.refits[k], best, values, limit))
       taken.equivalent.push_back(round.refits[k].hypothesis.name());

@@ -79,7 +79,7 @@ double mesh_doubt(double values, double mesh_error);
 
 // Deviances further apart tell two hypotheses apart: by noise, and even if that error had the very
 // shape of what distinguishes them.
-double telling(double values, double mesh_error);
+double discrimination_limit(double values, double mesh_error);
 
 // Is an effect so certain that noise and what extrapolation to finer meshes may be wrong by could
 // not look like it, even if that had its very shape?

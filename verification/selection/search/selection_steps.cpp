@@ -79,7 +79,7 @@ std::vector<FilterModel> trials_of(const Search& search, const SearchState& stat
   open.scores.erase(std::remove_if(open.scores.begin(), open.scores.end(), dropped),
                     open.scores.end());
   std::vector<FilterModel> trials;
-  const double limit = telling(search.values(), open.mesh_error);
+  const double limit = discrimination_limit(search.values(), open.mesh_error);
   for (Hypothesis::Part& part : shortlist(open, search.request().shortlist, limit)) {
     trials.push_back(search.model(state));
     trials.back().hypothesis.parts.push_back(std::move(part));
