@@ -139,7 +139,10 @@ WorkEnd run_comparison(const ComparePlan& plan, const ComparisonFolder& folder,
   jobs.kind = "runs";
   jobs.folder = folder.path();
   jobs.quiet = quiet;
-  jobs.run = [&](std::size_t k) { return compute(open[k], folder, plan.time_limit); };
+  jobs.run = [&](std::size_t k) {
+    // The first repetition may have failed since the list was made: it is not repeated for its time.
+    return folder.done(open[k], plan) ? ProcessEnd{} : compute(open[k], folder, plan.time_limit);
+  };
   jobs.name = [&](std::size_t k) { return open[k].name(); };
   jobs.success = is_result;
   return run_pending_jobs(jobs).stopped ? WorkEnd::stopped : WorkEnd::done;
