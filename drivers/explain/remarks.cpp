@@ -86,6 +86,17 @@ void add_own(const Explanation& found, const ExplainSetup& setup, std::vector<st
       all.push_back("These data show nothing of the model's " + terms[k].effect + ".");
 }
 
+// Which times would help.
+void add_rest(const ExplainSetup& setup, std::vector<std::string>& all) {
+  const double unit = setup.configuration.units().seconds_per_unit();
+  double first = HUGE_VAL;
+  for (const FieldSeries& vesicle : setup.series)
+    first = std::min(first, vesicle.snapshots.front().time * unit);
+  all.push_back(formatted(
+      "All snapshots are of rafts at rest, the first at %.4g s. Earlier snapshots would help.",
+      first));
+}
+
 // A mistake in the unit of time looks like another D.
 void add_pace(const Explanation& found, const Units& base, std::vector<std::string>& all) {
   const double log_pace = std::fabs(std::log(found.found.pace));
@@ -276,7 +287,7 @@ std::vector<std::string> remarks(const Explanation& found, const Units& base) {
     all.push_back(last.refits.empty() && last.failures.empty()
                       ? more_effects(found)
                       : "Something may still be missing, but too little to say what.");
-  add_assumptions(found, base, all);
+  if (!found.at_rest) add_assumptions(found, base, all);
   add_rerun(found, all);
   return all;
 }
@@ -290,7 +301,10 @@ std::vector<std::string> remarks_on(const Explanation& found, const ExplainSetup
   for (std::string& remark : remarks(found, setup.configuration.units()))
     all.push_back(std::move(remark));
   add_diffusion(found, setup.configuration.units(), all);
-  add_own(found, setup, all);
+  if (found.at_rest)
+    add_rest(setup, all);
+  else
+    add_own(found, setup, all);
   add_registered(found, setup, all);
   for (const FrameChange& change : found.frames) all.push_back(text_of(change, setup));
   if (const auto& without = setup.request.without; !without.empty())

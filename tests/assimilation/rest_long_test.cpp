@@ -5,7 +5,7 @@
 
 #include "tests/support/small_vesicle.hpp"
 #include "verification/assimilation/filter/rest.hpp"
-#include "verification/selection/search/search_state.hpp"
+#include "verification/selection/search/steps.hpp"
 
 namespace traceraft {
 namespace {
@@ -72,12 +72,34 @@ TEST(Rest, IsNotWhereTheModelDoesNotRest) {
   EXPECT_FALSE(rest(late_vesicle(), wider));
 }
 
-// Nothing is fitted then, and the search ends at once.
-TEST(Rest, EndsTheSearch) {
+ExplainRequest request_for_rest() {
   ExplainRequest request;
   request.base = testing::small_vesicle(3).base;
   request.surface = make_surface("sphere");
   request.cells = kRestCells;
+  return request;
+}
+
+// Rafts that the model with its own effects would not leave as they are.
+TEST(Rest, IsHeldAgainstTheWholeModel) {
+  ExplainRequest request = request_for_rest();
+  request.own = of_model({{"uptake", {1e-4}}});
+  // The search begins by a fit of D; more of it is not needed.
+  struct Begun {};
+  request.progress = [](const std::string& news) {
+    if (news.rfind("fit D", 0) == 0) throw Begun();
+  };
+  Search search(late_vesicle(), request);
+  EXPECT_THROW(next_state(search, {}), Begun);
+  request.own = {};
+  request.progress = nullptr;
+  Search without(late_vesicle(), request);
+  EXPECT_TRUE(next_state(without, {}).so_far.at_rest);
+}
+
+// Nothing is fitted then, and the search ends at once.
+TEST(Rest, EndsTheSearch) {
+  ExplainRequest request = request_for_rest();
   int states = 0;
   request.save = [&](const SearchState&) { ++states; };
   const Explanation found = explain_fields(late_vesicle(), request);

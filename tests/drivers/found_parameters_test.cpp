@@ -197,6 +197,32 @@ TEST(OwnEffects, AreHeldAgainstTheData) {
   }
 }
 
+// Nothing was fitted: no strength of the model is doubted, and earlier times are asked for.
+TEST(OwnEffects, AreLeftAloneWhereRaftsAreAtRest) {
+  ExplainSetup setup;
+  setup.request.own = of_model({{"gravity", {0.3}}});
+  FieldSeries vesicle;
+  vesicle.snapshots.resize(2);
+  vesicle.snapshots[0].time = 50;
+  setup.series = {vesicle};
+  Explanation found;
+  found.at_rest = true;
+  found.finding = Finding::not_identifiable;
+  found.found.hypothesis = setup.request.own;
+  found.found.settled = true;
+  found.base = found.found;
+  found.rounds.resize(1);
+  found.rounds[0].known.hypothesis = setup.request.own;
+  const std::vector<std::string> all = remarks_on(found, setup);
+  ASSERT_EQ(all.size(), 1u) << all.front();
+  const double seconds = 50 * setup.configuration.units().seconds_per_unit();
+  EXPECT_NE(all[0].find(formatted("%.4g s", seconds)), std::string::npos) << all[0];
+  const Verdict verdict = verdict_of(found, setup);
+  EXPECT_TRUE(verdict.parameters.empty());
+  EXPECT_FALSE(verdict.p);
+  EXPECT_TRUE(verdict_json(verdict).at("null").at("p").is_null());
+}
+
 TEST(OwnEffects, AreNotLookedForInAnotherForm) {
   const auto beside = [](const EffectTerm& term) {
     std::vector<std::string> names;

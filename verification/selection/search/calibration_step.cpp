@@ -172,7 +172,8 @@ SearchState start(Search& search, SearchState state) {
   Explanation& result = state.so_far;
   const FilterProblems& data = search.data_at_start();
   describe_data(search, data, result);
-  if (are_at_rest(data, request.base)) return at_rest(search, data, std::move(state));
+  if (are_at_rest(data, with_effects(request.base, request.own.terms())))
+    return at_rest(search, data, std::move(state));
   search.tell("fit D of the base model");
   const FilterModel model =
       with_first_pace(data, {request.base, 1, request.own, {}}, request.filter);
