@@ -34,7 +34,7 @@ struct OneOf {
   std::string kind;  // "integrator"
   std::vector<std::string> names;
 };
-// Of a list: at least one, none twice, and each as `item` says.
+// A list of at least one item, none twice, and each as `item` says.
 template <class Check>
 struct Distinct {
   Check item;

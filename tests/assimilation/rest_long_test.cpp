@@ -21,9 +21,10 @@ BlindRequest rafts_between(double first, double last) {
   return asked;
 }
 
-bool rest(const std::vector<FieldSeries>& vesicles, const CahnHilliardModel& base) {
+bool rest(const std::vector<FieldSeries>& vesicles, const CahnHilliardModel& base,
+          const FilterSettings& settings = {}) {
   return are_at_rest(
-      make_filter_problems(vesicles, *make_surface("sphere"), base, kRestCells, 2, false, {}),
+      make_filter_problems(vesicles, *make_surface("sphere"), base, kRestCells, 2, false, settings),
       base);
 }
 
@@ -47,6 +48,16 @@ TEST(Rest, IsSeenAlsoOfAVesicleThatTurns) {
     angle += 0.7;
   }
   EXPECT_TRUE(rest(turned, base));
+}
+
+TEST(Rest, IsSeenThroughAMicroscope) {
+  BlindRequest asked = rafts_between(4000, 9000);
+  asked.blur = 0.3;
+  const std::vector<FieldSeries> blurred = draw_blind_case(asked).vesicles;
+  FilterSettings microscope;
+  microscope.blur = asked.blur;
+  EXPECT_TRUE(rest(blurred, asked.base, microscope));
+  EXPECT_FALSE(rest(blurred, asked.base)) << "boundaries of another width than the model's";
 }
 
 // One vesicle that changes is enough.

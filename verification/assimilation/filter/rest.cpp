@@ -45,7 +45,8 @@ class Interval {
     before_ = estimate_field(*data.space, data.snapshots[snapshot - 1], data.prior, wanted);
   }
 
-  // Of noise and of the error of the field before.
+  // The variance of values around the field before, if nothing has changed: noise and the error of
+  // that field.
   double chance() const {
     const NoisyValues& now = data_.snapshots[snapshot_];
     const double noise =
@@ -64,12 +65,13 @@ class Interval {
     return excess <= kStill * kStill * width * width + kChance * noise * std::sqrt(2 / count);
   }
 
+  // The model's forecast as the microscope would see it.
   Vec expected(double pace) const {
     const CahnHilliard problem(data_.space, base_);
     const double start = data_.time(snapshot_ - 1), time = pace * (data_.time(snapshot_) - start);
     const auto make = [&](const DaeProblem& p) { return data_.make_integrator(p, *data_.space); };
-    return fitted(data_, forecast(problem, make, before_.field, start, start + time).end,
-                  snapshot_);
+    const Vec end = forecast(problem, make, before_.field, start, start + time).end;
+    return fitted(data_, data_.blur ? data_.blur->blurred(end) : end, snapshot_);
   }
 
   bool model_rests() const {
