@@ -140,7 +140,8 @@ WorkEnd run_comparison(const ComparePlan& plan, const ComparisonFolder& folder,
   jobs.folder = folder.path();
   jobs.quiet = quiet;
   jobs.run = [&](std::size_t k) {
-    // The first repetition may have failed since the list was made: it is not repeated for its time.
+    // The first repetition may have failed since the list was made: it is not repeated for its
+    // time.
     return folder.done(open[k], plan) ? ProcessEnd{} : compute(open[k], folder, plan.time_limit);
   };
   jobs.name = [&](std::size_t k) { return open[k].name(); };
