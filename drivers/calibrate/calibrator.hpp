@@ -29,7 +29,7 @@ struct CalibratorRequest {
 
 class Calibrator {
  public:
-  // Blocks and model must outlive it.
+  // Request, data and model must outlive it.
   Calibrator(const CalibratorRequest& request, const MeasuredVesicles& data,
              const Configuration& model)
       : request_(request), data_(data), model_(model) {}

@@ -122,7 +122,7 @@ void write_score(const CampaignFolder& folder, const CampaignGroup& group, const
                       {"effect", verdict.members.empty() ? "" : verdict.members.front()},
                       {"class", verdict.members},
                       {"outcome", word_for(outcome_of(group.aim, hidden, verdict))},
-                      {"p", verdict.p ? Json(*verdict.p) : Json()},
+                      {"p", number_or_null(verdict.p)},
                       {"rounds", verdict.null_details.at("rounds")},
                       {"heldout",
                        {{"base", heldout(verdict.base_gap)},

@@ -86,7 +86,7 @@ void add_own(const Explanation& found, const ExplainSetup& setup, std::vector<st
       all.push_back("These data show nothing of the model's " + terms[k].effect + ".");
 }
 
-// Which times would help.
+// The user learns which times would help.
 void add_rest(const ExplainSetup& setup, std::vector<std::string>& all) {
   const double unit = setup.configuration.units().seconds_per_unit();
   double first = HUGE_VAL;

@@ -16,7 +16,7 @@ Json parameters_json(const std::vector<FoundParameter>& found) {
   Json parameters = Json::object();
   for (const FoundParameter& p : found)
     parameters[(p.effect.empty() ? "" : p.effect + ".") + p.name] = {
-        {"value", p.value}, {"sigma", p.sigma ? Json(*p.sigma) : Json()}, {"unit", p.unit}};
+        {"value", p.value}, {"sigma", number_or_null(p.sigma)}, {"unit", p.unit}};
   return parameters;
 }
 
@@ -60,11 +60,8 @@ Json gap_json(const Gaps& gaps) {
 
 Json closed_json(const Explanation& found) {
   if (found.found.hypothesis.added() == 0) return {};
-  const auto json = [](const std::optional<double>& share) {
-    return share ? Json(*share) : Json();
-  };
   const SharesClosed closed = shares_closed(found.base.gap, found.found.gap, found.found.expected);
-  return {{"train", json(closed.train)}, {"heldout", json(closed.heldout)}};
+  return {{"train", number_or_null(closed.train)}, {"heldout", number_or_null(closed.heldout)}};
 }
 
 Json where_json(const Explanation& found, const ExplainSetup& setup) {
@@ -103,7 +100,7 @@ Json rerun_json(const Explanation& found) {
           {"refutes", compared ? Json(rerun.refutes()) : Json()},
           {"failure", text(rerun.failure)},
           {"gain", told && rerun.failure.empty() ? Json(rerun.gain) : Json()},
-          {"gap_p", rerun.gap_p ? Json(*rerun.gap_p) : Json()},
+          {"gap_p", number_or_null(rerun.gap_p)},
           {"gap_failure", text(rerun.gap_failure)},
           {"cells", rerun.cells},
           {"integrator", rerun.integrator},
@@ -210,7 +207,7 @@ Json verdict_json(const Verdict& verdict) {
                {"null",
                 {{"replicates", verdict.replicates},
                  {"false_alarm_level", verdict.false_alarms},
-                 {"p", verdict.p ? Json(*verdict.p) : Json()}}}};
+                 {"p", number_or_null(verdict.p)}}}};
   json["null"].update(verdict.null_details);
   json.update(verdict.details);
   json["program"] = program_text();

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "backends/posix/durable_file.hpp"
 #include "kernel/core/error.hpp"
@@ -10,6 +11,11 @@
 namespace traceraft {
 
 using Json = nlohmann::ordered_json;
+
+// null where there is no number.
+inline Json number_or_null(const std::optional<double>& number) {
+  return number ? Json(*number) : Json();
+}
 
 // use(content). Throws IoError if the file is not there or too large, DamagedFile if it is no JSON
 // or lacks what is looked for.

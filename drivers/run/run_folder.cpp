@@ -128,7 +128,6 @@ RunFolder create_run_folder(const std::string& out, const Configuration& configu
   try {
     if (fs::exists(folder.path) && !fs::is_directory(folder.path))
       throw InputError("--out: " + folder.path.string() + " is a file");
-    refuse_before_lock(folder.path);
     fs::create_directories(folder.path);
     folder.lock = std::make_unique<FolderLock>(folder.path);
     refuse_files_of_a_run(folder.path);

@@ -150,10 +150,8 @@ std::vector<Vec> expected_fields(const FilterProblem& data, const CahnHilliard& 
                                  std::size_t snapshot) {
   const NoisyValues& before = data.snapshots[snapshot - 1];
   std::vector<Vec> fields{estimate_field(*data.space, before, data.prior, {}).field};
-  const auto make = [&](const DaeProblem& p) { return data.make_integrator(p, *data.space); };
   try {
-    fields.push_back(
-        forecast(base, make, fields[0], data.time(snapshot - 1), data.time(snapshot)).end);
+    fields.push_back(advanced(data, base, fields[0], data.time(snapshot - 1), data.time(snapshot)));
   } catch (const std::runtime_error&) {
     // D of the base model may be far from that of the data.
   }
@@ -190,6 +188,12 @@ void add_series(const FieldSeries& series, const CahnHilliardModel& base,
 }
 
 }  // namespace
+
+Vec advanced(const FilterProblem& data, const CahnHilliard& problem, VecView field, double begin,
+             double end) {
+  const auto make = [&](const DaeProblem& p) { return data.make_integrator(p, *data.space); };
+  return forecast(problem, make, field, begin, end).end;
+}
 
 double count_values(const FilterProblems& data) {
   double count = 0;

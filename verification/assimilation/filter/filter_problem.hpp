@@ -72,6 +72,11 @@ struct FilterProblem {
 
 using FilterProblems = std::vector<FilterProblem>;
 
+// A field on `space` at the time `end`, from that at `begin`. Throws std::runtime_error if the
+// problem cannot be advanced.
+Vec advanced(const FilterProblem& data, const CahnHilliard& problem, VecView field, double begin,
+             double end);
+
 // That were measured and count, first snapshots aside.
 double count_values(const FilterProblems& data);
 

@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "verification/assimilation/fields/registration.hpp"
-#include "verification/assimilation/forecast/forecast.hpp"
 
 namespace traceraft {
 namespace {
@@ -69,8 +68,7 @@ class Interval {
   Vec expected(double pace) const {
     const CahnHilliard problem(data_.space, base_);
     const double start = data_.time(snapshot_ - 1), time = pace * (data_.time(snapshot_) - start);
-    const auto make = [&](const DaeProblem& p) { return data_.make_integrator(p, *data_.space); };
-    const Vec end = forecast(problem, make, before_.field, start, start + time).end;
+    const Vec end = advanced(data_, problem, before_.field, start, start + time);
     return fitted(data_, data_.blur ? data_.blur->blurred(end) : end, snapshot_);
   }
 

@@ -61,7 +61,7 @@ class Search {
   Forecasts forecasts_;
 };
 
-// That of the last round's screening.
+// The error of the mesh, as the last round's screening has it (Screening::mesh_error).
 inline double mesh_error(const SearchState& state) {
   return state.so_far.rounds.back().screening.mesh_error;
 }
