@@ -14,34 +14,34 @@
 #include "kernel/core/error.hpp"
 #include "kernel/linear/block_solver.hpp"
 
-namespace traceraft {
+namespace traceraft::backends {
 namespace {
 
-void require_one_rank(const char* name, const SurfaceSpace& space) {
+void require_one_rank(const char* name, const fem::SurfaceSpace& space) {
   if (space.communicator->size() > 1)
     throw InputError(std::string(name) +
                      " works on one rank only; on several ranks, choose --linear-solver teko");
 }
 
-LinearSolverFactory block(const SurfaceSpace& space, const WordOptions&) {
+linear::LinearSolverFactory block(const fem::SurfaceSpace& space, const WordOptions&) {
   require_one_rank("block", space);
-  return [spd = supernodal_factory(space.pattern), size = 2 * space.nodes(),
+  return [spd = suitesparse::supernodal_factory(space.pattern), size = 2 * space.nodes(),
           team = space.team](int lanes) {
-    return make_block_solver(
-        spd, [size] { return make_spfgmr(size); }, team, lanes);
+    return linear::make_block_solver(
+        spd, [size] { return sundials::make_spfgmr(size); }, team, lanes);
   };
 }
 
-LinearSolverFactory direct(const SurfaceSpace& space, const WordOptions&) {
+linear::LinearSolverFactory direct(const fem::SurfaceSpace& space, const WordOptions&) {
   require_one_rank("direct", space);
   return [pattern = space.pattern](int lanes) {
-    return make_direct_solver("direct", make_umfpack_lu, pattern, lanes);
+    return suitesparse::make_direct_solver("direct", suitesparse::make_umfpack_lu, pattern, lanes);
   };
 }
 
 // KLU works on columns one by one, without dense blocks: on larger meshes it takes many times as
 // long as UMFPACK.
-LinearSolverFactory klu(const SurfaceSpace& space, const WordOptions&) {
+linear::LinearSolverFactory klu(const fem::SurfaceSpace& space, const WordOptions&) {
   require_one_rank("klu", space);
   constexpr int kMost = 25000;
   const int unknowns = 2 * space.nodes();
@@ -50,15 +50,15 @@ LinearSolverFactory klu(const SurfaceSpace& space, const WordOptions&) {
                      " unknowns, and this mesh has " + std::to_string(unknowns) +
                      "; choose block (the fastest), direct, or fewer --cells");
   return [pattern = space.pattern](int lanes) {
-    return make_direct_solver("klu", make_klu_lu, pattern, lanes);
+    return suitesparse::make_direct_solver("klu", suitesparse::make_klu_lu, pattern, lanes);
   };
 }
 
 #ifdef TRACERAFT_WITH_TRILINOS
 constexpr bool kWithTrilinos = true;
-LinearSolverFactory teko(const SurfaceSpace& space, const WordOptions& options) {
-  use_one_blas_thread();  // Tpetra's sums and LAPACK go there, too
-  return make_teko_solver(space.pattern, options);
+linear::LinearSolverFactory teko(const fem::SurfaceSpace& space, const WordOptions& options) {
+  suitesparse::use_one_blas_thread();  // Tpetra's sums and LAPACK go there, too
+  return trilinos::make_teko_solver(space.pattern, options);
 }
 #else
 constexpr bool kWithTrilinos = false;
@@ -99,11 +99,11 @@ const NamedList<LinearSolverEntry>& linear_solvers() {
 
 const NamedList<IntegratorEntry>& integrators() {
   static const std::vector<IntegratorEntry> entries = {
-      {"euler", "stabilised Euler/BDF2 pair with Gomez-Hughes steps", 5e-3, make_euler},
-      {"ida", "SUNDIALS IDA: BDF of variable order, Newton with the exact Jacobian", 1e-3, make_ida,
-       ida_parameters()},
+      {"euler", "stabilised Euler/BDF2 pair with Gomez-Hughes steps", 5e-3, euler::make_euler},
+      {"ida", "SUNDIALS IDA: BDF of variable order, Newton with the exact Jacobian", 1e-3,
+       sundials::make_ida, sundials::ida_parameters()},
       {"rosenbrock", "ROS34PW2: linearly implicit, order 3, no Newton iteration", 1e-3,
-       make_rosenbrock},
+       rosenbrock::make_rosenbrock},
   };
   static const NamedList<IntegratorEntry> list("integrator", entries);
   return list;
@@ -116,13 +116,14 @@ std::vector<std::string> built_linear_solvers() {
   return names;
 }
 
-LinearSolverChoice choose_linear_solver(const std::string& name, const SurfaceSpace& space,
-                                        const WordOptions& options) {
+linear::LinearSolverChoice choose_linear_solver(const std::string& name,
+                                                const fem::SurfaceSpace& space,
+                                                const WordOptions& options) {
   const LinearSolverEntry& entry = linear_solvers().find(name);
-  LinearSolverChoice choice{entry.make(space, options), nullptr};
+  linear::LinearSolverChoice choice{entry.make(space, options), nullptr};
   if (!entry.fallback.empty())
     choice.fallback = linear_solvers().find(entry.fallback).make(space, {});
   return choice;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::backends

@@ -11,7 +11,7 @@
 #include "kernel/fem/surface_space.hpp"
 #include "kernel/time/integrator.hpp"
 
-namespace traceraft {
+namespace traceraft::backends {
 
 // An option of one linear solver: --<name>-<option>, a word or the path of a file.
 struct WordOption {
@@ -25,7 +25,7 @@ struct LinearSolverEntry {
   std::string summary;
   std::string fallback;  // name of the solver to fall back on, or ""
   // Throws InputError for a space that it cannot serve and OptionError for options.
-  std::function<LinearSolverFactory(const SurfaceSpace&, const WordOptions&)> make;
+  std::function<linear::LinearSolverFactory(const fem::SurfaceSpace&, const WordOptions&)> make;
   std::vector<WordOption> options = {};
   bool built = true;         // if not, `make` says how to get it
   bool distributed = false;  // does it work on several ranks?
@@ -35,8 +35,9 @@ struct IntegratorEntry {
   std::string name;
   std::string summary;
   double tolerance;  // unless asked for otherwise
-  std::function<IntegratorPtr(const DaeProblem&, const LinearSolverChoice&,
-                              std::shared_ptr<const ThreadTeam>, const IntegratorSettings&)>
+  std::function<time::IntegratorPtr(const problem::DaeProblem&, const linear::LinearSolverChoice&,
+                                    std::shared_ptr<const ThreadTeam>,
+                                    const time::IntegratorSettings&)>
       make;
   std::vector<ParameterSpec> parameters = {};  // its own options: --<name>-<parameter>
 };
@@ -46,7 +47,8 @@ std::vector<std::string> built_linear_solvers();
 const NamedList<IntegratorEntry>& integrators();
 
 // The named solver together with its fallback. Throws InputError, OptionError.
-LinearSolverChoice choose_linear_solver(const std::string& name, const SurfaceSpace& space,
-                                        const WordOptions& options = {});
+linear::LinearSolverChoice choose_linear_solver(const std::string& name,
+                                                const fem::SurfaceSpace& space,
+                                                const WordOptions& options = {});
 
-}  // namespace traceraft
+}  // namespace traceraft::backends

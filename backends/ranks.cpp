@@ -10,7 +10,7 @@
 #include "backends/trilinos/runtime.hpp"
 #endif
 
-namespace traceraft {
+namespace traceraft::backends {
 namespace {
 
 // mpirun of Open MPI, MPICH and Intel MPI, and srun say so in the environment.
@@ -34,7 +34,7 @@ int started_ranks() {
 namespace {
 // How long a rank that fails waits for the others to fail, too.
 constexpr double kPatience = 2;
-std::unique_ptr<MpiSession> session;
+std::unique_ptr<mpi::MpiSession> session;
 }  // namespace
 
 RankSession::RankSession() {
@@ -43,8 +43,8 @@ RankSession::RankSession() {
     setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
     return;
   }
-  session = std::make_unique<MpiSession>();
-  if (const int started = started_ranks(); started > 1 && mpi_world()->size() == 1) {
+  session = std::make_unique<mpi::MpiSession>();
+  if (const int started = started_ranks(); started > 1 && mpi::mpi_world()->size() == 1) {
     session.reset();
     throw InputError(
         "several processes were started that do not find each other: use the mpirun of the MPI "
@@ -53,7 +53,7 @@ RankSession::RankSession() {
 }
 RankSession::~RankSession() {
 #ifdef TRACERAFT_WITH_TRILINOS
-  finish_trilinos();
+  trilinos::finish_trilinos();
 #endif
   session.reset();
 }
@@ -70,7 +70,7 @@ void RankSession::abort(int exit_code) {
 }
 
 std::shared_ptr<const Communicator> world() {
-  if (session) return mpi_world();
+  if (session) return mpi::mpi_world();
   return std::make_shared<SerialCommunicator>();
 }
 
@@ -100,4 +100,4 @@ std::shared_ptr<const Communicator> world() {
 
 #endif
 
-}  // namespace traceraft
+}  // namespace traceraft::backends

@@ -5,7 +5,7 @@
 
 #include "kernel/core/communicator.hpp"
 
-namespace traceraft {
+namespace traceraft::backends {
 
 // From the start of the program to its end, around all that uses the ranks.
 class RankSession {
@@ -28,4 +28,4 @@ class RankSession {
 // All of them; one process if there is no session.
 std::shared_ptr<const Communicator> world();
 
-}  // namespace traceraft
+}  // namespace traceraft::backends

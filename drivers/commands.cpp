@@ -1,14 +1,16 @@
 #include "drivers/commands.hpp"
 
-namespace traceraft {
+namespace traceraft::drivers {
 
 const NamedList<Command>& commands() {
   static const NamedList<Command> list(
-      "command", {run_command(), resume_command(), compare_command(), verify_command(),
-                  ensemble_command(), data_command(), report_command(), calibrate_command(),
-                  explain_command(), hide_command(), campaign_command(), fraction_command(),
-                  list_command(), man_command(), completions_command()});
+      "command",
+      {run::run_command(), run::resume_command(), compare::compare_command(),
+       verify::verify_command(), ensemble::ensemble_command(), data::data_command(),
+       report::report_command(), calibrate::calibrate_command(), explain::explain_command(),
+       campaign::hide_command(), campaign::campaign_command(), data::fraction_command(),
+       list_command(), manual::man_command(), manual::completions_command()});
   return list;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::drivers

@@ -10,7 +10,7 @@ namespace CLI {
 class App;
 }
 
-namespace traceraft {
+namespace traceraft::drivers {
 
 // Carries out what the command line asks for. Returns an exit code; throws InputError, IoError or
 // LockedError.
@@ -28,20 +28,42 @@ struct Command {
 
 const NamedList<Command>& commands();
 
-Command run_command();
-Command resume_command();
-Command compare_command();
-Command verify_command();
-Command ensemble_command();
-Command data_command();
-Command report_command();
-Command calibrate_command();
-Command explain_command();
-Command hide_command();
-Command campaign_command();
-Command fraction_command();
 Command list_command();
-Command man_command();
-Command completions_command();
 
-}  // namespace traceraft
+}  // namespace traceraft::drivers
+
+// Those of the folders below.
+namespace traceraft::run {
+drivers::Command run_command();
+drivers::Command resume_command();
+}  // namespace traceraft::run
+namespace traceraft::compare {
+drivers::Command compare_command();
+}
+namespace traceraft::verify {
+drivers::Command verify_command();
+}
+namespace traceraft::ensemble {
+drivers::Command ensemble_command();
+}
+namespace traceraft::data {
+drivers::Command data_command();
+drivers::Command fraction_command();
+}  // namespace traceraft::data
+namespace traceraft::report {
+drivers::Command report_command();
+}
+namespace traceraft::calibrate {
+drivers::Command calibrate_command();
+}
+namespace traceraft::explain {
+drivers::Command explain_command();
+}
+namespace traceraft::campaign {
+drivers::Command hide_command();
+drivers::Command campaign_command();
+}  // namespace traceraft::campaign
+namespace traceraft::manual {
+drivers::Command man_command();
+drivers::Command completions_command();
+}  // namespace traceraft::manual

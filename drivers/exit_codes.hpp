@@ -1,7 +1,7 @@
 // docs/exit-codes.md explains them.
 #pragma once
 
-namespace traceraft {
+namespace traceraft::drivers {
 
 enum ExitCode : int {
   kSuccess = 0,
@@ -14,4 +14,4 @@ enum ExitCode : int {
   kInternalError = 70
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::drivers

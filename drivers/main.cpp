@@ -48,11 +48,11 @@ std::string any_of(const std::vector<std::string>& names) {
   return text;
 }
 
-void refuse_ranks(const Command& command) {
-  if (world()->size() > 1 && command.ranks != Ranks::several)
+void refuse_ranks(const drivers::Command& command) {
+  if (backends::world()->size() > 1 && command.ranks != drivers::Ranks::several)
     throw InputError("only run and resume can use several ranks; start " + command.name +
                      " without mpirun");
-  if (command.ranks == Ranks::starts_them && RankSession::there_is())
+  if (command.ranks == drivers::Ranks::starts_them && backends::RankSession::there_is())
     throw InputError(command.name + " starts processes itself; start it without mpirun");
 }
 
@@ -70,17 +70,17 @@ int dispatch(int argc, char** argv) {
   CLI::App app{
       "Simulates how lipid rafts form and coarsen on liposomes, and compares with measurements.",
       "traceraft"};
-  app.set_version_flag("--version", [] { return program_text(); });
+  app.set_version_flag("--version", [] { return output::program_text(); });
   app.require_subcommand(1);
   app.footer("Start with: traceraft run --case two-rafts");
 
-  std::vector<std::pair<CLI::App*, Action>> defined;
-  for (const Command& command : commands()) {
+  std::vector<std::pair<CLI::App*, drivers::Action>> defined;
+  for (const drivers::Command& command : drivers::commands()) {
     CLI::App* sub = app.add_subcommand(command.name, command.summary);
     sub->allow_extras();
     defined.emplace_back(sub, command.define(*sub));
-    check_numbers_first(*sub);
-    refuse_empty_texts(*sub);
+    config::check_numbers_first(*sub);
+    config::refuse_empty_texts(*sub);
   }
 
   try {
@@ -88,17 +88,17 @@ int dispatch(int argc, char** argv) {
   } catch (const CLI::Success& asked) {
     std::ostringstream text;  // --help, --version
     const int code = app.exit(asked, text);
-    say_encoded(text.str());
+    text::say_encoded(text.str());
     return code;
   } catch (const CLI::RequiredError& error) {
     if (!app.get_subcommands().empty())
       throw InputError(app.get_subcommands().front()->get_name() + ": " +
                        std::string(error.what()));
-    if (argc > 1) (void)commands().find(argv[1]);
-    throw InputError("a command is needed: " + any_of(commands().names()) +
+    if (argc > 1) (void)drivers::commands().find(argv[1]);
+    throw InputError("a command is needed: " + any_of(drivers::commands().names()) +
                      " (see traceraft --help)");
   } catch (const CLI::ExtrasError&) {
-    (void)commands().find(argv[1]);
+    (void)drivers::commands().find(argv[1]);
     throw InputError("give one command at a time");
   } catch (const CLI::ParseError& error) {
     throw InputError(error.what());
@@ -107,7 +107,7 @@ int dispatch(int argc, char** argv) {
   }
   const CLI::App& asked_for = *app.get_subcommands().front();
   refuse_unknown(asked_for);
-  refuse_ranks(commands().find(asked_for.get_name()));
+  refuse_ranks(drivers::commands().find(asked_for.get_name()));
   return std::find_if(defined.begin(), defined.end(),
                       [&](const auto& entry) { return entry.first == &asked_for; })
       ->second();
@@ -115,14 +115,14 @@ int dispatch(int argc, char** argv) {
 
 // Says what is wrong; if all ranks fail, which is the rule for bad input, the first one says it.
 int complain(const std::string& what, int code) {
-  const bool alike = RankSession::all_fail();
-  const std::shared_ptr<const Communicator> ranks = world();
-  flush_output();
+  const bool alike = backends::RankSession::all_fail();
+  const std::shared_ptr<const Communicator> ranks = backends::world();
+  text::flush_output();
   if (ranks->root() || !alike) {
     const std::string who = alike ? "" : "rank " + std::to_string(ranks->rank()) + ": ";
-    say_error(who + what);
+    text::say_error(who + what);
   }
-  if (!alike) RankSession::abort(code);
+  if (!alike) backends::RankSession::abort(code);
   return code;
 }
 
@@ -130,39 +130,39 @@ int guarded(int argc, char** argv) {
   try {
     return dispatch(argc, argv);
   } catch (const InputError& error) {
-    return complain(error.what(), kBadInput);
+    return complain(error.what(), drivers::kBadInput);
   } catch (const IoError& error) {
-    return complain(error.what(), kInputOutput);
+    return complain(error.what(), drivers::kInputOutput);
   } catch (const std::filesystem::filesystem_error& error) {
     const bool too_long = error.code() == std::errc::filename_too_long;
     return complain(error.path1().string() + ": " + error.code().message(),
-                    too_long ? kBadInput : kInputOutput);
-  } catch (const NumericalFailure& error) {
-    return complain(error.what(), kNumericalFailure);
-  } catch (const LockedError& error) {
-    return complain(error.what(), kLocked);
+                    too_long ? drivers::kBadInput : drivers::kInputOutput);
+  } catch (const drivers::NumericalFailure& error) {
+    return complain(error.what(), drivers::kNumericalFailure);
+  } catch (const posix::LockedError& error) {
+    return complain(error.what(), drivers::kLocked);
   } catch (const std::bad_alloc&) {
-    return complain("out of memory; use fewer --cells", kInternalError);
+    return complain("out of memory; use fewer --cells", drivers::kInternalError);
   } catch (const std::exception& error) {
-    return complain(std::string("internal error: ") + error.what(), kInternalError);
+    return complain(std::string("internal error: ") + error.what(), drivers::kInternalError);
   }
 }
 
 // Output that could not be written is lost, even if everything else was done.
 int with_output_checked(int code) {
-  const std::string why = output_error();
+  const std::string why = text::output_error();
   if (why.empty()) return code;
-  say_error("cannot write to the standard output: " + why);
-  return code == kSuccess ? kInputOutput : code;
+  text::say_error("cannot write to the standard output: " + why);
+  return code == drivers::kSuccess ? drivers::kInputOutput : code;
 }
 
 int run_with_ranks(int argc, char** argv) {
   try {
-    const RankSession session;
+    const backends::RankSession session;
     return with_output_checked(guarded(argc, argv));
   } catch (const InputError& error) {  // there are ranks, but no MPI
-    say_error(error.what());
-    return kBadInput;
+    text::say_error(error.what());
+    return drivers::kBadInput;
   }
 }
 
@@ -170,14 +170,15 @@ int run_with_ranks(int argc, char** argv) {
 }  // namespace traceraft
 
 // Called before libraries start.
-__attribute__((section(".preinit_array"), used)) static void (*const kBeforeLibraries)(
-    int, char**, char**) = traceraft::require_address_space<traceraft::kInternalError>;
+__attribute__((section(".preinit_array"), used)) static void (*const kBeforeLibraries)(int, char**,
+                                                                                       char**) =
+    traceraft::posix::require_address_space<traceraft::drivers::kInternalError>;
 
 int main(int argc, char** argv) {
-  traceraft::occupy_standard_descriptors();
-  traceraft::ignore_file_size_signal();
+  traceraft::posix::occupy_standard_descriptors();
+  traceraft::posix::ignore_file_size_signal();
   // Read by OpenBLAS when it is loaded, hence before anything else.
-  traceraft::restart_with_environment(traceraft::preferred_environment(), argv);
-  traceraft::use_one_blas_thread();
+  traceraft::posix::restart_with_environment(traceraft::suitesparse::preferred_environment(), argv);
+  traceraft::suitesparse::use_one_blas_thread();
   return traceraft::run_with_ranks(argc, argv);
 }

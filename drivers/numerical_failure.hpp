@@ -6,7 +6,7 @@
 
 #include "kernel/core/error.hpp"
 
-namespace traceraft {
+namespace traceraft::drivers {
 
 struct NumericalFailure : std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -28,4 +28,4 @@ auto numerically(const Work& work) {
   }
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::drivers

@@ -33,11 +33,11 @@ class BrokenProblem : public ForwardingProblem {
     }
     return status;
   }
-  Status jacobian(double t, VecView y, VecView ydot, double sigma, Tangent tangent,
-                  BlockJacobian& J) const override {
+  Status jacobian(double t, VecView y, VecView ydot, double sigma, linear::Tangent tangent,
+                  linear::BlockJacobian& J) const override {
     return ForwardingProblem::jacobian(t, y, clock * ydot, clock * shift * sigma, tangent, J);
   }
-  Status jacobian_product(double t, VecView y, VecView ydot, double sigma, Tangent tangent,
+  Status jacobian_product(double t, VecView y, VecView ydot, double sigma, linear::Tangent tangent,
                           VecView v, VecRef product) const override {
     return ForwardingProblem::jacobian_product(t, y, clock * ydot, clock * shift * sigma, tangent,
                                                v, product);
@@ -45,9 +45,10 @@ class BrokenProblem : public ForwardingProblem {
 };
 
 // A law that is off by a factor.
-class ScaledMobility final : public Mobility {
+class ScaledMobility final : public physics::Mobility {
  public:
-  ScaledMobility(MobilityPtr inner, double factor) : inner_(std::move(inner)), factor_(factor) {}
+  ScaledMobility(physics::MobilityPtr inner, double factor)
+      : inner_(std::move(inner)), factor_(factor) {}
   void evaluate(const double* c, int count, double* value, double* derivative) const override {
     inner_->evaluate(c, count, value, derivative);
     for (int i = 0; i < count; ++i) {
@@ -59,14 +60,14 @@ class ScaledMobility final : public Mobility {
   bool constant() const override { return inner_->constant(); }
 
  private:
-  MobilityPtr inner_;
+  physics::MobilityPtr inner_;
   double factor_;
 };
 
 // Runs of the program that are not what they should be.
-RunProgram broken_program(double drift, double shift) {
+bench::RunProgram broken_program(double drift, double shift) {
   return [=](const std::vector<std::string>&, int ranks, int nodes) {
-    return ProgramRun{10, drift, Vec::Constant(nodes, ranks == 1 ? 0.5 : 0.5 + shift)};
+    return bench::ProgramRun{10, drift, Vec::Constant(nodes, ranks == 1 ? 0.5 : 0.5 + shift)};
   };
 }
 
@@ -74,12 +75,12 @@ struct Fault {
   const char* study;
   const char* what;
   std::vector<std::string> claims;  // words of those that see it; none: the computation fails
-  std::function<void(CahnHilliardModel&)> model = {};
+  std::function<void(problem::CahnHilliardModel&)> model = {};
   std::function<void(BrokenProblem&)> problem = {};
   const char* integrator = "";  // that gets the broken problem; "" for all
   double inflation = 0;         // of the surface
   bool no_stabilisation = false;
-  RunProgram program = {};
+  bench::RunProgram program = {};
   const char* seen_on_ranks = "";  // the claim that sees `program`, if solvers work on ranks
   const char* failure = "";        // words of why the computation fails
 };
@@ -88,15 +89,16 @@ std::ostream& operator<<(std::ostream& out, const Fault& fault) {
   return out << fault.study << ": " << fault.what;
 }
 
-class BrokenBench final : public Bench {
+class BrokenBench final : public bench::Bench {
  public:
   explicit BrokenBench(const Fault& fault)
-      : Bench({true, "", "", 1, {}, fault.program}), fault_(fault) {}
+      : bench::Bench({true, "", "", 1, {}, fault.program}), fault_(fault) {}
 
-  using Bench::space;
-  SpacePtr space(const LevelSet& surface, int cells, int threads) const override {
-    const auto result = std::make_shared<SurfaceSpace>(
-        FunctionLevelSet([&](const Point& x) { return surface.value(x) - fault_.inflation; }),
+  using bench::Bench::space;
+  bench::SpacePtr space(const geometry::LevelSet& surface, int cells, int threads) const override {
+    const auto result = std::make_shared<fem::SurfaceSpace>(
+        geometry::FunctionLevelSet(
+            [&](const Point& x) { return surface.value(x) - fault_.inflation; }),
         cells, std::make_shared<ThreadTeam>(threads), std::make_shared<SerialCommunicator>());
     if (fault_.no_stabilisation) {
       std::fill(result->normal_stiffness.values.begin(), result->normal_stiffness.values.end(),
@@ -105,13 +107,15 @@ class BrokenBench final : public Bench {
     }
     return result;
   }
-  ProblemPtr problem(SpacePtr space, CahnHilliardModel model) const override {
+  bench::ProblemPtr problem(bench::SpacePtr space,
+                            problem::CahnHilliardModel model) const override {
     if (fault_.model) fault_.model(model);
-    return Bench::problem(std::move(space), std::move(model));
+    return bench::Bench::problem(std::move(space), std::move(model));
   }
-  IntegratorPtr make_integrator(const DaeProblem& problem, const SurfaceSpace& space,
-                                const std::string& name, const std::string& linear_solver,
-                                const IntegratorSettings& settings) const override {
+  time::IntegratorPtr make_integrator(const problem::DaeProblem& problem,
+                                      const fem::SurfaceSpace& space, const std::string& name,
+                                      const std::string& linear_solver,
+                                      const time::IntegratorSettings& settings) const override {
     auto broken = std::make_unique<BrokenProblem>(problem);
     if (fault_.problem && (*fault_.integrator == 0 || fault_.integrator == name))
       fault_.problem(*broken);
@@ -120,7 +124,8 @@ class BrokenBench final : public Bench {
       const std::lock_guard lock(mutex_);
       broken_.push_back(std::move(broken));
     }
-    return Bench::make_integrator(problem_of_integrator, space, name, linear_solver, settings);
+    return bench::Bench::make_integrator(problem_of_integrator, space, name, linear_solver,
+                                         settings);
   }
 
  private:
@@ -131,9 +136,9 @@ class BrokenBench final : public Bench {
 };
 
 // Not of those whose names have the words, of which there is one.
-bool any_holds(const StudyReport& report, const std::string& words) {
+bool any_holds(const studies::StudyReport& report, const std::string& words) {
   bool found = false;
-  for (const Claim& claim : report.claims) {
+  for (const studies::Claim& claim : report.claims) {
     if (claim.what.find(words) == std::string::npos) continue;
     if (claim.holds()) return true;
     found = true;
@@ -147,7 +152,7 @@ class FaultTest : public ::testing::TestWithParam<Fault> {};
 TEST_P(FaultTest, IsSeen) {
   const Fault& fault = GetParam();
   const BrokenBench bench(fault);
-  const auto run = [&] { return studies().find(fault.study).run(bench); };
+  const auto run = [&] { return studies::studies().find(fault.study).run(bench); };
   if (fault.claims.empty()) {
     try {
       (void)run();
@@ -158,7 +163,7 @@ TEST_P(FaultTest, IsSeen) {
     }
     return;
   }
-  const StudyReport report = run();
+  const studies::StudyReport report = run();
   if (!report.skipped.empty()) GTEST_SKIP() << report.skipped;
   for (const std::string& claim : fault.claims) EXPECT_FALSE(any_holds(report, claim)) << claim;
   if (fault.program && !bench.linear_solvers_on_ranks().empty()) {
@@ -196,7 +201,7 @@ const Fault kFaults[] = {
     {"convergence",
      "a boundary 2 % too wide",
      {"full system, c in L2", "full system, mu in L2"},
-     [](CahnHilliardModel& m) { m.epsilon *= 1.02; }},
+     [](problem::CahnHilliardModel& m) { m.epsilon *= 1.02; }},
     {"geometry",
      "a surface 1e-3 too large, and no stabilisation",
      {"sphere: order of the area", "torus: order of the area",
@@ -215,19 +220,21 @@ const Fault kFaults[] = {
     {"linear",
      "a mobility 5 % too small",
      {"order of the rates in h"},
-     [](CahnHilliardModel& m) { m.mobility = std::make_shared<ScaledMobility>(m.mobility, 0.95); }},
+     [](problem::CahnHilliardModel& m) {
+       m.mobility = std::make_shared<ScaledMobility>(m.mobility, 0.95);
+     }},
     {"equilibria",
      "a well 2 % too deep",
      {"energy of a boundary", "energy per length", "width of a boundary"},
-     [](CahnHilliardModel& m) { m.well.rho *= 1.02; }},
+     [](problem::CahnHilliardModel& m) { m.well.rho *= 1.02; }},
     {"coarsening",
      "a mobility that vanishes in the phases",
      {"exponent in t + offset"},
-     [](CahnHilliardModel& m) { m.mobility = make_mobility("degenerate"); }},
+     [](problem::CahnHilliardModel& m) { m.mobility = physics::make_mobility("degenerate"); }},
     {"pfhub",
      "a well 5 % too deep",
      {"t = 0.1 to 100: largest relative difference"},
-     [](CahnHilliardModel& m) { m.well.rho *= 1.05; }},
+     [](problem::CahnHilliardModel& m) { m.well.rho *= 1.05; }},
     {"agreement",
      "an integrator 0.1 % slow, and ranks that get another result",
      {"largest distance at tolerance"},
@@ -257,7 +264,7 @@ INSTANTIATE_TEST_SUITE_P(Broken, FaultTest, ::testing::ValuesIn(kFaults), [](con
 });
 
 TEST(Faults, EveryStudyOfAllHasOne) {
-  for (const StudyEntry& study : studies()) {
+  for (const studies::StudyEntry& study : studies::studies()) {
     if (study.by_name_only) continue;
     bool found = false;
     for (const Fault& fault : kFaults) found = found || study.name == fault.study;

@@ -12,19 +12,20 @@ namespace {
 class StudyTest : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(StudyTest, Holds) {
-  const StudyReport report = studies().find(GetParam()).run(Bench({true, "", "", 1}));
+  const studies::StudyReport report =
+      studies::studies().find(GetParam()).run(bench::Bench({true, "", "", 1}));
   if (!report.skipped.empty()) GTEST_SKIP() << report.skipped;
   EXPECT_FALSE(report.claims.empty());
-  for (const Claim& claim : report.claims)
+  for (const studies::Claim& claim : report.claims)
     EXPECT_TRUE(claim.holds()) << claim.what << ": " << claim.measured << " is not in ["
                                << claim.low << ", " << claim.high << "]";
-  for (const Table& table : report.tables)
+  for (const bench::Table& table : report.tables)
     for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.columns.size()) << table.name;
 }
 
 std::vector<std::string> studies_of_all() {
   std::vector<std::string> names;
-  for (const StudyEntry& study : studies())
+  for (const studies::StudyEntry& study : studies::studies())
     if (!study.by_name_only) names.push_back(study.name);
   return names;
 }
@@ -39,19 +40,21 @@ INSTANTIATE_TEST_SUITE_P(Quick, StudyTest, ::testing::ValuesIn(studies_of_all())
 
 // Timed studies are tested by those of their numbers that are no times.
 TEST(TimedStudies, MeshesGrowLikeTheSurface) {
-  const StudyReport report = studies().find("cost").run(Bench({true, "", "", 1}));
+  const studies::StudyReport report =
+      studies::studies().find("cost").run(bench::Bench({true, "", "", 1}));
   ASSERT_EQ(report.tables.size(), 1u);
   EXPECT_EQ(report.tables[0].rows.size(), 2u);
-  const auto nodes = std::find_if(report.claims.begin(), report.claims.end(), [](const Claim& c) {
-    return c.what.find("nodes") != std::string::npos;
-  });
+  const auto nodes = std::find_if(
+      report.claims.begin(), report.claims.end(),
+      [](const studies::Claim& c) { return c.what.find("nodes") != std::string::npos; });
   ASSERT_NE(nodes, report.claims.end());
   EXPECT_TRUE(nodes->holds()) << nodes->measured;
 }
 
 TEST(TimedStudies, StepsAreTheSameOnAnyNumberOfThreads) {
-  const StudyReport report = studies().find("step-cost").run(Bench({true, "", "", 1}));
-  const Table& table = report.tables.at(0);
+  const studies::StudyReport report =
+      studies::studies().find("step-cost").run(bench::Bench({true, "", "", 1}));
+  const bench::Table& table = report.tables.at(0);
   const auto at = [&](std::size_t row, const std::string& column) {
     const auto found = std::find(table.columns.begin(), table.columns.end(), column);
     EXPECT_NE(found, table.columns.end()) << column;

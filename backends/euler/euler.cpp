@@ -9,16 +9,16 @@
 #include "kernel/core/stopwatch.hpp"
 #include "kernel/time/controlled_integrator.hpp"
 
-namespace traceraft {
+namespace traceraft::euler {
 namespace {
 
 constexpr double kLinearTolerance = 1e-4;
 
-class Euler final : public ControlledIntegrator {
+class Euler final : public time::ControlledIntegrator {
  public:
-  Euler(const DaeProblem& problem, const LinearSolverChoice& solvers,
-        std::shared_ptr<const ThreadTeam> team, const IntegratorSettings& settings)
-      : ControlledIntegrator(problem, solvers, 2, std::move(team), settings, 2, 0.1),
+  Euler(const problem::DaeProblem& problem, const linear::LinearSolverChoice& solvers,
+        std::shared_ptr<const ThreadTeam> team, const time::IntegratorSettings& settings)
+      : time::ControlledIntegrator(problem, solvers, 2, std::move(team), settings, 2, 0.1),
         least_size_(1e-10 * problem.norm(Vec::Ones(problem.size()))) {}
 
   std::string name() const override { return "euler"; }
@@ -26,7 +26,7 @@ class Euler final : public ControlledIntegrator {
   Status start(double t0, VecView y0, VecView ydot0, double t_end) override {
     energy_ = problem_.energy(y0);
     rate_ = ydot0;
-    return ControlledIntegrator::start(t0, y0, ydot0, t_end);
+    return time::ControlledIntegrator::start(t0, y0, ydot0, t_end);
   }
 
   bool promises_energy_decay() const override {
@@ -34,11 +34,11 @@ class Euler final : public ControlledIntegrator {
   }
 
   void save(CheckpointOut out) const override {
-    ControlledIntegrator::save(out);
+    time::ControlledIntegrator::save(out);
     write_binary(out, rate_);
   }
   void load(CheckpointIn in) override {
-    ControlledIntegrator::load(in);
+    time::ControlledIntegrator::load(in);
     read_binary(in, rate_, problem_.size());
     energy_ = problem_.energy(state());
   }
@@ -57,11 +57,11 @@ class Euler final : public ControlledIntegrator {
   }
 
   // The system whose solution added to the predictor y is one of the two solutions of a step.
-  static NewtonSystem correction(double t, double shift, Vec predictor, Vec rate) {
-    NewtonSystem system;
+  static time::NewtonSystem correction(double t, double shift, Vec predictor, Vec rate) {
+    time::NewtonSystem system;
     system.t = t;
     system.shift = shift;
-    system.tangent = Tangent::stabilised;
+    system.tangent = linear::Tangent::stabilised;
     system.y = std::move(predictor);
     system.ydot = std::move(rate);
     system.x = Vec::Zero(system.y.size());
@@ -70,7 +70,7 @@ class Euler final : public ControlledIntegrator {
 
   Status evaluate_residuals() {
     const ScopedTimer timer(statistics_.assembly_seconds);
-    for (NewtonSystem& system : systems_) {
+    for (time::NewtonSystem& system : systems_) {
       ++statistics_.residuals;
       system.b.resize(problem_.size());
       const Status status = problem_.residual(system.t, system.y, system.ydot, system.b);
@@ -95,7 +95,7 @@ class Euler final : public ControlledIntegrator {
     }
     if (Status status = evaluate_residuals(); !status.ok()) return status;
     solver_.solve(systems_, settings_.linear_tolerance_or(kLinearTolerance));
-    for (const NewtonSystem& system : systems_)
+    for (const time::NewtonSystem& system : systems_)
       if (!system.report.status.ok()) return system.report.status;
 
     first_ = systems_[0].y + systems_[0].x;
@@ -119,20 +119,21 @@ class Euler final : public ControlledIntegrator {
     statistics_.order = kept_second_ && started() ? 2 : 1;
   }
 
-  const double least_size_;              // of c: errors are not relative to less
-  double energy_ = 0, next_energy_ = 0;  // of y_n and y_{n+1}, where they decide which is kept
-  Vec rate_;                             // ẏ at the start
-  std::vector<NewtonSystem> systems_;    // of an attempt: first and second order
-  Vec first_, second_;                   // and what they give,
-  bool kept_second_ = true;              // of which one goes on
+  const double least_size_;                  // of c: errors are not relative to less
+  double energy_ = 0, next_energy_ = 0;      // of y_n and y_{n+1}, where they decide which is kept
+  Vec rate_;                                 // ẏ at the start
+  std::vector<time::NewtonSystem> systems_;  // of an attempt: first and second order
+  Vec first_, second_;                       // and what they give,
+  bool kept_second_ = true;                  // of which one goes on
 };
 
 }  // namespace
 
-IntegratorPtr make_euler(const DaeProblem& problem, const LinearSolverChoice& solvers,
-                         std::shared_ptr<const ThreadTeam> team,
-                         const IntegratorSettings& settings) {
+time::IntegratorPtr make_euler(const problem::DaeProblem& problem,
+                               const linear::LinearSolverChoice& solvers,
+                               std::shared_ptr<const ThreadTeam> team,
+                               const time::IntegratorSettings& settings) {
   return std::make_unique<Euler>(problem, solvers, std::move(team), settings);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::euler

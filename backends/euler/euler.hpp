@@ -3,7 +3,7 @@
 
 #include "kernel/time/integrator.hpp"
 
-namespace traceraft {
+namespace traceraft::euler {
 
 // Every step solves twice with the stabilised tangent, from two predictors y* (r = Δt/Δt_prev):
 //   first order:   y* = y_n,                     σ = 1/Δt
@@ -26,8 +26,9 @@ namespace traceraft {
 //
 // The two solves of a step do not depend on each other: each has factors of its own, and with two
 // threads they run at the same time. The result does not depend on the number of threads.
-IntegratorPtr make_euler(const DaeProblem& problem, const LinearSolverChoice& solvers,
-                         std::shared_ptr<const ThreadTeam> team,
-                         const IntegratorSettings& settings);
+time::IntegratorPtr make_euler(const problem::DaeProblem& problem,
+                               const linear::LinearSolverChoice& solvers,
+                               std::shared_ptr<const ThreadTeam> team,
+                               const time::IntegratorSettings& settings);
 
-}  // namespace traceraft
+}  // namespace traceraft::euler

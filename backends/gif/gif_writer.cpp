@@ -5,7 +5,7 @@
 #include <memory>
 #include <stdexcept>
 
-namespace traceraft {
+namespace traceraft::gif {
 namespace {
 
 constexpr int kColours = 256;
@@ -29,7 +29,7 @@ void put_loop(GifFileType* file) {
 }
 
 // With the 256 colours that suit it best.
-void put_image(GifFileType* file, const Image& image, int centiseconds) {
+void put_image(GifFileType* file, const observables::Image& image, int centiseconds) {
   const std::size_t pixels = static_cast<std::size_t>(image.width) * image.height;
   std::vector<GifByteType> red(pixels), green(pixels), blue(pixels), index(pixels);
   for (std::size_t i = 0; i < pixels; ++i) {
@@ -55,7 +55,7 @@ void put_image(GifFileType* file, const Image& image, int centiseconds) {
 
 }  // namespace
 
-std::string gif_bytes(const std::vector<Image>& images, int centiseconds) {
+std::string gif_bytes(const std::vector<observables::Image>& images, int centiseconds) {
   std::string bytes;
   int error = 0;
   GifFileType* file = EGifOpen(&bytes, append, &error);
@@ -64,7 +64,7 @@ std::string gif_bytes(const std::vector<Image>& images, int centiseconds) {
     EGifSetGifVersion(file, true);
     check(EGifPutScreenDesc(file, images.front().width, images.front().height, 8, 0, nullptr));
     put_loop(file);
-    for (const Image& image : images) put_image(file, image, centiseconds);
+    for (const observables::Image& image : images) put_image(file, image, centiseconds);
   } catch (...) {
     EGifCloseFile(file, &error);
     throw;
@@ -73,4 +73,4 @@ std::string gif_bytes(const std::vector<Image>& images, int centiseconds) {
   return bytes;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::gif

@@ -6,10 +6,10 @@
 
 #include "kernel/observables/surface_view.hpp"
 
-namespace traceraft {
+namespace traceraft::gif {
 
 // The bytes of a GIF file that shows the images one after the other, each for `centiseconds`, again
 // and again. All of one size. Throws std::runtime_error if giflib refuses.
-std::string gif_bytes(const std::vector<Image>& images, int centiseconds);
+std::string gif_bytes(const std::vector<observables::Image>& images, int centiseconds);
 
-}  // namespace traceraft
+}  // namespace traceraft::gif

@@ -5,15 +5,15 @@
 
 #include "kernel/observables/surface_view.hpp"
 
-namespace traceraft {
+namespace traceraft::gif {
 
 // Writes ASCII text, dark, in the middle of the bottom; letters are a thirtieth of the height, 8
 // pixels at least. What is wider than the image is cut off.
-void write_label(Image& image, const std::string& text);
+void write_label(observables::Image& image, const std::string& text);
 
 // Writes ASCII text from that corner on, in letters of 16 pixels.
 inline constexpr int kTextHeight = 16;
-void write_text(Image& image, int left, int top, const std::string& text);
+void write_text(observables::Image& image, int left, int top, const std::string& text);
 int text_width(const std::string& text);
 
-}  // namespace traceraft
+}  // namespace traceraft::gif

@@ -10,7 +10,7 @@
 
 #include "kernel/core/stopwatch.hpp"
 
-namespace traceraft {
+namespace traceraft::mpi {
 namespace {
 
 // Messages of one exchange do not mix with ghosts.
@@ -131,4 +131,4 @@ void MpiSession::abort(int exit_code) const {
   std::abort();  // MPI_Abort does not return
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::mpi

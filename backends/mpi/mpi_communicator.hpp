@@ -5,7 +5,7 @@
 
 #include "kernel/core/communicator.hpp"
 
-namespace traceraft {
+namespace traceraft::mpi {
 
 // MPI counts bytes with int.
 inline constexpr std::size_t kLongestMessage = std::size_t{1} << 30;
@@ -29,4 +29,4 @@ class MpiSession {
   [[noreturn]] void abort(int exit_code) const;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::mpi

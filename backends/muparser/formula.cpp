@@ -8,7 +8,7 @@
 
 #include "kernel/core/error.hpp"
 
-namespace traceraft {
+namespace traceraft::muparser {
 namespace {
 
 // muParser's "=" gives a variable another value. Comparisons are "==", "<=", ">=" and "!=".
@@ -64,4 +64,4 @@ std::function<double(const Point&)> parse_formula(const std::string& context,
   }
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::muparser

@@ -6,7 +6,7 @@
 
 #include "kernel/core/types.hpp"
 
-namespace traceraft {
+namespace traceraft::muparser {
 
 // A function of x, y, z (units of R) with pi, e and muParser's functions (sin, exp, sqrt, abs, min,
 // ?: …). `context` names the option in errors. Throws InputError for a formula that cannot be
@@ -15,4 +15,4 @@ namespace traceraft {
 std::function<double(const Point&)> parse_formula(const std::string& context,
                                                   const std::string& formula);
 
-}  // namespace traceraft
+}  // namespace traceraft::muparser

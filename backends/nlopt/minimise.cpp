@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace traceraft {
+namespace traceraft::nlopt {
 namespace {
 
 struct Call {
@@ -64,4 +64,4 @@ Minimum minimise(const MinimiseRequest& request) {
           result != NLOPT_MAXEVAL_REACHED && result != NLOPT_ROUNDOFF_LIMITED};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::nlopt

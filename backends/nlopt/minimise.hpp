@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-namespace traceraft {
+namespace traceraft::nlopt {
 
 struct MinimiseRequest {
   std::function<double(const std::vector<double>&)> function;  // finite values
@@ -25,4 +25,4 @@ struct Minimum {
 // noisy or not smooth. Throws what the function throws, std::runtime_error if NLopt fails.
 Minimum minimise(const MinimiseRequest& request);
 
-}  // namespace traceraft
+}  // namespace traceraft::nlopt

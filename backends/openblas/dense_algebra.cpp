@@ -10,7 +10,7 @@ extern "C" void dsyevd_(const char* jobz, const char* uplo, const int* n, double
                         int* info);
 extern "C" void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info);
 
-namespace traceraft {
+namespace traceraft::openblas {
 namespace {
 
 // BLAS refuses a leading dimension of 0.
@@ -96,4 +96,4 @@ SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& lower) {
   return result;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::openblas

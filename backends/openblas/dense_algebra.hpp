@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-namespace traceraft {
+namespace traceraft::openblas {
 
 // A B.
 Eigen::MatrixXd product(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
@@ -30,4 +30,4 @@ struct SymmetricEigen {
 // convergence, as for a matrix that is not finite.
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& lower);
 
-}  // namespace traceraft
+}  // namespace traceraft::openblas

@@ -4,9 +4,9 @@
 
 #include <stdexcept>
 
-namespace traceraft {
+namespace traceraft::png {
 
-std::string png_bytes(const Image& image) {
+std::string png_bytes(const observables::Image& image) {
   png_image header{};
   header.version = PNG_IMAGE_VERSION;
   header.width = static_cast<png_uint_32>(image.width);
@@ -21,7 +21,7 @@ std::string png_bytes(const Image& image) {
   return bytes;
 }
 
-Image image_of_png(const std::string& bytes) {
+observables::Image image_of_png(const std::string& bytes) {
   constexpr png_uint_32 kLargest = 1 << 13;
   png_image header{};
   header.version = PNG_IMAGE_VERSION;
@@ -34,11 +34,11 @@ Image image_of_png(const std::string& bytes) {
     refuse(header.message);
   if (header.width > kLargest || header.height > kLargest) refuse("the image is too large");
   header.format = PNG_FORMAT_RGB;
-  Image image{static_cast<int>(header.width), static_cast<int>(header.height),
-              std::vector<std::uint8_t>(PNG_IMAGE_SIZE(header))};
+  observables::Image image{static_cast<int>(header.width), static_cast<int>(header.height),
+                           std::vector<std::uint8_t>(PNG_IMAGE_SIZE(header))};
   if (!png_image_finish_read(&header, nullptr, image.rgb.data(), 0, nullptr))
     refuse(header.message);
   return image;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::png

@@ -6,7 +6,7 @@
 
 #include <cstddef>
 
-namespace traceraft {
+namespace traceraft::posix {
 
 // OpenBLAS maps a buffer as soon as it is loaded, before main, and waits forever where it gets
 // none. An entry of the executable's .preinit_array is called before that. Nothing but system calls
@@ -27,4 +27,4 @@ void require_address_space(int, char**, char**) {
   _exit(code);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::posix

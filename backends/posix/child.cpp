@@ -14,7 +14,7 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/stopwatch.hpp"
 
-namespace traceraft {
+namespace traceraft::posix {
 namespace {
 
 constexpr useconds_t kPause = 50000;  // microseconds between looks
@@ -120,4 +120,4 @@ std::string own_program() {
   return "/proc/self/exe";
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::posix

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace traceraft {
+namespace traceraft::posix {
 
 struct ChildRequest {
   std::vector<std::string> command;   // program (looked up in PATH) and arguments
@@ -29,4 +29,4 @@ std::string own_program();
 // The path of its file, for others that run it.
 std::string own_path();
 
-}  // namespace traceraft
+}  // namespace traceraft::posix

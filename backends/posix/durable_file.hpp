@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-namespace traceraft {
+namespace traceraft::posix {
 
 // Temporary files have this name with 16 hexadecimal digits for the question marks. A process that
 // is killed may leave one.
@@ -42,4 +42,4 @@ class AppendFile {
 // The whole content of a file. Throws IoError if it cannot be read or exceeds `limit` bytes.
 std::string read_file(const std::filesystem::path& path, std::uint64_t limit);
 
-}  // namespace traceraft
+}  // namespace traceraft::posix

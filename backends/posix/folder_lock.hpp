@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-namespace traceraft {
+namespace traceraft::posix {
 
 inline constexpr char kLockFile[] = ".lock";
 
@@ -25,4 +25,4 @@ class FolderLock {
   int descriptor_;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::posix

@@ -7,7 +7,7 @@
 #include "backends/posix/durable_file.hpp"
 #include "kernel/core/error.hpp"
 
-namespace traceraft {
+namespace traceraft::posix {
 namespace {
 
 namespace fs = std::filesystem;
@@ -68,4 +68,4 @@ void remove_temporary_files(const fs::path& folder) {
     if (is_temporary_file(entry.path())) fs::remove(entry.path());
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::posix

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace traceraft {
+namespace traceraft::posix {
 
 // The first thing below `folder` that is none of the files of these names, "" if there is nothing
 // else. Names are relative to it and may hold * and ? (fnmatch, which match no /). Folders that
@@ -23,4 +23,4 @@ bool is_temporary_file(const std::filesystem::path& path);
 // Deletes those directly in a folder, to which nobody else writes.
 void remove_temporary_files(const std::filesystem::path& folder);
 
-}  // namespace traceraft
+}  // namespace traceraft::posix

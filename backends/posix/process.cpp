@@ -14,7 +14,7 @@
 #include <mutex>
 #include <thread>
 
-namespace traceraft {
+namespace traceraft::posix {
 namespace {
 
 // Since then, and what it had taken: the system knows when a process began, but that may be hours
@@ -187,4 +187,4 @@ void restart_with_environment(const std::vector<std::pair<std::string, std::stri
   if (!no_proc) execv(program.c_str(), argv);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::posix

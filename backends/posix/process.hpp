@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace traceraft {
+namespace traceraft::posix {
 
 double wall_seconds();    // since this program was started, libraries still to be loaded
 double cpu_seconds();     // user and system time of all threads
@@ -42,4 +42,4 @@ void occupy_standard_descriptors();
 void restart_with_environment(const std::vector<std::pair<std::string, std::string>>& variables,
                               char** argv);
 
-}  // namespace traceraft
+}  // namespace traceraft::posix

@@ -9,13 +9,13 @@
 #include "kernel/core/stopwatch.hpp"
 #include "kernel/time/controlled_integrator.hpp"
 
-namespace traceraft {
+namespace traceraft::rosenbrock {
 namespace {
 
 constexpr int kStages = 4;
 
 // A stage is about tolerance^(1/3) of the state and must be solved to a tenth of the tolerance.
-double linear_tolerance(const IntegratorSettings& settings) {
+double linear_tolerance(const time::IntegratorSettings& settings) {
   return settings.linear_tolerance_or(std::min(1e-3, 0.1 * std::pow(settings.tolerance, 2.0 / 3)));
 }
 
@@ -57,11 +57,11 @@ const Tableau& ros34pw2() {
   return tableau;
 }
 
-class Rosenbrock final : public ControlledIntegrator {
+class Rosenbrock final : public time::ControlledIntegrator {
  public:
-  Rosenbrock(const DaeProblem& problem, const LinearSolverChoice& solvers,
-             std::shared_ptr<const ThreadTeam> team, const IntegratorSettings& settings)
-      : ControlledIntegrator(problem, solvers, 1, std::move(team), settings, 3, 1) {}
+  Rosenbrock(const problem::DaeProblem& problem, const linear::LinearSolverChoice& solvers,
+             std::shared_ptr<const ThreadTeam> team, const time::IntegratorSettings& settings)
+      : time::ControlledIntegrator(problem, solvers, 1, std::move(team), settings, 3, 1) {}
 
   std::string name() const override { return "rosenbrock"; }
   bool promises_energy_decay() const override { return false; }
@@ -91,7 +91,7 @@ class Rosenbrock final : public ControlledIntegrator {
 
   // Solves stage i for u_i; `drift` is ∂F/∂t.
   Status solve_stage(int i, double dt, const Vec& at_start, const Vec& drift) {
-    NewtonSystem& system = systems_[0];
+    time::NewtonSystem& system = systems_[0];
     const Status status = stage_residual(i, dt, at_start, system.b);
     if (!status.ok()) return status;
     system.b = -system.b - ros34pw2().gammas[i] * dt * drift;
@@ -107,10 +107,10 @@ class Rosenbrock final : public ControlledIntegrator {
   }
 
   Status attempt(double dt, double& error) override {
-    NewtonSystem& system = systems_[0];
+    time::NewtonSystem& system = systems_[0];
     system.t = time();
     system.shift = 1 / (ros34pw2().gamma * dt);
-    system.tangent = Tangent::exact;
+    system.tangent = linear::Tangent::exact;
     system.y = state();
     system.ydot = Vec::Zero(state().size());
     Vec at_start, later;
@@ -135,17 +135,18 @@ class Rosenbrock final : public ControlledIntegrator {
   Vec result() override { return std::move(result_); }
   void accepted() override { statistics_.order = 3; }
 
-  std::vector<NewtonSystem> systems_ = std::vector<NewtonSystem>(1);
+  std::vector<time::NewtonSystem> systems_ = std::vector<time::NewtonSystem>(1);
   std::array<Vec, kStages> stage_;
   Vec result_;
 };
 
 }  // namespace
 
-IntegratorPtr make_rosenbrock(const DaeProblem& problem, const LinearSolverChoice& solvers,
-                              std::shared_ptr<const ThreadTeam> team,
-                              const IntegratorSettings& settings) {
+time::IntegratorPtr make_rosenbrock(const problem::DaeProblem& problem,
+                                    const linear::LinearSolverChoice& solvers,
+                                    std::shared_ptr<const ThreadTeam> team,
+                                    const time::IntegratorSettings& settings) {
   return std::make_unique<Rosenbrock>(problem, solvers, std::move(team), settings);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::rosenbrock

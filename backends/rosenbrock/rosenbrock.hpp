@@ -3,7 +3,7 @@
 
 #include "kernel/time/integrator.hpp"
 
-namespace traceraft {
+namespace traceraft::rosenbrock {
 
 // ROS34PW2 of Rang and Angermann ("New Rosenbrock W-methods of order 3 for partial differential
 // algebraic equations of index 1", BIT 45, 2005): four stages, stiffly accurate, L-stable, embedded
@@ -13,8 +13,9 @@ namespace traceraft {
 //
 // The tolerance bounds the embedded error of c, ‖c − ĉ‖/‖c‖ in L²(Γ); Δt ← 0.9 (tolerance/e)^(1/3)
 // Δt.
-IntegratorPtr make_rosenbrock(const DaeProblem& problem, const LinearSolverChoice& solvers,
-                              std::shared_ptr<const ThreadTeam> team,
-                              const IntegratorSettings& settings);
+time::IntegratorPtr make_rosenbrock(const problem::DaeProblem& problem,
+                                    const linear::LinearSolverChoice& solvers,
+                                    std::shared_ptr<const ThreadTeam> team,
+                                    const time::IntegratorSettings& settings);
 
-}  // namespace traceraft
+}  // namespace traceraft::rosenbrock

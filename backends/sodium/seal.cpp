@@ -5,7 +5,7 @@
 #include <array>
 #include <stdexcept>
 
-namespace traceraft {
+namespace traceraft::sodium {
 namespace {
 
 template <std::size_t Bytes>
@@ -44,4 +44,4 @@ std::uint64_t random_seed() {
   return seed >> 11;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::sodium

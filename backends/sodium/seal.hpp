@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-namespace traceraft {
+namespace traceraft::sodium {
 
 // SHA-256 of some bytes, as 64 hexadecimal digits.
 std::string sha256(const std::string& bytes);
@@ -14,4 +14,4 @@ std::string random_salt();
 // A seed that nobody can guess, below 2⁵³.
 std::uint64_t random_seed();
 
-}  // namespace traceraft
+}  // namespace traceraft::sodium

@@ -4,7 +4,7 @@
 
 #include "kernel/linear/linear_solver.hpp"
 
-namespace traceraft {
+namespace traceraft::suitesparse {
 
 void AssembledSystem::build_rows() {
   const int n = pattern_->rows();
@@ -19,12 +19,12 @@ void AssembledSystem::build_rows() {
   values_.resize(index_.size());
 }
 
-void AssembledSystem::fill(const BlockJacobian& J) {
+void AssembledSystem::fill(const linear::BlockJacobian& J) {
   if (begin_.empty()) build_rows();
   const double root = std::sqrt(J.shift);
   const int n = pattern_->rows();
   std::size_t at = 0;
-  const auto copy = [&](int row, double factor, const CsrMatrix& block) {
+  const auto copy = [&](int row, double factor, const fem::CsrMatrix& block) {
     for (int k = pattern_->row_begin[row]; k < pattern_->row_begin[row + 1]; ++k)
       values_[at++] = factor * block.values[k];
   };
@@ -38,7 +38,7 @@ void AssembledSystem::fill(const BlockJacobian& J) {
   }
 }
 
-Vec AssembledSystem::right_side(const BlockJacobian& J, VecView b) const {
+Vec AssembledSystem::right_side(const linear::BlockJacobian& J, VecView b) const {
   const int n = pattern_->rows();
   Vec right(2 * n);
   right.head(n) = -b.tail(n);
@@ -46,12 +46,12 @@ Vec AssembledSystem::right_side(const BlockJacobian& J, VecView b) const {
   return right;
 }
 
-void AssembledSystem::take_solution(const BlockJacobian& J, VecView b, VecView solution,
+void AssembledSystem::take_solution(const linear::BlockJacobian& J, VecView b, VecView solution,
                                     VecRef x) const {
   const int n = pattern_->rows();
   x.head(n) = solution.head(n);
   x.tail(n) = std::sqrt(J.shift) * solution.tail(n);
-  restore_mass(J, b, x);
+  linear::restore_mass(J, b, x);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::suitesparse

@@ -5,7 +5,7 @@
 
 #include "kernel/linear/block_jacobian.hpp"
 
-namespace traceraft {
+namespace traceraft::suitesparse {
 
 // With A = cm, B = −mc and μ = √σ ν:
 //   [ B     −√σ M̃ ] [δc]   [ −b₂    ]
@@ -16,7 +16,7 @@ namespace traceraft {
 // ten times the time and memory for long steps.
 class AssembledSystem {
  public:
-  explicit AssembledSystem(PatternPtr pattern) : pattern_(std::move(pattern)) {}
+  explicit AssembledSystem(fem::PatternPtr pattern) : pattern_(std::move(pattern)) {}
 
   int size() const { return 2 * pattern_->rows(); }
   // Compressed rows; that is, compressed columns of the transpose.
@@ -24,17 +24,17 @@ class AssembledSystem {
   int* index() { return index_.data(); }
   double* values() { return values_.data(); }
 
-  void fill(const BlockJacobian& J);  // σ > 0
-  Vec right_side(const BlockJacobian& J, VecView b) const;
+  void fill(const linear::BlockJacobian& J);  // σ > 0
+  Vec right_side(const linear::BlockJacobian& J, VecView b) const;
   // x of the block system from a solution of this one, with the mass of b restored.
-  void take_solution(const BlockJacobian& J, VecView b, VecView solution, VecRef x) const;
+  void take_solution(const linear::BlockJacobian& J, VecView b, VecView solution, VecRef x) const;
 
  private:
   void build_rows();
 
-  PatternPtr pattern_;
+  fem::PatternPtr pattern_;
   std::vector<int> begin_, index_;
   std::vector<double> values_;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::suitesparse

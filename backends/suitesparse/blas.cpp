@@ -11,7 +11,7 @@ int blas_thread_shutdown_() __attribute__((weak));  // unless OpenBLAS is built 
 void omp_set_max_active_levels(int) __attribute__((weak));
 }
 
-namespace traceraft {
+namespace traceraft::suitesparse {
 namespace {
 
 // The best kernels for this processor if OpenBLAS did not recognise it; "" if it did.
@@ -53,4 +53,4 @@ std::vector<std::pair<std::string, std::string>> preferred_environment() {
   return {{"OPENBLAS_CORETYPE", core}};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::suitesparse

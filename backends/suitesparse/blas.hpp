@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace traceraft {
+namespace traceraft::suitesparse {
 
 // Once per process. OpenBLAS starts a thread for each processor when it is loaded, which looks for
 // work for 0.1 s of its processor: the sooner this ends them the better.
@@ -25,4 +25,4 @@ std::string blas_description();
 // case only: loading all libraries once more takes 0.13 s.
 std::vector<std::pair<std::string, std::string>> preferred_environment();
 
-}  // namespace traceraft
+}  // namespace traceraft::suitesparse

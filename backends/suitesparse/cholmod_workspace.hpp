@@ -5,7 +5,7 @@
 
 #include "kernel/fem/csr.hpp"
 
-namespace traceraft {
+namespace traceraft::suitesparse {
 
 struct CholmodWorkspace {
   cholmod_common common;
@@ -23,6 +23,6 @@ struct CholmodWorkspace {
 
 // The upper triangle of the pattern in compressed columns, without values: the lower triangle of
 // the CSR rows, as the matrix is symmetric. To be freed by cholmod_free_sparse.
-cholmod_sparse* upper_triangle(const SparsityPattern& pattern, cholmod_common* common);
+cholmod_sparse* upper_triangle(const fem::SparsityPattern& pattern, cholmod_common* common);
 
-}  // namespace traceraft
+}  // namespace traceraft::suitesparse

@@ -9,7 +9,7 @@
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/stopwatch.hpp"
 
-namespace traceraft {
+namespace traceraft::suitesparse {
 namespace {
 
 // One, and as many refinements as have ever helped a system that is not singular.
@@ -20,7 +20,7 @@ constexpr int kMostSolves = 3;
 class SharedOrdering {
  public:
   // (c, μ) pairs of nodes in METIS' order of the nodes.
-  const std::vector<int>& of(const SparsityPattern& pattern) {
+  const std::vector<int>& of(const fem::SparsityPattern& pattern) {
     std::call_once(once_, [&] {
       for (const int i : metis_ordering(pattern))
         pairs_.insert(pairs_.end(), {i, i + pattern.rows()});
@@ -37,7 +37,7 @@ class SharedOrdering {
 // needed.
 class Lane {
  public:
-  Lane(const std::string& name, std::unique_ptr<SparseLu> lu, const PatternPtr& pattern,
+  Lane(const std::string& name, std::unique_ptr<SparseLu> lu, const fem::PatternPtr& pattern,
        std::shared_ptr<SharedOrdering> ordering)
       : name_(name),
         lu_(std::move(lu)),
@@ -45,9 +45,9 @@ class Lane {
         system_(pattern),
         ordering_(std::move(ordering)) {}
 
-  LinearStatistics statistics;
+  linear::LinearStatistics statistics;
 
-  Status setup(const BlockJacobian& J) {
+  Status setup(const linear::BlockJacobian& J) {
     const ScopedTimer timer(statistics.setup_seconds);
     ++statistics.setups;
     ready_ = false;
@@ -60,11 +60,11 @@ class Lane {
 
   // The contract: never report a wrong x as ok. LU of a poorly scaled system is checked, too, and
   // refined if it has to be.
-  SolveReport solve(const BlockJacobian& J, VecView b, VecRef x, double tolerance) {
+  linear::SolveReport solve(const linear::BlockJacobian& J, VecView b, VecRef x, double tolerance) {
     const ScopedTimer timer(statistics.solve_seconds);
     ++statistics.solves;
     if (!ready_) return {Status::retry(name_ + ": there is no factorisation")};
-    const double size = scaled_norm(J, b);
+    const double size = linear::scaled_norm(J, b);
     Vec defect = b, correction(b.size());
     x.setZero();
     double relative = 1;
@@ -76,14 +76,14 @@ class Lane {
       statistics.most_iterations = std::max(statistics.most_iterations, solves);
       J.multiply(x, defect, ThreadTeam(1));
       defect = b - defect;
-      relative = scaled_norm(J, defect) / size;
+      relative = linear::scaled_norm(J, defect) / size;
       if (size == 0 || relative <= tolerance) return {{}, solves};
     }
     return {Status::retry(name_ + ": relative residual " + format_number(relative)), kMostSolves};
   }
 
  private:
-  Status solve_factors(const BlockJacobian& J, VecView b, Vec& x) {
+  Status solve_factors(const linear::BlockJacobian& J, VecView b, Vec& x) {
     Vec solution;
     const Status status = lu_->solve(system_, system_.right_side(J, b), solution);
     if (status.ok()) system_.take_solution(J, b, solution, x);
@@ -92,16 +92,16 @@ class Lane {
 
   std::string name_;
   std::unique_ptr<SparseLu> lu_;
-  PatternPtr pattern_;
+  fem::PatternPtr pattern_;
   AssembledSystem system_;
   std::shared_ptr<SharedOrdering> ordering_;
   bool ready_ = false;
 };
 
-class DirectSolver final : public LinearSolver {
+class DirectSolver final : public linear::LinearSolver {
  public:
-  DirectSolver(const std::string& name, const SparseLuFactory& make_lu, const PatternPtr& pattern,
-               int lanes)
+  DirectSolver(const std::string& name, const SparseLuFactory& make_lu,
+               const fem::PatternPtr& pattern, int lanes)
       : name_(name) {
     use_one_blas_thread();
     const auto ordering = std::make_shared<SharedOrdering>();
@@ -110,14 +110,14 @@ class DirectSolver final : public LinearSolver {
   }
   std::string name() const override { return name_; }
   bool shares_factors() const override { return false; }
-  bool wants_setup(const BlockJacobian&, int) const override { return true; }
-  Status setup(const BlockJacobian& J, int lane) override { return lanes_[lane]->setup(J); }
-  SolveReport solve(const BlockJacobian& J, VecView b, VecRef x, double tolerance,
-                    int lane) override {
+  bool wants_setup(const linear::BlockJacobian&, int) const override { return true; }
+  Status setup(const linear::BlockJacobian& J, int lane) override { return lanes_[lane]->setup(J); }
+  linear::SolveReport solve(const linear::BlockJacobian& J, VecView b, VecRef x, double tolerance,
+                            int lane) override {
     return lanes_[lane]->solve(J, b, x, tolerance);
   }
-  LinearStatistics statistics() const override {
-    LinearStatistics total;
+  linear::LinearStatistics statistics() const override {
+    linear::LinearStatistics total;
     for (const auto& lane : lanes_) total = total + lane->statistics;
     return total;
   }
@@ -135,9 +135,9 @@ class DirectSolver final : public LinearSolver {
 
 }  // namespace
 
-LinearSolverPtr make_direct_solver(const std::string& name, const SparseLuFactory& make_lu,
-                                   const PatternPtr& pattern, int lanes) {
+linear::LinearSolverPtr make_direct_solver(const std::string& name, const SparseLuFactory& make_lu,
+                                           const fem::PatternPtr& pattern, int lanes) {
   return std::make_unique<DirectSolver>(name, make_lu, pattern, lanes);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::suitesparse

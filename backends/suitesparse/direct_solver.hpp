@@ -6,9 +6,9 @@
 #include "backends/suitesparse/sparse_lu.hpp"
 #include "kernel/linear/linear_solver.hpp"
 
-namespace traceraft {
+namespace traceraft::suitesparse {
 
-LinearSolverPtr make_direct_solver(const std::string& name, const SparseLuFactory& make_lu,
-                                   const PatternPtr& pattern, int lanes);
+linear::LinearSolverPtr make_direct_solver(const std::string& name, const SparseLuFactory& make_lu,
+                                           const fem::PatternPtr& pattern, int lanes);
 
-}  // namespace traceraft
+}  // namespace traceraft::suitesparse

@@ -8,7 +8,7 @@
 #define TRACERAFT_CLONES
 #endif
 
-namespace traceraft {
+namespace traceraft::suitesparse {
 
 // Far from the diagonal a factor decays to numbers that single precision holds as subnormals only,
 // and arithmetic on those is a hundred times slower. While this lives they count as zero.
@@ -27,4 +27,4 @@ class FlushSubnormals {
 #endif
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::suitesparse

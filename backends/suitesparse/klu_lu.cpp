@@ -4,7 +4,7 @@
 
 #include "backends/suitesparse/sparse_lu.hpp"
 
-namespace traceraft {
+namespace traceraft::suitesparse {
 namespace {
 
 class KluLu final : public SparseLu {
@@ -56,4 +56,4 @@ std::unique_ptr<SparseLu> make_klu_lu() {
   return std::make_unique<KluLu>();
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::suitesparse

@@ -16,7 +16,7 @@ void ssyrk_(const char* uplo, const char* transpose, const int* n, const int* k,
             const float* a, const int* lda, const float* beta, float* c, const int* ldc);
 }
 
-namespace traceraft {
+namespace traceraft::suitesparse {
 namespace {
 
 // Both are relative to the entry of the matrix on the diagonal. A pivot between −kRoundoff and
@@ -174,4 +174,4 @@ bool factorise_multifrontal(const SupernodalStructure& structure, const std::vec
   return true;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::suitesparse

@@ -6,7 +6,7 @@
 
 #include "backends/suitesparse/supernodal_structure.hpp"
 
-namespace traceraft {
+namespace traceraft::suitesparse {
 
 // Takes the finished columns of a supernode: `columns` times `rows` numbers of L, `rows` apart, of
 // which those above the diagonal mean nothing.
@@ -23,4 +23,4 @@ using KeepColumns = std::function<void(std::size_t supernode, const float* colum
 bool factorise_multifrontal(const SupernodalStructure& structure, const std::vector<double>& values,
                             const KeepColumns& keep);
 
-}  // namespace traceraft
+}  // namespace traceraft::suitesparse

@@ -6,9 +6,9 @@
 
 #include "backends/suitesparse/cholmod_workspace.hpp"
 
-namespace traceraft {
+namespace traceraft::suitesparse {
 
-cholmod_sparse* upper_triangle(const SparsityPattern& pattern, cholmod_common* common) {
+cholmod_sparse* upper_triangle(const fem::SparsityPattern& pattern, cholmod_common* common) {
   const int n = pattern.rows();
   const std::size_t entries = static_cast<std::size_t>(pattern.entries() + n) / 2;
   cholmod_sparse* A = cholmod_allocate_sparse(n, n, entries, 1, 1, 1, CHOLMOD_PATTERN, common);
@@ -25,7 +25,7 @@ cholmod_sparse* upper_triangle(const SparsityPattern& pattern, cholmod_common* c
   return A;
 }
 
-std::vector<int> metis_ordering(const SparsityPattern& pattern) {
+std::vector<int> metis_ordering(const fem::SparsityPattern& pattern) {
   // METIS seeds and draws from the C library's random numbers, which all threads share.
   static std::mutex one_at_a_time;
   const std::lock_guard<std::mutex> lock(one_at_a_time);
@@ -38,4 +38,4 @@ std::vector<int> metis_ordering(const SparsityPattern& pattern) {
   return ordering;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::suitesparse

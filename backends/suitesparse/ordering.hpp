@@ -5,9 +5,9 @@
 
 #include "kernel/fem/csr.hpp"
 
-namespace traceraft {
+namespace traceraft::suitesparse {
 
 // Throws std::runtime_error if METIS cannot order it.
-std::vector<int> metis_ordering(const SparsityPattern& pattern);
+std::vector<int> metis_ordering(const fem::SparsityPattern& pattern);
 
-}  // namespace traceraft
+}  // namespace traceraft::suitesparse

@@ -8,7 +8,7 @@
 #include "backends/suitesparse/blas.hpp"
 #include "backends/suitesparse/cholmod_workspace.hpp"
 
-namespace traceraft {
+namespace traceraft::suitesparse {
 
 namespace {
 
@@ -139,4 +139,4 @@ double SparseCholesky::log_determinant() const {
   return 2 * sum;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::suitesparse

@@ -5,7 +5,7 @@
 #include <Eigen/Sparse>
 #include <memory>
 
-namespace traceraft {
+namespace traceraft::suitesparse {
 
 // By CHOLMOD's supernodes, as the factors of such precisions fill. Not for several threads at once.
 class SparseCholesky {
@@ -35,4 +35,4 @@ class SparseCholesky {
   std::unique_ptr<Factors> factors_;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::suitesparse

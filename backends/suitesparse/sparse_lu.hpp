@@ -8,7 +8,7 @@
 #include "backends/suitesparse/assembled_system.hpp"
 #include "kernel/core/status.hpp"
 
-namespace traceraft {
+namespace traceraft::suitesparse {
 
 class SparseLu {
  public:
@@ -24,4 +24,4 @@ using SparseLuFactory = std::function<std::unique_ptr<SparseLu>()>;
 std::unique_ptr<SparseLu> make_umfpack_lu();
 std::unique_ptr<SparseLu> make_klu_lu();
 
-}  // namespace traceraft
+}  // namespace traceraft::suitesparse

@@ -12,7 +12,7 @@
 #include "backends/suitesparse/instruction_sets.hpp"
 #include "backends/suitesparse/multifrontal.hpp"
 
-namespace traceraft {
+namespace traceraft::suitesparse {
 namespace {
 
 using Real = float;
@@ -151,10 +151,10 @@ void copy_dense(const float* from, int columns, int rows, Stored* to) {
 //
 // Two threads take the two branches of the elimination tree, then one what both contribute to.
 // Contributions are added up in one order, so results do not depend on the number of threads.
-class SupernodalSolver final : public SpdSolver {
+class SupernodalSolver final : public linear::SpdSolver {
  public:
   SupernodalSolver(std::shared_ptr<const SupernodalStructure> structure, int lanes);
-  Status factorise(const CsrMatrix& A) override;
+  Status factorise(const fem::CsrMatrix& A) override;
   void solve(VecView b, VecRef x, const ThreadTeam& team, int lane) override;
 
  private:
@@ -185,7 +185,7 @@ void SupernodalSolver::keep(std::size_t supernode, const float* columns) {
   copy_dense(columns, node.columns, node.rows, values_.data() + value_begin_[supernode]);
 }
 
-Status SupernodalSolver::factorise(const CsrMatrix& A) {
+Status SupernodalSolver::factorise(const fem::CsrMatrix& A) {
   values_.resize(value_begin_.back() + kWide);
   const bool positive = factorise_multifrontal(
       *structure_, A.values, [this](std::size_t s, const float* columns) { keep(s, columns); });
@@ -254,16 +254,16 @@ void SupernodalSolver::solve(VecView b, VecRef x, const ThreadTeam& team, int la
 
 }  // namespace
 
-SpdSolverFactory supernodal_factory(PatternPtr pattern) {
+linear::SpdSolverFactory supernodal_factory(fem::PatternPtr pattern) {
   use_one_blas_thread();
   struct Analysis {
     std::once_flag once;
     std::shared_ptr<const SupernodalStructure> structure;
   };
-  return [pattern, analysis = std::make_shared<Analysis>()](int lanes) -> SpdSolverPtr {
+  return [pattern, analysis = std::make_shared<Analysis>()](int lanes) -> linear::SpdSolverPtr {
     std::call_once(analysis->once, [&] { analysis->structure = analyse(*pattern); });
     return std::make_unique<SupernodalSolver>(analysis->structure, lanes);
   };
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::suitesparse

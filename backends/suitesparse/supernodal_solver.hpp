@@ -4,10 +4,10 @@
 
 #include "kernel/linear/krylov.hpp"
 
-namespace traceraft {
+namespace traceraft::suitesparse {
 
 // All solvers that the factory makes share the analysis of `pattern`, which the first one makes.
 // They can factorise at the same time.
-SpdSolverFactory supernodal_factory(PatternPtr pattern);
+linear::SpdSolverFactory supernodal_factory(fem::PatternPtr pattern);
 
-}  // namespace traceraft
+}  // namespace traceraft::suitesparse

@@ -8,7 +8,7 @@
 #include "backends/suitesparse/ordering.hpp"
 #include "kernel/core/error.hpp"
 
-namespace traceraft {
+namespace traceraft::suitesparse {
 namespace {
 
 // CHOLMOD's matrix and factor, released with the workspace they belong to.
@@ -22,7 +22,7 @@ struct Analysis {
   }
 };
 
-void analyse_by_cholmod(const SparsityPattern& pattern, Analysis& analysis) {
+void analyse_by_cholmod(const fem::SparsityPattern& pattern, Analysis& analysis) {
   cholmod_common* common = &analysis.workspace.common;
   std::vector<int> ordering = metis_ordering(pattern);
   analysis.matrix = upper_triangle(pattern, common);
@@ -105,7 +105,7 @@ void plan_updates(const std::vector<std::vector<int>>& children, SupernodalStruc
   }
 }
 
-void place_entries(const SparsityPattern& pattern, SupernodalStructure& structure) {
+void place_entries(const fem::SparsityPattern& pattern, SupernodalStructure& structure) {
   std::vector<int> inverse(structure.permutation.size());
   for (std::size_t k = 0; k < inverse.size(); ++k)
     inverse[structure.permutation[k]] = static_cast<int>(k);
@@ -162,7 +162,7 @@ void find_branches(const std::vector<std::vector<int>>& children, SupernodalStru
 
 }  // namespace
 
-std::shared_ptr<const SupernodalStructure> analyse(const SparsityPattern& pattern) {
+std::shared_ptr<const SupernodalStructure> analyse(const fem::SparsityPattern& pattern) {
   Analysis analysis;
   analyse_by_cholmod(pattern, analysis);
   auto structure = std::make_shared<SupernodalStructure>();
@@ -174,4 +174,4 @@ std::shared_ptr<const SupernodalStructure> analyse(const SparsityPattern& patter
   return structure;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::suitesparse

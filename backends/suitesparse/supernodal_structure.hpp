@@ -8,7 +8,7 @@
 
 #include "kernel/fem/csr.hpp"
 
-namespace traceraft {
+namespace traceraft::suitesparse {
 
 // Neighbouring columns of L with the same rows, in which they are a dense trapezoid.
 struct Supernode {
@@ -45,6 +45,6 @@ struct SupernodalStructure {
 };
 
 // Orders by METIS and analyses by CHOLMOD. Throws InputError if L would have more than 2³¹ numbers.
-std::shared_ptr<const SupernodalStructure> analyse(const SparsityPattern& pattern);
+std::shared_ptr<const SupernodalStructure> analyse(const fem::SparsityPattern& pattern);
 
-}  // namespace traceraft
+}  // namespace traceraft::suitesparse

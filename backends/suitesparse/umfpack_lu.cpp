@@ -4,7 +4,7 @@
 
 #include "backends/suitesparse/sparse_lu.hpp"
 
-namespace traceraft {
+namespace traceraft::suitesparse {
 namespace {
 
 class UmfpackLu final : public SparseLu {
@@ -59,4 +59,4 @@ std::unique_ptr<SparseLu> make_umfpack_lu() {
   return std::make_unique<UmfpackLu>();
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::suitesparse

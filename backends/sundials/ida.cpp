@@ -12,13 +12,13 @@
 #include "backends/sundials/state_vector.hpp"
 #include "kernel/time/step_control.hpp"
 
-namespace traceraft {
+namespace traceraft::sundials {
 namespace {
 
-class Ida final : public Integrator {
+class Ida final : public time::Integrator {
  public:
-  Ida(const DaeProblem& problem, const LinearSolverChoice& solvers,
-      std::shared_ptr<const ThreadTeam> team, const IntegratorSettings& settings)
+  Ida(const problem::DaeProblem& problem, const linear::LinearSolverChoice& solvers,
+      std::shared_ptr<const ThreadTeam> team, const time::IntegratorSettings& settings)
       : problem_(problem),
         settings_(settings),
         equations_(problem, solvers, std::move(team), settings_),
@@ -86,8 +86,8 @@ class Ida final : public Integrator {
   const Vec& state() const override { return y_; }
   bool promises_energy_decay() const override { return false; }
 
-  IntegratorStatistics statistics() const override {
-    IntegratorStatistics result;
+  time::IntegratorStatistics statistics() const override {
+    time::IntegratorStatistics result;
     if (!memory_) return equations_.added_to(result);
     IDAGetNumSteps(memory_, &result.steps);
     IDAGetNumErrTestFails(memory_, &result.rejected);
@@ -96,7 +96,9 @@ class Ida final : public Integrator {
     IDAGetLastOrder(memory_, &result.order);
     return equations_.added_to(result);
   }
-  LinearStatistics linear_statistics() const override { return equations_.linear_statistics(); }
+  linear::LinearStatistics linear_statistics() const override {
+    return equations_.linear_statistics();
+  }
 
   void save(CheckpointOut out) const override {
     for (const double value : {before_, t_, t_end_, span_, first_step_}) write_binary(out, value);
@@ -119,9 +121,9 @@ class Ida final : public Integrator {
     if (settings_.option("initstep") > 0) return settings_.option("initstep");
     const int n = problem_.block_size();
     // A tenth of the tolerance is the whole change of the first step.
-    return first_step(settings_.general(), span_,
-                      0.1 * settings_.rtol() * problem_.field_norm(y.head(n)),
-                      problem_.field_norm(ydot.head(n)));
+    return time::first_step(settings_.general(), span_,
+                            0.1 * settings_.rtol() * problem_.field_norm(y.head(n)),
+                            problem_.field_norm(ydot.head(n)));
   }
 
   void release() {
@@ -191,7 +193,7 @@ class Ida final : public Integrator {
     }
   }
 
-  const DaeProblem& problem_;
+  const problem::DaeProblem& problem_;
   const IdaSettings settings_;
   IdaEquations equations_;
   StateSpace space_;
@@ -205,9 +207,11 @@ class Ida final : public Integrator {
 
 }  // namespace
 
-IntegratorPtr make_ida(const DaeProblem& problem, const LinearSolverChoice& solvers,
-                       std::shared_ptr<const ThreadTeam> team, const IntegratorSettings& settings) {
+time::IntegratorPtr make_ida(const problem::DaeProblem& problem,
+                             const linear::LinearSolverChoice& solvers,
+                             std::shared_ptr<const ThreadTeam> team,
+                             const time::IntegratorSettings& settings) {
   return std::make_unique<Ida>(problem, solvers, std::move(team), settings);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::sundials

@@ -5,7 +5,7 @@
 
 #include "kernel/time/integrator.hpp"
 
-namespace traceraft {
+namespace traceraft::sundials {
 
 // The tolerance bounds the local error of c in each step, in L²(Γ_h) and relative to c:
 // ‖error‖ ≤ rtol ‖c‖ + atol √|Γ|. Algebraic variables stay out of the test by default; with them it
@@ -16,7 +16,9 @@ namespace traceraft {
 // Corrections keep the mass exactly, and so do IDA's predictors: linear combinations of states.
 //
 // Between the steps the solution is IDA's interpolant; the end of the run is met exactly.
-IntegratorPtr make_ida(const DaeProblem& problem, const LinearSolverChoice& solvers,
-                       std::shared_ptr<const ThreadTeam> team, const IntegratorSettings& settings);
+time::IntegratorPtr make_ida(const problem::DaeProblem& problem,
+                             const linear::LinearSolverChoice& solvers,
+                             std::shared_ptr<const ThreadTeam> team,
+                             const time::IntegratorSettings& settings);
 
-}  // namespace traceraft
+}  // namespace traceraft::sundials

@@ -11,9 +11,10 @@
 #include "backends/sundials/state_vector.hpp"
 #include "kernel/core/stopwatch.hpp"
 
-namespace traceraft {
+namespace traceraft::sundials {
 
-IdaEquations::IdaEquations(const DaeProblem& problem, const LinearSolverChoice& solvers,
+IdaEquations::IdaEquations(const problem::DaeProblem& problem,
+                           const linear::LinearSolverChoice& solvers,
                            std::shared_ptr<const ThreadTeam> team, const IdaSettings& settings)
     : problem_(problem),
       settings_(settings),
@@ -56,7 +57,7 @@ void IdaEquations::throw_again() {
   if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
 }
 
-IntegratorStatistics IdaEquations::added_to(IntegratorStatistics statistics) const {
+time::IntegratorStatistics IdaEquations::added_to(time::IntegratorStatistics statistics) const {
   statistics.energy_rises = guard_.refused();
   statistics.residuals = residuals_;
   statistics.assembly_seconds = residual_seconds_;
@@ -180,12 +181,12 @@ int IdaEquations::solve(SUNLinearSolver linear, SUNMatrix, N_Vector x, N_Vector 
   auto& self = *static_cast<IdaEquations*>(linear->content);
   return self.guarded(SUNLS_PACKAGE_FAIL_UNREC, [&] {
     N_Vector y = nullptr, ydot = nullptr;
-    NewtonSystem& system = self.systems_[0];
+    time::NewtonSystem& system = self.systems_[0];
     IDAGetCurrentTime(self.memory_, &system.t);
     IDAGetCurrentY(self.memory_, &y);
     IDAGetCurrentYp(self.memory_, &ydot);
     IDAGetCurrentCj(self.memory_, &system.shift);
-    system.tangent = Tangent::exact;
+    system.tangent = linear::Tangent::exact;
     system.y = view(y);
     system.ydot = view(ydot);
     system.b = view(b);
@@ -202,4 +203,4 @@ void IdaEquations::on_error(int code, const char*, const char*, char* text, void
   if (code < 0) static_cast<IdaEquations*>(data)->message_ = text;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::sundials

@@ -13,14 +13,14 @@
 #include "kernel/time/energy_guard.hpp"
 #include "kernel/time/jacobian_solver.hpp"
 
-namespace traceraft {
+namespace traceraft::sundials {
 
 // One at a time belongs to a memory of IDA. IDA's C functions carry neither exceptions nor the
 // reasons of a status: both are kept here until the step is over.
 class IdaEquations {
  public:
   // Problem and settings must outlive this object.
-  IdaEquations(const DaeProblem& problem, const LinearSolverChoice& solvers,
+  IdaEquations(const problem::DaeProblem& problem, const linear::LinearSolverChoice& solvers,
                std::shared_ptr<const ThreadTeam> team, const IdaSettings& settings);
   IdaEquations(const IdaEquations&) = delete;
   IdaEquations& operator=(const IdaEquations&) = delete;
@@ -44,8 +44,8 @@ class IdaEquations {
   void accept() { guard_.accept(); }
 
   // An integrator's statistics with what happened here.
-  IntegratorStatistics added_to(IntegratorStatistics statistics) const;
-  LinearStatistics linear_statistics() const { return solver_.linear_statistics(); }
+  time::IntegratorStatistics added_to(time::IntegratorStatistics statistics) const;
+  linear::LinearStatistics linear_statistics() const { return solver_.linear_statistics(); }
 
   // What the next step depends on, for a memory that this is attached to.
   void save(CheckpointOut out) const;
@@ -67,12 +67,12 @@ class IdaEquations {
   template <class Action>
   int guarded(int fatal, const Action& action) noexcept;
 
-  const DaeProblem& problem_;
+  const problem::DaeProblem& problem_;
   const IdaSettings& settings_;
-  EnergyGuard guard_;
-  JacobianSolver solver_;
+  time::EnergyGuard guard_;
+  time::JacobianSolver solver_;
   NewtonTest newton_test_;
-  std::vector<NewtonSystem> systems_;
+  std::vector<time::NewtonSystem> systems_;
   void* memory_ = nullptr;
   VectorPtr work_;
   LinearPtr linear_;
@@ -84,4 +84,4 @@ class IdaEquations {
   std::exception_ptr thrown_;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::sundials

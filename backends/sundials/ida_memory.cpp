@@ -8,7 +8,7 @@
 // Not part of IDA's public headers, but exported: what IDASolve calls before the first step.
 extern "C" int IDAInitialSetup(IDAMem memory);
 
-namespace traceraft {
+namespace traceraft::sundials {
 namespace {
 
 // Applies an action to every number that changes from step to step.
@@ -63,4 +63,4 @@ void load_ida_memory(void* memory, CheckpointIn in) {
   view(m->ida_ee) = buffer;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::sundials

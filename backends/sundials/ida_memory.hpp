@@ -3,7 +3,7 @@
 
 #include "kernel/core/checkpoint_stream.hpp"
 
-namespace traceraft {
+namespace traceraft::sundials {
 
 // Everything that the next step depends on: divided differences, orders, step sizes, the
 // convergence rate of Newton's method, counters. `memory` comes from IDACreate.
@@ -17,4 +17,4 @@ void save_ida_memory(void* memory, CheckpointOut out);
 // not taken a step. Throws IoError if the data are not of this size and version.
 void load_ida_memory(void* memory, CheckpointIn in);
 
-}  // namespace traceraft
+}  // namespace traceraft::sundials

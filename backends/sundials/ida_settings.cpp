@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace traceraft {
+namespace traceraft::sundials {
 namespace {
 
 // These and the factor of Newton's test below were chosen by measuring cost and error:
@@ -27,7 +27,7 @@ std::vector<ParameterSpec> ida_parameters() {
   };
 }
 
-IdaSettings::IdaSettings(const IntegratorSettings& settings) : settings_(settings) {
+IdaSettings::IdaSettings(const time::IntegratorSettings& settings) : settings_(settings) {
   for (const ParameterSpec& spec : ida_parameters())
     settings_.method_options.emplace(spec.name, spec.default_value);
 }
@@ -46,4 +46,4 @@ double IdaSettings::min_step(double span) const {
   return settings_.min_step > 0 ? settings_.min_step : 1e-14 * span;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::sundials

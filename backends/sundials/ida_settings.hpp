@@ -6,7 +6,7 @@
 #include "kernel/core/parameters.hpp"
 #include "kernel/time/integrator.hpp"
 
-namespace traceraft {
+namespace traceraft::sundials {
 
 // The options that IDA has beyond the general ones, under IDA's names. 0 leaves an option that has
 // a general counterpart to that.
@@ -14,9 +14,9 @@ std::vector<ParameterSpec> ida_parameters();
 
 class IdaSettings {
  public:
-  explicit IdaSettings(const IntegratorSettings& settings);
+  explicit IdaSettings(const time::IntegratorSettings& settings);
 
-  const IntegratorSettings& general() const { return settings_; }
+  const time::IntegratorSettings& general() const { return settings_; }
   // By its name in ida_parameters().
   double option(const char* name) const { return settings_.method_options.at(name); }
   double rtol() const { return either("rtol", settings_.tolerance); }
@@ -33,7 +33,7 @@ class IdaSettings {
     return option(name) > 0 ? option(name) : general;
   }
 
-  IntegratorSettings settings_;
+  time::IntegratorSettings settings_;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::sundials

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace traceraft {
+namespace traceraft::sundials {
 namespace {
 
 constexpr double kDivergence = 0.9;  // corrections that shrink less do not converge
@@ -42,4 +42,4 @@ void NewtonTest::load(CheckpointIn in) {
   read_binary(in, experience_);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::sundials

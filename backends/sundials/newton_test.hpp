@@ -3,7 +3,7 @@
 
 #include "kernel/core/checkpoint_stream.hpp"
 
-namespace traceraft {
+namespace traceraft::sundials {
 
 // Each correction is computed with the exact Jacobian of its iterate, up to the tolerance of the
 // linear solver. What the first one, of norm d, leaves is therefore about
@@ -35,4 +35,4 @@ class NewtonTest {
   double first_ = 0;  // norm of the first correction of this step
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::sundials

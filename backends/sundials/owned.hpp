@@ -7,7 +7,7 @@
 
 #include <memory>
 
-namespace traceraft {
+namespace traceraft::sundials {
 
 struct Destroy {
   void operator()(N_Vector v) const { N_VDestroy(v); }
@@ -18,4 +18,4 @@ using VectorPtr = std::unique_ptr<_generic_N_Vector, Destroy>;
 using LinearPtr = std::unique_ptr<_generic_SUNLinearSolver, Destroy>;
 using NewtonPtr = std::unique_ptr<_generic_SUNNonlinearSolver, Destroy>;
 
-}  // namespace traceraft
+}  // namespace traceraft::sundials

@@ -9,7 +9,7 @@
 
 #include "backends/sundials/state_vector.hpp"
 
-namespace traceraft {
+namespace traceraft::sundials {
 namespace {
 
 constexpr int kRestart = 50;
@@ -19,11 +19,11 @@ const StateSpace plain{nullptr, kAlone};
 
 // The operators of one solve; an exception stops at the C boundary and is thrown again after it.
 struct Operators {
-  const LinearOperator& A;
-  const LinearOperator& preconditioner;
+  const linear::LinearOperator& A;
+  const linear::LinearOperator& preconditioner;
   std::exception_ptr thrown;
 
-  int apply(const LinearOperator& op, N_Vector in, N_Vector out) noexcept {
+  int apply(const linear::LinearOperator& op, N_Vector in, N_Vector out) noexcept {
     try {
       const Status status = op(view(in), view(out));
       return status.ok() ? 0 : status.outcome == Outcome::retry ? 1 : -1;
@@ -44,7 +44,7 @@ int precondition(void* data, N_Vector in, N_Vector out, double, int) {
   return operators->apply(operators->preconditioner, in, out);
 }
 
-class Spfgmr final : public KrylovMethod {
+class Spfgmr final : public linear::KrylovMethod {
  public:
   explicit Spfgmr(int size) {
     if (SUNContext_Create(nullptr, &context_) != 0)
@@ -62,10 +62,11 @@ class Spfgmr final : public KrylovMethod {
     SUNContext_Free(&context_);
   }
 
-  SolveReport solve(const LinearOperator& A, const LinearOperator& preconditioner, VecView b,
-                    VecRef x, double tolerance, int max_iterations) override {
+  linear::SolveReport solve(const linear::LinearOperator& A,
+                            const linear::LinearOperator& preconditioner, VecView b, VecRef x,
+                            double tolerance, int max_iterations) override {
     Operators operators{A, preconditioner, nullptr};
-    const double norm = std::sqrt(dot(b, b));
+    const double norm = std::sqrt(fem::dot(b, b));
     if (norm == 0) {
       x.setZero();
       return {};
@@ -98,8 +99,8 @@ class Spfgmr final : public KrylovMethod {
 
 }  // namespace
 
-std::unique_ptr<KrylovMethod> make_spfgmr(int size) {
+std::unique_ptr<linear::KrylovMethod> make_spfgmr(int size) {
   return std::make_unique<Spfgmr>(size);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::sundials

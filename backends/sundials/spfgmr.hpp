@@ -5,9 +5,9 @@
 
 #include "kernel/linear/krylov.hpp"
 
-namespace traceraft {
+namespace traceraft::sundials {
 
 // `size`: length of the vectors; restarts after 50 iterations.
-std::unique_ptr<KrylovMethod> make_spfgmr(int size);
+std::unique_ptr<linear::KrylovMethod> make_spfgmr(int size);
 
-}  // namespace traceraft
+}  // namespace traceraft::sundials

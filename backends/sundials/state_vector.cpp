@@ -6,7 +6,7 @@
 
 #include "kernel/fem/csr.hpp"
 
-namespace traceraft {
+namespace traceraft::sundials {
 namespace {
 
 struct Content {
@@ -94,7 +94,7 @@ void set_operations(_generic_N_Vector_Ops& ops) {
     content(z).data = content(x).data.array() + b;
   };
   ops.nvdotprod = [](N_Vector x, N_Vector y) {
-    return ranks_of(x).sum(dot(content(x).data, content(y).data));
+    return ranks_of(x).sum(fem::dot(content(x).data, content(y).data));
   };
   ops.nvmaxnorm = [](N_Vector x) { return ranks_of(x).max(content(x).data.cwiseAbs().maxCoeff()); };
   ops.nvmin = [](N_Vector x) { return ranks_of(x).min(content(x).data.minCoeff()); };
@@ -118,4 +118,4 @@ Eigen::Map<Vec> view(N_Vector v) {
   return {data.data(), data.size()};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::sundials

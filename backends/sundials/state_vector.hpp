@@ -8,7 +8,7 @@
 #include "kernel/core/communicator.hpp"
 #include "kernel/core/types.hpp"
 
-namespace traceraft {
+namespace traceraft::sundials {
 
 // What norms and sums of SUNDIALS are made of.
 struct StateSpace {
@@ -21,10 +21,10 @@ struct StateSpace {
 // A zero vector of `size` entries on this rank; clones share the space, which must outlive them.
 // Weighted norms take one weight from each half, w[0] and w[size/2] (masks likewise):
 //   ‖v‖² = (w_c ‖v_c‖)² + (w_μ ‖v_μ‖)².
-// Dot products add in the fixed order of traceraft::dot, then over the ranks.
+// Dot products add in the fixed order of traceraft::fem::dot, then over the ranks.
 N_Vector new_state_vector(Eigen::Index size, const StateSpace& space, SUNContext context);
 
 // The entries of this rank.
 Eigen::Map<Vec> view(N_Vector v);
 
-}  // namespace traceraft
+}  // namespace traceraft::sundials

@@ -12,7 +12,7 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/named_list.hpp"
 
-namespace traceraft {
+namespace traceraft::trilinos {
 namespace {
 
 using Teuchos::ParameterList;
@@ -61,8 +61,8 @@ class Method final : public BelosMethod {
   Method(std::string name, RCP<ParameterList> parameters)
       : name_(std::move(name)), manager_(make_manager(name_)), parameters_(std::move(parameters)) {}
 
-  SolveReport solve(const ThyraOperator& A, const ThyraOperator& preconditioner,
-                    const ThyraVector& b, const ThyraVector& x, double tolerance) override {
+  linear::SolveReport solve(const ThyraOperator& A, const ThyraOperator& preconditioner,
+                            const ThyraVector& b, const ThyraVector& x, double tolerance) override {
     const double norm = Thyra::norm_2(*b);
     if (norm == 0) {
       Thyra::assign(x.ptr(), 0.0);
@@ -128,4 +128,4 @@ std::unique_ptr<BelosMethod> make_belos_method(const std::string& name, const Pa
   return std::make_unique<Method>(name, parameters);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::trilinos

@@ -8,7 +8,7 @@
 #include "backends/trilinos/tpetra_space.hpp"
 #include "kernel/linear/linear_solver.hpp"
 
-namespace traceraft {
+namespace traceraft::trilinos {
 
 // fgmres: GMRES with a flexible right preconditioner; gcrodr keeps a part of its space from one
 // system to the next, until forget().
@@ -19,8 +19,9 @@ class BelosMethod {
   virtual ~BelosMethod() = default;
   // A x = b from the guess in x, preconditioned from the right, until the residual has fallen to
   // `tolerance` times that of x = 0. retry: it did not; the iterations count all the same.
-  virtual SolveReport solve(const ThyraOperator& A, const ThyraOperator& preconditioner,
-                            const ThyraVector& b, const ThyraVector& x, double tolerance) = 0;
+  virtual linear::SolveReport solve(const ThyraOperator& A, const ThyraOperator& preconditioner,
+                                    const ThyraVector& b, const ThyraVector& x,
+                                    double tolerance) = 0;
   // From here on as if nothing had been solved before.
   virtual void forget() = 0;
 };
@@ -30,4 +31,4 @@ class BelosMethod {
 std::unique_ptr<BelosMethod> make_belos_method(const std::string& name,
                                                const Teuchos::ParameterList& own);
 
-}  // namespace traceraft
+}  // namespace traceraft::trilinos

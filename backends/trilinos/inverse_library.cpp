@@ -9,7 +9,7 @@
 
 #include "backends/trilinos/two_solve_factory.hpp"
 
-namespace traceraft {
+namespace traceraft::trilinos {
 namespace {
 
 using Teuchos::ParameterList;
@@ -130,4 +130,4 @@ Teuchos::RCP<Teko::InverseLibrary> make_inverse_library(const std::string& inver
   return Teko::InverseLibrary::buildFromParameterList(library, stratimikos);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::trilinos

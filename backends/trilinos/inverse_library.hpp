@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace traceraft {
+namespace traceraft::trilinos {
 
 // Names of whole preconditioners: our own and Teko's for comparison.
 inline const std::vector<std::string> kTekoPreconditioners = {"two-solve", "gauss-seidel",
@@ -24,4 +24,4 @@ Teuchos::RCP<Teko::InverseLibrary> make_inverse_library(const std::string& inver
 // What Teko has said since the last call, which is where it tells what went wrong.
 std::string teko_complaints();
 
-}  // namespace traceraft
+}  // namespace traceraft::trilinos

@@ -2,7 +2,7 @@
 
 #include <Tpetra_Core.hpp>
 
-namespace traceraft {
+namespace traceraft::trilinos {
 
 void start_trilinos() {
   if (Tpetra::isInitialized()) return;
@@ -18,4 +18,4 @@ void finish_trilinos() {
   if (Tpetra::isInitialized()) Tpetra::finalize();
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::trilinos

@@ -14,7 +14,7 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/named_list.hpp"
 
-namespace traceraft {
+namespace traceraft::trilinos {
 namespace {
 
 using Teuchos::ParameterList;
@@ -121,4 +121,4 @@ void refuse_lists(const TekoParameters& parameters, const std::exception& error)
   refuse("parameters", parameters.file + ": " + (complaint.empty() ? error.what() : complaint));
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::trilinos

@@ -8,7 +8,7 @@
 
 #include "backends/trilinos/teko_solver.hpp"
 
-namespace traceraft {
+namespace traceraft::trilinos {
 
 struct TekoParameters {
   std::string preconditioner, inverse, method;
@@ -36,4 +36,4 @@ auto said_of_lists(const TekoParameters& parameters, const Make& make) {
   }
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::trilinos

@@ -20,7 +20,7 @@
 #include "kernel/linear/setup_policy.hpp"
 #include "kernel/linear/two_solve_preconditioner.hpp"
 
-namespace traceraft {
+namespace traceraft::trilinos {
 namespace {
 
 using Teuchos::RCP;
@@ -31,7 +31,7 @@ constexpr long kSetupPrice = 5;
 
 // Everything that does not change from solver to solver.
 struct Setting {
-  PatternPtr pattern;
+  fem::PatternPtr pattern;
   TpetraSpace space;
   TekoParameters chosen;
   RCP<Teko::InverseLibrary> library;
@@ -39,17 +39,17 @@ struct Setting {
 
 // With the exact tangent B + sM must be positive definite, which no approximate inverse notices.
 // The constant function tells where f0'' is negative on the whole.
-TwoSolveShifts shifts_of(const BlockJacobian& J, double area) {
+linear::TwoSolveShifts shifts_of(const linear::BlockJacobian& J, double area) {
   double sum = 0;
   for (const double value : J.mc.values) sum -= value;
   const double mean = J.ranks().sum(sum) / area;  // of f0''; the stiffness has no part in it
-  TwoSolveShifts shifts = two_solve_shifts(J);
-  for (int attempt = 1; attempt < kMostShifts && mean - shifts.q <= 0; ++attempt)
-    shifts = two_solve_shifts(J, attempt);
+  linear::TwoSolveShifts shifts = linear::two_solve_shifts(J);
+  for (int attempt = 1; attempt < linear::kMostShifts && mean - shifts.q <= 0; ++attempt)
+    shifts = linear::two_solve_shifts(J, attempt);
   return shifts;
 }
 
-class TekoSolver final : public LinearSolver {
+class TekoSolver final : public linear::LinearSolver {
  public:
   TekoSolver(std::shared_ptr<const Setting> setting, int lanes)
       : setting_(std::move(setting)), shared_(lanes, kSetupPrice), lanes_(lanes) {
@@ -71,13 +71,13 @@ class TekoSolver final : public LinearSolver {
   std::string name() const override { return "teko"; }
   bool shares_factors() const override { return true; }
 
-  Status setup(const BlockJacobian& J, int) override {
+  Status setup(const linear::BlockJacobian& J, int) override {
     const ScopedTimer timer(shared_.seconds());
     shared_.begin(J.shift);
     fill(J);
     double area = 0;
     for (const double value : J.mm.values) area += value;
-    const TwoSolveShifts shifts = shifts_of(J, J.ranks().sum(area));
+    const linear::TwoSolveShifts shifts = shifts_of(J, J.ranks().sum(area));
     request_ = {shifts.p, shifts.q, row_scale_};
     const Status status = guarded("no preconditioner", [&]() -> Status {
       if (inverse_.is_null())
@@ -93,16 +93,16 @@ class TekoSolver final : public LinearSolver {
     return status;
   }
 
-  bool wants_setup(const BlockJacobian& J, int) const override {
+  bool wants_setup(const linear::BlockJacobian& J, int) const override {
     return setting_->chosen.always_new || shared_.worn(J.shift);
   }
 
-  SolveReport solve(const BlockJacobian& J, VecView b, VecRef x, double tolerance,
-                    int lane_number) override {
+  linear::SolveReport solve(const linear::BlockJacobian& J, VecView b, VecRef x, double tolerance,
+                            int lane_number) override {
     // Trilinos keeps what it computes with in its objects.
     const std::lock_guard lock(one_at_a_time_);
     Lane& lane = lanes_[lane_number];
-    LinearStatistics& statistics = shared_.of_lane(lane_number);
+    linear::LinearStatistics& statistics = shared_.of_lane(lane_number);
     const ScopedTimer timer(statistics.solve_seconds);
     ++statistics.solves;
     if (!shared_.ready()) return {Status::retry("there is no preconditioner")};
@@ -110,7 +110,7 @@ class TekoSolver final : public LinearSolver {
     const int n = J.block_size();
     copy_halves(b, 1 / row_scale_, *lane.b);
     copy_halves(x, 1, *lane.x);
-    SolveReport report;
+    linear::SolveReport report;
     report.status = guarded("Belos", [&] {
       report = lane.method->solve(A_, inverse_, lane.b, lane.x, tolerance);
       return report.status;
@@ -119,12 +119,12 @@ class TekoSolver final : public LinearSolver {
     if (!report.status.ok()) lane.method->forget();
     copy_from(*block(*lane.x, 0), x.head(n));
     copy_from(*block(*lane.x, 1), x.tail(n));
-    report.status = judged_by_residual(report.status, J, b, x, tolerance, team_);
-    if (report.status.ok()) restore_mass(J, b, x);
+    report.status = linear::judged_by_residual(report.status, J, b, x, tolerance, team_);
+    if (report.status.ok()) linear::restore_mass(J, b, x);
     return report;
   }
 
-  LinearStatistics statistics() const override { return shared_.statistics(); }
+  linear::LinearStatistics statistics() const override { return shared_.statistics(); }
   void save(CheckpointOut out) const override {
     write_binary(out, setting_->chosen.checksum);
     shared_.save(out);
@@ -170,7 +170,7 @@ class TekoSolver final : public LinearSolver {
   }
 
   // Belos judges by one norm: the first block row is divided by the shift.
-  void fill(const BlockJacobian& J) {
+  void fill(const linear::BlockJacobian& J) {
     row_scale_ = J.shift > 0 ? J.shift : 1;
     const TpetraSpace& space = setting_->space;
     space.fill(1 / row_scale_, J.cc, *blocks_[0]);
@@ -180,7 +180,7 @@ class TekoSolver final : public LinearSolver {
   }
 
   std::shared_ptr<const Setting> setting_;
-  SharedSetup shared_;
+  linear::SharedSetup shared_;
   std::vector<Lane> lanes_;
   std::array<RCP<TpetraMatrix>, 4> blocks_;
   ThyraOperator A_;
@@ -195,7 +195,8 @@ class TekoSolver final : public LinearSolver {
 
 }  // namespace
 
-LinearSolverFactory make_teko_solver(const PatternPtr& pattern, const TekoOptions& options) {
+linear::LinearSolverFactory make_teko_solver(const fem::PatternPtr& pattern,
+                                             const TekoOptions& options) {
   start_trilinos();
   const auto setting =
       std::make_shared<Setting>(Setting{pattern,
@@ -209,4 +210,4 @@ LinearSolverFactory make_teko_solver(const PatternPtr& pattern, const TekoOption
   return [setting](int lanes) { return std::make_unique<TekoSolver>(setting, lanes); };
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::trilinos

@@ -8,7 +8,7 @@
 #include "kernel/fem/csr.hpp"
 #include "kernel/linear/linear_solver.hpp"
 
-namespace traceraft {
+namespace traceraft::trilinos {
 
 // preconditioner: two-solve, gauss-seidel, block-lu, or a name from the parameter file
 // inverse: muelu, muelu-ilu, ifpack2, direct (on one rank), or a name from the parameter file
@@ -17,6 +17,7 @@ namespace traceraft {
 using TekoOptions = std::map<std::string, std::string>;
 
 // Throws InputError for a name or a file that is not known.
-LinearSolverFactory make_teko_solver(const PatternPtr& pattern, const TekoOptions& options);
+linear::LinearSolverFactory make_teko_solver(const fem::PatternPtr& pattern,
+                                             const TekoOptions& options);
 
-}  // namespace traceraft
+}  // namespace traceraft::trilinos

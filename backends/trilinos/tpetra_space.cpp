@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace traceraft {
+namespace traceraft::trilinos {
 namespace {
 
 using Teuchos::RCP;
@@ -39,7 +39,7 @@ RCP<const Tpetra::Vector<double>> tpetra_vector(const Thyra::VectorBase<double>&
 
 }  // namespace
 
-TpetraSpace::TpetraSpace(const SparsityPattern& pattern) {
+TpetraSpace::TpetraSpace(const fem::SparsityPattern& pattern) {
   const Halo& halo = pattern.halo;
   const auto comm = communicator(*halo.ranks);
   map_ = rcp(new TpetraMap(Teuchos::OrdinalTraits<Tpetra::global_size_t>::invalid(),
@@ -68,7 +68,7 @@ RCP<TpetraMatrix> TpetraSpace::make_matrix() const {
   return matrix;
 }
 
-void TpetraSpace::fill(double scale, const CsrMatrix& A, TpetraMatrix& matrix) const {
+void TpetraSpace::fill(double scale, const fem::CsrMatrix& A, TpetraMatrix& matrix) const {
   const auto values = matrix.getLocalMatrixHost().values;
   for (std::size_t k = 0; k < position_.size(); ++k) values(k) = scale * A.values[position_[k]];
 }
@@ -97,4 +97,4 @@ void copy_from(const Thyra::VectorBase<double>& vector, VecRef field) {
   for (Eigen::Index i = 0; i < field.size(); ++i) field[i] = values(static_cast<std::size_t>(i), 0);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::trilinos

@@ -11,7 +11,7 @@
 
 #include "kernel/fem/csr.hpp"
 
-namespace traceraft {
+namespace traceraft::trilinos {
 
 using TpetraMap = Tpetra::Map<>;
 using TpetraGraph = Tpetra::CrsGraph<>;
@@ -23,12 +23,12 @@ using ThyraVector = Teuchos::RCP<Thyra::VectorBase<double>>;
 class TpetraSpace {
  public:
   // Collective. Every process of MPI has a rank of the pattern, or the pattern is of one rank only.
-  explicit TpetraSpace(const SparsityPattern& pattern);
+  explicit TpetraSpace(const fem::SparsityPattern& pattern);
 
   const Teuchos::RCP<const TpetraMap>& map() const { return map_; }
   Teuchos::RCP<TpetraMatrix> make_matrix() const;
   // matrix = scale · A
-  void fill(double scale, const CsrMatrix& A, TpetraMatrix& matrix) const;
+  void fill(double scale, const fem::CsrMatrix& A, TpetraMatrix& matrix) const;
 
  private:
   Teuchos::RCP<const TpetraMap> map_;
@@ -43,4 +43,4 @@ const TpetraMatrix& as_matrix(const ThyraOperator& op);
 void copy_to(VecView field, Thyra::VectorBase<double>& vector);
 void copy_from(const Thyra::VectorBase<double>& vector, VecRef field);
 
-}  // namespace traceraft
+}  // namespace traceraft::trilinos

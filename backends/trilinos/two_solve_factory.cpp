@@ -7,7 +7,7 @@
 
 #include "backends/trilinos/tpetra_space.hpp"
 
-namespace traceraft {
+namespace traceraft::trilinos {
 namespace {
 
 using Teuchos::RCP;
@@ -99,4 +99,4 @@ Teko::LinearOp TwoSolveFactory::buildPreconditionerOperator(
                                  updated(*second_, as_operator(second), "second", state), shifts));
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::trilinos

@@ -5,7 +5,7 @@
 #include <Teko_InverseFactory.hpp>
 #include <Teko_RequestCallback.hpp>
 
-namespace traceraft {
+namespace traceraft::trilinos {
 
 // What the factory cannot see in the operator: the shifts of the two solves
 // (kernel/linear/two_solve_preconditioner.hpp), and by what the first block row has been divided.
@@ -48,4 +48,4 @@ class TwoSolveCallback final : public Teko::RequestCallback<TwoSolveRequest> {
   const TwoSolveRequest& answer_;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::trilinos

@@ -11,7 +11,7 @@
 
 #include "kernel/core/error.hpp"
 
-namespace traceraft {
+namespace traceraft::zlib {
 namespace {
 
 constexpr std::size_t kBlock = 1 << 16;                     // bytes compressed at a time
@@ -132,4 +132,4 @@ std::string deflated(const std::string& data) {
   return compressed(reinterpret_cast<const Bytef*>(data.data()), data.size());
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::zlib

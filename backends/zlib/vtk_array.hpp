@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-namespace traceraft {
+namespace traceraft::zlib {
 
 std::string base64(const std::string& data);
 
@@ -16,4 +16,4 @@ std::string decoded_array(const std::string& text);
 // One zlib stream, as browsers decompress it.
 std::string deflated(const std::string& data);
 
-}  // namespace traceraft
+}  // namespace traceraft::zlib

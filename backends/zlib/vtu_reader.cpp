@@ -7,7 +7,7 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 
-namespace traceraft {
+namespace traceraft::zlib {
 namespace {
 
 // What stands between two texts from `begin` on, which moves behind it. Throws IoError.
@@ -79,4 +79,4 @@ std::vector<std::pair<double, std::string>> files_of_pvd(const std::string& text
   return files;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::zlib

@@ -8,10 +8,10 @@
 #include "kernel/core/types.hpp"
 #include "kernel/observables/surface_view.hpp"
 
-namespace traceraft {
+namespace traceraft::zlib {
 
 struct SurfaceField {
-  SurfaceMesh mesh;
+  observables::SurfaceMesh mesh;
   Vec values;
 };
 
@@ -25,4 +25,4 @@ std::vector<int> read_cells(const std::string& text, const std::string& field);
 std::vector<std::string> pieces_of_pvtu(const std::string& text);
 std::vector<std::pair<double, std::string>> files_of_pvd(const std::string& text);
 
-}  // namespace traceraft
+}  // namespace traceraft::zlib

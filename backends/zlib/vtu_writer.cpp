@@ -5,7 +5,7 @@
 #include "backends/zlib/vtk_array.hpp"
 #include "kernel/core/parameters.hpp"
 
-namespace traceraft {
+namespace traceraft::zlib {
 namespace {
 
 template <class T>
@@ -24,10 +24,10 @@ std::string file_head(const char* type) {
 
 }  // namespace
 
-std::string vtu_text(const SurfaceSpace& space, double length,
+std::string vtu_text(const fem::SurfaceSpace& space, double length,
                      const std::vector<PointField>& fields,
                      const std::vector<CellField>& cell_fields) {
-  const CutSurface& surface = space.surface;
+  const mesh::CutSurface& surface = space.surface;
   std::vector<char> needed(surface.points.size(), 0);
   for (std::size_t t = 0; t < surface.triangles.size(); ++t)
     if (space.owns_triangle(t))
@@ -96,4 +96,4 @@ std::string pvd_text(const std::vector<std::pair<double, std::string>>& files) {
   return text + "</Collection>\n</VTKFile>\n";
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::zlib

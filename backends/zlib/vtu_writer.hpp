@@ -8,7 +8,7 @@
 #include "kernel/core/types.hpp"
 #include "kernel/fem/surface_space.hpp"
 
-namespace traceraft {
+namespace traceraft::zlib {
 
 struct PointField {
   std::string name;
@@ -23,7 +23,7 @@ struct CellField {
 // The text of an UnstructuredGrid (.vtu) file: the triangles of Γ_h that count on this rank,
 // coordinates times `length`. 32-bit floats, which is what pictures need; tables keep full
 // precision.
-std::string vtu_text(const SurfaceSpace& space, double length,
+std::string vtu_text(const fem::SurfaceSpace& space, double length,
                      const std::vector<PointField>& fields,
                      const std::vector<CellField>& cell_fields = {});
 
@@ -35,4 +35,4 @@ std::string pvtu_text(const std::vector<std::string>& pieces,
 // The text of a collection (.pvd): (time, file name relative to the collection).
 std::string pvd_text(const std::vector<std::pair<double, std::string>>& files);
 
-}  // namespace traceraft
+}  // namespace traceraft::zlib

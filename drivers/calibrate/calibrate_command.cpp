@@ -27,13 +27,13 @@
 #include "kernel/effects/effects.hpp"
 #include "verification/calibration/calibration_data.hpp"
 
-namespace traceraft {
+namespace traceraft::calibrate {
 namespace {
 
 namespace fs = std::filesystem;
 
 struct CalibrateRequest {
-  GivenValues flags;
+  config::GivenValues flags;
   std::string data, model, ensemble, out, parameters;
   int runs = 8, jobs = 0, threads = 0, most_cells = 0;  // 0: by processors; see most_cells_of
   bool quiet = false;
@@ -41,7 +41,7 @@ struct CalibrateRequest {
 
 std::vector<std::string> costly_parameters(const std::string& text) {
   std::vector<std::string> names;
-  for (const std::string& name : split_list(text)) {
+  for (const std::string& name : config::split_list(text)) {
     (void)calibrated_options().find(name);
     if (std::find(names.begin(), names.end(), name) != names.end())
       throw InputError("--parameters: " + name + " is given twice");
@@ -58,93 +58,96 @@ std::vector<std::string> costly_parameters(const std::string& text) {
 constexpr char kIdentityFile[] = "calibration-model.toml";
 
 fs::path folder_for(const CalibrateRequest& request) {
-  const fs::path out = request.out.empty() ? first_free_folder("calibration") : request.out;
-  refuse_foreign_folder(out, {kIdentityFile});
+  const fs::path out = request.out.empty() ? run::first_free_folder("calibration") : request.out;
+  run::refuse_foreign_folder(out, {kIdentityFile});
   fs::create_directories(out);
   return out;
 }
 
 // One that goes on has to be the same.
 void remember(const fs::path& out, const std::string& what, const std::string& data,
-              const Configuration& model) {
+              const config::Configuration& model) {
   const fs::path file = out / kIdentityFile;
   const std::string heading = "# " + what + "\n# of the measurements in " +
-                              in_comment(fs::absolute(data).lexically_normal().string()) + "\n";
+                              text::in_comment(fs::absolute(data).lexically_normal().string()) +
+                              "\n";
   const auto is_same = [&] {
-    return read_file(file, 1 << 20).compare(0, heading.size(), heading) == 0 &&
-           numerical_identity({read_config_file(file), {}}) == numerical_identity(model);
+    return posix::read_file(file, 1 << 20).compare(0, heading.size(), heading) == 0 &&
+           config::numerical_identity({config::read_config_file(file), {}}) ==
+               config::numerical_identity(model);
   };
   if (fs::exists(file) && !is_same())
     throw InputError(
         "--out: " + out.string() +
         " holds a calibration of another model or with other measurements; choose another folder");
-  write_durably(file, heading + config_text(model));
+  posix::write_durably(file, heading + config::config_text(model));
 }
 
 // D shifts the axis of time only if nothing else in the model has a unit of time.
-void refuse_calibrating(const Configuration& model) {
+void refuse_calibrating(const config::Configuration& model) {
   const std::string effect = model.options().effect;
-  for (const EffectEntry& entry : effects())
+  for (const effects::EffectEntry& entry : effects::effects())
     for (const ParameterSpec& parameter : entry.parameters)
-      if ((is_rate(parameter.unit) || parameter.unit == "s") &&
+      if ((effects::is_rate(parameter.unit) || parameter.unit == "s") &&
           effect.find(entry.name + ":") != std::string::npos)
-        throw InputError(model.where(&RunOptions::effect) + ": " + entry.name +
+        throw InputError(model.where(&config::RunOptions::effect) + ": " + entry.name +
                          " has its own unit of time; D cannot be calibrated with it");
 }
 
-void refuse_other_membrane(const std::string& flag, const MeasuredVesicles& data,
-                           const Configuration& model) {
-  if (const std::string other = other_membrane(data.composition, model); !other.empty())
+void refuse_other_membrane(const std::string& flag, const observations::MeasuredVesicles& data,
+                           const config::Configuration& model) {
+  if (const std::string other = input::other_membrane(data.composition, model); !other.empty())
     throw InputError(flag + ": the simulated membrane is " + other +
                      "; each membrane has its own D");
 }
 
 // D alone, from runs that there are: it only shifts their time.
-int calibrate_ensemble(const CalibrateRequest& request, const MeasuredVesicles& data) {
+int calibrate_ensemble(const CalibrateRequest& request,
+                       const observations::MeasuredVesicles& data) {
   if (request.parameters != "mobility")
     throw InputError("--parameters: with --ensemble only mobility can be found");
   for (const auto& [name, value] : request.flags)
     throw InputError(value.where + ": not allowed with --ensemble, which has its own model");
   if (!request.model.empty())
     throw InputError("--model: not allowed with --ensemble, which has its own model");
-  const Configuration model = model_of(request.ensemble);
+  const config::Configuration model = data::model_of(request.ensemble);
   refuse_other_membrane("--ensemble", data, model);
   refuse_calibrating(model);
   const double seconds = model.units().seconds_per_unit();
-  EnsembleRuns ensemble = runs_of(request.ensemble);
-  CalibrationPoint point{{}, std::move(ensemble.histories)};
+  data::EnsembleRuns ensemble = data::runs_of(request.ensemble);
+  calibration::CalibrationPoint point{{}, std::move(ensemble.histories)};
   if (point.runs.size() < 2) throw InputError("--ensemble: at least two finished runs are needed");
   double shortest = HUGE_VAL;
-  for (History& run : point.runs) {
+  for (observations::History& run : point.runs) {
     shortest = std::min(shortest, run.time.back());
     for (double& t : run.time) t /= seconds;
   }
-  const double fastest = shortest / looks(data).end;
+  const double fastest = shortest / observations::looks(data).end;
   if (!(fastest > 1 / kSlowest))
     throw InputError("--ensemble: its runs end long before the measurements");
   // Runs that end before the measurements do cover these for a smaller D only.
-  const Interval covered{seconds / fastest, seconds * kSlowest};
-  end_on_stop_signals(kInterrupted, "repeat the command");
-  const Calibration result =
-      calibrate(data, {}, {point}, UnitPrior::uniform(std::max(seconds, covered.low), covered));
+  const statistics::Interval covered{seconds / fastest, seconds * kSlowest};
+  posix::end_on_stop_signals(drivers::kInterrupted, "repeat the command");
+  const calibration::Calibration result = calibration::calibrate(
+      data, {}, {point}, likelihood::UnitPrior::uniform(std::max(seconds, covered.low), covered));
   const fs::path out = folder_for(request);
-  const FolderLock lock(out);
+  const posix::FolderLock lock(out);
   remember(out, "mobility alone, from the runs in " + request.ensemble, request.data, model);
   const std::string bound = formatted(
       "The range searched for D is %.3g to %.3g cm^2/s. For a larger D, the runs, which end at "
       "%.4g s, would not reach the times of the measurements. Use an ensemble with a larger "
       "--t-end.",
       model.units().diffusion_cm2_s / kSlowest, model.units().diffusion_cm2_s * fastest, shortest);
-  const std::string command = "traceraft calibrate --data " + in_shell(request.data) +
-                              " --ensemble " + in_shell(request.ensemble) +
+  const std::string command = "traceraft calibrate --data " + text::in_shell(request.data) +
+                              " --ensemble " + text::in_shell(request.ensemble) +
                               " --parameters mobility";
   write_calibration(out, data, {model, {}, {point}, 0, command, bound, ensemble.missing}, result,
                     request.quiet);
-  return kSuccess;
+  return drivers::kSuccess;
 }
 
 // Fewer cells than the model's would make its own ε too small.
-int most_cells_of(const CalibrateRequest& request, const Configuration& model) {
+int most_cells_of(const CalibrateRequest& request, const config::Configuration& model) {
   const auto own = static_cast<int>(model.options().cells);
   if (request.most_cells == 0) return usual_most_cells(model);
   if (request.most_cells >= own) return std::max((own + 3) / 4, request.most_cells / 4) * 4;
@@ -153,25 +156,26 @@ int most_cells_of(const CalibrateRequest& request, const Configuration& model) {
 }
 
 int run_calibration(CalibrateRequest request) {
-  catch_stop_signals();
+  posix::catch_stop_signals();
   if (request.data.empty()) throw InputError("--data: a folder of measurements is needed");
   if (request.parameters.empty())
     request.parameters = request.ensemble.empty() ? "mobility,epsilon" : "mobility";
   const std::vector<std::string> costly = costly_parameters(request.parameters);
-  const MeasuredVesicles data = read_dataset(request.data);
-  (void)telling_vesicles(data);  // or refuses them
+  const observations::MeasuredVesicles data = input::read_dataset(request.data);
+  (void)calibration::telling_vesicles(data);  // or refuses them
   if (!request.ensemble.empty()) return calibrate_ensemble(request, data);
-  refuse_without_model(data.composition, request.model, request.flags);
-  const Configuration model(read_config_file(request.model, "--model"), request.flags);
+  input::refuse_without_model(data.composition, request.model, request.flags);
+  const config::Configuration model(config::read_config_file(request.model, "--model"),
+                                    request.flags);
   if (std::find(costly.begin(), costly.end(), "fraction") == costly.end())
-    refuse_other_membrane(model.where(&RunOptions::case_name), data, model);
-  refuse_scaled(model);
+    refuse_other_membrane(model.where(&config::RunOptions::case_name), data, model);
+  input::refuse_scaled(model);
   refuse_calibrating(model);
-  refuse_without_noise(model);
-  (void)build_run(model, InitialState::build);
+  ensemble::refuse_without_noise(model);
+  (void)run::build_run(model, run::InitialState::build);
   const int most_cells = most_cells_of(request, model);
   const fs::path out = folder_for(request);
-  const FolderLock lock(out);
+  const posix::FolderLock lock(out);
   remember(out,
            "parameters " + request.parameters + ", " + std::to_string(request.runs) + " runs to " +
                format_number(end_of_runs(data)) + " s, at most " + std::to_string(most_cells) +
@@ -182,27 +186,28 @@ int run_calibration(CalibrateRequest request) {
   Calibrator calibrator(simulations, data, model);
   if (!calibrator.run()) {
     if (!request.quiet)
-      say("to continue, give the same command with --out %s\n", in_shell(out.string()));
-    return kInterrupted;
+      text::say("to continue, give the same command with --out %s\n", text::in_shell(out.string()));
+    return drivers::kInterrupted;
   }
-  end_on_stop_signals(kInterrupted,
-                      "all runs are finished; to continue, give the same command with --out " +
-                          in_shell(out.string()));
+  posix::end_on_stop_signals(
+      drivers::kInterrupted,
+      "all runs are finished; to continue, give the same command with --out " +
+          text::in_shell(out.string()));
   const double diffusion = model.units().diffusion_cm2_s;
   const std::string bound =
       formatted("The range searched for D is %.3g to %.3g cm^2/s. Start from another --diffusion.",
                 diffusion / kSlowest, diffusion * kFastest);
-  const std::string command = "traceraft calibrate --data " + in_shell(request.data) + " --model " +
-                              in_shell((out / kIdentityFile).string()) + " --parameters " +
-                              request.parameters + " --runs " + std::to_string(request.runs) +
-                              " --most-cells " + std::to_string(most_cells);
+  const std::string command =
+      "traceraft calibrate --data " + text::in_shell(request.data) + " --model " +
+      text::in_shell((out / kIdentityFile).string()) + " --parameters " + request.parameters +
+      " --runs " + std::to_string(request.runs) + " --most-cells " + std::to_string(most_cells);
   write_calibration(out, data,
                     {model, simulations.names, calibrator.points(), most_cells, command, bound},
                     calibrator.result(), request.quiet);
-  return kSuccess;
+  return drivers::kSuccess;
 }
 
-Action define_calibrate(CLI::App& app) {
+drivers::Action define_calibrate(CLI::App& app) {
   const auto request = std::make_shared<CalibrateRequest>();
   app.add_option("--data", request->data, "folder of the measurements (dataset.toml)")
       ->type_name("DIR");
@@ -227,7 +232,7 @@ Action define_calibrate(CLI::App& app) {
                  "largest number of cells per edge; a smaller epsilon needs more cells, so that "
                  "this bounds it from below; default: 1.65 times --cells, at least 128")
       ->excludes(ensemble)
-      ->check(between(4, run_option("cells").max));
+      ->check(config::between(4, config::run_option("cells").max));
   app.add_option("--jobs", request->jobs, "runs at a time; default: one for each processor")
       ->excludes(ensemble)
       ->check(CLI::Range(1, 1024));
@@ -238,7 +243,7 @@ Action define_calibrate(CLI::App& app) {
                  "new folder, or folder of a calibration to continue; default: runs/calibration-N")
       ->type_name("DIR");
   app.add_flag("--quiet", request->quiet, "print errors only");
-  add_options(app, request->flags, [](const OptionSpec& spec) {
+  config::add_options(app, request->flags, [](const config::OptionSpec& spec) {
     return spec.numerical && spec.name != "seed" && spec.name != "output-times";
   });
   app.footer(
@@ -249,9 +254,9 @@ Action define_calibrate(CLI::App& app) {
 
 }  // namespace
 
-Command calibrate_command() {
-  return {"calibrate", "find parameters of the model from measurements", Ranks::starts_them,
-          define_calibrate};
+drivers::Command calibrate_command() {
+  return {"calibrate", "find parameters of the model from measurements",
+          drivers::Ranks::starts_them, define_calibrate};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::calibrate

@@ -9,13 +9,13 @@
 #include "verification/calibration/calibration.hpp"
 #include "verification/observations/comparison.hpp"
 
-namespace traceraft {
+namespace traceraft::calibrate {
 
 // What was simulated, and how.
 struct CalibrationRuns {
-  const Configuration& model;
+  const config::Configuration& model;
   std::vector<std::string> names;  // of the parameters of the points
-  std::vector<CalibrationPoint> points;
+  std::vector<calibration::CalibrationPoint> points;
   int most_cells;            // that simulations might have
   std::string command;       // that asks for it
   std::string bound;         // where the search for D ends, and what to do about it
@@ -31,40 +31,42 @@ struct CalibrationFinding {
 };
 
 struct CalibrationFindings {
-  std::vector<CalibrationFinding> parameters;  // "mobility", D in cm²/s, first
-  std::vector<History> best;                   // the runs that fit best, in seconds
-  std::vector<Agreement> agreements;           // of the measurements with these
+  std::vector<CalibrationFinding> parameters;       // "mobility", D in cm²/s, first
+  std::vector<observations::History> best;          // the runs that fit best, in seconds
+  std::vector<observations::Agreement> agreements;  // of the measurements with these
 };
 
 // Of D nothing is determined by vesicles of another size, or that coarsen otherwise.
-CalibrationFindings findings_of(const MeasuredVesicles& data, const CalibrationRuns& runs,
-                                const Calibration& result);
+CalibrationFindings findings_of(const observations::MeasuredVesicles& data,
+                                const CalibrationRuns& runs,
+                                const calibration::Calibration& result);
 
 // D in cm²/s from R²/D in seconds.
-double diffusion(const Configuration& model, double seconds_per_unit);
+double diffusion(const config::Configuration& model, double seconds_per_unit);
 
 // Is D known better than `factor`, what the size of the vesicles makes of it?
-bool size_is_told(double factor, const Interval& seconds_per_unit);
+bool size_is_told(double factor, const statistics::Interval& seconds_per_unit);
 
 // The runs of a choice, at the D that fits these.
-std::vector<History> runs_in_seconds(const CalibrationRuns& all, const Calibration& result,
-                                     std::size_t choice);
+std::vector<observations::History> runs_in_seconds(const CalibrationRuns& all,
+                                                   const calibration::Calibration& result,
+                                                   std::size_t choice);
 
 // Why the fit to the data does not determine the parameter, which is one of `result`; empty if it
 // does. What findings_of() adds for D needs the data.
-std::vector<std::string> why_undetermined(const CalibratedParameter& parameter,
-                                          const Calibration& result);
+std::vector<std::string> why_undetermined(const calibration::CalibratedParameter& parameter,
+                                          const calibration::Calibration& result);
 
 // The product of powers of D and the parameters that the data know best; "" where the search did
 // not converge or an interval reaches its end, as what does is known no better than that.
-std::string best_known(const Calibration& result);
+std::string best_known(const calibration::Calibration& result);
 
 // The model as a configuration, with the parameters that were found.
-Configuration found_model(const CalibrationRuns& runs,
-                          const std::vector<CalibrationFinding>& parameters);
+config::Configuration found_model(const CalibrationRuns& runs,
+                                  const std::vector<CalibrationFinding>& parameters);
 
 // calibration.json: see docs/formats.md.
 std::string calibration_json(const std::vector<CalibrationFinding>& parameters,
-                             const Calibration& result);
+                             const calibration::Calibration& result);
 
-}  // namespace traceraft
+}  // namespace traceraft::calibrate

@@ -9,26 +9,26 @@
 #include "verification/calibration/calibration_data.hpp"
 #include "verification/observations/differences.hpp"
 
-namespace traceraft {
+namespace traceraft::calibrate {
 namespace {
 
 constexpr double kAtEnd = 1.01;      // of a range
 constexpr double kNoScatter = 0.01;  // standard deviation that is not worth a word
 
 // Choices at which there mostly is nothing to compare.
-int choices_without_rafts(const MeasuredVesicles& data, const CalibrationRuns& all,
-                          const Calibration& result) {
+int choices_without_rafts(const observations::MeasuredVesicles& data, const CalibrationRuns& all,
+                          const calibration::Calibration& result) {
   constexpr double kMost = 0.5;
   int count = 0;
   for (std::size_t k = 0; k < all.points.size(); ++k)
-    count += share_without_rafts(data, runs_in_seconds(all, result, k)) > kMost;
+    count += observations::share_without_rafts(data, runs_in_seconds(all, result, k)) > kMost;
   return count;
 }
 
 using Notes = std::vector<std::string>;
 
 // Where the search for parameters ended.
-void add_search(const CalibrationRuns& runs, const Calibration& result, Notes& notes) {
+void add_search(const CalibrationRuns& runs, const calibration::Calibration& result, Notes& notes) {
   if (!runs.missing.empty()) notes.push_back(runs.missing);
   if (!result.converged)
     notes.push_back(
@@ -44,9 +44,9 @@ void add_search(const CalibrationRuns& runs, const Calibration& result, Notes& n
 }
 
 // Measurements and choices of parameters that say nothing.
-void add_unused(const MeasuredVesicles& data, const CalibrationRuns& runs,
-                const Calibration& result, Notes& notes) {
-  if (const int nothing = looks_that_tell_nothing(data); nothing > 0)
+void add_unused(const observations::MeasuredVesicles& data, const CalibrationRuns& runs,
+                const calibration::Calibration& result, Notes& notes) {
+  if (const int nothing = calibration::looks_that_tell_nothing(data); nothing > 0)
     notes.push_back(
         formatted("%d of %zu observations are not used: they are at time zero, show no raft, or "
                   "have neither perimeter nor number of rafts.",
@@ -59,8 +59,8 @@ void add_unused(const MeasuredVesicles& data, const CalibrationRuns& runs,
 }
 
 // What parameters cannot be, or were not asked to be.
-void add_limits(const CalibrationRuns& runs, const Calibration& result, Notes& notes) {
-  for (const CalibratedParameter& p : result.parameters) {
+void add_limits(const CalibrationRuns& runs, const calibration::Calibration& result, Notes& notes) {
+  for (const calibration::CalibratedParameter& p : result.parameters) {
     if (p.name != "epsilon") continue;
     const double smallest = range_of(runs.model, p.name, runs.most_cells).low;
     if (p.interval.low < kAtEnd * smallest)
@@ -76,23 +76,23 @@ void add_limits(const CalibrationRuns& runs, const Calibration& result, Notes& n
         "the other parameters are biased. Add noise-length to --parameters to fit it.");
 }
 
-void add_size(const MeasuredVesicles& data, const CalibrationRuns& runs, const Calibration& result,
-              Notes& notes) {
+void add_size(const observations::MeasuredVesicles& data, const CalibrationRuns& runs,
+              const calibration::Calibration& result, Notes& notes) {
   const double radius = runs.model.units().length();
-  const double factor = factor_of_size(data, radius);
-  if (const CalibratedParameter& unit = result.parameters.front();
+  const double factor = observations::factor_of_size(data, radius);
+  if (const calibration::CalibratedParameter& unit = result.parameters.front();
       unit.determined && !size_is_told(factor, unit.interval))
     notes.push_back(
-        "THE SIZE OF THE VESICLES DECIDES ABOUT D. " + effect_of_size(data, radius) +
+        "THE SIZE OF THE VESICLES DECIDES ABOUT D. " + observations::effect_of_size(data, radius) +
         formatted(" --cells %.0f.", std::round(static_cast<double>(runs.model.options().cells) *
                                                std::pow(factor, 0.25))));
 }
 
 // For readers: what was found beyond the table.
-void add_findings(const Calibration& result, Notes& notes) {
+void add_findings(const calibration::Calibration& result, Notes& notes) {
   if (const std::string best = best_known(result); !best.empty())
     notes.push_back("The data determine best: " + best + ".");
-  const double scatter = result.best.scatter_beyond_runs(Quantity::perimeter);
+  const double scatter = result.best.scatter_beyond_runs(observations::Quantity::perimeter);
   notes.push_back(scatter > kNoScatter
                       ? formatted("Beyond the scatter between runs, perimeters scatter by %.0f %%.",
                                   100 * scatter)
@@ -101,18 +101,19 @@ void add_findings(const Calibration& result, Notes& notes) {
 
 }  // namespace
 
-std::vector<std::string> notes_on(const MeasuredVesicles& data, const CalibrationRuns& runs,
-                                  const CalibrationFindings& found, const Calibration& result) {
+std::vector<std::string> notes_on(const observations::MeasuredVesicles& data,
+                                  const CalibrationRuns& runs, const CalibrationFindings& found,
+                                  const calibration::Calibration& result) {
   Notes notes;
   add_search(runs, result, notes);
   add_unused(data, runs, result, notes);
   add_limits(runs, result, notes);
   add_size(data, runs, result, notes);
   for (const std::string& note :
-       cautions(data, runs.model.units().length(), found.best, found.agreements))
+       data::cautions(data, runs.model.units().length(), found.best, found.agreements))
     notes.push_back(note);
   add_findings(result, notes);
   return notes;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::calibrate

@@ -3,10 +3,11 @@
 
 #include "drivers/calibrate/calibration_findings.hpp"
 
-namespace traceraft {
+namespace traceraft::calibrate {
 
 // What limits or spoils the result first, then what was found beyond the table of parameters.
-std::vector<std::string> notes_on(const MeasuredVesicles& data, const CalibrationRuns& runs,
-                                  const CalibrationFindings& found, const Calibration& result);
+std::vector<std::string> notes_on(const observations::MeasuredVesicles& data,
+                                  const CalibrationRuns& runs, const CalibrationFindings& found,
+                                  const calibration::Calibration& result);
 
-}  // namespace traceraft
+}  // namespace traceraft::calibrate

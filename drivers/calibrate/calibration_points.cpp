@@ -6,22 +6,22 @@
 #include "kernel/core/parameters.hpp"
 #include "kernel/mesh/cube_mesh.hpp"
 
-namespace traceraft {
+namespace traceraft::calibrate {
 namespace {
 
 constexpr double kFewestNoiseCells = 4;
 constexpr double kRounding = 5e-4;  // of values that are written with four digits
-constexpr Interval kFractions = {0.02, 0.9};
+constexpr statistics::Interval kFractions = {0.02, 0.9};
 
 // As many cells that the mesh is no coarser against ε than the model's, a multiple of 4.
-int cells_for(const Configuration& model, double epsilon) {
+int cells_for(const config::Configuration& model, double epsilon) {
   const double cells = static_cast<double>(model.options().cells);
   const double needed = cells * std::max(1.0, model.options().epsilon / epsilon);
   return 4 * static_cast<int>(std::ceil(needed / 4 * (1 - kRounding)));
 }
 
-double box_width(const Configuration& model) {
-  return 2 * kBoxHalfWidth * model.units().length();
+double box_width(const config::Configuration& model) {
+  return 2 * mesh::kBoxHalfWidth * model.units().length();
 }
 
 }  // namespace
@@ -35,27 +35,28 @@ const NamedList<CalibratedOption>& calibrated_options() {
   return list;
 }
 
-Interval range_of(const Configuration& model, const std::string& parameter, int most_cells) {
+statistics::Interval range_of(const config::Configuration& model, const std::string& parameter,
+                              int most_cells) {
   const double box = box_width(model), cells = static_cast<double>(model.options().cells);
   if (parameter == "noise-length") return {box / cells, box / kFewestNoiseCells};
   if (parameter == "fraction") return kFractions;
   return {model.options().epsilon * cells / most_cells, 0.5 * model.units().length()};
 }
 
-std::vector<double> values_of(const Configuration& model,
+std::vector<double> values_of(const config::Configuration& model,
                               const std::vector<std::string>& parameters) {
   std::vector<double> values;
   for (const std::string& name : parameters)
-    values.push_back(name == "noise-length"
-                         ? model.noise_length()
-                         : model.numbers(run_option(calibrated_options().find(name).option))[0]);
+    values.push_back(name == "noise-length" ? model.noise_length()
+                                            : model.numbers(config::run_option(
+                                                  calibrated_options().find(name).option))[0]);
   return values;
 }
 
-Configuration configuration_at(const Configuration& model,
-                               const std::vector<std::string>& parameters,
-                               const std::vector<double>& values, double t_end) {
-  GivenValues given = settings_until(model, t_end);
+config::Configuration configuration_at(const config::Configuration& model,
+                                       const std::vector<std::string>& parameters,
+                                       const std::vector<double>& values, double t_end) {
+  config::GivenValues given = ensemble::settings_until(model, t_end);
   const auto set = [&](const std::string& option, const std::string& text) {
     given[option] = {text, "--" + option};
   };
@@ -74,4 +75,4 @@ Configuration configuration_at(const Configuration& model,
   return {{}, given};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::calibrate

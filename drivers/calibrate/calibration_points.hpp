@@ -10,7 +10,7 @@
 #include "verification/calibration/calibration.hpp"
 #include "verification/statistics/bootstrap.hpp"
 
-namespace traceraft {
+namespace traceraft::calibrate {
 
 // What can be calibrated besides D, which costs no simulation.
 struct CalibratedOption {
@@ -23,16 +23,17 @@ const NamedList<CalibratedOption>& calibrated_options();
 // smaller than in the model there are as many more cells, a multiple of 4, so that h/ε is not
 // larger; the noise stays on its mesh unless it is calibrated itself. Throws InputError for values
 // that cannot be run.
-Configuration configuration_at(const Configuration& model,
-                               const std::vector<std::string>& parameters,
-                               const std::vector<double>& values, double t_end);
+config::Configuration configuration_at(const config::Configuration& model,
+                                       const std::vector<std::string>& parameters,
+                                       const std::vector<double>& values, double t_end);
 
 // What a parameter may be in simulations of the model: rafts and something between them, noise that
 // its meshes can hold, ε that so many cells resolve as well as the model's do. Both ends are > 0.
-Interval range_of(const Configuration& model, const std::string& parameter, int most_cells);
+statistics::Interval range_of(const config::Configuration& model, const std::string& parameter,
+                              int most_cells);
 
 // Where the parameters of the model are; of noise lengths, what its meshes make of them.
-std::vector<double> values_of(const Configuration& model,
+std::vector<double> values_of(const config::Configuration& model,
                               const std::vector<std::string>& parameters);
 
-}  // namespace traceraft
+}  // namespace traceraft::calibrate

@@ -14,12 +14,13 @@
 #include "drivers/text/say.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::calibrate {
 namespace {
 
 // Between the end of a search and itself there is no interval.
-std::vector<Row> rows_of(const std::vector<CalibrationFinding>& parameters, bool mobility_at_end) {
-  std::vector<Row> rows = {
+std::vector<output::Row> rows_of(const std::vector<CalibrationFinding>& parameters,
+                                 bool mobility_at_end) {
+  std::vector<output::Row> rows = {
       {"parameter", "value", "95 % interval", "unit", "determined by the data"}};
   for (const CalibrationFinding& found : parameters)
     rows.push_back({found.name, formatted("%.3g", found.value),
@@ -30,17 +31,17 @@ std::vector<Row> rows_of(const std::vector<CalibrationFinding>& parameters, bool
   return rows;
 }
 
-Table points_table(const CalibrationRuns& runs, const Calibration& result) {
-  const std::vector<CalibrationPoint>& points = runs.points;
-  Table table{"calibration", runs.names, {}};
+bench::Table points_table(const CalibrationRuns& runs, const calibration::Calibration& result) {
+  const std::vector<calibration::CalibrationPoint>& points = runs.points;
+  bench::Table table{"calibration", runs.names, {}};
   for (const char* column : {"mobility", "scatter", "deviance", "runs"})
     table.columns.push_back(column);
   for (std::size_t k = 0; k < points.size(); ++k) {
-    std::vector<Cell> row;
+    std::vector<bench::Cell> row;
     for (const double ln : points[k].ln_parameters) row.emplace_back(std::exp(ln));
-    const EnsembleFit& fit = result.at_points[k];
+    const likelihood::EnsembleFit& fit = result.at_points[k];
     row.emplace_back(diffusion(runs.model, fit.seconds_per_unit()));
-    row.emplace_back(fit.scatter_beyond_runs(Quantity::perimeter));
+    row.emplace_back(fit.scatter_beyond_runs(observations::Quantity::perimeter));
     row.emplace_back(fit.deviance);
     row.emplace_back(static_cast<double>(points[k].runs.size()));
     table.rows.push_back(row);
@@ -49,80 +50,85 @@ Table points_table(const CalibrationRuns& runs, const Calibration& result) {
 }
 
 // The measurements in the runs that fit best.
-void add_fit(Page& page, const std::filesystem::path& folder, const MeasuredVesicles& data,
-             const std::vector<History>& best, Missing& missing) {
-  const EnsembleSummary summary = summarise(best);
-  for (const Quantity quantity : {Quantity::perimeter, Quantity::rafts}) {
-    Chart chart = comparison_chart(data, summary, quantity);
+void add_fit(output::Page& page, const std::filesystem::path& folder,
+             const observations::MeasuredVesicles& data,
+             const std::vector<observations::History>& best, output::Missing& missing) {
+  const ensemble::EnsembleSummary summary = ensemble::summarise(best);
+  for (const observations::Quantity quantity :
+       {observations::Quantity::perimeter, observations::Quantity::rafts}) {
+    bench::Chart chart = data::comparison_chart(data, summary, quantity);
     chart.title += " and the simulations that fit best";
-    add_chart(page, chart, folder / (std::string("fit-") + name_of(quantity).id), missing);
+    output::add_chart(page, chart,
+                      folder / (std::string("fit-") + observations::name_of(quantity).id), missing);
   }
 }
 
 // Within what counts of the best: what is further away only flattens the rest.
-void add_deviances(Page& page, const std::filesystem::path& folder, const CalibrationRuns& runs,
-                   const Calibration& result, Missing& missing) {
+void add_deviances(output::Page& page, const std::filesystem::path& folder,
+                   const CalibrationRuns& runs, const calibration::Calibration& result,
+                   output::Missing& missing) {
   constexpr double kShown = 50, kExcluded = 3.84;
   for (std::size_t i = 0; i < runs.names.size(); ++i) {
-    const CalibratedParameter& found = result.parameters[i + 1];
+    const calibration::CalibratedParameter& found = result.parameters[i + 1];
     const double best = result.best.deviance;
-    Chart chart{
+    bench::Chart chart{
         "Deviance over " + runs.names[i], runs.names[i], "-2 ln likelihood", true, false, {}};
     chart.series = {
-        {"simulations", {}, Mark::points},
+        {"simulations", {}, bench::Mark::points},
         {"found, with its 95 % interval",
          {{found.interval.low, best}, {found.value, best}, {found.interval.high, best}},
-         Mark::both},
+         bench::Mark::both},
         {"3.84 above it",
          {{found.interval.low, best + kExcluded}, {found.interval.high, best + kExcluded}},
-         Mark::line}};
+         bench::Mark::line}};
     for (std::size_t k = 0; k < runs.points.size(); ++k)
       if (result.at_points[k].deviance < best + kShown)
         chart.series[0].points.emplace_back(std::exp(runs.points[k].ln_parameters[i]),
                                             result.at_points[k].deviance);
-    add_chart(page, chart, folder / ("deviance-" + runs.names[i]), missing);
+    output::add_chart(page, chart, folder / ("deviance-" + runs.names[i]), missing);
   }
 }
 
 }  // namespace
 
-void write_calibration(const std::filesystem::path& folder, const MeasuredVesicles& data,
-                       const CalibrationRuns& runs, const Calibration& result, bool quiet) {
+void write_calibration(const std::filesystem::path& folder,
+                       const observations::MeasuredVesicles& data, const CalibrationRuns& runs,
+                       const calibration::Calibration& result, bool quiet) {
   const CalibrationFindings found = findings_of(data, runs, result);
-  const std::vector<Row> rows = rows_of(found.parameters, result.unit_at_bound);
-  const Configuration model = found_model(runs, found.parameters);
-  const std::vector<Row> agreement = agreement_rows(found.agreements);
+  const std::vector<output::Row> rows = rows_of(found.parameters, result.unit_at_bound);
+  const config::Configuration model = found_model(runs, found.parameters);
+  const std::vector<output::Row> agreement = data::agreement_rows(found.agreements);
   const std::vector<std::string> notes = notes_on(data, runs, found, result);
-  const Table table = points_table(runs, result);
-  write_durably(folder / "calibration.csv", csv_text(table));
-  write_durably(folder / "calibration.json", calibration_json(found.parameters, result));
-  write_durably(folder / "calibrated.toml", config_text(model));
-  Page page("A model calibrated with measurements");
-  page.paragraph(title_of(data));
+  const bench::Table table = points_table(runs, result);
+  posix::write_durably(folder / "calibration.csv", output::csv_text(table));
+  posix::write_durably(folder / "calibration.json", calibration_json(found.parameters, result));
+  posix::write_durably(folder / "calibrated.toml", config::config_text(model));
+  output::Page page("A model calibrated with measurements");
+  page.paragraph(data::title_of(data));
   page.table(rows);
   for (const std::string& note : notes) page.paragraph(note);
-  Missing missing;
+  output::Missing missing;
   page.heading("Agreement with the simulations that fit best");
   page.table(agreement);
-  page.paragraph(about_agreement(found.best.size()));
+  page.paragraph(data::about_agreement(found.best.size()));
   add_fit(page, folder, data, found.best, missing);
-  page.table(table_rows(table));
+  page.table(output::table_rows(table));
   add_deviances(page, folder, runs, result, missing);
-  add_settings(page, model);
-  add_provenance(page, folder, runs.command);
-  write_durably(folder / "calibration.html", page.html());
+  output::add_settings(page, model);
+  output::add_provenance(page, folder, runs.command);
+  posix::write_durably(folder / "calibration.html", page.html());
   if (quiet) return;
-  say("\n%s\n\n", title_of(data));
-  print_rows(rows);
-  for (const std::string& note : notes) say("\n%s\n", note);
-  say("\nagreement with the simulations that fit best:\n");
-  print_rows(agreement);
-  say("%s\n", about_agreement(found.best.size()));
+  text::say("\n%s\n\n", data::title_of(data));
+  output::print_rows(rows);
+  for (const std::string& note : notes) text::say("\n%s\n", note);
+  text::say("\nagreement with the simulations that fit best:\n");
+  output::print_rows(agreement);
+  text::say("%s\n", data::about_agreement(found.best.size()));
   if (!result.unit_at_bound)
-    say("\nrun it with: traceraft run --config %s\n",
-        in_shell((folder / "calibrated.toml").string()));
-  say("open next: %s\n", (folder / "calibration.html"));
-  if (!missing.text().empty()) say("missing from the page: %s\n", missing.text());
+    text::say("\nrun it with: traceraft run --config %s\n",
+              text::in_shell((folder / "calibrated.toml").string()));
+  text::say("open next: %s\n", (folder / "calibration.html"));
+  if (!missing.text().empty()) text::say("missing from the page: %s\n", missing.text());
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::calibrate

@@ -5,10 +5,11 @@
 
 #include "drivers/calibrate/calibration_findings.hpp"
 
-namespace traceraft {
+namespace traceraft::calibrate {
 
 // calibrated.toml is the model with what was found.
-void write_calibration(const std::filesystem::path& folder, const MeasuredVesicles& data,
-                       const CalibrationRuns& runs, const Calibration& result, bool quiet);
+void write_calibration(const std::filesystem::path& folder,
+                       const observations::MeasuredVesicles& data, const CalibrationRuns& runs,
+                       const calibration::Calibration& result, bool quiet);
 
-}  // namespace traceraft
+}  // namespace traceraft::calibrate

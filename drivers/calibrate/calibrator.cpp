@@ -11,7 +11,7 @@
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::calibrate {
 namespace {
 
 // Steps in ln of the designs, each around what the one before finds: a smaller one follows where
@@ -22,45 +22,48 @@ constexpr double kRoundoff = 1e-9;
 
 }  // namespace
 
-int usual_most_cells(const Configuration& model) {
+int usual_most_cells(const config::Configuration& model) {
   constexpr int kUsual = 128;
   const double needed = std::exp(kSteps[0]) * static_cast<double>(model.options().cells);
-  const double most = std::min(run_option("cells").max, 4 * std::ceil(needed / 4));
+  const double most = std::min(config::run_option("cells").max, 4 * std::ceil(needed / 4));
   return std::max(kUsual, static_cast<int>(most));
 }
 
-double end_of_runs(const MeasuredVesicles& data) {
-  return kFastest * looks(data).end;
+double end_of_runs(const observations::MeasuredVesicles& data) {
+  return kFastest * observations::looks(data).end;
 }
 
 bool Calibrator::run() {
   if (!request_.quiet && !request_.names.empty())
-    say("%zu to %d rounds of simulations; each round has %zu choices of parameters; each choice "
+    text::say(
+        "%zu to %d rounds of simulations; each round has %zu choices of parameters; each choice "
         "has %d runs\n",
         std::size(kSteps), kMostRounds,
-        design_around(std::vector<double>(request_.names.size()), 0).size(), request_.runs);
+        calibration::design_around(std::vector<double>(request_.names.size()), 0).size(),
+        request_.runs);
   std::vector<double> centre;
   for (const double value : values_of(model_, request_.names)) centre.push_back(std::log(value));
   const double seconds = model_.units().seconds_per_unit();
-  const UnitPrior unit = UnitPrior::uniform(seconds, {seconds / kFastest, seconds * kSlowest});
+  const likelihood::UnitPrior unit =
+      likelihood::UnitPrior::uniform(seconds, {seconds / kFastest, seconds * kSlowest});
   const double* step = std::begin(kSteps);
   for (int round = 0; round < kMostRounds && step != std::end(kSteps); ++round) {
     const std::vector<double> design = within_range(centre, *step);
-    if (!add_points(design_around(design, *step), round + 1)) return false;
+    if (!add_points(calibration::design_around(design, *step), round + 1)) return false;
     if (centre.empty()) break;
-    centre = most_probable(data_, sought(), points_, unit);
+    centre = calibration::most_probable(data_, sought(), points_, unit);
     double moved = 0;
     for (std::size_t i = 0; i < centre.size(); ++i)
       moved = std::max(moved, std::fabs(centre[i] - design[i]));
     if (moved <= (1 + kRoundoff) * *step) ++step;
   }
-  result_ = calibrate(data_, sought(), points_, unit);
-  if (!centre.empty() && step != std::end(kSteps)) mark_unconverged(result_);
+  result_ = calibration::calibrate(data_, sought(), points_, unit);
+  if (!centre.empty() && step != std::end(kSteps)) calibration::mark_unconverged(result_);
   return true;
 }
 
-std::vector<SoughtParameter> Calibrator::sought() const {
-  std::vector<SoughtParameter> all;
+std::vector<calibration::SoughtParameter> Calibrator::sought() const {
+  std::vector<calibration::SoughtParameter> all;
   for (const std::string& name : request_.names)
     all.push_back({name, range_of(model_, name, request_.most_cells)});
   return all;
@@ -69,7 +72,7 @@ std::vector<SoughtParameter> Calibrator::sought() const {
 // Moved so that all of the design can be run.
 std::vector<double> Calibrator::within_range(std::vector<double> centre, double step) const {
   for (std::size_t i = 0; i < centre.size(); ++i) {
-    const Interval range = range_of(model_, request_.names[i], request_.most_cells);
+    const statistics::Interval range = range_of(model_, request_.names[i], request_.most_cells);
     const double low = std::log(range.low), high = std::log(range.high);
     centre[i] =
         high - low > 2 * step ? std::clamp(centre[i], low + step, high - step) : (low + high) / 2;
@@ -82,7 +85,7 @@ bool Calibrator::add_points(const std::vector<std::vector<double>>& design, int 
   for (std::size_t k = 0; k < design.size(); ++k)
     if (!add_point(design[k], formatted("%zu of %zu", k + 1, design.size()) + of)) return false;
   // Differences between points are known better if they are of the same seeds.
-  keep_common_seeds(ends_);
+  ensemble::keep_common_seeds(ends_);
   if (ends_.front().runs.size() < 2)
     throw InputError("fewer than two seeds have finished for all choices of parameters");
   for (std::size_t k = 0; k < points_.size(); ++k) points_[k].runs = ends_[k].runs;
@@ -90,9 +93,9 @@ bool Calibrator::add_points(const std::vector<std::vector<double>>& design, int 
 }
 
 // In proportion to the last one.
-std::string Calibrator::expected_time(const Configuration& here) const {
+std::string Calibrator::expected_time(const config::Configuration& here) const {
   if (seconds_per_work_ == 0) return "";
-  return ", about " + clock_text(seconds_per_work_ * relative_work(here));
+  return ", about " + output::clock_text(seconds_per_work_ * ensemble::relative_work(here));
 }
 
 bool Calibrator::add_point(const std::vector<double>& ln, const std::string& number) {
@@ -103,29 +106,30 @@ bool Calibrator::add_point(const std::vector<double>& ln, const std::string& num
     name += "-" + format_number(values.back());
     words += " " + request_.names[i] + " " + format_number(values.back());
   }
-  const Configuration here = configuration_at(model_, request_.names, values, end_of_runs(data_));
-  CalibrationPoint point;
+  const config::Configuration here =
+      configuration_at(model_, request_.names, values, end_of_runs(data_));
+  calibration::CalibrationPoint point;
   for (const double value : values_of(here, request_.names))
     point.ln_parameters.push_back(std::log(value));
   // Designs that end where meshes do may share points, which count once.
-  for (const CalibrationPoint& before : points_)
+  for (const calibration::CalibrationPoint& before : points_)
     if (before.ln_parameters == point.ln_parameters) return true;
   if (!request_.quiet)
-    say("simulations %s: at%s, %s cells%s\n", number, words.empty() ? " the model" : words,
-        std::to_string(here.options().cells), expected_time(here));
+    text::say("simulations %s: at%s, %s cells%s\n", number, words.empty() ? " the model" : words,
+              std::to_string(here.options().cells), expected_time(here));
   const std::filesystem::path folder = request_.out / "points" / name;
   const bool fresh = !std::filesystem::exists(folder);
   const Stopwatch watch;
-  PointEnd end =
-      run_point(folder, here, {request_.runs, request_.jobs, request_.quiet, request_.threads});
+  ensemble::PointEnd end = ensemble::run_point(
+      folder, here, {request_.runs, request_.jobs, request_.quiet, request_.threads});
   if (end.stopped) return false;
-  if (fresh) seconds_per_work_ = watch.seconds() / relative_work(here);
-  for (const MemberFailure& failure : end.failures)
-    say_error("the run of seed " + std::to_string(failure.seed) + " at" + words +
-              " failed: " + failure.why);
+  if (fresh) seconds_per_work_ = watch.seconds() / ensemble::relative_work(here);
+  for (const ensemble::MemberFailure& failure : end.failures)
+    text::say_error("the run of seed " + std::to_string(failure.seed) + " at" + words +
+                    " failed: " + failure.why);
   ends_.push_back(std::move(end));
   points_.push_back(std::move(point));
   return true;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::calibrate

@@ -16,7 +16,7 @@
 #include "verification/selection/search/rerun.hpp"
 #include "verification/statistics/random_streams.hpp"
 
-namespace traceraft {
+namespace traceraft::campaign {
 namespace {
 
 namespace fs = std::filesystem;
@@ -33,16 +33,17 @@ std::uint64_t seed_of(const CampaignPlan& plan, const CaseId& id) {
 }
 
 // D of the truth over that of the model.
-double pace_of(const CaseSettings& settings, std::uint64_t seed) {
+double diffusion_ratio_of(const CaseSettings& settings, std::uint64_t seed) {
   if (settings.diffusion_error > 0)
-    return std::exp(settings.diffusion_error * normal_random(seed, stream::diffusion, 1));
-  return std::exp(0.4 * (uniform_random(seed, stream::diffusion, 0) - 0.5));
+    return std::exp(settings.diffusion_error *
+                    normal_random(seed, statistics::stream::diffusion, 1));
+  return std::exp(0.4 * (uniform_random(seed, statistics::stream::diffusion, 0) - 0.5));
 }
 
 void draw(const fs::path& folder, const CampaignPlan& plan, const CaseSettings& settings,
           std::uint64_t seed) {
-  const Configuration model(plan.model, {});
-  BlindRequest request;
+  const config::Configuration model(plan.model, {});
+  selection::BlindRequest request;
   request.effects = settings.hidden;
   request.gap = settings.gap;
   request.noise = settings.noise;
@@ -51,22 +52,24 @@ void draw(const fs::path& folder, const CampaignPlan& plan, const CaseSettings& 
   request.snapshots = settings.snapshots;
   request.sizing_snapshots = CaseSettings().snapshots;
   request.points = plan.points;
-  request.pace = pace_of(settings, seed);
+  request.diffusion_ratio = diffusion_ratio_of(settings, seed);
   request.cells = truth_cells(plan.model);
   request.seed = seed;
   request.threads = 1;
-  GivenValues given = plan.model;
+  config::GivenValues given = plan.model;
   const auto cells = std::lround(settings.coarser * static_cast<double>(model.options().cells));
   given["cells"] = {std::to_string(cells), "campaign"};
   hide(folder, given, request);
 }
 
 // Of the model that knows the truth; none if it cannot be advanced on the model's mesh.
-Gaps floor_of(const ExplainSetup& setup, const HiddenTruth& truth) {
+assimilation::Gaps floor_of(const explain::ExplainSetup& setup, const HiddenTruth& truth) {
   try {
-    return gaps_of_model(setup.series, setup.request, truth.pace, truth.effects).gap;
+    return selection::gaps_of_model(setup.series, setup.request, truth.diffusion_ratio,
+                                    truth.effects)
+        .gap;
   } catch (const std::runtime_error& error) {
-    say_error(std::string("no forecast by the true model: ") + error.what());
+    text::say_error(std::string("no forecast by the true model: ") + error.what());
     return {};
   }
 }
@@ -75,17 +78,17 @@ Gaps floor_of(const ExplainSetup& setup, const HiddenTruth& truth) {
 double seconds_of(const fs::path& explained) {
   const fs::path file = explained / "time.json";
   if (!fs::exists(file)) return 0;
-  return from_json(file, [](const Json& json) { return json.at("seconds"); });
+  return input::from_json(file, [](const input::Json& json) { return json.at("seconds"); });
 }
 
 // One by another build, or that is damaged, is none.
-void forget_if_unusable(const fs::path& explained, const ExplainSetup& setup) {
+void forget_if_unusable(const fs::path& explained, const explain::ExplainSetup& setup) {
   const auto forget = [&](const std::exception& why) {
-    say("the search starts again: %s\n", why.what());
+    text::say("the search starts again: %s\n", why.what());
     for (const char* file : {"search.json", "time.json"}) fs::remove(explained / file);
   };
   try {
-    (void)SearchFile(explained, setup).load();
+    (void)explain::SearchFile(explained, setup).load();
   } catch (const InputError& error) {
     forget(error);
   } catch (const DamagedFile& error) {
@@ -94,46 +97,49 @@ void forget_if_unusable(const fs::path& explained, const ExplainSetup& setup) {
 }
 
 // Its steps are told to the case's log.
-Explanation search(const fs::path& explained, ExplainSetup& setup) {
+selection::Explanation search(const fs::path& explained, explain::ExplainSetup& setup) {
   forget_if_unusable(explained, setup);
   const double before = seconds_of(explained);
   const Stopwatch watch;
   setup.request.progress = [&](const std::string& step) {
     const double seconds = before + watch.seconds();
-    write_durably(explained / "time.json", Json{{"seconds", seconds}}.dump() + "\n");
-    say("%s  %s\n", clock_text(seconds), step);
-    flush_output();
+    posix::write_durably(explained / "time.json", input::Json{{"seconds", seconds}}.dump() + "\n");
+    text::say("%s  %s\n", output::clock_text(seconds), step);
+    text::flush_output();
   };
-  Explanation found = search_resumably(explained, setup);
+  selection::Explanation found = explain::search_resumably(explained, setup);
   setup.request.progress("done");
   setup.request.progress = nullptr;
   return found;
 }
 
 void write_score(const CampaignFolder& folder, const CampaignGroup& group, const CaseId& id,
-                 const Explanation& found, const ExplainSetup& setup) {
+                 const selection::Explanation& found, const explain::ExplainSetup& setup) {
   const HiddenTruth truth = open_truth(folder.of(id));
   const std::string hidden = names_of(truth.effects);
-  const Verdict verdict = verdict_of(found, setup);
+  const explain::Verdict verdict = explain::verdict_of(found, setup);
   const auto strength = strength_error(truth, setup.configuration.units(), verdict);
-  const auto heldout = [](const Gaps& gap) { return gap.heldout > 0 ? Json(gap.heldout) : Json(); };
-  const Json score = {{"hidden", hidden},
-                      {"verdict", word_for(verdict.finding)},
-                      {"effect", verdict.members.empty() ? "" : verdict.members.front()},
-                      {"class", verdict.members},
-                      {"outcome", word_for(outcome_of(group.aim, hidden, verdict))},
-                      {"p", number_or_null(verdict.p)},
-                      {"rounds", verdict.null_details.at("rounds")},
-                      {"heldout",
-                       {{"base", heldout(verdict.base_gap)},
-                        {"named", heldout(verdict.named_gap)},
-                        {"placebo", heldout(verdict.runner_up_gap)},
-                        {"floor", heldout(floor_of(setup, truth))}}},
-                      {"error", strength ? Json(strength->relative) : Json()},
-                      {"deviations", strength ? Json(strength->deviations) : Json()},
-                      {"seconds", seconds_of(folder.of(id) / "explain")},
-                      {"program", program_checksum()}};
-  write_durably(folder.score_of(id), score.dump(2) + "\n");
+  const auto heldout = [](const assimilation::Gaps& gap) {
+    return gap.heldout > 0 ? input::Json(gap.heldout) : input::Json();
+  };
+  const input::Json score = {
+      {"hidden", hidden},
+      {"verdict", selection::word_for(verdict.finding)},
+      {"effect", verdict.members.empty() ? "" : verdict.members.front()},
+      {"class", verdict.members},
+      {"outcome", word_for(outcome_of(group.aim, hidden, verdict))},
+      {"p", input::number_or_null(verdict.p)},
+      {"rounds", verdict.null_details.at("rounds")},
+      {"heldout",
+       {{"base", heldout(verdict.base_gap)},
+        {"named", heldout(verdict.named_gap)},
+        {"placebo", heldout(verdict.runner_up_gap)},
+        {"floor", heldout(floor_of(setup, truth))}}},
+      {"error", strength ? input::Json(strength->relative) : input::Json()},
+      {"deviations", strength ? input::Json(strength->deviations) : input::Json()},
+      {"seconds", seconds_of(folder.of(id) / "explain")},
+      {"program", output::program_checksum()}};
+  posix::write_durably(folder.score_of(id), score.dump(2) + "\n");
 }
 
 }  // namespace
@@ -145,7 +151,7 @@ void carry_out_case(const CampaignFolder& folder, const CampaignPlan& plan, cons
   const CaseSettings settings = settings_of(group, id.number, seed);
   if (!fs::exists(path / "model.toml")) draw(path, plan, settings, seed);
 
-  ExplainJob job;
+  explain::ExplainJob job;
   job.data = path / "data";
   job.model = path / "model.toml";
   job.threads = 1;
@@ -154,18 +160,18 @@ void carry_out_case(const CampaignFolder& folder, const CampaignPlan& plan, cons
   job.diffusion_error = settings.diffusion_error;
   if (group.aim == Aim::unnamed)
     job.without = effects_like(open_truth(path).effects.front().effect);
-  ExplainSetup setup = read_explain_job(job);
+  explain::ExplainSetup setup = explain::read_explain_job(job);
   fs::create_directories(path / "explain");
-  const Explanation found = search(path / "explain", setup);
+  const selection::Explanation found = search(path / "explain", setup);
   write_score(folder, group, id, found, setup);
 }
 
 CaseScore read_score(const CampaignFolder& folder, const CaseId& id) {
-  return from_json(folder.score_of(id), [&](const Json& json) {
-    const auto number = [](const Json& value) {
+  return input::from_json(folder.score_of(id), [&](const input::Json& json) {
+    const auto number = [](const input::Json& value) {
       return value.is_null() ? kNothing : value.get<double>();
     };
-    const Json& heldout = json.at("heldout");
+    const input::Json& heldout = json.at("heldout");
     return CaseScore{id,
                      json.at("hidden"),
                      json.at("verdict"),
@@ -183,4 +189,4 @@ CaseScore read_score(const CampaignFolder& folder, const CaseId& id) {
   });
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::campaign

@@ -4,7 +4,7 @@
 #include "drivers/campaign/campaign_folder.hpp"
 #include "drivers/campaign/case_outcome.hpp"
 
-namespace traceraft {
+namespace traceraft::campaign {
 
 struct CaseScore {
   CaseId id;
@@ -24,4 +24,4 @@ void carry_out_case(const CampaignFolder& folder, const CampaignPlan& plan, cons
 
 CaseScore read_score(const CampaignFolder& folder, const CaseId& id);
 
-}  // namespace traceraft
+}  // namespace traceraft::campaign

@@ -19,7 +19,7 @@
 #include "drivers/text/say.hpp"
 #include "kernel/core/error.hpp"
 
-namespace traceraft {
+namespace traceraft::campaign {
 namespace {
 
 namespace fs = std::filesystem;
@@ -40,7 +40,7 @@ CampaignPlan new_plan(const CampaignRequest& request) {
   if (plan.groups.empty()) plan.groups = campaign_groups().names();
   for (const std::string& group : plan.groups) (void)campaign_groups().find(group);
   add_small_vesicle(plan.model, "campaign");
-  (void)Configuration(plan.model, {});
+  (void)config::Configuration(plan.model, {});
   check_shared_noise(plan.noise);
   return plan;
 }
@@ -91,17 +91,17 @@ int one_case(const CampaignFolder& folder, const std::string& name) {
   for (const CaseId& id : cases_of(plan))
     if (id.name() == name) {
       carry_out_case(folder, plan, id);
-      return kSuccess;
+      return drivers::kSuccess;
     }
   throw InputError("--case: this campaign has no case '" + name + "'");
 }
 
-JobsEnd run_cases(const CampaignFolder& folder, const std::vector<CaseId>& left, std::size_t before,
-                  int at_a_time, bool quiet) {
+jobs::JobsEnd run_cases(const CampaignFolder& folder, const std::vector<CaseId>& left,
+                        std::size_t before, int at_a_time, bool quiet) {
   if (!quiet && !left.empty())
-    say("%zu cases, %d at a time; most take several minutes\nfolder %s\n", left.size(), at_a_time,
-        folder.path());
-  PendingJobs work;
+    text::say("%zu cases, %d at a time; most take several minutes\nfolder %s\n", left.size(),
+              at_a_time, folder.path());
+  jobs::PendingJobs work;
   work.count = left.size();
   work.before = before;
   work.at_a_time = at_a_time;
@@ -110,11 +110,12 @@ JobsEnd run_cases(const CampaignFolder& folder, const std::vector<CaseId>& left,
   work.quiet = quiet;
   work.run = [&](std::size_t k) {
     fs::create_directories(folder.of(left[k]));
-    return run_program({"campaign", "--out", folder.path().string(), "--case", left[k].name()},
-                       folder.log_of(left[k]));
+    return jobs::run_program(
+        {"campaign", "--out", folder.path().string(), "--case", left[k].name()},
+        folder.log_of(left[k]));
   };
   work.name = [&](std::size_t k) { return left[k].name(); };
-  return run_pending_jobs(work);
+  return jobs::run_pending_jobs(work);
 }
 
 void report(const CampaignFolder& folder, std::vector<CaseScore> scores,
@@ -124,17 +125,18 @@ void report(const CampaignFolder& folder, std::vector<CaseScore> scores,
             [](const CaseScore& a, const CaseScore& b) { return a.id.name() < b.id.name(); });
   write_campaign(folder, scores, failures);
   if (quiet) return;
-  print_rows(table_rows(summary_of(scores, failures)));
-  if (const Table confusion = confusion_of(scores); !confusion.rows.empty()) {
-    say("\n");
-    print_rows(table_rows(confusion));
+  output::print_rows(output::table_rows(summary_of(scores, failures)));
+  if (const bench::Table confusion = confusion_of(scores); !confusion.rows.empty()) {
+    text::say("\n");
+    output::print_rows(output::table_rows(confusion));
   }
-  say("\nwritten: %s\n", (folder.path() / "campaign.md"));
+  text::say("\nwritten: %s\n", (folder.path() / "campaign.md"));
 }
 
 std::string command_to_go_on(const CampaignFolder& folder, const CampaignRequest& request) {
-  std::string command = "traceraft campaign --out " + in_shell(folder.path().string());
-  for (const std::string& path : request.elsewhere) command += " --elsewhere " + in_shell(path);
+  std::string command = "traceraft campaign --out " + text::in_shell(folder.path().string());
+  for (const std::string& path : request.elsewhere)
+    command += " --elsewhere " + text::in_shell(path);
   return command;
 }
 
@@ -144,17 +146,18 @@ int run_campaign(const CampaignRequest& request) {
     if (!goes_on) throw InputError("--case: --out must name an existing campaign");
     return one_case(CampaignFolder(request.out), request.only);
   }
-  catch_stop_signals();
-  const CampaignFolder folder(request.out.empty() ? first_free_folder("campaign") : request.out);
+  posix::catch_stop_signals();
+  const CampaignFolder folder(request.out.empty() ? run::first_free_folder("campaign")
+                                                  : request.out);
   const CampaignPlan plan =
       goes_on ? grown_plan(request, folder, "--out")
       : request.elsewhere.empty()
           ? new_plan(request)
           : grown_plan(request, begun_elsewhere(request.elsewhere[0]), "--elsewhere");
   std::vector<CaseScore> scores = scores_of(request.elsewhere, plan);
-  if (!goes_on) refuse_foreign_folder(folder.path(), {});
+  if (!goes_on) run::refuse_foreign_folder(folder.path(), {});
   fs::create_directories(folder.path() / "cases");
-  const FolderLock lock(folder.path());
+  const posix::FolderLock lock(folder.path());
   folder.save(plan);
   std::set<std::string> done;
   for (const CaseScore& score : scores) done.insert(score.id.name());
@@ -163,23 +166,24 @@ int run_campaign(const CampaignRequest& request) {
     if (done.count(id.name()) == 0) cases.push_back(id);
   for (const CaseId& id : cases)
     if (!fs::exists(folder.score_of(id))) left.push_back(id);
-  const JobsEnd end = run_cases(folder, left, cases.size() - left.size(),
-                                jobs_of(request.jobs, 1).at_a_time, request.quiet);
+  const jobs::JobsEnd end = run_cases(folder, left, cases.size() - left.size(),
+                                      jobs::jobs_of(request.jobs, 1).at_a_time, request.quiet);
   std::vector<CaseFailure> failures;
-  for (const JobFailure& failure : end.failures)
+  for (const jobs::JobFailure& failure : end.failures)
     failures.push_back({left[failure.job], failure.why});
   for (const CaseId& id : cases)
     if (fs::exists(folder.score_of(id))) scores.push_back(read_score(folder, id));
   report(folder, scores, failures, request.quiet);
-  for (const CaseFailure& failure : failures) say_error(failure.id.name() + ": " + failure.why);
+  for (const CaseFailure& failure : failures)
+    text::say_error(failure.id.name() + ": " + failure.why);
   if (end.stopped) {
-    if (!request.quiet) say("continue with: %s\n", command_to_go_on(folder, request));
-    return kInterrupted;
+    if (!request.quiet) text::say("continue with: %s\n", command_to_go_on(folder, request));
+    return drivers::kInterrupted;
   }
-  return failures.empty() ? kSuccess : kNumericalFailure;
+  return failures.empty() ? drivers::kSuccess : drivers::kNumericalFailure;
 }
 
-Action define_campaign(CLI::App& app) {
+drivers::Action define_campaign(CLI::App& app) {
   const auto request = std::make_shared<CampaignRequest>();
   app.add_option("--out", request->out,
                  "new folder, or folder of a campaign to continue; default: runs/campaign-<number>")
@@ -202,18 +206,18 @@ Action define_campaign(CLI::App& app) {
       ->type_name("GROUP,...")
       ->delimiter(',');
   app.add_option("--seed", request->plan.seed, "seed of all random numbers")
-      ->check(between(0, kLargestSeed))
+      ->check(config::between(0, config::kLargestSeed))
       ->capture_default_str();
   app.add_option("--points", request->plan.points, "number of points of each snapshot")
       ->check(CLI::Range(kFewestPoints, kMostPoints))
       ->capture_default_str();
   app.add_option("--replicates", request->plan.replicates,
                  "number of data sets with noise alone that give the p values of a search")
-      ->check(CLI::Range(kFewestReplicates, kMostReplicates))
+      ->check(CLI::Range(explain::kFewestReplicates, explain::kMostReplicates))
       ->capture_default_str();
   app.add_option("--most-effects", request->plan.effects,
                  "largest number of effects that a search may name")
-      ->check(CLI::Range(1, kMostNamedEffects))
+      ->check(CLI::Range(1, explain::kMostNamedEffects))
       ->capture_default_str();
   add_noise_options(app, request->plan.noise);
   add_vesicle_options(app, request->plan.model);
@@ -229,9 +233,9 @@ Action define_campaign(CLI::App& app) {
 
 }  // namespace
 
-Command campaign_command() {
+drivers::Command campaign_command() {
   return {"campaign", "hide effects in many cases and count how often explain finds them",
-          Ranks::one, define_campaign};
+          drivers::Ranks::one, define_campaign};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::campaign

@@ -7,7 +7,14 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::campaign {
+
+template <class Members>
+void describe(Members& members, SharedNoise& noise) {
+  members("share", noise.share, input::WithinRange{0, 1});
+  members("correlation", noise.length, input::WithinRange{0, kLongestDrawn});
+  members("shape", noise.shape, input::OneOf{"shape", shared_noise_shapes()});
+}
 
 namespace {
 
@@ -17,50 +24,40 @@ struct StoredPlan {
   std::map<std::string, std::string> model;
 };
 
-}  // namespace
-
-template <class Members>
-void describe(Members& members, SharedNoise& noise) {
-  members("share", noise.share, WithinRange{0, 1});
-  members("correlation", noise.length, WithinRange{0, kLongestDrawn});
-  members("shape", noise.shape, OneOf{"shape", shared_noise_shapes()});
-}
-
-namespace {
-
 template <class Members>
 void describe(Members& members, StoredPlan& stored) {
   CampaignPlan& plan = stored.plan;
-  members("groups", plan.groups, Distinct{OneOf{"group", campaign_groups().names()}});
-  members("cases", plan.cases, WithinRange{1, kMostCases});
-  members("seed", plan.seed, WithinRange{0, kLargestSeed});
-  members("points", plan.points, WithinRange{kFewestPoints, kMostPoints});
-  members("model", stored.model, AnyText{});
-  members("replicates", plan.replicates, WithinRange{kFewestReplicates, kMostReplicates});
-  members("effects", plan.effects, WithinRange{1, kMostNamedEffects});
-  members.later("noise", plan.noise, AsDescribed{});
+  members("groups", plan.groups, input::Distinct{input::OneOf{"group", campaign_groups().names()}});
+  members("cases", plan.cases, input::WithinRange{1, kMostCases});
+  members("seed", plan.seed, input::WithinRange{0, config::kLargestSeed});
+  members("points", plan.points, input::WithinRange{kFewestPoints, kMostPoints});
+  members("model", stored.model, input::AnyText{});
+  members("replicates", plan.replicates,
+          input::WithinRange{explain::kFewestReplicates, explain::kMostReplicates});
+  members("effects", plan.effects, input::WithinRange{1, explain::kMostNamedEffects});
+  members.later("noise", plan.noise, input::AsDescribed{});
 }
 
-Json plan_json(const CampaignPlan& plan) {
+input::Json plan_json(const CampaignPlan& plan) {
   StoredPlan stored{plan, {}};
   for (const auto& [name, value] : plan.model) stored.model[name] = value.text;
-  return object_of(stored);
+  return input::object_of(stored);
 }
 
 }  // namespace
 
 void CampaignFolder::save(const CampaignPlan& plan) const {
-  write_durably(plan_file(), plan_json(plan).dump(2) + "\n");
+  posix::write_durably(plan_file(), plan_json(plan).dump(2) + "\n");
 }
 
 CampaignPlan CampaignFolder::load() const {
-  StoredPlan stored = read_object<StoredPlan>(plan_file());
+  StoredPlan stored = input::read_object<StoredPlan>(plan_file());
   for (const auto& [name, text] : stored.model) {
     const std::string where = plan_file().string() + ": model." + name;
-    check_value(where, name, OneOf{"option", run_option_names()});
+    input::check_value(where, name, input::OneOf{"option", config::run_option_names()});
     stored.plan.model[name] = {text, where};
   }
-  (void)Configuration(stored.plan.model, {});
+  (void)config::Configuration(stored.plan.model, {});
   return stored.plan;
 }
 
@@ -91,4 +88,4 @@ std::vector<CaseId> cases_of(const CampaignPlan& plan) {
   return cases;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::campaign

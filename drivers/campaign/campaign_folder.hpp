@@ -10,7 +10,7 @@
 #include "drivers/campaign/shared_noise.hpp"
 #include "drivers/config/configuration.hpp"
 
-namespace traceraft {
+namespace traceraft::campaign {
 
 inline constexpr int kMostCases = 999, kFewestPoints = 100, kMostPoints = 1000000;
 
@@ -20,7 +20,7 @@ struct CampaignPlan {
   std::uint64_t seed = 1;
   int points = 4000, replicates = 199;
   int effects = 3;  // that a search may name
-  GivenValues model;
+  config::GivenValues model;
   SharedNoise noise = {};
 };
 
@@ -55,4 +55,4 @@ bool same_but_for_cases(const CampaignPlan& a, const CampaignPlan& b);
 
 std::vector<CaseId> cases_of(const CampaignPlan& plan);  // groups taking turns
 
-}  // namespace traceraft
+}  // namespace traceraft::campaign

@@ -7,7 +7,7 @@
 #include "verification/selection/blind/effect_size.hpp"
 #include "verification/statistics/random_streams.hpp"
 
-namespace traceraft {
+namespace traceraft::campaign {
 namespace {
 
 CaseSettings with(const std::function<void(CaseSettings&)>& change) {
@@ -20,9 +20,9 @@ CaseSettings with(const std::function<void(CaseSettings&)>& change) {
 
 std::vector<std::string> effects_like(const std::string& effect) {
   std::vector<std::string> result{effect};
-  for (const std::string& other : effects().names()) {
+  for (const std::string& other : effects::effects().names()) {
     const auto names = [](const std::string& a, const std::string& b) {
-      const auto& confused = effects().find(a).confused_with;
+      const auto& confused = effects::effects().find(a).confused_with;
       return std::find(confused.begin(), confused.end(), b) != confused.end();
     };
     if (names(effect, other) || names(other, effect)) result.push_back(other);
@@ -65,15 +65,15 @@ const NamedList<CampaignGroup>& campaign_groups() {
 
 CaseSettings settings_of(const CampaignGroup& group, int number, std::uint64_t seed) {
   CaseSettings settings = group.common;
-  const std::vector<std::string> all = effects_to_hide();
+  const std::vector<std::string> all = selection::effects_to_hide();
   const std::size_t first = static_cast<std::size_t>(number) % all.size();
   if (group.effects > 0) settings.hidden.push_back(all[first]);
   if (group.effects > 1) {
-    const double u = uniform_random(seed, stream::second_effect, 0);
+    const double u = uniform_random(seed, statistics::stream::second_effect, 0);
     const auto further = static_cast<std::size_t>(u * static_cast<double>(all.size() - 1));
     settings.hidden.push_back(all[(first + 1 + further) % all.size()]);
   }
   return settings;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::campaign

@@ -6,7 +6,7 @@
 
 #include "kernel/core/named_list.hpp"
 
-namespace traceraft {
+namespace traceraft::campaign {
 
 struct CaseSettings {
   std::vector<std::string> hidden;  // effects
@@ -37,4 +37,4 @@ std::vector<std::string> effects_like(const std::string& effect);
 // The settings of case `number` of a group; `seed` decides what chance does.
 CaseSettings settings_of(const CampaignGroup& group, int number, std::uint64_t seed);
 
-}  // namespace traceraft
+}  // namespace traceraft::campaign

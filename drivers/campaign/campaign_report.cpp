@@ -14,7 +14,7 @@
 #include "verification/selection/fit/refit.hpp"
 #include "verification/statistics/sample.hpp"
 
-namespace traceraft {
+namespace traceraft::campaign {
 namespace {
 
 using Scores = std::vector<CaseScore>;
@@ -25,21 +25,22 @@ double median_of(const Scores& scores, const Value& value) {
   std::vector<double> values;
   for (const CaseScore& score : scores)
     if (const double one = value(score); std::isfinite(one)) values.push_back(one);
-  return values.empty() ? std::numeric_limits<double>::quiet_NaN() : quantile(values, 0.5);
+  return values.empty() ? std::numeric_limits<double>::quiet_NaN()
+                        : statistics::quantile(values, 0.5);
 }
 
-Cell cell(double value) {
-  return std::isfinite(value) ? Cell(value) : Cell("");
+bench::Cell cell(double value) {
+  return std::isfinite(value) ? bench::Cell(value) : bench::Cell("");
 }
 
 // Of 95 % intervals, the share that holds the truth.
-Cell coverage(const Scores& scores) {
+bench::Cell coverage(const Scores& scores) {
   double known = 0, within = 0;
   for (const CaseScore& score : scores) {
     known += std::isfinite(score.deviations);
-    within += std::fabs(score.deviations) <= kNormal95;
+    within += std::fabs(score.deviations) <= statistics::kNormal95;
   }
-  return known > 0 ? Cell(within / known) : Cell("");
+  return known > 0 ? bench::Cell(within / known) : bench::Cell("");
 }
 
 std::map<std::string, Scores> by_group(const Scores& scores) {
@@ -50,17 +51,17 @@ std::map<std::string, Scores> by_group(const Scores& scores) {
 
 // Of what the truth would close of the held-out gap, how much was closed?
 double closed(const CaseScore& score) {
-  return share_closed(score.base, score.named, score.floor)
+  return assimilation::share_closed(score.base, score.named, score.floor)
       .value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
 constexpr char kProgram[] = "program";  // earlier tables have no such column
 
-Table cases_table(const Scores& scores) {
-  Table table{"cases",
-              {"case", "hidden", "verdict", "found", "outcome", "error", "deviations", "p",
-               "base gap", "named gap", "placebo gap", "floor", "seconds", kProgram},
-              {}};
+bench::Table cases_table(const Scores& scores) {
+  bench::Table table{"cases",
+                     {"case", "hidden", "verdict", "found", "outcome", "error", "deviations", "p",
+                      "base gap", "named gap", "placebo gap", "floor", "seconds", kProgram},
+                     {}};
   for (const CaseScore& s : scores)
     table.rows.push_back({s.id.name(), s.hidden, s.verdict, s.effect, word_for(s.outcome),
                           cell(s.error), cell(s.deviations), cell(s.p), cell(s.base), cell(s.named),
@@ -76,19 +77,19 @@ std::string builds_of(const Scores& scores) {
   std::string text =
       "\nBuilds of the program that explained these cases, and the number of cases:\n\n";
   for (const auto& [program, count] : cases)
-    text +=
-        "- " + (program.empty() ? "not known" : in_markdown(program)) + formatted(": %d\n", count);
+    text += "- " + (program.empty() ? "not known" : text::in_markdown(program)) +
+            formatted(": %d\n", count);
   return text;
 }
 
 }  // namespace
 
-Table summary_of(const Scores& scores, const std::vector<CaseFailure>& failures) {
-  Table table{"summary",
-              {"group", "cases", "right", "in class", "missed", "wrong", "failed", "wrong names",
-               "median error", "coverage", "held-out gap / floor", "placebo / named", "closed",
-               "s per case"},
-              {}};
+bench::Table summary_of(const Scores& scores, const std::vector<CaseFailure>& failures) {
+  bench::Table table{"summary",
+                     {"group", "cases", "right", "in class", "missed", "wrong", "failed",
+                      "wrong names", "median error", "coverage", "held-out gap / floor",
+                      "placebo / named", "closed", "s per case"},
+                     {}};
   for (const CampaignGroup& group : campaign_groups()) {
     const Scores own = by_group(scores)[group.name];
     const auto failed = static_cast<double>(
@@ -112,14 +113,14 @@ Table summary_of(const Scores& scores, const std::vector<CaseFailure>& failures)
          cell(median_of(own, [](const CaseScore& s) { return s.error; })), coverage(own),
          cell(median_of(own, [](const CaseScore& s) { return s.named / s.floor; })),
          names ? cell(median_of(own, [](const CaseScore& s) { return s.placebo / s.named; }))
-               : Cell(""),
-         names ? cell(median_of(own, closed)) : Cell(""),
+               : bench::Cell(""),
+         names ? cell(median_of(own, closed)) : bench::Cell(""),
          cell(median_of(own, [](const CaseScore& s) { return s.seconds; }))});
   }
   return table;
 }
 
-Table confusion_of(const Scores& scores) {
+bench::Table confusion_of(const Scores& scores) {
   std::map<std::string, std::map<std::string, int>> counts;
   std::map<std::string, int> found;
   for (const CaseScore& score : scores) {
@@ -130,13 +131,13 @@ Table confusion_of(const Scores& scores) {
     ++counts[score.hidden.empty() ? "nothing" : in_order(score.hidden)][verdict];
     ++found[verdict];
   }
-  Table table{"confusion", {"hidden \\ found"}, {}};
+  bench::Table table{"confusion", {"hidden \\ found"}, {}};
   for (const auto& [name, count] : found) table.columns.push_back(name);
   for (const auto& [hidden, row] : counts) {
     table.rows.push_back({hidden});
     for (const auto& [name, count] : found)
-      table.rows.back().push_back(row.count(name) ? Cell(static_cast<double>(row.at(name)))
-                                                  : Cell(""));
+      table.rows.back().push_back(row.count(name) ? bench::Cell(static_cast<double>(row.at(name)))
+                                                  : bench::Cell(""));
   }
   return table;
 }
@@ -144,25 +145,25 @@ Table confusion_of(const Scores& scores) {
 void write_campaign(const CampaignFolder& campaign, const Scores& scores,
                     const std::vector<CaseFailure>& failures) {
   const std::filesystem::path& folder = campaign.path();
-  const Table summary = summary_of(scores, failures), confusion = confusion_of(scores);
-  write_durably(campaign.cases(), checked_csv_text(cases_table(scores)));
-  write_durably(folder / "summary.csv", csv_text(summary));
-  write_durably(folder / "confusion.csv", csv_text(confusion));
-  std::string text = markdown_table(table_rows(summary));
-  if (!confusion.rows.empty()) text += "\n" + markdown_table(table_rows(confusion));
+  const bench::Table summary = summary_of(scores, failures), confusion = confusion_of(scores);
+  posix::write_durably(campaign.cases(), output::checked_csv_text(cases_table(scores)));
+  posix::write_durably(folder / "summary.csv", output::csv_text(summary));
+  posix::write_durably(folder / "confusion.csv", output::csv_text(confusion));
+  std::string text = output::markdown_table(output::table_rows(summary));
+  if (!confusion.rows.empty()) text += "\n" + output::markdown_table(output::table_rows(confusion));
   for (const auto& [group, own] : by_group(scores))
-    if (const Table alone = confusion_of(own); !alone.rows.empty())
-      text += "\n" + in_markdown(group + ": " + campaign_groups().find(group).summary) + "\n\n" +
-              markdown_table(table_rows(alone));
+    if (const bench::Table alone = confusion_of(own); !alone.rows.empty())
+      text += "\n" + text::in_markdown(group + ": " + campaign_groups().find(group).summary) +
+              "\n\n" + output::markdown_table(output::table_rows(alone));
   text += builds_of(scores);
   if (!failures.empty()) text += "\nCases without a verdict:\n\n";
   for (const CaseFailure& failure : failures)
-    text += "- " + in_markdown(failure.id.name() + ": " + failure.why) + "\n";
-  write_durably(folder / "campaign.md", text);
+    text += "- " + text::in_markdown(failure.id.name() + ": " + failure.why) + "\n";
+  posix::write_durably(folder / "campaign.md", text);
 }
 
 Scores read_cases(const std::filesystem::path& csv) {
-  const CsvTable table = CsvTable::read(csv);
+  const input::CsvTable table = input::CsvTable::read(csv);
   for (const std::string& column : cases_table({}).columns)
     if (column != kProgram) table.require(column);
   Scores scores;
@@ -187,4 +188,4 @@ Scores read_cases(const std::filesystem::path& csv) {
   return scores;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::campaign

@@ -7,7 +7,7 @@
 #include "drivers/campaign/campaign_case.hpp"
 #include "verification/bench/figures.hpp"
 
-namespace traceraft {
+namespace traceraft::campaign {
 
 // A case that came to no verdict.
 struct CaseFailure {
@@ -16,10 +16,10 @@ struct CaseFailure {
 };
 
 // A row per group: how many were right, and how well parameters and gaps came out.
-Table summary_of(const std::vector<CaseScore>& scores,
-                 const std::vector<CaseFailure>& failures = {});
+bench::Table summary_of(const std::vector<CaseScore>& scores,
+                        const std::vector<CaseFailure>& failures = {});
 // Hidden against found, over all groups in which something is hidden and looked for.
-Table confusion_of(const std::vector<CaseScore>& scores);
+bench::Table confusion_of(const std::vector<CaseScore>& scores);
 
 // cases.csv, summary.csv, confusion.csv and campaign.md. Throws IoError.
 void write_campaign(const CampaignFolder& folder, const std::vector<CaseScore>& scores,
@@ -28,4 +28,4 @@ void write_campaign(const CampaignFolder& folder, const std::vector<CaseScore>& 
 // Of cases.csv. Throws InputError naming the line of what cannot be read.
 std::vector<CaseScore> read_cases(const std::filesystem::path& csv);
 
-}  // namespace traceraft
+}  // namespace traceraft::campaign

@@ -8,7 +8,7 @@
 #include "kernel/core/text.hpp"
 #include "kernel/effects/effects.hpp"
 
-namespace traceraft {
+namespace traceraft::campaign {
 namespace {
 
 std::vector<std::string> sorted_parts(const std::string& names) {
@@ -45,9 +45,9 @@ CaseOutcome outcome_of(const std::string& word) {
   throw InputError("a case of a campaign cannot end with '" + word + "'");
 }
 
-std::string names_of(const std::vector<EffectTerm>& terms) {
+std::string names_of(const std::vector<effects::EffectTerm>& terms) {
   std::string names;
-  for (const EffectTerm& term : terms) names += (names.empty() ? "" : " + ") + term.effect;
+  for (const effects::EffectTerm& term : terms) names += (names.empty() ? "" : " + ") + term.effect;
   return names;
 }
 
@@ -55,22 +55,22 @@ std::string in_order(const std::string& names) {
   return joined(sorted_parts(names), " + ");
 }
 
-CaseOutcome outcome_of(Aim aim, const std::string& hidden_names, const Verdict& verdict) {
-  const Finding finding = verdict.finding;
-  const bool named = is_named(finding);
+CaseOutcome outcome_of(Aim aim, const std::string& hidden_names, const explain::Verdict& verdict) {
+  const selection::Finding finding = verdict.finding;
+  const bool named = selection::is_named(finding);
   if (aim == Aim::nothing)
-    return named || finding == Finding::unnamed ? CaseOutcome::wrong
-           : finding == Finding::none           ? CaseOutcome::right
-                                                : CaseOutcome::missed;
+    return named || finding == selection::Finding::unnamed ? CaseOutcome::wrong
+           : finding == selection::Finding::none           ? CaseOutcome::right
+                                                           : CaseOutcome::missed;
   if (aim == Aim::unnamed)
-    return named                         ? CaseOutcome::wrong
-           : finding == Finding::unnamed ? CaseOutcome::right
-                                         : CaseOutcome::missed;
+    return named                                    ? CaseOutcome::wrong
+           : finding == selection::Finding::unnamed ? CaseOutcome::right
+                                                    : CaseOutcome::missed;
   if (!named) return CaseOutcome::missed;
   const auto hidden = sorted_parts(hidden_names);
   const std::vector<std::string> found = sorted_parts(verdict.members.front());
   if (found == hidden)
-    return finding == Finding::named ? CaseOutcome::right : CaseOutcome::in_class;
+    return finding == selection::Finding::named ? CaseOutcome::right : CaseOutcome::in_class;
   for (const std::string& equivalent : verdict.members)
     if (sorted_parts(equivalent) == hidden) return CaseOutcome::in_class;
   // A part of what was hidden, and nothing else, is no wrong name.
@@ -79,23 +79,23 @@ CaseOutcome outcome_of(Aim aim, const std::string& hidden_names, const Verdict& 
              : CaseOutcome::wrong;
 }
 
-std::optional<StrengthError> strength_error(const HiddenTruth& truth, Units units,
-                                            const Verdict& verdict) {
-  if (truth.effects.empty() || !is_named(verdict.finding)) return {};
-  const EffectTerm& term = truth.effects.front();
-  const ParameterSpec& strength = effects().find(term.effect).parameters.front();
-  const std::vector<FoundParameter>& all = verdict.parameters;
-  const auto found = std::find_if(all.begin(), all.end(), [&](const FoundParameter& p) {
+std::optional<StrengthError> strength_error(const HiddenTruth& truth, physics::Units units,
+                                            const explain::Verdict& verdict) {
+  if (truth.effects.empty() || !selection::is_named(verdict.finding)) return {};
+  const effects::EffectTerm& term = truth.effects.front();
+  const ParameterSpec& strength = effects::effects().find(term.effect).parameters.front();
+  const std::vector<explain::FoundParameter>& all = verdict.parameters;
+  const auto found = std::find_if(all.begin(), all.end(), [&](const explain::FoundParameter& p) {
     return p.effect == term.effect && p.name == strength.name;
   });
   if (found == all.end()) return {};
   // A gap that no strength reaches is one at the end of the range, where a search ends, too.
   const double hidden = term.values.front();
   if (strength.unit.empty() && (hidden <= strength.min || hidden >= strength.max)) return {};
-  units.diffusion_cm2_s *= truth.pace;
-  const double value = hidden / to_model_units(strength.unit, units);
+  units.diffusion_cm2_s *= truth.diffusion_ratio;
+  const double value = hidden / effects::to_model_units(strength.unit, units);
   const double difference = found->value - value;
   return StrengthError{std::fabs(difference / value), difference / found->sigma.value()};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::campaign

@@ -21,16 +21,16 @@
 #include "verification/selection/blind/effect_size.hpp"
 #include "verification/statistics/random_streams.hpp"
 
-namespace traceraft {
+namespace traceraft::campaign {
 namespace {
 
 namespace fs = std::filesystem;
 
 struct HideCommand {
-  GivenValues flags;
+  config::GivenValues flags;
   std::string model, out, effects = "random";
   std::int64_t seed = -1;
-  BlindRequest request;
+  selection::BlindRequest request;
   double blur_um = 0;
   double first_s = 0, last_s = 0;
   int truth_cells = 0;
@@ -41,65 +41,69 @@ struct HideCommand {
 std::vector<std::string> effects_of(const std::string& text, std::uint64_t seed) {
   if (text == "none") return {};
   if (text != "random") {
-    std::vector<std::string> names = split_list(text);
+    std::vector<std::string> names = config::split_list(text);
     for (const std::string& name : names)
       if (name == "none" || name == "random" || std::count(names.begin(), names.end(), name) > 1)
         throw InputError("--effects: '" + name +
                          "' cannot be combined with other names or given twice");
       else
-        (void)candidate_to_hide(name);
+        (void)selection::candidate_to_hide(name);
     return names;
   }
-  std::vector<std::string> all = effects_to_hide();
-  const double u =
-      uniform_random(seed, stream::hidden_effect, 0) * static_cast<double>(all.size() + 1);
+  std::vector<std::string> all = selection::effects_to_hide();
+  const double u = uniform_random(seed, statistics::stream::hidden_effect, 0) *
+                   static_cast<double>(all.size() + 1);
   const auto index = static_cast<std::size_t>(u);
   return index < all.size() ? std::vector<std::string>{all[index]} : std::vector<std::string>{};
 }
 
 int hide_effects(const HideCommand& command) {
-  GivenValues model = read_config_file(command.model, "--model");
+  config::GivenValues model = config::read_config_file(command.model, "--model");
   for (const auto& [name, value] : command.flags) model[name] = value;
   if (command.model.empty()) add_small_vesicle(model, "hide");
-  const Configuration configuration(model, {});
-  const Units units = configuration.units();
-  BlindRequest request = command.request;
+  const config::Configuration configuration(model, {});
+  const physics::Units units = configuration.units();
+  selection::BlindRequest request = command.request;
   request.cells = command.truth_cells > 0 ? command.truth_cells : truth_cells(model);
-  request.seed = command.seed >= 0 ? static_cast<std::uint64_t>(command.seed) : random_seed();
+  request.seed =
+      command.seed >= 0 ? static_cast<std::uint64_t>(command.seed) : sodium::random_seed();
   request.effects = effects_of(command.effects, request.seed);
   set_shared_noise(command.noise, request);
   request.blur = command.blur_um / units.length();
-  if (!(request.blur < kWidestBlur))
+  if (!(request.blur < input::kWidestBlur))
     throw InputError("--blur: " + format_number(command.blur_um) + " um is not less than " +
-                     format_number(kWidestBlur * units.length()) + ", a fifth of the radius");
+                     format_number(input::kWidestBlur * units.length()) +
+                     ", a fifth of the radius");
   if (command.first_s > 0) request.first = command.first_s / units.time();
   if (command.last_s > 0) request.last = command.last_s / units.time();
   if (!(request.first < request.last))
     throw InputError("--first: " + format_number(request.first * units.time()) +
                      " s must be before --last, " + format_number(request.last * units.time()) +
                      " s");
-  const fs::path out = command.out.empty() ? first_free_folder("hidden") : command.out;
+  const fs::path out = command.out.empty() ? run::first_free_folder("hidden") : command.out;
   if (fs::exists(out / "model.toml"))  // which is written last
     throw InputError("--out: " + out.string() + " already holds a hidden truth");
-  refuse_foreign_folder(out, {"truth.json"});
+  run::refuse_foreign_folder(out, {"truth.json"});
   refuse_hiding(configuration, request);
   fs::create_directories(out);
-  const FolderLock lock(out);
-  end_on_stop_signals(kInterrupted, "nothing was written; give the same command again");
-  say("computing the truth on %d cells\n", request.cells);
+  const posix::FolderLock lock(out);
+  posix::end_on_stop_signals(drivers::kInterrupted,
+                             "nothing was written; give the same command again");
+  text::say("computing the truth on %d cells\n", request.cells);
   if (2 * request.cells < 5 * configuration.options().cells)
-    say("NOTE: explain may take the error of this coarse mesh for an effect; 4 times --cells is "
+    text::say(
+        "NOTE: explain may take the error of this coarse mesh for an effect; 4 times --cells is "
         "safe\n");
-  flush_output();
+  text::flush_output();
   hide(out, model, request);
-  say("search for it with: traceraft explain --data %s --model %s\n",
-      in_shell((out / "data").string()), in_shell((out / "model.toml").string()));
-  return kSuccess;
+  text::say("search for it with: traceraft explain --data %s --model %s\n",
+            text::in_shell((out / "data").string()), text::in_shell((out / "model.toml").string()));
+  return drivers::kSuccess;
 }
 
-Action define_hide(CLI::App& app) {
+drivers::Action define_hide(CLI::App& app) {
   const auto command = std::make_shared<HideCommand>();
-  BlindRequest& request = command->request;
+  selection::BlindRequest& request = command->request;
   app.add_option("--model", command->model, "TOML file of the model, with names of flags as keys")
       ->type_name("FILE");
   app.add_option("--out", command->out, "new folder to write; default: runs/hidden-<number>")
@@ -111,20 +115,20 @@ Action define_hide(CLI::App& app) {
   app.add_option("--gap", request.gap,
                  "size of each effect: the change of c that it causes between two snapshots, "
                  "divided by the standard deviation of c")
-      ->check(between(1e-3, 0.5))
+      ->check(config::between(1e-3, 0.5))
       ->capture_default_str();
   app.add_option("--noise", request.noise,
                  "noise of a value of c, divided by the standard deviation of c")
-      ->check(between(1e-3, 2))
+      ->check(config::between(1e-3, 2))
       ->capture_default_str();
   add_noise_options(app, command->noise);
   app.add_option("--stated", request.stated,
                  "write a column sigma with the noise, multiplied by this factor in every second "
                  "snapshot; 0: no column sigma")
-      ->check(between(0, 100))
+      ->check(config::between(0, 100))
       ->capture_default_str();
   app.add_option("--blur", command->blur_um, "standard deviation of the point spread function (um)")
-      ->check(at_least(0))
+      ->check(config::at_least(0))
       ->capture_default_str();
   app.add_option("--vesicles", request.vesicles, "number of vesicles (same membrane and radius)")
       ->check(CLI::Range(1, 100))
@@ -136,17 +140,21 @@ Action define_hide(CLI::App& app) {
       ->check(CLI::Range(100, 1000000))
       ->capture_default_str();
   app.add_option("--first", command->first_s, "time of the first snapshot (s); default: 20 R^2/D")
-      ->check(positive());
+      ->check(config::positive());
   app.add_option("--last", command->last_s, "time of the last snapshot (s); default: 90 R^2/D")
-      ->check(positive());
-  app.add_option("--pace", request.pace, "D ratio: D of the truth divided by D of the model")
-      ->check(between(0.1, 10))
+      ->check(config::positive());
+  app.add_option("--diffusion-ratio", request.diffusion_ratio,
+                 "D of the truth divided by D of the model")
+      ->check(config::between(0.1, 10))
       ->capture_default_str();
+  app.add_option("--pace", request.diffusion_ratio, "older name of --diffusion-ratio")
+      ->check(config::between(0.1, 10))
+      ->group("");
   app.add_option("--truth-cells", command->truth_cells,
                  "cells per edge of the mesh of the truth; default: 4 times --cells")
       ->check(CLI::Range(8, 512));
   app.add_option("--seed", command->seed, "seed of all random numbers; default: a random seed")
-      ->check(between(0, kLargestSeed));
+      ->check(config::between(0, config::kLargestSeed));
   add_vesicle_options(app, command->flags);
   app.footer(
       "The defaults describe a small vesicle, which explain searches in some minutes. With "
@@ -156,9 +164,9 @@ Action define_hide(CLI::App& app) {
 
 }  // namespace
 
-Command hide_command() {
-  return {"hide", "draw synthetic measurements with hidden effects, to test explain", Ranks::one,
-          define_hide};
+drivers::Command hide_command() {
+  return {"hide", "draw synthetic measurements with hidden effects, to test explain",
+          drivers::Ranks::one, define_hide};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::campaign

@@ -5,7 +5,7 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/named_list.hpp"
 
-namespace traceraft {
+namespace traceraft::campaign {
 
 const std::vector<std::string>& shared_noise_shapes() {
   static const std::vector<std::string> shapes{"gaussian", "exponential"};
@@ -22,12 +22,13 @@ void check_shared_noise(const SharedNoise& noise) {
     throw InputError("--noise-shape: " + unknown_name_message("shape", noise.shape, shapes));
 }
 
-void set_shared_noise(const SharedNoise& noise, BlindRequest& request) {
+void set_shared_noise(const SharedNoise& noise, selection::BlindRequest& request) {
   check_shared_noise(noise);
   request.noise_share = noise.share;
   request.noise_correlation = noise.length;
-  request.noise_shape =
-      noise.shape == shared_noise_shapes()[0] ? NoiseShape::gaussian : NoiseShape::exponential;
+  request.noise_shape = noise.shape == shared_noise_shapes()[0]
+                            ? selection::NoiseShape::gaussian
+                            : selection::NoiseShape::exponential;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::campaign

@@ -6,7 +6,7 @@
 
 #include "verification/selection/blind/blind_request.hpp"
 
-namespace traceraft {
+namespace traceraft::campaign {
 
 inline constexpr double kShortestDrawn = 0.005, kLongestDrawn = 0.5;  // in R
 
@@ -20,6 +20,6 @@ const std::vector<std::string>& shared_noise_shapes();
 
 // Throws InputError for a share without a length, or another shape.
 void check_shared_noise(const SharedNoise& noise);
-void set_shared_noise(const SharedNoise& noise, BlindRequest& request);
+void set_shared_noise(const SharedNoise& noise, selection::BlindRequest& request);
 
-}  // namespace traceraft
+}  // namespace traceraft::campaign

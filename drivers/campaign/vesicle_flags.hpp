@@ -4,16 +4,16 @@
 #include "drivers/campaign/hidden_case.hpp"
 #include "drivers/config/option_flags.hpp"
 
-namespace traceraft {
+namespace traceraft::campaign {
 
-inline void add_vesicle_options(CLI::App& command, GivenValues& values) {
-  GivenValues small;
+inline void add_vesicle_options(CLI::App& command, config::GivenValues& values) {
+  config::GivenValues small;
   add_small_vesicle(small, "default");
-  const auto wanted = [](const OptionSpec& spec) {
+  const auto wanted = [](const config::OptionSpec& spec) {
     return (spec.group == "Physics" || spec.name == "cells" || spec.name == "raft-fraction") &&
            spec.name != "scaled" && spec.name != "effect";
   };
-  add_options(command, values, wanted, small);
+  config::add_options(command, values, wanted, small);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::campaign

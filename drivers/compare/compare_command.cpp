@@ -20,13 +20,13 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::compare {
 namespace {
 
 namespace fs = std::filesystem;
 
 // What the comparison itself decides for its runs.
-void refuse_varied(const GivenValues& values) {
+void refuse_varied(const config::GivenValues& values) {
   for (const auto& [name, flags] :
        {std::pair("integrator", "--integrators"), std::pair("linear-solver", "--linear-solvers"),
         std::pair("tolerance", "--tolerances"), std::pair("ida-rtol", "--tolerances")})
@@ -34,52 +34,56 @@ void refuse_varied(const GivenValues& values) {
       throw InputError(given->second.where + ": for a comparison, give " + flags);
 }
 
-bool decides_numbers(const GivenValues& values) {
+bool decides_numbers(const config::GivenValues& values) {
   return std::any_of(values.begin(), values.end(),
-                     [](const auto& value) { return run_option(value.first).numerical; });
+                     [](const auto& value) { return config::run_option(value.first).numerical; });
 }
 
 // All options of the runs but integrator, linear solver and tolerance.
-Configuration new_configuration(const GivenValues& file, GivenValues flags,
-                                const std::string& out) {
+config::Configuration new_configuration(const config::GivenValues& file, config::GivenValues flags,
+                                        const std::string& out) {
   if (!decides_numbers(file) && !decides_numbers(flags))
     throw InputError((out.empty() ? "compare: " : "--out: " + out + " holds no comparison; ") +
                      std::string("a model is needed, as in --case spinodal"));
-  flags["output-times"] = {format_number(Configuration(file, flags).options().t_end), "--t-end"};
+  flags["output-times"] = {format_number(config::Configuration(file, flags).options().t_end),
+                           "--t-end"};
   return {file, flags};
 }
 
 // Of a comparison that goes on: nothing that would make its runs incomparable may change.
-Configuration known_configuration(const ComparisonFolder& folder, const GivenValues& file,
-                                  const GivenValues& flags) {
-  Configuration known(read_config_file(folder.config()), {});
+config::Configuration known_configuration(const ComparisonFolder& folder,
+                                          const config::GivenValues& file,
+                                          const config::GivenValues& flags) {
+  config::Configuration known(config::read_config_file(folder.config()), {});
   const auto refuse = [&](const std::string& what) {
     throw InputError("--out: " + folder.path().string() + " holds a comparison of " + what +
                      "; choose another folder, or give only --out to continue it");
   };
   if (decides_numbers(file) || decides_numbers(flags))
-    if (numerical_identity(new_configuration(file, flags, "")) != numerical_identity(known))
+    if (config::numerical_identity(new_configuration(file, flags, "")) !=
+        config::numerical_identity(known))
       refuse("other runs");
-  for (const GivenValues* given : {&file, &flags})
+  for (const config::GivenValues* given : {&file, &flags})
     if (const auto threads = given->find("threads"); threads != given->end())
-      if (Configuration({}, *given).options().threads != known.options().threads)
+      if (config::Configuration({}, *given).options().threads != known.options().threads)
         refuse("runs with --threads " + std::to_string(known.options().threads));
   return known;
 }
 
 // The checksum of a state, bit by bit.
 std::uint32_t checksum(const Vec& state) {
-  return crc32_of({reinterpret_cast<const char*>(state.data()),
-                   static_cast<std::size_t>(state.size()) * sizeof(double)});
+  return zlib::crc32_of({reinterpret_cast<const char*>(state.data()),
+                         static_cast<std::size_t>(state.size()) * sizeof(double)});
 }
 
-std::string folder_name(const CompareRequest& request, const Configuration& configuration) {
-  return request.out.empty() ? first_free_folder("compare-" + configuration.options().case_name)
-                             : request.out;
+std::string folder_name(const CompareRequest& request, const config::Configuration& configuration) {
+  return request.out.empty()
+             ? run::first_free_folder("compare-" + configuration.options().case_name)
+             : request.out;
 }
 
-std::vector<std::string> explanations(const Configuration& configuration, const RunSetup& run,
-                                      const ComparePlan& plan) {
+std::vector<std::string> explanations(const config::Configuration& configuration,
+                                      const run::RunSetup& run, const ComparePlan& plan) {
   return {"The error is that of c at t = " + format_number(configuration.options().t_end) +
               (run.units.scaled ? "" : " s") +
               ", relative in the L2 norm on the surface. The reference is ida with block at "
@@ -93,10 +97,12 @@ std::vector<std::string> explanations(const Configuration& configuration, const 
 
 // Everything after the folder is ours.
 int carry_out(const CompareRequest& request, const ComparisonFolder& folder,
-              const ComparePlan& plan, const Configuration& configuration, const RunSetup& run) {
+              const ComparePlan& plan, const config::Configuration& configuration,
+              const run::RunSetup& run) {
   const Reference reference = reference_of(plan, folder, request.references);
   if (!request.quiet)
-    say("runs: %zu; integrators: %s; linear solvers: %s; tolerances: %zu; repetitions: %d; "
+    text::say(
+        "runs: %zu; integrators: %s; linear solvers: %s; tolerances: %zu; repetitions: %d; "
         "unknowns: %d\nfolder %s\n",
         jobs_of(plan).size(), joined(plan.integrators, ", "), joined(plan.linear_solvers, ", "),
         plan.tolerances.size(), plan.repeat, run.problem->size(), folder.path());
@@ -104,28 +110,29 @@ int carry_out(const CompareRequest& request, const ComparisonFolder& folder,
   switch (run_comparison(plan, folder, reference, request.quiet, why)) {
     case WorkEnd::stopped:
       if (!request.quiet)
-        say("continue with: traceraft compare --out %s\n", in_shell(folder.path().string()));
-      return kInterrupted;
+        text::say("continue with: traceraft compare --out %s\n",
+                  text::in_shell(folder.path().string()));
+      return drivers::kInterrupted;
     case WorkEnd::reference_failed:
-      say_error("the reference failed: " + why);
-      return kNumericalFailure;
+      text::say_error("the reference failed: " + why);
+      return drivers::kNumericalFailure;
     case WorkEnd::done:
       break;
   }
-  const std::vector<WorkPoint> points =
-      folder.points(plan, *run.problem, concentration_at_end(reference.folder, run.space->nodes()));
-  const Recommendation advice = recommend(points, plan.target_error);
+  const std::vector<bench::WorkPoint> points = folder.points(
+      plan, *run.problem, run::concentration_at_end(reference.folder, run.space->nodes()));
+  const bench::Recommendation advice = bench::recommend(points, plan.target_error);
   write_report(folder, points, advice, explanations(configuration, run, plan));
   if (!request.quiet) {
     print_points(points);
-    say("\n%s\n\nopen next: %s\n", advice.sentence, (folder.path() / "compare.html"));
+    text::say("\n%s\n\nopen next: %s\n", advice.sentence, (folder.path() / "compare.html"));
   }
-  return any_result(points) ? kSuccess : kNumericalFailure;
+  return bench::any_result(points) ? drivers::kSuccess : drivers::kNumericalFailure;
 }
 
 int compare(const CompareRequest& request) {
-  catch_stop_signals();
-  GivenValues file = read_config_file(request.config_file);
+  posix::catch_stop_signals();
+  config::GivenValues file = config::read_config_file(request.config_file);
   // Those that the program writes have them.
   for (const char* varied : {"integrator", "linear-solver", "tolerance", "ida-rtol"})
     file.erase(varied);
@@ -134,26 +141,26 @@ int compare(const CompareRequest& request) {
     throw InputError("--out: " + request.out + " is a file");
 
   // A folder that exists is locked before anything in it is believed.
-  std::optional<FolderLock> lock;
+  std::optional<posix::FolderLock> lock;
   if (!request.out.empty() && !ComparisonFolder(request.out).started())
-    refuse_before_lock(request.out);
+    run::refuse_before_lock(request.out);
   if (!request.out.empty() && fs::exists(request.out)) lock.emplace(request.out);
   const bool goes_on = !request.out.empty() && ComparisonFolder(request.out).started();
-  if (!goes_on && !request.out.empty()) refuse_files_of_a_run(request.out);
-  const Configuration configuration =
+  if (!goes_on && !request.out.empty()) run::refuse_files_of_a_run(request.out);
+  const config::Configuration configuration =
       goes_on ? known_configuration(ComparisonFolder(request.out), file, request.flags)
               : new_configuration(file, request.flags, request.out);
   const ComparisonFolder folder(folder_name(request, configuration));
   std::optional<ComparePlan> before;
   if (goes_on) before = folder.load();
   ComparePlan plan = extended_plan(request, before ? &*before : nullptr);
-  plan.program = program_checksum();
+  plan.program = output::program_checksum();
   if (before && before->program != plan.program)
     throw InputError("--out: " + folder.path().string() +
                      " holds runs of another build of traceraft; choose another folder");
-  const RunSetup run =
-      build_run(configuration, InitialState::build,
-                {{"integrator", plan.integrators}, {"linear-solver", plan.linear_solvers}});
+  const run::RunSetup run =
+      run::build_run(configuration, run::InitialState::build,
+                     {{"integrator", plan.integrators}, {"linear-solver", plan.linear_solvers}});
   plan.initial_state = checksum(run.initial);
   if (before && before->initial_state != plan.initial_state)
     throw InputError("--out: " + folder.path().string() +
@@ -161,13 +168,13 @@ int compare(const CompareRequest& request) {
 
   fs::create_directories(folder.path() / "runs");
   if (!lock) lock.emplace(folder.path());
-  if (!goes_on && folder.started()) refuse_begun(folder.path());
-  if (!goes_on) write_durably(folder.config(), config_text(configuration));
+  if (!goes_on && folder.started()) run::refuse_begun(folder.path());
+  if (!goes_on) posix::write_durably(folder.config(), config::config_text(configuration));
   folder.save(plan);
   return carry_out(request, folder, plan, configuration, run);
 }
 
-Action define_compare(CLI::App& app) {
+drivers::Action define_compare(CLI::App& app) {
   const auto request = std::make_shared<CompareRequest>();
   app.add_option("--config", request->config_file,
                  "TOML file of settings, with names of flags as keys")
@@ -195,15 +202,15 @@ Action define_compare(CLI::App& app) {
                  "runs of each combination, whose median is its time; default: 3")
       ->check(CLI::Range(1, kMostRepetitions));
   app.add_option("--time-limit", request->time_limit, "longest time of a run (s); 0: no limit")
-      ->check(at_least(0));
+      ->check(config::at_least(0));
   app.add_option("--target-error", request->target_error,
                  "error at which a method is recommended; default, 0: the smallest that all reach")
-      ->check(at_least(0));
+      ->check(config::at_least(0));
   app.add_option("--reference-tolerance", request->reference_tolerance,
                  "tolerance of the reference; default: a hundredth of the smallest tolerance")
-      ->check(between(1e-12, 0.1));
+      ->check(config::between(1e-12, 0.1));
   app.add_flag("--quiet", request->quiet, "print errors only");
-  add_options(app, request->flags, [](const OptionSpec& spec) {
+  config::add_options(app, request->flags, [](const config::OptionSpec& spec) {
     return spec.group != "Output" && spec.name != "output-times";
   });
   app.footer(
@@ -214,9 +221,9 @@ Action define_compare(CLI::App& app) {
 
 }  // namespace
 
-Command compare_command() {
-  return {"compare", "compare integrators and linear solvers at equal error", Ranks::starts_them,
-          define_compare};
+drivers::Command compare_command() {
+  return {"compare", "compare integrators and linear solvers at equal error",
+          drivers::Ranks::starts_them, define_compare};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::compare

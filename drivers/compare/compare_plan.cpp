@@ -8,7 +8,7 @@
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::compare {
 namespace {
 
 // The reference is this much tighter than the tightest run, and at least the second.
@@ -21,7 +21,7 @@ void add_new(std::vector<T>& list, const T& item) {
 
 // Empty items do not count.
 std::vector<std::string> words(const char* flag, const std::string& text) {
-  std::vector<std::string> items = split_list(text);
+  std::vector<std::string> items = config::split_list(text);
   items.erase(std::remove(items.begin(), items.end(), ""), items.end());
   if (items.empty()) throw InputError(std::string(flag) + ": at least one is needed");
   return items;
@@ -79,11 +79,12 @@ double ComparePlan::reference() const {
 
 ComparePlan extended_plan(const CompareRequest& request, const ComparePlan* before) {
   ComparePlan plan = before ? *before : ComparePlan{};
-  add_names(integrators(), "--integrators", request.integrators, plan.integrators);
-  add_names(linear_solvers(), "--linear-solvers", request.linear_solvers, plan.linear_solvers);
+  add_names(backends::integrators(), "--integrators", request.integrators, plan.integrators);
+  add_names(backends::linear_solvers(), "--linear-solvers", request.linear_solvers,
+            plan.linear_solvers);
   add_tolerances(request.tolerances, plan.tolerances);
   add_ranks(request.ranks, plan.ranks);
-  if (plan.integrators.empty()) plan.integrators = integrators().names();
+  if (plan.integrators.empty()) plan.integrators = backends::integrators().names();
   if (plan.linear_solvers.empty()) plan.linear_solvers = {"block"};
   if (plan.tolerances.empty()) plan.tolerances = {1e-2, 3e-3, 1e-3};
   if (plan.ranks.empty()) plan.ranks = {1};
@@ -108,7 +109,7 @@ std::string CompareJob::name() const {
 
 // A solver of one rank runs on one, whatever is asked for others.
 static std::vector<int> ranks_for(const std::string& solver, const std::vector<int>& ranks) {
-  return linear_solvers().find(solver).distributed ? ranks : std::vector<int>{1};
+  return backends::linear_solvers().find(solver).distributed ? ranks : std::vector<int>{1};
 }
 
 std::vector<CompareJob> jobs_of(const ComparePlan& plan) {
@@ -122,4 +123,4 @@ std::vector<CompareJob> jobs_of(const ComparePlan& plan) {
   return jobs;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::compare

@@ -7,11 +7,11 @@
 
 #include "drivers/config/configuration.hpp"
 
-namespace traceraft {
+namespace traceraft::compare {
 
 // What the command line says.
 struct CompareRequest {
-  GivenValues flags;
+  config::GivenValues flags;
   std::string config_file;
   std::string out;                             // "" for the first free runs/compare-<case>-N
   std::string references = "runs/references";  // where reference solutions are kept
@@ -56,4 +56,4 @@ struct CompareJob {
 // Repetition by repetition, so that a machine that changes its speed changes it for all.
 std::vector<CompareJob> jobs_of(const ComparePlan& plan);
 
-}  // namespace traceraft
+}  // namespace traceraft::compare

@@ -13,7 +13,7 @@
 #include "kernel/core/text.hpp"
 #include "verification/statistics/sample.hpp"
 
-namespace traceraft {
+namespace traceraft::compare {
 namespace {
 
 using Row = std::vector<std::string>;
@@ -24,13 +24,14 @@ constexpr const char* kHeading[] = {
     "set-ups",          "linear its",    "threads",  "peak MB",   "mass drift", "energy rises"};
 constexpr std::size_t kNames = 4;  // columns that a failure has, too
 
-Row cells(const WorkPoint& p) {
+Row cells(const bench::WorkPoint& p) {
   Row row = {p.integrator, p.linear_solver, std::to_string(p.ranks), format_number(p.tolerance)};
   if (!p.ok()) {
     row.push_back(p.failure);
     return row;
   }
-  const Sample cpu = sample_of(p.cpu_s), wall = sample_of(p.wall_s);
+  const statistics::Sample cpu = statistics::sample_of(p.cpu_s),
+                           wall = statistics::sample_of(p.wall_s);
   row.push_back(formatted("%.2e", p.error));
   row.push_back(formatted("%.2f", cpu.median));
   row.push_back(formatted("%.2f", wall.median) + " (" + formatted("%.2f", wall.min) + " to " +
@@ -44,32 +45,33 @@ Row cells(const WorkPoint& p) {
   return row;
 }
 
-std::vector<Row> table(const std::vector<WorkPoint>& points) {
+std::vector<Row> table(const std::vector<bench::WorkPoint>& points) {
   std::vector<Row> rows = {Row(std::begin(kHeading), std::end(kHeading))};
-  for (const WorkPoint& p : points) rows.push_back(cells(p));
+  for (const bench::WorkPoint& p : points) rows.push_back(cells(p));
   return rows;
 }
 
-Chart work_precision(const std::vector<WorkPoint>& points, const char* clock,
-                     std::vector<double> WorkPoint::*times) {
-  Chart chart;
+bench::Chart work_precision(const std::vector<bench::WorkPoint>& points, const char* clock,
+                            std::vector<double> bench::WorkPoint::*times) {
+  bench::Chart chart;
   chart.title = std::string("Error against ") + clock;
   chart.x_label = std::string(clock) + " (s, median)";
   chart.y_label = "relative error of c at the end";
   chart.log_x = chart.log_y = true;
   std::map<std::string, std::size_t> index;
-  for (const WorkPoint& p : points) {
+  for (const bench::WorkPoint& p : points) {
     if (!p.ok() || !(p.error > 0)) continue;  // no place on a logarithmic axis
     const auto [entry, fresh] = index.emplace(p.method(), chart.series.size());
     if (fresh) chart.series.push_back({p.method(), {}});
-    chart.series[entry->second].points.emplace_back(sample_of(p.*times).median, p.error);
+    chart.series[entry->second].points.emplace_back(statistics::sample_of(p.*times).median,
+                                                    p.error);
   }
   return chart;
 }
 
-std::string compare_csv(const std::vector<WorkPoint>& points) {
+std::string compare_csv(const std::vector<bench::WorkPoint>& points) {
   const auto with_result =
-      std::find_if(points.begin(), points.end(), [](const WorkPoint& p) { return p.ok(); });
+      std::find_if(points.begin(), points.end(), [](const bench::WorkPoint& p) { return p.ok(); });
   Row counts;
   if (with_result != points.end())
     for (const auto& [name, value] : with_result->counts)
@@ -79,16 +81,16 @@ std::string compare_csv(const std::vector<WorkPoint>& points) {
       "cpu_s_high,wall_s,wall_s_low,wall_s_high";
   for (const std::string& name : counts) csv += "," + name;
   csv += "\n";
-  for (const WorkPoint& p : points) {
+  for (const bench::WorkPoint& p : points) {
     csv += p.integrator + "," + p.linear_solver + "," + std::to_string(p.ranks) + "," +
            format_number(p.tolerance) + ",";
     if (!p.ok()) {
-      csv += csv_quoted(p.failure) + std::string(8 + counts.size(), ',') + "\n";
+      csv += text::csv_quoted(p.failure) + std::string(8 + counts.size(), ',') + "\n";
       continue;
     }
     csv += "," + format_number(p.error) + "," + std::to_string(p.wall_s.size());
     for (const auto& times : {p.cpu_s, p.wall_s}) {
-      const Sample spread = sample_of(times);
+      const statistics::Sample spread = statistics::sample_of(times);
       for (const double value : {spread.median, spread.min, spread.max})
         csv += "," + format_number(value);
     }
@@ -100,7 +102,7 @@ std::string compare_csv(const std::vector<WorkPoint>& points) {
 
 }  // namespace
 
-void print_points(const std::vector<WorkPoint>& points) {
+void print_points(const std::vector<bench::WorkPoint>& points) {
   const std::vector<Row> rows = table(points);
   std::vector<std::size_t> width(std::size(kHeading), 0);
   for (const Row& row : rows)
@@ -108,26 +110,26 @@ void print_points(const std::vector<WorkPoint>& points) {
       if (row.size() == width.size()) width[k] = std::max(width[k], row[k].size());
   for (const Row& row : rows) {
     for (std::size_t k = 0; k < row.size(); ++k)
-      say("  %*s", static_cast<int>(row.size() == width.size() || k < kNames ? width[k] : 0),
-          row[k]);
-    say("\n");
+      text::say("  %*s", static_cast<int>(row.size() == width.size() || k < kNames ? width[k] : 0),
+                row[k]);
+    text::say("\n");
   }
 }
 
-void write_report(const ComparisonFolder& folder, const std::vector<WorkPoint>& points,
-                  const Recommendation& advice, const std::vector<std::string>& about) {
-  write_durably(folder.path() / "compare.csv", compare_csv(points));
-  Page page("Integrators and linear solvers compared");
+void write_report(const ComparisonFolder& folder, const std::vector<bench::WorkPoint>& points,
+                  const bench::Recommendation& advice, const std::vector<std::string>& about) {
+  posix::write_durably(folder.path() / "compare.csv", compare_csv(points));
+  output::Page page("Integrators and linear solvers compared");
   page.paragraph(advice.sentence);
   for (const std::string& line : about) page.paragraph(line);
   std::string missing;
   for (const auto& [name, clock, times] :
-       {std::tuple("error-wall", "wall time", &WorkPoint::wall_s),
-        std::tuple("error-cpu", "CPU time", &WorkPoint::cpu_s)}) {
-    const Chart chart = work_precision(points, clock, times);
+       {std::tuple("error-wall", "wall time", &bench::WorkPoint::wall_s),
+        std::tuple("error-cpu", "CPU time", &bench::WorkPoint::cpu_s)}) {
+    const bench::Chart chart = work_precision(points, clock, times);
     if (chart.series.empty()) continue;
     try {
-      const std::string svg = draw_chart(chart, folder.path() / name);
+      const std::string svg = output::draw_chart(chart, folder.path() / name);
       if (svg.empty()) missing = "gnuplot is not installed (Debian package gnuplot-nox)";
       if (!svg.empty())
         page.figure(svg, "Each mark is one tolerance. Marks at the lower left are better.");
@@ -138,7 +140,7 @@ void write_report(const ComparisonFolder& folder, const std::vector<WorkPoint>& 
   if (!missing.empty()) page.paragraph("Missing charts: " + missing + ".");
   page.heading("All runs");
   page.table(table(points));
-  write_durably(folder.path() / "compare.html", page.html());
+  posix::write_durably(folder.path() / "compare.html", page.html());
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::compare

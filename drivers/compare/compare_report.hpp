@@ -6,13 +6,13 @@
 
 #include "drivers/compare/comparison.hpp"
 
-namespace traceraft {
+namespace traceraft::compare {
 
-void print_points(const std::vector<WorkPoint>& points);
+void print_points(const std::vector<bench::WorkPoint>& points);
 
 // Writes compare.csv and compare.html with its charts into the folder. `about` says what was
 // compared with what.
-void write_report(const ComparisonFolder& folder, const std::vector<WorkPoint>& points,
-                  const Recommendation& advice, const std::vector<std::string>& about);
+void write_report(const ComparisonFolder& folder, const std::vector<bench::WorkPoint>& points,
+                  const bench::Recommendation& advice, const std::vector<std::string>& about);
 
-}  // namespace traceraft
+}  // namespace traceraft::compare

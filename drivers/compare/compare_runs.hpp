@@ -6,12 +6,12 @@
 
 #include "drivers/compare/comparison.hpp"
 
-namespace traceraft {
+namespace traceraft::compare {
 
 // A run of the same problem at a tolerance that makes its error negligible. The same one serves all
 // comparisons of the same runs: its folder is named by its options and its initial state.
 struct Reference {
-  GivenValues options;  // in which it differs from the comparison's configuration
+  config::GivenValues options;  // in which it differs from the comparison's configuration
   std::filesystem::path folder;
 };
 inline constexpr const char* kReferenceLinearTolerance = "1e-4";
@@ -27,4 +27,4 @@ enum class WorkEnd { done, stopped, reference_failed };
 WorkEnd run_comparison(const ComparePlan& plan, const ComparisonFolder& folder,
                        const Reference& reference, bool quiet, std::string& why);
 
-}  // namespace traceraft
+}  // namespace traceraft::compare

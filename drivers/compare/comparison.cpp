@@ -9,7 +9,7 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 
-namespace traceraft {
+namespace traceraft::compare {
 namespace {
 
 // What the table takes from the summary of a run.
@@ -21,7 +21,7 @@ constexpr const char* kCounts[] = {"steps",         "rejected",
                                    "mass_drift",    "energy_rises",
                                    "ranks",         "threads"};
 
-double relative_error(const DaeProblem& problem, const Vec& c, VecView reference) {
+double relative_error(const problem::DaeProblem& problem, const Vec& c, VecView reference) {
   Vec difference = Vec::Zero(problem.size()), exact = difference;
   difference.head(c.size()) = c - reference;
   exact.head(c.size()) = reference;
@@ -32,36 +32,39 @@ double relative_error(const DaeProblem& problem, const Vec& c, VecView reference
 
 template <class Members>
 void describe(Members& members, ComparePlan& plan) {
-  members("integrators", plan.integrators, Distinct{OneOf{"integrator", integrators().names()}});
+  members("integrators", plan.integrators,
+          input::Distinct{input::OneOf{"integrator", backends::integrators().names()}});
   members("linear_solvers", plan.linear_solvers,
-          Distinct{OneOf{"linear solver", linear_solvers().names()}});
-  members("tolerances", plan.tolerances, Distinct{WithinRange{kLeastTolerance, kLargestTolerance}});
-  members("ranks", plan.ranks, Distinct{WithinRange{1, kMostRanks}});
-  members("repeat", plan.repeat, WithinRange{1, kMostRepetitions});
-  members("reference_tolerance", plan.reference_tolerance, WithinRange{0, kLargestTolerance});
-  members("time_limit", plan.time_limit, WithinRange{0, kAnyNumber});
-  members("target_error", plan.target_error, WithinRange{0, kAnyNumber});
-  members("initial_state", plan.initial_state, WithinRange{0, 0xFFFFFFFF});
-  members("program", plan.program, AnyText{});
+          input::Distinct{input::OneOf{"linear solver", backends::linear_solvers().names()}});
+  members("tolerances", plan.tolerances,
+          input::Distinct{input::WithinRange{kLeastTolerance, kLargestTolerance}});
+  members("ranks", plan.ranks, input::Distinct{input::WithinRange{1, kMostRanks}});
+  members("repeat", plan.repeat, input::WithinRange{1, kMostRepetitions});
+  members("reference_tolerance", plan.reference_tolerance,
+          input::WithinRange{0, kLargestTolerance});
+  members("time_limit", plan.time_limit, input::WithinRange{0, input::kAnyNumber});
+  members("target_error", plan.target_error, input::WithinRange{0, input::kAnyNumber});
+  members("initial_state", plan.initial_state, input::WithinRange{0, 0xFFFFFFFF});
+  members("program", plan.program, input::AnyText{});
 }
 
 template <class Members>
 void describe(Members& members, ComparisonFolder::Record& record) {
-  members("failure", record.failure, AnyText{});
-  members("time_limit", record.time_limit, WithinRange{0, kAnyNumber});
+  members("failure", record.failure, input::AnyText{});
+  members("time_limit", record.time_limit, input::WithinRange{0, input::kAnyNumber});
 }
 
 void ComparisonFolder::save(const ComparePlan& plan) const {
-  write_durably(plan_file(), object_of(plan).dump(2) + "\n");
+  posix::write_durably(plan_file(), input::object_of(plan).dump(2) + "\n");
 }
 
 ComparePlan ComparisonFolder::load() const {
-  const bool of_comparison = from_json(plan_file(), [](const Json& json) {
+  const bool of_comparison = input::from_json(plan_file(), [](const input::Json& json) {
     return !json.is_object() || json.contains("integrators");  // else a plan of another command
   });
   if (!of_comparison)
     throw InputError(path_.string() + " holds the plan of another command, not a comparison");
-  return read_object<ComparePlan>(plan_file());
+  return input::read_object<ComparePlan>(plan_file());
 }
 
 std::filesystem::path ComparisonFolder::run_of(const CompareJob& job) const {
@@ -75,12 +78,12 @@ std::filesystem::path ComparisonFolder::record_of(const CompareJob& job) const {
 }
 
 void ComparisonFolder::record(const CompareJob& job, const Record& record) const {
-  write_durably(record_of(job), object_of(record).dump() + "\n");
+  posix::write_durably(record_of(job), input::object_of(record).dump() + "\n");
 }
 
 std::optional<ComparisonFolder::Record> ComparisonFolder::recorded(const CompareJob& job) const {
   if (!std::filesystem::exists(record_of(job))) return std::nullopt;
-  return read_object<Record>(record_of(job));
+  return input::read_object<Record>(record_of(job));
 }
 
 bool ComparisonFolder::done(const CompareJob& job, const ComparePlan& plan) const {
@@ -97,8 +100,8 @@ bool ComparisonFolder::done(const CompareJob& job, const ComparePlan& plan) cons
   return record && settled(*record);
 }
 
-void ComparisonFolder::add(const CompareJob& job, const DaeProblem& problem, VecView reference,
-                           WorkPoint& point) const {
+void ComparisonFolder::add(const CompareJob& job, const problem::DaeProblem& problem,
+                           VecView reference, bench::WorkPoint& point) const {
   const auto record = recorded(job);
   if (!record) return;
   if (!record->failure.empty()) {
@@ -106,7 +109,7 @@ void ComparisonFolder::add(const CompareJob& job, const DaeProblem& problem, Vec
     if (point.wall_s.empty()) point.failure = record->failure;
     return;
   }
-  from_json(run_of(job) / "summary.json", [&](const Json& summary) {
+  input::from_json(run_of(job) / "summary.json", [&](const input::Json& summary) {
     point.cpu_s.push_back(summary.at("cpu_s"));
     point.wall_s.push_back(summary.at("wall_s"));
     if (point.wall_s.size() == 1)
@@ -116,14 +119,16 @@ void ComparisonFolder::add(const CompareJob& job, const DaeProblem& problem, Vec
   point.failure.clear();
   if (point.wall_s.size() > 1) return;
   point.error = relative_error(
-      problem, concentration_at_end(run_of(job), static_cast<int>(reference.size())), reference);
+      problem, run::concentration_at_end(run_of(job), static_cast<int>(reference.size())),
+      reference);
 }
 
-std::vector<WorkPoint> ComparisonFolder::points(const ComparePlan& plan, const DaeProblem& problem,
-                                                VecView reference) const {
-  std::vector<WorkPoint> points;
+std::vector<bench::WorkPoint> ComparisonFolder::points(const ComparePlan& plan,
+                                                       const problem::DaeProblem& problem,
+                                                       VecView reference) const {
+  std::vector<bench::WorkPoint> points;
   for (const CompareJob& job : jobs_of(plan)) {
-    const auto same = [&](const WorkPoint& p) {
+    const auto same = [&](const bench::WorkPoint& p) {
       return p.integrator == job.integrator && p.linear_solver == job.linear_solver &&
              p.tolerance == job.tolerance && p.ranks == job.ranks;
     };
@@ -142,10 +147,10 @@ std::vector<WorkPoint> ComparisonFolder::points(const ComparePlan& plan, const D
     }
     add(job, problem, reference, *point);
   }
-  for (WorkPoint& point : points)
+  for (bench::WorkPoint& point : points)
     if (point.ok() && !std::isfinite(point.error))
       point.failure = "its error is not a number: the reference is zero";
   return points;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::compare

@@ -10,7 +10,7 @@
 #include "kernel/problem/dae_problem.hpp"
 #include "verification/bench/work_precision.hpp"
 
-namespace traceraft {
+namespace traceraft::compare {
 
 class ComparisonFolder {
  public:
@@ -37,17 +37,17 @@ class ComparisonFolder {
 
   // What the recorded jobs gave: a point per combination, in the order of the plan. Errors are
   // against the concentration of the reference.
-  std::vector<WorkPoint> points(const ComparePlan& plan, const DaeProblem& problem,
-                                VecView reference) const;
+  std::vector<bench::WorkPoint> points(const ComparePlan& plan, const problem::DaeProblem& problem,
+                                       VecView reference) const;
 
  private:
   std::filesystem::path plan_file() const { return path_ / "plan.json"; }
   std::filesystem::path record_of(const CompareJob& job) const;
   std::optional<Record> recorded(const CompareJob& job) const;
-  void add(const CompareJob& job, const DaeProblem& problem, VecView reference,
-           WorkPoint& point) const;
+  void add(const CompareJob& job, const problem::DaeProblem& problem, VecView reference,
+           bench::WorkPoint& point) const;
 
   std::filesystem::path path_;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::compare

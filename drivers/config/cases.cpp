@@ -1,6 +1,6 @@
 #include "drivers/config/cases.hpp"
 
-namespace traceraft {
+namespace traceraft::config {
 
 // The two vesicle cases are those of Zhiliakov, Wang, Quaini, Olshanskii, Majd, BBA Biomembranes
 // 1863 (2021) 183446: noise on a mesh two refinements coarser, as in the authors' parameter files.
@@ -34,4 +34,4 @@ const NamedList<CaseEntry>& cases() {
   return list;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::config

@@ -7,7 +7,7 @@
 
 #include "kernel/core/named_list.hpp"
 
-namespace traceraft {
+namespace traceraft::config {
 
 struct CaseEntry {
   std::string name;
@@ -18,4 +18,4 @@ struct CaseEntry {
 
 const NamedList<CaseEntry>& cases();
 
-}  // namespace traceraft
+}  // namespace traceraft::config

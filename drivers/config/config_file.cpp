@@ -8,7 +8,7 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 
-namespace traceraft {
+namespace traceraft::config {
 namespace {
 
 std::string number_text(const TomlTable& table, const std::string& key, const std::string& where) {
@@ -116,7 +116,7 @@ std::string flags_text(const Configuration& configuration) {
     if (spec.kind == OptionKind::flag)
       text += (configuration.text(spec.name) == "true" ? "" : "no-") + spec.name;
     else
-      text += spec.name + " " + in_shell(configuration.text(spec.name));
+      text += spec.name + " " + text::in_shell(configuration.text(spec.name));
   }
   return text;
 }
@@ -128,4 +128,4 @@ std::string numerical_identity(const Configuration& configuration) {
   return identity;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::config

@@ -7,7 +7,7 @@
 
 #include "drivers/config/configuration.hpp"
 
-namespace traceraft {
+namespace traceraft::config {
 
 // An empty path: no file, no values. Throws InputError with file and line for anything that is no
 // flat TOML table of known options. `flag`: that names the file.
@@ -27,4 +27,4 @@ std::string flags_text(const Configuration& configuration);
 // The options that decide the numbers of a run, in a normal form: equal text, equal run.
 std::string numerical_identity(const Configuration& configuration);
 
-}  // namespace traceraft
+}  // namespace traceraft::config

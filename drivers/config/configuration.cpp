@@ -13,7 +13,7 @@
 #include "kernel/core/parameters.hpp"
 #include "kernel/mesh/cube_mesh.hpp"
 
-namespace traceraft {
+namespace traceraft::config {
 namespace {
 
 bool parse_flag(const GivenValue& value) {
@@ -98,8 +98,8 @@ Configuration::Configuration(const GivenValues& file, const GivenValues& flags) 
     const GivenValue* value = find_given(file, flags, name);
     set(run_option(name), value ? *value : GivenValue{defaults[name], std::string("--") + name});
   }
-  const Units scaled_units = units();
-  Units physical = scaled_units;
+  const physics::Units scaled_units = units();
+  physics::Units physical = scaled_units;
   physical.scaled = false;
   for (const OptionSpec& spec : run_options()) {
     if (const GivenValue* value = find_given(file, flags, spec.name)) {
@@ -115,7 +115,7 @@ Configuration::Configuration(const GivenValues& file, const GivenValues& flags) 
     set(spec, {text, "--" + spec.name});
   }
   if (!given(&RunOptions::tolerance))
-    for (const IntegratorEntry& integrator : integrators())
+    for (const backends::IntegratorEntry& integrator : backends::integrators())
       if (integrator.name == options_.integrator)
         set_text(run_option(&RunOptions::tolerance), format_number(integrator.tolerance));
   // A case's choice is for its own mesh.
@@ -133,13 +133,13 @@ std::int64_t Configuration::noise_cells() const {
 }
 
 double Configuration::noise_length() const {
-  return CubeMesh{noise_cells()}.h() * units().length();
+  return mesh::CubeMesh{noise_cells()}.h() * units().length();
 }
 
 void Configuration::set(const OptionSpec& spec, const GivenValue& value) {
   double unit = 1;
   if (spec.dimension != Dimension::none && options_.scaled) {
-    Units physical = units();
+    physics::Units physical = units();
     physical.scaled = false;
     unit = spec.dimension == Dimension::length ? physical.length() : physical.time();
   }
@@ -149,7 +149,7 @@ void Configuration::set(const OptionSpec& spec, const GivenValue& value) {
       for (const char ch : value.text)
         if (static_cast<unsigned char>(ch) < 32 || ch == 127)
           throw InputError(value.where + ": the text contains a control character");
-      if (!is_utf8(value.text)) throw InputError(value.where + ": the text is not UTF-8");
+      if (!text::is_utf8(value.text)) throw InputError(value.where + ": the text is not UTF-8");
       break;
     case OptionKind::flag:
       parse_flag(value);
@@ -199,8 +199,8 @@ std::vector<double> Configuration::numbers(const OptionSpec& spec) const {
   return result;
 }
 
-Units Configuration::units() const {
+physics::Units Configuration::units() const {
   return {options_.radius, options_.diffusion, options_.scaled};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::config

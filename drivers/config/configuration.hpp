@@ -9,7 +9,7 @@
 #include "drivers/config/options.hpp"
 #include "kernel/physics/units.hpp"
 
-namespace traceraft {
+namespace traceraft::config {
 
 // One source of values: option name -> text and the place it came from, for error messages.
 struct GivenValue {
@@ -44,7 +44,7 @@ class Configuration {
   bool from_flag(const std::string& name) const;
   bool from_flag(const OptionMember& m) const { return from_flag(run_option(m).name); }
 
-  Units units() const;
+  physics::Units units() const;
   std::int64_t noise_cells() const;  // with 0 resolved
   double noise_length() const;       // of its mesh, um
 
@@ -57,4 +57,4 @@ class Configuration {
   std::set<std::string> given_;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::config

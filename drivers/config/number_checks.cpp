@@ -6,7 +6,7 @@
 
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::config {
 namespace {
 
 std::string as_number(double value) {
@@ -66,4 +66,4 @@ void check_numbers_first(CLI::App& command) {
   }
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::config

@@ -3,7 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace traceraft {
+namespace traceraft::config {
 
 CLI::Validator between(double low, double high);  // both ends are allowed
 CLI::Validator at_least(double low);
@@ -14,4 +14,4 @@ CLI::Validator positive();
 // range where a whole number is asked for.
 void check_numbers_first(CLI::App& command);
 
-}  // namespace traceraft
+}  // namespace traceraft::config

@@ -6,7 +6,7 @@
 
 #include "drivers/config/configuration.hpp"
 
-namespace traceraft {
+namespace traceraft::config {
 
 // Between the lists of a flag that is given more than once; no argument contains it.
 inline constexpr char kBetweenFlags = '\n';
@@ -42,4 +42,4 @@ void add_options(CLI::App& command, GivenValues& values, const Wanted& wanted,
   }
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::config

@@ -8,7 +8,7 @@
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::config {
 namespace {
 
 struct OptionNeed {
@@ -24,11 +24,11 @@ std::vector<OptionNeed> all_needs() {
       {"noise-cells", "initial", {"noise"}},
       {"keep", "integrator", {"euler"}},
   };
-  for (const IntegratorEntry& integrator : integrators())
+  for (const backends::IntegratorEntry& integrator : backends::integrators())
     for (const ParameterSpec& parameter : integrator.parameters)
       needs.push_back({integrator_option(integrator, parameter), "integrator", {integrator.name}});
-  for (const LinearSolverEntry& solver : linear_solvers())
-    for (const WordOption& option : solver.options)
+  for (const backends::LinearSolverEntry& solver : backends::linear_solvers())
+    for (const backends::WordOption& option : solver.options)
       needs.push_back({linear_solver_option(solver, option), "linear-solver", {solver.name}});
   return needs;
 }
@@ -67,4 +67,4 @@ void refuse_idle_options(const Configuration& configuration, const Compared& com
   }
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::config

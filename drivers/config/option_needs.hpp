@@ -7,7 +7,7 @@
 
 #include "drivers/config/configuration.hpp"
 
-namespace traceraft {
+namespace traceraft::config {
 
 // Where runs are compared, all that some option chooses in them.
 using Compared = std::map<std::string, std::vector<std::string>>;
@@ -19,4 +19,4 @@ bool is_idle(const Configuration& configuration, const std::string& option);
 // Throws InputError.
 void refuse_idle_options(const Configuration& configuration, const Compared& compared = {});
 
-}  // namespace traceraft
+}  // namespace traceraft::config

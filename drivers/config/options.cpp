@@ -8,7 +8,7 @@
 #include "kernel/core/named_list.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::config {
 
 namespace {
 
@@ -19,7 +19,7 @@ OptionKind kind_of(const OptionMember& member) {
   return kinds[member.index()];
 }
 
-OptionSpec spec_of(const IntegratorEntry& integrator, const ParameterSpec& p) {
+OptionSpec spec_of(const backends::IntegratorEntry& integrator, const ParameterSpec& p) {
   OptionSpec spec;
   spec.name = integrator_option(integrator, p);
   spec.kind = p.integer ? OptionKind::integer : OptionKind::number;
@@ -33,7 +33,7 @@ OptionSpec spec_of(const IntegratorEntry& integrator, const ParameterSpec& p) {
   return spec;
 }
 
-OptionSpec spec_of(const LinearSolverEntry& solver, const WordOption& o) {
+OptionSpec spec_of(const backends::LinearSolverEntry& solver, const backends::WordOption& o) {
   OptionSpec spec;
   spec.name = linear_solver_option(solver, o);
   spec.kind = o.file ? OptionKind::path : OptionKind::text;
@@ -95,21 +95,23 @@ void set_placeholder(OptionSpec& spec) {
 // After the general options, those that only one integrator or linear solver has.
 std::vector<OptionSpec> with_own_options(std::vector<OptionSpec> table) {
   for (OptionSpec& spec : table) spec.kind = kind_of(spec.member);
-  for (const IntegratorEntry& integrator : integrators())
+  for (const backends::IntegratorEntry& integrator : backends::integrators())
     for (const ParameterSpec& p : integrator.parameters) table.push_back(spec_of(integrator, p));
-  for (const LinearSolverEntry& solver : linear_solvers())
-    for (const WordOption& o : solver.options) table.push_back(spec_of(solver, o));
+  for (const backends::LinearSolverEntry& solver : backends::linear_solvers())
+    for (const backends::WordOption& o : solver.options) table.push_back(spec_of(solver, o));
   for (OptionSpec& spec : table) set_placeholder(spec);
   return table;
 }
 
 }  // namespace
 
-std::string integrator_option(const IntegratorEntry& integrator, const ParameterSpec& parameter) {
+std::string integrator_option(const backends::IntegratorEntry& integrator,
+                              const ParameterSpec& parameter) {
   return integrator.name + "-" + parameter.name;
 }
 
-std::string linear_solver_option(const LinearSolverEntry& solver, const WordOption& option) {
+std::string linear_solver_option(const backends::LinearSolverEntry& solver,
+                                 const backends::WordOption& option) {
   return solver.name + "-" + option.name;
 }
 
@@ -223,4 +225,4 @@ const OptionSpec& run_option(const OptionMember& member) {
   throw std::logic_error("an option that is not in the list");
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::config

@@ -8,6 +8,15 @@
 #include <vector>
 
 namespace traceraft {
+struct ParameterSpec;
+}
+namespace traceraft::backends {
+struct IntegratorEntry;
+struct LinearSolverEntry;
+struct WordOption;
+}  // namespace traceraft::backends
+
+namespace traceraft::config {
 
 enum class OptionKind { text, path, number, integer, flag, numbers /* comma-separated */ };
 
@@ -73,18 +82,16 @@ struct OptionSpec {
   std::vector<std::string> words = {};  // the only texts it takes, if they are a few
 };
 
-struct IntegratorEntry;
-struct LinearSolverEntry;
-struct ParameterSpec;
-struct WordOption;
 // "ida-maxord": the name of an option that one integrator has.
-std::string integrator_option(const IntegratorEntry& integrator, const ParameterSpec& parameter);
+std::string integrator_option(const backends::IntegratorEntry& integrator,
+                              const ParameterSpec& parameter);
 // "teko-inverse": the name of an option that one linear solver has.
-std::string linear_solver_option(const LinearSolverEntry& solver, const WordOption& option);
+std::string linear_solver_option(const backends::LinearSolverEntry& solver,
+                                 const backends::WordOption& option);
 
 const std::vector<OptionSpec>& run_options();
 const OptionSpec& run_option(const std::string& name);  // throws InputError
 const OptionSpec& run_option(const OptionMember& member);
 std::vector<std::string> run_option_names();
 
-}  // namespace traceraft
+}  // namespace traceraft::config

@@ -4,7 +4,7 @@
 
 #include "drivers/config/options.hpp"
 
-namespace traceraft {
+namespace traceraft::config {
 namespace {
 
 bool may_be_empty(const CLI::Option& option) {
@@ -27,4 +27,4 @@ void refuse_empty_texts(CLI::App& command) {
     if (option->get_expected_max() > 0 && !may_be_empty(*option)) option->check(filled);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::config

@@ -4,10 +4,10 @@
 
 #include <CLI/CLI.hpp>
 
-namespace traceraft {
+namespace traceraft::config {
 
 // Every option of the command that takes a value refuses "", unless it is one of a run for which
 // that means something (--effect "": none).
 void refuse_empty_texts(CLI::App& command);
 
-}  // namespace traceraft
+}  // namespace traceraft::config

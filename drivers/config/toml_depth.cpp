@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-namespace traceraft {
+namespace traceraft::config {
 namespace {
 
 // The end of what is in quotes from `begin` on. One that is not closed ends with its line, or, if
@@ -52,4 +52,4 @@ long line_of_deep_key(const std::string& text) {
   return 0;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::config

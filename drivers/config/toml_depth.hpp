@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace traceraft {
+namespace traceraft::config {
 
 // Parts of a key such as a.b.c; toml++ calls itself for each when it lets go of their tables, and
 // has a limit of its own for nested brackets alone.
@@ -12,4 +12,4 @@ inline constexpr int kMostKeyParts = 32;
 // The line of the first key with more parts; 0 if there is none. Texts and remarks do not count.
 long line_of_deep_key(const std::string& text);
 
-}  // namespace traceraft
+}  // namespace traceraft::config

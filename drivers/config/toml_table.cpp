@@ -9,7 +9,7 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/named_list.hpp"
 
-namespace traceraft {
+namespace traceraft::config {
 namespace {
 
 constexpr std::uint64_t kLargestConfiguration = 1 << 20;
@@ -17,7 +17,7 @@ constexpr std::uint64_t kLargestConfiguration = 1 << 20;
 std::string read_text(const std::filesystem::path& path, const std::string& context) {
   std::string text;
   try {
-    text = read_file(path, kLargestConfiguration);
+    text = posix::read_file(path, kLargestConfiguration);
   } catch (const IoError& error) {
     throw InputError(context + error.what());
   }
@@ -128,4 +128,4 @@ double TomlTable::number_or(const std::string& key, double otherwise) const {
   return has(key) ? number(key) : otherwise;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::config

@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-namespace traceraft {
+namespace traceraft::config {
 
 using TomlValue =
     std::variant<std::string, bool, std::int64_t, double, std::vector<double>, std::monostate>;
@@ -44,4 +44,4 @@ class TomlTable {
   std::map<std::string, Entry> entries_;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::config

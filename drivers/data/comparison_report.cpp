@@ -13,12 +13,12 @@
 #include "kernel/core/text.hpp"
 #include "verification/observations/raft_fraction.hpp"
 
-namespace traceraft {
+namespace traceraft::data {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string about(const PublishedFacts& facts) {
+std::string about(const observations::PublishedFacts& facts) {
   std::string text =
       "Published (" + facts.origin +
       formatted("): raft fraction %.3g +- %.2g, %d measurements of %d vesicles.", facts.fraction,
@@ -30,52 +30,56 @@ std::string about(const PublishedFacts& facts) {
   return text;
 }
 
-void refuse_other_membrane(const MeasuredVesicles& data, const PublishedFacts& facts) {
-  if (data.composition.empty() || same_membrane(data.composition, facts.composition)) return;
+void refuse_other_membrane(const observations::MeasuredVesicles& data,
+                           const observations::PublishedFacts& facts) {
+  if (data.composition.empty() || observations::same_membrane(data.composition, facts.composition))
+    return;
   throw InputError("--facts: their membrane is " + facts.composition +
                    ", but that of the measurements is " + data.composition);
 }
 
 class ComparisonReport {
  public:
-  ComparisonReport(const MeasuredVesicles& data, const ComparisonRequest& request)
+  ComparisonReport(const observations::MeasuredVesicles& data, const ComparisonRequest& request)
       : data_(data),
         request_(request),
         model_(model_of(request.ensemble)),
         ensemble_(runs_of(request.ensemble)),
         runs_(ensemble_.histories),
-        agreements_(compare_with_runs(data, runs_)),
+        agreements_(observations::compare_with_runs(data, runs_)),
         notes_(notes()),
-        summary_(summarise(runs_)),
-        measured_(fit_measurements(data, request.window)),
-        simulated_(fit_runs(runs_, summary_.times, request.window)) {}
+        summary_(ensemble::summarise(runs_)),
+        measured_(observations::fit_measurements(data, request.window)),
+        simulated_(observations::fit_runs(runs_, summary_.times, request.window)) {}
 
   void write() {
     fs::create_directories(request_.out);
-    write_durably(
+    posix::write_durably(
         request_.out / "comparison.json",
-        Json{{"runs", runs_.size()}, {"missing_runs", ensemble_.missing}, {"data", data_.name}}
-                .dump(2, ' ', false, Json::error_handler_t::replace) +
+        input::Json{
+            {"runs", runs_.size()}, {"missing_runs", ensemble_.missing}, {"data", data_.name}}
+                .dump(2, ' ', false, input::Json::error_handler_t::replace) +
             "\n");
-    write_durably(request_.out / "comparison.csv", csv_text(agreement_table(agreements_)));
-    write_durably(request_.out / "comparison.html", page().html());
+    posix::write_durably(request_.out / "comparison.csv",
+                         output::csv_text(agreement_table(agreements_)));
+    posix::write_durably(request_.out / "comparison.html", page().html());
   }
 
   void print() const {
-    say("%s\n\n", about_data(data_));
-    print_rows(agreement_rows(agreements_));
-    say("%s\n\npower laws from %g to %g s\n", about_agreement(runs_.size()), request_.window.begin,
-        request_.window.end);
-    print_rows(laws());
-    for (const std::string& remark : remarks()) say("%s\n", remark);
-    for (const std::string& note : notes_) say("\n%s\n", note);
-    say("\nopen next: %s\n", (request_.out / "comparison.html"));
-    if (!missing_.text().empty()) say("missing from the page: %s\n", missing_.text());
+    text::say("%s\n\n", about_data(data_));
+    output::print_rows(agreement_rows(agreements_));
+    text::say("%s\n\npower laws from %g to %g s\n", about_agreement(runs_.size()),
+              request_.window.begin, request_.window.end);
+    output::print_rows(laws());
+    for (const std::string& remark : remarks()) text::say("%s\n", remark);
+    for (const std::string& note : notes_) text::say("\n%s\n", note);
+    text::say("\nopen next: %s\n", (request_.out / "comparison.html"));
+    if (!missing_.text().empty()) text::say("missing from the page: %s\n", missing_.text());
   }
 
  private:
-  Page page() {
-    Page page("Measured and simulated vesicles");
+  output::Page page() {
+    output::Page page("Measured and simulated vesicles");
     page.paragraph(about_data(data_) + ".");
     if (request_.facts) page.paragraph(about(*request_.facts));
     page.paragraph(std::to_string(runs_.size()) + " runs in " + request_.ensemble.string() + ". " +
@@ -86,17 +90,19 @@ class ComparisonReport {
                              request_.window.end));
     page.table(laws());
     for (const std::string& remark : remarks()) page.paragraph(remark);
-    for (const Quantity quantity : kQuantities)
-      add_chart(page, chart_of(quantity),
-                request_.out / (std::string("comparison-") + name_of(quantity).id), missing_);
-    add_settings(page, model_);
-    add_provenance(page, request_.ensemble, request_.command);
+    for (const observations::Quantity quantity : observations::kQuantities)
+      output::add_chart(
+          page, chart_of(quantity),
+          request_.out / (std::string("comparison-") + observations::name_of(quantity).id),
+          missing_);
+    output::add_settings(page, model_);
+    output::add_provenance(page, request_.ensemble, request_.command);
     return page;
   }
 
-  std::vector<Row> laws() const {
-    std::vector<Row> rows = {law_heading(), law_row(origin_of(data_), measured_),
-                             law_row("simulated", simulated_)};
+  std::vector<output::Row> laws() const {
+    std::vector<output::Row> rows = {law_heading(), law_row(origin_of(data_), measured_),
+                                     law_row("simulated", simulated_)};
     if (request_.facts) rows.push_back(law_row(*request_.facts));
     return rows;
   }
@@ -104,7 +110,7 @@ class ComparisonReport {
   std::vector<std::string> notes() const {
     std::vector<std::string> notes;
     if (!ensemble_.missing.empty()) notes.push_back(ensemble_.missing);
-    if (const std::string other = other_membrane(data_.composition, model_); !other.empty())
+    if (const std::string other = input::other_membrane(data_.composition, model_); !other.empty())
       notes.push_back("ANOTHER MEMBRANE: the simulated membrane is " + other + ".");
     for (const std::string& note : cautions(data_, model_.units().length(), runs_, agreements_))
       notes.push_back(note);
@@ -122,10 +128,10 @@ class ComparisonReport {
     return remarks;
   }
 
-  Chart chart_of(Quantity quantity) const {
-    const Window& window = request_.window;
-    Chart chart = comparison_chart(data_, summary_, quantity);
-    if (quantity != Quantity::perimeter) return chart;
+  bench::Chart chart_of(observations::Quantity quantity) const {
+    const statistics::Window& window = request_.window;
+    bench::Chart chart = comparison_chart(data_, summary_, quantity);
+    if (quantity != observations::Quantity::perimeter) return chart;
     if (measured_)
       chart.series.push_back(law_curve("law of the measurements", measured_->law, window));
     if (simulated_)
@@ -136,26 +142,27 @@ class ComparisonReport {
     return chart;
   }
 
-  const MeasuredVesicles& data_;
+  const observations::MeasuredVesicles& data_;
   const ComparisonRequest& request_;
-  Configuration model_;
+  config::Configuration model_;
   const EnsembleRuns ensemble_;
-  const std::vector<History>& runs_;
-  std::vector<Agreement> agreements_;
+  const std::vector<observations::History>& runs_;
+  std::vector<observations::Agreement> agreements_;
   const std::vector<std::string> notes_;
-  EnsembleSummary summary_;
-  std::optional<FittedLaw> measured_, simulated_;
-  Missing missing_;  // of the charts
+  ensemble::EnsembleSummary summary_;
+  std::optional<observations::FittedLaw> measured_, simulated_;
+  output::Missing missing_;  // of the charts
 };
 
 }  // namespace
 
-int compare_with_ensemble(const MeasuredVesicles& data, const ComparisonRequest& request) {
+int compare_with_ensemble(const observations::MeasuredVesicles& data,
+                          const ComparisonRequest& request) {
   if (request.facts) refuse_other_membrane(data, *request.facts);
   ComparisonReport report(data, request);
   report.write();
   if (!request.quiet) report.print();
-  return kSuccess;
+  return drivers::kSuccess;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::data

@@ -18,7 +18,7 @@
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::data {
 namespace {
 
 namespace fs = std::filesystem;
@@ -29,10 +29,11 @@ struct DataRequest {
   bool quiet = false;
 };
 
-Window window_of(const std::string& text) {
-  const std::vector<std::string> ends = split_list(text);
+statistics::Window window_of(const std::string& text) {
+  const std::vector<std::string> ends = config::split_list(text);
   if (ends.size() != 2) throw InputError("--window: two times are needed, as in 100,1000");
-  const Window window{parse_number("--window", ends[0]), parse_number("--window", ends[1])};
+  const statistics::Window window{parse_number("--window", ends[0]),
+                                  parse_number("--window", ends[1])};
   if (!(window.begin >= 0)) throw InputError("--window: a time cannot be negative");
   if (!(window.end > window.begin))
     throw InputError("--window: the second time must be later than the first");
@@ -40,15 +41,15 @@ Window window_of(const std::string& text) {
 }
 
 int check(const DataRequest& request) {
-  if (holds_fields(request.folder)) {
-    const FieldDataset fields = read_field_dataset(request.folder);
+  if (input::holds_fields(request.folder)) {
+    const input::FieldDataset fields = input::read_field_dataset(request.folder);
     if (!request.quiet) print_fields(request.folder, fields);
-    if (!holds_series(request.folder)) return kSuccess;
+    if (!input::holds_series(request.folder)) return drivers::kSuccess;
   }
-  const MeasuredVesicles data = read_dataset(request.folder);
-  const Window window = window_of(request.window);
-  if (!request.quiet) print_dataset(data, fit_measurements(data, window), window);
-  return kSuccess;
+  const observations::MeasuredVesicles data = input::read_dataset(request.folder);
+  const statistics::Window window = window_of(request.window);
+  if (!request.quiet) print_dataset(data, observations::fit_measurements(data, window), window);
+  return drivers::kSuccess;
 }
 
 int compare(const DataRequest& request) {
@@ -57,17 +58,19 @@ int compare(const DataRequest& request) {
         "--ensemble: the folder of an ensemble is needed (traceraft ensemble writes it)");
   fs::path out = request.out;
   if (out.empty())
-    out = EnsembleFolder(request.ensemble).started() ? request.ensemble
-                                                     : first_free_folder("comparison");
-  if (!EnsembleFolder(out).started()) refuse_foreign_folder(out, {"comparison.json"});
-  const std::string command = "traceraft data compare " + in_shell(request.folder) +
-                              " --ensemble " + in_shell(request.ensemble) + " --window " +
-                              in_shell(request.window) +
-                              (request.facts.empty() ? "" : " --facts " + in_shell(request.facts));
+    out = ensemble::EnsembleFolder(request.ensemble).started()
+              ? request.ensemble
+              : run::first_free_folder("comparison");
+  if (!ensemble::EnsembleFolder(out).started())
+    run::refuse_foreign_folder(out, {"comparison.json"});
+  const std::string command =
+      "traceraft data compare " + text::in_shell(request.folder) + " --ensemble " +
+      text::in_shell(request.ensemble) + " --window " + text::in_shell(request.window) +
+      (request.facts.empty() ? "" : " --facts " + text::in_shell(request.facts));
   ComparisonRequest comparison{request.ensemble,          out,          command,
                                window_of(request.window), std::nullopt, request.quiet};
-  if (!request.facts.empty()) comparison.facts = read_facts(request.facts);
-  return compare_with_ensemble(read_dataset(request.folder), comparison);
+  if (!request.facts.empty()) comparison.facts = input::read_facts(request.facts);
+  return compare_with_ensemble(input::read_dataset(request.folder), comparison);
 }
 
 // Refuses to write over data.
@@ -76,19 +79,20 @@ int draw(const DataRequest& request) {
   const fs::path folder = request.folder;
   if (fs::exists(folder / "dataset.toml") || fs::exists(folder / "measurements.csv"))
     throw InputError(request.folder + " already holds data; choose another folder");
-  const PublishedFacts facts = read_facts(request.facts);
+  const observations::PublishedFacts facts = input::read_facts(request.facts);
   const auto seed = static_cast<std::uint64_t>(request.seed);
-  const MeasuredVesicles data =
-      request.ensemble.empty() ? draw_measurements(facts, seed)
-                               : draw_from_runs(facts, runs_of(request.ensemble).histories,
-                                                model_of(request.ensemble).units().length(), seed);
-  write_dataset(request.folder, data,
-                std::string("SYNTHETIC: drawn from ") +
-                    (request.ensemble.empty() ? "published facts" : "simulations") +
-                    ", not measured (seed " + std::to_string(request.seed) + ")");
+  const observations::MeasuredVesicles data =
+      request.ensemble.empty()
+          ? observations::draw_measurements(facts, seed)
+          : observations::draw_from_runs(facts, runs_of(request.ensemble).histories,
+                                         model_of(request.ensemble).units().length(), seed);
+  input::write_dataset(request.folder, data,
+                       std::string("SYNTHETIC: drawn from ") +
+                           (request.ensemble.empty() ? "published facts" : "simulations") +
+                           ", not measured (seed " + std::to_string(request.seed) + ")");
   if (!request.quiet)
-    say("%zu synthetic measurements in %s\n", data.measurements.size(), request.folder);
-  return kSuccess;
+    text::say("%zu synthetic measurements in %s\n", data.measurements.size(), request.folder);
+  return drivers::kSuccess;
 }
 
 struct DataAction {
@@ -113,7 +117,7 @@ void refuse_unused(const CLI::App& app, const DataAction& action) {
                        " does not use it (it uses " + joined(action.options, ", ") + ")");
 }
 
-Action define_data(CLI::App& app) {
+drivers::Action define_data(CLI::App& app) {
   const auto request = std::make_shared<DataRequest>();
   app.add_option("action", request->action,
                  "check (read a folder of measurements and describe it), compare (compare an "
@@ -138,7 +142,7 @@ Action define_data(CLI::App& app) {
                  "TOML file of published facts, to draw from or to show in a comparison")
       ->type_name("FILE");
   app.add_option("--seed", request->seed, "seed of the synthetic measurements")
-      ->check(between(0, kLargestSeed))
+      ->check(config::between(0, config::kLargestSeed))
       ->capture_default_str();
   app.add_flag("--quiet", request->quiet, "print errors only");
   app.footer(
@@ -153,9 +157,9 @@ Action define_data(CLI::App& app) {
 
 }  // namespace
 
-Command data_command() {
-  return {"data", "check measurements of vesicles and compare simulations with them", Ranks::one,
-          define_data};
+drivers::Command data_command() {
+  return {"data", "check measurements of vesicles and compare simulations with them",
+          drivers::Ranks::one, define_data};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::data

@@ -3,9 +3,9 @@
 
 #include "drivers/input/field_dataset.hpp"
 
-namespace traceraft {
+namespace traceraft::data {
 
 // `folder`: that they were read from.
-void print_fields(const std::filesystem::path& folder, const FieldDataset& data);
+void print_fields(const std::filesystem::path& folder, const input::FieldDataset& data);
 
-}  // namespace traceraft
+}  // namespace traceraft::data

@@ -5,17 +5,17 @@
 
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::data {
 
-const Row& law_heading() {
-  static const Row row = {
+const output::Row& law_heading() {
+  static const output::Row row = {
       "perimeter / radius = c (t - t0)^b", "b (95 %)", "t0 (s)", "c", "scatter of ln", "points"};
   return row;
 }
 
-Row law_row(const std::string& of, const std::optional<FittedLaw>& law) {
+output::Row law_row(const std::string& of, const std::optional<observations::FittedLaw>& law) {
   if (!law) return {of, "too few points in the --window", "", "", "", ""};
-  const auto with = [](double value, const Interval& interval) {
+  const auto with = [](double value, const statistics::Interval& interval) {
     return formatted("%.3g (%.3g to %.3g)", value, interval.low, interval.high);
   };
   return {of,
@@ -27,8 +27,8 @@ Row law_row(const std::string& of, const std::optional<FittedLaw>& law) {
           std::to_string(law->points)};
 }
 
-Row law_row(const PublishedFacts& facts) {
-  const PowerLaw& law = facts.perimeter;
+output::Row law_row(const observations::PublishedFacts& facts) {
+  const statistics::PowerLaw& law = facts.perimeter;
   return {formatted("published, %g to %g s", facts.window.begin, facts.window.end),
           formatted("%.3g", law.b),
           formatted("%.3g", law.t0),
@@ -37,8 +37,9 @@ Row law_row(const PublishedFacts& facts) {
           std::to_string(facts.measurements)};
 }
 
-std::vector<std::string> remarks_on(std::initializer_list<std::optional<FittedLaw>> laws) {
-  for (const std::optional<FittedLaw>& law : laws)
+std::vector<std::string> remarks_on(
+    std::initializer_list<std::optional<observations::FittedLaw>> laws) {
+  for (const std::optional<observations::FittedLaw>& law : laws)
     if (law && law->t0_open)
       return {
           "An interval of t0 without a lower end means that t0 may be earlier than the search "
@@ -47,8 +48,9 @@ std::vector<std::string> remarks_on(std::initializer_list<std::optional<FittedLa
   return {};
 }
 
-ChartSeries law_curve(const std::string& name, const PowerLaw& law, const Window& window) {
-  ChartSeries series{name, {}, Mark::line};
+bench::ChartSeries law_curve(const std::string& name, const statistics::PowerLaw& law,
+                             const statistics::Window& window) {
+  bench::ChartSeries series{name, {}, bench::Mark::line};
   constexpr int kPoints = 40;
   for (int i = 0; i <= kPoints; ++i) {
     const double t = std::max(window.begin, 1e-3) *
@@ -58,4 +60,4 @@ ChartSeries law_curve(const std::string& name, const PowerLaw& law, const Window
   return series;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::data

@@ -11,17 +11,19 @@
 #include "verification/observations/perimeter_law.hpp"
 #include "verification/observations/published.hpp"
 
-namespace traceraft {
+namespace traceraft::data {
 
 // A table's heading, and its rows: of what was fitted, if there were enough points, or published.
-const Row& law_heading();
-Row law_row(const std::string& of, const std::optional<FittedLaw>& law);
-Row law_row(const PublishedFacts& facts);
+const output::Row& law_heading();
+output::Row law_row(const std::string& of, const std::optional<observations::FittedLaw>& law);
+output::Row law_row(const observations::PublishedFacts& facts);
 
 // For readers of laws whose start may lie before all that was tried; nothing if there is none.
-std::vector<std::string> remarks_on(std::initializer_list<std::optional<FittedLaw>> laws);
+std::vector<std::string> remarks_on(
+    std::initializer_list<std::optional<observations::FittedLaw>> laws);
 
 // Within the window.
-ChartSeries law_curve(const std::string& name, const PowerLaw& law, const Window& window);
+bench::ChartSeries law_curve(const std::string& name, const statistics::PowerLaw& law,
+                             const statistics::Window& window);
 
-}  // namespace traceraft
+}  // namespace traceraft::data

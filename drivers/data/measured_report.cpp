@@ -19,21 +19,22 @@
 #include "verification/statistics/power_law.hpp"
 #include "verification/statistics/sample.hpp"
 
-namespace traceraft {
+namespace traceraft::data {
 namespace {
 
 namespace fs = std::filesystem;
 
 std::string spread(const std::vector<double>& values) {
   if (values.empty()) return "not measured";
-  const Sample d = sample_of(values);
+  const statistics::Sample d = statistics::sample_of(values);
   return formatted("%.4g +- %.2g, from %.4g to %.4g (%zu measurements)", d.mean, d.deviation, d.min,
                    d.max, values.size());
 }
 
-std::vector<double> values_of(const MeasuredVesicles& data, Quantity quantity) {
+std::vector<double> values_of(const observations::MeasuredVesicles& data,
+                              observations::Quantity quantity) {
   std::vector<double> values;
-  for (const Measurement& m : data.measurements)
+  for (const observations::Measurement& m : data.measurements)
     if (m.of(quantity)) values.push_back(*m.of(quantity));
   return values;
 }
@@ -41,32 +42,34 @@ std::vector<double> values_of(const MeasuredVesicles& data, Quantity quantity) {
 // From composition and temperature alone.
 std::string estimated_fraction(const std::string& composition, double celsius) {
   try {
-    const RaftFractionEstimate estimate =
-        estimated_raft_fraction(membrane_mixture("composition", composition), celsius);
+    const observations::RaftFractionEstimate estimate = observations::estimated_raft_fraction(
+        observations::membrane_mixture("composition", composition), celsius);
     return formatted("%.4g, ", estimate.area) + estimate.how;
   } catch (const InputError& error) {
     return std::string("unknown (") + error.what() + ")";
   }
 }
 
-std::string missing_of(const EnsembleFolder& folder, const FinishedMembers& finished) {
+std::string missing_of(const ensemble::EnsembleFolder& folder,
+                       const ensemble::FinishedMembers& finished) {
   const int planned = folder.load().runs;
   const std::size_t there = finished.seeds.size();
   if (there == static_cast<std::size_t>(planned)) return "";
   std::string text = "ONLY " + std::to_string(there) + " OF " + std::to_string(planned) +
                      " RUNS of " + folder.path().string() +
                      " have finished. Continue with: traceraft ensemble --out " +
-                     in_shell(folder.path().string()) + ".";
-  for (const MemberFailure& damaged : finished.damaged)
+                     text::in_shell(folder.path().string()) + ".";
+  for (const ensemble::MemberFailure& damaged : finished.damaged)
     text += " Seed " + std::to_string(damaged.seed) + ": " + damaged.why + ".";
   return text;
 }
 
 }  // namespace
 
-ChartSeries measured_points(const MeasuredVesicles& data, Quantity quantity, double unit) {
-  ChartSeries measured{origin_of(data), {}, Mark::bars};
-  for (const Measurement& m : data.measurements) {
+bench::ChartSeries measured_points(const observations::MeasuredVesicles& data,
+                                   observations::Quantity quantity, double unit) {
+  bench::ChartSeries measured{origin_of(data), {}, bench::Mark::bars};
+  for (const observations::Measurement& m : data.measurements) {
     if (!m.of(quantity)) continue;
     measured.points.emplace_back(m.time, unit * *m.of(quantity));
     measured.other.push_back(unit * m.sigma_of(quantity));
@@ -74,12 +77,13 @@ ChartSeries measured_points(const MeasuredVesicles& data, Quantity quantity, dou
   return measured;
 }
 
-Chart comparison_chart(const MeasuredVesicles& data, const EnsembleSummary& summary,
-                       Quantity quantity) {
-  Chart chart = ensemble_chart(summary, quantity, true);
+bench::Chart comparison_chart(const observations::MeasuredVesicles& data,
+                              const ensemble::EnsembleSummary& summary,
+                              observations::Quantity quantity) {
+  bench::Chart chart = ensemble::ensemble_chart(summary, quantity, true);
   double first = HUGE_VAL;
-  for (const Measurement& m : data.measurements) first = std::min(first, m.time);
-  for (ChartSeries& series : chart.series) {
+  for (const observations::Measurement& m : data.measurements) first = std::min(first, m.time);
+  for (bench::ChartSeries& series : chart.series) {
     std::size_t early = 0;
     while (early < series.points.size() && series.points[early].first < 0.1 * first) ++early;
     series.points.erase(series.points.begin(), series.points.begin() + early);
@@ -90,48 +94,53 @@ Chart comparison_chart(const MeasuredVesicles& data, const EnsembleSummary& summ
   return chart;
 }
 
-std::string origin_of(const MeasuredVesicles& data) {
+std::string origin_of(const observations::MeasuredVesicles& data) {
   return data.synthetic ? "synthetic measurements" : "measured";
 }
 
-std::string title_of(const MeasuredVesicles& data) {
+std::string title_of(const observations::MeasuredVesicles& data) {
   const bool said = data.name.find("SYNTHETIC") != std::string::npos;
   return data.name + (data.synthetic && !said ? " (SYNTHETIC, not measured)" : "");
 }
 
-std::string about_data(const MeasuredVesicles& data) {
+std::string about_data(const observations::MeasuredVesicles& data) {
   return title_of(data) + ": " + std::to_string(data.vesicles().size()) + " vesicles, " +
          std::to_string(data.measurements.size()) + " measurements" +
          (data.origin.empty() ? "" : "; " + data.origin);
 }
 
-void print_dataset(const MeasuredVesicles& data, const std::optional<FittedLaw>& law,
-                   const Window& window) {
-  say("%s\n", about_data(data));
+void print_dataset(const observations::MeasuredVesicles& data,
+                   const std::optional<observations::FittedLaw>& law,
+                   const statistics::Window& window) {
+  text::say("%s\n", about_data(data));
   double first = HUGE_VAL, last = 0;
   std::vector<double> radii;
-  for (const Measurement& m : data.measurements) {
+  for (const observations::Measurement& m : data.measurements) {
     first = std::min(first, m.time);
     last = std::max(last, m.time);
     radii.push_back(m.radius);
   }
-  say("  %-22s %.4g to %.4g s after time zero (%s)\n", "time", first, last, data.time_zero);
-  say("  %-22s %s\n", "radius (um)", spread(radii));
-  for (const Quantity quantity : kQuantities)
-    say("  %-22s %s\n", name_of(quantity).label, spread(values_of(data, quantity)));
+  text::say("  %-22s %.4g to %.4g s after time zero (%s)\n", "time", first, last, data.time_zero);
+  text::say("  %-22s %s\n", "radius (um)", spread(radii));
+  for (const observations::Quantity quantity : observations::kQuantities)
+    text::say("  %-22s %s\n", observations::name_of(quantity).label,
+              spread(values_of(data, quantity)));
   if (!data.composition.empty() && data.celsius)
-    say("  %-22s %s\n", "estimated fraction", estimated_fraction(data.composition, *data.celsius));
-  for (const std::string& doubt : doubts_about(data)) say("\nNOTE: %s\n", doubt);
-  say("\npower law from %g to %g s\n", window.begin, window.end);
-  print_rows({law_heading(), law_row(origin_of(data), law)});
-  for (const std::string& remark : remarks_on({law})) say("%s\n", remark);
+    text::say("  %-22s %s\n", "estimated fraction",
+              estimated_fraction(data.composition, *data.celsius));
+  for (const std::string& doubt : observations::doubts_about(data))
+    text::say("\nNOTE: %s\n", doubt);
+  text::say("\npower law from %g to %g s\n", window.begin, window.end);
+  output::print_rows({law_heading(), law_row(origin_of(data), law)});
+  for (const std::string& remark : remarks_on({law})) text::say("%s\n", remark);
 }
 
-Configuration model_of(const fs::path& path) {
-  const EnsembleFolder folder(path);
-  if (!folder.started() && !(fs::exists(folder.config()) && fs::exists(path / kHistoriesFile)))
+config::Configuration model_of(const fs::path& path) {
+  const ensemble::EnsembleFolder folder(path);
+  if (!folder.started() &&
+      !(fs::exists(folder.config()) && fs::exists(path / ensemble::kHistoriesFile)))
     throw InputError("--ensemble: " + path.string() + " holds no ensemble (traceraft ensemble)");
-  const Configuration configuration(read_config_file(folder.config()), {});
+  const config::Configuration configuration(config::read_config_file(folder.config()), {});
   if (configuration.units().scaled)
     throw InputError("--ensemble: " + path.string() +
                      " was run with --scaled; its times are not in seconds and cannot be compared");
@@ -139,19 +148,19 @@ Configuration model_of(const fs::path& path) {
 }
 
 EnsembleRuns runs_of(const fs::path& path) {
-  const Configuration model = model_of(path);
-  const EnsembleFolder folder(path);
-  const fs::path kept = path / kHistoriesFile;
+  const config::Configuration model = model_of(path);
+  const ensemble::EnsembleFolder folder(path);
+  const fs::path kept = path / ensemble::kHistoriesFile;
   if (folder.started()) {
-    FinishedMembers finished =
-        finished_members(folder, model.units().length(), model.options().t_end);
+    ensemble::FinishedMembers finished =
+        ensemble::finished_members(folder, model.units().length(), model.options().t_end);
     if (!finished.histories.empty()) {
       const std::string missing = missing_of(folder, finished);
       return {std::move(finished.histories), missing};
     }
     if (!fs::exists(kept)) return {};
   }
-  return {read_histories(kept), ""};
+  return {ensemble::read_histories(kept), ""};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::data

@@ -8,9 +8,9 @@
 #include "drivers/ensemble/run_cost.hpp"
 #include "drivers/text/encoders.hpp"
 
-namespace traceraft {
+namespace traceraft::ensemble {
 
-ArrayTask array_task(const Configuration& configuration, const EnsemblePlan& plan,
+ArrayTask array_task(const config::Configuration& configuration, const EnsemblePlan& plan,
                      const ArrayLimits& limits) {
   // Of guv-2to1, 128 cells, on one processor: docs/results.md.
   constexpr double kGigabytes = 0.45, kHours = 0.25, kSpare = 4;
@@ -25,7 +25,8 @@ ArrayTask array_task(const Configuration& configuration, const EnsemblePlan& pla
 std::string array_job_script(const EnsembleFolder& folder, const EnsemblePlan& plan,
                              const ArrayTask& task, const ArrayLimits& limits) {
   const std::string path = std::filesystem::absolute(folder.path()).lexically_normal().string();
-  const std::string program = in_shell(own_path()) + " ensemble --out " + in_shell(path);
+  const std::string program =
+      text::in_shell(posix::own_path()) + " ensemble --out " + text::in_shell(path);
   const std::string throttle = limits.at_a_time > 0 ? "%" + std::to_string(limits.at_a_time) : "";
   const std::string each = std::to_string(task.runs), index = "SLURM_ARRAY_TASK_ID";
   const std::string offset = task.runs > 1 ? each + " * " + index : index;
@@ -45,11 +46,11 @@ std::string array_job_script(const EnsembleFolder& folder, const EnsemblePlan& p
          "#SBATCH --signal=B:TERM@60\n"
          "# Submit the script again to continue tasks that were stopped or killed.\n"
          "# When all tasks are done: " +
-         in_comment(program) +
+         text::in_comment(program) +
          "\n"
          "exec " +
          program + " --member \"$((" + std::to_string(plan.first_seed) + " + " + offset + "))\"" +
          (task.runs > 1 ? " --members " + each : "") + " --threads \"${SLURM_CPUS_PER_TASK:-1}\"\n";
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::ensemble

@@ -6,7 +6,7 @@
 #include "drivers/config/configuration.hpp"
 #include "drivers/ensemble/ensemble_folder.hpp"
 
-namespace traceraft {
+namespace traceraft::ensemble {
 
 // Clusters limit the index of a task, by default to 1000, and some the tasks at a time.
 struct ArrayLimits {
@@ -20,7 +20,7 @@ struct ArrayTask {
   int gigabytes, hours;  // hours of all its runs
   int tasks, runs;       // how many there are; runs of each, one after the other
 };
-ArrayTask array_task(const Configuration& configuration, const EnsemblePlan& plan,
+ArrayTask array_task(const config::Configuration& configuration, const EnsemblePlan& plan,
                      const ArrayLimits& limits);
 
 // The text of a script for sbatch. Each task carries out, or goes on with, the runs of its seeds
@@ -29,4 +29,4 @@ ArrayTask array_task(const Configuration& configuration, const EnsemblePlan& pla
 std::string array_job_script(const EnsembleFolder& folder, const EnsemblePlan& plan,
                              const ArrayTask& task, const ArrayLimits& limits);
 
-}  // namespace traceraft
+}  // namespace traceraft::ensemble

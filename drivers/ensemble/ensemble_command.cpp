@@ -20,13 +20,13 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 
-namespace traceraft {
+namespace traceraft::ensemble {
 namespace {
 
 namespace fs = std::filesystem;
 
 struct EnsembleRequest {
-  GivenValues flags;
+  config::GivenValues flags;
   std::string config_file, out;
   int runs = 0, jobs = 0;        // 0: 10, or as many as there are; as many as processors
   std::int64_t first_seed = -1;  // −1: 1, or as it is
@@ -38,29 +38,31 @@ struct EnsembleRequest {
 };
 
 // The seed of a configuration file says nothing here: those that the program writes have one.
-Configuration new_configuration(const EnsembleRequest& request, GivenValues file) {
+config::Configuration new_configuration(const EnsembleRequest& request, config::GivenValues file) {
   file.erase("seed");
-  const Configuration configuration(file, request.flags);
+  const config::Configuration configuration(file, request.flags);
   if (configuration.options().initial == "noise") return configuration;
   if (configuration.options().initial.compare(0, 12, "band-limited") == 0) return configuration;
   throw InputError(
-      configuration.where(&RunOptions::initial) +
+      configuration.where(&config::RunOptions::initial) +
       ": the runs of an ensemble differ in their initial noise; choose noise or band-limited");
 }
 
 // Of an ensemble that goes on: its runs have to stay comparable.
-Configuration known_configuration(const EnsembleFolder& folder, const EnsembleRequest& request,
-                                  const GivenValues& file) {
-  const Configuration known(read_config_file(folder.config()), {});
+config::Configuration known_configuration(const EnsembleFolder& folder,
+                                          const EnsembleRequest& request,
+                                          const config::GivenValues& file) {
+  const config::Configuration known(config::read_config_file(folder.config()), {});
   if (file.empty() && request.flags.empty()) return known;
-  const Configuration asked = new_configuration(request, file);
-  if (numerical_identity(asked) != numerical_identity(known))
+  const config::Configuration asked = new_configuration(request, file);
+  if (config::numerical_identity(asked) != config::numerical_identity(known))
     throw InputError("--out: " + folder.path().string() +
                      " holds an ensemble of other runs; choose another folder, or give only --out "
                      "to continue it");
-  for (const GivenValues* given : {&file, &request.flags})
+  for (const config::GivenValues* given : {&file, &request.flags})
     for (const auto& [name, value] : *given)
-      if (name != "seed" && config_lines(asked, {name}) != config_lines(known, {name}))
+      if (name != "seed" &&
+          config::config_lines(asked, {name}) != config::config_lines(known, {name}))
         throw InputError(value.where + ": the runs in " + folder.path().string() + " have '" +
                          known.text(name) + "'; new runs must have the same value");
   return known;
@@ -80,10 +82,10 @@ EnsemblePlan plan_of(const EnsembleRequest& request, const EnsembleFolder& folde
                        std::to_string(plan.first_seed));
     plan.first_seed = first;
   }
-  if (static_cast<long double>(plan.last_seed()) > kLargestSeed)
+  if (static_cast<long double>(plan.last_seed()) > config::kLargestSeed)
     throw InputError("--first-seed: the last of " + std::to_string(plan.runs) + " runs has seed " +
                      std::to_string(plan.last_seed()) + " (allowed: up to " +
-                     format_number(kLargestSeed) + ")");
+                     format_number(config::kLargestSeed) + ")");
   return plan;
 }
 
@@ -97,64 +99,66 @@ int some_members(const EnsembleRequest& request, const EnsembleFolder& folder,
                      " to " + std::to_string(plan.last_seed()) + ")");
   const std::uint64_t left = plan.last_seed() - first + 1;
   const auto members = static_cast<std::uint64_t>(request.members);
-  int code = kSuccess;
+  int code = drivers::kSuccess;
   for (std::uint64_t k = 0; k < std::min(members, left); ++k) {
     const int end = run_member(folder, first + k, std::max(1, request.threads), request.quiet);
-    if (end != kSuccess) code = end;
-    if (end == kInterrupted || stop_requested()) return kInterrupted;
+    if (end != drivers::kSuccess) code = end;
+    if (end == drivers::kInterrupted || posix::stop_requested()) return drivers::kInterrupted;
   }
   return code;
 }
 
 int carry_out(const EnsembleRequest& request, const EnsembleFolder& folder,
-              const EnsemblePlan& plan, const Configuration& configuration) {
-  const Jobs jobs = jobs_of(request.jobs, request.threads);
-  const Units units = configuration.units();
+              const EnsemblePlan& plan, const config::Configuration& configuration) {
+  const jobs::Jobs jobs = jobs::jobs_of(request.jobs, request.threads);
+  const physics::Units units = configuration.units();
   if (!request.quiet)
-    say("%d runs, %d at a time with %d thread%s each\nfolder %s\n\n", plan.runs, jobs.at_a_time,
-        jobs.threads, jobs.threads == 1 ? "" : "s", folder.path());
+    text::say("%d runs, %d at a time with %d thread%s each\nfolder %s\n\n", plan.runs,
+              jobs.at_a_time, jobs.threads, jobs.threads == 1 ? "" : "s", folder.path());
   const double t_end = configuration.options().t_end;
   EnsembleEnd end = run_members(plan, folder, jobs, t_end, request.quiet);
   const FinishedMembers finished = finished_members(folder, units.length(), t_end);
   end.failures.insert(end.failures.end(), finished.damaged.begin(), finished.damaged.end());
   for (const MemberFailure& failure : end.failures)
-    say_error("the run of seed " + std::to_string(failure.seed) + " failed: " + failure.why);
+    text::say_error("the run of seed " + std::to_string(failure.seed) + " failed: " + failure.why);
   if (end.stopped) {
     if (!request.quiet)
-      say("continue with: traceraft ensemble --out %s\n", in_shell(folder.path().string()));
-    return kInterrupted;
+      text::say("continue with: traceraft ensemble --out %s\n",
+                text::in_shell(folder.path().string()));
+    return drivers::kInterrupted;
   }
-  const std::vector<History>& runs = finished.histories;
-  if (runs.empty()) return kNumericalFailure;
+  const std::vector<observations::History>& runs = finished.histories;
+  if (runs.empty()) return drivers::kNumericalFailure;
   const EnsembleSummary summary = summarise(runs);
   write_histories(folder.path() / kHistoriesFile, finished.seeds, runs, summary.times);
   const std::string missing = write_ensemble(folder, configuration, summary, end, request.quiet);
   if (!request.quiet) {
-    if (!missing.empty()) say("\nmissing charts: %s\n", missing);
-    say("\nopen next: %s\n", (folder.path() / "ensemble.html"));
+    if (!missing.empty()) text::say("\nmissing charts: %s\n", missing);
+    text::say("\nopen next: %s\n", (folder.path() / "ensemble.html"));
   }
-  return end.failures.empty() ? kSuccess : kNumericalFailure;
+  return end.failures.empty() ? drivers::kSuccess : drivers::kNumericalFailure;
 }
 
 void write_array_job(const EnsembleRequest& request, const EnsembleFolder& folder,
-                     const EnsemblePlan& plan, const Configuration& configuration) {
+                     const EnsemblePlan& plan, const config::Configuration& configuration) {
   const fs::path script = folder.path() / "array-job.sh";
   const ArrayTask task = array_task(configuration, plan, request.limits);
-  write_durably(script, array_job_script(folder, plan, task, request.limits));
+  posix::write_durably(script, array_job_script(folder, plan, task, request.limits));
   if (request.quiet) return;
-  say("%d tasks of 2 processors, %d GB and at most %d h each: see the #SBATCH lines of the "
+  text::say(
+      "%d tasks of 2 processors, %d GB and at most %d h each: see the #SBATCH lines of the "
       "script\n",
       task.tasks, task.gigabytes, task.hours);
   if (task.runs > 1)
-    say("each task carries out %d runs, one after the other, because of --array-tasks %d\n",
-        task.runs, request.limits.most_tasks);
-  say("submit it with: sbatch %s\n", in_shell(script.string()));
+    text::say("each task carries out %d runs, one after the other, because of --array-tasks %d\n",
+              task.runs, request.limits.most_tasks);
+  text::say("submit it with: sbatch %s\n", text::in_shell(script.string()));
 }
 
 // A script holds paths from the root, which no argument names.
 void refuse_unwritable_path(const EnsembleFolder& folder) {
   const std::string path = fs::absolute(folder.path()).string();
-  if (in_comment(path) != path)
+  if (text::in_comment(path) != path)
     throw InputError(
         "--array-job: the path of the folder contains a control character, such as a "
         "line break, that no shell script can hold: " +
@@ -162,41 +166,42 @@ void refuse_unwritable_path(const EnsembleFolder& folder) {
 }
 
 int run_ensemble(const EnsembleRequest& request) {
-  catch_stop_signals();
-  const GivenValues file = read_config_file(request.config_file);
+  posix::catch_stop_signals();
+  const config::GivenValues file = config::read_config_file(request.config_file);
   const bool goes_on = !request.out.empty() && EnsembleFolder(request.out).started();
   if (request.member >= 0) {
     if (!goes_on) throw InputError("--member: --out must name an existing ensemble");
     return some_members(request, EnsembleFolder(request.out), EnsembleFolder(request.out).load());
   }
   if (!goes_on && !request.out.empty()) {
-    refuse_foreign_folder(request.out, {EnsembleFolder(request.out).plan_file().filename()});
+    run::refuse_foreign_folder(request.out, {EnsembleFolder(request.out).plan_file().filename()});
     EnsembleFolder(request.out).refuse_other_plan();
     if (file.empty() && request.flags.empty())  // a folder that is mistyped would take hours
       throw InputError("--out: " + request.out +
                        " holds no ensemble; a new one needs a model, as in --case guv-3to1");
   }
-  const Configuration configuration =
+  const config::Configuration configuration =
       goes_on ? known_configuration(EnsembleFolder(request.out), request, file)
               : new_configuration(request, file);
   const EnsembleFolder folder(
-      request.out.empty() ? first_free_folder("ensemble-" + configuration.options().case_name)
+      request.out.empty() ? run::first_free_folder("ensemble-" + configuration.options().case_name)
                           : request.out);
   if (request.array_job) refuse_unwritable_path(folder);
   const EnsemblePlan plan = plan_of(request, folder);
-  std::optional<RunSetup> run;
-  if (!goes_on) run = build_run(configuration, InitialState::build);  // or refuses it
+  std::optional<run::RunSetup> run;
+  if (!goes_on) run = run::build_run(configuration, run::InitialState::build);  // or refuses it
   fs::create_directories(folder.path());
-  const FolderLock lock(folder.path());
-  if (!goes_on && folder.started()) refuse_begun(folder.path());
+  const posix::FolderLock lock(folder.path());
+  if (!goes_on && folder.started()) run::refuse_begun(folder.path());
   folder.save(plan);
   fs::create_directories(folder.path() / "runs");
   if (run && !request.quiet)
-    say("case %s, %s\n", configuration.options().case_name, resolution_text(configuration, *run));
-  if (!goes_on) write_durably(folder.config(), config_text(configuration));
+    text::say("case %s, %s\n", configuration.options().case_name,
+              run::resolution_text(configuration, *run));
+  if (!goes_on) posix::write_durably(folder.config(), config::config_text(configuration));
   if (!request.array_job) return carry_out(request, folder, plan, configuration);
   write_array_job(request, folder, plan, configuration);
-  return kSuccess;
+  return drivers::kSuccess;
 }
 
 void add_array_options(CLI::App& app, EnsembleRequest& request) {
@@ -215,14 +220,14 @@ void add_array_options(CLI::App& app, EnsembleRequest& request) {
       ->needs(job);
   CLI::Option* const member =
       app.add_option("--member", request.member, "carry out the run of this seed only (array jobs)")
-          ->check(between(0, kLargestSeed));
+          ->check(config::between(0, config::kLargestSeed));
   app.add_option("--members", request.members,
                  "number of runs to carry out, with seeds from --member on")
       ->check(CLI::Range(1, 100000))
       ->needs(member);
 }
 
-Action define_ensemble(CLI::App& app) {
+drivers::Action define_ensemble(CLI::App& app) {
   const auto request = std::make_shared<EnsembleRequest>();
   app.add_option("--config", request->config_file,
                  "TOML file of settings, with names of flags as keys")
@@ -234,15 +239,16 @@ Action define_ensemble(CLI::App& app) {
   app.add_option("--runs", request->runs, "number of runs; default: 10")
       ->check(CLI::Range(1, kMostRuns));
   app.add_option("--first-seed", request->first_seed, "seed of the first run; default: 1")
-      ->check(between(0, kLargestSeed));
+      ->check(config::between(0, config::kLargestSeed));
   app.add_option("--jobs", request->jobs, "runs at a time; default: one for each processor")
       ->check(CLI::Range(1, 1024));
   app.add_option("--threads", request->threads, "threads of each run; default: processors / --jobs")
       ->check(CLI::Range(1, 64));
   add_array_options(app, *request);
   app.add_flag("--quiet", request->quiet, "print errors only");
-  add_options(app, request->flags,
-              [](const OptionSpec& spec) { return spec.name != "seed" && spec.name != "threads"; });
+  config::add_options(app, request->flags, [](const config::OptionSpec& spec) {
+    return spec.name != "seed" && spec.name != "threads";
+  });
   app.footer(
       "Give --out alone to continue an interrupted ensemble. Exit codes: 0 all runs are done,\n3 "
       "some runs failed (the others are gathered), 5 interrupted.\n"
@@ -252,9 +258,9 @@ Action define_ensemble(CLI::App& app) {
 
 }  // namespace
 
-Command ensemble_command() {
-  return {"ensemble", "run one model with many seeds and gather the results", Ranks::starts_them,
-          define_ensemble};
+drivers::Command ensemble_command() {
+  return {"ensemble", "run one model with many seeds and gather the results",
+          drivers::Ranks::starts_them, define_ensemble};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::ensemble

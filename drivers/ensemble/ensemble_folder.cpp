@@ -12,7 +12,7 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 
-namespace traceraft {
+namespace traceraft::ensemble {
 namespace {
 
 // What may only be unreadable for the moment is not to be deleted.
@@ -30,12 +30,12 @@ std::vector<std::uint64_t> EnsemblePlan::seeds() const {
 
 template <class Members>
 void describe(Members& members, EnsemblePlan& plan) {
-  members("runs", plan.runs, WithinRange{1, kMostRuns});
-  members("first_seed", plan.first_seed, WithinRange{0, kLargestSeed});
+  members("runs", plan.runs, input::WithinRange{1, kMostRuns});
+  members("first_seed", plan.first_seed, input::WithinRange{0, config::kLargestSeed});
 }
 
 void EnsembleFolder::save(const EnsemblePlan& plan) const {
-  write_durably(plan_file(), object_of(plan).dump(2) + "\n");
+  posix::write_durably(plan_file(), input::object_of(plan).dump(2) + "\n");
 }
 
 void EnsembleFolder::refuse_other_plan() const {
@@ -52,11 +52,11 @@ void EnsembleFolder::refuse_plan() const {
 }
 
 EnsemblePlan EnsembleFolder::load() const {
-  const bool of_ensemble = from_json(plan_file(), [](const Json& json) {
+  const bool of_ensemble = input::from_json(plan_file(), [](const input::Json& json) {
     return !json.is_object() || json.contains("first_seed");  // else a plan of another command
   });
   if (!of_ensemble) refuse_plan();
-  return read_object<EnsemblePlan>(plan_file());
+  return input::read_object<EnsemblePlan>(plan_file());
 }
 
 std::filesystem::path EnsembleFolder::run_of(std::uint64_t seed) const {
@@ -72,7 +72,7 @@ EnsembleFolder::Member EnsembleFolder::member(std::uint64_t seed) const {
   if (!std::filesystem::exists(run / "config.toml")) return {MemberEnd::missing, ""};
   if (!std::filesystem::exists(summary)) return {MemberEnd::begun, ""};
   try {
-    return from_json(summary, [](const Json& json) -> Member {
+    return input::from_json(summary, [](const input::Json& json) -> Member {
       const std::string end = json.at("end");
       if (end == "failed") return {MemberEnd::failed, json.value("why", std::string())};
       return {end == "finished" ? MemberEnd::finished : MemberEnd::begun, ""};
@@ -100,15 +100,15 @@ double EnsembleFolder::reached(std::uint64_t seed) const {
                                                 : std::strtod(text.c_str() + comma + 1, nullptr);
 }
 
-History EnsembleFolder::history(std::uint64_t seed, double radius) const {
-  require_whole_table(run_of(seed), "series.csv");
-  const CsvTable series = CsvTable::read(run_of(seed) / "series.csv");
-  History history;
+observations::History EnsembleFolder::history(std::uint64_t seed, double radius) const {
+  run::require_whole_table(run_of(seed), "series.csv");
+  const input::CsvTable series = input::CsvTable::read(run_of(seed) / "series.csv");
+  observations::History history;
   history.time = series.numbers("t");
-  history.of(Quantity::perimeter) = series.numbers("perimeter");
-  for (double& perimeter : history.of(Quantity::perimeter)) perimeter /= radius;
-  history.of(Quantity::rafts) = series.numbers("rafts");
-  history.of(Quantity::fraction) = series.numbers("raft_fraction");
+  history.of(observations::Quantity::perimeter) = series.numbers("perimeter");
+  for (double& perimeter : history.of(observations::Quantity::perimeter)) perimeter /= radius;
+  history.of(observations::Quantity::rafts) = series.numbers("rafts");
+  history.of(observations::Quantity::fraction) = series.numbers("raft_fraction");
   return history;
 }
 
@@ -121,7 +121,7 @@ FinishedMembers finished_members(const EnsembleFolder& folder, double radius, do
   for (const std::uint64_t seed : folder.load().seeds()) {
     if (folder.member(seed).end != MemberEnd::finished) continue;
     try {
-      History history = folder.history(seed, radius);
+      observations::History history = folder.history(seed, radius);
       const double last = history.time.empty() ? 0 : history.time.back();
       if (last < (1 - kRoundoff) * t_end) {
         damaged(seed, "its series.csv ends at t = " + format_number(last) + " instead of " +
@@ -144,4 +144,4 @@ FinishedMembers finished_members(const EnsembleFolder& folder, double radius, do
   return result;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::ensemble

@@ -8,7 +8,7 @@
 
 #include "verification/observations/history.hpp"
 
-namespace traceraft {
+namespace traceraft::ensemble {
 
 inline constexpr int kMostRuns = 100000;
 
@@ -56,7 +56,7 @@ class EnsembleFolder {
 
   // Of a member that has begun; perimeters are divided by `radius`, given in the units of the
   // files. Throws InputError or IoError if its series is damaged.
-  History history(std::uint64_t seed, double radius) const;
+  observations::History history(std::uint64_t seed, double radius) const;
 
  private:
   [[noreturn]] void refuse_plan() const;
@@ -74,10 +74,10 @@ struct MemberFailure {
 // whose series cannot be read or ends before it should; the others do not depend on them.
 struct FinishedMembers {
   std::vector<std::uint64_t> seeds;
-  std::vector<History> histories;  // theirs
+  std::vector<observations::History> histories;  // theirs
   std::vector<MemberFailure> damaged;
 };
 // `radius`, `t_end`: of the runs, in the units of their files.
 FinishedMembers finished_members(const EnsembleFolder& folder, double radius, double t_end);
 
-}  // namespace traceraft
+}  // namespace traceraft::ensemble

@@ -7,14 +7,14 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 
-namespace traceraft {
+namespace traceraft::ensemble {
 
-GivenValues settings_until(const Configuration& model, double t_end) {
-  GivenValues given;
+config::GivenValues settings_until(const config::Configuration& model, double t_end) {
+  config::GivenValues given;
   const auto set = [&](const std::string& option, const std::string& text) {
     given[option] = {text, "--" + option};
   };
-  for (const OptionSpec& spec : run_options())
+  for (const config::OptionSpec& spec : config::run_options())
     if (spec.numerical && spec.name != "seed" && !model.text(spec.name).empty())
       set(spec.name, model.text(spec.name));
   set("t-end", format_number(t_end));
@@ -23,9 +23,9 @@ GivenValues settings_until(const Configuration& model, double t_end) {
   return given;
 }
 
-void refuse_without_noise(const Configuration& model) {
+void refuse_without_noise(const config::Configuration& model) {
   if (model.options().initial.compare(0, 5, "noise") != 0)
-    throw InputError(model.where(&RunOptions::initial) +
+    throw InputError(model.where(&config::RunOptions::initial) +
                      ": it must be noise, in which simulated vesicles differ");
 }
 
@@ -44,7 +44,7 @@ bool holds(const EnsembleFolder& folder, const EnsemblePlan& plan) {
 
 }  // namespace
 
-PointEnd run_point(const std::filesystem::path& path, const Configuration& configuration,
+PointEnd run_point(const std::filesystem::path& path, const config::Configuration& configuration,
                    const PointRequest& request) {
   const EnsembleFolder folder(path);
   EnsemblePlan plan;
@@ -53,21 +53,21 @@ PointEnd run_point(const std::filesystem::path& path, const Configuration& confi
   // Others may read what is there already.
   if (!holds(folder, plan)) folder.save(plan);
   if (!std::filesystem::exists(folder.config()))
-    write_durably(folder.config(), config_text(configuration));
+    posix::write_durably(folder.config(), config::config_text(configuration));
   const double t_end = configuration.options().t_end;
   const EnsembleEnd end =
-      run_members(plan, folder, jobs_of(request.jobs, request.threads), t_end, request.quiet);
+      run_members(plan, folder, jobs::jobs_of(request.jobs, request.threads), t_end, request.quiet);
   for (const MemberFailure& failure : end.failures)
     if (failure.locked)
       throw InputError(
           folder.run_of(failure.seed).string() +
           " is in use by another process; wait until it ends, then give the same command");
-  const Units units = configuration.units();
+  const physics::Units units = configuration.units();
   FinishedMembers finished = finished_members(folder, units.length(), t_end);
   PointEnd result{end.stopped, end.failures, std::move(finished.histories),
                   std::move(finished.seeds)};
   result.failures.insert(result.failures.end(), finished.damaged.begin(), finished.damaged.end());
-  for (History& run : result.runs)
+  for (observations::History& run : result.runs)
     for (double& t : run.time) t /= units.time();
   return result;
 }
@@ -90,4 +90,4 @@ void keep_common_seeds(std::vector<PointEnd>& ends) {
   }
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::ensemble

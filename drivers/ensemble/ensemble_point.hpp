@@ -7,14 +7,14 @@
 #include "drivers/config/configuration.hpp"
 #include "drivers/ensemble/ensemble_runs.hpp"
 
-namespace traceraft {
+namespace traceraft::ensemble {
 
 // All that decides what a run of the model computes, but the seed, and until t_end (s), with no
 // output before.
-GivenValues settings_until(const Configuration& model, double t_end);
+config::GivenValues settings_until(const config::Configuration& model, double t_end);
 
 // Throws InputError if seeds make no difference.
-void refuse_without_noise(const Configuration& model);
+void refuse_without_noise(const config::Configuration& model);
 
 struct PointRequest {
   int runs, jobs;
@@ -24,14 +24,14 @@ struct PointRequest {
 struct PointEnd {
   bool stopped = false;
   std::vector<MemberFailure> failures;
-  std::vector<History> runs;         // in units of R²/D
-  std::vector<std::uint64_t> seeds;  // theirs
+  std::vector<observations::History> runs;  // in units of R²/D
+  std::vector<std::uint64_t> seeds;         // theirs
 };
 // Carries out, or goes on with, the ensemble in the folder.
-PointEnd run_point(const std::filesystem::path& folder, const Configuration& configuration,
+PointEnd run_point(const std::filesystem::path& folder, const config::Configuration& configuration,
                    const PointRequest& request);
 
 // Where runs are compared one by one: leaves those whose seeds have finished at all points.
 void keep_common_seeds(std::vector<PointEnd>& ends);
 
-}  // namespace traceraft
+}  // namespace traceraft::ensemble

@@ -8,24 +8,27 @@
 #include "kernel/core/text.hpp"
 #include "verification/statistics/sample.hpp"
 
-namespace traceraft {
+namespace traceraft::ensemble {
 namespace {
 
 constexpr int kPerDecade = 24;
 
 struct Statistic {
   const char* name;
-  double Sample::*value;
+  double statistics::Sample::*value;
 };
 constexpr Statistic kStatistics[] = {
-    {"mean", &Sample::mean}, {"sd", &Sample::deviation}, {"min", &Sample::min},
-    {"q10", &Sample::q10},   {"q25", &Sample::q25},      {"median", &Sample::median},
-    {"q75", &Sample::q75},   {"q90", &Sample::q90},      {"max", &Sample::max}};
+    {"mean", &statistics::Sample::mean}, {"sd", &statistics::Sample::deviation},
+    {"min", &statistics::Sample::min},   {"q10", &statistics::Sample::q10},
+    {"q25", &statistics::Sample::q25},   {"median", &statistics::Sample::median},
+    {"q75", &statistics::Sample::q75},   {"q90", &statistics::Sample::q90},
+    {"max", &statistics::Sample::max}};
 
-ChartSeries band(const EnsembleSummary& summary, Quantity quantity, const char* name,
-                 double Sample::*low, double Sample::*high) {
-  ChartSeries series{name, {}, Mark::band};
-  const auto& at = summary.at[index_of(quantity)];
+bench::ChartSeries band(const EnsembleSummary& summary, observations::Quantity quantity,
+                        const char* name, double statistics::Sample::*low,
+                        double statistics::Sample::*high) {
+  bench::ChartSeries series{name, {}, bench::Mark::band};
+  const auto& at = summary.at[observations::index_of(quantity)];
   for (std::size_t i = 0; i < at.size(); ++i) {
     series.points.emplace_back(summary.times[i], at[i].*low);
     series.other.push_back(at[i].*high);
@@ -33,7 +36,7 @@ ChartSeries band(const EnsembleSummary& summary, Quantity quantity, const char* 
   return series;
 }
 
-std::string sentence_on(const Configuration& configuration, const EnsemblePlan& plan,
+std::string sentence_on(const config::Configuration& configuration, const EnsemblePlan& plan,
                         std::size_t finished) {
   return std::to_string(finished) + " of " + std::to_string(plan.runs) + " runs of the case " +
          configuration.options().case_name + ", seeds " + std::to_string(plan.first_seed) + " to " +
@@ -46,37 +49,39 @@ std::string sentence_on(const Configuration& configuration, const EnsemblePlan& 
 
 }  // namespace
 
-std::vector<Row> ensemble_rows(const EnsembleSummary& summary, bool seconds) {
-  std::vector<Row> rows = {{seconds ? "time (s)" : "time"}};
-  for (const Quantity quantity : kQuantities)
-    rows.front().push_back(std::string(name_of(quantity).label) + ", median (range)");
+std::vector<output::Row> ensemble_rows(const EnsembleSummary& summary, bool seconds) {
+  std::vector<output::Row> rows = {{seconds ? "time (s)" : "time"}};
+  for (const observations::Quantity quantity : observations::kQuantities)
+    rows.front().push_back(std::string(observations::name_of(quantity).label) + ", median (range)");
   for (std::size_t i = 0; i < summary.times.size(); ++i) {
     if (i % kPerDecade != 0 && i + 1 != summary.times.size()) continue;
-    Row row = {short_number(summary.times[i])};
+    output::Row row = {output::short_number(summary.times[i])};
     for (const auto& at : summary.at)
-      row.push_back(short_number(at[i].median) + " (" + short_number(at[i].min) + " to " +
-                    short_number(at[i].max) + ")");
+      row.push_back(output::short_number(at[i].median) + " (" + output::short_number(at[i].min) +
+                    " to " + output::short_number(at[i].max) + ")");
     rows.push_back(row);
   }
   return rows;
 }
 
-EnsembleSummary summarise(const std::vector<History>& runs) {
+EnsembleSummary summarise(const std::vector<observations::History>& runs) {
   EnsembleSummary summary{runs.size(), {}, {}};
-  summary.times = common_times(runs, kPerDecade);
+  summary.times = observations::common_times(runs, kPerDecade);
   if (summary.times.empty()) throw InputError("the runs of the ensemble have no times in common");
-  for (const Quantity quantity : kQuantities)
-    summary.at[index_of(quantity)] = samples_at(runs, quantity, summary.times);
+  for (const observations::Quantity quantity : observations::kQuantities)
+    summary.at[observations::index_of(quantity)] =
+        observations::samples_at(runs, quantity, summary.times);
   return summary;
 }
 
-Table ensemble_table(const EnsembleSummary& summary) {
-  Table table{"ensemble", {"t"}, {}};
-  for (const Quantity quantity : kQuantities)
+bench::Table ensemble_table(const EnsembleSummary& summary) {
+  bench::Table table{"ensemble", {"t"}, {}};
+  for (const observations::Quantity quantity : observations::kQuantities)
     for (const Statistic& statistic : kStatistics)
-      table.columns.push_back(std::string(name_of(quantity).id) + "_" + statistic.name);
+      table.columns.push_back(std::string(observations::name_of(quantity).id) + "_" +
+                              statistic.name);
   for (std::size_t i = 0; i < summary.times.size(); ++i) {
-    std::vector<Cell> row = {summary.times[i]};
+    std::vector<bench::Cell> row = {summary.times[i]};
     for (const auto& at : summary.at)
       for (const Statistic& statistic : kStatistics) row.emplace_back(at[i].*statistic.value);
     table.rows.push_back(row);
@@ -84,47 +89,50 @@ Table ensemble_table(const EnsembleSummary& summary) {
   return table;
 }
 
-Chart ensemble_chart(const EnsembleSummary& summary, Quantity quantity, bool seconds) {
-  const char* label = name_of(quantity).label;
-  Chart chart{label, seconds ? "time (s)" : "time (R^2/D)", label,
-              true,  quantity != Quantity::fraction,        {}};
-  chart.series = {band(summary, quantity, "all runs", &Sample::min, &Sample::max),
-                  band(summary, quantity, "middle half", &Sample::q25, &Sample::q75),
-                  {"median", {}, Mark::line}};
-  const auto& at = summary.at[index_of(quantity)];
+bench::Chart ensemble_chart(const EnsembleSummary& summary, observations::Quantity quantity,
+                            bool seconds) {
+  const char* label = observations::name_of(quantity).label;
+  bench::Chart chart{label, seconds ? "time (s)" : "time (R^2/D)",        label,
+                     true,  quantity != observations::Quantity::fraction, {}};
+  chart.series = {
+      band(summary, quantity, "all runs", &statistics::Sample::min, &statistics::Sample::max),
+      band(summary, quantity, "middle half", &statistics::Sample::q25, &statistics::Sample::q75),
+      {"median", {}, bench::Mark::line}};
+  const auto& at = summary.at[observations::index_of(quantity)];
   for (std::size_t i = 0; i < at.size(); ++i)
     chart.series.back().points.emplace_back(summary.times[i], at[i].median);
   return chart;
 }
 
-void add_ensemble_origin(Page& page, const EnsembleFolder& folder,
-                         const Configuration& configuration) {
+void add_ensemble_origin(output::Page& page, const EnsembleFolder& folder,
+                         const config::Configuration& configuration) {
   const EnsemblePlan plan = folder.load();
-  add_settings(page, configuration);
-  add_provenance(page, folder.path(),
-                 command_for(formatted("traceraft ensemble --runs %d --first-seed ", plan.runs) +
-                                 std::to_string(plan.first_seed),
-                             configuration));
+  output::add_settings(page, configuration);
+  output::add_provenance(
+      page, folder.path(),
+      output::command_for(formatted("traceraft ensemble --runs %d --first-seed ", plan.runs) +
+                              std::to_string(plan.first_seed),
+                          configuration));
 }
 
-std::string write_ensemble(const EnsembleFolder& folder, const Configuration& configuration,
+std::string write_ensemble(const EnsembleFolder& folder, const config::Configuration& configuration,
                            const EnsembleSummary& summary, const EnsembleEnd& end, bool quiet) {
   const bool seconds = !configuration.units().scaled;
-  write_durably(folder.path() / "ensemble.csv", csv_text(ensemble_table(summary)));
-  Page page("An ensemble of vesicles");
+  posix::write_durably(folder.path() / "ensemble.csv", output::csv_text(ensemble_table(summary)));
+  output::Page page("An ensemble of vesicles");
   page.paragraph(sentence_on(configuration, folder.load(), summary.runs));
   for (const MemberFailure& failure : end.failures)
     page.paragraph("The run of seed " + std::to_string(failure.seed) + " failed: " + failure.why);
-  const std::vector<Row> rows = ensemble_rows(summary, seconds);
-  if (!quiet) print_rows(rows);
+  const std::vector<output::Row> rows = ensemble_rows(summary, seconds);
+  if (!quiet) output::print_rows(rows);
   page.table(rows);
-  Missing missing;
-  for (const Quantity quantity : kQuantities)
-    add_chart(page, ensemble_chart(summary, quantity, seconds),
-              folder.path() / name_of(quantity).id, missing);
+  output::Missing missing;
+  for (const observations::Quantity quantity : observations::kQuantities)
+    output::add_chart(page, ensemble_chart(summary, quantity, seconds),
+                      folder.path() / observations::name_of(quantity).id, missing);
   add_ensemble_origin(page, folder, configuration);
-  write_durably(folder.path() / "ensemble.html", page.html());
+  posix::write_durably(folder.path() / "ensemble.html", page.html());
   return missing.text();
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::ensemble

@@ -7,7 +7,7 @@
 #include "drivers/output/status_line.hpp"
 #include "drivers/text/say.hpp"
 
-namespace traceraft {
+namespace traceraft::ensemble {
 namespace {
 
 // What runs write about t and after it; progress is counted in ln t, over which work is spread.
@@ -18,7 +18,7 @@ double share_done(double reached, double t_end) {
   return std::min(1.0, 1 - std::log(reached / t_end) / std::log(kFirstShare));
 }
 
-ProcessEnd run_or_resume(const EnsembleFolder& folder, std::uint64_t seed, int threads) {
+jobs::ProcessEnd run_or_resume(const EnsembleFolder& folder, std::uint64_t seed, int threads) {
   const std::string run = folder.run_of(seed).string(), thread_text = std::to_string(threads);
   std::vector<std::string> arguments = {"resume", run, "--threads", thread_text, "--quiet"};
   if (folder.member(seed).end == MemberEnd::missing)
@@ -26,13 +26,13 @@ ProcessEnd run_or_resume(const EnsembleFolder& folder, std::uint64_t seed, int t
                  "--seed", std::to_string(seed), "--out",
                  run,      "--threads",          thread_text,
                  "--quiet"};
-  return run_program(arguments, folder.log_of(seed));
+  return jobs::run_program(arguments, folder.log_of(seed));
 }
 
 }  // namespace
 
-EnsembleEnd run_members(const EnsemblePlan& plan, const EnsembleFolder& folder, const Jobs& jobs,
-                        double t_end, bool quiet) {
+EnsembleEnd run_members(const EnsemblePlan& plan, const EnsembleFolder& folder,
+                        const jobs::Jobs& jobs, double t_end, bool quiet) {
   std::vector<std::uint64_t> seeds;
   EnsembleEnd result;
   for (const std::uint64_t seed : plan.seeds()) {
@@ -42,7 +42,7 @@ EnsembleEnd run_members(const EnsemblePlan& plan, const EnsembleFolder& folder, 
     else if (member.end != MemberEnd::finished)
       seeds.push_back(seed);
   }
-  PendingJobs work;
+  jobs::PendingJobs work;
   work.count = seeds.size();
   work.before = static_cast<std::size_t>(plan.runs) - seeds.size();
   work.at_a_time = jobs.at_a_time;
@@ -57,8 +57,8 @@ EnsembleEnd run_members(const EnsemblePlan& plan, const EnsembleFolder& folder, 
       share += share_done(folder.reached(seed), t_end) / plan.runs;
     return share;
   };
-  const JobsEnd end = run_pending_jobs(work);
-  for (const JobFailure& failure : end.failures)
+  const jobs::JobsEnd end = jobs::run_pending_jobs(work);
+  for (const jobs::JobFailure& failure : end.failures)
     result.failures.push_back({seeds[failure.job], failure.why, failure.locked});
   std::sort(result.failures.begin(), result.failures.end(),
             [](const MemberFailure& a, const MemberFailure& b) { return a.seed < b.seed; });
@@ -69,21 +69,23 @@ EnsembleEnd run_members(const EnsemblePlan& plan, const EnsembleFolder& folder, 
 int run_member(const EnsembleFolder& folder, std::uint64_t seed, int threads, bool quiet) {
   const auto report = [seed, quiet](const std::string& what) {
     if (quiet) return;
-    say("seed %llu: %s\n", static_cast<unsigned long long>(seed), what);
-    flush_output();  // the log of a job is read while it runs
+    text::say("seed %llu: %s\n", static_cast<unsigned long long>(seed), what);
+    text::flush_output();  // the log of a job is read while it runs
   };
   const MemberEnd before = folder.member(seed).end;
   if (before == MemberEnd::finished) {
     report("already finished");
-    return kSuccess;
+    return drivers::kSuccess;
   }
   report(std::string(before == MemberEnd::missing ? "starts" : "continues") +
          ", threads: " + std::to_string(threads));
   const Stopwatch watch;
-  const ProcessEnd end = run_or_resume(folder, seed, threads);
-  if (end.exit_code == kSuccess) report("finished after " + clock_text(watch.seconds()));
-  if (end.exit_code != kSuccess) say_error("seed " + std::to_string(seed) + ": " + end.reason());
+  const jobs::ProcessEnd end = run_or_resume(folder, seed, threads);
+  if (end.exit_code == drivers::kSuccess)
+    report("finished after " + output::clock_text(watch.seconds()));
+  if (end.exit_code != drivers::kSuccess)
+    text::say_error("seed " + std::to_string(seed) + ": " + end.reason());
   return end.exit_code;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::ensemble

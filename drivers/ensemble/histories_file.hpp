@@ -8,15 +8,16 @@
 
 #include "verification/observations/history.hpp"
 
-namespace traceraft {
+namespace traceraft::ensemble {
 
 inline constexpr char kHistoriesFile[] = "histories.csv";
 
 // Columns seed, t, perimeter (over the radius), rafts, fraction; six digits. `seeds`: of the runs.
 void write_histories(const std::filesystem::path& file, const std::vector<std::uint64_t>& seeds,
-                     const std::vector<History>& runs, const std::vector<double>& times);
+                     const std::vector<observations::History>& runs,
+                     const std::vector<double>& times);
 
 // Throws InputError naming line and column if the file is no such table.
-std::vector<History> read_histories(const std::filesystem::path& file);
+std::vector<observations::History> read_histories(const std::filesystem::path& file);
 
-}  // namespace traceraft
+}  // namespace traceraft::ensemble

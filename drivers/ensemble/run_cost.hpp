@@ -3,17 +3,17 @@
 
 #include "drivers/config/configuration.hpp"
 
-namespace traceraft {
+namespace traceraft::ensemble {
 
 // Over those of a run of 128 cells. Nodes grow as cells², and the work as cells³: phase boundaries
 // that are narrower with the mesh take more steps. Other times, tolerances and methods do not
 // enter.
-inline double relative_memory(const Configuration& configuration) {
+inline double relative_memory(const config::Configuration& configuration) {
   const double finer = static_cast<double>(configuration.options().cells) / 128;
   return finer * finer;
 }
-inline double relative_work(const Configuration& configuration) {
+inline double relative_work(const config::Configuration& configuration) {
   return relative_memory(configuration) * static_cast<double>(configuration.options().cells) / 128;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::ensemble

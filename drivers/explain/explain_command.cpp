@@ -27,7 +27,7 @@
 #include "kernel/effects/effects.hpp"
 #include "verification/statistics/sample.hpp"
 
-namespace traceraft {
+namespace traceraft::explain {
 namespace {
 
 namespace fs = std::filesystem;
@@ -35,12 +35,13 @@ namespace fs = std::filesystem;
 // Series are explained with D within this factor of the model's, if nothing else is known of it.
 constexpr double kTimeRange = 8;
 
-UnitPrior unit_range(const Configuration& model, double diffusion_error) {
+likelihood::UnitPrior unit_range(const config::Configuration& model, double diffusion_error) {
   constexpr double kReach = 2;
   const double seconds = model.units().seconds_per_unit();
   if (diffusion_error > 0)
-    return UnitPrior::within_factor(seconds, std::exp(kNormal95 * diffusion_error), kReach);
-  return UnitPrior::within_factor(seconds, kTimeRange);
+    return likelihood::UnitPrior::within_factor(
+        seconds, std::exp(statistics::kNormal95 * diffusion_error), kReach);
+  return likelihood::UnitPrior::within_factor(seconds, kTimeRange);
 }
 
 struct ExplainCommand {
@@ -51,53 +52,54 @@ struct ExplainCommand {
 };
 
 void print_earlier_model(const fs::path& out) {
-  say("\n%s is from an earlier search\n", (out / "model.toml"));
+  text::say("\n%s is from an earlier search\n", (out / "model.toml"));
 }
 
 void explain_field_data(const ExplainCommand& command, ExplainSetup& setup, const fs::path& out) {
   const Stopwatch watch;
   if (!command.quiet)
     setup.request.progress = [&](const std::string& step) {
-      say("%s  %s\n", clock_text(watch.seconds()), step);
-      flush_output();
+      text::say("%s  %s\n", output::clock_text(watch.seconds()), step);
+      text::flush_output();
     };
   if (!command.quiet) {
-    say("%s\n", data_text(setup));
-    say("the model: %s\n", flags_text(setup.configuration));
-    for (const std::string& note : setup.notes) say("%s\n", note);
-    flush_output();
+    text::say("%s\n", data_text(setup));
+    text::say("the model: %s\n", config::flags_text(setup.configuration));
+    for (const std::string& note : setup.notes) text::say("%s\n", note);
+    text::flush_output();
   }
-  const Explanation found = search_resumably(out, setup);
+  const selection::Explanation found = search_resumably(out, setup);
   const std::string missing = write_explain_page(out, found, setup);
   if (command.quiet) return;
   print_explanation(found, setup);
   const std::string run = command_for_found(out, found, setup);
   if (!run.empty())
-    say("\nrun it with: %s\n(it starts from noise, not from the measured vesicle)\n", run);
+    text::say("\nrun it with: %s\n(it starts from noise, not from the measured vesicle)\n", run);
   else if (fs::exists(out / "model.toml"))
     print_earlier_model(out);
-  say("\nwritten: %s\n", (out / "explain.html"));
-  if (!missing.empty()) say("missing from the page: %s\n", missing);
+  text::say("\nwritten: %s\n", (out / "explain.html"));
+  if (!missing.empty()) text::say("missing from the page: %s\n", missing);
 }
 
 struct SeriesSetup {
-  MeasuredVesicles data;
-  GivenValues given;  // the model, as its file and the flags say
-  Configuration model;
+  observations::MeasuredVesicles data;
+  config::GivenValues given;  // the model, as its file and the flags say
+  config::Configuration model;
   SeriesEnsemblesRequest request;  // as that of the ensembles that are taken over, if any are
 };
 
 SeriesSetup read_series_job(const ExplainCommand& command) {
-  MeasuredVesicles data = read_dataset(command.series);
-  refuse_without_model(data.composition, command.job.model, command.job.flags);
-  const GivenValues given = model_said(command.job);
+  observations::MeasuredVesicles data = input::read_dataset(command.series);
+  input::refuse_without_model(data.composition, command.job.model, command.job.flags);
+  const config::GivenValues given = model_said(command.job);
   SeriesSetup setup{std::move(data), given, {given, {}}, {}};
-  if (const std::string other = other_membrane(setup.data.composition, setup.model); !other.empty())
-    throw InputError(setup.model.where(&RunOptions::case_name) + ": the membrane of the model is " +
-                     other);
+  if (const std::string other = input::other_membrane(setup.data.composition, setup.model);
+      !other.empty())
+    throw InputError(setup.model.where(&config::RunOptions::case_name) +
+                     ": the membrane of the model is " + other);
   refuse_series(setup.data, setup.model);
-  setup.request = {looks(setup.data),        command.runs,        command.jobs,
-                   command.job.processors(), command.job.without, command.quiet};
+  setup.request = {observations::looks(setup.data), command.runs,        command.jobs,
+                   command.job.processors(),        command.job.without, command.quiet};
   if (!command.ensembles.empty())
     take_over_ensembles(command.ensembles, setup.model, setup.request);
   return setup;
@@ -108,26 +110,28 @@ bool explain_series_data(const ExplainCommand& command, const SeriesSetup& setup
                          const fs::path& out, const std::string& go_on) {
   const auto& [data, given, model, request] = setup;
   if (!command.quiet) {
-    say("%s\nthe model: %s\n", title_of(data), flags_text(model));
-    flush_output();
+    text::say("%s\nthe model: %s\n", data::title_of(data), config::flags_text(model));
+    text::flush_output();
   }
   const fs::path simulations =
       command.ensembles.empty() ? out / "ensembles" : fs::path(command.ensembles);
   SeriesEnsembles ensembles =
-      numerically([&] { return run_series_ensembles(simulations, model, request); });
-  if (const std::string note = note_on_looks(request.looks, looks(data)); !note.empty())
+      drivers::numerically([&] { return run_series_ensembles(simulations, model, request); });
+  if (const std::string note = note_on_looks(request.looks, observations::looks(data));
+      !note.empty())
     ensembles.notes.push_back(note);
   if (ensembles.stopped) return false;
-  end_on_stop_signals(kInterrupted, go_on);
-  SeriesRequest search{unit_range(model, command.job.diffusion_error)};
+  posix::end_on_stop_signals(drivers::kInterrupted, go_on);
+  selection::SeriesRequest search{unit_range(model, command.job.diffusion_error)};
   search.replicates = command.job.replicates;
-  const SeriesExplanation found = numerically(
-      [&] { return explain_series(data, ensembles.base, ensembles.candidates, search); });
+  const selection::SeriesExplanation found = drivers::numerically([&] {
+    return selection::explain_series(data, ensembles.base, ensembles.candidates, search);
+  });
   // Fields say more: the verdict is theirs if there are any.
   if (command.job.data.empty())
     write_series_verdict(out, command.job.model, given, ensembles, found, search);
   write_series_explanation(out, data, model, ensembles, found, search, command.quiet);
-  if (!command.quiet && command.job.data.empty() && !is_named(found.finding) &&
+  if (!command.quiet && command.job.data.empty() && !selection::is_named(found.finding) &&
       fs::exists(out / "model.toml"))
     print_earlier_model(out);
   return true;
@@ -135,22 +139,22 @@ bool explain_series_data(const ExplainCommand& command, const SeriesSetup& setup
 
 // Series are held against models without any.
 bool has_effects(const ExplainJob& job) {
-  return !Configuration(model_said(job), {}).options().effect.empty();
+  return !config::Configuration(model_said(job), {}).options().effect.empty();
 }
 
 // A folder for --data may hold fields, series or both.
 void find_series(ExplainCommand& command) {
   const std::string folder = command.job.data;
-  if (folder.empty() || !holds_series(folder)) return;
-  if (holds_fields(folder) && has_effects(command.job)) {
+  if (folder.empty() || !input::holds_series(folder)) return;
+  if (input::holds_fields(folder) && has_effects(command.job)) {
     if (!command.quiet)
-      say("the series in %s are ignored, because the model has effects\n", folder);
+      text::say("the series in %s are ignored, because the model has effects\n", folder);
     return;
   }
   if (!command.series.empty())
     throw InputError("--series: " + folder + " of --data also holds series; give one of them");
   command.series = folder;
-  if (!holds_fields(folder)) command.job.data.clear();
+  if (!input::holds_fields(folder)) command.job.data.clear();
 }
 
 void refuse_to_overwrite(const ExplainCommand& command, const fs::path& out) {
@@ -172,30 +176,30 @@ int explain(ExplainCommand command) {
   find_series(command);
   if (command.series.empty() && !command.ensembles.empty())
     throw InputError("--ensembles: there are no series to compare with them");
-  for (const std::string& effect : command.job.without) (void)effects().find(effect);
+  for (const std::string& effect : command.job.without) (void)effects::effects().find(effect);
   std::optional<ExplainSetup> fields;
   std::optional<SeriesSetup> series;
   if (!command.series.empty()) series = read_series_job(command);
   if (!command.job.data.empty()) fields = read_explain_job(command.job);
-  const fs::path out = command.out.empty() ? first_free_folder("explain") : command.out;
+  const fs::path out = command.out.empty() ? run::first_free_folder("explain") : command.out;
   refuse_to_overwrite(command, out);
-  refuse_foreign_folder(out, {"search.json", "ensembles", "series.json"});
+  run::refuse_foreign_folder(out, {"search.json", "ensembles", "series.json"});
   fs::create_directories(out);
-  const FolderLock lock(out);
+  const posix::FolderLock lock(out);
   // The search is on disk after every refit.
-  const std::string go_on =
-      command.quiet ? ""
-                    : "to continue, give the same command with --out " + in_shell(out.string());
-  end_on_stop_signals(kInterrupted, go_on);
+  const std::string go_on = command.quiet ? ""
+                                          : "to continue, give the same command with --out " +
+                                                text::in_shell(out.string());
+  posix::end_on_stop_signals(drivers::kInterrupted, go_on);
   if (fields) explain_field_data(command, *fields, out);
   if (series && !explain_series_data(command, *series, out, go_on)) {
-    if (!command.quiet) say("%s\n", go_on);
-    return kInterrupted;
+    if (!command.quiet) text::say("%s\n", go_on);
+    return drivers::kInterrupted;
   }
-  return kSuccess;
+  return drivers::kSuccess;
 }
 
-Action define_explain(CLI::App& app) {
+drivers::Action define_explain(CLI::App& app) {
   const auto command = std::make_shared<ExplainCommand>();
   app.add_option("--data", command->job.data,
                  "folder of measurements: dataset.toml with fields (snapshot_001.csv, ...), series "
@@ -232,14 +236,14 @@ Action define_explain(CLI::App& app) {
       ->capture_default_str();
   app.add_option("--diffusion-error", command->job.diffusion_error,
                  "relative standard error of a measured D; default: D is fitted freely")
-      ->check(between(0.001, 1));
+      ->check(config::between(0.001, 1));
   app.add_option("--threads", command->job.threads, "threads; default: one for each processor")
       ->check(CLI::Range(1, 256));
   app.add_option("--without", command->job.without, "effects to leave out of the search")
       ->type_name("EFFECT,...")
       ->delimiter(',');
   app.add_flag("--quiet", command->quiet, "print errors only");
-  add_options(app, command->job.flags, [](const OptionSpec& spec) {
+  config::add_options(app, command->job.flags, [](const config::OptionSpec& spec) {
     return (spec.group == "Physics" || spec.group == "Surface" || spec.group == "Case" ||
             spec.name == "raft-fraction") &&
            spec.name != "scaled";
@@ -252,9 +256,9 @@ Action define_explain(CLI::App& app) {
 
 }  // namespace
 
-Command explain_command() {
-  return {"explain", "find what a model lacks, from measured fields or series", Ranks::starts_them,
-          define_explain};
+drivers::Command explain_command() {
+  return {"explain", "find what a model lacks, from measured fields or series",
+          drivers::Ranks::starts_them, define_explain};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::explain

@@ -15,7 +15,7 @@
 #include "drivers/report/viewer.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::explain {
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,7 +28,8 @@ constexpr double kColourEnd = 6;
 
 class ExplainPage {
  public:
-  ExplainPage(const fs::path& folder, const Explanation& found, const ExplainSetup& setup)
+  ExplainPage(const fs::path& folder, const selection::Explanation& found,
+              const ExplainSetup& setup)
       : folder_(folder),
         found_(found),
         setup_(setup),
@@ -37,7 +38,7 @@ class ExplainPage {
 
   std::string write() {
     page_.paragraph(data_text(setup_));
-    page_.heading("Verdict: " + verdict_words(found_.finding, class_of(found_)));
+    page_.heading("Verdict: " + verdict_words(found_.finding, selection::class_of(found_)));
     page_.paragraph(verdict_sentence(found_));
     if (!found_.at_rest) page_.table(parameter_rows(found_, units_));
     for (const std::string& remark : remarks_on(found_, setup_)) page_.paragraph(remark);
@@ -48,19 +49,19 @@ class ExplainPage {
       add_not_found();
     }
     add_origin();
-    write_durably(folder_ / "explain.html", page_.html());
+    posix::write_durably(folder_ / "explain.html", page_.html());
     return missing_.text();
   }
 
  private:
   void add_origin() {
     page_.heading("Where this comes from");
-    page_.paragraph(program_text() + ". Noise " + formatted("%.3g of c, ", found_.noise) +
-                    text_of(found_.noise_model.correlation) + ", " +
+    page_.paragraph(output::program_text() + ". Noise " + formatted("%.3g of c, ", found_.noise) +
+                    assimilation::text_of(found_.noise_model.correlation) + ", " +
                     std::to_string(setup_.request.filter.replicates) +
                     " replicates with noise alone, " +
                     formatted("h/epsilon = %.2f.", found_.h_over_epsilon) + " The model:");
-    page_.code(flags_text(setup_.configuration));
+    page_.code(config::flags_text(setup_.configuration));
     if (const std::string run = command_for_found(folder_, found_, setup_); !run.empty()) {
       page_.paragraph(
           "This command runs the extended model. It starts from noise, not from the measured "
@@ -85,10 +86,11 @@ class ExplainPage {
 
   // Bounds of effects that have one sign begin at 0.
   std::string chance_text() const {
-    const std::vector<Bound> bounds = bounds_of(found_);
-    const auto excluding = std::count_if(bounds.begin(), bounds.end(), [](const Bound& bound) {
-      return bound.seen && find_candidate(bound.effect)->two_sided;
-    });
+    const std::vector<selection::Bound> bounds = selection::bounds_of(found_);
+    const auto excluding =
+        std::count_if(bounds.begin(), bounds.end(), [](const selection::Bound& bound) {
+          return bound.seen && assimilation::find_candidate(bound.effect)->two_sided;
+        });
     if (excluding == 0) return "";
     return formatted(
         " %d of these effects may have either sign. By chance, the bounds of one of them exclude 0 "
@@ -110,18 +112,21 @@ class ExplainPage {
         "snapshot is held out: no parameter is fitted to it. It only decides between effects that "
         "explain the other snapshots equally well.");
     page_.table(gap_rows(found_));
-    Chart chart{"measured minus forecast", "time (s)", "root mean square, in c", false, false, {}};
+    bench::Chart chart{
+        "measured minus forecast", "time (s)", "root mean square, in c", false, false, {}};
     chart.series = {gap_series("base model", found_.base, false)};
     if (found_.found.hypothesis.added() > 0)
       chart.series.push_back(
           gap_series("with " + found_.found.hypothesis.name(), found_.found, false));
     chart.series.push_back(gap_series("to be expected if nothing is missing", found_.found, true));
-    add_chart(page_, chart, folder_ / "gaps", missing_);
+    output::add_chart(page_, chart, folder_ / "gaps", missing_);
   }
 
-  ChartSeries gap_series(const std::string& name, const Refit& fit, bool expected) const {
-    ChartSeries series{name, {}, setup_.series.size() > 1 ? Mark::points : Mark::both};
-    for (const SnapshotGap& gap : fit.snapshots)
+  bench::ChartSeries gap_series(const std::string& name, const selection::Refit& fit,
+                                bool expected) const {
+    bench::ChartSeries series{
+        name, {}, setup_.series.size() > 1 ? bench::Mark::points : bench::Mark::both};
+    for (const assimilation::SnapshotGap& gap : fit.snapshots)
       series.points.emplace_back(seconds(gap.vesicle, gap.snapshot),
                                  expected ? gap.expected : gap.gap);
     return series;
@@ -144,9 +149,9 @@ class ExplainPage {
                     found_.found.hypothesis.name() + "."
               : ""));
     std::vector<Vec> frames;
-    View view{{}, -kColourEnd, kColourEnd, strongest(found_.base_maps), true};
-    const auto add = [&](const std::string& model, const DisagreementMaps& maps) {
-      for (const DisagreementMap& map : maps.snapshots) {
+    report::View view{{}, -kColourEnd, kColourEnd, strongest(found_.base_maps), true};
+    const auto add = [&](const std::string& model, const assimilation::DisagreementMaps& maps) {
+      for (const assimilation::DisagreementMap& map : maps.snapshots) {
         frames.push_back(map.z);
         view.labels.push_back(
             model +
@@ -158,7 +163,7 @@ class ExplainPage {
     };
     add("base model", found_.base_maps);
     if (both) add("with " + found_.found.hypothesis.name(), found_.found_maps);
-    missing_.add(add_viewer(page_, found_.map_mesh, frames, view));
+    missing_.add(report::add_viewer(page_, found_.map_mesh, frames, view));
     if (found_.disagreements.empty()) {
       page_.paragraph(
           "No single patch of the surface (inside rafts, outside or at their boundaries) disagrees "
@@ -175,18 +180,21 @@ class ExplainPage {
     page_.table(disagreement_rows(found_, setup_, kMostRows));
   }
 
-  static std::size_t strongest(const DisagreementMaps& maps) {
-    const auto extreme = [](const DisagreementMap& map) { return map.z.cwiseAbs().maxCoeff(); };
-    const auto most = std::max_element(maps.snapshots.begin(), maps.snapshots.end(),
-                                       [&](const DisagreementMap& a, const DisagreementMap& b) {
-                                         return extreme(a) < extreme(b);
-                                       });
+  static std::size_t strongest(const assimilation::DisagreementMaps& maps) {
+    const auto extreme = [](const assimilation::DisagreementMap& map) {
+      return map.z.cwiseAbs().maxCoeff();
+    };
+    const auto most = std::max_element(
+        maps.snapshots.begin(), maps.snapshots.end(),
+        [&](const assimilation::DisagreementMap& a, const assimilation::DisagreementMap& b) {
+          return extreme(a) < extreme(b);
+        });
     return static_cast<std::size_t>(most - maps.snapshots.begin());
   }
 
   void add_what() {
     page_.heading("Candidates");
-    for (const Round& round : found_.rounds) {
+    for (const selection::Round& round : found_.rounds) {
       const std::string known = round.known.hypothesis.name();
       page_.paragraph((known.empty() ? std::string("What the base model lacks")
                                      : "What the model with " + known + " lacks") +
@@ -201,18 +209,18 @@ class ExplainPage {
   static std::string share(double p) { return p < 1e-3 ? "0.1 %" : formatted("%.1f %%", 100 * p); }
 
   const fs::path folder_;
-  const Explanation& found_;
+  const selection::Explanation& found_;
   const ExplainSetup& setup_;
-  const Units units_;
-  Page page_;
-  Missing missing_;
+  const physics::Units units_;
+  output::Page page_;
+  output::Missing missing_;
 };
 
 }  // namespace
 
-std::string write_explain_page(const fs::path& folder, const Explanation& found,
+std::string write_explain_page(const fs::path& folder, const selection::Explanation& found,
                                const ExplainSetup& setup) {
   return ExplainPage(folder, found, setup).write();
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::explain

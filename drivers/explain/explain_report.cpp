@@ -11,39 +11,41 @@
 #include "kernel/core/text.hpp"
 #include "verification/bench/figures.hpp"
 
-namespace traceraft {
+namespace traceraft::explain {
 namespace {
 
-Table scores_table(const Explanation& found) {
-  Table table{"scores", {"round", "effect", "score", "of noise", "p", "response/noise"}, {}};
+bench::Table scores_table(const selection::Explanation& found) {
+  bench::Table table{"scores", {"round", "effect", "score", "of noise", "p", "response/noise"}, {}};
   for (std::size_t k = 0; k < found.rounds.size(); ++k)
-    for (const CandidateScore& s : found.rounds[k].screening.scores)
+    for (const selection::CandidateScore& s : found.rounds[k].screening.scores)
       table.rows.push_back(
           {static_cast<double>(k + 1), s.effect, s.score, s.null_mean, s.p, s.response});
   return table;
 }
 
-Table disagreements_table(const Explanation& found, const ExplainSetup& setup, const Units& units) {
-  Table table{
+bench::Table disagreements_table(const selection::Explanation& found, const ExplainSetup& setup,
+                                 const physics::Units& units) {
+  bench::Table table{
       "disagreements", {"vesicle", "time/s", "state", "x", "y", "z", "deviations", "p"}, {}};
-  for (const Disagreement& d : found.disagreements)
+  for (const assimilation::Disagreement& d : found.disagreements)
     table.rows.push_back({setup.series[d.vesicle].vesicle, d.time * units.seconds_per_unit(),
                           d.state, d.direction[0], d.direction[1], d.direction[2], d.z, d.p});
   return table;
 }
 
 // The second run may yet refute it.
-bool has_model(const Explanation& found) {
-  return is_named(found) && found.rerun;
+bool has_model(const selection::Explanation& found) {
+  return selection::is_named(found) && found.rerun;
 }
 
 }  // namespace
 
-void write_explanation(const std::filesystem::path& folder, const Explanation& found,
+void write_explanation(const std::filesystem::path& folder, const selection::Explanation& found,
                        const ExplainSetup& setup) {
-  const Units units = setup.configuration.units();
-  write_durably(folder / "scores.csv", csv_text(scores_table(found)));
-  write_durably(folder / "disagreements.csv", csv_text(disagreements_table(found, setup, units)));
+  const physics::Units units = setup.configuration.units();
+  posix::write_durably(folder / "scores.csv", output::csv_text(scores_table(found)));
+  posix::write_durably(folder / "disagreements.csv",
+                       output::csv_text(disagreements_table(found, setup, units)));
   if (has_model(found))
     write_extended_model(
         folder / "model.toml", setup.model_file, found_model(found, setup.model),
@@ -51,31 +53,32 @@ void write_explanation(const std::filesystem::path& folder, const Explanation& f
             (setup.request.own.parts.empty()
                  ? ", with D refitted together with it"
                  : ", with D and the model's own effects refitted together with it"));
-  write_durably(folder / "verdict.json", verdict_json(verdict_of(found, setup)).dump(2) + "\n");
+  posix::write_durably(folder / "verdict.json",
+                       verdict_json(verdict_of(found, setup)).dump(2) + "\n");
 }
 
-std::string command_for_found(const std::filesystem::path& folder, const Explanation& found,
-                              const ExplainSetup& setup) {
+std::string command_for_found(const std::filesystem::path& folder,
+                              const selection::Explanation& found, const ExplainSetup& setup) {
   if (!has_model(found)) return "";
-  return "traceraft run --config " + in_shell((folder / "model.toml").string()) + " --t-end " +
-         formatted("%.6g", setup.last_s());
+  return "traceraft run --config " + text::in_shell((folder / "model.toml").string()) +
+         " --t-end " + formatted("%.6g", setup.last_s());
 }
 
-void print_explanation(const Explanation& found, const ExplainSetup& setup) {
-  const Units units = setup.configuration.units();
-  say("\n%s\n\nVerdict: %s\n%s\n\n", data_text(setup),
-      verdict_words(found.finding, class_of(found)), verdict_sentence(found));
+void print_explanation(const selection::Explanation& found, const ExplainSetup& setup) {
+  const physics::Units units = setup.configuration.units();
+  text::say("\n%s\n\nVerdict: %s\n%s\n\n", data_text(setup),
+            verdict_words(found.finding, selection::class_of(found)), verdict_sentence(found));
   if (!found.at_rest) {
-    print_rows(parameter_rows(found, units));
-    say("\n");
-    print_rows(gap_rows(found));
+    output::print_rows(parameter_rows(found, units));
+    text::say("\n");
+    output::print_rows(gap_rows(found));
   }
-  for (const std::string& remark : remarks_on(found, setup)) say("\n%s\n", remark);
-  say("\nnoise of the measurements: %.3g, %s\n", found.noise,
-      text_of(found.noise_model.correlation));
+  for (const std::string& remark : remarks_on(found, setup)) text::say("\n%s\n", remark);
+  text::say("\nnoise of the measurements: %.3g, %s\n", found.noise,
+            assimilation::text_of(found.noise_model.correlation));
   if (!found.at_rest)
-    say("patches that disagree significantly with the base model: %zu\n",
-        found.disagreements.size());
+    text::say("patches that disagree significantly with the base model: %zu\n",
+              found.disagreements.size());
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::explain

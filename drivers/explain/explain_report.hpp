@@ -5,17 +5,17 @@
 
 #include "drivers/explain/explain_run.hpp"
 
-namespace traceraft {
+namespace traceraft::explain {
 
 // verdict.json, scores.csv, disagreements.csv and, if something was named that a second run did not
 // refute, model.toml. Throws IoError.
-void write_explanation(const std::filesystem::path& folder, const Explanation& found,
+void write_explanation(const std::filesystem::path& folder, const selection::Explanation& found,
                        const ExplainSetup& setup);
 
-void print_explanation(const Explanation& found, const ExplainSetup& setup);
+void print_explanation(const selection::Explanation& found, const ExplainSetup& setup);
 
 // What runs the model with what was found, over the time that was measured; "" if there is none.
-std::string command_for_found(const std::filesystem::path& folder, const Explanation& found,
-                              const ExplainSetup& setup);
+std::string command_for_found(const std::filesystem::path& folder,
+                              const selection::Explanation& found, const ExplainSetup& setup);
 
-}  // namespace traceraft
+}  // namespace traceraft::explain

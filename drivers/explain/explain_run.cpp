@@ -16,63 +16,66 @@
 #include "kernel/core/text.hpp"
 #include "kernel/effects/effects.hpp"
 
-namespace traceraft {
+namespace traceraft::explain {
 namespace {
 
 namespace fs = std::filesystem;
 
-GivenValues with_radius(GivenValues model, double radius_um) {
+config::GivenValues with_radius(config::GivenValues model, double radius_um) {
   model["radius"] = {format_number(radius_um), "dataset.toml: radius"};
   return model;
 }
 
 // Of a model that says another radius than the data, and of data that are not where they say.
-std::vector<std::string> notes_on(const GivenValues& model, const FieldDataset& data) {
+std::vector<std::string> notes_on(const config::GivenValues& model,
+                                  const input::FieldDataset& data) {
   std::vector<std::string> notes;
-  const Configuration configuration(model, {});
+  const config::Configuration configuration(model, {});
   if (model.count("radius") > 0) {
     const double own = configuration.options().radius;
     if (std::fabs(own - data.radius_um) > 1e-6 * data.radius_um)
       notes.push_back("The radius is that of dataset.toml, " + format_number(data.radius_um) +
                       " um, instead of that of the model, " + format_number(own) + ".");
   }
-  if (const std::string note = note_on_distance(data);
+  if (const std::string note = input::note_on_distance(data);
       !note.empty() && configuration.options().surface == "sphere")
     notes.push_back(note);
   return notes;
 }
 
 // Only spheres are simple enough to say where before the mesh is there.
-void refuse_points_off_the_sphere(const FieldDataset& data, const std::string& folder) {
+void refuse_points_off_the_sphere(const input::FieldDataset& data, const std::string& folder) {
   std::size_t number = 0;
-  for (const FieldSeries& vesicle : data.vesicles)
-    for (const FieldSnapshot& snapshot : vesicle.snapshots) {
+  for (const assimilation::FieldSeries& vesicle : data.vesicles)
+    for (const assimilation::FieldSnapshot& snapshot : vesicle.snapshots) {
       ++number;
       for (std::size_t i = 0; i < snapshot.points.size(); ++i) {
         const Point x = data.radius_um * snapshot.points[i];
         const double distance = snapshot.points[i].norm() - 1;
-        if (std::fabs(distance) <= kOffSurface) continue;
+        if (std::fabs(distance) <= assimilation::kOffSurface) continue;
         throw InputError(
-            place_of(folder, number, i, "") +
+            input::place_of(folder, number, i, "") +
             formatted(": (%.4g, %.4g, %.4g) um is %.2g R away from the sphere (allowed: %g R). Are "
                       "radius and length_unit right, and is the centre at 0?",
-                      x[0], x[1], x[2], std::fabs(distance), kOffSurface));
+                      x[0], x[1], x[2], std::fabs(distance), assimilation::kOffSurface));
       }
     }
 }
 
 // Missing values that somebody has coded as numbers, and c on another scale.
-void refuse_far_values(const std::vector<FieldSeries>& vesicles, const DoubleWell& well,
-                       const std::string& folder) {
+void refuse_far_values(const std::vector<assimilation::FieldSeries>& vesicles,
+                       const physics::DoubleWell& well, const std::string& folder) {
   const double width = well.b - well.a;
   std::size_t number = 0;
-  for (const FieldSeries& vesicle : vesicles)
-    for (const FieldSnapshot& snapshot : vesicle.snapshots) {
+  for (const assimilation::FieldSeries& vesicle : vesicles)
+    for (const assimilation::FieldSnapshot& snapshot : vesicle.snapshots) {
       ++number;
       for (Eigen::Index i = 0; i < snapshot.values.size(); ++i) {
         const double c = snapshot.values[i];
-        if (c >= well.a - kFarFromWells * width && c <= well.b + kFarFromWells * width) continue;
-        throw InputError(place_of(folder, number, static_cast<std::size_t>(i), "c") + ": " +
+        if (c >= well.a - input::kFarFromWells * width &&
+            c <= well.b + input::kFarFromWells * width)
+          continue;
+        throw InputError(input::place_of(folder, number, static_cast<std::size_t>(i), "c") + ": " +
                          formatted("%.6g", c) + " is far from the phases of the model, " +
                          format_number(well.a) + " and " + format_number(well.b) +
                          "; leave out missing values, and scale c so that the phases agree");
@@ -81,64 +84,67 @@ void refuse_far_values(const std::vector<FieldSeries>& vesicles, const DoubleWel
 }
 
 // Most likely the radius or the unit of length is not what it is said to be.
-void refuse_wide_boundaries(const Configuration& model, const CahnHilliardModel& base) {
+void refuse_wide_boundaries(const config::Configuration& model,
+                            const problem::CahnHilliardModel& base) {
   constexpr double kWidest = 0.5;
   if (base.epsilon > kWidest)
-    throw InputError(model.where(&RunOptions::epsilon) + ": " +
+    throw InputError(model.where(&config::RunOptions::epsilon) + ": " +
                      format_number(model.options().epsilon) +
                      " um is more than half of the radius, " +
                      format_number(model.units().radius_um) + " um by dataset.toml");
 }
 
 // Nothing moves in what is the same everywhere, and no measurement is without noise.
-void refuse_uniform_values(const std::vector<FieldSeries>& vesicles, const DoubleWell& well,
-                           const std::string& folder) {
+void refuse_uniform_values(const std::vector<assimilation::FieldSeries>& vesicles,
+                           const physics::DoubleWell& well, const std::string& folder) {
   constexpr double kLeast = 1e-6;
   std::size_t number = 0;
-  for (const FieldSeries& vesicle : vesicles)
-    for (const FieldSnapshot& snapshot : vesicle.snapshots) {
+  for (const assimilation::FieldSeries& vesicle : vesicles)
+    for (const assimilation::FieldSnapshot& snapshot : vesicle.snapshots) {
       ++number;
       if (snapshot.values.maxCoeff() - snapshot.values.minCoeff() > kLeast * (well.b - well.a))
         continue;
-      throw InputError((fs::path(folder) / snapshot_file(number)).string() + ": c is " +
+      throw InputError((fs::path(folder) / input::snapshot_file(number)).string() + ": c is " +
                        format_number(snapshot.values[0]) +
                        " everywhere, which explains nothing; leave this snapshot out");
     }
 }
 
 // A dye of the other phase. The equation is the same for c and 1 − c, so that no fit would tell.
-void refuse_exchanged_phases(const Configuration& model, const std::vector<FieldSeries>& vesicles,
-                             const DoubleWell& well) {
+void refuse_exchanged_phases(const config::Configuration& model,
+                             const std::vector<assimilation::FieldSeries>& vesicles,
+                             const physics::DoubleWell& well) {
   constexpr double kTold = 0.2, kMuchNearer = 4;
   const double stated = model.options().raft_fraction;
   if (model.options().initial != "noise" || std::fabs(1 - 2 * stated) < kTold) return;
   double sum = 0, count = 0;
-  for (const FieldSeries& vesicle : vesicles)
-    for (const FieldSnapshot& snapshot : vesicle.snapshots) {
+  for (const assimilation::FieldSeries& vesicle : vesicles)
+    for (const assimilation::FieldSnapshot& snapshot : vesicle.snapshots) {
       sum += snapshot.values.sum();
       count += static_cast<double>(snapshot.values.size());
     }
   const double measured = (sum / count - well.a) / (well.b - well.a);
   if (kMuchNearer * std::fabs(measured - (1 - stated)) > std::fabs(measured - stated)) return;
   throw InputError(
-      model.where(&RunOptions::raft_fraction) + ": the model has " + format_number(stated) +
+      model.where(&config::RunOptions::raft_fraction) + ": the model has " + format_number(stated) +
       formatted(" of rafts, but the mean of c is %.2f; if c marks the other phase, ", measured) +
       formatted("write 1 - c; otherwise give --raft-fraction %.2f", measured));
 }
 
 // What data could not tell from the rest of the model is not fitted beside it.
-Hypothesis own_effects(const Configuration& model, const std::vector<Candidate>& asked,
-                       const std::vector<std::string>& without) {
-  const std::vector<EffectTerm> terms = effects_of(model);
-  const Hypothesis own =
-      with_option_context(model, &RunOptions::effect, [&] { return of_model(terms); });
-  for (const EffectTerm& term : terms) {
+assimilation::Hypothesis own_effects(const config::Configuration& model,
+                                     const std::vector<assimilation::Candidate>& asked,
+                                     const std::vector<std::string>& without) {
+  const std::vector<effects::EffectTerm> terms = run::effects_of(model);
+  const assimilation::Hypothesis own = run::with_option_context(
+      model, &config::RunOptions::effect, [&] { return assimilation::of_model(terms); });
+  for (const effects::EffectTerm& term : terms) {
     if (std::count(without.begin(), without.end(), term.effect) > 0)
       throw InputError("--without: the model has " + term.effect +
                        ", and fits its strength; remove it from the model instead");
     if (std::none_of(asked.begin(), asked.end(),
-                     [&](const Candidate& c) { return c.effect == term.effect; }))
-      throw InputError(model.where(&RunOptions::effect) + ": effect " + term.effect +
+                     [&](const assimilation::Candidate& c) { return c.effect == term.effect; }))
+      throw InputError(model.where(&config::RunOptions::effect) + ": effect " + term.effect +
                        " does almost nothing on this surface, so that no data determine its "
                        "strength; leave it out");
   }
@@ -146,17 +152,17 @@ Hypothesis own_effects(const Configuration& model, const std::vector<Candidate>&
 }
 
 // Throws InputError if there is nothing to look for.
-void set_effects(const Configuration& model, ExplainSetup& setup) {
-  ExplainRequest& request = setup.request;
+void set_effects(const config::Configuration& model, ExplainSetup& setup) {
+  selection::ExplainRequest& request = setup.request;
   const std::vector<Point>& places = setup.series.front().snapshots.front().points;
-  const std::vector<Candidate> asked =
-      candidates_for(request.base, *request.surface, places, request.without);
+  const std::vector<assimilation::Candidate> asked =
+      assimilation::candidates_for(request.base, *request.surface, places, request.without);
   request.own = own_effects(model, asked, request.without);
-  if (candidates_beside(request.own, asked).empty())
+  if (assimilation::candidates_beside(request.own, asked).empty())
     throw InputError("--without: no effect is left to search for");
-  for (const Candidate& candidate : asked)
-    for (const Hypothesis::Part& part : request.own.parts)
-      if (are_one(candidate, part.candidate))
+  for (const assimilation::Candidate& candidate : asked)
+    for (const assimilation::Hypothesis::Part& part : request.own.parts)
+      if (assimilation::are_one(candidate, part.candidate))
         setup.notes.push_back(candidate.effect + " is left out of the search: the model's " +
                               part.candidate.effect + " is another form of it.");
 }
@@ -170,13 +176,15 @@ int ExplainJob::processors() const {
 
 double ExplainSetup::last_s() const {
   double last = 0;
-  for (const FieldSeries& vesicle : series) last = std::max(last, vesicle.snapshots.back().time);
+  for (const assimilation::FieldSeries& vesicle : series)
+    last = std::max(last, vesicle.snapshots.back().time);
   return last * configuration.units().time();
 }
 
 std::string data_text(const ExplainSetup& setup) {
   std::size_t snapshots = 0;
-  for (const FieldSeries& vesicle : setup.series) snapshots += vesicle.snapshots.size();
+  for (const assimilation::FieldSeries& vesicle : setup.series)
+    snapshots += vesicle.snapshots.size();
   const std::size_t vesicles = setup.series.size();
   const double radius = setup.configuration.units().length();
   const double blur = setup.request.filter.blur * radius;
@@ -188,50 +196,52 @@ std::string data_text(const ExplainSetup& setup) {
                                      : "not blurred");
 }
 
-GivenValues model_said(const ExplainJob& job) {
-  GivenValues said = job.flags;
-  said.merge(read_config_file(job.model, "--model"));
+config::GivenValues model_said(const ExplainJob& job) {
+  config::GivenValues said = job.flags;
+  said.merge(config::read_config_file(job.model, "--model"));
   return said;
 }
 
 ExplainSetup read_explain_job(const ExplainJob& job) {
-  FieldDataset data = read_field_dataset(job.data);
+  input::FieldDataset data = input::read_field_dataset(job.data);
   // A width of the boundaries says that a model is meant; other values may be those of any.
-  if (job.flags.count("epsilon") == 0) refuse_without_model(data.composition, job.model, job.flags);
-  const GivenValues said = model_said(job);
+  if (job.flags.count("epsilon") == 0)
+    input::refuse_without_model(data.composition, job.model, job.flags);
+  const config::GivenValues said = model_said(job);
   ExplainSetup setup;
   setup.model_file = job.model;
   setup.model = with_radius(said, data.radius_um);
   setup.notes = notes_on(said, data);
   setup.name = data.name;
   setup.synthetic = data.synthetic;
-  const Configuration& model = setup.configuration = Configuration(setup.model, {});
-  refuse_scaled(model);
-  (void)physical_model(model);  // with its effects it has to be one
-  setup.request.base = model_without_effects(model);
-  const DoubleWell& well = setup.request.base.well;
+  const config::Configuration& model = setup.configuration = config::Configuration(setup.model, {});
+  input::refuse_scaled(model);
+  (void)run::physical_model(model);  // with its effects it has to be one
+  setup.request.base = run::model_without_effects(model);
+  const physics::DoubleWell& well = setup.request.base.well;
   if (model.options().surface == "sphere") refuse_points_off_the_sphere(data, job.data);
-  if (const std::string note = note_on_scale(data, well.a, well.b); !note.empty())
+  if (const std::string note = input::note_on_scale(data, well.a, well.b); !note.empty())
     setup.notes.push_back(note);
   setup.series = std::move(data.vesicles);
-  if (const std::string other = other_membrane(data.composition, model); !other.empty())
+  if (const std::string other = input::other_membrane(data.composition, model); !other.empty())
     setup.notes.push_back("ANOTHER MEMBRANE: the membrane of the model is " + other + ".");
-  for (FieldSeries& vesicle : setup.series)
-    for (FieldSnapshot& snapshot : vesicle.snapshots) snapshot.time /= model.units().time();
+  for (assimilation::FieldSeries& vesicle : setup.series)
+    for (assimilation::FieldSnapshot& snapshot : vesicle.snapshots)
+      snapshot.time /= model.units().time();
 
-  ExplainRequest& request = setup.request;
-  request.surface = surface_of(model);
+  selection::ExplainRequest& request = setup.request;
+  request.surface = run::surface_of(model);
   request.cells = static_cast<int>(model.options().cells);
   request.threads = job.processors();
   request.most_effects = job.effects;
   request.without = job.without;
   request.filter.replicates = job.replicates;
-  if (job.diffusion_error > 0) request.filter.pace_doubt = job.diffusion_error;
+  if (job.diffusion_error > 0) request.filter.diffusion_ratio_doubt = job.diffusion_error;
   request.filter.blur = data.blur_um.value_or(0) / data.radius_um;
   request.blur_stated = data.blur_um.has_value();
   if (data.noise_share > 0)
-    request.filter.correlation =
-        gaussian_correlation(data.noise_correlation_um / data.radius_um, data.noise_share);
+    request.filter.correlation = assimilation::gaussian_correlation(
+        data.noise_correlation_um / data.radius_um, data.noise_share);
   refuse_wide_boundaries(model, request.base);
   refuse_far_values(setup.series, request.base.well, job.data);
   refuse_uniform_values(setup.series, request.base.well, job.data);
@@ -240,4 +250,4 @@ ExplainSetup read_explain_job(const ExplainJob& job) {
   return setup;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::explain

@@ -7,13 +7,15 @@
 #include "drivers/explain/found_parameters.hpp"
 #include "drivers/output/text_table.hpp"
 
-namespace traceraft {
+namespace traceraft::explain {
 
-std::vector<Row> parameter_rows(const Explanation& found, const Units& base);
-std::vector<Row> bound_rows(const Explanation& found, const Units& base);
-std::vector<Row> gap_rows(const Explanation& found);
-std::vector<Row> score_rows(const Round& round);  // and refits
-std::vector<Row> disagreement_rows(const Explanation& found, const ExplainSetup& setup,
-                                   std::size_t most);
+std::vector<output::Row> parameter_rows(const selection::Explanation& found,
+                                        const physics::Units& base);
+std::vector<output::Row> bound_rows(const selection::Explanation& found,
+                                    const physics::Units& base);
+std::vector<output::Row> gap_rows(const selection::Explanation& found);
+std::vector<output::Row> score_rows(const selection::Round& round);  // and refits
+std::vector<output::Row> disagreement_rows(const selection::Explanation& found,
+                                           const ExplainSetup& setup, std::size_t most);
 
-}  // namespace traceraft
+}  // namespace traceraft::explain

@@ -7,7 +7,7 @@
 #include "drivers/config/config_file.hpp"
 #include "kernel/core/error.hpp"
 
-namespace traceraft {
+namespace traceraft::explain {
 namespace {
 
 namespace fs = std::filesystem;
@@ -15,11 +15,13 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kMaxModelBytes = 1 << 20;
 
 // Names whose values the file does not have.
-std::vector<std::string> changed_names(const GivenValues& file, const GivenValues& wanted) {
-  const Configuration before(file, {}), after(wanted, {});
+std::vector<std::string> changed_names(const config::GivenValues& file,
+                                       const config::GivenValues& wanted) {
+  const config::Configuration before(file, {}), after(wanted, {});
   std::vector<std::string> names;
   for (const auto& [name, value] : wanted)
-    if (config_lines(before, {name}) != config_lines(after, {name})) names.push_back(name);
+    if (config::config_lines(before, {name}) != config::config_lines(after, {name}))
+      names.push_back(name);
   return names;
 }
 
@@ -46,9 +48,10 @@ std::string with_block(const std::string& original, const std::vector<std::strin
   return placed ? text : text + block;
 }
 
-bool is_that_model(const fs::path& file, const GivenValues& wanted) {
+bool is_that_model(const fs::path& file, const config::GivenValues& wanted) {
   try {
-    return config_text({read_config_file(file), {}}) == config_text({wanted, {}});
+    return config::config_text({config::read_config_file(file), {}}) ==
+           config::config_text({wanted, {}});
   } catch (const InputError&) {
     return false;
   }
@@ -56,15 +59,15 @@ bool is_that_model(const fs::path& file, const GivenValues& wanted) {
 
 }  // namespace
 
-void write_extended_model(const fs::path& file, const fs::path& original, const GivenValues& wanted,
-                          const std::string& heading) {
-  const std::vector<std::string> names = changed_names(read_config_file(original), wanted);
-  const Configuration whole(wanted, {});
-  const std::string block = "# " + heading + "\n" + config_lines(whole, names);
-  const std::string before = original.empty() ? "" : read_file(original, kMaxModelBytes);
-  write_durably(file, with_block(before, names, block));
+void write_extended_model(const fs::path& file, const fs::path& original,
+                          const config::GivenValues& wanted, const std::string& heading) {
+  const std::vector<std::string> names = changed_names(config::read_config_file(original), wanted);
+  const config::Configuration whole(wanted, {});
+  const std::string block = "# " + heading + "\n" + config::config_lines(whole, names);
+  const std::string before = original.empty() ? "" : posix::read_file(original, kMaxModelBytes);
+  posix::write_durably(file, with_block(before, names, block));
   // TOML has more ways to say things than one line each.
-  if (!is_that_model(file, wanted)) write_durably(file, config_text(whole));
+  if (!is_that_model(file, wanted)) posix::write_durably(file, config::config_text(whole));
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::explain

@@ -5,12 +5,12 @@
 
 #include "drivers/config/configuration.hpp"
 
-namespace traceraft {
+namespace traceraft::explain {
 
 // The lines of `original` as they are, but for one block with every value of `wanted` that they do
 // not have, after `heading`; nothing but the block if there is no such file (empty path). Throws
 // IoError, and InputError for an original that is no model file.
 void write_extended_model(const std::filesystem::path& file, const std::filesystem::path& original,
-                          const GivenValues& wanted, const std::string& heading);
+                          const config::GivenValues& wanted, const std::string& heading);
 
-}  // namespace traceraft
+}  // namespace traceraft::explain

@@ -8,18 +8,18 @@
 #include "kernel/effects/effects.hpp"
 #include "verification/statistics/sample.hpp"
 
-namespace traceraft {
+namespace traceraft::explain {
 namespace {
 
-// Times of the found model are in units of R²/(pace D).
-Units found_units(Units units, const Refit& fit) {
-  units.diffusion_cm2_s *= fit.pace;
+// Times of the found model are in units of R²/(diffusion ratio D).
+physics::Units found_units(physics::Units units, const selection::Refit& fit) {
+  units.diffusion_cm2_s *= fit.diffusion_ratio;
   return units;
 }
 
 // Errors of the coefficients, carried on to the parameters by differences. That of the strength,
 // beside coefficients that are held at the end of their range.
-double variance_of(const Hypothesis::Part& part, std::size_t parameter,
+double variance_of(const assimilation::Hypothesis::Part& part, std::size_t parameter,
                    const Eigen::MatrixXd& covariance) {
   const double value = part.candidate.term(part.coefficients).values[parameter];
   Vec slope(part.candidate.directions);
@@ -40,21 +40,25 @@ double variance_of(const Hypothesis::Part& part, std::size_t parameter,
 
 }  // namespace
 
-std::vector<FoundParameter> parameters_of(const EffectTerm& term, const Units& units) {
-  const auto& specs = effects().find(term.effect).parameters;
+std::vector<FoundParameter> parameters_of(const effects::EffectTerm& term,
+                                          const physics::Units& units) {
+  const auto& specs = effects::effects().find(term.effect).parameters;
   std::vector<FoundParameter> result;
   for (std::size_t k = 0; k < specs.size(); ++k)
     result.push_back({term.effect, specs[k].name, specs[k].unit,
-                      term.values[k] / to_model_units(specs[k].unit, units), std::nullopt});
+                      term.values[k] / effects::to_model_units(specs[k].unit, units),
+                      std::nullopt});
   return result;
 }
 
-const Refit& fit_shown(const Explanation& found) {
-  return is_named(found) || found.finding == Finding::unnamed ? found.found : found.base;
+const selection::Refit& fit_shown(const selection::Explanation& found) {
+  return selection::is_named(found) || found.finding == selection::Finding::unnamed ? found.found
+                                                                                    : found.base;
 }
 
-std::vector<FoundParameter> found_parameters(const Refit& fit, const Units& base) {
-  const Units units = found_units(base, fit);
+std::vector<FoundParameter> found_parameters(const selection::Refit& fit,
+                                             const physics::Units& base) {
+  const physics::Units units = found_units(base, fit);
   std::vector<FoundParameter> result;
   Eigen::Index first = 0;
   for (const auto& part : fit.hypothesis.parts) {
@@ -62,21 +66,22 @@ std::vector<FoundParameter> found_parameters(const Refit& fit, const Units& base
     std::vector<FoundParameter> own = parameters_of(part.candidate.term(part.coefficients), units);
     for (std::size_t k = 0; k < static_cast<std::size_t>(n); ++k)
       own[k].sigma = std::sqrt(variance_of(part, k, fit.covariance.block(first, first, n, n))) /
-                     to_model_units(own[k].unit, units);
+                     effects::to_model_units(own[k].unit, units);
     result.insert(result.end(), own.begin(), own.end());
     first += n;
   }
   const double D = units.diffusion_cm2_s;
-  result.push_back({"", "diffusion", "cm^2/s", D, D * fit.pace_deviation});
+  result.push_back({"", "diffusion", "cm^2/s", D, D * fit.diffusion_ratio_deviation});
   return result;
 }
 
-bool knows_diffusion(const Explanation& found) {
-  return found.finding == Finding::none || is_named(found);
+bool knows_diffusion(const selection::Explanation& found) {
+  return found.finding == selection::Finding::none || selection::is_named(found);
 }
 
-std::vector<FoundParameter> told_parameters(const Explanation& found, const Refit& fit,
-                                            const Units& base) {
+std::vector<FoundParameter> told_parameters(const selection::Explanation& found,
+                                            const selection::Refit& fit,
+                                            const physics::Units& base) {
   if (found.at_rest) return {};
   std::vector<FoundParameter> all = found_parameters(fit, base);
   if (!knows_diffusion(found)) all.back().sigma.reset();
@@ -86,22 +91,24 @@ std::vector<FoundParameter> told_parameters(const Explanation& found, const Refi
 namespace {
 
 // The range that holds the intervals of all members of a class.
-DiffusionRange range_of_class(const Explanation& found, double D) {
-  std::vector<Refit> members = found.rivals;
+DiffusionRange range_of_class(const selection::Explanation& found, double D) {
+  std::vector<selection::Refit> members = found.rivals;
   members.push_back(found.found);
   DiffusionRange range{HUGE_VAL, 0, "it covers the intervals of all members of the class"};
-  for (const Refit& fit : members) {
-    const double width = std::exp(kNormal95 * fit.pace_deviation);
-    range.low = std::min(range.low, D * fit.pace / width);
-    range.high = std::max(range.high, D * fit.pace * width);
+  for (const selection::Refit& fit : members) {
+    const double width = std::exp(statistics::kNormal95 * fit.diffusion_ratio_deviation);
+    range.low = std::min(range.low, D * fit.diffusion_ratio / width);
+    range.high = std::max(range.high, D * fit.diffusion_ratio * width);
   }
   return range;
 }
 
 // Known is one number, D (1 + slope · strength): the more of the effect, the less of D.
-DiffusionRange range_beside(const ConfoundedWithPace& confounded, const Refit& fit, double D) {
-  const double most = find_candidate(confounded.effect)->most;
-  const double width = std::exp(kNormal95 * fit.pace_deviation), known = D * fit.pace;
+DiffusionRange range_beside(const selection::ConfoundedWithDiffusionRatio& confounded,
+                            const selection::Refit& fit, double D) {
+  const double most = assimilation::find_candidate(confounded.effect)->most;
+  const double width = std::exp(statistics::kNormal95 * fit.diffusion_ratio_deviation),
+               known = D * fit.diffusion_ratio;
   return {known / width / (1 + confounded.slope * most), known * width,
           formatted("these data determine D (1 + %.3g s) = %.4g, where s is the strength of %s; "
                     "the interval of D above is that without it",
@@ -110,41 +117,46 @@ DiffusionRange range_beside(const ConfoundedWithPace& confounded, const Refit& f
 
 }  // namespace
 
-std::optional<DiffusionRange> diffusion_range(const Explanation& found, const Units& base) {
+std::optional<DiffusionRange> diffusion_range(const selection::Explanation& found,
+                                              const physics::Units& base) {
   const double D = base.diffusion_cm2_s;
-  if (found.finding == Finding::ambiguous) return range_of_class(found, D);
-  if (!knows_diffusion(found) || found.rounds.empty() || std::isfinite(found.pace_doubt)) return {};
-  const std::vector<ConfoundedWithPace>& confounded = found.rounds.back().screening.confounded;
+  if (found.finding == selection::Finding::ambiguous) return range_of_class(found, D);
+  if (!knows_diffusion(found) || found.rounds.empty() || std::isfinite(found.diffusion_ratio_doubt))
+    return {};
+  const std::vector<selection::ConfoundedWithDiffusionRatio>& confounded =
+      found.rounds.back().screening.confounded;
   if (confounded.empty()) return {};
   return range_beside(confounded.front(), found.found, D);
 }
 
-std::vector<FoundBound> found_bounds(const Explanation& found, const Units& base) {
-  const Units units = found_units(base, found.found);
+std::vector<FoundBound> found_bounds(const selection::Explanation& found,
+                                     const physics::Units& base) {
+  const physics::Units units = found_units(base, found.found);
   std::vector<FoundBound> result;
-  for (const Bound& bound : bounds_of(found)) {
-    const ParameterSpec& spec = effects().find(bound.effect).parameters.front();
-    const double factor = 1 / to_model_units(spec.unit, units);
+  for (const selection::Bound& bound : selection::bounds_of(found)) {
+    const ParameterSpec& spec = effects::effects().find(bound.effect).parameters.front();
+    const double factor = 1 / effects::to_model_units(spec.unit, units);
     result.push_back(
         {bound.effect, spec.name, spec.unit, factor * bound.low, factor * bound.high, bound.seen});
   }
   return result;
 }
 
-GivenValues found_model(const Explanation& found, GivenValues model) {
-  const Units units = Configuration(model, {}).units();
-  const Units now = found_units(units, found.found);
+config::GivenValues found_model(const selection::Explanation& found, config::GivenValues model) {
+  const physics::Units units = config::Configuration(model, {}).units();
+  const physics::Units now = found_units(units, found.found);
   model["diffusion"] = {format_number(now.diffusion_cm2_s), "--diffusion"};
-  std::vector<EffectTerm> terms = found.found.hypothesis.terms();
-  const auto is_none = [](const EffectTerm& term) { return term.values.front() == 0; };
+  std::vector<effects::EffectTerm> terms = found.found.hypothesis.terms();
+  const auto is_none = [](const effects::EffectTerm& term) { return term.values.front() == 0; };
   terms.erase(std::remove_if(terms.begin(), terms.end(), is_none), terms.end());
   if (!terms.empty()) model["effect"] = {effect_text(terms, now), "--effect"};
   return model;
 }
 
-std::string effect_text(const std::vector<EffectTerm>& terms, const Units& units) {
+std::string effect_text(const std::vector<effects::EffectTerm>& terms,
+                        const physics::Units& units) {
   std::string text;
-  for (const EffectTerm& term : terms) {
+  for (const effects::EffectTerm& term : terms) {
     text += (text.empty() ? "" : "; ") + term.effect;
     const char* before = ":";
     for (const FoundParameter& p : parameters_of(term, units)) {
@@ -155,4 +167,4 @@ std::string effect_text(const std::vector<EffectTerm>& terms, const Units& units
   return text;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::explain

@@ -8,17 +8,17 @@
 #include "drivers/explain/verdict_sentence.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::explain {
 namespace {
 
 // "Vesicle 1, snapshot 3 (12 s): it seems to be rotated by 0.30 rad ..."
-std::string text_of(const FrameChange& change, const ExplainSetup& setup) {
+std::string text_of(const selection::FrameChange& change, const ExplainSetup& setup) {
   std::vector<std::string> ways;
   if (change.rotation != 0)
     ways.push_back(formatted("rotated by %.2g rad since the previous snapshot", change.rotation));
   if (change.gain != 0) ways.push_back(formatted("scaled by %.3g", 1 + change.gain));
   if (change.offset != 0) ways.push_back(formatted("shifted by %.2g", change.offset));
-  const FieldSeries& series = setup.series[change.vesicle];
+  const assimilation::FieldSeries& series = setup.series[change.vesicle];
   const double time = series.snapshots[change.snapshot].time;
   return "Vesicle " + series.vesicle + ", snapshot " + std::to_string(change.snapshot + 1) +
          formatted(" (%.4g s)", time * setup.configuration.units().seconds_per_unit()) +
@@ -27,11 +27,11 @@ std::string text_of(const FrameChange& change, const ExplainSetup& setup) {
 }
 
 // Rotations that were found and corrected.
-void add_registered(const Explanation& found, const ExplainSetup& setup,
+void add_registered(const selection::Explanation& found, const ExplainSetup& setup,
                     std::vector<std::string>& all) {
   if (found.registered.empty()) return;
   std::vector<std::string> turns;
-  for (const RegisteredRotation& turn : found.registered)
+  for (const selection::RegisteredRotation& turn : found.registered)
     turns.push_back(
         formatted("%.2g rad before snapshot %zu", turn.angle, turn.snapshot + 1) +
         (setup.series.size() > 1 ? " of vesicle " + setup.series[turn.vesicle].vesicle : ""));
@@ -40,9 +40,9 @@ void add_registered(const Explanation& found, const ExplainSetup& setup,
       joined(turns, ", ") + ".");
 }
 
-void add_failures(const Explanation& found, std::vector<std::string>& all) {
-  for (const Round& round : found.rounds)
-    for (const Round::Failure& failure : round.failures)
+void add_failures(const selection::Explanation& found, std::vector<std::string>& all) {
+  for (const selection::Round& round : found.rounds)
+    for (const selection::Round::Failure& failure : round.failures)
       all.push_back("The refit of a model with " + failure.effect + " failed: " + failure.why);
   if (!found.stopped.empty())
     all.push_back("The search stopped at the model with " + found.found.hypothesis.name() + ": " +
@@ -50,9 +50,10 @@ void add_failures(const Explanation& found, std::vector<std::string>& all) {
 }
 
 // Of what was found, parameters that were not looked for.
-void add_assumptions(const Explanation& found, const Units& base, std::vector<std::string>& all) {
+void add_assumptions(const selection::Explanation& found, const physics::Units& base,
+                     std::vector<std::string>& all) {
   std::map<std::string, std::vector<std::string>> assumed;  // of each effect
-  const Hypothesis& own = found.rounds.front().known.hypothesis;
+  const assimilation::Hypothesis& own = found.rounds.front().known.hypothesis;
   for (const FoundParameter& p : found_parameters(found.found, base))
     if (!p.sigma && !own.has(p.effect))
       assumed[p.effect].push_back(p.name + formatted(" = %.4g", p.value) +
@@ -64,14 +65,15 @@ void add_assumptions(const Explanation& found, const Units& base, std::vector<st
 }
 
 // Strengths that the model states and these data contradict.
-void add_own(const Explanation& found, const ExplainSetup& setup, std::vector<std::string>& all) {
-  const Units base = setup.configuration.units();
+void add_own(const selection::Explanation& found, const ExplainSetup& setup,
+             std::vector<std::string>& all) {
+  const physics::Units base = setup.configuration.units();
   const std::vector<FoundParameter> fitted = found_parameters(fit_shown(found), base);
   const auto contradicts = [](const FoundParameter& p, const FoundParameter& stated) {
     return p.effect == stated.effect && p.name == stated.name && p.sigma &&
            std::fabs(p.value - stated.value) > kSure * *p.sigma;
   };
-  for (const EffectTerm& term : setup.request.own.terms())
+  for (const effects::EffectTerm& term : setup.request.own.terms())
     for (const FoundParameter& stated : parameters_of(term, base))
       for (const FoundParameter& p : fitted)
         if (contradicts(p, stated))
@@ -79,8 +81,8 @@ void add_own(const Explanation& found, const ExplainSetup& setup, std::vector<st
               "The model states " + p.effect + " with " + p.name +
               formatted(" = %.4g. These data contradict it: the fit is %.4g (standard error %.2g).",
                         stated.value, p.value, *p.sigma));
-  const Hypothesis& shown = fit_shown(found).hypothesis;
-  const std::vector<EffectTerm> terms = shown.terms();
+  const assimilation::Hypothesis& shown = fit_shown(found).hypothesis;
+  const std::vector<effects::EffectTerm> terms = shown.terms();
   for (std::size_t k = 0; k < shown.known; ++k)
     if (terms[k].values.front() == 0)
       all.push_back("These data show nothing of the model's " + terms[k].effect + ".");
@@ -90,7 +92,7 @@ void add_own(const Explanation& found, const ExplainSetup& setup, std::vector<st
 void add_rest(const ExplainSetup& setup, std::vector<std::string>& all) {
   const double unit = setup.configuration.units().seconds_per_unit();
   double first = HUGE_VAL;
-  for (const FieldSeries& vesicle : setup.series)
+  for (const assimilation::FieldSeries& vesicle : setup.series)
     first = std::min(first, vesicle.snapshots.front().time * unit);
   all.push_back(formatted(
       "All snapshots are of rafts at rest, the first at %.4g s. Earlier snapshots would help.",
@@ -98,53 +100,59 @@ void add_rest(const ExplainSetup& setup, std::vector<std::string>& all) {
 }
 
 // A mistake in the unit of time looks like another D.
-void add_pace(const Explanation& found, const Units& base, std::vector<std::string>& all) {
-  const double log_pace = std::fabs(std::log(found.found.pace));
-  const double D = base.diffusion_cm2_s * found.found.pace;
+void add_diffusion_ratio(const selection::Explanation& found, const physics::Units& base,
+                         std::vector<std::string>& all) {
+  const double log_diffusion_ratio = std::fabs(std::log(found.found.diffusion_ratio));
+  const double D = base.diffusion_cm2_s * found.found.diffusion_ratio;
   // What was found is between the two, and the difference from what is known varies as much less.
   const double square =
-      found.pace_doubt * found.pace_doubt - found.found.pace_deviation * found.found.pace_deviation;
-  if (std::isfinite(square) && square > 0 && log_pace > kSure * std::sqrt(square))
+      found.diffusion_ratio_doubt * found.diffusion_ratio_doubt -
+      found.found.diffusion_ratio_deviation * found.found.diffusion_ratio_deviation;
+  if (std::isfinite(square) && square > 0 && log_diffusion_ratio > kSure * std::sqrt(square))
     all.push_back(
         formatted("The measurements contradict the stated D, %.3g cm^2/s, which is said to be "
                   "known to %.2g %%. The value from both is %.3g cm^2/s.",
-                  base.diffusion_cm2_s, 100 * found.pace_doubt, D));
-  if (found.finding == Finding::none && changes_pace(found.found) &&
-      !std::isfinite(found.pace_doubt))
+                  base.diffusion_cm2_s, 100 * found.diffusion_ratio_doubt, D));
+  if (found.finding == selection::Finding::none && changes_diffusion_ratio(found.found) &&
+      !std::isfinite(found.diffusion_ratio_doubt))
     all.push_back(
         "A different D can hide an effect, above all bulk-mobility. If D was measured, state it by "
         "--diffusion and --diffusion-error.");
-  if (log_pace < std::log(kFarPace) || log_pace < kSure * found.found.pace_deviation) return;
+  if (log_diffusion_ratio < std::log(selection::kFarDiffusionRatio) ||
+      log_diffusion_ratio < kSure * found.found.diffusion_ratio_deviation)
+    return;
   all.push_back(formatted(
       "The measurements need a D of %.2g cm^2/s. This is %.3g times %s than the model's D, %.2g "
       "cm^2/s. Are time_unit and the model's --diffusion right?",
-      D, std::exp(log_pace), found.found.pace < 1 ? "smaller" : "larger", base.diffusion_cm2_s));
+      D, std::exp(log_diffusion_ratio), found.found.diffusion_ratio < 1 ? "smaller" : "larger",
+      base.diffusion_cm2_s));
 }
 
 // D has a wider range than its interval where something else would change it, too.
-void add_diffusion(const Explanation& found, const Units& base, std::vector<std::string>& all) {
+void add_diffusion(const selection::Explanation& found, const physics::Units& base,
+                   std::vector<std::string>& all) {
   if (const auto range = diffusion_range(found, base))
     all.push_back(formatted("D is between %.3g and %.3g cm^2/s: ", range->low, range->high) +
                   range->why + ".");
   if (!knows_diffusion(found) && !found.at_rest)
-    all.push_back(found.finding == Finding::not_identifiable
+    all.push_back(found.finding == selection::Finding::not_identifiable
                       ? "The interval of D is not known: the best D may compensate for an effect "
                         "that these data would not show."
                       : "The interval of D is not known: the best D compensates for part of what "
                         "is missing.");
 }
 
-std::string text_of(const ModelChange& change) {
+std::string text_of(const selection::ModelChange& change) {
   switch (change.reason) {
-    case ModelChange::replaced:
+    case selection::ModelChange::replaced:
       return change.from + " explained most at first, but " + change.to + " explains more.";
-    case ModelChange::left_gap:
+    case selection::ModelChange::left_gap:
       return change.from + " explained most at first, but leaves a gap that " + change.to +
              " does not leave.";
-    case ModelChange::foretold:
+    case selection::ModelChange::foretold:
       return change.from + " explained most at first, but with the held-out snapshots " +
              change.to + " is more probable.";
-    case ModelChange::is_none:
+    case selection::ModelChange::is_none:
       return change.from + " was found at first, but " +
              (change.to.empty() ? std::string("with the noise of the model that contains it")
                                 : "beside " + change.to) +
@@ -154,14 +162,14 @@ std::string text_of(const ModelChange& change) {
 }
 
 // What the search thought of before.
-void add_story(const Explanation& found, std::vector<std::string>& all) {
-  for (const ModelChange& change : found.changes) {
-    const auto is_from = [&](const Excluded& t) { return t.effect == change.from; };
-    const bool said = change.reason == ModelChange::foretold &&
+void add_story(const selection::Explanation& found, std::vector<std::string>& all) {
+  for (const selection::ModelChange& change : found.changes) {
+    const auto is_from = [&](const selection::Excluded& t) { return t.effect == change.from; };
+    const bool said = change.reason == selection::ModelChange::foretold &&
                       std::any_of(found.excluded.begin(), found.excluded.end(), is_from);
     if (!said) all.push_back(text_of(change));
   }
-  for (const Excluded& t : found.excluded)
+  for (const selection::Excluded& t : found.excluded)
     all.push_back(t.effect +
                   formatted(" explains the fitted snapshots about as well, but is less probable "
                             "with the held-out snapshot (difference of Schwarz' criterion: %.0f).",
@@ -169,10 +177,11 @@ void add_story(const Explanation& found, std::vector<std::string>& all) {
 }
 
 // A strength that cannot be larger was wanted larger.
-void add_ends(const Explanation& found, const Units& base, std::vector<std::string>& all) {
+void add_ends(const selection::Explanation& found, const physics::Units& base,
+              std::vector<std::string>& all) {
   for (const auto& part : found.found.hypothesis.parts) {
     const double a = part.coefficients.front();
-    const Candidate& own = part.candidate;
+    const assimilation::Candidate& own = part.candidate;
     if (own.directions > 1 || a == 0 || (a > own.least && a < own.most)) continue;
     const FoundParameter strength = parameters_of(own.term(part.coefficients), base).front();
     all.push_back(own.effect + " is as strong as the search allows, " + strength.name +
@@ -182,41 +191,45 @@ void add_ends(const Explanation& found, const Units& base, std::vector<std::stri
 }
 
 // Members of a class that would have different D: what a measurement of D would decide.
-void add_class(const Explanation& found, const Units& base, std::vector<std::string>& all) {
-  if (found.finding != Finding::ambiguous) return;
-  const auto D = [&](const Refit& fit) { return base.diffusion_cm2_s * fit.pace; };
-  const auto differ = [](const Refit& a, const Refit& b) {
-    return std::fabs(std::log(a.pace / b.pace)) >
-           kSure * std::hypot(a.pace_deviation, b.pace_deviation);
+void add_class(const selection::Explanation& found, const physics::Units& base,
+               std::vector<std::string>& all) {
+  if (found.finding != selection::Finding::ambiguous) return;
+  const auto D = [&](const selection::Refit& fit) {
+    return base.diffusion_cm2_s * fit.diffusion_ratio;
   };
-  std::vector<Refit> members = found.rivals;
+  const auto differ = [](const selection::Refit& a, const selection::Refit& b) {
+    return std::fabs(std::log(a.diffusion_ratio / b.diffusion_ratio)) >
+           kSure * std::hypot(a.diffusion_ratio_deviation, b.diffusion_ratio_deviation);
+  };
+  std::vector<selection::Refit> members = found.rivals;
   members.push_back(found.found);
-  const bool different = std::any_of(members.begin(), members.end(), [&](const Refit& a) {
-    return std::any_of(members.begin(), members.end(),
-                       [&](const Refit& b) { return differ(a, b); });
-  });
+  const bool different =
+      std::any_of(members.begin(), members.end(), [&](const selection::Refit& a) {
+        return std::any_of(members.begin(), members.end(),
+                           [&](const selection::Refit& b) { return differ(a, b); });
+      });
   if (!different) return;
   std::string text = "The effects that these data do not separate need different D: " +
                      found.found.hypothesis.name() + formatted(" for %.3g cm^2/s", D(found.found));
-  for (const Refit& rival : found.rivals)
+  for (const selection::Refit& rival : found.rivals)
     text += ", " + rival.hypothesis.name() + formatted(" for %.3g", D(rival));
   all.push_back(
       text + ". " +
-      (std::isfinite(found.pace_doubt)
+      (std::isfinite(found.diffusion_ratio_doubt)
            ? "A more precise D may decide between them."
            : "A measured D (--diffusion and --diffusion-error) may decide between them."));
 }
 
-void add_mesh(const Explanation& found, std::vector<std::string>& all) {
+void add_mesh(const selection::Explanation& found, std::vector<std::string>& all) {
   // Where the verdict itself asks for other data, another mesh would not decide.
-  const bool noise_decides = found.finding == Finding::not_identifiable;
-  if (found.h_over_epsilon > kCoarse)
+  const bool noise_decides = found.finding == selection::Finding::not_identifiable;
+  if (found.h_over_epsilon > selection::kCoarse)
     all.push_back(formatted("The mesh is coarse for these phase boundaries: h/epsilon = %.2g",
                             found.h_over_epsilon) +
                   (noise_decides ? "." : ". More --cells would make the verdict more certain."));
 }
 
-void add_rerun(const Explanation& found, std::vector<std::string>& all) {
+void add_rerun(const selection::Explanation& found, std::vector<std::string>& all) {
   if (!found.rerun) return;
   if (!found.rerun->failure.empty())
     all.push_back("The check on another mesh and by another integrator failed: " +
@@ -225,20 +238,20 @@ void add_rerun(const Explanation& found, std::vector<std::string>& all) {
     all.push_back("On another mesh and by another integrator " + found.found.hypothesis.name() +
                   " forecasts the measurements significantly worse than the base model. It is "
                   "therefore no explanation, though it came closest in the search.");
-  else if (is_named(found) && !found.rerun->confirms())
+  else if (selection::is_named(found) && !found.rerun->confirms())
     all.push_back(
         "On another mesh and by another integrator, what was found forecasts the measurements no "
         "better than the base model, within noise. More snapshots would decide.");
-  else if (is_named(found) && !found.rerun->heldout())
+  else if (selection::is_named(found) && !found.rerun->heldout())
     all.push_back(
         "With fewer than four snapshots none is held out. Forecasts of new snapshots were "
         "therefore not tested.");
-  if (found.rerun->gap_p && found.finding != Finding::unnamed)
+  if (found.rerun->gap_p && found.finding != selection::Finding::unnamed)
     all.push_back(
         "The model's own mesh shows a gap that nothing explains. On another mesh and by another "
         "integrator it is not significant (p = " +
         formatted("%.2g; significant is a p below %.2g", *found.rerun->gap_p,
-                  kGapLevel * found.false_alarms) +
+                  selection::kGapLevel * found.false_alarms) +
         "). It may be an error of the mesh: repeat with more --cells.");
   if (!found.rerun->gap_failure.empty())
     all.push_back(
@@ -247,14 +260,14 @@ void add_rerun(const Explanation& found, std::vector<std::string>& all) {
 }
 
 // Why nothing more was looked for.
-std::string more_effects(const Explanation& found) {
+std::string more_effects(const selection::Explanation& found) {
   const std::optional<double> last =
       found.rounds.size() > 1
-          ? share_closed(found.rounds[found.rounds.size() - 2].without.gap.train,
-                         found.rounds.back().without.gap.train,
-                         found.rounds.back().without.expected.train)
+          ? assimilation::share_closed(found.rounds[found.rounds.size() - 2].without.gap.train,
+                                       found.rounds.back().without.gap.train,
+                                       found.rounds.back().without.expected.train)
           : std::nullopt;
-  if (last && *last < kLeastProgress)
+  if (last && *last < selection::kLeastProgress)
     return formatted(
         "Something is still missing. The search ended because its last round closed only %.0f %% "
         "of the remaining gap.",
@@ -264,7 +277,7 @@ std::string more_effects(const Explanation& found) {
 
 }  // namespace
 
-std::vector<std::string> remarks(const Explanation& found, const Units& base) {
+std::vector<std::string> remarks(const selection::Explanation& found, const physics::Units& base) {
   std::vector<std::string> all;
   if (found.outliers > 0)
     all.push_back(std::to_string(found.outliers) +
@@ -274,7 +287,7 @@ std::vector<std::string> remarks(const Explanation& found, const Units& base) {
         formatted("Noise is correlated over %.2g R or more, the largest length that is tried. The "
                   "search may take a missing effect for noise, and noise for an effect.",
                   found.noise_model.correlation.length()));
-  add_pace(found, base, all);
+  add_diffusion_ratio(found, base, all);
   add_story(found, all);
   add_ends(found, base, all);
   add_class(found, base, all);
@@ -282,8 +295,8 @@ std::vector<std::string> remarks(const Explanation& found, const Units& base) {
   add_failures(found, all);
   if (!found.found.settled)
     all.push_back("The refit of the parameters ended before it converged fully.");
-  const Round& last = found.rounds.back();
-  if (is_named(found) && found.stopped.empty() && last.screening.p <= found.false_alarms)
+  const selection::Round& last = found.rounds.back();
+  if (selection::is_named(found) && found.stopped.empty() && last.screening.p <= found.false_alarms)
     all.push_back(last.refits.empty() && last.failures.empty()
                       ? more_effects(found)
                       : "Something may still be missing, but too little to say what.");
@@ -292,7 +305,8 @@ std::vector<std::string> remarks(const Explanation& found, const Units& base) {
   return all;
 }
 
-std::vector<std::string> remarks_on(const Explanation& found, const ExplainSetup& setup) {
+std::vector<std::string> remarks_on(const selection::Explanation& found,
+                                    const ExplainSetup& setup) {
   std::vector<std::string> all = setup.notes;
   if (!setup.request.blur_stated)
     all.push_back(
@@ -306,10 +320,10 @@ std::vector<std::string> remarks_on(const Explanation& found, const ExplainSetup
   else
     add_own(found, setup, all);
   add_registered(found, setup, all);
-  for (const FrameChange& change : found.frames) all.push_back(text_of(change, setup));
+  for (const selection::FrameChange& change : found.frames) all.push_back(text_of(change, setup));
   if (const auto& without = setup.request.without; !without.empty())
     all.push_back("Left out of the search by --without: " + joined(without, ", ") + ".");
   return all;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::explain

@@ -8,7 +8,7 @@
 #include "drivers/input/json_file.hpp"
 #include "verification/selection/search/search_state.hpp"
 
-namespace traceraft {
+namespace traceraft::explain {
 
 class SearchFile {
  public:
@@ -16,13 +16,13 @@ class SearchFile {
 
   // Nothing if none has been saved. Throws InputError if it belongs to other data, another model or
   // other settings, IoError if it is damaged.
-  std::optional<SearchState> load() const;
-  void save(const SearchState& state) const;  // throws IoError
+  std::optional<selection::SearchState> load() const;
+  void save(const selection::SearchState& state) const;  // throws IoError
 
  private:
   const std::filesystem::path path_;
   const ExplainSetup& setup_;
-  const Json subject_;  // of the search
+  const input::Json subject_;  // of the search
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::explain

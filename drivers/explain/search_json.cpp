@@ -3,7 +3,8 @@
 #include "drivers/input/json_members.hpp"
 #include "kernel/core/error.hpp"
 
-namespace traceraft {
+// The lists stand beside the reader and the writer, which find them there by argument.
+namespace traceraft::input {
 
 // Each list of members serves writing, reading and checking (json_members.hpp).
 
@@ -21,7 +22,7 @@ void describe(Members& members, StoredPart& part) {
   members("values", part.values);
 }
 
-using Parts = std::vector<Hypothesis::Part>;
+using Parts = std::vector<assimilation::Hypothesis::Part>;
 
 std::vector<StoredPart> stored_parts(const Parts& parts) {
   std::vector<StoredPart> stored;
@@ -30,8 +31,8 @@ std::vector<StoredPart> stored_parts(const Parts& parts) {
   return stored;
 }
 
-Candidate candidate_of(const std::string& effect) {
-  const std::optional<Candidate> found = find_candidate(effect);
+assimilation::Candidate candidate_of(const std::string& effect) {
+  const std::optional<assimilation::Candidate> found = assimilation::find_candidate(effect);
   if (!found) throw DamagedFile("a search names '" + effect + "', which is not a candidate");
   return *found;
 }
@@ -39,58 +40,60 @@ Candidate candidate_of(const std::string& effect) {
 Parts parts_of(const std::vector<StoredPart>& stored) {
   Parts parts;
   for (const StoredPart& part : stored) {
-    const EffectTerm term{candidate_of(part.effect).effect, part.values};
-    if (term.values.size() != effects().find(term.effect).parameters.size())
+    const effects::EffectTerm term{candidate_of(part.effect).effect, part.values};
+    if (term.values.size() != effects::effects().find(term.effect).parameters.size())
       throw DamagedFile("a search has " + term.effect + " with unknown parameters");
-    parts.push_back({part_of(term).candidate, part.coefficients});
+    parts.push_back({assimilation::part_of(term).candidate, part.coefficients});
     if (part.coefficients.size() != static_cast<std::size_t>(parts.back().candidate.directions))
       throw DamagedFile("a search has " + term.effect + " with unknown coefficients");
   }
   return parts;
 }
 
-std::vector<std::string> names_of(const std::vector<Candidate>& candidates) {
+std::vector<std::string> names_of(const std::vector<assimilation::Candidate>& candidates) {
   std::vector<std::string> names;
-  for (const Candidate& candidate : candidates) names.push_back(candidate.effect);
+  for (const assimilation::Candidate& candidate : candidates) names.push_back(candidate.effect);
   return names;
 }
 
-std::vector<Candidate> candidates_of(const std::vector<std::string>& names) {
-  std::vector<Candidate> candidates;
+std::vector<assimilation::Candidate> candidates_of(const std::vector<std::string>& names) {
+  std::vector<assimilation::Candidate> candidates;
   for (const std::string& name : names) candidates.push_back(candidate_of(name));
   return candidates;
 }
 
-const Words<Finding>& finding_words() {
-  static const Words<Finding> words = [] {
-    Words<Finding> list;
-    for (const Finding finding : kFindings) list.emplace_back(finding, word_for(finding));
+const Words<selection::Finding>& finding_words() {
+  static const Words<selection::Finding> words = [] {
+    Words<selection::Finding> list;
+    for (const selection::Finding finding : selection::kFindings)
+      list.emplace_back(finding, selection::word_for(finding));
     return list;
   }();
   return words;
 }
 
-const Words<SearchStep>& step_words() {
-  static const Words<SearchStep> words = [] {
-    Words<SearchStep> list;
-    for (const auto& [step, word] : kSearchSteps) list.emplace_back(step, word);
+const Words<selection::SearchStep>& step_words() {
+  static const Words<selection::SearchStep> words = [] {
+    Words<selection::SearchStep> list;
+    for (const auto& [step, word] : selection::kSearchSteps) list.emplace_back(step, word);
     return list;
   }();
   return words;
 }
 
-const Words<ModelChange::Reason>& reasons() {
-  static const Words<ModelChange::Reason> words = {{ModelChange::replaced, "replaced"},
-                                                   {ModelChange::left_gap, "left-gap"},
-                                                   {ModelChange::foretold, "foretold"},
-                                                   {ModelChange::is_none, "is-none"}};
+const Words<selection::ModelChange::Reason>& reasons() {
+  static const Words<selection::ModelChange::Reason> words = {
+      {selection::ModelChange::replaced, "replaced"},
+      {selection::ModelChange::left_gap, "left-gap"},
+      {selection::ModelChange::foretold, "foretold"},
+      {selection::ModelChange::is_none, "is-none"}};
   return words;
 }
 
 }  // namespace
 
 template <class Members>
-void describe(Members& members, Hypothesis& hypothesis) {
+void describe(Members& members, assimilation::Hypothesis& hypothesis) {
   members.stored("parts", hypothesis.parts, stored_parts, parts_of);
   members("known", hypothesis.known);
   if constexpr (Members::reads)
@@ -99,13 +102,13 @@ void describe(Members& members, Hypothesis& hypothesis) {
 }
 
 template <class Members>
-void describe(Members& members, Gaps& gaps) {
+void describe(Members& members, assimilation::Gaps& gaps) {
   members("train", gaps.train);
   members("heldout", gaps.heldout);
 }
 
 template <class Members>
-void describe(Members& members, SnapshotGap& gap) {
+void describe(Members& members, assimilation::SnapshotGap& gap) {
   members("vesicle", gap.vesicle);
   members("snapshot", gap.snapshot);
   members("gap", gap.gap);
@@ -113,12 +116,12 @@ void describe(Members& members, SnapshotGap& gap) {
 }
 
 template <class Members>
-void describe(Members& members, Refit& fit) {
+void describe(Members& members, selection::Refit& fit) {
   members("hypothesis", fit.hypothesis);
-  members("pace", fit.pace);
+  members("diffusion_ratio", fit.diffusion_ratio);
   members("deviance", fit.deviance);
   members("covariance", fit.covariance);
-  members("pace_deviation", fit.pace_deviation);
+  members("diffusion_ratio_deviation", fit.diffusion_ratio_deviation);
   members("gap", fit.gap);
   members("expected", fit.expected);
   members("snapshots", fit.snapshots);
@@ -129,7 +132,7 @@ void describe(Members& members, Refit& fit) {
 }
 
 template <class Members>
-void describe(Members& members, CandidateScore& score) {
+void describe(Members& members, selection::CandidateScore& score) {
   members("effect", score.effect);
   members("coefficients", score.coefficients);
   members("score", score.score);
@@ -141,36 +144,36 @@ void describe(Members& members, CandidateScore& score) {
 }
 
 template <class Members>
-void describe(Members& members, ConfoundedWithPace& confounded) {
+void describe(Members& members, selection::ConfoundedWithDiffusionRatio& confounded) {
   members("effect", confounded.effect);
   members("slope", confounded.slope);
   members("correlation", confounded.correlation);
 }
 
 template <class Members>
-void describe(Members& members, Screening& screening) {
+void describe(Members& members, selection::Screening& screening) {
   members("scores", screening.scores);
   members("p", screening.p);
   members("train_gap_p", screening.train_gap_p);
   members("heldout_gap_p", screening.heldout_gap_p);
   members("gap_p", screening.gap_p);
-  members("pace_change", screening.pace_change);
-  members("pace_deviation", screening.pace_deviation);
+  members("diffusion_ratio_change", screening.diffusion_ratio_change);
+  members("diffusion_ratio_deviation", screening.diffusion_ratio_deviation);
   members("mesh_error", screening.mesh_error);
-  members("confounded_with_pace", screening.confounded);
+  members("confounded_with_diffusion_ratio", screening.confounded);
 }
 
 template <class Members>
-void describe(Members& members, Round::Failure& failure) {
+void describe(Members& members, selection::Round::Failure& failure) {
   members("effect", failure.effect);
   members("why", failure.why);
 }
 
 // Without the base model, which all rounds share.
 template <class Members>
-void describe(Members& members, Round& round) {
+void describe(Members& members, selection::Round& round) {
   members("known", round.known.hypothesis);
-  members("pace", round.known.pace);
+  members("diffusion_ratio", round.known.diffusion_ratio);
   members.stored("screened", round.known.screened, names_of, candidates_of);
   members("screening", round.screening);
   members("without", round.without);
@@ -180,7 +183,7 @@ void describe(Members& members, Round& round) {
 }
 
 template <class Members>
-void describe(Members& members, Disagreement& disagreement) {
+void describe(Members& members, assimilation::Disagreement& disagreement) {
   members("vesicle", disagreement.vesicle);
   members("time", disagreement.time);
   members("state", disagreement.state);
@@ -190,7 +193,7 @@ void describe(Members& members, Disagreement& disagreement) {
 }
 
 template <class Members>
-void describe(Members& members, FrameChange& change) {
+void describe(Members& members, selection::FrameChange& change) {
   members("vesicle", change.vesicle);
   members("snapshot", change.snapshot);
   members("rotation", change.rotation);
@@ -199,20 +202,20 @@ void describe(Members& members, FrameChange& change) {
 }
 
 template <class Members>
-void describe(Members& members, DisagreementMap& map) {
+void describe(Members& members, assimilation::DisagreementMap& map) {
   members("vesicle", map.vesicle);
   members("time", map.time);
   members("z", map.z);
 }
 
 template <class Members>
-void describe(Members& members, DisagreementMaps& maps) {
+void describe(Members& members, assimilation::DisagreementMaps& maps) {
   members("snapshots", maps.snapshots);
   members("threshold", maps.threshold);
 }
 
 template <class Members>
-void describe(Members& members, Rerun& rerun) {
+void describe(Members& members, selection::Rerun& rerun) {
   members("cells", rerun.cells);
   members("integrator", rerun.integrator);
   members("base", rerun.base);
@@ -227,47 +230,47 @@ void describe(Members& members, Rerun& rerun) {
 }
 
 template <class Members>
-void describe(Members& members, NoiseCorrelation::Component& component) {
+void describe(Members& members, assimilation::NoiseCorrelation::Component& component) {
   members("support", component.support);
   members("share", component.share);
 }
 
 template <class Members>
-void describe(Members& members, NoiseCorrelation& correlation) {
+void describe(Members& members, assimilation::NoiseCorrelation& correlation) {
   members("components", correlation.components);
   members("at_bound", correlation.at_bound);
   members("error", correlation.error);
 }
 
 template <class Members>
-void describe(Members& members, NoiseModel& noise) {
+void describe(Members& members, assimilation::NoiseModel& noise) {
   members("levels", noise.levels);
   members("first", noise.first);
   members("correlation", noise.correlation);
 }
 
 template <class Members>
-void describe(Members& members, ForecastPoint& point) {
+void describe(Members& members, selection::ForecastPoint& point) {
   members("noise", point.noise);
-  members("pace", point.pace);
+  members("diffusion_ratio", point.diffusion_ratio);
   members("hypothesis", point.hypothesis);
 }
 
 template <class Members>
-void describe(Members& members, RegisteredRotation& rotation) {
+void describe(Members& members, selection::RegisteredRotation& rotation) {
   members("vesicle", rotation.vesicle);
   members("snapshot", rotation.snapshot);
   members("angle", rotation.angle);
 }
 
 template <class Members>
-void describe(Members& members, Excluded& excluded) {
+void describe(Members& members, selection::Excluded& excluded) {
   members("effect", excluded.effect);
   members("less", excluded.less);
 }
 
 template <class Members>
-void describe(Members& members, ModelChange& change) {
+void describe(Members& members, selection::ModelChange& change) {
   members.word("reason", change.reason, reasons());
   members("from", change.from);
   members("to", change.to);
@@ -275,11 +278,11 @@ void describe(Members& members, ModelChange& change) {
 
 // Without the mesh of its maps, which the data have.
 template <class Members>
-void describe(Members& members, Explanation& found) {
+void describe(Members& members, selection::Explanation& found) {
   members.word("finding", found.finding, finding_words());
   members.word("without_gap", found.without_gap, finding_words());
   members("false_alarms", found.false_alarms);
-  members("pace_doubt", found.pace_doubt);
+  members("diffusion_ratio_doubt", found.diffusion_ratio_doubt);
   members("h_over_epsilon", found.h_over_epsilon);
   members("outliers", found.outliers);
   members("at_rest", found.at_rest);
@@ -301,7 +304,7 @@ void describe(Members& members, Explanation& found) {
 }
 
 template <class Members>
-void describe(Members& members, SearchState& state) {
+void describe(Members& members, selection::SearchState& state) {
   members.word("next", state.next, step_words());
   members("maps_at", state.maps_at);
   members("fields_at", state.fields_at);
@@ -312,16 +315,21 @@ void describe(Members& members, SearchState& state) {
   members("so_far", state.so_far);
 }
 
-Json search_json(const SearchState& state) {
-  return object_of(state);
+}  // namespace traceraft::input
+
+namespace traceraft::explain {
+
+input::Json search_json(const selection::SearchState& state) {
+  return input::object_of(state);
 }
 
-SearchState search_from(const Json& json, const CahnHilliardModel& base) {
-  SearchState state;
-  JsonReader reader(json, "the search");
+selection::SearchState search_from(const input::Json& json,
+                                   const problem::CahnHilliardModel& base) {
+  selection::SearchState state;
+  input::JsonReader reader(json, "the search");
   describe(reader, state);
-  for (Round& round : state.so_far.rounds) round.known.base = base;
+  for (selection::Round& round : state.so_far.rounds) round.known.base = base;
   return state;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::explain

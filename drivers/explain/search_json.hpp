@@ -4,11 +4,11 @@
 #include "drivers/input/json_file.hpp"
 #include "verification/selection/search/search_state.hpp"
 
-namespace traceraft {
+namespace traceraft::explain {
 
-Json search_json(const SearchState& state);
+input::Json search_json(const selection::SearchState& state);
 // The state of a search with that base model. Throws DamagedFile for unknown names and sizes that
 // do not fit each other, and what the JSON library throws for anything else that is not a search.
-SearchState search_from(const Json& json, const CahnHilliardModel& base);
+selection::SearchState search_from(const input::Json& json, const problem::CahnHilliardModel& base);
 
-}  // namespace traceraft
+}  // namespace traceraft::explain

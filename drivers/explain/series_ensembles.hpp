@@ -9,10 +9,10 @@
 #include "drivers/config/configuration.hpp"
 #include "verification/selection/series/series_explanation.hpp"
 
-namespace traceraft {
+namespace traceraft::explain {
 
 struct SeriesEnsemblesRequest {
-  Window looks;  // s
+  statistics::Window looks;  // s
   int runs, jobs, threads;
   std::vector<std::string> without;  // effects
   bool quiet;
@@ -21,32 +21,32 @@ struct SeriesEnsemblesRequest {
 struct SeriesEnsembles {
   std::filesystem::path folder;
   bool stopped = false;  // there is more to do
-  std::vector<History> base;
-  std::vector<SeriesCandidate> candidates;
-  std::vector<EffectTerm> terms;   // of the candidates
-  std::vector<std::string> notes;  // effects whose runs failed
+  std::vector<observations::History> base;
+  std::vector<selection::SeriesCandidate> candidates;
+  std::vector<effects::EffectTerm> terms;  // of the candidates
+  std::vector<std::string> notes;          // effects whose runs failed
 };
 
 // What the simulations of an earlier explanation are, for other data: the looks that they are for,
 // and how many runs. Throws InputError if there are none, or of another model.
-void take_over_ensembles(const std::filesystem::path& folder, const Configuration& model,
+void take_over_ensembles(const std::filesystem::path& folder, const config::Configuration& model,
                          SeriesEnsemblesRequest& request);
 
 // If data are looked at when those effects had no time to act, or too much: a sentence, else "".
-std::string note_on_looks(const Window& simulated, const Window& measured);
+std::string note_on_looks(const statistics::Window& simulated, const statistics::Window& measured);
 
 // As strong as the effect may be, if it would have to be stronger.
-EffectTerm within_range(EffectTerm term, const Units& units);
+effects::EffectTerm within_range(effects::EffectTerm term, const physics::Units& units);
 
 // Throws InputError for data and models that cannot be used.
-void refuse_series(const MeasuredVesicles& data, const Configuration& model);
+void refuse_series(const observations::MeasuredVesicles& data, const config::Configuration& model);
 
 // Carries out, or goes on with, what is in the folder. Effects have the strength at which they
 // change c by 6 % of its standard deviation from one of five looks to the next, which a run on a
 // coarser mesh finds; from then on signals to stop are caught (process.hpp). Throws InputError if
 // no effect is left, NumericalFailure if a run of the model fails.
 SeriesEnsembles run_series_ensembles(const std::filesystem::path& folder,
-                                     const Configuration& model,
+                                     const config::Configuration& model,
                                      const SeriesEnsemblesRequest& request);
 
-}  // namespace traceraft
+}  // namespace traceraft::explain

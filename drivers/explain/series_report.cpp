@@ -19,30 +19,30 @@
 #include "verification/statistics/power_law.hpp"
 #include "verification/statistics/sample.hpp"
 
-namespace traceraft {
+namespace traceraft::explain {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr int kOfCharts = 10;  // of the curves of charts and power laws
 
-std::string vesicles_text(double count, const SeriesExplanation& found) {
+std::string vesicles_text(double count, const selection::SeriesExplanation& found) {
   return std::isfinite(count) ? formatted("%.0f", std::ceil(count))
-                              : formatted("more than %d", kMostTimes * found.vesicles);
+                              : formatted("more than %d", selection::kMostTimes * found.vesicles);
 }
 
-std::string sentence(const SeriesExplanation& found) {
+std::string sentence(const selection::SeriesExplanation& found) {
   std::vector<std::string> classes;
   for (const auto& members : found.named) classes.push_back(joined(members, ", "));
   switch (found.finding) {
-    case Finding::none:
+    case selection::Finding::none:
       return "No significant disagreement: the model explains the series within their scatter.";
-    case Finding::not_identifiable:
+    case selection::Finding::not_identifiable:
       return "No significant disagreement, but so few vesicles would not show any effect.";
-    case Finding::unnamed:
+    case selection::Finding::unnamed:
       return "There is a trend that none of the effects in the search explains" +
              (classes.empty() ? "." : "; " + classes.front() + " comes closest.");
-    case Finding::named:
+    case selection::Finding::named:
       return "The model lacks " + classes.front() + ".";
     default:
       return "The model lacks one of: " + joined(classes, "; or ") +
@@ -55,53 +55,57 @@ std::string share(double p) {
 }
 
 // What the verdict rests on.
-std::string ground(const SeriesExplanation& found, const SeriesEnsembles& ensembles,
-                   const SeriesRequest& request) {
+std::string ground(const selection::SeriesExplanation& found, const SeriesEnsembles& ensembles,
+                   const selection::SeriesRequest& request) {
   return "Basis: " + std::to_string(ensembles.base.size()) +
          " runs of the model, as many of each of " + std::to_string(ensembles.candidates.size()) +
          " effects, and " + std::to_string(request.replicates) +
          " data sets drawn from the model. At most " + share(found.p) +
          " of these sets gain as much by any effect, and at most " + share(found.trend_p) +
          " leave as large a trend. The limits for significance are " + share(request.false_alarms) +
-         " for effects and " + share(kTrendLevel * request.false_alarms) + " for trends.";
+         " for effects and " + share(selection::kTrendLevel * request.false_alarms) +
+         " for trends.";
 }
 
-std::vector<Row> offset_rows(const SeriesExplanation& found) {
-  std::vector<Row> rows{{"measured relative to the model", "on average", "deviations",
-                         "per e-fold of time", "deviations"}};
-  for (const SeriesOffset& o : found.offsets) {
+std::vector<output::Row> offset_rows(const selection::SeriesExplanation& found) {
+  std::vector<output::Row> rows{{"measured relative to the model", "on average", "deviations",
+                                 "per e-fold of time", "deviations"}};
+  for (const selection::SeriesOffset& o : found.offsets) {
     const auto text = [](double ln) { return formatted("%+.1f %%", 100 * std::expm1(ln)); };
-    rows.push_back({name_of(o.quantity).label, text(o.level),
+    rows.push_back({observations::name_of(o.quantity).label, text(o.level),
                     formatted("%+.1f", o.level_deviations), text(o.slope),
                     formatted("%+.1f", o.slope_deviations)});
   }
   return rows;
 }
 
-std::string advice(const SeriesTie& tie, const SeriesExplanation& found) {
+std::string advice(const selection::SeriesTie& tie, const selection::SeriesExplanation& found) {
   return vesicles_text(tie.vesicles, found) + " vesicles like these would separate " + tie.effect +
-         " from " + tie.other + ", mainly by their " + name_of(tie.telling).label +
+         " from " + tie.other + ", mainly by their " + observations::name_of(tie.telling).label +
          ". One vesicle with fields at 8 times says more (traceraft explain --data).";
 }
 
-std::vector<Row> score_rows(const Configuration& model, const SeriesExplanation& found) {
-  std::vector<Row> rows{{"effect", "2 ln likelihood ratio", "of noise alone", "p", "parameter",
-                         "at least", "at most", "unit", "vesicles needed", "shown by"}};
-  for (const SeriesScore& s : found.scores) {
+std::vector<output::Row> score_rows(const config::Configuration& model,
+                                    const selection::SeriesExplanation& found) {
+  std::vector<output::Row> rows{{"effect", "2 ln likelihood ratio", "of noise alone", "p",
+                                 "parameter", "at least", "at most", "unit", "vesicles needed",
+                                 "shown by"}};
+  for (const selection::SeriesScore& s : found.scores) {
     const StrengthScale scale = scale_of(s, model);
     rows.push_back({s.effect, formatted("%.1f", s.gain), formatted("%.1f", s.null_mean),
                     formatted("%.3f", s.p), scale.parameter,
                     s.bounded ? formatted("%.3g", scale.factor * s.low) : "",
                     s.bounded ? formatted("%.3g", scale.factor * s.high) : "not determined",
-                    scale.unit, vesicles_text(s.vesicles, found), name_of(s.telling).label});
+                    scale.unit, vesicles_text(s.vesicles, found),
+                    observations::name_of(s.telling).label});
   }
   return rows;
 }
 
 // "exchange with target 0.16, ..."
-std::string assumed_text(const SeriesEnsembles& ensembles, const Units& units) {
+std::string assumed_text(const SeriesEnsembles& ensembles, const physics::Units& units) {
   std::string text;
-  for (const EffectTerm& term : ensembles.terms) {
+  for (const effects::EffectTerm& term : ensembles.terms) {
     std::string own;
     for (const FoundParameter& p : assumed_parameters(term, units))
       own += (own.empty() ? "" : ", ") + p.name + formatted(" %.3g", p.value) +
@@ -112,38 +116,40 @@ std::string assumed_text(const SeriesEnsembles& ensembles, const Units& units) {
 }
 
 // Each with the D that fits best with it.
-SeriesEnsembles in_seconds(SeriesEnsembles ensembles, const SeriesExplanation& found) {
-  const auto convert = [](std::vector<History>& runs, double ln_unit) {
-    for (History& run : runs)
+SeriesEnsembles in_seconds(SeriesEnsembles ensembles, const selection::SeriesExplanation& found) {
+  const auto convert = [](std::vector<observations::History>& runs, double ln_unit) {
+    for (observations::History& run : runs)
       for (double& t : run.time) t *= std::exp(ln_unit);
   };
   convert(ensembles.base, found.base.ln_unit);
-  for (SeriesCandidate& candidate : ensembles.candidates)
-    for (const SeriesScore& score : found.scores)
+  for (selection::SeriesCandidate& candidate : ensembles.candidates)
+    for (const selection::SeriesScore& score : found.scores)
       if (score.effect == candidate.effect) convert(candidate.runs, score.ln_unit);
   return ensembles;
 }
 
 // Of the perimeter, over the times that were looked at.
-std::vector<PerimeterExponent> exponents(const MeasuredVesicles& data,
+std::vector<PerimeterExponent> exponents(const observations::MeasuredVesicles& data,
                                          const SeriesEnsembles& ensembles) {
-  const Window window = looks(data);
+  const statistics::Window window = observations::looks(data);
   std::vector<PerimeterExponent> result;
-  if (const auto law = fit_measurements(data, window))
+  if (const auto law = observations::fit_measurements(data, window))
     result.push_back({data.synthetic ? "synthetic data" : "measured", *law});
-  const auto add = [&](const std::string& name, const std::vector<History>& runs) {
-    if (const auto law = fit_runs(runs, common_times(runs, kOfCharts), window))
+  const auto add = [&](const std::string& name, const std::vector<observations::History>& runs) {
+    if (const auto law =
+            observations::fit_runs(runs, observations::common_times(runs, kOfCharts), window))
       result.push_back({name, *law});
   };
   add("the model", ensembles.base);
-  for (const SeriesCandidate& candidate : ensembles.candidates)
+  for (const selection::SeriesCandidate& candidate : ensembles.candidates)
     add("with " + candidate.effect, candidate.runs);
   return result;
 }
 
-std::vector<Row> exponent_rows(const std::vector<PerimeterExponent>& laws) {
+std::vector<output::Row> exponent_rows(const std::vector<PerimeterExponent>& laws) {
   constexpr double kWide = 1;  // of an exponent
-  std::vector<Row> rows{{"perimeter over radius as c (t - t0)^b", "b", "95 % interval", ""}};
+  std::vector<output::Row> rows{
+      {"perimeter over radius as c (t - t0)^b", "b", "95 % interval", ""}};
   for (const PerimeterExponent& e : laws) {
     const bool determined = !e.law.t0_open && e.law.b.high - e.law.b.low < kWide;
     rows.push_back({e.model, formatted("%.3f", e.law.law.b),
@@ -154,38 +160,43 @@ std::vector<Row> exponent_rows(const std::vector<PerimeterExponent>& laws) {
 }
 
 // The model's curves, and those with the best effect as strong, and with the D, as they fit best.
-Chart curve_chart(Quantity quantity, const MeasuredVesicles& data, const SeriesEnsembles& simulated,
-                  const SeriesExplanation& found) {
-  Chart chart{name_of(quantity).label,        "time (s)", name_of(quantity).label, true,
-              quantity != Quantity::fraction, {}};
-  ChartSeries measured{"measured", {}, Mark::points};
-  for (const Measurement& m : data.measurements)
+bench::Chart curve_chart(observations::Quantity quantity,
+                         const observations::MeasuredVesicles& data,
+                         const SeriesEnsembles& simulated,
+                         const selection::SeriesExplanation& found) {
+  bench::Chart chart{observations::name_of(quantity).label,        "time (s)",
+                     observations::name_of(quantity).label,        true,
+                     quantity != observations::Quantity::fraction, {}};
+  bench::ChartSeries measured{"measured", {}, bench::Mark::points};
+  for (const observations::Measurement& m : data.measurements)
     if (m.of(quantity)) measured.points.emplace_back(m.time, *m.of(quantity));
   chart.series.push_back(measured);
-  const RunCurves base(simulated.base);
+  const likelihood::RunCurves base(simulated.base);
   const auto add = [&](const std::string& name, const std::vector<double>& times, double ln_unit,
                        const std::function<double(double)>& ln_mean) {
-    ChartSeries series{name, {}, Mark::line};
+    bench::ChartSeries series{name, {}, bench::Mark::line};
     for (const double t : times)
       series.points.emplace_back(t * std::exp(ln_unit), std::exp(ln_mean(std::log(t))));
     chart.series.push_back(series);
   };
   const auto of_base = [&](double ln_t) { return base.mean(quantity, ln_t); };
-  add("the model", common_times(simulated.base, kOfCharts), found.base.ln_unit, of_base);
-  const SeriesScore& best = found.scores.front();
-  for (const SeriesCandidate& candidate : simulated.candidates) {
+  add("the model", observations::common_times(simulated.base, kOfCharts), found.base.ln_unit,
+      of_base);
+  const selection::SeriesScore& best = found.scores.front();
+  for (const selection::SeriesCandidate& candidate : simulated.candidates) {
     if (candidate.effect != best.effect) continue;
-    const RunCurves changed(candidate.runs);
+    const likelihood::RunCurves changed(candidate.runs);
     const double amplitude = best.value / candidate.strength;
-    add("with " + candidate.effect, common_times(candidate.runs, kOfCharts), best.ln_unit,
-        [&](double ln_t) {
+    add("with " + candidate.effect, observations::common_times(candidate.runs, kOfCharts),
+        best.ln_unit, [&](double ln_t) {
           return of_base(ln_t) + amplitude * (changed.mean(quantity, ln_t) - of_base(ln_t));
         });
   }
   return chart;
 }
 
-std::string diffusion_sentence(const Configuration& model, const SeriesExplanation& found) {
+std::string diffusion_sentence(const config::Configuration& model,
+                               const selection::SeriesExplanation& found) {
   const double D = found_units(model, found).diffusion_cm2_s;
   if (found.unit_at_end)
     return formatted(
@@ -193,44 +204,45 @@ std::string diffusion_sentence(const Configuration& model, const SeriesExplanati
         D);
   const std::string range =
       formatted("%.3g cm^2/s, within a factor of %.3g (95 %%, from scatter only)", D,
-                std::exp(kNormal95 * found.unit_deviation));
+                std::exp(statistics::kNormal95 * found.unit_deviation));
   if (!found.unit_told)
     return "These series say hardly more about D than was known before: " + range + ".";
   return "D is " + range +
-         (found.finding == Finding::unnamed ? ", if what is missing does not change D."
-                                            : ", if nothing is missing.");
+         (found.finding == selection::Finding::unnamed ? ", if what is missing does not change D."
+                                                       : ", if nothing is missing.");
 }
 
 }  // namespace
 
-void write_series_explanation(const fs::path& folder, const MeasuredVesicles& data,
-                              const Configuration& model, const SeriesEnsembles& simulated,
-                              const SeriesExplanation& found, const SeriesRequest& request,
-                              bool quiet) {
+void write_series_explanation(const fs::path& folder, const observations::MeasuredVesicles& data,
+                              const config::Configuration& model, const SeriesEnsembles& simulated,
+                              const selection::SeriesExplanation& found,
+                              const selection::SeriesRequest& request, bool quiet) {
   const SeriesEnsembles ensembles = in_seconds(simulated, found);
   const std::vector<PerimeterExponent> laws = exponents(data, ensembles);
   const std::string verdict =
       "Verdict of the series: " + verdict_words(found.finding, class_of(found));
-  std::vector<std::string> words{title_of(data) + ": " + std::to_string(found.vesicles) +
+  std::vector<std::string> words{data::title_of(data) + ": " + std::to_string(found.vesicles) +
                                      " vesicles, " + std::to_string(found.looks) + " observations.",
                                  sentence(found), ground(found, simulated, request)};
-  for (const SeriesTie& tie : found.ties) words.push_back(advice(tie, found));
+  for (const selection::SeriesTie& tie : found.ties) words.push_back(advice(tie, found));
   words.push_back(diffusion_sentence(model, found));
-  if (const std::string onset = onset_note(data, ensembles.base); !onset.empty())
+  if (const std::string onset = data::onset_note(data, ensembles.base); !onset.empty())
     words.push_back(onset);
   words.insert(words.end(), ensembles.notes.begin(), ensembles.notes.end());
-  const SimulatedVesicle vesicle = simulated_vesicle(model.units().length(), ensembles.base, data);
-  for (const std::string& note : differences(data, vesicle)) words.push_back(note);
+  const observations::SimulatedVesicle vesicle =
+      observations::simulated_vesicle(model.units().length(), ensembles.base, data);
+  for (const std::string& note : observations::differences(data, vesicle)) words.push_back(note);
   if (const std::string text = assumed_text(simulated, found_units(model, found)); !text.empty())
     words.push_back(
         "For effects with several parameters only the first was varied. Fixed were: " + text + ".");
   for (const auto& members : found.classes)
     if (members.size() > 1)
       words.push_back("These effects look alike in series: " + joined(members, ", ") + ".");
-  const std::vector<Row> offset = offset_rows(found), scores = score_rows(model, found),
-                         exponent = exponent_rows(laws);
+  const std::vector<output::Row> offset = offset_rows(found), scores = score_rows(model, found),
+                                 exponent = exponent_rows(laws);
 
-  Page page("What series of vesicles say about the model");
+  output::Page page("What series of vesicles say about the model");
   page.heading(verdict);
   for (const std::string& line : words) page.paragraph(line);
   page.table(offset);
@@ -238,25 +250,28 @@ void write_series_explanation(const fs::path& folder, const MeasuredVesicles& da
   page.heading("Exponents");
   page.table(exponent);
   page.heading("In time");
-  Missing missing;
-  for (const Quantity quantity : kQuantities) {
-    const Chart chart = curve_chart(quantity, data, simulated, found);
-    add_chart(page, chart, folder / (std::string("series-") + name_of(quantity).id), missing);
+  output::Missing missing;
+  for (const observations::Quantity quantity : observations::kQuantities) {
+    const bench::Chart chart = curve_chart(quantity, data, simulated, found);
+    output::add_chart(page, chart,
+                      folder / (std::string("series-") + observations::name_of(quantity).id),
+                      missing);
   }
-  page.paragraph(program_text() + "; simulations in " + simulated.folder.string() + ".");
-  write_durably(folder / "series.html", page.html());
-  write_durably(folder / "series.json", series_json(model, simulated, found, laws).dump(2) + "\n");
+  page.paragraph(output::program_text() + "; simulations in " + simulated.folder.string() + ".");
+  posix::write_durably(folder / "series.html", page.html());
+  posix::write_durably(folder / "series.json",
+                       series_json(model, simulated, found, laws).dump(2) + "\n");
   if (quiet) return;
-  say("\n%s\n", verdict);
-  for (const std::string& line : words) say("%s\n", line);
-  say("\n");
-  print_rows(offset);
-  say("\n");
-  print_rows(scores);
-  say("\n");
-  print_rows(exponent);
-  say("\nwritten: %s\n", (folder / "series.html"));
-  if (!missing.text().empty()) say("missing from the page: %s\n", missing.text());
+  text::say("\n%s\n", verdict);
+  for (const std::string& line : words) text::say("%s\n", line);
+  text::say("\n");
+  output::print_rows(offset);
+  text::say("\n");
+  output::print_rows(scores);
+  text::say("\n");
+  output::print_rows(exponent);
+  text::say("\nwritten: %s\n", (folder / "series.html"));
+  if (!missing.text().empty()) text::say("missing from the page: %s\n", missing.text());
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::explain

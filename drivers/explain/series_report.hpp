@@ -5,12 +5,13 @@
 
 #include "drivers/explain/series_ensembles.hpp"
 
-namespace traceraft {
+namespace traceraft::explain {
 
 // `request`: by which it was found. Throws IoError.
-void write_series_explanation(const std::filesystem::path& folder, const MeasuredVesicles& data,
-                              const Configuration& model, const SeriesEnsembles& ensembles,
-                              const SeriesExplanation& found, const SeriesRequest& request,
-                              bool quiet);
+void write_series_explanation(const std::filesystem::path& folder,
+                              const observations::MeasuredVesicles& data,
+                              const config::Configuration& model, const SeriesEnsembles& ensembles,
+                              const selection::SeriesExplanation& found,
+                              const selection::SeriesRequest& request, bool quiet);
 
-}  // namespace traceraft
+}  // namespace traceraft::explain

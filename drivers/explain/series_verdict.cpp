@@ -8,33 +8,34 @@
 #include "kernel/core/parameters.hpp"
 #include "kernel/effects/effects.hpp"
 
-namespace traceraft {
+namespace traceraft::explain {
 namespace {
 
-Units units_of(const Configuration& model, double ln_unit) {
+physics::Units units_of(const config::Configuration& model, double ln_unit) {
   return model.units().with_seconds_per_unit(std::exp(ln_unit));
 }
 
 // As it was simulated; null if it was not.
-const EffectTerm* term_of(const SeriesEnsembles& ensembles, const std::string& effect) {
-  for (const EffectTerm& term : ensembles.terms)
+const effects::EffectTerm* term_of(const SeriesEnsembles& ensembles, const std::string& effect) {
+  for (const effects::EffectTerm& term : ensembles.terms)
     if (term.effect == effect) return &term;
   return nullptr;
 }
 
-std::vector<FoundParameter> assumed_of(const Configuration& model, const SeriesEnsembles& ensembles,
-                                       const SeriesScore& score) {
-  const EffectTerm* term = term_of(ensembles, score.effect);
+std::vector<FoundParameter> assumed_of(const config::Configuration& model,
+                                       const SeriesEnsembles& ensembles,
+                                       const selection::SeriesScore& score) {
+  const effects::EffectTerm* term = term_of(ensembles, score.effect);
   return term ? assumed_parameters(*term, units_of(model, score.ln_unit))
               : std::vector<FoundParameter>();
 }
 
-Json scores_json(const Configuration& model, const SeriesEnsembles& ensembles,
-                 const SeriesExplanation& found) {
-  Json scores = Json::array();
-  for (const SeriesScore& s : found.scores) {
+input::Json scores_json(const config::Configuration& model, const SeriesEnsembles& ensembles,
+                        const selection::SeriesExplanation& found) {
+  input::Json scores = input::Json::array();
+  for (const selection::SeriesScore& s : found.scores) {
     const StrengthScale scale = scale_of(s, model);
-    Json assumed = Json::object();
+    input::Json assumed = input::Json::object();
     for (const FoundParameter& p : assumed_of(model, ensembles, s))
       assumed[p.name] = {{"value", p.value}, {"unit", p.unit}};
     scores.push_back({{"effect", s.effect},
@@ -44,20 +45,20 @@ Json scores_json(const Configuration& model, const SeriesEnsembles& ensembles,
                       {"parameter", scale.parameter},
                       {"value", scale.factor * s.value},
                       {"sigma", scale.factor * s.sigma},
-                      {"low", s.bounded ? Json(scale.factor * s.low) : Json()},
-                      {"high", s.bounded ? Json(scale.factor * s.high) : Json()},
+                      {"low", s.bounded ? input::Json(scale.factor * s.low) : input::Json()},
+                      {"high", s.bounded ? input::Json(scale.factor * s.high) : input::Json()},
                       {"unit", scale.unit},
                       {"assumed", assumed},
                       {"vesicles_needed", s.vesicles},
-                      {"shown_by", name_of(s.telling).id}});
+                      {"shown_by", observations::name_of(s.telling).id}});
   }
   return scores;
 }
 
-Json offsets_json(const SeriesExplanation& found) {
-  Json offsets = Json::array();
-  for (const SeriesOffset& o : found.offsets)
-    offsets.push_back({{"quantity", name_of(o.quantity).id},
+input::Json offsets_json(const selection::SeriesExplanation& found) {
+  input::Json offsets = input::Json::array();
+  for (const selection::SeriesOffset& o : found.offsets)
+    offsets.push_back({{"quantity", observations::name_of(o.quantity).id},
                        {"of", "ln"},
                        {"level", o.level},
                        {"level_deviations", o.level_deviations},
@@ -67,31 +68,31 @@ Json offsets_json(const SeriesExplanation& found) {
 }
 
 // Of the effect that explains most, if something was named, and D.
-std::vector<FoundParameter> found_parameters(const Configuration& model,
-                                             const SeriesEnsembles& ensembles,
-                                             const SeriesExplanation& found) {
-  const SeriesScore& best = found.scores.front();
+std::vector<FoundParameter> series_parameters(const config::Configuration& model,
+                                              const SeriesEnsembles& ensembles,
+                                              const selection::SeriesExplanation& found) {
+  const selection::SeriesScore& best = found.scores.front();
   const StrengthScale scale = scale_of(best, model);
-  const double ln_unit = is_named(found.finding) ? best.ln_unit : found.base.ln_unit;
+  const double ln_unit = selection::is_named(found.finding) ? best.ln_unit : found.base.ln_unit;
   std::vector<FoundParameter> result;
-  if (is_named(found.finding)) {
+  if (selection::is_named(found.finding)) {
     result.push_back({best.effect, scale.parameter, scale.unit, scale.factor * best.value,
                       scale.factor * best.sigma});
     for (FoundParameter& p : assumed_of(model, ensembles, best)) result.push_back(std::move(p));
   }
   const double D = units_of(model, ln_unit).diffusion_cm2_s;
-  result.push_back(
-      {"", "diffusion", "cm^2/s", D,
-       is_named(found.finding) ? std::nullopt : std::optional(D * found.unit_deviation)});
+  result.push_back({"", "diffusion", "cm^2/s", D,
+                    selection::is_named(found.finding) ? std::nullopt
+                                                       : std::optional(D * found.unit_deviation)});
   return result;
 }
 
-GivenValues named_model(GivenValues model, const SeriesEnsembles& ensembles,
-                        const SeriesExplanation& found) {
-  const SeriesScore& best = found.scores.front();
-  EffectTerm term = *term_of(ensembles, best.effect);
+config::GivenValues named_model(config::GivenValues model, const SeriesEnsembles& ensembles,
+                                const selection::SeriesExplanation& found) {
+  const selection::SeriesScore& best = found.scores.front();
+  effects::EffectTerm term = *term_of(ensembles, best.effect);
   term.values.front() = best.value;
-  const Units units = units_of(Configuration(model, {}), best.ln_unit);
+  const physics::Units units = units_of(config::Configuration(model, {}), best.ln_unit);
   model["diffusion"] = {format_number(units.diffusion_cm2_s), "--diffusion"};
   model["effect"] = {effect_text({within_range(term, units)}, units), "--effect"};
   return model;
@@ -99,9 +100,9 @@ GivenValues named_model(GivenValues model, const SeriesEnsembles& ensembles,
 
 }  // namespace
 
-std::vector<std::string> class_of(const SeriesExplanation& found) {
+std::vector<std::string> class_of(const selection::SeriesExplanation& found) {
   std::vector<std::string> members;
-  if (!is_named(found.finding)) return members;
+  if (!selection::is_named(found.finding)) return members;
   const std::string& best = found.scores.front().effect;
   members.push_back(best);
   for (const auto& some : found.named)
@@ -110,35 +111,40 @@ std::vector<std::string> class_of(const SeriesExplanation& found) {
   return members;
 }
 
-Units found_units(const Configuration& model, const SeriesExplanation& found) {
+physics::Units found_units(const config::Configuration& model,
+                           const selection::SeriesExplanation& found) {
   return units_of(model, found.base.ln_unit);
 }
 
-StrengthScale scale_of(const SeriesScore& score, const Configuration& model) {
-  const ParameterSpec& spec = effects().find(score.effect).parameters.front();
-  return {spec.name, spec.unit, 1 / to_model_units(spec.unit, units_of(model, score.ln_unit))};
+StrengthScale scale_of(const selection::SeriesScore& score, const config::Configuration& model) {
+  const ParameterSpec& spec = effects::effects().find(score.effect).parameters.front();
+  return {spec.name, spec.unit,
+          1 / effects::to_model_units(spec.unit, units_of(model, score.ln_unit))};
 }
 
-std::vector<FoundParameter> assumed_parameters(const EffectTerm& term, const Units& units) {
+std::vector<FoundParameter> assumed_parameters(const effects::EffectTerm& term,
+                                               const physics::Units& units) {
   std::vector<FoundParameter> all = parameters_of(term, units);
   all.erase(all.begin());
   return all;
 }
 
-Json series_json(const Configuration& model, const SeriesEnsembles& ensembles,
-                 const SeriesExplanation& found, const std::vector<PerimeterExponent>& laws) {
+input::Json series_json(const config::Configuration& model, const SeriesEnsembles& ensembles,
+                        const selection::SeriesExplanation& found,
+                        const std::vector<PerimeterExponent>& laws) {
   const double D = found_units(model, found).diffusion_cm2_s;
-  Json ties = Json::array(), exponents = Json::array();
-  for (const SeriesTie& tie : found.ties)
+  input::Json ties = input::Json::array(), exponents = input::Json::array();
+  for (const selection::SeriesTie& tie : found.ties)
     ties.push_back({{"effect", tie.effect},
                     {"other", tie.other},
                     {"vesicles_needed", tie.vesicles},
-                    {"shown_by", name_of(tie.telling).id}});
+                    {"shown_by", observations::name_of(tie.telling).id}});
   for (const PerimeterExponent& e : laws)
     exponents.push_back(
         {{"model", e.model}, {"b", e.law.law.b}, {"interval_95", {e.law.b.low, e.law.b.high}}});
-  return {{"verdict", word_for(found.finding)},
-          {"class", is_named(found.finding) ? Json(found.named) : Json::array()},
+  return {{"verdict", selection::word_for(found.finding)},
+          {"class",
+           selection::is_named(found.finding) ? input::Json(found.named) : input::Json::array()},
           {"p", found.p},
           {"trend_p", found.trend_p},
           {"vesicles", found.vesicles},
@@ -154,37 +160,40 @@ Json series_json(const Configuration& model, const SeriesEnsembles& ensembles,
           {"ties", ties},
           {"simulations", ensembles.folder.string()},
           {"exponents", exponents},
-          {"program", program_text()}};
+          {"program", output::program_text()}};
 }
 
-Verdict verdict_of(const Configuration& model, const SeriesEnsembles& ensembles,
-                   const SeriesExplanation& found, const SeriesRequest& request) {
+Verdict verdict_of(const config::Configuration& model, const SeriesEnsembles& ensembles,
+                   const selection::SeriesExplanation& found,
+                   const selection::SeriesRequest& request) {
   Verdict verdict;
   verdict.finding = found.finding;
   verdict.members = class_of(found);
-  if (found.finding == Finding::unnamed && !found.named.empty())
+  if (found.finding == selection::Finding::unnamed && !found.named.empty())
     verdict.closest = found.named.front().front();
-  verdict.parameters = found_parameters(model, ensembles, found);
-  for (const SeriesScore& s : found.scores) verdict.alternatives.push_back({s.effect, s.gain});
+  verdict.parameters = series_parameters(model, ensembles, found);
+  for (const selection::SeriesScore& s : found.scores)
+    verdict.alternatives.push_back({s.effect, s.gain});
   verdict.replicates = request.replicates;
   verdict.false_alarms = request.false_alarms;
   verdict.p = found.p;
   verdict.null_details = {{"trend_p", found.trend_p}};
-  verdict.details = {{"where", Json()}};
+  verdict.details = {{"where", input::Json()}};
   return verdict;
 }
 
 void write_series_verdict(const std::filesystem::path& folder,
-                          const std::filesystem::path& model_file, const GivenValues& model,
-                          const SeriesEnsembles& ensembles, const SeriesExplanation& found,
-                          const SeriesRequest& request) {
-  const Configuration base(model, {});
-  if (is_named(found.finding))
+                          const std::filesystem::path& model_file, const config::GivenValues& model,
+                          const SeriesEnsembles& ensembles,
+                          const selection::SeriesExplanation& found,
+                          const selection::SeriesRequest& request) {
+  const config::Configuration base(model, {});
+  if (selection::is_named(found.finding))
     write_extended_model(folder / "model.toml", model_file, named_model(model, ensembles, found),
                          "found by traceraft explain: " + found.scores.front().effect +
                              ", with D fitted together with it");
-  write_durably(folder / "verdict.json",
-                verdict_json(verdict_of(base, ensembles, found, request)).dump(2) + "\n");
+  posix::write_durably(folder / "verdict.json",
+                       verdict_json(verdict_of(base, ensembles, found, request)).dump(2) + "\n");
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::explain

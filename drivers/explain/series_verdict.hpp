@@ -9,40 +9,45 @@
 #include "drivers/explain/verdict.hpp"
 #include "verification/observations/perimeter_law.hpp"
 
-namespace traceraft {
+namespace traceraft::explain {
 
 // With the D that the series say if nothing is missing.
-Units found_units(const Configuration& model, const SeriesExplanation& found);
+physics::Units found_units(const config::Configuration& model,
+                           const selection::SeriesExplanation& found);
 
 // Effects that explain the data, the best first; none if nothing was named.
-std::vector<std::string> class_of(const SeriesExplanation& found);
+std::vector<std::string> class_of(const selection::SeriesExplanation& found);
 
 // The parameter that was looked for, and its unit over that of the model with the D of this fit.
 struct StrengthScale {
   std::string parameter, unit;
   double factor;
 };
-StrengthScale scale_of(const SeriesScore& score, const Configuration& model);
+StrengthScale scale_of(const selection::SeriesScore& score, const config::Configuration& model);
 
 // Of an effect, the parameters that were not looked for, as they were simulated.
-std::vector<FoundParameter> assumed_parameters(const EffectTerm& term, const Units& units);
+std::vector<FoundParameter> assumed_parameters(const effects::EffectTerm& term,
+                                               const physics::Units& units);
 
 // Of the perimeter: measured, or simulated with this model.
 struct PerimeterExponent {
   std::string model;
-  FittedLaw law;
+  observations::FittedLaw law;
 };
 
-Json series_json(const Configuration& model, const SeriesEnsembles& ensembles,
-                 const SeriesExplanation& found, const std::vector<PerimeterExponent>& exponents);
+input::Json series_json(const config::Configuration& model, const SeriesEnsembles& ensembles,
+                        const selection::SeriesExplanation& found,
+                        const std::vector<PerimeterExponent>& exponents);
 
-Verdict verdict_of(const Configuration& model, const SeriesEnsembles& ensembles,
-                   const SeriesExplanation& found, const SeriesRequest& request);
+Verdict verdict_of(const config::Configuration& model, const SeriesEnsembles& ensembles,
+                   const selection::SeriesExplanation& found,
+                   const selection::SeriesRequest& request);
 // verdict.json, and model.toml if something was named: the model, here as its user gave it (in
 // `model_file`, if not empty, and flags), with the effect that explains most and D. Throws IoError.
 void write_series_verdict(const std::filesystem::path& folder,
-                          const std::filesystem::path& model_file, const GivenValues& model,
-                          const SeriesEnsembles& ensembles, const SeriesExplanation& found,
-                          const SeriesRequest& request);
+                          const std::filesystem::path& model_file, const config::GivenValues& model,
+                          const SeriesEnsembles& ensembles,
+                          const selection::SeriesExplanation& found,
+                          const selection::SeriesRequest& request);
 
-}  // namespace traceraft
+}  // namespace traceraft::explain

@@ -14,7 +14,7 @@
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::input {
 namespace {
 
 constexpr std::uint64_t kLargestTable = std::uint64_t{1} << 30;
@@ -93,7 +93,7 @@ Rows parse(const std::filesystem::path& path, std::string text) {
     const std::size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
     ++rows.line;
     const std::string line = text.substr(begin, end - begin);
-    if (!is_utf8(line))
+    if (!text::is_utf8(line))
       throw InputError(path.string() + ":" + std::to_string(rows.line) +
                        ": this is not UTF-8; save the table as CSV in UTF-8");
     if (line[0] == '#')
@@ -108,16 +108,16 @@ Rows parse(const std::filesystem::path& path, std::string text) {
 
 // Tables that the program itself has written may end with one.
 void require_checksum(const std::filesystem::path& path, const std::string& text) {
-  const std::size_t at = text.rfind(kChecksumRemark);
+  const std::size_t at = text.rfind(text::kChecksumRemark);
   if (at == std::string::npos) return;
-  if (text.substr(at) != checksum_line(text.substr(0, at)))
+  if (text.substr(at) != text::checksum_line(text.substr(0, at)))
     throw DamagedFile(path.string() + " is damaged: its rows have changed");
 }
 
 }  // namespace
 
 CsvTable CsvTable::read(const std::filesystem::path& path) {
-  std::string text = read_file(path, kLargestTable);
+  std::string text = posix::read_file(path, kLargestTable);
   require_checksum(path, text);
   if (text.find('\0') != std::string::npos)
     throw InputError(path.string() +
@@ -127,7 +127,7 @@ CsvTable CsvTable::read(const std::filesystem::path& path) {
   table.path_ = path;
   if (rows.rows.empty()) throw InputError(path.string() + ": the file is empty");
   table.columns_ = std::move(rows.rows.front());
-  for (std::string& column : table.columns_) column = without_unit(column);
+  for (std::string& column : table.columns_) column = text::without_unit(column);
   table.heading_line_ = rows.lines.front();
   refuse_other_separators(table.heading(), table.columns_);
   for (std::size_t i = 0; i < table.columns_.size(); ++i)
@@ -188,4 +188,4 @@ std::string CsvTable::where(std::size_t row, const std::string& column) const {
   return where(row) + ": column '" + column + "'";
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::input

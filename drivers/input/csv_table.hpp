@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace traceraft {
+namespace traceraft::input {
 
 class CsvTable {
  public:
@@ -46,4 +46,4 @@ class CsvTable {
   long heading_line_ = 1;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::input

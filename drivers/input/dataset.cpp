@@ -12,13 +12,13 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
 
-namespace traceraft {
+namespace traceraft::input {
 namespace {
 
 namespace fs = std::filesystem;
 
 struct Dataset {
-  MeasuredVesicles data;
+  observations::MeasuredVesicles data;
   fs::path table;
   TableUnits units;
   std::string where_radius;  // it says one for all vesicles
@@ -27,7 +27,7 @@ struct Dataset {
 Dataset read_description(const fs::path& folder) {
   if (holds_fields(folder) && !holds_series(folder))
     throw InputError(folder.string() + " holds measured fields, not series of vesicles");
-  const TomlTable toml = read_series_description(folder);
+  const config::TomlTable toml = read_series_description(folder);
   Dataset d;
   d.data.name = toml.text("name");
   d.data.synthetic = is_synthetic(toml);
@@ -55,7 +55,7 @@ Dataset read_description(const fs::path& folder) {
 
 }  // namespace
 
-MeasuredVesicles read_dataset(const fs::path& folder) {
+observations::MeasuredVesicles read_dataset(const fs::path& folder) {
   Dataset d = read_description(folder);
   if (!std::filesystem::is_regular_file(d.table))
     throw InputError(d.table.string() + ": the table of measurements does not exist");
@@ -69,7 +69,7 @@ MeasuredVesicles read_dataset(const fs::path& folder) {
   return d.data;
 }
 
-void write_dataset(const fs::path& folder, const MeasuredVesicles& data,
+void write_dataset(const fs::path& folder, const observations::MeasuredVesicles& data,
                    const std::string& remark) {
   const auto quoted = [](const std::string& text) { return nlohmann::json(text).dump(); };
   std::string toml = "# " + remark + "\nname = " + quoted(data.name) +
@@ -81,18 +81,18 @@ void write_dataset(const fs::path& folder, const MeasuredVesicles& data,
   std::string csv = "# " + remark +
                     "\nvesicle,time,radius,perimeter,perimeter_sigma,rafts,rafts_sigma,fraction,"
                     "fraction_sigma\n";
-  for (const Measurement& m : data.measurements) {
-    csv += csv_cell(m.vesicle) + "," + format_number(m.time) + "," + format_number(m.radius);
-    for (const Quantity quantity : kQuantities) {
-      const double unit = quantity == Quantity::perimeter ? m.radius : 1;
-      for (const auto& value : {m.of(quantity), m.sigma[index_of(quantity)]})
+  for (const observations::Measurement& m : data.measurements) {
+    csv += text::csv_cell(m.vesicle) + "," + format_number(m.time) + "," + format_number(m.radius);
+    for (const observations::Quantity quantity : observations::kQuantities) {
+      const double unit = quantity == observations::Quantity::perimeter ? m.radius : 1;
+      for (const auto& value : {m.of(quantity), m.sigma[observations::index_of(quantity)]})
         csv += "," + (value ? format_number(*value * unit) : "");
     }
     csv += "\n";
   }
   fs::create_directories(folder);
-  write_durably(folder / "measurements.csv", csv);
-  write_durably(folder / "dataset.toml", toml);
+  posix::write_durably(folder / "measurements.csv", csv);
+  posix::write_durably(folder / "dataset.toml", toml);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::input

@@ -5,14 +5,14 @@
 
 #include "verification/observations/measurements.hpp"
 
-namespace traceraft {
+namespace traceraft::input {
 
 // Checks everything and converts units. Throws InputError with file, line and column for what is
 // missing, unknown or impossible.
-MeasuredVesicles read_dataset(const std::filesystem::path& folder);
+observations::MeasuredVesicles read_dataset(const std::filesystem::path& folder);
 
 // Writes measurements as such a folder. Throws IoError.
-void write_dataset(const std::filesystem::path& folder, const MeasuredVesicles& data,
+void write_dataset(const std::filesystem::path& folder, const observations::MeasuredVesicles& data,
                    const std::string& remark);
 
-}  // namespace traceraft
+}  // namespace traceraft::input

@@ -7,17 +7,17 @@
 #include "kernel/core/parameters.hpp"
 #include "verification/observations/raft_fraction.hpp"
 
-namespace traceraft {
+namespace traceraft::input {
 namespace {
 
-double in_range(const TomlTable& toml, const char* key, double low, double high) {
+double in_range(const config::TomlTable& toml, const char* key, double low, double high) {
   const double value = toml.number(key);
   if (value >= low && value <= high) return value;
   throw InputError(toml.where(key) + ": " + format_number(value) + " is out of range (allowed: " +
                    format_number(low) + " to " + format_number(high) + ")");
 }
 
-int whole_number(const TomlTable& toml, const char* key, double low, double high) {
+int whole_number(const config::TomlTable& toml, const char* key, double low, double high) {
   const double value = in_range(toml, key, low, high);
   if (value == std::floor(value)) return static_cast<int>(value);
   throw InputError(toml.where(key) + ": " + format_number(value) + " is not a whole number");
@@ -25,16 +25,16 @@ int whole_number(const TomlTable& toml, const char* key, double low, double high
 
 }  // namespace
 
-PublishedFacts read_facts(const std::filesystem::path& path) {
-  const TomlTable toml = TomlTable::read(
+observations::PublishedFacts read_facts(const std::filesystem::path& path) {
+  const config::TomlTable toml = config::TomlTable::read(
       path, {"name", "origin", "composition", "temperature", "vesicles", "measurements", "fraction",
              "fraction_sd", "radius_min", "radius_max", "perimeter_c", "perimeter_t0",
              "perimeter_b", "perimeter_scatter", "window_begin", "window_end", "outliers"});
-  PublishedFacts facts;
+  observations::PublishedFacts facts;
   facts.name = toml.text("name");
   facts.origin = toml.text("origin");
   facts.composition = toml.text("composition");
-  (void)membrane_mixture(toml.where("composition"), facts.composition);
+  (void)observations::membrane_mixture(toml.where("composition"), facts.composition);
   facts.celsius = in_range(toml, "temperature", -10, 100);
   facts.vesicles = whole_number(toml, "vesicles", 1, 1e6);
   facts.measurements = whole_number(toml, "measurements", facts.vesicles, 1e6);
@@ -53,4 +53,4 @@ PublishedFacts read_facts(const std::filesystem::path& path) {
   return facts;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::input

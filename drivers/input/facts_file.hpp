@@ -5,9 +5,9 @@
 
 #include "verification/observations/published.hpp"
 
-namespace traceraft {
+namespace traceraft::input {
 
 // Throws InputError with file, line and key for what is missing, unknown or out of range.
-PublishedFacts read_facts(const std::filesystem::path& path);
+observations::PublishedFacts read_facts(const std::filesystem::path& path);
 
-}  // namespace traceraft
+}  // namespace traceraft::input

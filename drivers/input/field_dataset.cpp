@@ -13,7 +13,7 @@
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::input {
 namespace {
 
 namespace fs = std::filesystem;
@@ -23,7 +23,7 @@ constexpr std::size_t kFewestPoints = 100;
 // Ratio of standard deviations within a snapshot.
 constexpr double kMostUnlike = 1e6;
 
-std::vector<double> numbers_of(const TomlTable& toml, const std::string& key) {
+std::vector<double> numbers_of(const config::TomlTable& toml, const std::string& key) {
   if (!toml.has(key)) throw InputError(toml.where(key) + ": it is missing");
   if (const auto* list = std::get_if<std::vector<double>>(&toml.value(key))) return *list;
   throw InputError(toml.where(key) + ": a list of numbers is needed here");
@@ -42,10 +42,10 @@ void check_columns(const CsvTable& table) {
                      std::to_string(kFewestPoints) + ")");
 }
 
-FieldSnapshot read_snapshot(const CsvTable& table, double time, double to_radius) {
+assimilation::FieldSnapshot read_snapshot(const CsvTable& table, double time, double to_radius) {
   check_columns(table);
   const auto rows = static_cast<Eigen::Index>(table.rows());
-  FieldSnapshot snapshot{time, {}, Vec(rows), Vec::Ones(rows)};
+  assimilation::FieldSnapshot snapshot{time, {}, Vec(rows), Vec::Ones(rows)};
   for (std::size_t row = 0; row < table.rows(); ++row) {
     snapshot.points.push_back(
         to_radius * Point(table.number(row, "x"), table.number(row, "y"), table.number(row, "z")));
@@ -64,7 +64,7 @@ FieldSnapshot read_snapshot(const CsvTable& table, double time, double to_radius
   return snapshot;
 }
 
-void read_blur(const TomlTable& toml, double length, FieldDataset& data) {
+void read_blur(const config::TomlTable& toml, double length, FieldDataset& data) {
   if (!toml.has("blur")) return;
   data.blur_um = toml.number("blur") * length;
   if (!(*data.blur_um >= 0 && *data.blur_um < kWidestBlur * data.radius_um))
@@ -73,7 +73,7 @@ void read_blur(const TomlTable& toml, double length, FieldDataset& data) {
         formatted(": it must be from 0 to %.2g of the radius (a standard deviation)", kWidestBlur));
 }
 
-void read_noise(const TomlTable& toml, double length, FieldDataset& data) {
+void read_noise(const config::TomlTable& toml, double length, FieldDataset& data) {
   const char *size = "noise_correlation", *share = "noise_share";
   if (toml.has(size) != toml.has(share))
     throw InputError(toml.where(toml.has(size) ? size : share) + ": it needs " +
@@ -84,13 +84,13 @@ void read_noise(const TomlTable& toml, double length, FieldDataset& data) {
   if (!(data.noise_share >= 0 && data.noise_share <= 1))
     throw InputError(toml.where(share) + ": it must be from 0 to 1, as a share of the variance");
   if (!(data.noise_correlation_um > 0 &&
-        data.noise_correlation_um <= kLongestCorrelation * data.radius_um))
-    throw InputError(toml.where(size) +
-                     formatted(": it must be from 0 to %.2g of the radius", kLongestCorrelation));
+        data.noise_correlation_um <= assimilation::kLongestCorrelation * data.radius_um))
+    throw InputError(toml.where(size) + formatted(": it must be from 0 to %.2g of the radius",
+                                                  assimilation::kLongestCorrelation));
 }
 
 // Whose each snapshot is.
-std::vector<std::string> vesicles_of(const TomlTable& toml, std::size_t snapshots) {
+std::vector<std::string> vesicles_of(const config::TomlTable& toml, std::size_t snapshots) {
   const std::vector<double> numbers =
       toml.has("vesicles") ? numbers_of(toml, "vesicles") : std::vector<double>(snapshots, 1.0);
   if (numbers.size() != snapshots)
@@ -102,10 +102,11 @@ std::vector<std::string> vesicles_of(const TomlTable& toml, std::size_t snapshot
 }
 
 // The series of a vesicle whose snapshots follow each other.
-FieldSeries& series_of(const TomlTable& toml, const std::string& vesicle, FieldDataset& data) {
+assimilation::FieldSeries& series_of(const config::TomlTable& toml, const std::string& vesicle,
+                                     FieldDataset& data) {
   auto& all = data.vesicles;
   if (!all.empty() && all.back().vesicle == vesicle) return all.back();
-  for (const FieldSeries& before : all)
+  for (const assimilation::FieldSeries& before : all)
     if (before.vesicle == vesicle)
       throw InputError(toml.where("vesicles") + ": snapshots of vesicle " + vesicle +
                        " must follow each other");
@@ -113,9 +114,9 @@ FieldSeries& series_of(const TomlTable& toml, const std::string& vesicle, FieldD
   return all.back();
 }
 
-void refuse_incomplete(const fs::path& folder, const TomlTable& toml, std::size_t snapshots,
+void refuse_incomplete(const fs::path& folder, const config::TomlTable& toml, std::size_t snapshots,
                        const FieldDataset& data) {
-  for (const FieldSeries& series : data.vesicles)
+  for (const assimilation::FieldSeries& series : data.vesicles)
     if (series.snapshots.size() < 2)
       throw InputError(toml.where("times") + ": vesicle " + series.vesicle +
                        " needs two snapshots or more");
@@ -136,7 +137,7 @@ std::string place_of(const fs::path& folder, std::size_t snapshot, std::size_t r
 FieldDataset read_field_dataset(const fs::path& folder) {
   if (!holds_fields(folder) && holds_series(folder))
     throw InputError(folder.string() + " holds series of vesicles, not fields");
-  const TomlTable toml = read_field_description(folder);
+  const config::TomlTable toml = read_field_description(folder);
   FieldDataset data;
   data.name = toml.text("name");
   data.origin = toml.text_or("origin", "");
@@ -176,8 +177,8 @@ FieldDataset read_field_dataset(const fs::path& folder) {
 std::string note_on_distance(const FieldDataset& data) {
   constexpr double kFar = 0.02;
   std::vector<double> distances;
-  for (const FieldSeries& vesicle : data.vesicles)
-    for (const FieldSnapshot& snapshot : vesicle.snapshots)
+  for (const assimilation::FieldSeries& vesicle : data.vesicles)
+    for (const assimilation::FieldSnapshot& snapshot : vesicle.snapshots)
       for (const Point& x : snapshot.points) distances.push_back(x.norm());
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
   std::nth_element(distances.begin(), middle, distances.end());
@@ -191,8 +192,8 @@ std::string note_on_distance(const FieldDataset& data) {
 std::string note_on_scale(const FieldDataset& data, double a, double b) {
   constexpr double kFar = 0.5, kMost = 0.2;  // of the distance of the phases, of the values
   double far = 0, all = 0;
-  for (const FieldSeries& vesicle : data.vesicles)
-    for (const FieldSnapshot& snapshot : vesicle.snapshots) {
+  for (const assimilation::FieldSeries& vesicle : data.vesicles)
+    for (const assimilation::FieldSnapshot& snapshot : vesicle.snapshots) {
       const auto c = snapshot.values.array();
       far += static_cast<double>((c < a - kFar * (b - a) || c > b + kFar * (b - a)).count());
       all += static_cast<double>(c.size());
@@ -210,8 +211,8 @@ void write_field_dataset(const fs::path& folder, const FieldDataset& data,
   fs::create_directories(folder);
   std::string times, vesicles;
   std::size_t number = 0;
-  for (const FieldSeries& series : data.vesicles)
-    for (const FieldSnapshot& snapshot : series.snapshots) {
+  for (const assimilation::FieldSeries& series : data.vesicles)
+    for (const assimilation::FieldSnapshot& snapshot : series.snapshots) {
       const bool weighted = !(snapshot.deviation.array() == 1).all();
       std::string csv = weighted ? "x,y,z,c,sigma\n" : "x,y,z,c\n";
       for (std::size_t i = 0; i < snapshot.points.size(); ++i) {
@@ -220,11 +221,11 @@ void write_field_dataset(const fs::path& folder, const FieldDataset& data,
         csv += formatted("%.9g,%.9g,%.9g,%.6g", x[0], x[1], x[2], snapshot.values[row]);
         csv += weighted ? formatted(",%.6g\n", snapshot.deviation[row]) : "\n";
       }
-      write_durably(folder / snapshot_file(++number), csv);
+      posix::write_durably(folder / snapshot_file(++number), csv);
       times += (times.empty() ? "" : ", ") + format_number(snapshot.time);
       vesicles += (vesicles.empty() ? "" : ", ") + series.vesicle;
     }
-  write_durably(
+  posix::write_durably(
       folder / "dataset.toml",
       "# " + remark + "\nname = " + quoted(data.name) +
           "\nkind = " + (data.synthetic ? "\"synthetic\"" : "\"measured\"") +
@@ -238,4 +239,4 @@ void write_field_dataset(const fs::path& folder, const FieldDataset& data,
           "\ntimes = [" + times + "]\nvesicles = [" + vesicles + "]\n");
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::input

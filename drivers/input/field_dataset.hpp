@@ -8,7 +8,7 @@
 #include "drivers/input/measured_folder.hpp"
 #include "verification/assimilation/fields/field_series.hpp"
 
-namespace traceraft {
+namespace traceraft::input {
 
 // Of the radius: images that are blurred more show nothing.
 inline constexpr double kWidestBlur = 0.2;
@@ -22,7 +22,7 @@ struct FieldDataset {
   std::optional<double> blur_um;  // standard deviation of the point spread function
   // Over which length neighbours share noise, in um, and which part of its variance; both or none.
   double noise_correlation_um = 0, noise_share = 0;
-  std::vector<FieldSeries> vesicles;  // times in s, places in units of the radius
+  std::vector<assimilation::FieldSeries> vesicles;  // times in s, places in units of the radius
 };
 
 // Checks everything and converts units. Throws InputError with file, line and column for what is
@@ -46,4 +46,4 @@ std::string note_on_scale(const FieldDataset& data, double a, double b);
 void write_field_dataset(const std::filesystem::path& folder, const FieldDataset& data,
                          const std::string& remark);
 
-}  // namespace traceraft
+}  // namespace traceraft::input

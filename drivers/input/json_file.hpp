@@ -8,7 +8,7 @@
 #include "backends/posix/durable_file.hpp"
 #include "kernel/core/error.hpp"
 
-namespace traceraft {
+namespace traceraft::input {
 
 using Json = nlohmann::ordered_json;
 
@@ -23,7 +23,7 @@ template <class Use>
 auto from_json(const std::filesystem::path& path, const Use& use,
                std::uint64_t max_bytes = 1 << 24) {
   try {
-    return use(Json::parse(read_file(path, max_bytes)));
+    return use(Json::parse(posix::read_file(path, max_bytes)));
   } catch (const nlohmann::json::parse_error& error) {
     throw DamagedFile(path.string() + " is damaged: it is no JSON from byte " +
                       std::to_string(error.byte) + " on");
@@ -33,4 +33,4 @@ auto from_json(const std::filesystem::path& path, const Use& use,
   }
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::input

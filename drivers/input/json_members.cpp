@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace traceraft {
+namespace traceraft::input {
 
 void check_value(const std::string& where, double value, const WithinRange& range) {
   if (value >= range.low && value <= range.high) return;
@@ -16,4 +16,4 @@ void check_value(const std::string& where, const std::string& name, const OneOf&
     throw InputError(where + ": " + unknown_name_message(list.kind, name, list.names));
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::input

@@ -22,7 +22,7 @@
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/types.hpp"
 
-namespace traceraft {
+namespace traceraft::input {
 
 // Allowed values of a member. A list is checked value by value, an object by its own members.
 struct WithinRange {
@@ -332,4 +332,4 @@ T read_object(const std::filesystem::path& file, T value = {}) {
   });
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::input

@@ -3,12 +3,12 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::input {
 namespace {
 
 namespace fs = std::filesystem;
 
-TomlTable read_description(const fs::path& folder, bool fields, bool series) {
+config::TomlTable read_description(const fs::path& folder, bool fields, bool series) {
   std::vector<std::string> keys{"name",        "kind",      "origin",      "composition",
                                 "temperature", "time_zero", "time_offset", "length_unit",
                                 "time_unit",   "radius"};
@@ -21,7 +21,7 @@ TomlTable read_description(const fs::path& folder, bool fields, bool series) {
       fs::exists(folder / "data" / "dataset.toml"))
     throw InputError(folder.string() + " holds no dataset.toml; did you mean '" +
                      (folder / "data").string() + "'?");
-  return TomlTable::read(folder / "dataset.toml", keys);
+  return config::TomlTable::read(folder / "dataset.toml", keys);
 }
 
 }  // namespace
@@ -35,11 +35,11 @@ bool holds_series(const fs::path& folder) {
   return fs::exists(folder / "dataset.toml") && read_description(folder, true, true).has("table");
 }
 
-TomlTable read_field_description(const fs::path& folder) {
+config::TomlTable read_field_description(const fs::path& folder) {
   return read_description(folder, true, holds_series(folder));
 }
 
-TomlTable read_series_description(const fs::path& folder) {
+config::TomlTable read_series_description(const fs::path& folder) {
   return read_description(folder, holds_fields(folder), true);
 }
 
@@ -55,4 +55,4 @@ bool is_snapshot_file(const fs::path& path) {
          fs::is_regular_file(fs::symlink_status(path));
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::input

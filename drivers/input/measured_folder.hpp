@@ -5,7 +5,7 @@
 
 #include "drivers/config/toml_table.hpp"
 
-namespace traceraft {
+namespace traceraft::input {
 
 // snapshot_001.csv, ...
 bool holds_fields(const std::filesystem::path& folder);
@@ -13,12 +13,12 @@ bool holds_fields(const std::filesystem::path& folder);
 bool holds_series(const std::filesystem::path& folder);
 
 // Of a folder that holds both, one file describes both. Throw InputError.
-TomlTable read_field_description(const std::filesystem::path& folder);
-TomlTable read_series_description(const std::filesystem::path& folder);
+config::TomlTable read_field_description(const std::filesystem::path& folder);
+config::TomlTable read_series_description(const std::filesystem::path& folder);
 
 // Of a folder of fields, counted over all its vesicles from 1 on.
 std::string snapshot_file(std::size_t number);
 // Is it a file of such a name?
 bool is_snapshot_file(const std::filesystem::path& path);
 
-}  // namespace traceraft
+}  // namespace traceraft::input

@@ -7,7 +7,7 @@
 #include "kernel/core/parameters.hpp"
 #include "verification/observations/raft_fraction.hpp"
 
-namespace traceraft {
+namespace traceraft::input {
 namespace {
 
 struct FileUnit {
@@ -15,7 +15,8 @@ struct FileUnit {
   double factor;
 };
 
-double factor(const NamedList<FileUnit>& units, const TomlTable& toml, const std::string& key) {
+double factor(const NamedList<FileUnit>& units, const config::TomlTable& toml,
+              const std::string& key) {
   const std::string name = toml.text(key);
   try {
     return units.find(name).factor;
@@ -26,14 +27,14 @@ double factor(const NamedList<FileUnit>& units, const TomlTable& toml, const std
 
 }  // namespace
 
-bool is_synthetic(const TomlTable& toml) {
+bool is_synthetic(const config::TomlTable& toml) {
   const std::string kind = toml.text("kind");
   if (kind != "measured" && kind != "synthetic")
     throw InputError(toml.where("kind") + ": '" + kind + "' is neither measured nor synthetic");
   return kind == "synthetic";
 }
 
-double length_factor(const TomlTable& toml, const std::string& key) {
+double length_factor(const config::TomlTable& toml, const std::string& key) {
   static const NamedList<FileUnit> units("unit of length", {{"um", 1},
                                                             // with the micro sign, and with a mu
                                                             {"\u00b5m", 1},
@@ -43,26 +44,27 @@ double length_factor(const TomlTable& toml, const std::string& key) {
   return factor(units, toml, key);
 }
 
-double time_factor(const TomlTable& toml, const std::string& key) {
+double time_factor(const config::TomlTable& toml, const std::string& key) {
   static const NamedList<FileUnit> units("unit of time",
                                          {{"s", 1}, {"ms", 1e-3}, {"min", 60}, {"h", 3600}});
   return factor(units, toml, key);
 }
 
-double time_offset(const TomlTable& toml) {
+double time_offset(const config::TomlTable& toml) {
   const double offset = toml.number_or("time_offset", 0);
   if (!std::isfinite(offset))
     throw InputError(toml.where("time_offset") + ": a finite number is needed here");
   return offset;
 }
 
-std::string composition_of(const TomlTable& toml) {
+std::string composition_of(const config::TomlTable& toml) {
   const std::string composition = toml.text_or("composition", "");
-  if (!composition.empty()) (void)membrane_mixture(toml.where("composition"), composition);
+  if (!composition.empty())
+    (void)observations::membrane_mixture(toml.where("composition"), composition);
   return composition;
 }
 
-std::optional<double> celsius_of(const TomlTable& toml) {
+std::optional<double> celsius_of(const config::TomlTable& toml) {
   constexpr double kColdest = -20, kHottest = 100;
   if (!toml.has("temperature")) return std::nullopt;
   const double celsius = toml.number("temperature");
@@ -89,10 +91,10 @@ double checked_radius(double radius, const std::string& where) {
                    format_number(kLargestRadius) + "); is length_unit right?");
 }
 
-void refuse_scaled(const Configuration& model) {
+void refuse_scaled(const config::Configuration& model) {
   if (model.options().scaled)
-    throw InputError(model.where(&RunOptions::scaled) +
+    throw InputError(model.where(&config::RunOptions::scaled) +
                      ": measurements are in seconds and micrometres");
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::input

@@ -7,19 +7,19 @@
 #include "drivers/config/configuration.hpp"
 #include "drivers/config/toml_table.hpp"
 
-namespace traceraft {
+namespace traceraft::input {
 
 // The factor to µm or s of the unit that stands under a key. Throws InputError.
-double length_factor(const TomlTable& toml, const std::string& key);
+double length_factor(const config::TomlTable& toml, const std::string& key);
 // Of the key `kind`: "measured" or "synthetic". Throws InputError for other words.
-bool is_synthetic(const TomlTable& toml);
-double time_factor(const TomlTable& toml, const std::string& key);
+bool is_synthetic(const config::TomlTable& toml);
+double time_factor(const config::TomlTable& toml, const std::string& key);
 // What has to be added to all times, in the unit of the data. Throws InputError.
-double time_offset(const TomlTable& toml);
+double time_offset(const config::TomlTable& toml);
 
 // What it says of the membrane, "" and nothing if it says nothing. Throw InputError.
-std::string composition_of(const TomlTable& toml);
-std::optional<double> celsius_of(const TomlTable& toml);
+std::string composition_of(const config::TomlTable& toml);
+std::optional<double> celsius_of(const config::TomlTable& toml);
 
 // In s after time zero, or in µm. Throw InputError, which begins with `where`, for what no vesicle
 // has been looked at or measured to be.
@@ -27,6 +27,6 @@ double checked_time(double time, const std::string& where);
 double checked_radius(double radius, const std::string& where);
 
 // Throws InputError if the model that measurements are held against is in units of R and R²/D.
-void refuse_scaled(const Configuration& model);
+void refuse_scaled(const config::Configuration& model);
 
-}  // namespace traceraft
+}  // namespace traceraft::input

@@ -10,7 +10,7 @@
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/types.hpp"
 
-namespace traceraft {
+namespace traceraft::input {
 namespace {
 
 constexpr double kLargestPerimeter = 1000;  // over the radius
@@ -38,10 +38,11 @@ double radius_of(const TableUnits& units, const CsvTable& table, std::size_t row
 }
 
 // Of vesicle, time and radius; the order of rows is checked against what is there already.
-Measurement begin_measurement(const TableUnits& units, const CsvTable& table, std::size_t row,
-                              const std::vector<Measurement>& before,
-                              std::set<std::string>& finished) {
-  Measurement m{table.text(row, "vesicle"), 0, radius_of(units, table, row), {}, {}};
+observations::Measurement begin_measurement(const TableUnits& units, const CsvTable& table,
+                                            std::size_t row,
+                                            const std::vector<observations::Measurement>& before,
+                                            std::set<std::string>& finished) {
+  observations::Measurement m{table.text(row, "vesicle"), 0, radius_of(units, table, row), {}, {}};
   if (m.vesicle.empty()) throw InputError(table.where(row, "vesicle") + ": a name is needed here");
   m.time = checked_time((table.number(row, "time") + units.time_offset) * units.time,
                         table.where(row, "time"));
@@ -65,12 +66,15 @@ Measurement begin_measurement(const TableUnits& units, const CsvTable& table, st
 }
 
 // Quantities of one look that exclude each other.
-void refuse_contradictions(const CsvTable& table, std::size_t row, const Measurement& m) {
-  const auto perimeter = m.of(Quantity::perimeter), rafts = m.of(Quantity::rafts),
-             fraction = m.of(Quantity::fraction);
-  for (const Quantity quantity : {Quantity::perimeter, Quantity::fraction})
+void refuse_contradictions(const CsvTable& table, std::size_t row,
+                           const observations::Measurement& m) {
+  const auto perimeter = m.of(observations::Quantity::perimeter),
+             rafts = m.of(observations::Quantity::rafts),
+             fraction = m.of(observations::Quantity::fraction);
+  for (const observations::Quantity quantity :
+       {observations::Quantity::perimeter, observations::Quantity::fraction})
     if (const auto value = m.of(quantity); rafts && value && (*rafts > 0) != (*value > 0))
-      throw InputError(table.where(row, name_of(quantity).id) + ": " +
+      throw InputError(table.where(row, observations::name_of(quantity).id) + ": " +
                        (*rafts > 0 ? "rafts have a boundary and an area"
                                    : "without rafts there is no boundary and no area"));
   if (!perimeter || !fraction) return;
@@ -94,20 +98,20 @@ std::optional<double> sigma_in(const TableUnits& units, const CsvTable& table, s
   return in_range(table, row, column.c_str(), 0, highest) / units.sigmas;
 }
 
-void read_value(const TableUnits& units, const CsvTable& table, std::size_t row, Quantity quantity,
-                Measurement& m) {
-  const char* column = name_of(quantity).id;
+void read_value(const TableUnits& units, const CsvTable& table, std::size_t row,
+                observations::Quantity quantity, observations::Measurement& m) {
+  const char* column = observations::name_of(quantity).id;
   if (!table.has(column) || table.empty(row, column)) return;
-  const double unit = quantity == Quantity::perimeter ? units.length / m.radius : 1;
-  const double highest = quantity == Quantity::fraction    ? 1
-                         : quantity == Quantity::perimeter ? kLargestPerimeter / unit
-                                                           : kMostRafts;
+  const double unit = quantity == observations::Quantity::perimeter ? units.length / m.radius : 1;
+  const double highest = quantity == observations::Quantity::fraction    ? 1
+                         : quantity == observations::Quantity::perimeter ? kLargestPerimeter / unit
+                                                                         : kMostRafts;
   const double value = in_range(table, row, column, 0, highest);
-  if (quantity == Quantity::rafts && value != std::floor(value))
+  if (quantity == observations::Quantity::rafts && value != std::floor(value))
     throw InputError(table.where(row, column) + ": a whole number is needed here");
-  m.values[index_of(quantity)] = value * unit;
+  m.values[observations::index_of(quantity)] = value * unit;
   if (const auto sigma = sigma_in(units, table, row, column, highest))
-    m.sigma[index_of(quantity)] = *sigma * unit;
+    m.sigma[observations::index_of(quantity)] = *sigma * unit;
 }
 
 void check_columns(const CsvTable& table, const std::vector<std::string>& known) {
@@ -116,8 +120,8 @@ void check_columns(const CsvTable& table, const std::vector<std::string>& known)
       throw InputError(table.heading() + ": " + unknown_name_message("column", column, known));
   table.require("vesicle");
   table.require("time");
-  for (const Quantity quantity : kQuantities) {
-    const std::string name = name_of(quantity).id;
+  for (const observations::Quantity quantity : observations::kQuantities) {
+    const std::string name = observations::name_of(quantity).id;
     if (table.has(name + "_sigma") && !table.has(name))
       throw InputError(table.heading() + ": there is a column '" + name + "_sigma', but none '" +
                        name + "'");
@@ -125,14 +129,15 @@ void check_columns(const CsvTable& table, const std::vector<std::string>& known)
 }
 
 // A row per look.
-std::vector<Measurement> read_totals(const TableUnits& units, const CsvTable& table) {
+std::vector<observations::Measurement> read_totals(const TableUnits& units, const CsvTable& table) {
   check_columns(table, {"vesicle", "time", "radius", "perimeter", "perimeter_sigma", "rafts",
                         "rafts_sigma", "fraction", "fraction_sigma"});
-  std::vector<Measurement> looks;
+  std::vector<observations::Measurement> looks;
   std::set<std::string> finished;
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    Measurement m = begin_measurement(units, table, row, looks, finished);
-    for (const Quantity quantity : kQuantities) read_value(units, table, row, quantity, m);
+    observations::Measurement m = begin_measurement(units, table, row, looks, finished);
+    for (const observations::Quantity quantity : observations::kQuantities)
+      read_value(units, table, row, quantity, m);
     if (!m.values[0] && !m.values[1] && !m.values[2])
       throw InputError(table.where(row) + ": nothing was measured (perimeter, rafts, fraction)");
     refuse_contradictions(table, row, m);
@@ -142,11 +147,12 @@ std::vector<Measurement> read_totals(const TableUnits& units, const CsvTable& ta
 }
 
 // Of one raft. Nothing: the look has shown none.
-std::optional<Cap> cap_of(const TableUnits& units, const CsvTable& table, std::size_t row,
-                          double radius) {
+std::optional<observations::Cap> cap_of(const TableUnits& units, const CsvTable& table,
+                                        std::size_t row, double radius) {
   if (table.empty(row, "cap_radius")) return std::nullopt;
   const double largest = radius / units.length;
-  Cap cap{in_range(table, row, "cap_radius", 0, largest) * units.length, std::nullopt};
+  observations::Cap cap{in_range(table, row, "cap_radius", 0, largest) * units.length,
+                        std::nullopt};
   if (const auto sigma = sigma_in(units, table, row, "cap_radius", largest))
     cap.sigma = *sigma * units.length;
   if (cap.base_radius > 0) return cap;
@@ -155,13 +161,13 @@ std::optional<Cap> cap_of(const TableUnits& units, const CsvTable& table, std::s
 }
 
 // A row per raft, or one for a look without rafts; those of one look stand together.
-std::vector<Measurement> read_caps(const TableUnits& units, const CsvTable& table) {
+std::vector<observations::Measurement> read_caps(const TableUnits& units, const CsvTable& table) {
   check_columns(table, {"vesicle", "time", "radius", "cap_radius", "cap_radius_sigma"});
-  std::vector<Measurement> looks;
+  std::vector<observations::Measurement> looks;
   std::set<std::string> finished;
   for (std::size_t row = 0; row < table.rows();) {
-    Measurement m = begin_measurement(units, table, row, looks, finished);
-    std::vector<Cap> caps;
+    observations::Measurement m = begin_measurement(units, table, row, looks, finished);
+    std::vector<observations::Cap> caps;
     const std::size_t first = row;
     for (; row < table.rows() && table.text(row, "vesicle") == m.vesicle &&
            table.number(row, "time") == table.number(first, "time");
@@ -178,8 +184,8 @@ std::vector<Measurement> read_caps(const TableUnits& units, const CsvTable& tabl
                          ": within one observation, all rafts or none must have a sigma");
       if (cap) caps.push_back(*cap);
     }
-    set_caps(m, caps);
-    if (*m.of(Quantity::fraction) > 1)
+    observations::set_caps(m, caps);
+    if (*m.of(observations::Quantity::fraction) > 1)
       throw InputError(table.where(first, "cap_radius") +
                        ": the caps of this observation cover more than the whole vesicle");
     looks.push_back(m);
@@ -189,8 +195,9 @@ std::vector<Measurement> read_caps(const TableUnits& units, const CsvTable& tabl
 
 }  // namespace
 
-std::vector<Measurement> read_measurements(const TableUnits& units, const CsvTable& table) {
+std::vector<observations::Measurement> read_measurements(const TableUnits& units,
+                                                         const CsvTable& table) {
   return table.has("cap_radius") ? read_caps(units, table) : read_totals(units, table);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::input

@@ -8,7 +8,7 @@
 #include "drivers/input/csv_table.hpp"
 #include "verification/observations/measurements.hpp"
 
-namespace traceraft {
+namespace traceraft::input {
 
 // What turns the numbers of a table into µm, s and standard deviations.
 struct TableUnits {
@@ -19,6 +19,7 @@ struct TableUnits {
 
 // Of all looks, in the order of the rows. Throws InputError with file, line and column for what is
 // missing, unknown, impossible or contradicts itself.
-std::vector<Measurement> read_measurements(const TableUnits& units, const CsvTable& table);
+std::vector<observations::Measurement> read_measurements(const TableUnits& units,
+                                                         const CsvTable& table);
 
-}  // namespace traceraft
+}  // namespace traceraft::input

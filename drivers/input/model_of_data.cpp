@@ -6,18 +6,18 @@
 #include "kernel/core/error.hpp"
 #include "verification/observations/raft_fraction.hpp"
 
-namespace traceraft {
+namespace traceraft::input {
 
 std::string case_of(const std::string& composition) {
   if (composition.empty()) return "";
-  for (const CaseEntry& entry : cases())
-    if (!entry.composition.empty() && same_membrane(composition, entry.composition))
+  for (const config::CaseEntry& entry : config::cases())
+    if (!entry.composition.empty() && observations::same_membrane(composition, entry.composition))
       return entry.name;
   return "";
 }
 
 void refuse_without_model(const std::string& composition, const std::string& model,
-                          const GivenValues& flags) {
+                          const config::GivenValues& flags) {
   if (!model.empty() || flags.count("case") > 0) return;
   const std::string own = case_of(composition);
   throw InputError("--case or --model: a model is needed to compare the measurements with" +
@@ -26,17 +26,18 @@ void refuse_without_model(const std::string& composition, const std::string& mod
                         : "; for their composition, " + composition + ", it is --case " + own));
 }
 
-std::string other_membrane(const std::string& composition, const Configuration& model) {
+std::string other_membrane(const std::string& composition, const config::Configuration& model) {
   if (composition.empty() || model.options().case_name.empty()) return "";
-  const CaseEntry& entry = cases().find(model.options().case_name);
-  if (entry.composition.empty() || same_membrane(composition, entry.composition)) return "";
+  const config::CaseEntry& entry = config::cases().find(model.options().case_name);
+  if (entry.composition.empty() || observations::same_membrane(composition, entry.composition))
+    return "";
   for (const auto& [option, value] : entry.values)
     if (option == "raft-fraction" &&
         model.options().raft_fraction != std::strtod(value.c_str(), nullptr))
       return "";
   return entry.composition + " (case " + entry.name +
-         (model.given(&RunOptions::case_name) ? "" : ", by default") +
+         (model.given(&config::RunOptions::case_name) ? "" : ", by default") +
          "), but that of the measurements is " + composition;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::input

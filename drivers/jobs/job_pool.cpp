@@ -4,7 +4,7 @@
 
 #include "backends/posix/process.hpp"
 
-namespace traceraft {
+namespace traceraft::jobs {
 
 JobPool::JobPool(std::size_t count, std::function<bool(std::size_t)> job)
     : count_(count), job_(std::move(job)) {}
@@ -27,7 +27,7 @@ bool JobPool::finish() {
 
 void JobPool::work() {
   try {
-    for (std::size_t k; !stop_ && !stop_requested() && (k = next_++) < count_; ++ended_) {
+    for (std::size_t k; !stop_ && !posix::stop_requested() && (k = next_++) < count_; ++ended_) {
       if (job_(k))
         ++done_;
       else
@@ -46,4 +46,4 @@ void JobPool::join() {
     if (worker.joinable()) worker.join();
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::jobs

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-namespace traceraft {
+namespace traceraft::jobs {
 
 class JobPool {
  public:
@@ -39,4 +39,4 @@ class JobPool {
   std::exception_ptr error_;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::jobs

@@ -11,7 +11,7 @@
 #include "drivers/output/status_line.hpp"
 #include "kernel/core/error.hpp"
 
-namespace traceraft {
+namespace traceraft::jobs {
 namespace {
 
 class Work {
@@ -21,12 +21,12 @@ class Work {
   // Is there a reason to go on with others?
   bool execute(std::size_t job) {
     const ProcessEnd end = jobs_.run(job);
-    if (jobs_.success ? jobs_.success(end) : end.exit_code == kSuccess) {
+    if (jobs_.success ? jobs_.success(end) : end.exit_code == drivers::kSuccess) {
       if (jobs_.succeeded) jobs_.succeeded(job);
       return true;
     }
     if (end.was_stopped()) return false;
-    const bool locked = end.exit_code == kLocked;
+    const bool locked = end.exit_code == drivers::kLocked;
     if (!locked && !end.harms_no_other(jobs_.folder))
       throw IoError(jobs_.name(job) + ": " + end.reason());
     const std::lock_guard lock(mutex_);
@@ -53,14 +53,14 @@ double share_done(const PendingJobs& jobs, std::size_t ended) {
 
 // The time left is that of the work so far, as far as there is any to tell from.
 void show(const PendingJobs& jobs, std::size_t ended, double share_before, const Stopwatch& watch,
-          StatusLine& line) {
+          output::StatusLine& line) {
   constexpr double kTelling = 0.01;
   const double share = share_done(jobs, ended), worked = share - share_before;
   const double left = worked > kTelling ? watch.seconds() / worked * (1 - share) : 0;
   line.show(share, std::to_string(jobs.before + ended) + "/" +
                        std::to_string(jobs.before + jobs.count) + " " + jobs.kind + "  " +
-                       clock_text(watch.seconds()) + " elapsed" +
-                       (left > 0 ? "  ~" + clock_text(left) + " left" : ""));
+                       output::clock_text(watch.seconds()) + " elapsed" +
+                       (left > 0 ? "  ~" + output::clock_text(left) + " left" : ""));
 }
 
 }  // namespace
@@ -68,7 +68,7 @@ void show(const PendingJobs& jobs, std::size_t ended, double share_before, const
 JobsEnd run_pending_jobs(const PendingJobs& jobs) {
   if (jobs.count == 0) return {};
   Work work(jobs);
-  StatusLine line(jobs.quiet);
+  output::StatusLine line(jobs.quiet);
   const Stopwatch watch;
   const double share_before = share_done(jobs, 0);
   JobPool pool(jobs.count, [&](std::size_t job) { return work.execute(job); });
@@ -88,4 +88,4 @@ Jobs jobs_of(int at_a_time, int threads) {
   return {at_a_time, threads > 0 ? threads : std::max(1, processors / at_a_time)};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::jobs

@@ -10,7 +10,7 @@
 
 #include "drivers/jobs/program_run.hpp"
 
-namespace traceraft {
+namespace traceraft::jobs {
 
 struct PendingJobs {
   std::size_t count = 0;   // that are left to do
@@ -52,4 +52,4 @@ struct Jobs {
 // 0: as many as there are processors, and threads as those leave.
 Jobs jobs_of(int at_a_time, int threads);
 
-}  // namespace traceraft
+}  // namespace traceraft::jobs

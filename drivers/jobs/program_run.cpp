@@ -13,19 +13,19 @@
 #include "drivers/run/finished_run.hpp"
 #include "drivers/run/run_folder.hpp"
 
-namespace traceraft {
+namespace traceraft::jobs {
 namespace {
 
 constexpr std::uint64_t kLargestLog = 1 << 24;
 
 // mpirun of Open MPI; ranks give way to each other where there are more of them than processors.
 std::vector<std::string> program_on(int ranks) {
-  if (ranks == 1) return {own_program()};
+  if (ranks == 1) return {posix::own_program()};
   std::vector<std::string> command = {
       "mpirun", "--quiet", "--oversubscribe",    "--mca", "mpi_yield_when_idle",
       "1",      "-np",     std::to_string(ranks)};
-  if (is_superuser()) command.push_back("--allow-run-as-root");
-  command.push_back(own_path());
+  if (posix::is_superuser()) command.push_back("--allow-run-as-root");
+  command.push_back(posix::own_path());
   return command;
 }
 
@@ -33,8 +33,8 @@ std::vector<std::string> program_on(int ranks) {
 void remove_scratch(const std::filesystem::path& scratch) {
   if (!std::filesystem::exists(scratch)) return;
   std::vector<std::string> own = {"log"};
-  for (const std::string& name : files_of_a_run()) own.push_back("run/" + name);
-  remove_own_folder(scratch, own);
+  for (const std::string& name : run::files_of_a_run()) own.push_back("run/" + name);
+  posix::remove_own_folder(scratch, own);
 }
 
 }  // namespace
@@ -47,7 +47,7 @@ int ProcessEnd::signal() const {
 
 std::string ProcessEnd::reason() const {
   if (exit_code == 127) return "mpirun is not installed (Debian package openmpi-bin)";
-  if (exit_code == kInterrupted) return "it was stopped; the same command continues it";
+  if (exit_code == drivers::kInterrupted) return "it was stopped; the same command continues it";
   if (signal() == SIGKILL) return "it was killed; memory may have been too small";
   if (signal() > 0)
     return std::string("it crashed: ") + strsignal(signal()) +
@@ -58,15 +58,16 @@ std::string ProcessEnd::reason() const {
 }
 
 bool ProcessEnd::was_stopped() const {
-  return stop_requested() || exit_code == kInterrupted || signal() == SIGTERM || signal() == SIGINT;
+  return posix::stop_requested() || exit_code == drivers::kInterrupted || signal() == SIGTERM ||
+         signal() == SIGINT;
 }
 
 bool ProcessEnd::concerns_input() const {
   switch (exit_code) {
-    case kSuccess:
-    case kBadInput:
-    case kNumericalFailure:
-    case kInternalError:
+    case drivers::kSuccess:
+    case drivers::kBadInput:
+    case drivers::kNumericalFailure:
+    case drivers::kInternalError:
       return true;
     default:
       return signal() > 0 && signal() != SIGTERM && signal() != SIGINT;
@@ -75,8 +76,8 @@ bool ProcessEnd::concerns_input() const {
 
 bool ProcessEnd::harms_no_other(const std::filesystem::path& folder) const {
   constexpr std::uintmax_t kLeastSpace = 64 << 20;  // bytes that a disk has that is not full
-  return concerns_input() ||
-         (exit_code == kInputOutput && std::filesystem::space(folder).available >= kLeastSpace);
+  return concerns_input() || (exit_code == drivers::kInputOutput &&
+                              std::filesystem::space(folder).available >= kLeastSpace);
 }
 
 ProcessEnd run_program(const std::vector<std::string>& arguments, const std::filesystem::path& log,
@@ -84,14 +85,14 @@ ProcessEnd run_program(const std::vector<std::string>& arguments, const std::fil
   std::vector<std::string> command = program_on(ranks);
   command.insert(command.end(), arguments.begin(), arguments.end());
   const std::uintmax_t before = std::filesystem::exists(log) ? std::filesystem::file_size(log) : 0;
-  const ChildResult result = run_child({command, log, time_limit});
-  std::string text = read_file(log, kLargestLog);
+  const posix::ChildResult result = posix::run_child({command, log, time_limit});
+  std::string text = posix::read_file(log, kLargestLog);
   text.erase(0, std::min<std::size_t>(before, text.size()));
   while (!text.empty() && text.back() == '\n') text.pop_back();
   return {result.exit_code, result.out_of_time, text.substr(text.rfind('\n') + 1)};
 }
 
-RunProgram program_runner(std::filesystem::path scratch) {
+bench::RunProgram program_runner(std::filesystem::path scratch) {
   return [scratch = std::move(scratch)](const std::vector<std::string>& options, int ranks,
                                         int nodes) {
     remove_scratch(scratch);  // what a run that failed has left
@@ -101,13 +102,14 @@ RunProgram program_runner(std::filesystem::path scratch) {
                                           "--no-fields", "--quiet",  "--threads", "1"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     const ProcessEnd end = run_program(arguments, scratch / "log", ranks);
-    if (end.exit_code != kSuccess)
+    if (end.exit_code != drivers::kSuccess)
       throw std::runtime_error("a run on " + std::to_string(ranks) + " ranks: " + end.reason());
-    const ProgramRun run{summary_number(folder, "steps"), summary_number(folder, "mass_drift"),
-                         concentration_at_end(folder, nodes)};
+    const bench::ProgramRun run{run::summary_number(folder, "steps"),
+                                run::summary_number(folder, "mass_drift"),
+                                run::concentration_at_end(folder, nodes)};
     remove_scratch(scratch);
     return run;
   };
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::jobs

@@ -7,7 +7,7 @@
 
 #include "verification/bench/bench.hpp"
 
-namespace traceraft {
+namespace traceraft::jobs {
 
 struct ProcessEnd {
   int exit_code = 0;
@@ -32,6 +32,6 @@ ProcessEnd run_program(const std::vector<std::string>& arguments, const std::fil
                        int ranks = 1, double time_limit = 0);
 
 // Studies' runs of the program. Each works in the folder `scratch` and removes it at its end.
-RunProgram program_runner(std::filesystem::path scratch);
+bench::RunProgram program_runner(std::filesystem::path scratch);
 
-}  // namespace traceraft
+}  // namespace traceraft::jobs

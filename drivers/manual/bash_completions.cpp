@@ -2,13 +2,13 @@
 #include "drivers/manual/shell_tables.hpp"
 #include "drivers/text/encoders.hpp"
 
-namespace traceraft {
+namespace traceraft::manual {
 namespace {
 
 std::string bash_array(const Meanings& names) {
   std::string elements;
   for (const auto& [name, meaning] : names)
-    elements += (elements.empty() ? "" : " ") + in_shell(name);
+    elements += (elements.empty() ? "" : " ") + text::in_shell(name);
   return elements;
 }
 
@@ -76,4 +76,4 @@ ShellEntry bash_shell() {
   return {"bash", bash_completions};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::manual

@@ -8,7 +8,7 @@
 #include "drivers/manual/description.hpp"
 #include "kernel/core/named_list.hpp"
 
-namespace traceraft {
+namespace traceraft::manual {
 
 struct ShellEntry {
   std::string name;
@@ -21,4 +21,4 @@ ShellEntry fish_shell();
 
 const NamedList<ShellEntry>& shells();
 
-}  // namespace traceraft
+}  // namespace traceraft::manual

@@ -7,18 +7,18 @@
 #include "drivers/text/say.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::manual {
 namespace {
 
-Action define_completions(CLI::App& app) {
+drivers::Action define_completions(CLI::App& app) {
   const auto shell = std::make_shared<std::string>();
   app.add_option("shell", *shell, "whose language the completions are written in")
       ->type_name(joined(shells().names(), "|"))
       ->required();
   app.footer("Example: source <(traceraft completions bash)");
   return [shell, program = app.get_parent()] {
-    say_encoded(shells().find(*shell).completions(describe(*program)));
-    return kSuccess;
+    text::say_encoded(shells().find(*shell).completions(describe(*program)));
+    return drivers::kSuccess;
   };
 }
 
@@ -29,9 +29,9 @@ const NamedList<ShellEntry>& shells() {
   return list;
 }
 
-Command completions_command() {
-  return {"completions", "write what completes this command line in a shell", Ranks::one,
+drivers::Command completions_command() {
+  return {"completions", "write what completes this command line in a shell", drivers::Ranks::one,
           define_completions};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::manual

@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace traceraft {
+namespace traceraft::manual {
 namespace {
 
 std::vector<std::string> flags_of_option(const CLI::Option& option) {
@@ -59,4 +59,4 @@ DescribedProgram describe(const CLI::App& program) {
   return described;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::manual

@@ -9,7 +9,7 @@ namespace CLI {
 class App;
 }
 
-namespace traceraft {
+namespace traceraft::manual {
 
 struct DescribedOption {
   std::string name;                // of a positional; "" of a flag
@@ -38,4 +38,4 @@ struct DescribedProgram {
 
 DescribedProgram describe(const CLI::App& program);
 
-}  // namespace traceraft
+}  // namespace traceraft::manual

@@ -3,7 +3,7 @@
 #include "drivers/manual/value_lists.hpp"
 #include "drivers/text/encoders.hpp"
 
-namespace traceraft {
+namespace traceraft::manual {
 namespace {
 
 // The argument of --arguments, which fish reads a second time: words, each with a tab and its
@@ -11,9 +11,9 @@ namespace {
 std::string fish_arguments(const OfferedValues& offered) {
   std::string list;
   for (const auto& [name, meaning] : offered.values)
-    list += (list.empty() ? "" : " ") + in_fish(name) +
-            (meaning.empty() ? "" : "\\t" + in_fish(meaning));
-  return in_fish(offered.several ? "(__fish_append , " + list + ")" : list);
+    list += (list.empty() ? "" : " ") + text::in_fish(name) +
+            (meaning.empty() ? "" : "\\t" + text::in_fish(meaning));
+  return text::in_fish(offered.several ? "(__fish_append , " + list + ")" : list);
 }
 
 // The part of a line of fish that offers values of an option.
@@ -32,13 +32,13 @@ std::string fish_offer(const std::string& placeholder) {
 }
 
 std::string fish_lines(const std::string& condition, const DescribedOption& option) {
-  const std::string begin = "complete --command traceraft --condition " + in_fish(condition);
+  const std::string begin = "complete --command traceraft --condition " + text::in_fish(condition);
   if (option.flags.empty()) return begin + fish_offer(option.placeholder) + "\n";
   std::string lines;
   for (const std::string& flag : long_flags({option}))
-    lines += begin + " --long-option " + in_fish(flag.substr(2)) +
+    lines += begin + " --long-option " + text::in_fish(flag.substr(2)) +
              (option.takes_value() ? " --require-parameter" + fish_offer(option.placeholder) : "") +
-             " --description " + in_fish(option.help) + "\n";
+             " --description " + text::in_fish(option.help) + "\n";
   return lines;
 }
 
@@ -49,11 +49,12 @@ std::string fish_completions(const DescribedProgram& program) {
       "complete --command traceraft --no-files\n";
   for (const DescribedOption& option : program.options) script += fish_lines(first, option);
   for (const DescribedCommand& command : program.commands)
-    script += "complete --command traceraft --condition " + in_fish(first) + " --arguments " +
-              in_fish(in_fish(command.name)) + " --description " + in_fish(command.summary) + "\n";
+    script += "complete --command traceraft --condition " + text::in_fish(first) + " --arguments " +
+              text::in_fish(text::in_fish(command.name)) + " --description " +
+              text::in_fish(command.summary) + "\n";
   for (const DescribedCommand& command : program.commands) {
     script += "\n";
-    const std::string condition = "__fish_seen_subcommand_from " + in_fish(command.name);
+    const std::string condition = "__fish_seen_subcommand_from " + text::in_fish(command.name);
     for (const DescribedOption& positional : command.positionals)
       script += fish_lines(condition, positional);
     for (const DescribedOption& option : command.options) script += fish_lines(condition, option);
@@ -67,4 +68,4 @@ ShellEntry fish_shell() {
   return {"fish", fish_completions};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::manual

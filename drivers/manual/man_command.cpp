@@ -6,22 +6,22 @@
 #include "drivers/text/say.hpp"
 #include "drivers/version.hpp"
 
-namespace traceraft {
+namespace traceraft::manual {
 namespace {
 
-Action define_man(CLI::App& app) {
+drivers::Action define_man(CLI::App& app) {
   app.footer("Example: traceraft man | man -l -");
   // The whole program: what is defined later is part of it, too.
   return [program = app.get_parent()] {
-    say_encoded(manual_page(describe(*program), kVersion, kReleaseDate));
-    return kSuccess;
+    text::say_encoded(manual_page(describe(*program), kVersion, kReleaseDate));
+    return drivers::kSuccess;
   };
 }
 
 }  // namespace
 
-Command man_command() {
-  return {"man", "write the manual page, in roff", Ranks::one, define_man};
+drivers::Command man_command() {
+  return {"man", "write the manual page, in roff", drivers::Ranks::one, define_man};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::manual

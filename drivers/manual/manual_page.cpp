@@ -7,15 +7,15 @@
 #include "drivers/manual/value_lists.hpp"
 #include "drivers/text/encoders.hpp"
 
-namespace traceraft {
+namespace traceraft::manual {
 namespace {
 
 std::string roff_bold(const std::string& text) {
-  return "\\fB" + in_roff(text) + "\\fR";
+  return "\\fB" + text::in_roff(text) + "\\fR";
 }
 
 std::string roff_italic(const std::string& text) {
-  return "\\fI" + in_roff(text) + "\\fR";
+  return "\\fI" + text::in_roff(text) + "\\fR";
 }
 
 // Text that is filled. Lines of the source stay short; each word is encoded by itself, since any of
@@ -25,7 +25,7 @@ std::string roff_filled(const std::string& text) {
   std::istringstream words(text);
   std::string lines, line;
   for (std::string word; words >> word;) {
-    const std::string encoded = in_roff(word);
+    const std::string encoded = text::in_roff(word);
     if (!line.empty() && line.size() + 1 + encoded.size() > kWidth) {
       lines += line + "\n";
       line.clear();
@@ -39,16 +39,16 @@ std::string roff_filled(const std::string& text) {
 std::string roff_unfilled(const std::string& text) {
   std::istringstream in(text);
   std::string lines = ".PP\n.nf\n";
-  for (std::string line; std::getline(in, line);) lines += in_roff(line) + "\n";
+  for (std::string line; std::getline(in, line);) lines += text::in_roff(line) + "\n";
   return lines + ".fi\n";
 }
 
 std::string roff_section(const std::string& title) {
-  return ".SH " + in_roff(title) + "\n";
+  return ".SH " + text::in_roff(title) + "\n";
 }
 
 std::string roff_subsection(const std::string& title) {
-  return ".SS " + in_roff(title) + "\n";
+  return ".SS " + text::in_roff(title) + "\n";
 }
 
 // Readers of manual pages parse the date, whose hyphens are therefore plain.
@@ -155,7 +155,7 @@ std::string command_section(const DescribedProgram& program, const DescribedComm
     }
     described.add(command.name, option);
     if (option.group != group && option.group != "Options")
-      text += ".PP\n" + in_roff(option.group) + ":\n";
+      text += ".PP\n" + text::in_roff(option.group) + ":\n";
     group = option.group;
     text += paragraph_of(option);
   }
@@ -215,11 +215,11 @@ std::string manual_page(const DescribedProgram& program, const std::string& vers
   while (ends_a_sentence(summary)) summary.pop_back();
   if (!summary.empty())
     summary[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(summary[0])));
-  return ".TH TRACERAFT 1 \"" + plain_date(date) + "\" \"" + in_roff(program.name + " " + version) +
-         "\" \"User Commands\"\n" +
+  return ".TH TRACERAFT 1 \"" + plain_date(date) + "\" \"" +
+         text::in_roff(program.name + " " + version) + "\" \"User Commands\"\n" +
          // No hyphens in names, and no blanks that make both margins straight.
-         ".nh\n.ad l\n" + roff_section("NAME") + in_roff(program.name) + " \\- " +
-         in_roff(summary) + "\n" + roff_section("SYNOPSIS") + roff_bold(program.name) + " " +
+         ".nh\n.ad l\n" + roff_section("NAME") + text::in_roff(program.name) + " \\- " +
+         text::in_roff(summary) + "\n" + roff_section("SYNOPSIS") + roff_bold(program.name) + " " +
          roff_italic("COMMAND") + " [" + roff_italic("OPTION") + " ...]\n.br\n" +
          roff_bold(program.name) + " [" + roff_bold("--help") + " | " + roff_bold("--version") +
          "]\n" + roff_section("DESCRIPTION") + roff_filled(program.summary) + ".PP\n" +
@@ -227,4 +227,4 @@ std::string manual_page(const DescribedProgram& program, const std::string& vers
          values_section() + further_section(program);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::manual

@@ -5,10 +5,10 @@
 
 #include "drivers/manual/description.hpp"
 
-namespace traceraft {
+namespace traceraft::manual {
 
 // `date` is that of the version, "2026-11-29".
 std::string manual_page(const DescribedProgram& program, const std::string& version,
                         const std::string& date);
 
-}  // namespace traceraft
+}  // namespace traceraft::manual

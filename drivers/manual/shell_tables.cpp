@@ -6,7 +6,7 @@
 #include "drivers/text/encoders.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::manual {
 namespace {
 
 // Options and arguments of all commands whose values may be the same.
@@ -57,13 +57,13 @@ std::vector<ValueGroup> value_groups(const DescribedProgram& program) {
       const DescribedOption& positional = command.positionals[k];
       const std::string argument = command.name + " argument ";
       add_pattern(groups, positional.placeholder,
-                  positional.repeated ? in_shell(argument) + "*"
-                                      : in_shell(argument + std::to_string(k + 1)));
+                  positional.repeated ? text::in_shell(argument) + "*"
+                                      : text::in_shell(argument + std::to_string(k + 1)));
     }
     for (const DescribedOption& option : command.options)
       if (option.takes_value())
         for (const std::string& flag : long_flags({option}))
-          add_pattern(groups, option.placeholder, in_shell(command.name + " " + flag));
+          add_pattern(groups, option.placeholder, text::in_shell(command.name + " " + flag));
   }
   return groups;
 }
@@ -104,10 +104,10 @@ std::string shell_tables(const DescribedProgram& program, const ArrayWriter& arr
   std::string script = "_traceraft_commands() {\n" + set_names(array(first)) + "}\n\n";
   script += "_traceraft_flags() {\n    case \"$1\" in\n";
   for (const DescribedCommand& command : program.commands)
-    script += "        " + in_shell(command.name) + ")\n" +
+    script += "        " + text::in_shell(command.name) + ")\n" +
               set_names(array(meanings_of(command.options))) + "            ;;\n";
   script += "    esac\n}\n\n";
   return script + value_function(program, array);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::manual

@@ -8,7 +8,7 @@
 
 #include "drivers/manual/description.hpp"
 
-namespace traceraft {
+namespace traceraft::manual {
 
 // "--cells", "--fields" and "--no-fields", without one-letter flags.
 std::vector<std::string> long_flags(const std::vector<DescribedOption>& options);
@@ -24,4 +24,4 @@ using ArrayWriter = std::function<std::string(const Meanings&)>;
 // it fails if nothing may.
 std::string shell_tables(const DescribedProgram& program, const ArrayWriter& array);
 
-}  // namespace traceraft
+}  // namespace traceraft::manual

@@ -10,7 +10,7 @@
 #include "kernel/problem/initial_data.hpp"
 #include "verification/studies/studies.hpp"
 
-namespace traceraft {
+namespace traceraft::manual {
 namespace {
 
 template <class Entry>
@@ -33,16 +33,16 @@ ValueList value_list(const char* name, const char* title, const NamedList<Entry>
 const NamedList<ValueList>& value_lists() {
   static const NamedList<ValueList> lists(
       "list of values",
-      {value_list("CASE", "Cases", cases()),
-       value_list("SURFACE", "Surfaces", surfaces(),
+      {value_list("CASE", "Cases", config::cases()),
+       value_list("SURFACE", "Surfaces", geometry::surfaces(),
                   {"formula", "any level set, from --surface-formula"}),
-       value_list("MOBILITY", "Mobility laws", mobilities()),
-       value_list("EFFECT", "Effects", effects()),
-       value_list("INITIAL", "Initial states", initial_fields()),
-       value_list("INTEGRATOR", "Integrators", integrators()),
-       value_list("SOLVER", "Linear solvers", linear_solvers()),
-       value_list("STUDY", "Studies", studies(), {"all", "all that are not by name only"}),
-       value_list("GROUP", "Groups of a campaign", campaign_groups())});
+       value_list("MOBILITY", "Mobility laws", physics::mobilities()),
+       value_list("EFFECT", "Effects", effects::effects()),
+       value_list("INITIAL", "Initial states", problem::initial_fields()),
+       value_list("INTEGRATOR", "Integrators", backends::integrators()),
+       value_list("SOLVER", "Linear solvers", backends::linear_solvers()),
+       value_list("STUDY", "Studies", studies::studies(), {"all", "all that are not by name only"}),
+       value_list("GROUP", "Groups of a campaign", campaign::campaign_groups())});
   return lists;
 }
 
@@ -70,4 +70,4 @@ OfferedValues offered_values(const std::string& placeholder) {
   return offered;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::manual

@@ -8,7 +8,7 @@
 
 #include "kernel/core/named_list.hpp"
 
-namespace traceraft {
+namespace traceraft::manual {
 
 struct ValueList {
   std::string name, title;
@@ -29,4 +29,4 @@ struct OfferedValues {
 // with ",..." after it. Others stand for numbers and for free text.
 OfferedValues offered_values(const std::string& placeholder);
 
-}  // namespace traceraft
+}  // namespace traceraft::manual

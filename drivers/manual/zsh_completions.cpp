@@ -2,7 +2,7 @@
 #include "drivers/manual/shell_tables.hpp"
 #include "drivers/text/encoders.hpp"
 
-namespace traceraft {
+namespace traceraft::manual {
 namespace {
 
 // Elements that _describe reads: a name, a colon and what is shown beside it.
@@ -11,7 +11,8 @@ std::string zsh_array(const Meanings& names) {
   for (const auto& [name, meaning] : names) {
     std::string text;
     for (const char ch : name) text += (ch == ':' || ch == '\\' ? "\\" : "") + std::string(1, ch);
-    elements += "\n                " + in_shell(meaning.empty() ? text : text + ":" + meaning);
+    elements +=
+        "\n                " + text::in_shell(meaning.empty() ? text : text + ":" + meaning);
   }
   return elements;
 }
@@ -67,4 +68,4 @@ ShellEntry zsh_shell() {
   return {"zsh", zsh_completions};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::manual

@@ -11,18 +11,18 @@
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::output {
 namespace {
 
-const char* style(Mark mark) {
+const char* style(bench::Mark mark) {
   switch (mark) {
-    case Mark::line:
+    case bench::Mark::line:
       return "lines";
-    case Mark::points:
+    case bench::Mark::points:
       return "points pt 7 ps 0.7";
-    case Mark::band:
+    case bench::Mark::band:
       return "filledcurves fillstyle transparent solid 0.25 noborder";
-    case Mark::bars:
+    case bench::Mark::bars:
       return "yerrorbars pt 7 ps 0.7 lw 1";
     default:
       return "linespoints pt 7 ps 0.7";
@@ -34,15 +34,15 @@ constexpr const char* kColours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                     "#e69f00", "#000000", "#56b4e9", "#999999"};
 
 // Logarithms have no place for what is not positive. Bands end at the axis then.
-bool drawable(const Chart& chart, const ChartSeries& series, std::size_t k) {
+bool drawable(const bench::Chart& chart, const bench::ChartSeries& series, std::size_t k) {
   const auto& [x, y] = series.points[k];
-  const bool band = series.mark == Mark::band;
+  const bool band = series.mark == bench::Mark::band;
   const double highest = band ? std::max(y, series.other[k]) : y;
   return std::isfinite(x) && std::isfinite(y) && (x > 0 || !chart.log_x) &&
          (highest > 0 || !chart.log_y) && (!band || std::isfinite(series.other[k]));
 }
 
-bool has_something(const Chart& chart, const ChartSeries& series) {
+bool has_something(const bench::Chart& chart, const bench::ChartSeries& series) {
   for (std::size_t k = 0; k < series.points.size(); ++k)
     if (drawable(chart, series, k)) return true;
   return false;
@@ -62,20 +62,20 @@ struct Extents {
   Extent x, y, all_x;
 };
 
-Extents extents(const Chart& chart) {
+Extents extents(const bench::Chart& chart) {
   Extents result;
   const auto add = [&](double y) {
     if (y > 0 || !chart.log_y) result.y.add(y);
   };
-  for (const ChartSeries& series : chart.series)
+  for (const bench::ChartSeries& series : chart.series)
     for (std::size_t k = 0; k < series.points.size(); ++k) {
       const auto& [x, y] = series.points[k];
       if (std::isfinite(x) && (x > 0 || !chart.log_x)) result.all_x.add(x);
       if (!drawable(chart, series, k)) continue;
       result.x.add(x);
       add(y);
-      if (series.mark == Mark::band) add(series.other[k]);
-      if (series.mark == Mark::bars) add(y + series.other[k]);
+      if (series.mark == bench::Mark::band) add(series.other[k]);
+      if (series.mark == bench::Mark::bars) add(y + series.other[k]);
     }
   return result;
 }
@@ -144,12 +144,12 @@ void refuse_commands(const std::string& script) {
   }
 }
 
-std::string script(const Chart& chart, const std::string& svg) {
+std::string script(const bench::Chart& chart, const std::string& svg) {
   std::string text = "set terminal svg noenhanced size 720,520 dynamic font 'sans-serif,13'\n";
-  text += "set output " + in_gnuplot(svg) + "\n";
-  text += "set title " + in_gnuplot(chart.title) + "\n";
-  text += "set xlabel " + in_gnuplot(chart.x_label) + "\nset ylabel " + in_gnuplot(chart.y_label) +
-          "\n";
+  text += "set output " + text::in_gnuplot(svg) + "\n";
+  text += "set title " + text::in_gnuplot(chart.title) + "\n";
+  text += "set xlabel " + text::in_gnuplot(chart.x_label) + "\nset ylabel " +
+          text::in_gnuplot(chart.y_label) + "\n";
   const auto [x, y, all_x] = extents(chart);
   if (chart.log_x) text += log_axis("x", all_x);
   if (all_x.least < x.least || all_x.most > x.most)
@@ -168,7 +168,7 @@ std::string script(const Chart& chart, const std::string& svg) {
     text += "set linetype " + std::to_string(i + 1) + " lw 2 lc rgb '" + kColours[i] + "'\n";
   std::string plots;
   for (std::size_t i = 0; i < chart.series.size(); ++i) {
-    const ChartSeries& series = chart.series[i];
+    const bench::ChartSeries& series = chart.series[i];
     if (!has_something(chart, series)) continue;
     const std::string block = "$s" + std::to_string(i);
     text += block + " << END\n";
@@ -177,46 +177,47 @@ std::string script(const Chart& chart, const std::string& svg) {
       text += format_number(series.points[k].first) + " " +
               format_number(std::max(series.points[k].second, lowest));
       if (!series.other.empty())
-        text += " " + format_number(series.mark == Mark::band ? std::max(series.other[k], lowest)
-                                                              : series.other[k]);
+        text +=
+            " " + format_number(series.mark == bench::Mark::band ? std::max(series.other[k], lowest)
+                                                                 : series.other[k]);
       text += "\n";
     }
     text += "END\n";
     plots += (plots.empty() ? "" : ", ") + block + " with " + style(series.mark) + " title " +
-             in_gnuplot(series.name);
+             text::in_gnuplot(series.name);
   }
   return text + "plot " + plots + "\n";
 }
 
 }  // namespace
 
-std::string draw_chart(const Chart& chart, const std::filesystem::path& stem) {
+std::string draw_chart(const bench::Chart& chart, const std::filesystem::path& stem) {
   const auto with = [&](const char* extension) {
     std::filesystem::path path = stem;
     return path += extension;
   };
   if (std::none_of(chart.series.begin(), chart.series.end(),
-                   [&](const ChartSeries& series) { return has_something(chart, series); }))
+                   [&](const bench::ChartSeries& series) { return has_something(chart, series); }))
     return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"720\" height=\"40\"><text y=\"24\">"
            "nothing to show</text></svg>";
   // In the folder of its files, with names that are plain, and without the user's start-up files.
   const std::string name = plain_name(stem), input = script(chart, name + ".svg");
   refuse_commands(input);
-  write_durably(with(".gp"), input);
-  ChildRequest request{{"gnuplot", "--default-settings", name + ".gp"}, with(".log"), 60};
+  posix::write_durably(with(".gp"), input);
+  posix::ChildRequest request{{"gnuplot", "--default-settings", name + ".gp"}, with(".log"), 60};
   request.folder = stem.parent_path();
-  const ChildResult result = run_child(request);
+  const posix::ChildResult result = posix::run_child(request);
   if (result.exit_code == 127) return "";
   if (result.exit_code != 0)
     throw IoError("gnuplot failed on " + with(".gp").string() + "; see " + with(".log").string());
-  std::string svg = read_file(with(".svg"), 1 << 24);
+  std::string svg = posix::read_file(with(".svg"), 1 << 24);
   const std::size_t begin = svg.find("<svg");  // without the XML header: goes into pages
   if (begin == std::string::npos)
     throw IoError(with(".svg").string() + " is not a picture; another process may be writing it");
   return svg.substr(begin);
 }
 
-void add_chart(Page& page, const Chart& chart, const std::filesystem::path& stem,
+void add_chart(Page& page, const bench::Chart& chart, const std::filesystem::path& stem,
                Missing& missing) {
   const std::string svg = draw_chart(chart, stem);
   if (svg.empty())
@@ -225,4 +226,4 @@ void add_chart(Page& page, const Chart& chart, const std::filesystem::path& stem
     page.figure(svg, chart.title);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::output

@@ -7,7 +7,7 @@
 #include "drivers/output/page.hpp"
 #include "verification/bench/figures.hpp"
 
-namespace traceraft {
+namespace traceraft::output {
 
 // Why there is none, for readers.
 inline constexpr const char* kNoGnuplot = "gnuplot is not installed (Debian package gnuplot-nox)";
@@ -15,7 +15,7 @@ inline constexpr const char* kNoGnuplot = "gnuplot is not installed (Debian pack
 // Writes `stem`.gp, gnuplot's input with the data in it, and from it `stem`.svg, whose text is
 // returned. "" if gnuplot is not installed; throws IoError if it fails. The last part of `stem`
 // consists of letters, digits, - and _; std::logic_error for others.
-std::string draw_chart(const Chart& chart, const std::filesystem::path& stem);
+std::string draw_chart(const bench::Chart& chart, const std::filesystem::path& stem);
 
 // What a page lacks, collected.
 class Missing {
@@ -31,6 +31,7 @@ class Missing {
 };
 
 // Draws, and shows it on the page, or notes that it is missing.
-void add_chart(Page& page, const Chart& chart, const std::filesystem::path& stem, Missing& missing);
+void add_chart(Page& page, const bench::Chart& chart, const std::filesystem::path& stem,
+               Missing& missing);
 
-}  // namespace traceraft
+}  // namespace traceraft::output

@@ -2,7 +2,7 @@
 
 #include "drivers/text/encoders.hpp"
 
-namespace traceraft {
+namespace traceraft::output {
 
 std::string page_body(const std::string& html) {
   const std::string after = "</h1>\n";
@@ -13,19 +13,19 @@ std::string page_body(const std::string& html) {
 }
 
 void Page::heading(const std::string& text) {
-  body_ += "<h2>" + in_html(text) + "</h2>\n";
+  body_ += "<h2>" + text::in_html(text) + "</h2>\n";
 }
 
 void Page::paragraph(const std::string& text) {
-  body_ += "<p>" + in_html(text) + "</p>\n";
+  body_ += "<p>" + text::in_html(text) + "</p>\n";
 }
 
 void Page::code(const std::string& text) {
-  body_ += "<pre>" + in_html(text) + "</pre>\n";
+  body_ += "<pre>" + text::in_html(text) + "</pre>\n";
 }
 
 void Page::figure(const std::string& svg, const std::string& caption) {
-  body_ += "<figure>" + svg + "<figcaption>" + in_html(caption) + "</figcaption></figure>\n";
+  body_ += "<figure>" + svg + "<figcaption>" + text::in_html(caption) + "</figcaption></figure>\n";
 }
 
 void Page::table(const std::vector<std::vector<std::string>>& rows) {
@@ -36,7 +36,8 @@ void Page::table(const std::vector<std::vector<std::string>>& rows) {
     for (const std::string& cell : rows[r]) {
       const bool number =
           !cell.empty() && std::string("0123456789+-.").find(cell[0]) != std::string::npos;
-      body_ += "<" + tag + (number ? " class=\"n\">" : ">") + in_html(cell) + "</" + tag + ">";
+      body_ +=
+          "<" + tag + (number ? " class=\"n\">" : ">") + text::in_html(cell) + "</" + tag + ">";
     }
     body_ += "</tr>\n";
   }
@@ -50,7 +51,7 @@ void Page::raw(const std::string& html) {
 std::string Page::html() const {
   return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
-         in_html(title_) +
+         text::in_html(title_) +
          "</title>\n<style>\n"
          "body{font:16px/1.5 sans-serif;max-width:60em;margin:2em auto;padding:0 1em;color:#222}\n"
          "table{border-collapse:collapse;font-size:14px}\n"
@@ -59,7 +60,7 @@ std::string Page::html() const {
          ".wide,pre{overflow-x:auto}\nfigure{margin:1em "
          "0}\nsvg{max-width:100%;height:auto}\nfigcaption{color:#555;font-size:14px}\n"
          "</style></head><body>\n<h1>" +
-         in_html(title_) + "</h1>\n" + body_ + "</body></html>\n";
+         text::in_html(title_) + "</h1>\n" + body_ + "</body></html>\n";
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::output

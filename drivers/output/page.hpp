@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace traceraft {
+namespace traceraft::output {
 
 // What html() below has made, without its head and title.
 std::string page_body(const std::string& html);
@@ -25,4 +25,4 @@ class Page {
   std::string title_, body_;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::output

@@ -8,12 +8,12 @@
 #include "drivers/version.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::output {
 
 std::string program_checksum() {
   constexpr std::uint64_t kLargest = std::uint64_t{1} << 32;
   static const std::string checksum =
-      formatted("%08x", crc32_of(read_file(own_program(), kLargest)));
+      formatted("%08x", zlib::crc32_of(posix::read_file(posix::own_program(), kLargest)));
   return checksum;
 }
 
@@ -21,4 +21,4 @@ std::string program_text() {
   return "traceraft " + std::string(kVersion) + ", build " + program_checksum();
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::output

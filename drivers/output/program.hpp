@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace traceraft {
+namespace traceraft::output {
 
 // Of the running program's file, in eight digits. Throws IoError.
 std::string program_checksum();
@@ -11,4 +11,4 @@ std::string program_checksum();
 // "traceraft 0.2.0, build 1a2b3c4d", the latter being that.
 std::string program_text();
 
-}  // namespace traceraft
+}  // namespace traceraft::output

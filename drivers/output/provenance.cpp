@@ -3,11 +3,11 @@
 #include "drivers/config/config_file.hpp"
 #include "drivers/output/program.hpp"
 
-namespace traceraft {
+namespace traceraft::output {
 
-void add_settings(Page& page, const Configuration& configuration) {
+void add_settings(Page& page, const config::Configuration& configuration) {
   std::vector<std::vector<std::string>> rows = {{"setting", "value", "meaning"}};
-  for (const OptionSpec& spec : run_options())
+  for (const config::OptionSpec& spec : config::run_options())
     rows.push_back({spec.name,
                     spec.name == "noise-cells" ? std::to_string(configuration.noise_cells())
                                                : configuration.text(spec.name),
@@ -16,8 +16,8 @@ void add_settings(Page& page, const Configuration& configuration) {
   page.table(rows);
 }
 
-std::string command_for(const std::string& command, const Configuration& configuration) {
-  const std::string flags = flags_text(configuration);
+std::string command_for(const std::string& command, const config::Configuration& configuration) {
+  const std::string flags = config::flags_text(configuration);
   return command + (flags.empty() ? "" : " ") + flags;
 }
 
@@ -29,4 +29,4 @@ void add_provenance(Page& page, const std::filesystem::path& folder, const std::
   page.code(command);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::output

@@ -8,7 +8,7 @@
 #include "backends/ranks.hpp"
 #include "drivers/text/say.hpp"
 
-namespace traceraft {
+namespace traceraft::output {
 namespace {
 
 constexpr double kTerminalPause = 0.2;  // seconds between updates
@@ -29,7 +29,7 @@ std::string clock_text(double seconds) {
 
 // mpirun gives ranks a terminal of its own, wherever its output goes.
 StatusLine::StatusLine(bool quiet)
-    : quiet_(quiet), terminal_(stdout_is_terminal() && !RankSession::there_is()) {}
+    : quiet_(quiet), terminal_(posix::stdout_is_terminal() && !backends::RankSession::there_is()) {}
 
 bool StatusLine::due() const {
   return !quiet_ && (!shown_ || since_.seconds() >= (terminal_ ? kTerminalPause : kPlainPause));
@@ -40,20 +40,20 @@ void StatusLine::show(double share, const std::string& text) {
   shown_ = true;
   since_ = Stopwatch();
   if (!terminal_) {
-    say("%3.0f %%  %s\n", 100 * share, text);
+    text::say("%3.0f %%  %s\n", 100 * share, text);
   } else {
-    const int columns = terminal_columns() - 1;
+    const int columns = posix::terminal_columns() - 1;
     const int width = std::clamp(columns - static_cast<int>(text.size()) - 3, 0, kBar);
     std::string bar(static_cast<std::size_t>(width), '.');
     std::fill_n(bar.begin(), static_cast<std::size_t>(share * width), '#');
-    say("\r\033[K%.*s", columns, ((width ? "[" + bar + "] " : "") + text));
+    text::say("\r\033[K%.*s", columns, ((width ? "[" + bar + "] " : "") + text));
   }
-  flush_output();
+  text::flush_output();
 }
 
 void StatusLine::finish() {
-  if (!quiet_ && terminal_ && shown_) say("\n");
-  flush_output();
+  if (!quiet_ && terminal_ && shown_) text::say("\n");
+  text::flush_output();
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::output

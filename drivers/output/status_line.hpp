@@ -5,7 +5,7 @@
 
 #include "kernel/core/stopwatch.hpp"
 
-namespace traceraft {
+namespace traceraft::output {
 
 class StatusLine {
  public:
@@ -24,4 +24,4 @@ class StatusLine {
 // 3725 -> "1:02:05"
 std::string clock_text(double seconds);
 
-}  // namespace traceraft
+}  // namespace traceraft::output

@@ -7,17 +7,17 @@
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::output {
 
 std::string short_number(double value) {
   return formatted("%.5g", value);
 }
 
-std::vector<Row> table_rows(const Table& table) {
+std::vector<Row> table_rows(const bench::Table& table) {
   std::vector<Row> rows = {table.columns};
   for (const auto& cells : table.rows) {
     Row row;
-    for (const Cell& cell : cells)
+    for (const bench::Cell& cell : cells)
       row.push_back(cell.is_number ? short_number(cell.number) : cell.text);
     rows.push_back(row);
   }
@@ -35,27 +35,27 @@ void print_rows(const std::vector<Row>& rows) {
       // The first column is a name as a rule.
       line += "  " + (k == 0 ? row[k] + gap : gap + row[k]);
     }
-    say("%s\n", line);
+    text::say("%s\n", line);
   }
 }
 
-std::string csv_text(const Table& table) {
+std::string csv_text(const bench::Table& table) {
   std::string csv;
   const auto line = [&csv](const auto& cells, const auto& text) {
     for (std::size_t k = 0; k < cells.size(); ++k) csv += (k == 0 ? "" : ",") + text(cells[k]);
     csv += "\n";
   };
-  line(table.columns, csv_cell);
+  line(table.columns, text::csv_cell);
   for (const auto& row : table.rows)
-    line(row, [&](const Cell& cell) {
-      return cell.is_number ? format_number(cell.number) : csv_cell(cell.text);
+    line(row, [&](const bench::Cell& cell) {
+      return cell.is_number ? format_number(cell.number) : text::csv_cell(cell.text);
     });
   return csv;
 }
 
-std::string checked_csv_text(const Table& table) {
+std::string checked_csv_text(const bench::Table& table) {
   const std::string csv = csv_text(table);
-  return csv + checksum_line(csv);
+  return csv + text::checksum_line(csv);
 }
 
 std::string markdown_table(const std::vector<Row>& rows, MarkdownLinks links) {
@@ -63,9 +63,10 @@ std::string markdown_table(const std::vector<Row>& rows, MarkdownLinks links) {
   for (std::size_t r = 0; r < rows.size(); ++r) {
     text += "|";
     for (std::size_t k = 0; k < rows[r].size(); ++k) {
-      const std::string cell = in_markdown(rows[r][k]);
+      const std::string cell = text::in_markdown(rows[r][k]);
       const bool link = links == MarkdownLinks::to_headings && r > 0 && k == 0;
-      text += " " + (link ? "[" + cell + "](#" + in_markdown_link(rows[r][k]) + ")" : cell) + " |";
+      text += " " + (link ? "[" + cell + "](#" + text::in_markdown_link(rows[r][k]) + ")" : cell) +
+              " |";
     }
     text += "\n";
     if (r > 0) continue;
@@ -76,4 +77,4 @@ std::string markdown_table(const std::vector<Row>& rows, MarkdownLinks links) {
   return text + "\n";
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::output

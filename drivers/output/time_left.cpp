@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace traceraft {
+namespace traceraft::output {
 namespace {
 
 // Of ln t per step. Faster than that grow the first steps, for as long as an integrator feels its
@@ -11,7 +11,7 @@ namespace {
 constexpr double kSettled = 0.1;
 // While rafts coarsen the time a run has taken grows with a power of the time it has come to, in
 // bursts: each raft that vanishes takes short steps. Measured in six runs of the paper's cases.
-constexpr double kPace = 0.28;
+constexpr double kDiffusionRatio = 0.28;
 constexpr double kScatter = 2;  // of that law, and of the last steps
 
 }  // namespace
@@ -29,7 +29,7 @@ TimeLeft::Range TimeLeft::range() const {
   const double by_steps = seconds();
   if (!(by_steps > 0)) return {};
   const Mark& now = marks_.back();
-  const double by_law = now.seconds * (std::pow(end_ / now.t, kPace) - 1);
+  const double by_law = now.seconds * (std::pow(end_ / now.t, kDiffusionRatio) - 1);
   return {std::min(by_steps, by_law) / kScatter, std::max(by_steps, by_law) * kScatter};
 }
 
@@ -47,4 +47,4 @@ double TimeLeft::seconds() const {
   return passed * std::min(steady, std::log(end_ / now.t) / grown);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::output

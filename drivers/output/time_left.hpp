@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace traceraft {
+namespace traceraft::output {
 
 // From the last third of its steps, since a single one says little: steps are short while a raft
 // vanishes. They grow in proportion to time while rafts coarsen, or stay as they are; what is
@@ -31,4 +31,4 @@ class TimeLeft {
   std::vector<Mark> marks_;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::output

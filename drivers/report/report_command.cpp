@@ -14,7 +14,7 @@
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -37,27 +37,28 @@ void write_pictures(const ReportRequest& request) {
   const auto [low, high] = phases_of(run);
   const SurfaceFrames frames = read_frames(run, request.detail, request.frames);
   const std::vector<std::string> labels = time_labels(run, frames.times);
-  std::vector<Image> images;
+  std::vector<observables::Image> images;
   for (std::size_t k = 0; k < frames.values.size(); ++k) {
-    images.push_back(draw_front_and_back(frames.mesh, frames.values[k], low, high, request.pixels));
-    if (!request.bare) write_label(images.back(), labels[k]);
+    images.push_back(
+        observables::draw_front_and_back(frames.mesh, frames.values[k], low, high, request.pixels));
+    if (!request.bare) gif::write_label(images.back(), labels[k]);
   }
   if (!request.animation.empty()) {
-    write_durably(request.animation, gif_bytes(images, request.pause));
-    if (!request.quiet) say("%s\n", request.animation);
+    posix::write_durably(request.animation, gif::gif_bytes(images, request.pause));
+    if (!request.quiet) text::say("%s\n", request.animation);
   }
   if (request.snapshots.empty()) return;
   fs::create_directories(request.snapshots);
   std::string times = "picture,t\n";
   for (std::size_t k = 0; k < images.size(); ++k) {
-    write_durably(fs::path(request.snapshots) / frame_name(k), png_bytes(images[k]));
+    posix::write_durably(fs::path(request.snapshots) / frame_name(k), png::png_bytes(images[k]));
     times += frame_name(k) + "," + format_number(frames.times[k]) + "\n";
   }
-  write_durably(fs::path(request.snapshots) / "frames.csv", times);
+  posix::write_durably(fs::path(request.snapshots) / "frames.csv", times);
   if (request.quiet) return;
-  say("%zu pictures in %s\n", images.size(), request.snapshots);
+  text::say("%zu pictures in %s\n", images.size(), request.snapshots);
   if (fs::exists(fs::path(request.snapshots) / frame_name(images.size())))
-    say("pictures with larger numbers in this folder are from an earlier command\n");
+    text::say("pictures with larger numbers in this folder are from an earlier command\n");
 }
 
 // A slip of the pen must not write over a configuration or a table.
@@ -78,16 +79,16 @@ int report(const ReportRequest& request) {
   const std::string missing = write_report_page(
       request.folder, out,
       {request.frames, request.detail, out.parent_path() / (out.stem().string() + "-charts"),
-       request.data.empty() ? std::nullopt : std::optional(read_dataset(request.data))});
+       request.data.empty() ? std::nullopt : std::optional(input::read_dataset(request.data))});
   write_pictures(request);
   if (!request.quiet) {
-    if (!missing.empty()) say("missing from the page: %s\n", missing);
-    say("open next: %s\n", out);
+    if (!missing.empty()) text::say("missing from the page: %s\n", missing);
+    text::say("open next: %s\n", out);
   }
-  return kSuccess;
+  return drivers::kSuccess;
 }
 
-Action define_report(CLI::App& app) {
+drivers::Action define_report(CLI::App& app) {
   const auto request = std::make_shared<ReportRequest>();
   app.add_option("folder", request->folder,
                  "folder of a run, ensemble, comparison, calibration, verification, ...")
@@ -104,7 +105,7 @@ Action define_report(CLI::App& app) {
   app.add_option("--detail", request->detail,
                  "size of the smallest detail of the surface that is shown, in units of the size "
                  "of the surface")
-      ->check(between(1e-4, 0.2))
+      ->check(config::between(1e-4, 0.2))
       ->capture_default_str();
   app.add_option("--snapshots", request->snapshots,
                  "folder for pictures (PNG) of all frames, and a table of their times")
@@ -126,9 +127,9 @@ Action define_report(CLI::App& app) {
 
 }  // namespace
 
-Command report_command() {
-  return {"report", "write a page, pictures or an animation of the results in a folder", Ranks::one,
-          define_report};
+drivers::Command report_command() {
+  return {"report", "write a page, pictures or an animation of the results in a folder",
+          drivers::Ranks::one, define_report};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::report

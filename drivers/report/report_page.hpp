@@ -9,7 +9,7 @@
 #include "drivers/report/surface_frames.hpp"
 #include "verification/observations/measurements.hpp"
 
-namespace traceraft {
+namespace traceraft::report {
 
 // The run whose surface is shown: the folder itself, or the first finished one of an ensemble.
 // Throws InputError if there is none.
@@ -26,7 +26,7 @@ struct PageRequest {
   int frames;
   double detail;
   std::filesystem::path charts;  // folder for the charts' files; made if there is something to show
-  std::optional<MeasuredVesicles> data;  // shown beside a run or an ensemble
+  std::optional<observations::MeasuredVesicles> data;  // shown beside a run or an ensemble
 };
 // Writes the page of a run or an ensemble: surface, charts, numbers, settings; those of a
 // comparison and a verification have been written by their commands and are copied. Returns what is
@@ -35,4 +35,4 @@ struct PageRequest {
 std::string write_report_page(const std::filesystem::path& folder, const std::filesystem::path& out,
                               const PageRequest& request);
 
-}  // namespace traceraft
+}  // namespace traceraft::report

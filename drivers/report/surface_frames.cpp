@@ -11,7 +11,7 @@
 #include "backends/zlib/vtu_reader.hpp"
 #include "kernel/core/error.hpp"
 
-namespace traceraft {
+namespace traceraft::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -19,12 +19,14 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 33;
 
 // All pieces of one time.
-SurfaceField read_field(const fs::path& path) {
+zlib::SurfaceField read_field(const fs::path& path) {
   try {
-    if (path.extension() != ".pvtu") return read_vtu(read_file(path, kLargestFile), "c");
-    SurfaceField whole;
-    for (const std::string& name : pieces_of_pvtu(read_file(path, kLargestFile))) {
-      const SurfaceField piece = read_vtu(read_file(path.parent_path() / name, kLargestFile), "c");
+    if (path.extension() != ".pvtu")
+      return zlib::read_vtu(posix::read_file(path, kLargestFile), "c");
+    zlib::SurfaceField whole;
+    for (const std::string& name : zlib::pieces_of_pvtu(posix::read_file(path, kLargestFile))) {
+      const zlib::SurfaceField piece =
+          zlib::read_vtu(posix::read_file(path.parent_path() / name, kLargestFile), "c");
       const int first = static_cast<int>(whole.mesh.position.size());
       whole.mesh.position.insert(whole.mesh.position.end(), piece.mesh.position.begin(),
                                  piece.mesh.position.end());
@@ -44,14 +46,14 @@ SurfaceField read_field(const fs::path& path) {
 // were written on other numbers of ranks, have the same points in other orders.
 class Grid {
  public:
-  Grid(const SurfaceField& field, double detail) : width_(detail * size_of(field.mesh)) {
+  Grid(const zlib::SurfaceField& field, double detail) : width_(detail * size_of(field.mesh)) {
     for (const Point& x : field.mesh.position)
       cells_.emplace(cell_of(x), static_cast<int>(cells_.size()));
   }
 
-  SurfaceMesh mesh(const SurfaceField& field) const {
+  observables::SurfaceMesh mesh(const zlib::SurfaceField& field) const {
     const std::vector<int> clusters = clusters_of(field);
-    SurfaceMesh coarse;
+    observables::SurfaceMesh coarse;
     coarse.position.assign(cells_.size(), Point::Zero());
     std::vector<double> count(cells_.size(), 0);
     for (std::size_t p = 0; p < clusters.size(); ++p) {
@@ -74,7 +76,7 @@ class Grid {
   }
 
   // Throws IoError if the field is on another mesh.
-  Vec values(const SurfaceField& field) const {
+  Vec values(const zlib::SurfaceField& field) const {
     const std::vector<int> clusters = clusters_of(field);
     const auto cells = static_cast<Eigen::Index>(cells_.size());
     Vec sum = Vec::Zero(cells), count = Vec::Zero(cells);
@@ -88,7 +90,7 @@ class Grid {
 
  private:
   using Cell = std::array<long, 3>;
-  static Point normal(const SurfaceMesh& mesh, const std::array<int, 3>& corners) {
+  static Point normal(const observables::SurfaceMesh& mesh, const std::array<int, 3>& corners) {
     const Point& a = mesh.position[corners[0]];
     return (mesh.position[corners[1]] - a).cross(mesh.position[corners[2]] - a);
   }
@@ -96,7 +98,7 @@ class Grid {
     std::sort(corners.begin(), corners.end());
     return corners;
   }
-  static double size_of(const SurfaceMesh& mesh) {
+  static double size_of(const observables::SurfaceMesh& mesh) {
     double size = 0;
     for (const Point& x : mesh.position) size = std::max(size, x.norm());
     return size;
@@ -104,7 +106,7 @@ class Grid {
   Cell cell_of(const Point& x) const {
     return {std::lround(x[0] / width_), std::lround(x[1] / width_), std::lround(x[2] / width_)};
   }
-  std::vector<int> clusters_of(const SurfaceField& field) const {
+  std::vector<int> clusters_of(const zlib::SurfaceField& field) const {
     std::vector<int> clusters;
     for (const Point& x : field.mesh.position) {
       const auto cell = cells_.find(cell_of(x));
@@ -124,7 +126,7 @@ SurfaceFrames read_frames(const fs::path& run_folder, double detail, int most) {
   const fs::path collection = run_folder / "fields.pvd";
   if (!fs::exists(collection))
     throw InputError(run_folder.string() + " has no fields (it ran with --no-fields)");
-  auto files = files_of_pvd(read_file(collection, kLargestFile));
+  auto files = zlib::files_of_pvd(posix::read_file(collection, kLargestFile));
   // Who needs space may have removed some.
   files.erase(
       std::remove_if(files.begin(), files.end(),
@@ -137,7 +139,7 @@ SurfaceFrames read_frames(const fs::path& run_folder, double detail, int most) {
   std::optional<Grid> grid;
   for (int k = 0; k < shown; ++k) {
     const auto& [time, name] = files[shown == 1 ? count - 1 : (count - 1) * k / (shown - 1)];
-    const SurfaceField field = read_field(run_folder / name);
+    const zlib::SurfaceField field = read_field(run_folder / name);
     if (!grid) {
       grid.emplace(field, detail);
       frames.mesh = grid->mesh(field);
@@ -148,4 +150,4 @@ SurfaceFrames read_frames(const fs::path& run_folder, double detail, int most) {
   return frames;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::report

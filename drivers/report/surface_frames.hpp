@@ -7,10 +7,10 @@
 
 #include "kernel/observables/surface_view.hpp"
 
-namespace traceraft {
+namespace traceraft::report {
 
 struct SurfaceFrames {
-  SurfaceMesh mesh;
+  observables::SurfaceMesh mesh;
   std::vector<double> times;  // in the units of the run's files
   std::vector<Vec> values;    // of each time, a concentration per point
 };
@@ -21,4 +21,4 @@ struct SurfaceFrames {
 // IoError if they are damaged.
 SurfaceFrames read_frames(const std::filesystem::path& run_folder, double detail, int most);
 
-}  // namespace traceraft
+}  // namespace traceraft::report

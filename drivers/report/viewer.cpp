@@ -11,7 +11,7 @@
 #include "drivers/text/encoders.hpp"
 #include "kernel/core/error.hpp"
 
-namespace traceraft {
+namespace traceraft::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -24,11 +24,11 @@ constexpr char kLicence[] = "/usr/share/doc/libjs-three/copyright";
 template <class T>
 std::string data_block(const char* id, const std::vector<T>& values) {
   const std::string bytes(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
-  return std::string("<script type=\"text/plain\" id=\"") + id + "\">" + base64(deflated(bytes)) +
-         "</script>\n";
+  return std::string("<script type=\"text/plain\" id=\"") + id + "\">" +
+         zlib::base64(zlib::deflated(bytes)) + "</script>\n";
 }
 
-std::string mesh_blocks(const SurfaceMesh& mesh) {
+std::string mesh_blocks(const observables::SurfaceMesh& mesh) {
   double size = 0;
   for (const Point& x : mesh.position) size = std::max(size, x.norm());
   std::vector<std::int16_t> positions;
@@ -52,7 +52,7 @@ std::string frame_block(const std::vector<Vec>& frames, const View& view) {
 
 // The licence goes where the library goes. "--" must not be in a comment.
 std::string licence_comment() {
-  std::string text = read_file(kLicence, kLargestScript);
+  std::string text = posix::read_file(kLicence, kLargestScript);
   for (std::size_t at = 0; (at = text.find("--", at)) != std::string::npos;)
     text.replace(at, 2, "- ");
   return "<!-- three.js:\n" + text + "-->\n";
@@ -67,8 +67,8 @@ std::string script(std::string text) {
 
 }  // namespace
 
-std::string add_viewer(Page& page, const SurfaceMesh& mesh, const std::vector<Vec>& frames,
-                       const View& view) {
+std::string add_viewer(output::Page& page, const observables::SurfaceMesh& mesh,
+                       const std::vector<Vec>& frames, const View& view) {
   for (const char* file : {kLibrary, kControls, kLicence})
     if (!fs::exists(file)) return "three.js is not installed (Debian package libjs-three)";
   const std::string last = std::to_string(frames.size() - 1);
@@ -82,15 +82,15 @@ std::string add_viewer(Page& page, const SurfaceMesh& mesh, const std::vector<Ve
       "the far side</label></p>");
   page.raw(mesh_blocks(mesh) + frame_block(frames, view));
   page.raw(
-      licence_comment() + script(read_file(kLibrary, kLargestScript)) +
-      script(read_file(kControls, kLargestScript)) +
+      licence_comment() + script(posix::read_file(kLibrary, kLargestScript)) +
+      script(posix::read_file(kControls, kLargestScript)) +
       script(
           "window.traceraftScene = " +
-          in_html_script(
+          text::in_html_script(
               nlohmann::json{{"labels", view.labels}, {"differences", view.differences}}.dump()) +
           ";") +
       script(kViewerScript));
   return "";
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::report

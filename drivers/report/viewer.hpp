@@ -7,7 +7,7 @@
 #include "drivers/output/page.hpp"
 #include "kernel/observables/surface_view.hpp"
 
-namespace traceraft {
+namespace traceraft::report {
 
 struct View {
   std::vector<std::string> labels;  // of the frames
@@ -18,7 +18,7 @@ struct View {
 
 // Adds the view with all its data and scripts, three.js among them (Debian package libjs-three).
 // `frames`: a value per point of the mesh each. Returns "", or why there is no view.
-std::string add_viewer(Page& page, const SurfaceMesh& mesh, const std::vector<Vec>& frames,
-                       const View& view);
+std::string add_viewer(output::Page& page, const observables::SurfaceMesh& mesh,
+                       const std::vector<Vec>& frames, const View& view);
 
-}  // namespace traceraft
+}  // namespace traceraft::report

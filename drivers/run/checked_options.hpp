@@ -8,12 +8,12 @@
 #include "drivers/config/configuration.hpp"
 #include "kernel/core/error.hpp"
 
-namespace traceraft {
+namespace traceraft::run {
 
 // Runs `make`, so that what it finds wrong is said of the place where the option was given.
 template <class Make>
-auto with_option_context(const Configuration& configuration, const OptionMember& option,
-                         const Make& make) {
+auto with_option_context(const config::Configuration& configuration,
+                         const config::OptionMember& option, const Make& make) {
   try {
     return make();
   } catch (const InputError& error) {
@@ -22,11 +22,11 @@ auto with_option_context(const Configuration& configuration, const OptionMember&
 }
 
 // The text of an option that must be one of its few words. Throws InputError.
-std::string one_of(const Configuration& configuration, std::string RunOptions::*option,
-                   const char* kind);
+std::string one_of(const config::Configuration& configuration,
+                   std::string config::RunOptions::*option, const char* kind);
 
 // Refuses times and steps that are too short or too long to compute with, in R²/D: integrators need
 // inverses of steps, and squares of these, as doubles. Throws InputError.
-void refuse_times_out_of_range(const Configuration& configuration);
+void refuse_times_out_of_range(const config::Configuration& configuration);
 
-}  // namespace traceraft
+}  // namespace traceraft::run

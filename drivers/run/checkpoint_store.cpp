@@ -11,7 +11,7 @@
 #include "kernel/core/binary.hpp"
 #include "kernel/core/error.hpp"
 
-namespace traceraft {
+namespace traceraft::run {
 namespace {
 
 constexpr char kMagic[] = "traceraft checkpoint 5\n";  // the number is the version of the format
@@ -68,7 +68,7 @@ std::string prefix(std::string_view body) {
   std::string result(kMagic);
   StringAppender out(result);
   write_binary(out, static_cast<std::uint64_t>(body.size()));
-  write_binary(out, crc32_of(body));
+  write_binary(out, zlib::crc32_of(body));
   return result;
 }
 constexpr std::size_t kPrefixSize = kMagicSize + sizeof(std::uint64_t) + sizeof(std::uint32_t);
@@ -107,7 +107,7 @@ Checkpoint decode(const std::string& data) {
   const auto checksum = head.number<std::uint32_t>();
   const std::string_view body = std::string_view(data).substr(kPrefixSize);
   if (body.size() != size) throw IoError("its end is missing");
-  if (crc32_of(body) != checksum) throw IoError("it is damaged");
+  if (zlib::crc32_of(body) != checksum) throw IoError("it is damaged");
   Reader in(body);
   if (in.number<std::uint32_t>() != report_layout())
     throw IoError("it is from a version that reports other numbers");
@@ -130,7 +130,7 @@ Checkpoint decode(const std::string& data) {
 void CheckpointStore::write(const Checkpoint& checkpoint) {
   char name[40];
   std::snprintf(name, sizeof name, "step-%010ld.ckpt", checkpoint.step);
-  write_durably(folder_ / name, encode(checkpoint));
+  posix::write_durably(folder_ / name, encode(checkpoint));
   std::vector<std::filesystem::path> all = files();
   for (; all.size() > kKept; all.erase(all.begin())) std::filesystem::remove(all.front());
 }
@@ -153,7 +153,7 @@ Checkpoint CheckpointStore::newest(std::vector<std::string>& refused) const {
   std::vector<std::filesystem::path> all = files();
   for (; !all.empty(); all.pop_back()) {
     try {
-      return decode(read_file(all.back(), kLargestCheckpoint));
+      return decode(posix::read_file(all.back(), kLargestCheckpoint));
     } catch (const IoError& error) {
       refused.push_back(all.back().string() + ": " + error.what());
     }
@@ -167,7 +167,7 @@ Checkpoint CheckpointStore::newest() const {
   std::vector<std::string> refused;
   Checkpoint checkpoint = newest(refused);
   for (const std::string& why : refused)
-    say_error("unusable checkpoint: " + why + "; the one before it is used");
+    text::say_error("unusable checkpoint: " + why + "; the one before it is used");
   return checkpoint;
 }
 
@@ -214,4 +214,4 @@ Vec final_concentration(const std::filesystem::path& run_folder, int nodes,
   return concentration_of(checkpoint, run_folder, nodes);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::run

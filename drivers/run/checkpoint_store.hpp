@@ -11,7 +11,7 @@
 #include "drivers/run/table_file.hpp"
 #include "kernel/core/types.hpp"
 
-namespace traceraft {
+namespace traceraft::run {
 
 // What a run has cost so far, in all processes that worked on it, set-up included.
 struct RunCost {
@@ -95,4 +95,4 @@ Vec concentration_of(const Checkpoint& checkpoint, const std::filesystem::path& 
 Vec final_concentration(const std::filesystem::path& run_folder, int nodes,
                         const std::string& identity);
 
-}  // namespace traceraft
+}  // namespace traceraft::run

@@ -6,19 +6,19 @@
 #include "drivers/input/json_file.hpp"
 #include "drivers/run/checkpoint_store.hpp"
 
-namespace traceraft {
+namespace traceraft::run {
 
 bool run_finished(const std::filesystem::path& run_folder) {
   const std::filesystem::path summary = run_folder / "summary.json";
-  return std::filesystem::exists(summary) && from_json(summary, [](const Json& json) {
+  return std::filesystem::exists(summary) && input::from_json(summary, [](const input::Json& json) {
            return json.at("end").get<std::string>() == "finished";
          });
 }
 
 namespace {
 
-TableExtent extent_in(const Json& tables, const std::string& name) {
-  const Json& table = tables.at(name);
+TableExtent extent_in(const input::Json& tables, const std::string& name) {
+  const input::Json& table = tables.at(name);
   const std::string digits = table.at("crc32");
   std::uint32_t checksum = 0;
   const auto parsed = std::from_chars(digits.data(), digits.data() + digits.size(), checksum, 16);
@@ -31,17 +31,17 @@ TableExtent extent_in(const Json& tables, const std::string& name) {
 
 void require_whole_table(const std::filesystem::path& run_folder, const std::string& name) {
   if (!run_finished(run_folder)) return;
-  const auto extent =
-      from_json(run_folder / "summary.json", [&](const Json& json) -> std::optional<TableExtent> {
-        if (!json.contains("tables")) return std::nullopt;
-        return extent_in(json["tables"], name);
-      });
+  const auto extent = input::from_json(run_folder / "summary.json",
+                                       [&](const input::Json& json) -> std::optional<TableExtent> {
+                                         if (!json.contains("tables")) return std::nullopt;
+                                         return extent_in(json["tables"], name);
+                                       });
   if (extent) require_extent(run_folder / name, *extent);
 }
 
 double summary_number(const std::filesystem::path& run_folder, const char* name) {
-  return from_json(run_folder / "summary.json",
-                   [&](const Json& json) { return json.at(name).get<double>(); });
+  return input::from_json(run_folder / "summary.json",
+                          [&](const input::Json& json) { return json.at(name).get<double>(); });
 }
 
 Vec concentration_at_end(const std::filesystem::path& run_folder, int nodes) {
@@ -52,4 +52,4 @@ Vec concentration_at_end(const std::filesystem::path& run_folder, int nodes) {
   return concentration_of(last, run_folder, nodes);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::run

@@ -6,7 +6,7 @@
 
 #include "kernel/core/types.hpp"
 
-namespace traceraft {
+namespace traceraft::run {
 
 // Has a run reached its end in this folder? Throws IoError if its summary is damaged.
 bool run_finished(const std::filesystem::path& run_folder);
@@ -21,4 +21,4 @@ double summary_number(const std::filesystem::path& run_folder, const char* name)
 // c at the nodes at the end of a finished run. Throws IoError unless its last checkpoint is whole.
 Vec concentration_at_end(const std::filesystem::path& run_folder, int nodes);
 
-}  // namespace traceraft
+}  // namespace traceraft::run

@@ -9,13 +9,13 @@
 #include "drivers/run/physical_model.hpp"
 #include "kernel/problem/initial_data.hpp"
 
-namespace traceraft {
+namespace traceraft::run {
 namespace {
 
-std::vector<CapRaft> parse_caps(const Configuration& configuration) {
-  std::vector<CapRaft> caps;
+std::vector<problem::CapRaft> parse_caps(const config::Configuration& configuration) {
+  std::vector<problem::CapRaft> caps;
   std::istringstream list(configuration.options().initial_caps);
-  const std::string where = configuration.where(&RunOptions::initial_caps);
+  const std::string where = configuration.where(&config::RunOptions::initial_caps);
   for (std::string item; std::getline(list, item, ';');) {
     std::istringstream words(item);
     std::vector<double> numbers;
@@ -32,19 +32,21 @@ std::vector<CapRaft> parse_caps(const Configuration& configuration) {
   return caps;
 }
 
-InitialRequest initial_request(const Configuration& configuration, const CahnHilliardModel& model) {
-  InitialRequest request;
+problem::InitialRequest initial_request(const config::Configuration& configuration,
+                                        const problem::CahnHilliardModel& model) {
+  problem::InitialRequest request;
   const long long cells = configuration.options().cells;
   request.raft_fraction = configuration.options().raft_fraction;
   request.noise_cells = configuration.noise_cells();
   if (request.noise_cells > cells)
-    throw InputError(configuration.where(&RunOptions::noise_cells) + ": " +
+    throw InputError(configuration.where(&config::RunOptions::noise_cells) + ": " +
                      std::to_string(request.noise_cells) + " is more than --cells " +
                      std::to_string(cells));
   request.seed = static_cast<std::uint64_t>(configuration.options().seed);
   request.caps = parse_caps(configuration);
   if (const std::string formula = configuration.options().initial_formula; !formula.empty())
-    request.formula = parse_formula(configuration.where(&RunOptions::initial_formula), formula);
+    request.formula =
+        muparser::parse_formula(configuration.where(&config::RunOptions::initial_formula), formula);
   request.surface = surface_of(configuration);
   request.epsilon = model.epsilon;
   request.well = model.well;
@@ -53,24 +55,25 @@ InitialRequest initial_request(const Configuration& configuration, const CahnHil
 
 }  // namespace
 
-Vec initial_field(const Configuration& configuration, const CahnHilliardModel& model,
-                  const SurfaceSpace& space) {
+Vec initial_field(const config::Configuration& configuration,
+                  const problem::CahnHilliardModel& model, const fem::SurfaceSpace& space) {
   const std::string kind = configuration.options().initial;
-  const InitialRequest request = initial_request(configuration, model);
-  const auto option = kind == "formula" ? &RunOptions::initial_formula
-                      : kind == "caps"  ? &RunOptions::initial_caps
-                                        : &RunOptions::initial;
+  const problem::InitialRequest request = initial_request(configuration, model);
+  const auto option = kind == "formula" ? &config::RunOptions::initial_formula
+                      : kind == "caps"  ? &config::RunOptions::initial_caps
+                                        : &config::RunOptions::initial;
   return with_option_context(configuration, option, [&] {
     const auto [name, folder] = split_named_arguments(kind);
     if (name == "restart") {
       const bool root = space.communicator->root();
       const int nodes = static_cast<int>(space.totals.nodes);
       return space.order.scattered(
-          root ? final_concentration(folder, nodes, numerical_identity(configuration)) : Vec());
+          root ? final_concentration(folder, nodes, config::numerical_identity(configuration))
+               : Vec());
     }
-    (void)initial_fields().find(name, {"restart:DIR"});
-    return make_initial_field(kind, space, request);
+    (void)problem::initial_fields().find(name, {"restart:DIR"});
+    return problem::make_initial_field(kind, space, request);
   });
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::run

@@ -5,11 +5,11 @@
 #include "kernel/fem/surface_space.hpp"
 #include "kernel/problem/cahn_hilliard.hpp"
 
-namespace traceraft {
+namespace traceraft::run {
 
 // c at the nodes of this rank, projected. Throws InputError, also for data of another kind of
 // initial state than is asked for.
-Vec initial_field(const Configuration& configuration, const CahnHilliardModel& model,
-                  const SurfaceSpace& space);
+Vec initial_field(const config::Configuration& configuration,
+                  const problem::CahnHilliardModel& model, const fem::SurfaceSpace& space);
 
-}  // namespace traceraft
+}  // namespace traceraft::run

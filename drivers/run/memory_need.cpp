@@ -8,7 +8,7 @@
 #include "kernel/core/text.hpp"
 #include "kernel/mesh/active_mesh.hpp"
 
-namespace traceraft {
+namespace traceraft::run {
 namespace {
 
 // Measured with 192 and 320 cells: set-up takes 2.8 kB per node, a run with `block` 7.4 kB.
@@ -21,17 +21,17 @@ double physical_memory() {
 
 }  // namespace
 
-double nodes_of_fine_mesh(const LevelSet& surface, std::int64_t cells) {
+double nodes_of_fine_mesh(const geometry::LevelSet& surface, std::int64_t cells) {
   if (cells < kFine) return 0;
   try {
     const double finer = static_cast<double>(cells) / static_cast<double>(kCoarse);
-    return build_active_mesh(surface, kCoarse).nodes() * finer * finer;
+    return mesh::build_active_mesh(surface, kCoarse).nodes() * finer * finer;
   } catch (const InputError&) {
     return 0;  // the mesh itself will be refused
   }
 }
 
-double least_memory(const LevelSet& surface, std::int64_t cells, int ranks) {
+double least_memory(const geometry::LevelSet& surface, std::int64_t cells, int ranks) {
   return kBytesPerNode * nodes_of_fine_mesh(surface, cells) / ranks;
 }
 
@@ -45,13 +45,13 @@ std::string memory_complaint(std::int64_t cells, double need, double there_is) {
       static_cast<long long>(cells), need / kGigabyte, there_is / kGigabyte, fitting);
 }
 
-void refuse_too_fine(const Configuration& configuration, const LevelSet& surface,
+void refuse_too_fine(const config::Configuration& configuration, const geometry::LevelSet& surface,
                      const Communicator& ranks) {
   const std::int64_t cells = configuration.options().cells;
   const std::string complaint =
       memory_complaint(cells, least_memory(surface, cells, ranks.size()), physical_memory());
   if (!complaint.empty())
-    throw InputError(configuration.where(&RunOptions::cells) + ": " + complaint);
+    throw InputError(configuration.where(&config::RunOptions::cells) + ": " + complaint);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::run

@@ -5,11 +5,13 @@
 #include "drivers/config/configuration.hpp"
 #include "kernel/fem/surface_space.hpp"
 
-namespace traceraft {
+namespace traceraft::run {
 
 // Steps in R²/D. Throw InputError.
-IntegratorSettings integrator_settings(const Configuration& configuration,
-                                       const IntegratorEntry& integrator, const Units& units);
-LinearSolverChoice linear_solver(const Configuration& configuration, const SurfaceSpace& space);
+time::IntegratorSettings integrator_settings(const config::Configuration& configuration,
+                                             const backends::IntegratorEntry& integrator,
+                                             const physics::Units& units);
+linear::LinearSolverChoice linear_solver(const config::Configuration& configuration,
+                                         const fem::SurfaceSpace& space);
 
-}  // namespace traceraft
+}  // namespace traceraft::run

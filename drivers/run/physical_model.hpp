@@ -6,14 +6,14 @@
 #include "kernel/geometry/level_set.hpp"
 #include "kernel/problem/cahn_hilliard.hpp"
 
-namespace traceraft {
+namespace traceraft::run {
 
 // In units of R and R²/D. Throw InputError.
-DoubleWell double_well(const Configuration& configuration);
-LevelSetPtr surface_of(const Configuration& configuration);
-CahnHilliardModel model_without_effects(const Configuration& configuration);
-std::vector<EffectTerm> effects_of(const Configuration& configuration);
+physics::DoubleWell double_well(const config::Configuration& configuration);
+geometry::LevelSetPtr surface_of(const config::Configuration& configuration);
+problem::CahnHilliardModel model_without_effects(const config::Configuration& configuration);
+std::vector<effects::EffectTerm> effects_of(const config::Configuration& configuration);
 // Both together.
-CahnHilliardModel physical_model(const Configuration& configuration);
+problem::CahnHilliardModel physical_model(const config::Configuration& configuration);
 
-}  // namespace traceraft
+}  // namespace traceraft::run

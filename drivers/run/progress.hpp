@@ -7,19 +7,19 @@
 #include "kernel/core/stopwatch.hpp"
 #include "kernel/simulation/run_loop.hpp"
 
-namespace traceraft {
+namespace traceraft::run {
 
-class Progress final : public RunListener {
+class Progress final : public simulation::RunListener {
  public:
   Progress(const RunSetup& run, bool quiet) : run_(run), line_(quiet), left_(run.t_end) {}
-  void on_step(const RunState& state) override;
+  void on_step(const simulation::RunState& state) override;
   void finish() { line_.finish(); }
 
  private:
   const RunSetup& run_;
-  StatusLine line_;
-  TimeLeft left_;
+  output::StatusLine line_;
+  output::TimeLeft left_;
   Stopwatch watch_;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::run

@@ -16,11 +16,11 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::run {
 namespace {
 
 struct RunRequest {
-  GivenValues flags;
+  config::GivenValues flags;
   std::string config_file;  // "" for none
   std::string out;          // "" for the first free runs/<case>-N
   bool validate = false;    // stop after checking everything
@@ -28,74 +28,78 @@ struct RunRequest {
 };
 struct ResumeRequest {
   std::string folder;
-  GivenValues flags;  // options that do not change the numbers
+  config::GivenValues flags;  // options that do not change the numbers
   bool quiet = false;
 };
-int exit_code(const RunResult& result) {
+int exit_code(const simulation::RunResult& result) {
   switch (result.end) {
-    case RunEnd::finished:
-      return kSuccess;
-    case RunEnd::stopped:
-      return kInterrupted;
+    case simulation::RunEnd::finished:
+      return drivers::kSuccess;
+    case simulation::RunEnd::stopped:
+      return drivers::kInterrupted;
     default:
-      return kNumericalFailure;
+      return drivers::kNumericalFailure;
   }
 }
 
 // Runs or goes on with a run, from a checkpoint if there is one. On every rank; `quiet` on all but
 // the first, which alone has the checkpoint.
-int execute_run(const Configuration& configuration, RunSetup& run, const RunFolder& folder,
+int execute_run(const config::Configuration& configuration, RunSetup& run, const RunFolder& folder,
                 const std::optional<Checkpoint>& checkpoint, bool quiet) {
   const bool root = run.ranks->root();
-  catch_stop_signals();
-  RunState state{*run.integrator, {}, 0, {}};
+  posix::catch_stop_signals();
+  simulation::RunState state{*run.integrator, {}, 0, {}};
   std::optional<TableWriter> tables;
   if (root) tables.emplace(folder, run, checkpoint ? checkpoint->tables : TableExtents{});
   FieldWriter fields(folder, run);
   CheckpointWriter checkpoints(
-      folder, run, root ? &*tables : nullptr, numerical_identity(configuration),
+      folder, run, root ? &*tables : nullptr, config::numerical_identity(configuration),
       configuration.options().checkpoint_interval, checkpoint ? checkpoint->cost : RunCost{});
   Progress progress(run, quiet);
-  std::vector<RunListener*> listeners;
+  std::vector<simulation::RunListener*> listeners;
   if (root) listeners.push_back(&*tables);
   if (configuration.options().fields) listeners.push_back(&fields);
   listeners.push_back(&checkpoints);
   if (root) listeners.push_back(&progress);
 
-  RunResult result{RunEnd::finished, ""};
+  simulation::RunResult result{simulation::RunEnd::finished, ""};
   if (run.ranks->any(checkpoint.has_value())) {
     std::istringstream saved(checkpoint ? checkpoint->state : "");
     state.load(CheckpointIn(saved, run.space->order));
   } else {
-    if (Status status = start_run(run); !status.ok()) result = {RunEnd::failed, status.why};
-    if (result.end != RunEnd::failed) begin_run(state, *run.observer, run.output_times, listeners);
+    if (Status status = start_run(run); !status.ok())
+      result = {simulation::RunEnd::failed, status.why};
+    if (result.end != simulation::RunEnd::failed)
+      simulation::begin_run(state, *run.observer, run.output_times, listeners);
   }
-  if (result.end != RunEnd::failed)
-    result = continue_run(state, *run.observer, run.t_end, run.output_times, listeners,
-                          [&] { return run.ranks->any(stop_requested()); });
+  if (result.end != simulation::RunEnd::failed)
+    result = simulation::continue_run(state, *run.observer, run.t_end, run.output_times, listeners,
+                                      [&] { return run.ranks->any(posix::stop_requested()); });
   progress.finish();
   if (run.integrator->statistics().steps > 0) checkpoints.write(state);
   const RunCost cost = checkpoints.cost();
-  const double memory = run.ranks->sum(peak_memory_mb());
+  const double memory = run.ranks->sum(posix::peak_memory_mb());
   if (root)
-    write_durably(folder.summary(),
-                  summary_json(configuration, run, state, result, cost, memory, tables->extents()));
+    posix::write_durably(folder.summary(), summary_json(configuration, run, state, result, cost,
+                                                        memory, tables->extents()));
   if (!quiet) print_summary(configuration, run, state, result, cost, memory, folder);
-  if (result.end == RunEnd::stopped && !quiet)
-    say("  continue with          traceraft resume %s\n", in_shell(folder.path.string()));
-  if (result.end == RunEnd::failed && root)
-    say_error(formatted("numerical failure at t = %g: ", state.observables.t * run.units.time()) +
-              result.why);
+  if (result.end == simulation::RunEnd::stopped && !quiet)
+    text::say("  continue with          traceraft resume %s\n",
+              text::in_shell(folder.path.string()));
+  if (result.end == simulation::RunEnd::failed && root)
+    text::say_error(
+        formatted("numerical failure at t = %g: ", state.observables.t * run.units.time()) +
+        result.why);
   return exit_code(result);
 }
 
 // The checkpoint to go on from, if there is one. Of the first rank.
 std::optional<Checkpoint> last_checkpoint(const RunFolder& folder,
-                                          const Configuration& configuration) {
+                                          const config::Configuration& configuration) {
   const CheckpointStore store(folder.checkpoints());
   if (store.empty()) return std::nullopt;
   Checkpoint checkpoint = store.newest();
-  if (checkpoint.configuration != numerical_identity(configuration))
+  if (checkpoint.configuration != config::numerical_identity(configuration))
     throw InputError(folder.config().string() +
                      " has changed since the checkpoint was written; restore it, or start a new "
                      "run with --initial restart:" +
@@ -104,39 +108,39 @@ std::optional<Checkpoint> last_checkpoint(const RunFolder& folder,
 }
 
 // A fine mesh takes its time before anything else is said.
-void announce_fine_mesh(const Configuration& configuration) {
-  const LevelSetPtr surface = surface_of(configuration);
+void announce_fine_mesh(const config::Configuration& configuration) {
+  const geometry::LevelSetPtr surface = surface_of(configuration);
   const double nodes = nodes_of_fine_mesh(*surface, configuration.options().cells);
-  if (nodes == 0 || !world()->root()) return;
-  say("setting up a mesh of about %.2g million nodes\n", nodes / 1e6);
-  flush_output();
+  if (nodes == 0 || !backends::world()->root()) return;
+  text::say("setting up a mesh of about %.2g million nodes\n", nodes / 1e6);
+  text::flush_output();
 }
 
 // Before anything is set up or said.
 void refuse_used_folder(const std::string& out) {
   if (out.empty()) return;
-  (void)shared_folder(*world(), [&] {
+  (void)shared_folder(*backends::world(), [&] {
     refuse_before_lock(out);
     return RunFolder{out, nullptr};
   });
 }
 
 int run(const RunRequest& request) {
-  const GivenValues file = read_config_file(request.config_file);
-  const Configuration configuration(file, request.flags);
-  end_on_stop_signals(kInterrupted, "");  // before there are threads
+  const config::GivenValues file = config::read_config_file(request.config_file);
+  const config::Configuration configuration(file, request.flags);
+  posix::end_on_stop_signals(drivers::kInterrupted, "");  // before there are threads
   refuse_used_folder(request.out);
   if (!request.quiet) announce_fine_mesh(configuration);
   RunSetup run = build_run(configuration, InitialState::build);
   const bool quiet = request.quiet || !run.ranks->root();
   if (!quiet) print_setup(configuration, run);
   if (request.validate) {
-    if (!quiet) say("all settings are valid; nothing was run\n");
-    return kSuccess;
+    if (!quiet) text::say("all settings are valid; nothing was run\n");
+    return drivers::kSuccess;
   }
   const RunFolder folder =
       shared_folder(*run.ranks, [&] { return create_run_folder(request.out, configuration); });
-  if (!quiet) say("  %-22s %s\n\n", "folder", folder.path);
+  if (!quiet) text::say("  %-22s %s\n\n", "folder", folder.path);
   return execute_run(configuration, run, folder, std::nullopt, quiet);
 }
 
@@ -144,10 +148,11 @@ int resume(const ResumeRequest& request) {
   if (request.folder.empty())
     throw InputError(
         "resume: the folder of a run is needed, as in traceraft resume runs/guv-2to1-1");
-  end_on_stop_signals(kInterrupted, "");  // before there are threads
-  const std::shared_ptr<const Communicator> ranks = world();
+  posix::end_on_stop_signals(drivers::kInterrupted, "");  // before there are threads
+  const std::shared_ptr<const Communicator> ranks = backends::world();
   const RunFolder folder = shared_folder(*ranks, [&] { return open_run_folder(request.folder); });
-  const Configuration configuration(read_config_file(folder.config()), request.flags);
+  const config::Configuration configuration(config::read_config_file(folder.config()),
+                                            request.flags);
   std::optional<Checkpoint> checkpoint;
   if (ranks->root()) checkpoint = last_checkpoint(folder, configuration);
   RunSetup run =
@@ -157,15 +162,15 @@ int resume(const ResumeRequest& request) {
   if (!quiet) {
     print_setup(configuration, run);
     if (checkpoint)
-      say("  %-22s %s from step %ld\n\n", "resumed", folder.path, checkpoint->step);
+      text::say("  %-22s %s from step %ld\n\n", "resumed", folder.path, checkpoint->step);
     else
-      say("  %-22s %s, which has no checkpoint; the run starts again\n\n", "restarted",
-          folder.path);
+      text::say("  %-22s %s, which has no checkpoint; the run starts again\n\n", "restarted",
+                folder.path);
   }
   return execute_run(configuration, run, folder, checkpoint, quiet);
 }
 
-Action define_run(CLI::App& app) {
+drivers::Action define_run(CLI::App& app) {
   const auto request = std::make_shared<RunRequest>();
   app.add_option("--config", request->config_file,
                  "TOML file of settings, with names of flags as keys")
@@ -175,7 +180,7 @@ Action define_run(CLI::App& app) {
   app.add_flag("--validate", request->validate,
                "check all settings and stop before the first step");
   app.add_flag("--quiet", request->quiet, "print errors only");
-  add_options(app, request->flags, [](const OptionSpec&) { return true; });
+  config::add_options(app, request->flags, [](const config::OptionSpec&) { return true; });
   app.footer(
       "A flag overrides --config, which overrides the case, which overrides the defaults.\nExit "
       "codes: 0 success, 2 bad input, 3 numerical failure, 4 input/output,\n5 interrupted "
@@ -184,22 +189,23 @@ Action define_run(CLI::App& app) {
   return [request] { return run(*request); };
 }
 
-Action define_resume(CLI::App& app) {
+drivers::Action define_resume(CLI::App& app) {
   const auto request = std::make_shared<ResumeRequest>();
   app.add_option("folder", request->folder, "folder of the run to continue")->type_name("DIR");
   app.add_flag("--quiet", request->quiet, "print errors only");
-  add_options(app, request->flags, [](const OptionSpec& spec) { return !spec.numerical; });
+  config::add_options(app, request->flags,
+                      [](const config::OptionSpec& spec) { return !spec.numerical; });
   return [request] { return resume(*request); };
 }
 
 }  // namespace
 
-Command run_command() {
-  return {"run", "run a simulation", Ranks::several, define_run};
+drivers::Command run_command() {
+  return {"run", "run a simulation", drivers::Ranks::several, define_run};
 }
 
-Command resume_command() {
-  return {"resume", "continue an interrupted run", Ranks::several, define_resume};
+drivers::Command resume_command() {
+  return {"resume", "continue an interrupted run", drivers::Ranks::several, define_resume};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::run

@@ -9,7 +9,7 @@
 #include "drivers/text/encoders.hpp"
 #include "kernel/core/error.hpp"
 
-namespace traceraft {
+namespace traceraft::run {
 namespace {
 
 namespace fs = std::filesystem;
@@ -32,10 +32,10 @@ std::vector<std::string> files_of_a_report() {
 
 std::vector<std::string> files_of_a_run() {
   std::vector<std::string> names = files_of_a_report();
-  names.insert(names.end(),
-               {kLockFile, "config.toml", "series.csv", "observables.csv", "rafts.csv", "view.png",
-                "fields.pvd", "summary.json", "fields/field-????*.vtu", "fields/field-????*.pvtu",
-                "fields/view-????*.png", "checkpoints/step-??????????.ckpt"});
+  names.insert(names.end(), {posix::kLockFile, "config.toml", "series.csv", "observables.csv",
+                             "rafts.csv", "view.png", "fields.pvd", "summary.json",
+                             "fields/field-????*.vtu", "fields/field-????*.pvtu",
+                             "fields/view-????*.png", "checkpoints/step-??????????.ckpt"});
   return names;
 }
 
@@ -54,9 +54,9 @@ void refuse_files_of_a_run(const fs::path& path) {
         folder.table("observables.csv"), folder.table("rafts.csv")})
     if (fs::exists(fs::symlink_status(ours)))
       throw InputError("--out: " + path.string() + " already holds " + ours.filename().string() +
-                       (holds_runs(path)
-                            ? std::string(" of a set of runs")
-                            : "; continue it with: traceraft resume " + in_shell(path.string())) +
+                       (holds_runs(path) ? std::string(" of a set of runs")
+                                         : "; continue it with: traceraft resume " +
+                                               text::in_shell(path.string())) +
                        "; choose another folder");
   refuse_folder_of_others(path);
   refuse_foreign_folder(path, {});
@@ -64,8 +64,8 @@ void refuse_files_of_a_run(const fs::path& path) {
 
 void refuse_before_lock(const fs::path& path) {
   if (!fs::is_directory(path)) return;
-  std::optional<FolderLock> lock;
-  if (fs::exists(path / kLockFile)) lock.emplace(path);
+  std::optional<posix::FolderLock> lock;
+  if (fs::exists(path / posix::kLockFile)) lock.emplace(path);
   refuse_files_of_a_run(path);
 }
 
@@ -90,7 +90,7 @@ void refuse_foreign_folder(const fs::path& path, const std::vector<std::string>&
                   [&](const std::string& name) { return fs::exists(path / name); }))
     return;
   for (const auto& entry : fs::directory_iterator(path))
-    if (entry.path().filename() != kLockFile && !is_temporary_file(entry.path()))
+    if (entry.path().filename() != posix::kLockFile && !posix::is_temporary_file(entry.path()))
       throw InputError("--out: " + path.string() + " holds " + entry.path().filename().string() +
                        ", which this command did not write; choose another folder");
 }
@@ -106,7 +106,7 @@ RunFolder shared_folder(const Communicator& ranks, const std::function<RunFolder
       text = "p" + folder.path.string();
     } catch (const InputError& error) {
       text = std::string("i") + error.what();
-    } catch (const LockedError& error) {
+    } catch (const posix::LockedError& error) {
       text = std::string("l") + error.what();
     } catch (const IoError& error) {
       text = std::string("o") + error.what();
@@ -116,24 +116,24 @@ RunFolder shared_folder(const Communicator& ranks, const std::function<RunFolder
   const std::vector<char> received = scatter(ranks, message);
   const std::string text(received.begin() + 1, received.end());
   if (received[0] == 'i') throw InputError(text);
-  if (received[0] == 'l') throw LockedError(text);
+  if (received[0] == 'l') throw posix::LockedError(text);
   if (received[0] == 'o') throw IoError(text);
   folder.path = text;
   return folder;
 }
 
-RunFolder create_run_folder(const std::string& out, const Configuration& configuration) {
+RunFolder create_run_folder(const std::string& out, const config::Configuration& configuration) {
   RunFolder folder;
   folder.path = out.empty() ? first_free_folder(configuration.options().case_name) : out;
   try {
     if (fs::exists(folder.path) && !fs::is_directory(folder.path))
       throw InputError("--out: " + folder.path.string() + " is a file");
     fs::create_directories(folder.path);
-    folder.lock = std::make_unique<FolderLock>(folder.path);
+    folder.lock = std::make_unique<posix::FolderLock>(folder.path);
     refuse_files_of_a_run(folder.path);
-    remove_temporary_files(folder.path);
+    posix::remove_temporary_files(folder.path);
     // First what makes it a run that can be resumed.
-    write_durably(folder.config(), config_text(configuration));
+    posix::write_durably(folder.config(), config::config_text(configuration));
     create_sub_folders(folder);
   } catch (const fs::filesystem_error& error) {
     throw IoError(std::string("--out: ") + error.what());
@@ -150,12 +150,12 @@ RunFolder open_run_folder(const fs::path& path) {
   if (holds_runs(path))
     throw InputError(path.string() +
                      " holds a set of runs; to continue it, repeat its command with --out " +
-                     in_shell(path.string()));
-  folder.lock = std::make_unique<FolderLock>(path);
+                     text::in_shell(path.string()));
+  folder.lock = std::make_unique<posix::FolderLock>(path);
   create_sub_folders(folder);
   for (const fs::path& own : {folder.path, folder.fields(), folder.checkpoints()})
-    remove_temporary_files(own);
+    posix::remove_temporary_files(own);
   return folder;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::run

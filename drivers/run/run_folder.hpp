@@ -11,11 +11,11 @@
 #include "drivers/config/configuration.hpp"
 #include "kernel/core/communicator.hpp"
 
-namespace traceraft {
+namespace traceraft::run {
 
 struct RunFolder {
   std::filesystem::path path;
-  std::unique_ptr<FolderLock> lock;  // of the first rank
+  std::unique_ptr<posix::FolderLock> lock;  // of the first rank
 
   std::filesystem::path config() const { return path / "config.toml"; }
   std::filesystem::path summary() const { return path / "summary.json"; }
@@ -53,9 +53,9 @@ RunFolder shared_folder(const Communicator& ranks, const std::function<RunFolder
 // A folder for a new run, locked, holding its resolved configuration. An empty `out` means
 // runs/<case>-<first free number>. Throws InputError if it holds anything already, LockedError if a
 // run is going on there, IoError.
-RunFolder create_run_folder(const std::string& out, const Configuration& configuration);
+RunFolder create_run_folder(const std::string& out, const config::Configuration& configuration);
 
 // The folder of an earlier run, locked. Throws InputError if there is none, LockedError, IoError.
 RunFolder open_run_folder(const std::filesystem::path& path);
 
-}  // namespace traceraft
+}  // namespace traceraft::run

@@ -2,9 +2,9 @@
 
 #include "backends/zlib/checksum.hpp"
 
-namespace traceraft {
+namespace traceraft::run {
 
-RunMoment::RunMoment(const RunSetup& run_, const Observables& observables_, double t_)
+RunMoment::RunMoment(const RunSetup& run_, const observables::Observables& observables_, double t_)
     : run(run_),
       observables(observables_),
       t(t_),
@@ -21,7 +21,7 @@ double number(std::int64_t count) {
 
 const std::vector<ReportedNumber<RunMoment>>& run_columns() {
   using M = const RunMoment&;
-  using U = Unit;
+  using U = text::Unit;
   static const std::vector<ReportedNumber<RunMoment>> columns = {
       {"steps", U::count, "accepted steps so far", [](M m) { return number(m.steps.steps); }},
       {"t", U::time, "time", [](M m) { return m.t; }},
@@ -66,7 +66,7 @@ const std::vector<ReportedNumber<RunMoment>>& run_columns() {
 
 const std::vector<ReportedNumber<RunTotals>>& run_totals() {
   using T = const RunTotals&;
-  using U = Unit;
+  using U = text::Unit;
   static const std::vector<ReportedNumber<RunTotals>> totals = {
       {"nodes", U::count, "nodes whose basis functions touch the surface",
        [](T r) { return number(r.at.run.space->totals.nodes); }},
@@ -123,7 +123,7 @@ const std::vector<ReportedNumber<RunTotals>>& run_totals() {
 
 const std::vector<ReportedNumber<RaftMoment>>& raft_columns() {
   using R = const RaftMoment&;
-  using U = Unit;
+  using U = text::Unit;
   static const std::vector<ReportedNumber<RaftMoment>> columns = {
       {"t", U::time, "output time", [](R r) { return r.t; }},
       {"raft", U::count, "1 is the largest; equally large ones follow each other as their nodes do",
@@ -154,8 +154,8 @@ const ReportedNumber<Source>* found(const std::vector<ReportedNumber<Source>>& l
 }  // namespace
 
 std::string unit_of_number(const std::string& name, bool scaled) {
-  if (const auto* column = found(run_columns(), name)) return unit_name(column->unit, scaled);
-  if (const auto* total = found(run_totals(), name)) return unit_name(total->unit, scaled);
+  if (const auto* column = found(run_columns(), name)) return text::unit_name(column->unit, scaled);
+  if (const auto* total = found(run_totals(), name)) return text::unit_name(total->unit, scaled);
   return "";
 }
 
@@ -163,10 +163,11 @@ std::uint32_t report_layout() {
   std::string layout;
   for (const auto& column : raft_columns()) layout += std::string(column.name) + "\n";
   for (const auto& column : run_columns()) layout += std::string(column.name) + "\n";
-  for (const std::size_t size : {sizeof(Observables), sizeof(RunMonitor),
-                                 sizeof(IntegratorStatistics), sizeof(LinearStatistics)})
+  for (const std::size_t size :
+       {sizeof(observables::Observables), sizeof(simulation::RunMonitor),
+        sizeof(time::IntegratorStatistics), sizeof(linear::LinearStatistics)})
     layout += std::to_string(size) + "\n";
-  return crc32_of(layout);
+  return zlib::crc32_of(layout);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::run

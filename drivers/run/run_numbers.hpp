@@ -14,24 +14,24 @@
 #include "kernel/core/parameters.hpp"
 #include "kernel/simulation/run_monitor.hpp"
 
-namespace traceraft {
+namespace traceraft::run {
 
 // A step or an output time of a run.
 struct RunMoment {
   const RunSetup& run;
-  const Observables& observables;
+  const observables::Observables& observables;
   double t;  // in the units of the outputs; at an output time, as the user wrote it
-  IntegratorStatistics steps;
-  LinearStatistics linear;
+  time::IntegratorStatistics steps;
+  linear::LinearStatistics linear;
 
-  RunMoment(const RunSetup& run, const Observables& observables, double t);
-  const Units& units() const { return run.units; }
+  RunMoment(const RunSetup& run, const observables::Observables& observables, double t);
+  const physics::Units& units() const { return run.units; }
 };
 
 // The end of a run.
 struct RunTotals {
   const RunMoment& at;
-  const RunMonitor& monitor;
+  const simulation::RunMonitor& monitor;
   RunCost cost;
   double memory_mb;
 };
@@ -40,17 +40,17 @@ struct RunTotals {
 template <class Source>
 struct ReportedNumber {
   const char* name;
-  Unit unit;
+  text::Unit unit;
   const char* meaning;
   double (*value)(const Source&);
 };
 
 // A raft at an output time; the largest is number 1.
 struct RaftMoment {
-  const Raft& raft;
+  const observables::Raft& raft;
   int number;
   double t;  // as the user wrote it
-  const Units& units;
+  const physics::Units& units;
 };
 
 // A column of series.csv and observables.csv, and a number of summary.json.
@@ -69,7 +69,7 @@ template <class Source>
 std::string csv_heading(const std::vector<ReportedNumber<Source>>& columns, bool scaled) {
   std::string text;
   for (const auto& column : columns)
-    text += (text.empty() ? "" : ",") + with_unit(column.name, column.unit, scaled);
+    text += (text.empty() ? "" : ",") + text::with_unit(column.name, column.unit, scaled);
   return text + "\n";
 }
 template <class Source>
@@ -86,11 +86,11 @@ std::uint32_t report_layout();
 
 // A list as a table for the docs: name, unit, meaning.
 template <class Source>
-std::vector<Row> rows_of(const std::vector<ReportedNumber<Source>>& numbers) {
-  std::vector<Row> rows{{"name", "unit", "meaning"}};
+std::vector<output::Row> rows_of(const std::vector<ReportedNumber<Source>>& numbers) {
+  std::vector<output::Row> rows{{"name", "unit", "meaning"}};
   for (const auto& number : numbers)
-    rows.push_back({number.name, unit_name(number.unit, false), number.meaning});
+    rows.push_back({number.name, text::unit_name(number.unit, false), number.meaning});
   return rows;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::run

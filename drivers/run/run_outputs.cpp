@@ -10,7 +10,7 @@
 #include "kernel/core/text.hpp"
 #include "kernel/fem/trace.hpp"
 
-namespace traceraft {
+namespace traceraft::run {
 namespace {
 
 TableExtent extent_of(const TableExtents& extents, const std::string& name) {
@@ -43,7 +43,8 @@ std::string piece_name(std::size_t index, int rank) {
 }
 
 // No triangle has corners in two rafts: two that are above the level belong to one.
-std::vector<int> largest_at_corners(const CutSurface& surface, const std::vector<int>& of_point) {
+std::vector<int> largest_at_corners(const mesh::CutSurface& surface,
+                                    const std::vector<int>& of_point) {
   std::vector<int> largest;
   for (const auto& [a, b, c] : surface.triangles)
     largest.push_back(std::max({of_point[a], of_point[b], of_point[c]}));
@@ -63,17 +64,18 @@ TableWriter::TableWriter(const RunFolder& folder, const RunSetup& run, const Tab
   if (rafts_.extent().bytes == 0) rafts_.append(csv_heading(raft_columns(), run.units.scaled));
 }
 
-void TableWriter::on_step(const RunState& state) {
+void TableWriter::on_step(const simulation::RunState& state) {
   series_.append(csv_row(
       run_columns(), RunMoment(run_, state.observables, state.observables.t * run_.units.time())));
 }
 
-void TableWriter::on_output(const Observables& row, const RaftReport& rafts, VecView) {
+void TableWriter::on_output(const observables::Observables& row,
+                            const observables::RaftReport& rafts, VecView) {
   const double t = run_.output_labels[output_index(run_, row.t)];
   observables_.append(csv_row(run_columns(), RunMoment(run_, row, t)));
   std::string text;
   int number = 0;
-  for (const Raft& raft : rafts.rafts)
+  for (const observables::Raft& raft : rafts.rafts)
     text += csv_row(raft_columns(), RaftMoment{raft, ++number, t, run_.units});
   rafts_.append(text);
 }
@@ -88,35 +90,38 @@ TableExtents TableWriter::extents() const {
           {"rafts.csv", rafts_.extent()}};
 }
 
-void FieldWriter::on_output(const Observables& row, const RaftReport& rafts, VecView y) {
+void FieldWriter::on_output(const observables::Observables& row,
+                            const observables::RaftReport& rafts, VecView y) {
   const Communicator& ranks = *run_.ranks;
-  const SurfaceSpace& space = *run_.space;
+  const fem::SurfaceSpace& space = *run_.space;
   const std::size_t index = output_index(run_, row.t);
   Vec buffer;
-  const Vec c = trace(space, space.with_ghosts(run_.problem->c_of(y), buffer));
-  const Vec mu = trace(space, space.with_ghosts(run_.problem->mu_of(y), buffer));
+  const Vec c = fem::trace(space, space.with_ghosts(run_.problem->c_of(y), buffer));
+  const Vec mu = fem::trace(space, space.with_ghosts(run_.problem->mu_of(y), buffer));
   const bool alone = ranks.size() == 1;
-  write_durably(
+  posix::write_durably(
       folder_.fields() / (alone ? field_name(index, ranks) : piece_name(index, ranks.rank())),
-      vtu_text(space, run_.units.length(), {{"c", c}, {"mu", mu}},
-               {{"raft", largest_at_corners(space.surface, rafts.of_point)}}));
-  const DoubleWell& well = run_.problem->model().well;
-  const Image image = draw_front_and_back(space, c, well.a, well.b, kViewPixels);
-  const double half_width = view_half_width(space) * run_.units.length();
+      zlib::vtu_text(space, run_.units.length(), {{"c", c}, {"mu", mu}},
+                     {{"raft", largest_at_corners(space.surface, rafts.of_point)}}));
+  const physics::DoubleWell& well = run_.problem->model().well;
+  const observables::Image image =
+      observables::draw_front_and_back(space, c, well.a, well.b, kViewPixels);
+  const double half_width = observables::view_half_width(space) * run_.units.length();
   // Nothing is named before all of it is there.
   if (!ranks.all(true) || !ranks.root()) return;
   if (!alone) {
     std::vector<std::string> pieces;
     for (int rank = 0; rank < ranks.size(); ++rank) pieces.push_back(piece_name(index, rank));
-    write_durably(folder_.fields() / field_name(index, ranks),
-                  pvtu_text(pieces, {"c", "mu"}, {"raft"}));
+    posix::write_durably(folder_.fields() / field_name(index, ranks),
+                         zlib::pvtu_text(pieces, {"c", "mu"}, {"raft"}));
   }
   // What this run wrote at that time before it went on with more or fewer ranks.
   std::filesystem::remove(folder_.fields() / numbered("field", index, alone ? "pvtu" : "vtu"));
   for (int rank = alone ? 0 : ranks.size();; ++rank)
     if (!std::filesystem::remove(folder_.fields() / piece_name(index, rank))) break;
-  write_durably(folder_.fields() / numbered("view", index, "png"), png_bytes(image));
-  write_strip(index, {half_width, unit_name(Unit::length, run_.units.scaled), well.a, well.b});
+  posix::write_durably(folder_.fields() / numbered("view", index, "png"), png::png_bytes(image));
+  write_strip(index,
+              {half_width, text::unit_name(text::Unit::length, run_.units.scaled), well.a, well.b});
   collect(index);
 }
 
@@ -127,13 +132,13 @@ void FieldWriter::write_strip(std::size_t newest, const StripLegend& legend) con
   for (std::size_t i = 0; i <= newest; ++i)
     if (std::filesystem::exists(folder_.fields() / numbered("view", i, "png"))) there.push_back(i);
   std::vector<StripView> views;
-  const std::string unit = unit_name(Unit::time, run_.units.scaled);
+  const std::string unit = text::unit_name(text::Unit::time, run_.units.scaled);
   for (const std::size_t k : strip_choice(there.size())) {
     const std::filesystem::path file = folder_.fields() / numbered("view", there[k], "png");
-    views.push_back({image_of_png(read_file(file, kLargestPicture)),
+    views.push_back({png::image_of_png(posix::read_file(file, kLargestPicture)),
                      "t = " + formatted("%.3g ", run_.output_labels[there[k]]) + unit});
   }
-  write_durably(folder_.path / "view.png", png_bytes(compose_strip(views, legend)));
+  posix::write_durably(folder_.path / "view.png", png::png_bytes(compose_strip(views, legend)));
 }
 
 // All output times up to the newest, on however many ranks they were written.
@@ -144,7 +149,7 @@ void FieldWriter::collect(std::size_t newest) const {
       if (const std::string name = numbered("field", i, extension);
           std::filesystem::exists(folder_.fields() / name))  // not if fields were off
         files.emplace_back(run_.output_labels[i], "fields/" + name);
-  write_durably(folder_.path / "fields.pvd", pvd_text(files));
+  posix::write_durably(folder_.path / "fields.pvd", zlib::pvd_text(files));
 }
 
 CheckpointWriter::CheckpointWriter(const RunFolder& folder, const RunSetup& run,
@@ -158,17 +163,17 @@ CheckpointWriter::CheckpointWriter(const RunFolder& folder, const RunSetup& run,
       before_(before) {}
 
 RunCost CheckpointWriter::cost() const {
-  return {before_.wall_seconds + wall_seconds(),
-          before_.cpu_seconds + run_.ranks->sum(cpu_seconds())};
+  return {before_.wall_seconds + posix::wall_seconds(),
+          before_.cpu_seconds + run_.ranks->sum(posix::cpu_seconds())};
 }
 
-void CheckpointWriter::on_step(const RunState& state) {
+void CheckpointWriter::on_step(const simulation::RunState& state) {
   // One clock decides for all.
   if (run_.ranks->any(run_.ranks->root() && (!written_ || since_last_.seconds() >= interval_)))
     write(state);
 }
 
-void CheckpointWriter::write(const RunState& state) {
+void CheckpointWriter::write(const simulation::RunState& state) {
   // The rows that the checkpoint counts on are on the disk before it is.
   if (tables_) tables_->sync();
   Checkpoint checkpoint;
@@ -187,4 +192,4 @@ void CheckpointWriter::write(const RunState& state) {
   written_ = true;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::run

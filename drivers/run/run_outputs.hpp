@@ -12,16 +12,17 @@
 #include "kernel/core/stopwatch.hpp"
 #include "kernel/simulation/run_loop.hpp"
 
-namespace traceraft {
+namespace traceraft::run {
 
 // Of the first rank. series.csv: a row per accepted step. observables.csv: the same columns at the
 // output times. rafts.csv: every raft at the output times.
-class TableWriter final : public RunListener {
+class TableWriter final : public simulation::RunListener {
  public:
   // `extents`: as a checkpoint recorded them; empty for a new run. Throws IoError.
   TableWriter(const RunFolder& folder, const RunSetup& run, const TableExtents& extents);
-  void on_step(const RunState& state) override;
-  void on_output(const Observables& row, const RaftReport& rafts, VecView y) override;
+  void on_step(const simulation::RunState& state) override;
+  void on_output(const observables::Observables& row, const observables::RaftReport& rafts,
+                 VecView y) override;
   void sync();
   TableExtents extents() const;
 
@@ -33,10 +34,11 @@ class TableWriter final : public RunListener {
 // fields/field-NNNN.vtu with c and mu on Γ_h, collected in fields.pvd, and a picture of front and
 // back as fields/view-NNNN.png; view.png shows up to six of them. Several ranks write a piece each,
 // field-NNNN-RRRR.vtu, joined by field-NNNN.pvtu.
-class FieldWriter final : public RunListener {
+class FieldWriter final : public simulation::RunListener {
  public:
   FieldWriter(const RunFolder& folder, const RunSetup& run) : folder_(folder), run_(run) {}
-  void on_output(const Observables& row, const RaftReport& rafts, VecView y) override;
+  void on_output(const observables::Observables& row, const observables::RaftReport& rafts,
+                 VecView y) override;
 
  private:
   void collect(std::size_t newest) const;
@@ -48,12 +50,12 @@ class FieldWriter final : public RunListener {
 
 // Writes a checkpoint every `interval` seconds; writing does not change the run. On every rank; the
 // first one, which has the tables, writes.
-class CheckpointWriter final : public RunListener {
+class CheckpointWriter final : public simulation::RunListener {
  public:
   CheckpointWriter(const RunFolder& folder, const RunSetup& run, TableWriter* tables,
                    std::string configuration, double interval, const RunCost& before);
-  void on_step(const RunState& state) override;
-  void write(const RunState& state);
+  void on_step(const simulation::RunState& state) override;
+  void write(const simulation::RunState& state);
   RunCost cost() const;  // of the whole run: earlier processes and these
 
  private:
@@ -67,4 +69,4 @@ class CheckpointWriter final : public RunListener {
   bool written_ = false;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::run

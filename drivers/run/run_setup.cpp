@@ -14,15 +14,15 @@
 #include "drivers/run/physical_model.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::run {
 namespace {
 
-int thread_count(const Configuration& configuration, const Communicator& ranks) {
+int thread_count(const config::Configuration& configuration, const Communicator& ranks) {
   const int asked = static_cast<int>(configuration.options().threads);
   if (ranks.size() > 1) {
     // A run of one rank may have had two, and goes on with more ranks.
-    if (asked > 1 && configuration.from_flag(&RunOptions::threads))
-      throw InputError(configuration.where(&RunOptions::threads) +
+    if (asked > 1 && configuration.from_flag(&config::RunOptions::threads))
+      throw InputError(configuration.where(&config::RunOptions::threads) +
                        ": with several ranks each has one thread; start more ranks instead");
     return 1;
   }
@@ -31,7 +31,7 @@ int thread_count(const Configuration& configuration, const Communicator& ranks) 
 }
 
 // In the user's units, ascending.
-std::vector<double> asked_times(const Configuration& configuration) {
+std::vector<double> asked_times(const config::Configuration& configuration) {
   constexpr int kDefaultTimes = 16;
   const double end = configuration.options().t_end;
   std::vector<double> times = configuration.options().output_times;
@@ -42,13 +42,13 @@ std::vector<double> asked_times(const Configuration& configuration) {
   }
   std::sort(times.begin(), times.end());
   if (times.back() > end)
-    throw InputError(configuration.where(&RunOptions::output_times) + ": " +
+    throw InputError(configuration.where(&config::RunOptions::output_times) + ": " +
                      format_number(times.back()) + " is after the end of the run, " +
                      format_number(configuration.options().t_end));
   return times;
 }
 
-void set_output_times(const Configuration& configuration, RunSetup& run) {
+void set_output_times(const config::Configuration& configuration, RunSetup& run) {
   for (const double label : asked_times(configuration)) {
     const double t = std::min(label / run.units.time(), run.t_end);
     if (!run.output_times.empty() && t == run.output_times.back()) {
@@ -63,47 +63,49 @@ void set_output_times(const Configuration& configuration, RunSetup& run) {
 
 }  // namespace
 
-RunSetup build_run(const Configuration& configuration, InitialState initial,
-                   const Compared& compared) {
+RunSetup build_run(const config::Configuration& configuration, InitialState initial,
+                   const config::Compared& compared) {
   RunSetup run;
   refuse_times_out_of_range(configuration);
   run.units = configuration.units();
   run.t_end = configuration.options().t_end / run.units.time();
   set_output_times(configuration, run);
-  const CahnHilliardModel physics = physical_model(configuration);
-  const IntegratorEntry& integrator = with_option_context(
-      configuration, &RunOptions::integrator,
-      [&] { return std::cref(integrators().find(configuration.options().integrator)); });
-  const IntegratorSettings settings = integrator_settings(configuration, integrator, run.units);
-  with_option_context(configuration, &RunOptions::linear_solver, [&] {
-    return linear_solvers().find(configuration.options().linear_solver).name;
+  const problem::CahnHilliardModel physics = physical_model(configuration);
+  const backends::IntegratorEntry& integrator = with_option_context(
+      configuration, &config::RunOptions::integrator,
+      [&] { return std::cref(backends::integrators().find(configuration.options().integrator)); });
+  const time::IntegratorSettings settings =
+      integrator_settings(configuration, integrator, run.units);
+  with_option_context(configuration, &config::RunOptions::linear_solver, [&] {
+    return backends::linear_solvers().find(configuration.options().linear_solver).name;
   });
-  refuse_idle_options(configuration, compared);
+  config::refuse_idle_options(configuration, compared);
 
-  run.ranks = world();
+  run.ranks = backends::world();
   run.team = std::make_shared<ThreadTeam>(thread_count(configuration, *run.ranks));
-  const LevelSetPtr surface = surface_of(configuration);
+  const geometry::LevelSetPtr surface = surface_of(configuration);
   refuse_too_fine(configuration, *surface, *run.ranks);
-  run.space = with_option_context(configuration, &RunOptions::surface, [&] {
-    return std::make_shared<const SurfaceSpace>(*surface, configuration.options().cells, run.team,
-                                                run.ranks, physics.mass_stabilisation);
+  run.space = with_option_context(configuration, &config::RunOptions::surface, [&] {
+    return std::make_shared<const fem::SurfaceSpace>(
+        *surface, configuration.options().cells, run.team, run.ranks, physics.mass_stabilisation);
   });
-  with_option_context(configuration, &RunOptions::effect, [&] {
-    for (const EffectPtr& effect : physics.effects) effect->require_surface(*run.space);
+  with_option_context(configuration, &config::RunOptions::effect, [&] {
+    for (const problem::EffectPtr& effect : physics.effects) effect->require_surface(*run.space);
     return 0;
   });
-  run.problem = std::make_unique<CahnHilliard>(run.space, physics);
+  run.problem = std::make_unique<problem::CahnHilliard>(run.space, physics);
   if (settings.reject_energy_rises && !run.problem->dissipates_energy())
-    throw InputError(configuration.where(&RunOptions::energy_guard) +
+    throw InputError(configuration.where(&config::RunOptions::energy_guard) +
                      ": reject needs a model that can only lose energy, and this one may gain "
                      "energy; choose warn or off");
   if (initial == InitialState::build) {
     run.initial = initial_field(configuration, physics, *run.space);
     run.initial_mean = run.space->integral(run.initial) / run.space->area;
   }
-  run.boundary = resolved_boundary(physics, run.space->h());
-  run.observer = std::make_unique<Observer>(*run.problem, run.space, run.boundary.interface_energy);
-  const LinearSolverChoice solvers = linear_solver(configuration, *run.space);
+  run.boundary = observables::resolved_boundary(physics, run.space->h());
+  run.observer = std::make_unique<observables::Observer>(*run.problem, run.space,
+                                                         run.boundary.interface_energy);
+  const linear::LinearSolverChoice solvers = linear_solver(configuration, *run.space);
   run.integrator = integrator.make(*run.problem, solvers, run.team, settings);
   return run;
 }
@@ -116,4 +118,4 @@ Status start_run(RunSetup& run) {
   return run.integrator->start(0, y, ydot, run.t_end);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::run

@@ -12,20 +12,20 @@
 #include "kernel/problem/cahn_hilliard.hpp"
 #include "kernel/time/integrator.hpp"
 
-namespace traceraft {
+namespace traceraft::run {
 
 // Built in the order of the members; each is handed to the next by const reference.
 struct RunSetup {
-  Units units;
+  physics::Units units;
   std::shared_ptr<const Communicator> ranks;
   std::shared_ptr<const ThreadTeam> team;
-  std::shared_ptr<const SurfaceSpace> space;
-  std::unique_ptr<const CahnHilliard> problem;
+  std::shared_ptr<const fem::SurfaceSpace> space;
+  std::unique_ptr<const problem::CahnHilliard> problem;
   Vec initial;              // projected c at the nodes
   double initial_mean = 0;  // and its mean
-  ResolvedBoundary boundary;
-  std::unique_ptr<Observer> observer;
-  IntegratorPtr integrator;             // not started
+  observables::ResolvedBoundary boundary;
+  std::unique_ptr<observables::Observer> observer;
+  time::IntegratorPtr integrator;       // not started
   double t_end;                         // units of R²/D, as below
   std::vector<double> output_times;     // ascending, within [0, t_end]
   std::vector<double> output_labels;    // the same as the user wrote them, in the user's units
@@ -37,10 +37,10 @@ enum class InitialState { build, from_checkpoint /* leaves RunSetup::initial emp
 // On all ranks of the program. Throws InputError for anything a run could not start with; creates
 // no files.
 // `compared`: of several runs, by which they differ.
-RunSetup build_run(const Configuration& configuration, InitialState initial,
-                   const Compared& compared = {});
+RunSetup build_run(const config::Configuration& configuration, InitialState initial,
+                   const config::Compared& compared = {});
 
 // Computes the consistent state and hands it to the integrator.
 Status start_run(RunSetup& setup);
 
-}  // namespace traceraft
+}  // namespace traceraft::run

@@ -14,14 +14,14 @@
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::run {
 namespace {
 
-const char* end_name(RunEnd end) {
+const char* end_name(simulation::RunEnd end) {
   switch (end) {
-    case RunEnd::finished:
+    case simulation::RunEnd::finished:
       return "finished";
-    case RunEnd::stopped:
+    case simulation::RunEnd::stopped:
       return "stopped";
     default:
       return "failed";
@@ -33,14 +33,14 @@ bool decay_promised(const RunSetup& run) {
 }
 
 void line(const char* label, const std::string& value) {
-  say("  %-22s %s\n", label, value);
+  text::say("  %-22s %s\n", label, value);
 }
 
 // The energy, and what became of steps that gained some.
-std::string energy_text(const Configuration& configuration, const RunSetup& run,
-                        const RunState& state) {
+std::string energy_text(const config::Configuration& configuration, const RunSetup& run,
+                        const simulation::RunState& state) {
   const std::string energy = formatted("%.6g %s", state.observables.energy * run.units.area(),
-                                       unit_name(Unit::area, run.units.scaled).c_str());
+                                       text::unit_name(text::Unit::area, run.units.scaled).c_str());
   if (!run.problem->dissipates_energy()) return energy + " (the energy may grow in this model)";
   if (configuration.options().energy_guard == "off") return energy;
   const long refused = run.integrator->statistics().energy_rises;
@@ -53,8 +53,8 @@ std::string energy_text(const Configuration& configuration, const RunSetup& run,
          " a smaller --tolerance or --energy-guard reject prevents that";
 }
 
-void put(nlohmann::ordered_json& json, const char* name, Unit unit, double value) {
-  if (unit == Unit::count) {
+void put(nlohmann::ordered_json& json, const char* name, text::Unit unit, double value) {
+  if (unit == text::Unit::count) {
     json[name] = static_cast<std::int64_t>(value);
   } else {
     json[name] = value;
@@ -63,15 +63,15 @@ void put(nlohmann::ordered_json& json, const char* name, Unit unit, double value
 
 }  // namespace
 
-std::string summary_json(const Configuration& configuration, const RunSetup& run,
-                         const RunState& state, const RunResult& result, const RunCost& cost,
-                         double memory_mb, const TableExtents& tables) {
-  const Units& units = run.units;
+std::string summary_json(const config::Configuration& configuration, const RunSetup& run,
+                         const simulation::RunState& state, const simulation::RunResult& result,
+                         const RunCost& cost, double memory_mb, const TableExtents& tables) {
+  const physics::Units& units = run.units;
   nlohmann::ordered_json json;
   json["end"] = end_name(result.end);
   if (!result.why.empty()) json["why"] = result.why;
   json["version"] = kVersion;
-  json["build"] = program_checksum();
+  json["build"] = output::program_checksum();
   json["case"] = configuration.options().case_name;
   json["effects"] = configuration.options().effect;
   json["seed"] = configuration.options().seed;
@@ -87,7 +87,7 @@ std::string summary_json(const Configuration& configuration, const RunSetup& run
   for (const auto& column : run_columns()) put(json, column.name, column.unit, column.value(end));
   const RunTotals totals{end, state.monitor, cost, memory_mb};
   for (const auto& total : run_totals()) put(json, total.name, total.unit, total.value(totals));
-  json["blas"] = blas_description();
+  json["blas"] = suitesparse::blas_description();
   for (const auto& [name, extent] : tables)
     json["tables"][name] = {{"bytes", extent.bytes}, {"crc32", formatted("%08x", extent.checksum)}};
   return json.dump(2) + "\n";
@@ -95,14 +95,14 @@ std::string summary_json(const Configuration& configuration, const RunSetup& run
 
 // Of a sphere nothing separates where f0'' + ε² l(l + 1)/R² > 0 even for c halfway and l = 1. Other
 // surfaces are longer than wide: l(l + 1)/R² is taken as half of that.
-bool is_as_wide_as(const std::string& surface, const CahnHilliardModel& model) {
+bool is_as_wide_as(const std::string& surface, const problem::CahnHilliardModel& model) {
   const double stiffness = (surface == "sphere" ? 2 : 1) * model.epsilon * model.epsilon;
   return stiffness > -model.well.second(0.5 * (model.well.a + model.well.b));
 }
 
-std::string resolution_text(const Configuration& configuration, const RunSetup& run) {
+std::string resolution_text(const config::Configuration& configuration, const RunSetup& run) {
   constexpr double kCoarse = 4;  // h/epsilon beyond which the mesh shapes the boundaries
-  const CahnHilliardModel& model = run.problem->model();
+  const problem::CahnHilliardModel& model = run.problem->model();
   const double epsilon = model.epsilon, ratio = run.space->h() / epsilon;
   return formatted(
       "epsilon = %g um = %g R, h/epsilon = %.2f, %.1f %% of its gradient energy resolved%s",
@@ -114,7 +114,7 @@ std::string resolution_text(const Configuration& configuration, const RunSetup& 
 }
 
 // The length of the noise decides how many rafts survive (docs/guide.md).
-std::string initial_text(const Configuration& configuration, const RunSetup& run) {
+std::string initial_text(const config::Configuration& configuration, const RunSetup& run) {
   const std::string kind = configuration.options().initial;
   if (kind != "noise") return kind;
   const double length = configuration.noise_length();
@@ -129,14 +129,14 @@ std::string repeated_times_text(const RunSetup& run) {
          "; given more than once: " + joined(repeated, ", ");
 }
 
-void print_setup(const Configuration& configuration, const RunSetup& run) {
-  const Units& units = run.units;
-  say("traceraft %s\n", kVersion);
+void print_setup(const config::Configuration& configuration, const RunSetup& run) {
+  const physics::Units& units = run.units;
+  text::say("traceraft %s\n", kVersion);
   line("case", configuration.options().case_name);
   line("surface", formatted("%s, R = %g um, area %.6g %s", configuration.options().surface.c_str(),
                             units.radius_um, run.space->area * units.area(),
-                            unit_name(Unit::area, units.scaled).c_str()));
-  const SurfaceSpace::Totals& totals = run.space->totals;
+                            text::unit_name(text::Unit::area, units.scaled).c_str()));
+  const fem::SurfaceSpace::Totals& totals = run.space->totals;
   line("mesh",
        formatted("%lld cells per edge, %lld cut tetrahedra, %lld nodes, %lld unknowns",
                  configuration.options().cells, static_cast<long long>(totals.elements),
@@ -148,7 +148,7 @@ void print_setup(const Configuration& configuration, const RunSetup& run) {
   if (const double longest = run.problem->longest_step(); longest < run.t_end)
     line("steps", formatted("at least %.0f: its effects limit a step to %g %s",
                             std::ceil(run.t_end / longest), longest * units.time(),
-                            unit_name(Unit::time, units.scaled).c_str()));
+                            text::unit_name(text::Unit::time, units.scaled).c_str()));
   line("units", formatted("length R = %g um, time R^2/D = %g s; the run ends at %g s = %g R^2/D",
                           units.radius_um, units.seconds_per_unit(),
                           run.t_end * units.seconds_per_unit(), run.t_end));
@@ -163,18 +163,19 @@ void print_setup(const Configuration& configuration, const RunSetup& run) {
       formatted("%s with %s, tolerance %g, %d %s%s, %s", configuration.options().integrator.c_str(),
                 configuration.options().linear_solver.c_str(), configuration.options().tolerance,
                 workers, run.ranks->size() > 1 ? "rank" : "thread", workers == 1 ? "" : "s",
-                blas_description().c_str()));
+                suitesparse::blas_description().c_str()));
 }
 
-void print_summary(const Configuration& configuration, const RunSetup& run, const RunState& state,
-                   const RunResult& result, const RunCost& cost, double memory_mb,
-                   const RunFolder& folder) {
-  const Units& units = run.units;
-  const Observables& row = state.observables;
-  const IntegratorStatistics steps = run.integrator->statistics();
-  const LinearStatistics linear = run.integrator->linear_statistics();
-  const std::string length = unit_name(Unit::length, units.scaled);
-  say("\n%s at t = %.6g%s\n", end_name(result.end), row.t * units.time(), units.scaled ? "" : " s");
+void print_summary(const config::Configuration& configuration, const RunSetup& run,
+                   const simulation::RunState& state, const simulation::RunResult& result,
+                   const RunCost& cost, double memory_mb, const RunFolder& folder) {
+  const physics::Units& units = run.units;
+  const observables::Observables& row = state.observables;
+  const time::IntegratorStatistics steps = run.integrator->statistics();
+  const linear::LinearStatistics linear = run.integrator->linear_statistics();
+  const std::string length = text::unit_name(text::Unit::length, units.scaled);
+  text::say("\n%s at t = %.6g%s\n", end_name(result.end), row.t * units.time(),
+            units.scaled ? "" : " s");
   if (!result.why.empty()) line("why", result.why);
   line("rafts", formatted("%d", row.rafts) +
                     (row.raft_fraction > 0.5
@@ -205,17 +206,17 @@ void print_summary(const Configuration& configuration, const RunSetup& run, cons
           "%ld, %.1f iterations each, %ld set-ups, %ld renewed, %ld fallbacks", linear.solves,
           static_cast<double>(linear.iterations) / static_cast<double>(std::max(1L, linear.solves)),
           linear.setups, steps.renewals, steps.fallbacks));
-  line("time",
-       formatted("%s wall, %s CPU, peak memory %.0f MB", clock_text(cost.wall_seconds).c_str(),
-                 clock_text(cost.cpu_seconds).c_str(), memory_mb));
+  line("time", formatted("%s wall, %s CPU, peak memory %.0f MB",
+                         output::clock_text(cost.wall_seconds).c_str(),
+                         output::clock_text(cost.cpu_seconds).c_str(), memory_mb));
   line("tables", folder.table("series.csv").string());
   if (std::filesystem::exists(folder.path / "view.png")) {
     line("open next", (folder.path / "view.png").string() +
                           " (front and back at the latest output time; rafts are yellow)");
-    line("or", "paraview " + in_shell((folder.path / "fields.pvd").string()));
-    line("or",
-         "traceraft report " + in_shell(folder.path.string()) + " (writes a page with charts)");
+    line("or", "paraview " + text::in_shell((folder.path / "fields.pvd").string()));
+    line("or", "traceraft report " + text::in_shell(folder.path.string()) +
+                   " (writes a page with charts)");
   }
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::run

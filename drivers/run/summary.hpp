@@ -9,18 +9,18 @@
 #include "drivers/run/run_setup.hpp"
 #include "kernel/simulation/run_loop.hpp"
 
-namespace traceraft {
+namespace traceraft::run {
 
-std::string summary_json(const Configuration& configuration, const RunSetup& run,
-                         const RunState& state, const RunResult& result, const RunCost& cost,
-                         double memory_mb, const TableExtents& tables);
+std::string summary_json(const config::Configuration& configuration, const RunSetup& run,
+                         const simulation::RunState& state, const simulation::RunResult& result,
+                         const RunCost& cost, double memory_mb, const TableExtents& tables);
 
 // How well the mesh resolves the phase boundary, and a warning if it does not.
-std::string resolution_text(const Configuration& configuration, const RunSetup& run);
+std::string resolution_text(const config::Configuration& configuration, const RunSetup& run);
 
-void print_setup(const Configuration& configuration, const RunSetup& run);
-void print_summary(const Configuration& configuration, const RunSetup& run, const RunState& state,
-                   const RunResult& result, const RunCost& cost, double memory_mb,
-                   const RunFolder& folder);
+void print_setup(const config::Configuration& configuration, const RunSetup& run);
+void print_summary(const config::Configuration& configuration, const RunSetup& run,
+                   const simulation::RunState& state, const simulation::RunResult& result,
+                   const RunCost& cost, double memory_mb, const RunFolder& folder);
 
-}  // namespace traceraft
+}  // namespace traceraft::run

@@ -5,7 +5,7 @@
 #include "backends/zlib/checksum.hpp"
 #include "kernel/core/error.hpp"
 
-namespace traceraft {
+namespace traceraft::run {
 namespace {
 
 constexpr std::uint64_t kLargestTable = std::uint64_t{1} << 36;
@@ -19,12 +19,12 @@ std::uint64_t checked_size(const std::filesystem::path& path, const TableExtent&
 }  // namespace
 
 void require_extent(const std::filesystem::path& path, const TableExtent& extent) {
-  const std::string text = read_file(path, kLargestTable);
+  const std::string text = posix::read_file(path, kLargestTable);
   if (text.size() < extent.bytes)
     throw DamagedFile(path.string() + " has lost rows: it should have " +
                       std::to_string(extent.bytes) + " bytes");
   const std::string_view counted = std::string_view(text).substr(0, extent.bytes);
-  if (crc32_of(counted) != extent.checksum)
+  if (zlib::crc32_of(counted) != extent.checksum)
     throw DamagedFile(
         path.string() +
         " is damaged: its rows have changed; restore it, or start again in another folder");
@@ -35,7 +35,7 @@ TableFile::TableFile(const std::filesystem::path& path, const TableExtent& exten
 
 void TableFile::append(const std::string& rows) {
   file_.append(rows);
-  checksum_ = crc32_of(rows, checksum_);
+  checksum_ = zlib::crc32_of(rows, checksum_);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::run

@@ -8,7 +8,7 @@
 
 #include "backends/posix/durable_file.hpp"
 
-namespace traceraft {
+namespace traceraft::run {
 
 struct TableExtent {
   std::uint64_t bytes = 0;
@@ -31,11 +31,11 @@ class TableFile {
   TableExtent extent() const { return {file_.size(), checksum_}; }
 
  private:
-  AppendFile file_;
+  posix::AppendFile file_;
   std::uint32_t checksum_;
 };
 
 // Throws DamagedFile unless the file begins with these bytes, IoError if it cannot be read.
 void require_extent(const std::filesystem::path& path, const TableExtent& extent);
 
-}  // namespace traceraft
+}  // namespace traceraft::run

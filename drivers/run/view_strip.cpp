@@ -6,13 +6,14 @@
 #include "backends/gif/label.hpp"
 #include "kernel/core/parameters.hpp"
 
-namespace traceraft {
+namespace traceraft::run {
 namespace {
 
 constexpr int kFooter = 56;  // pixels below the views: times, and below them the legend
 
 // A square of `from` that begins at a column, at half its size.
-void copy_half(const Image& from, int first_column, Image& to, int left, int top) {
+void copy_half(const observables::Image& from, int first_column, observables::Image& to, int left,
+               int top) {
   const int size = from.height / 2;
   const auto at = [&](int x, int y, int channel) {
     return int{from.rgb[3 * (static_cast<std::size_t>(y) * from.width + x) + channel]};
@@ -36,22 +37,23 @@ double round_length(double x) {
   return power;
 }
 
-void draw_scale_bar(Image& image, int size, int top, const StripLegend& legend) {
+void draw_scale_bar(observables::Image& image, int size, int top, const StripLegend& legend) {
   const double length = round_length(0.6 * legend.half_width);
   const int pixels = static_cast<int>(std::lround(length / (2 * legend.half_width) * size));
   constexpr int kLeft = 8;
-  fill(image, kLeft, top + 6, pixels, 4, kInk);
-  write_text(image, kLeft + pixels + 6, top, format_number(length) + " " + legend.length_unit);
+  observables::fill(image, kLeft, top + 6, pixels, 4, observables::kInk);
+  gif::write_text(image, kLeft + pixels + 6, top, format_number(length) + " " + legend.length_unit);
 }
 
-void draw_colours(Image& image, int top, const StripLegend& legend) {
+void draw_colours(observables::Image& image, int top, const StripLegend& legend) {
   constexpr int kWidth = 60;
   const std::string low = "c = " + format_number(legend.dark), high = format_number(legend.bright);
-  const int right = image.width - 8 - text_width(high), left = right - 6 - kWidth;
+  const int right = image.width - 8 - gif::text_width(high), left = right - 6 - kWidth;
   for (int x = 0; x < kWidth; ++x)
-    fill(image, left + x, top, 1, kTextHeight, surface_colour((x + 0.5) / kWidth));
-  write_text(image, left - 6 - text_width(low), top, low);
-  write_text(image, right, top, high);
+    observables::fill(image, left + x, top, 1, gif::kTextHeight,
+                      observables::surface_colour((x + 0.5) / kWidth));
+  gif::write_text(image, left - 6 - gif::text_width(low), top, low);
+  gif::write_text(image, right, top, high);
 }
 
 }  // namespace
@@ -64,9 +66,9 @@ std::vector<std::size_t> strip_choice(std::size_t count, std::size_t most) {
   return chosen;
 }
 
-Image compose_strip(const std::vector<StripView>& views, const StripLegend& legend) {
+observables::Image compose_strip(const std::vector<StripView>& views, const StripLegend& legend) {
   const int size = views.front().front_and_back.height / 2;
-  Image strip;
+  observables::Image strip;
   strip.width = size * static_cast<int>(views.size());
   strip.height = 2 * size + kFooter;
   strip.rgb.assign(3 * static_cast<std::size_t>(strip.width) * strip.height, 255);
@@ -75,11 +77,11 @@ Image compose_strip(const std::vector<StripView>& views, const StripLegend& lege
     const int left = size * static_cast<int>(k);
     copy_half(image, 0, strip, left, 0);
     copy_half(image, image.width / 2, strip, left, size);
-    write_text(strip, left + (size - text_width(label)) / 2, 2 * size + 8, label);
+    gif::write_text(strip, left + (size - gif::text_width(label)) / 2, 2 * size + 8, label);
   }
   draw_scale_bar(strip, size, 2 * size + 34, legend);
   draw_colours(strip, 2 * size + 34, legend);
   return strip;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::run

@@ -6,11 +6,11 @@
 
 #include "kernel/observables/surface_view.hpp"
 
-namespace traceraft {
+namespace traceraft::run {
 
 struct StripView {
-  Image front_and_back;  // as draw_front_and_back makes it
-  std::string label;     // "t = 12 s"
+  observables::Image front_and_back;  // as draw_front_and_back makes it
+  std::string label;                  // "t = 12 s"
 };
 
 // What the length of the scale bar and the ends of the colours are.
@@ -21,10 +21,10 @@ struct StripLegend {
 };
 
 // All views of one size, which is an even number of pixels; each is shown at half of that.
-Image compose_strip(const std::vector<StripView>& views, const StripLegend& legend);
+observables::Image compose_strip(const std::vector<StripView>& views, const StripLegend& legend);
 
 // Which of `count` pictures a strip shows: at most `most`, evenly spread, the first and the last
 // among them. Ascending.
 std::vector<std::size_t> strip_choice(std::size_t count, std::size_t most = 6);
 
-}  // namespace traceraft
+}  // namespace traceraft::run

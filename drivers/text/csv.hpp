@@ -6,12 +6,12 @@
 #include "backends/zlib/checksum.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::text {
 
 // A remark after the last row, by which damage to the table is noticed.
 inline constexpr char kChecksumRemark[] = "# CRC-32 of the rows above: ";
 inline std::string checksum_line(const std::string& table) {
-  return kChecksumRemark + formatted("%08x", crc32_of(table)) + "\n";
+  return kChecksumRemark + formatted("%08x", zlib::crc32_of(table)) + "\n";
 }
 
 inline std::string csv_quoted(const std::string& text) {
@@ -25,4 +25,4 @@ inline std::string csv_cell(const std::string& text) {
   return text.find_first_of(",\"\n") == std::string::npos ? text : csv_quoted(text);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::text

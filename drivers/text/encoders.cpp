@@ -8,7 +8,7 @@
 #include "drivers/text/utf8.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::text {
 namespace {
 
 // `replace` gets the code point and the bytes it stands as.
@@ -184,4 +184,4 @@ std::string in_one_line(const std::string& text, std::size_t most) {
   return head + gap + tail;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::text

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string>
 
-namespace traceraft {
+namespace traceraft::text {
 
 // A string literal of gnuplot, with its single quotes, within which nothing else is special. Single
 // quotes become U+2019: two of them mean one, but not where a literal begins (gnuplot 5.4). Control
@@ -45,4 +45,4 @@ std::string in_terminal(const std::string& text);
 // out.
 std::string in_one_line(const std::string& text, std::size_t most);
 
-}  // namespace traceraft
+}  // namespace traceraft::text

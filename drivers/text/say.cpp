@@ -6,7 +6,7 @@
 
 #include "backends/posix/process.hpp"
 
-namespace traceraft {
+namespace traceraft::text {
 namespace {
 
 std::mutex mutex;
@@ -17,7 +17,7 @@ void note_error(bool failed) {
   const std::lock_guard lock(mutex);
   if (first_error != 0) return;
   first_error = errno != 0 ? errno : EIO;
-  if (first_error == EPIPE) hang_up();
+  if (first_error == EPIPE) posix::hang_up();
 }
 
 }  // namespace
@@ -44,4 +44,4 @@ void say_error(const std::string& message) {
   (void)std::fwrite(line.data(), 1, line.size(), stderr);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::text

@@ -8,7 +8,7 @@
 
 #include "drivers/text/encoders.hpp"
 
-namespace traceraft {
+namespace traceraft::text {
 
 inline constexpr std::size_t kLongestMessage = 300;  // characters
 
@@ -68,4 +68,4 @@ void say(const char* format, const Values&... values) {
   say_encoded(say_detail::with_arguments(format, say_detail::encoded(values)...));
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::text

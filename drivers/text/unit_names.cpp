@@ -1,6 +1,6 @@
 #include "drivers/text/unit_names.hpp"
 
-namespace traceraft {
+namespace traceraft::text {
 
 std::string unit_name(Unit unit, bool scaled) {
   switch (unit) {
@@ -35,4 +35,4 @@ std::string without_unit(const std::string& heading) {
   return heading;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::text

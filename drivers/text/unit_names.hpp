@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace traceraft {
+namespace traceraft::text {
 
 enum class Unit { count, ratio, time, length, area, seconds, megabytes };
 
@@ -16,4 +16,4 @@ std::string unit_name(Unit unit, bool scaled);
 std::string with_unit(const std::string& name, Unit unit, bool scaled);
 std::string without_unit(const std::string& heading);
 
-}  // namespace traceraft
+}  // namespace traceraft::text

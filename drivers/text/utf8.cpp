@@ -1,6 +1,6 @@
 #include "drivers/text/utf8.hpp"
 
-namespace traceraft {
+namespace traceraft::text {
 namespace {
 
 struct Lead {
@@ -47,4 +47,4 @@ bool is_control(char32_t point) {
   return point < 0x20 || (point >= 0x7F && point <= 0x9F);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::text

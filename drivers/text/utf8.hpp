@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace traceraft {
+namespace traceraft::text {
 
 struct CodePoint {
   char32_t value;    // the byte itself if it begins no valid sequence
@@ -21,4 +21,4 @@ bool is_utf8(std::string_view text);
 // C0 and C1 controls and DEL.
 bool is_control(char32_t point);
 
-}  // namespace traceraft
+}  // namespace traceraft::text

@@ -23,7 +23,7 @@
 #include "verification/bench/bench.hpp"
 #include "verification/studies/studies.hpp"
 
-namespace traceraft {
+namespace traceraft::verify {
 namespace {
 
 namespace fs = std::filesystem;
@@ -38,35 +38,37 @@ struct VerifyRequest {
   std::string document;                   // Markdown file to write; "" for none
 };
 
-bool holds(const std::vector<StudyEntry>& studies, const StudyEntry& study) {
+bool holds(const std::vector<studies::StudyEntry>& studies, const studies::StudyEntry& study) {
   return std::any_of(studies.begin(), studies.end(),
-                     [&](const StudyEntry& entry) { return entry.name == study.name; });
+                     [&](const studies::StudyEntry& entry) { return entry.name == study.name; });
 }
 
-std::vector<StudyEntry> chosen_studies(const VerifyRequest& request) {
-  std::vector<StudyEntry> chosen;
-  const auto choose = [&](const StudyEntry& study) {
+std::vector<studies::StudyEntry> chosen_studies(const VerifyRequest& request) {
+  std::vector<studies::StudyEntry> chosen;
+  const auto choose = [&](const studies::StudyEntry& study) {
     if (!holds(chosen, study)) chosen.push_back(study);
   };
   for (const std::string& name : request.studies) {
     if (name == "list") throw InputError("verify: list cannot be combined with studies");
-    if (name != "all") choose(studies().find(name, {"all", "list"}));
-    for (const StudyEntry& study : studies())
+    if (name != "all") choose(studies::studies().find(name, {"all", "list"}));
+    for (const studies::StudyEntry& study : studies::studies())
       if (name == "all" && !study.by_name_only) choose(study);
   }
   return chosen;
 }
 
 // A failure is a result of the study; only what no study is to blame for goes further.
-StudyResult carry_out(const StudyEntry& study, const BenchRequest& request, StatusLine& line) {
+StudyResult carry_out(const studies::StudyEntry& study, const bench::BenchRequest& request,
+                      output::StatusLine& line) {
   StudyResult result{study, {}, "", 0};
   const Stopwatch watch;
-  BenchRequest with_progress = request;
+  bench::BenchRequest with_progress = request;
   with_progress.progress = [&](double share) {
-    if (line.due()) line.show(share, study.name + "  " + clock_text(watch.seconds()) + " elapsed");
+    if (line.due())
+      line.show(share, study.name + "  " + output::clock_text(watch.seconds()) + " elapsed");
   };
   try {
-    result.report = study.run(Bench(with_progress));
+    result.report = study.run(bench::Bench(with_progress));
   } catch (const IoError&) {
     throw;
   } catch (const std::runtime_error& error) {
@@ -94,46 +96,47 @@ std::vector<std::string> flags_of(const VerifyRequest& request, int threads) {
   return flags;
 }
 
-VerificationContext context_of(const VerifyRequest& request, const BenchRequest& bench) {
+VerificationContext context_of(const VerifyRequest& request, const bench::BenchRequest& bench) {
   std::string command = "traceraft verify";
   for (const std::string& name : request.studies) command += " " + name;
   for (const std::string& flag : flags_of(request, request.threads)) command += " " + flag;
   if (request.jobs > 0) command += " --jobs " + std::to_string(request.jobs);
-  if (!request.document.empty()) command += " --document " + in_shell(request.document);
+  if (!request.document.empty()) command += " --document " + text::in_shell(request.document);
   // The program itself decides the numbers, and what was asked of it.
   const std::string threads = std::to_string(bench.threads) + " threads";
-  return {command, program_text() + ", " + threads + ".",
-          "program " + program_checksum() + (request.quick ? ", quick" : "") + ", integrator " +
-              or_default(request.integrator) + ", linear solver " +
+  return {command, output::program_text() + ", " + threads + ".",
+          "program " + output::program_checksum() + (request.quick ? ", quick" : "") +
+              ", integrator " + or_default(request.integrator) + ", linear solver " +
               or_default(request.linear_solver) + ", " + threads};
 }
 
 int list_studies() {
-  for (const StudyEntry& study : studies())
-    say("  %-14s %s%s\n", study.name, study.summary,
-        study.by_name_only ? " (not part of all)" : "");
-  return kSuccess;
+  for (const studies::StudyEntry& study : studies::studies())
+    text::say("  %-14s %s%s\n", study.name, study.summary,
+              study.by_name_only ? " (not part of all)" : "");
+  return drivers::kSuccess;
 }
 
 // Those that one can carry out side by side.
-std::vector<StudyEntry> sharing(const std::vector<StudyEntry>& studies) {
-  std::vector<StudyEntry> found;
-  for (const StudyEntry& study : studies)
+std::vector<studies::StudyEntry> sharing(const std::vector<studies::StudyEntry>& studies) {
+  std::vector<studies::StudyEntry> found;
+  for (const studies::StudyEntry& study : studies)
     if (!study.by_name_only && !study.starts_ranks) found.push_back(study);
   return found;
 }
 
-std::vector<StudyEntry> not_measured(const std::vector<StudyEntry>& chosen, const fs::path& folder,
-                                     const std::string& measured_with) {
-  std::vector<StudyEntry> left;
-  for (const StudyEntry& study : chosen)
+std::vector<studies::StudyEntry> not_measured(const std::vector<studies::StudyEntry>& chosen,
+                                              const fs::path& folder,
+                                              const std::string& measured_with) {
+  std::vector<studies::StudyEntry> left;
+  for (const studies::StudyEntry& study : chosen)
     if (!measured_before(folder, study, measured_with)) left.push_back(study);
   return left;
 }
 
 void print_verdicts(const std::vector<StudyResult>& results) {
   for (const StudyResult& result : results)
-    say("  %-14s %s\n", result.study.name, outcome_text(result.outcome()));
+    text::say("  %-14s %s\n", result.study.name, outcome_text(result.outcome()));
 }
 
 void refuse_foreign_files(const fs::path& folder) {
@@ -142,7 +145,7 @@ void refuse_foreign_files(const fs::path& folder) {
   std::vector<std::string> own = files_of_a_verification();
   for (const std::string& name : files_of_a_verification()) own.push_back("job-*/" + name);
   own.emplace_back("job-*.log");
-  if (const fs::path foreign = first_foreign(folder, own); !foreign.empty())
+  if (const fs::path foreign = posix::first_foreign(folder, own); !foreign.empty())
     throw InputError("--out: " + folder.string() + " holds " + foreign.string() +
                      ", which verify did not write; choose another folder");
 }
@@ -153,37 +156,38 @@ int verify(const VerifyRequest& request) {
     throw InputError("--document: " + request.document +
                      " needs an extension, as in report.md; the figures go into the folder of this "
                      "name without extension");
-  const std::vector<StudyEntry> chosen = chosen_studies(request);
+  const std::vector<studies::StudyEntry> chosen = chosen_studies(request);
   const bool alone = chosen.size() == 1 || (request.jobs == 0 && !request.quick);
-  const Jobs jobs = jobs_of(alone ? 1 : request.jobs, request.threads);
-  BenchRequest bench{request.quick, request.integrator, request.linear_solver, jobs.threads};
-  (void)Bench(bench);  // refuses unknown names before anything is written
-  const fs::path folder = request.out.empty() ? first_free_folder("verify") : request.out;
+  const jobs::Jobs jobs = jobs::jobs_of(alone ? 1 : request.jobs, request.threads);
+  bench::BenchRequest bench{request.quick, request.integrator, request.linear_solver, jobs.threads};
+  (void)bench::Bench(bench);  // refuses unknown names before anything is written
+  const fs::path folder = request.out.empty() ? run::first_free_folder("verify") : request.out;
   refuse_foreign_files(folder);
   fs::create_directories(folder);
-  const FolderLock lock(folder);
-  bench.run_program = program_runner(folder / "ranks");
+  const posix::FolderLock lock(folder);
+  bench.run_program = jobs::program_runner(folder / "ranks");
   const VerificationContext context = context_of(request, bench);
 
-  const std::vector<StudyEntry> left = not_measured(chosen, folder, context.measured_with);
+  const std::vector<studies::StudyEntry> left = not_measured(chosen, folder, context.measured_with);
   const StudyJobs side_by_side{sharing(left), flags_of(request, jobs.threads),
                                context.measured_with, jobs.at_a_time, request.quiet};
-  const std::string go_on =
-      request.quiet ? ""
-                    : "to continue, give the same command with --out " + in_shell(folder.string());
+  const std::string go_on = request.quiet ? ""
+                                          : "to continue, give the same command with --out " +
+                                                text::in_shell(folder.string());
   if (jobs.at_a_time > 1 && !carry_out_side_by_side(side_by_side, folder)) {
-    if (!request.quiet) say("%s\n", go_on);
-    return kInterrupted;
+    if (!request.quiet) text::say("%s\n", go_on);
+    return drivers::kInterrupted;
   }
-  end_on_stop_signals(kInterrupted, go_on);  // studies are on disk as soon as they are done
-  StatusLine line(request.quiet);
+  posix::end_on_stop_signals(drivers::kInterrupted,
+                             go_on);  // studies are on disk as soon as they are done
+  output::StatusLine line(request.quiet);
   std::vector<StudyResult> results;
   bool all = true;
-  for (const StudyEntry& study : chosen) {
-    if (!request.quiet) say("%s: %s\n\n", study.name, study.summary);
+  for (const studies::StudyEntry& study : chosen) {
+    if (!request.quiet) text::say("%s: %s\n\n", study.name, study.summary);
     auto before = measured_before(folder, study, context.measured_with);
     if (before && !holds(left, study) && !request.quiet)
-      say("  (measured earlier, in %s)\n\n", folder);
+      text::say("  (measured earlier, in %s)\n\n", folder);
     results.push_back(before ? std::move(*before) : carry_out(study, bench, line));
     if (!request.quiet) print_result(results.back());
     all = all && results.back().outcome() != StudyOutcome::fails;
@@ -193,13 +197,13 @@ int verify(const VerifyRequest& request) {
   if (!request.document.empty()) write_document(request.document, folder, context, results);
   if (!request.quiet) {
     print_verdicts(results);
-    if (!missing.empty()) say("\nmissing charts: %s\n", missing);
-    say("\nopen next: %s\n", (folder / "verify.html"));
+    if (!missing.empty()) text::say("\nmissing charts: %s\n", missing);
+    text::say("\nopen next: %s\n", (folder / "verify.html"));
   }
-  return all ? kSuccess : kClaimFailed;
+  return all ? drivers::kSuccess : drivers::kClaimFailed;
 }
 
-Action define_verify(CLI::App& app) {
+drivers::Action define_verify(CLI::App& app) {
   const auto request = std::make_shared<VerifyRequest>();
   app.add_option("studies", request->studies, "names of studies, or all; list prints the names")
       ->type_name("STUDY")
@@ -237,9 +241,9 @@ Action define_verify(CLI::App& app) {
 
 }  // namespace
 
-Command verify_command() {
+drivers::Command verify_command() {
   return {"verify", "measure the claims about the program: conservation, convergence, theory",
-          Ranks::one, define_verify};
+          drivers::Ranks::one, define_verify};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::verify

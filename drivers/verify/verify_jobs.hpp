@@ -7,10 +7,10 @@
 
 #include "verification/studies/study.hpp"
 
-namespace traceraft {
+namespace traceraft::verify {
 
 struct StudyJobs {
-  std::vector<StudyEntry> studies;
+  std::vector<studies::StudyEntry> studies;
   std::vector<std::string> flags;  // of `verify`, the same for all
   std::string measured_with;       // that is what these flags amount to
   int at_a_time;
@@ -21,4 +21,4 @@ struct StudyJobs {
 // stop before that. Throws IoError if a process ends without a result.
 bool carry_out_side_by_side(const StudyJobs& jobs, const std::filesystem::path& folder);
 
-}  // namespace traceraft
+}  // namespace traceraft::verify

@@ -14,31 +14,31 @@
 #include "kernel/core/text.hpp"
 #include "verification/studies/studies.hpp"
 
-namespace traceraft {
+namespace traceraft::verify {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLargestChart = 1 << 24;  // bytes
 
-std::string measured_text(const Claim& claim) {
+std::string measured_text(const studies::Claim& claim) {
   const std::string value = formatted("%.4g", claim.measured);
   return claim.uncertainty > 0 ? value + formatted(" +- %.1g", claim.uncertainty) : value;
 }
 
-Row claim_row(const Claim& claim) {
-  Row row = {claim.what, measured_text(claim)};
+output::Row claim_row(const studies::Claim& claim) {
+  output::Row row = {claim.what, measured_text(claim)};
   if (claim.expected) {
-    row.push_back(short_number(*claim.expected));
+    row.push_back(output::short_number(*claim.expected));
     row.push_back("+- " + formatted("%.3g", 0.5 * (claim.high - claim.low)));
   } else if (std::isinf(claim.low)) {
-    row.push_back("at most " + short_number(claim.high));
+    row.push_back("at most " + output::short_number(claim.high));
     row.push_back("");
   } else if (std::isinf(claim.high)) {
-    row.push_back("at least " + short_number(claim.low));
+    row.push_back("at least " + output::short_number(claim.low));
     row.push_back("");
   } else {
-    row.push_back(short_number(claim.low) + " to " + short_number(claim.high));
+    row.push_back(output::short_number(claim.low) + " to " + output::short_number(claim.high));
     row.push_back("");
   }
   row.push_back(outcome_text(claim.holds() ? StudyOutcome::holds : StudyOutcome::fails));
@@ -64,8 +64,8 @@ std::string outcome_sentence(const StudyResult& result) {
   return "";
 }
 
-std::vector<Row> overview_rows(const std::vector<StudyResult>& results) {
-  std::vector<Row> rows = {{"study", "what", "claims", "verdict", "seconds"}};
+std::vector<output::Row> overview_rows(const std::vector<StudyResult>& results) {
+  std::vector<output::Row> rows = {{"study", "what", "claims", "verdict", "seconds"}};
   for (const StudyResult& result : results)
     rows.push_back({result.study.name, result.study.summary,
                     std::to_string(result.report.claims.size()), outcome_text(result.outcome()),
@@ -78,13 +78,13 @@ std::string chart_name(const StudyResult& result, std::size_t number) {
 }
 
 // Draws charts into the folder and the page. "" or why some are missing.
-std::string draw_charts(const fs::path& folder, const StudyResult& result, Page& page) {
+std::string draw_charts(const fs::path& folder, const StudyResult& result, output::Page& page) {
   std::string missing;
   for (std::size_t k = 0; k < result.report.charts.size(); ++k) {
-    const Chart& chart = result.report.charts[k];
+    const bench::Chart& chart = result.report.charts[k];
     try {
-      const std::string svg = draw_chart(chart, folder / chart_name(result, k));
-      if (svg.empty()) return kNoGnuplot;
+      const std::string svg = output::draw_chart(chart, folder / chart_name(result, k));
+      if (svg.empty()) return output::kNoGnuplot;
       page.figure(svg, chart.title);
     } catch (const IoError& error) {  // the tables are worth more than their pictures
       missing = error.what();
@@ -95,56 +95,58 @@ std::string draw_charts(const fs::path& folder, const StudyResult& result, Page&
 
 }  // namespace
 
-std::vector<Row> claim_rows(const std::vector<Claim>& claims) {
-  std::vector<Row> rows = {{"claim", "measured", "expected", "tolerance", "verdict"}};
-  for (const Claim& claim : claims) rows.push_back(claim_row(claim));
+std::vector<output::Row> claim_rows(const std::vector<studies::Claim>& claims) {
+  std::vector<output::Row> rows = {{"claim", "measured", "expected", "tolerance", "verdict"}};
+  for (const studies::Claim& claim : claims) rows.push_back(claim_row(claim));
   return rows;
 }
 
 void print_result(const StudyResult& result) {
-  for (const Table& table : result.report.tables) {
-    print_rows(table_rows(table));
-    say("\n");
+  for (const bench::Table& table : result.report.tables) {
+    output::print_rows(output::table_rows(table));
+    text::say("\n");
   }
-  for (const std::string& note : result.report.notes) say("  %s\n", note);
-  if (!result.report.notes.empty()) say("\n");
-  if (!result.report.claims.empty()) print_rows(claim_rows(result.report.claims));
+  for (const std::string& note : result.report.notes) text::say("  %s\n", note);
+  if (!result.report.notes.empty()) text::say("\n");
+  if (!result.report.claims.empty()) output::print_rows(claim_rows(result.report.claims));
   if (const std::string outcome = outcome_sentence(result); !outcome.empty())
-    say("  %s\n", outcome);
-  say("\n  %.1f s\n\n", result.seconds);
-  flush_output();
+    text::say("  %s\n", outcome);
+  text::say("\n  %.1f s\n\n", result.seconds);
+  text::flush_output();
 }
 
 std::vector<std::string> files_of_a_verification() {
-  std::vector<std::string> names = files_of_a_report();
-  names.insert(names.end(), {kLockFile, "verify.json", "verify.html", "ranks/log"});
-  for (const StudyEntry& study : studies())
+  std::vector<std::string> names = run::files_of_a_report();
+  names.insert(names.end(), {posix::kLockFile, "verify.json", "verify.html", "ranks/log"});
+  for (const studies::StudyEntry& study : studies::studies())
     for (const char* ending : {".json", "-*.csv", "-*.gp", "-*.svg", "-*.log"})
       names.push_back(study.name + ending);
-  for (const std::string& name : files_of_a_run()) names.push_back("ranks/run/" + name);
+  for (const std::string& name : run::files_of_a_run()) names.push_back("ranks/run/" + name);
   return names;
 }
 
 void write_study(const fs::path& folder, const StudyResult& result, const std::string& with) {
-  for (const Table& table : result.report.tables)
-    write_durably(folder / (result.study.name + "-" + table.name + ".csv"), csv_text(table));
-  write_durably(folder / (result.study.name + ".json"), to_json(result, with).dump(2) + "\n");
+  for (const bench::Table& table : result.report.tables)
+    posix::write_durably(folder / (result.study.name + "-" + table.name + ".csv"),
+                         output::csv_text(table));
+  posix::write_durably(folder / (result.study.name + ".json"),
+                       to_json(result, with).dump(2) + "\n");
 }
 
 std::string write_verification(const fs::path& folder, const VerificationContext& context,
                                const std::vector<StudyResult>& results) {
-  Json all;
+  input::Json all;
   all["command"] = context.command;
   all["conditions"] = context.conditions;
-  Json studies = Json::array();
+  input::Json studies = input::Json::array();
   for (const StudyResult& result : results)
     studies.push_back(to_json(result, context.measured_with));
   all["studies"] = studies;
   // Folders may have names that are not UTF-8.
-  write_durably(folder / "verify.json",
-                all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  posix::write_durably(folder / "verify.json",
+                       all.dump(2, ' ', false, input::Json::error_handler_t::replace) + "\n");
 
-  Page page("Verification");
+  output::Page page("Verification");
   page.paragraph(context.conditions + " This command repeats it: " + context.command);
   for (const char* paragraph : kIntroduction) page.paragraph(paragraph);
   page.table(overview_rows(results));
@@ -156,10 +158,10 @@ std::string write_verification(const fs::path& folder, const VerificationContext
     for (const std::string& note : result.report.notes) page.paragraph(note);
     if (!result.report.claims.empty()) page.table(claim_rows(result.report.claims));
     if (const std::string why = draw_charts(folder, result, page); !why.empty()) missing = why;
-    for (const Table& table : result.report.tables) page.table(table_rows(table));
+    for (const bench::Table& table : result.report.tables) page.table(output::table_rows(table));
   }
   if (!missing.empty()) page.paragraph("Missing charts: " + missing + ".");
-  write_durably(folder / "verify.html", page.html());
+  posix::write_durably(folder / "verify.html", page.html());
   return missing;
 }
 
@@ -168,30 +170,31 @@ void write_document(const fs::path& path, const fs::path& folder,
   fs::path figures = path;
   figures.replace_extension();
   fs::create_directories(figures);
-  std::string text = "# Verification\n\n" + in_markdown(context.conditions) +
+  std::string text = "# Verification\n\n" + text::in_markdown(context.conditions) +
                      "\nThis command writes this document and its figures:\n\n    " +
-                     in_markdown_code(context.command) + "\n\n";
-  for (const char* paragraph : kIntroduction) text += in_markdown(paragraph) + "\n\n";
-  text += markdown_table(overview_rows(results), MarkdownLinks::to_headings);
+                     text::in_markdown_code(context.command) + "\n\n";
+  for (const char* paragraph : kIntroduction) text += text::in_markdown(paragraph) + "\n\n";
+  text += output::markdown_table(overview_rows(results), output::MarkdownLinks::to_headings);
   for (const StudyResult& result : results) {
     text += "## " + result.study.name + "\n\n`traceraft verify " + result.study.name +
-            "`: " + in_markdown(result.study.summary) + ".\n";
-    for (const std::string& note : result.report.notes) text += in_markdown(note) + "\n";
+            "`: " + text::in_markdown(result.study.summary) + ".\n";
+    for (const std::string& note : result.report.notes) text += text::in_markdown(note) + "\n";
     text += "\n";
     if (const std::string outcome = outcome_sentence(result); !outcome.empty())
-      text += in_markdown(outcome) + "\n\n";
-    if (!result.report.claims.empty()) text += markdown_table(claim_rows(result.report.claims));
+      text += text::in_markdown(outcome) + "\n\n";
+    if (!result.report.claims.empty())
+      text += output::markdown_table(claim_rows(result.report.claims));
     for (std::size_t k = 0; k < result.report.charts.size(); ++k) {
       const std::string name = chart_name(result, k) + ".svg";
       if (!fs::exists(folder / name)) continue;
-      write_durably(figures / name, read_file(folder / name, kLargestChart));
-      text += "![" + in_markdown(result.report.charts[k].title) + "](" +
-              in_markdown_link(figures.filename().string() + "/" + name) + ")\n\n";
+      posix::write_durably(figures / name, posix::read_file(folder / name, kLargestChart));
+      text += "![" + text::in_markdown(result.report.charts[k].title) + "](" +
+              text::in_markdown_link(figures.filename().string() + "/" + name) + ")\n\n";
     }
-    for (const Table& table : result.report.tables)
-      if (table.rows.size() <= 40) text += markdown_table(table_rows(table));
+    for (const bench::Table& table : result.report.tables)
+      if (table.rows.size() <= 40) text += output::markdown_table(output::table_rows(table));
   }
-  write_durably(path, text);
+  posix::write_durably(path, text);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::verify

@@ -7,10 +7,10 @@
 
 #include "drivers/verify/verify_result.hpp"
 
-namespace traceraft {
+namespace traceraft::verify {
 
 // claim · measured · expected · tolerance · verdict, for people. The first row is the heading.
-std::vector<std::vector<std::string>> claim_rows(const std::vector<Claim>& claims);
+std::vector<std::vector<std::string>> claim_rows(const std::vector<studies::Claim>& claims);
 
 void print_result(const StudyResult& result);
 
@@ -36,4 +36,4 @@ std::string write_verification(const std::filesystem::path& folder,
 void write_document(const std::filesystem::path& path, const std::filesystem::path& folder,
                     const VerificationContext& context, const std::vector<StudyResult>& results);
 
-}  // namespace traceraft
+}  // namespace traceraft::verify

@@ -4,49 +4,49 @@
 #include <cmath>
 #include <limits>
 
-namespace traceraft {
+namespace traceraft::verify {
 namespace {
 
 constexpr const char* kMarks[] = {"line", "points", "both", "band", "bars"};
 
-Json number_or_null(double value) {
-  return std::isfinite(value) ? Json(value) : Json();
+input::Json number_or_null(double value) {
+  return std::isfinite(value) ? input::Json(value) : input::Json();
 }
 
-double number_or(const Json& json, double otherwise) {
+double number_or(const input::Json& json, double otherwise) {
   return json.is_null() ? otherwise : json.get<double>();
 }
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-Json to_json(const Claim& claim) {
+input::Json to_json(const studies::Claim& claim) {
   return {{"claim", claim.what},
           {"measured", number_or_null(claim.measured)},
-          {"uncertainty", claim.uncertainty > 0 ? Json(claim.uncertainty) : Json()},
-          {"expected", claim.expected ? Json(*claim.expected) : Json()},
+          {"uncertainty", claim.uncertainty > 0 ? input::Json(claim.uncertainty) : input::Json()},
+          {"expected", claim.expected ? input::Json(*claim.expected) : input::Json()},
           {"low", number_or_null(claim.low)},
           {"high", number_or_null(claim.high)},
           {"holds", claim.holds()}};
 }
 
-Claim claim_of(const Json& json) {
-  Claim claim{json.at("claim"),
-              number_or(json.at("measured"), kNaN),
-              {},
-              number_or(json.at("low"), -kInfinity),
-              number_or(json.at("high"), kInfinity),
-              number_or(json.at("uncertainty"), 0)};
+studies::Claim claim_of(const input::Json& json) {
+  studies::Claim claim{json.at("claim"),
+                       number_or(json.at("measured"), kNaN),
+                       {},
+                       number_or(json.at("low"), -kInfinity),
+                       number_or(json.at("high"), kInfinity),
+                       number_or(json.at("uncertainty"), 0)};
   if (!json.at("expected").is_null()) claim.expected = json.at("expected").get<double>();
   return claim;
 }
 
-Json to_json(const Table& table) {
-  Json rows = Json::array();
+input::Json to_json(const bench::Table& table) {
+  input::Json rows = input::Json::array();
   for (const auto& cells : table.rows) {
-    Json row = Json::array();
-    for (const Cell& cell : cells)
-      row.push_back(cell.is_number ? number_or_null(cell.number) : Json(cell.text));
+    input::Json row = input::Json::array();
+    for (const bench::Cell& cell : cells)
+      row.push_back(cell.is_number ? number_or_null(cell.number) : input::Json(cell.text));
     rows.push_back(row);
   }
   return {{"columns", table.columns}, {"rows", rows}};
@@ -57,14 +57,14 @@ Json to_json(const Table& table) {
 }
 
 // Its name becomes one of a file.
-Table table_of(const std::string& name, const Json& json) {
+bench::Table table_of(const std::string& name, const input::Json& json) {
   const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_";
   if (name.empty() || name.find_first_not_of(plain) != std::string::npos)
     refuse("'" + name + "' is not a name for a table");
-  Table table{name, json.at("columns"), {}};
-  for (const Json& cells : json.at("rows")) {
-    std::vector<Cell>& row = table.rows.emplace_back();
-    for (const Json& cell : cells) {
+  bench::Table table{name, json.at("columns"), {}};
+  for (const input::Json& cells : json.at("rows")) {
+    std::vector<bench::Cell>& row = table.rows.emplace_back();
+    for (const input::Json& cell : cells) {
       if (cell.is_string())
         row.emplace_back(cell.get<std::string>());
       else
@@ -75,16 +75,16 @@ Table table_of(const std::string& name, const Json& json) {
   return table;
 }
 
-Json numbers_or_null(const std::vector<double>& values) {
-  Json list = Json::array();
+input::Json numbers_or_null(const std::vector<double>& values) {
+  input::Json list = input::Json::array();
   for (const double value : values) list.push_back(number_or_null(value));
   return list;
 }
 
-Json to_json(const Chart& chart) {
-  Json list = Json::array();
-  for (const ChartSeries& series : chart.series) {
-    Json points = Json::array();
+input::Json to_json(const bench::Chart& chart) {
+  input::Json list = input::Json::array();
+  for (const bench::ChartSeries& series : chart.series) {
+    input::Json points = input::Json::array();
     for (const auto& [x, y] : series.points)
       points.push_back({number_or_null(x), number_or_null(y)});
     list.push_back({{"name", series.name},
@@ -96,18 +96,19 @@ Json to_json(const Chart& chart) {
           {"log_x", chart.log_x}, {"log_y", chart.log_y},     {"series", list}};
 }
 
-Chart chart_of(const Json& json) {
-  Chart chart{json.at("title"), json.at("x_label"), json.at("y_label"),
-              json.at("log_x"), json.at("log_y"),   {}};
-  for (const Json& item : json.at("series")) {
-    ChartSeries series{item.at("name"), {}};
+bench::Chart chart_of(const input::Json& json) {
+  bench::Chart chart{json.at("title"), json.at("x_label"), json.at("y_label"),
+                     json.at("log_x"), json.at("log_y"),   {}};
+  for (const input::Json& item : json.at("series")) {
+    bench::ChartSeries series{item.at("name"), {}};
     const auto mark = std::find(std::begin(kMarks), std::end(kMarks), item.at("mark"));
     if (mark == std::end(kMarks)) refuse("a mark of a chart is unknown");
-    series.mark = static_cast<Mark>(mark - std::begin(kMarks));
-    for (const Json& point : item.at("points"))
+    series.mark = static_cast<bench::Mark>(mark - std::begin(kMarks));
+    for (const input::Json& point : item.at("points"))
       series.points.emplace_back(number_or(point.at(0), kNaN), number_or(point.at(1), kNaN));
-    for (const Json& value : item.at("other")) series.other.push_back(number_or(value, kNaN));
-    const bool has_other = series.mark == Mark::band || series.mark == Mark::bars;
+    for (const input::Json& value : item.at("other"))
+      series.other.push_back(number_or(value, kNaN));
+    const bool has_other = series.mark == bench::Mark::band || series.mark == bench::Mark::bars;
     if (series.other.size() != (has_other ? series.points.size() : 0))
       refuse("a chart has too few values");
     chart.series.push_back(series);
@@ -115,15 +116,15 @@ Chart chart_of(const Json& json) {
   return chart;
 }
 
-StudyResult result_of(const StudyEntry& study, const Json& json) {
+StudyResult result_of(const studies::StudyEntry& study, const input::Json& json) {
   StudyResult result{study, {}, json.at("failure"), json.at("seconds")};
-  StudyReport& report = result.report;
+  studies::StudyReport& report = result.report;
   report.skipped = json.at("skipped");
   report.notes = json.at("notes").get<std::vector<std::string>>();
-  for (const Json& claim : json.at("claims")) report.claims.push_back(claim_of(claim));
+  for (const input::Json& claim : json.at("claims")) report.claims.push_back(claim_of(claim));
   for (const auto& [name, table] : json.at("tables").items())
     report.tables.push_back(table_of(name, table));
-  for (const Json& chart : json.at("charts")) report.charts.push_back(chart_of(chart));
+  for (const input::Json& chart : json.at("charts")) report.charts.push_back(chart_of(chart));
   return result;
 }
 
@@ -137,13 +138,13 @@ const char* outcome_text(StudyOutcome outcome) {
 StudyOutcome StudyResult::outcome() const {
   if (!failure.empty()) return StudyOutcome::fails;
   if (!report.skipped.empty()) return StudyOutcome::not_measured;
-  for (const Claim& claim : report.claims)
+  for (const studies::Claim& claim : report.claims)
     if (!claim.holds()) return StudyOutcome::fails;
   return report.claims.empty() ? StudyOutcome::fails : StudyOutcome::holds;
 }
 
-Json to_json(const StudyResult& result, const std::string& measured_with) {
-  Json json;
+input::Json to_json(const StudyResult& result, const std::string& measured_with) {
+  input::Json json;
   json["study"] = result.study.name;
   json["summary"] = result.study.summary;
   json["measured_with"] = measured_with;
@@ -152,25 +153,26 @@ Json to_json(const StudyResult& result, const std::string& measured_with) {
   json["skipped"] = result.report.skipped;
   json["seconds"] = result.seconds;
   json["notes"] = result.report.notes;
-  json["claims"] = Json::array();
-  for (const Claim& claim : result.report.claims) json["claims"].push_back(to_json(claim));
-  json["tables"] = Json::object();
-  for (const Table& table : result.report.tables) json["tables"][table.name] = to_json(table);
-  json["charts"] = Json::array();
-  for (const Chart& chart : result.report.charts) json["charts"].push_back(to_json(chart));
+  json["claims"] = input::Json::array();
+  for (const studies::Claim& claim : result.report.claims) json["claims"].push_back(to_json(claim));
+  json["tables"] = input::Json::object();
+  for (const bench::Table& table : result.report.tables)
+    json["tables"][table.name] = to_json(table);
+  json["charts"] = input::Json::array();
+  for (const bench::Chart& chart : result.report.charts) json["charts"].push_back(to_json(chart));
   return json;
 }
 
 std::optional<StudyResult> measured_before(const std::filesystem::path& folder,
-                                           const StudyEntry& study,
+                                           const studies::StudyEntry& study,
                                            const std::string& measured_with) {
   const std::filesystem::path file = folder / (study.name + ".json");
   if (!std::filesystem::exists(file)) return std::nullopt;
-  return from_json(file, [&](const Json& json) -> std::optional<StudyResult> {
+  return input::from_json(file, [&](const input::Json& json) -> std::optional<StudyResult> {
     // What could not be carried out is tried again.
     if (json.at("measured_with") != measured_with || json.at("failure") != "") return std::nullopt;
     return result_of(study, json);
   });
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::verify

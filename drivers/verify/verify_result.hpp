@@ -8,15 +8,15 @@
 #include "drivers/input/json_file.hpp"
 #include "verification/studies/study.hpp"
 
-namespace traceraft {
+namespace traceraft::verify {
 
 enum class StudyOutcome { holds, fails, not_measured };
 
 const char* outcome_text(StudyOutcome outcome);
 
 struct StudyResult {
-  StudyEntry study;
-  StudyReport report;
+  studies::StudyEntry study;
+  studies::StudyReport report;
   std::string failure;  // why it could not be carried out; "" if it was
   double seconds = 0;
 
@@ -24,12 +24,12 @@ struct StudyResult {
 };
 
 // `measured_with`: whatever decides the numbers, in any words.
-Json to_json(const StudyResult& result, const std::string& measured_with);
+input::Json to_json(const StudyResult& result, const std::string& measured_with);
 
 // What `folder` has of this study, if it was carried out there with the same. Throws IoError for a
 // file that is damaged.
 std::optional<StudyResult> measured_before(const std::filesystem::path& folder,
-                                           const StudyEntry& study,
+                                           const studies::StudyEntry& study,
                                            const std::string& measured_with);
 
-}  // namespace traceraft
+}  // namespace traceraft::verify

@@ -1,7 +1,7 @@
 #include "kernel/effects/effects.hpp"
 #include "kernel/effects/local_density.hpp"
 
-namespace traceraft {
+namespace traceraft::effects {
 
 // Lipids that turn into each other, downhill in energy: ċ = … − L μ.
 EffectEntry allen_cahn_effect() {
@@ -13,13 +13,13 @@ EffectEntry allen_cahn_effect() {
           EnergyClass::dissipates,
           "small rafts vanish faster",
           {"uptake"},
-          [](const Parameters& p, CahnHilliardModel& model) {
+          [](const Parameters& p, problem::CahnHilliardModel& model) {
             const double L = p["rate"];
             model.effects.push_back(local_density(
-                {"allen-cahn", Slot::source, false, true, [L](const DensityPoint& at) {
+                {"allen-cahn", problem::Slot::source, false, true, [L](const DensityPoint& at) {
                    return DensityValue{L * at.mu, 0, L};
                  }}));
           }};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::effects

@@ -1,7 +1,7 @@
 #include "kernel/effects/effects.hpp"
 #include "kernel/effects/local_density.hpp"
 
-namespace traceraft {
+namespace traceraft::effects {
 
 // Wells of different curvature: f0 + a c² (1 − c)² (2c − 1), which leaves the wells where they are.
 // Outside of [0, 1] 2c − 1 stays ±1: going on it would outweigh f0 there, and a small raft, whose
@@ -17,10 +17,10 @@ EffectEntry asymmetry_effect() {
       EnergyClass::dissipates,
       "contents of the phases",
       {"line-tension"},
-      [](const Parameters& p, CahnHilliardModel& model) {
+      [](const Parameters& p, problem::CahnHilliardModel& model) {
         const double a = p["strength"];
         model.effects.push_back(local_density(
-            {"asymmetry", Slot::potential, true, true, [a](const DensityPoint& at) {
+            {"asymmetry", problem::Slot::potential, true, true, [a](const DensityPoint& at) {
                // With s = c (1 − c), s' = 1 − 2c =: d: g = −s² d.
                const double c = at.c, s = c * (1 - c), d = 1 - 2 * c;
                if (s >= 0)
@@ -33,4 +33,4 @@ EffectEntry asymmetry_effect() {
       true};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::effects

@@ -1,12 +1,12 @@
 #include "kernel/effects/effects.hpp"
 
-namespace traceraft {
+namespace traceraft::effects {
 namespace {
 
 // M(c) + m0.
-class BulkMobility final : public Mobility {
+class BulkMobility final : public physics::Mobility {
  public:
-  BulkMobility(MobilityPtr base, double m0) : base_(std::move(base)), m0_(m0) {}
+  BulkMobility(physics::MobilityPtr base, double m0) : base_(std::move(base)), m0_(m0) {}
   void evaluate(const double* c, int count, double* value, double* derivative) const override {
     base_->evaluate(c, count, value, derivative);
     for (int i = 0; i < count; ++i) value[i] += m0_;
@@ -15,7 +15,7 @@ class BulkMobility final : public Mobility {
   bool constant() const override { return base_->constant(); }
 
  private:
-  MobilityPtr base_;
+  physics::MobilityPtr base_;
   double m0_;
 };
 
@@ -31,11 +31,11 @@ EffectEntry bulk_mobility_effect() {
           EnergyClass::dissipates,
           "coarsening like t^(1/3) instead of t^(1/4)",
           {"mobility-exponent"},
-          [](const Parameters& p, CahnHilliardModel& model) {
+          [](const Parameters& p, problem::CahnHilliardModel& model) {
             model.mobility = std::make_shared<BulkMobility>(model.mobility, p["strength"]);
           },
           false,
           3};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::effects

@@ -4,7 +4,7 @@
 #include "kernel/effects/local_density.hpp"
 #include "kernel/effects/mobility_flux.hpp"
 
-namespace traceraft {
+namespace traceraft::effects {
 
 // A temperature that falls steadily, T(t) = T(0) − rate · t. Rafts become richer and their
 // surroundings poorer in raft lipids: in units where the phases stay at 0 and 1, a lipid between
@@ -23,20 +23,20 @@ EffectEntry cooling_effect() {
           EnergyClass::active,
           "drift of the raft fraction, and a change of D",
           {"uptake"},
-          [](const Parameters& p, CahnHilliardModel& model) {
+          [](const Parameters& p, problem::CahnHilliardModel& model) {
             const double out = p["rate"] * p["out"], in = p["rate"] * p["in"];
             model.effects.push_back(local_density(
-                {"cooling", Slot::source, false, false, [out, in](const DensityPoint& at) {
+                {"cooling", problem::Slot::source, false, false, [out, in](const DensityPoint& at) {
                    return DensityValue{in * at.c - out * (1 - at.c), in + out};
                  }}));
             const double slowing = p["rate"] * p["activation"];
             model.effects.push_back(mobility_flux(
                 "cooling", model.mobility, [slowing](double t) { return std::expm1(-slowing * t); },
                 true));
-            model.pace = [slowing](double t) { return std::exp(-slowing * t); };
+            model.diffusion_ratio = [slowing](double t) { return std::exp(-slowing * t); };
           },
           true,
           4};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::effects

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace traceraft {
+namespace traceraft::effects {
 namespace {
 
 std::string trimmed(const std::string& text) {
@@ -13,8 +13,8 @@ std::string trimmed(const std::string& text) {
 }
 
 // With defaults, which are in µm and s, in the units that values are given in.
-std::vector<ParameterSpec> specs_in(const EffectEntry& entry, const Units& units) {
-  Units physical = units;
+std::vector<ParameterSpec> specs_in(const EffectEntry& entry, const physics::Units& units) {
+  physics::Units physical = units;
   physical.scaled = false;
   std::vector<ParameterSpec> specs = entry.parameters;
   for (ParameterSpec& spec : specs)
@@ -22,7 +22,7 @@ std::vector<ParameterSpec> specs_in(const EffectEntry& entry, const Units& units
   return specs;
 }
 
-EffectTerm read_term(const std::string& one, const Units& units) {
+EffectTerm read_term(const std::string& one, const physics::Units& units) {
   const NamedArguments named = split_named_arguments(one);
   const EffectEntry& entry = effects().find(named.name);
   const Parameters given =
@@ -37,7 +37,7 @@ EffectTerm read_term(const std::string& one, const Units& units) {
   return term;
 }
 
-void add(const EffectTerm& term, CahnHilliardModel& model) {
+void add(const EffectTerm& term, problem::CahnHilliardModel& model) {
   const EffectEntry& entry = effects().find(term.effect);
   if (entry.unit_wells && !has_unit_wells(model))
     throw InputError("effect " + entry.name + ": it needs wells at 0 and 1, not at " +
@@ -56,7 +56,7 @@ bool is_rate(const std::string& unit) {
   return unit == "1/s" || unit == "K/s";
 }
 
-double to_model_units(const std::string& unit, const Units& units) {
+double to_model_units(const std::string& unit, const physics::Units& units) {
   if (is_rate(unit)) return units.time();
   if (unit == "s") return 1 / units.time();
   if (unit == "um") return 1 / units.length();
@@ -72,11 +72,12 @@ const NamedList<EffectEntry>& effects() {
   return list;
 }
 
-bool has_unit_wells(const CahnHilliardModel& model) {
+bool has_unit_wells(const problem::CahnHilliardModel& model) {
   return model.well.a == 0 && model.well.b == 1;
 }
 
-CahnHilliardModel with_effects(CahnHilliardModel model, const std::vector<EffectTerm>& terms) {
+problem::CahnHilliardModel with_effects(problem::CahnHilliardModel model,
+                                        const std::vector<EffectTerm>& terms) {
   std::vector<EffectTerm> ordered = terms;
   const auto stage = [](const EffectTerm& term) {
     const int mobility = effects().find(term.effect).mobility_stage;
@@ -88,7 +89,8 @@ CahnHilliardModel with_effects(CahnHilliardModel model, const std::vector<Effect
   return model;
 }
 
-std::vector<EffectTerm> read_effects(const std::string& specification, const Units& units) {
+std::vector<EffectTerm> read_effects(const std::string& specification,
+                                     const physics::Units& units) {
   std::vector<EffectTerm> terms;
   for (std::size_t begin = 0; begin <= specification.size();) {
     const std::size_t end = std::min(specification.find(';', begin), specification.size());
@@ -103,8 +105,9 @@ std::vector<EffectTerm> read_effects(const std::string& specification, const Uni
   return terms;
 }
 
-void add_effects(const std::string& specification, const Units& units, CahnHilliardModel& model) {
+void add_effects(const std::string& specification, const physics::Units& units,
+                 problem::CahnHilliardModel& model) {
   model = with_effects(std::move(model), read_effects(specification, units));
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::effects

@@ -11,7 +11,7 @@
 #include "kernel/physics/units.hpp"
 #include "kernel/problem/cahn_hilliard.hpp"
 
-namespace traceraft {
+namespace traceraft::effects {
 
 enum class MassClass { conserves, drifts };
 enum class EnergyClass { dissipates, neutral, active };
@@ -28,7 +28,7 @@ struct EffectEntry {
   std::string shows_in;                    // what moves first
   std::vector<std::string> confused_with;  // names of effects
   // Adds it to a model. Parameters are in units of R and R²/D.
-  std::function<void(const Parameters&, CahnHilliardModel&)> add;
+  std::function<void(const Parameters&, problem::CahnHilliardModel&)> add;
   bool unit_wells = false;  // it takes the phases to be at c = 0 and 1
   // Effects that change the mobility, in space or in time, do so in this order, before those that
   // make something of it (which have 0).
@@ -62,22 +62,24 @@ struct EffectTerm {
 // Its physics in words, by the sign of its strength.
 const std::string& physics_of(const EffectTerm& term);
 
-bool has_unit_wells(const CahnHilliardModel& model);
+bool has_unit_wells(const problem::CahnHilliardModel& model);
 
 // In any order, the same. Throws InputError for an unknown name, and for wells that an effect is
 // not made for; ranges are those of whoever asks.
-CahnHilliardModel with_effects(CahnHilliardModel model, const std::vector<EffectTerm>& terms);
+problem::CahnHilliardModel with_effects(problem::CahnHilliardModel model,
+                                        const std::vector<EffectTerm>& terms);
 
 // A parameter per time?
 bool is_rate(const std::string& unit);
 // The factor from a parameter's unit to R and R²/D.
-double to_model_units(const std::string& unit, const Units& units);
+double to_model_units(const std::string& unit, const physics::Units& units);
 
 // "exchange:rate=1e-3,target=0.2; gravity:strength=0.1", with parameters in their own units. Throws
 // InputError for an unknown name or key, a value out of range, a strength that is not given, and an
 // effect that is given twice.
-std::vector<EffectTerm> read_effects(const std::string& specification, const Units& units);
+std::vector<EffectTerm> read_effects(const std::string& specification, const physics::Units& units);
 // Added to the model, as by with_effects.
-void add_effects(const std::string& specification, const Units& units, CahnHilliardModel& model);
+void add_effects(const std::string& specification, const physics::Units& units,
+                 problem::CahnHilliardModel& model);
 
-}  // namespace traceraft
+}  // namespace traceraft::effects

@@ -1,7 +1,7 @@
 #include "kernel/effects/effects.hpp"
 #include "kernel/effects/local_density.hpp"
 
-namespace traceraft {
+namespace traceraft::effects {
 
 // Lipids that go to and fro between the membrane and a reservoir of composition c*:
 // ċ = … − k (c − c*). Foret 2005; Gómez, Sagués, Reigada 2008.
@@ -14,13 +14,13 @@ EffectEntry exchange_effect() {
           EnergyClass::active,
           "drift of the raft fraction, rafts that stop growing",
           {"ohta-kawasaki", "uptake"},
-          [](const Parameters& p, CahnHilliardModel& model) {
+          [](const Parameters& p, problem::CahnHilliardModel& model) {
             const double k = p["rate"], target = p["target"];
-            model.effects.push_back(local_density(
-                {"exchange", Slot::source, false, false, [k, target](const DensityPoint& at) {
-                   return DensityValue{k * (at.c - target), k};
-                 }}));
+            model.effects.push_back(local_density({"exchange", problem::Slot::source, false, false,
+                                                   [k, target](const DensityPoint& at) {
+                                                     return DensityValue{k * (at.c - target), k};
+                                                   }}));
           }};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::effects

@@ -1,7 +1,7 @@
 #include "kernel/effects/effects.hpp"
 #include "kernel/effects/local_density.hpp"
 
-namespace traceraft {
+namespace traceraft::effects {
 
 // Rafts that are heavier than what they float in: μ = … + λ z.
 EffectEntry gravity_effect() {
@@ -13,13 +13,13 @@ EffectEntry gravity_effect() {
           EnergyClass::dissipates,
           "rafts drift to a pole",
           {"curvature"},
-          [](const Parameters& p, CahnHilliardModel& model) {
+          [](const Parameters& p, problem::CahnHilliardModel& model) {
             const double lambda = p["strength"];
             model.effects.push_back(local_density(
-                {"gravity", Slot::potential, true, true, [lambda](const DensityPoint& at) {
+                {"gravity", problem::Slot::potential, true, true, [lambda](const DensityPoint& at) {
                    return DensityValue{lambda * at.x[2], 0, 0, lambda * at.x[2] * at.c};
                  }}));
           }};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::effects

@@ -2,7 +2,7 @@
 
 #include "kernel/effects/effects.hpp"
 
-namespace traceraft {
+namespace traceraft::effects {
 
 // ε² (1 + d): boundaries cost √(1 + d) times as much, and are as much wider.
 EffectEntry line_tension_effect() {
@@ -14,9 +14,9 @@ EffectEntry line_tension_effect() {
           EnergyClass::dissipates,
           "level of the perimeter",
           {"asymmetry"},
-          [](const Parameters& p, CahnHilliardModel& model) {
+          [](const Parameters& p, problem::CahnHilliardModel& model) {
             model.epsilon *= std::sqrt(1 + p["excess"]);
           }};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::effects

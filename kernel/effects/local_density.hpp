@@ -5,7 +5,7 @@
 
 #include "kernel/problem/effect.hpp"
 
-namespace traceraft {
+namespace traceraft::effects {
 
 struct DensityPoint {
   Point x;
@@ -19,13 +19,13 @@ struct DensityValue {
 
 struct LocalDensity {
   std::string name;
-  Slot slot;  // source or potential
+  problem::Slot slot;  // source or potential
   bool conserves_mass, dissipates_energy;
   std::function<DensityValue(const DensityPoint&)> value;
 };
 
 // source: ċ loses `value`; potential: μ gains it. Integrated by the degree-4 rule on every
 // triangle.
-EffectPtr local_density(LocalDensity density);
+problem::EffectPtr local_density(LocalDensity density);
 
-}  // namespace traceraft
+}  // namespace traceraft::effects

@@ -1,13 +1,13 @@
 #include "kernel/effects/effects.hpp"
 
-namespace traceraft {
+namespace traceraft::effects {
 namespace {
 
 // M(c) + b c (1 − c) (2c − 1) within the wells. The floor at zero applies to the sum, hence a law
 // of its own instead of a flux of its own.
-class ContrastMobility final : public Mobility {
+class ContrastMobility final : public physics::Mobility {
  public:
-  ContrastMobility(MobilityPtr base, double b) : base_(std::move(base)), b_(b) {}
+  ContrastMobility(physics::MobilityPtr base, double b) : base_(std::move(base)), b_(b) {}
   void evaluate(const double* c, int count, double* value, double* derivative) const override {
     base_->evaluate(c, count, value, derivative);
     for (int i = 0; i < count; ++i) {
@@ -20,7 +20,7 @@ class ContrastMobility final : public Mobility {
   double scale() const override { return base_->scale(); }
 
  private:
-  MobilityPtr base_;
+  physics::MobilityPtr base_;
   double b_;
 };
 
@@ -35,11 +35,11 @@ EffectEntry mobility_contrast_effect() {
           EnergyClass::dissipates,
           "mobility of small rafts",
           {"flow"},
-          [](const Parameters& p, CahnHilliardModel& model) {
+          [](const Parameters& p, problem::CahnHilliardModel& model) {
             model.mobility = std::make_shared<ContrastMobility>(model.mobility, p["strength"]);
           },
           true,
           1};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::effects

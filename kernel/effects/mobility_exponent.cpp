@@ -3,14 +3,14 @@
 
 #include "kernel/effects/effects.hpp"
 
-namespace traceraft {
+namespace traceraft::effects {
 namespace {
 
 // M(c) (4 |c (1 − c)|)^δ: with M = |c (1 − c)| the exponent 1 + δ, with the same value at c = 1/2,
 // and outside of [0, 1] likewise: curved boundaries push c out by some ε/R.
-class ExponentMobility final : public Mobility {
+class ExponentMobility final : public physics::Mobility {
  public:
-  ExponentMobility(MobilityPtr base, double more) : base_(std::move(base)), more_(more) {}
+  ExponentMobility(physics::MobilityPtr base, double more) : base_(std::move(base)), more_(more) {}
   void evaluate(const double* c, int count, double* value, double* derivative) const override {
     base_->evaluate(c, count, value, derivative);
     for (int i = 0; i < count; ++i) {
@@ -27,7 +27,7 @@ class ExponentMobility final : public Mobility {
 
  private:
   static constexpr double kLeast = 1e-6;
-  MobilityPtr base_;
+  physics::MobilityPtr base_;
   double more_;
 };
 
@@ -42,11 +42,11 @@ EffectEntry mobility_exponent_effect() {
           EnergyClass::dissipates,
           "speed of coarsening",
           {"bulk-mobility"},
-          [](const Parameters& p, CahnHilliardModel& model) {
+          [](const Parameters& p, problem::CahnHilliardModel& model) {
             model.mobility = std::make_shared<ExponentMobility>(model.mobility, p["excess"]);
           },
           true,
           2};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::effects

@@ -6,11 +6,11 @@
 #include "kernel/physics/mobility.hpp"
 #include "kernel/problem/effect.hpp"
 
-namespace traceraft {
+namespace traceraft::effects {
 
 // Adds factor(t) K_law(c) μ to F1. The sum with the model's own flux has to stay one of a mobility
 // that is not negative, if `dissipates`.
-EffectPtr mobility_flux(std::string name, MobilityPtr law, std::function<double(double)> factor,
-                        bool dissipates);
+problem::EffectPtr mobility_flux(std::string name, physics::MobilityPtr law,
+                                 std::function<double(double)> factor, bool dissipates);
 
-}  // namespace traceraft
+}  // namespace traceraft::effects

@@ -5,7 +5,7 @@
 
 #include "kernel/problem/effect.hpp"
 
-namespace traceraft {
+namespace traceraft::effects {
 
 // μ gains strength · u, with u = field(space, c) computed as often as it is asked for.
 // `linear`: u depends on c, linearly and symmetrically: ∫ v field(w) = ∫ w field(v). Otherwise c is
@@ -14,8 +14,8 @@ struct NodalPotential {
   std::string name;
   double strength;
   bool linear;
-  std::function<Vec(const SurfaceSpace&, VecView)> field;  // owned c to owned u
+  std::function<Vec(const fem::SurfaceSpace&, VecView)> field;  // owned c to owned u
 };
-EffectPtr nodal_potential(NodalPotential potential);
+problem::EffectPtr nodal_potential(NodalPotential potential);
 
-}  // namespace traceraft
+}  // namespace traceraft::effects

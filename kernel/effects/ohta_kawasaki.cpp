@@ -6,28 +6,28 @@
 #include "kernel/effects/per_space.hpp"
 #include "kernel/fem/sparse_view.hpp"
 
-namespace traceraft {
+namespace traceraft::effects {
 namespace {
 
-using Factors = Eigen::SimplicialLLT<EigenMatrix>;
+using Factors = Eigen::SimplicialLLT<fem::EigenMatrix>;
 
-CsrMatrix screened_stiffness(const SurfaceSpace& space, double kappa) {
-  return combine(1, combine(1, space.stiffness, space.h(), space.normal_stiffness), kappa * kappa,
-                 space.stabilised_mass);
+fem::CsrMatrix screened_stiffness(const fem::SurfaceSpace& space, double kappa) {
+  return fem::combine(1, fem::combine(1, space.stiffness, space.h(), space.normal_stiffness),
+                      kappa * kappa, space.stabilised_mass);
 }
 
 // Worth keeping: each product with the Jacobian needs them, and conjugate gradients take some 30/h
 // iterations.
-std::shared_ptr<const Factors> factors_of(const SurfaceSpace& space, double kappa) {
+std::shared_ptr<const Factors> factors_of(const fem::SurfaceSpace& space, double kappa) {
   const auto result =
-      std::make_shared<const Factors>(as_eigen(space, screened_stiffness(space, kappa)));
+      std::make_shared<const Factors>(fem::as_eigen(space, screened_stiffness(space, kappa)));
   if (result->info() != Eigen::Success)
     throw std::runtime_error("the potential of Ohta and Kawasaki cannot be factorised");
   return result;
 }
 
 // φ with (κ² − Δ_Γ) φ = c − mean(c), to roundoff. `factors`: on one rank.
-Vec screened_potential(const SurfaceSpace& space, double kappa, PerSpace<Factors>& factors,
+Vec screened_potential(const fem::SurfaceSpace& space, double kappa, PerSpace<Factors>& factors,
                        VecView c) {
   const Vec deviation = c.array() - space.integral(c) / space.area;
   Vec load = Vec::Zero(space.nodes()), potential(space.nodes()), buffer;
@@ -57,16 +57,16 @@ EffectEntry ohta_kawasaki_effect() {
           EnergyClass::dissipates,
           "rafts that stop growing",
           {"exchange"},
-          [](const Parameters& p, CahnHilliardModel& model) {
+          [](const Parameters& p, problem::CahnHilliardModel& model) {
             const double kappa = 1 / p["range"];
             const auto factors = std::make_shared<PerSpace<Factors>>(
-                [kappa](const SurfaceSpace& space) { return factors_of(space, kappa); });
+                [kappa](const fem::SurfaceSpace& space) { return factors_of(space, kappa); });
             model.effects.push_back(
                 nodal_potential({"ohta-kawasaki", p["strength"], true,
-                                 [kappa, factors](const SurfaceSpace& space, VecView c) {
+                                 [kappa, factors](const fem::SurfaceSpace& space, VecView c) {
                                    return screened_potential(space, kappa, *factors, c);
                                  }}));
           }};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::effects

@@ -8,17 +8,17 @@
 
 #include "kernel/fem/surface_space.hpp"
 
-namespace traceraft {
+namespace traceraft::effects {
 
 // Threads may ask at the same time. Spaces are told apart by their patterns, which they do not
 // share: an address may be that of one that is gone.
 template <class Value>
 class PerSpace {
  public:
-  using Compute = std::function<std::shared_ptr<const Value>(const SurfaceSpace&)>;
+  using Compute = std::function<std::shared_ptr<const Value>(const fem::SurfaceSpace&)>;
   explicit PerSpace(Compute compute) : compute_(std::move(compute)) {}
 
-  std::shared_ptr<const Value> on(const SurfaceSpace& space) {
+  std::shared_ptr<const Value> on(const fem::SurfaceSpace& space) {
     const std::lock_guard lock(mutex_);
     if (const auto known = values_.find(space.pattern); known != values_.end())
       return known->second;
@@ -30,8 +30,9 @@ class PerSpace {
  private:
   const Compute compute_;
   std::mutex mutex_;
-  std::map<std::weak_ptr<const SparsityPattern>, std::shared_ptr<const Value>, std::owner_less<>>
+  std::map<std::weak_ptr<const fem::SparsityPattern>, std::shared_ptr<const Value>,
+           std::owner_less<>>
       values_;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::effects

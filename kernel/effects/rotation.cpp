@@ -5,12 +5,12 @@
 #include "kernel/effects/advection.hpp"
 #include "kernel/effects/effects.hpp"
 
-namespace traceraft {
+namespace traceraft::effects {
 namespace {
 
 // How far the surface is from one that turns into itself: of its first and second moments, what a
 // quarter of a turn changes.
-double asymmetry_around(const Point& axis, const SurfaceSpace& space) {
+double asymmetry_around(const Point& axis, const fem::SurfaceSpace& space) {
   Eigen::MatrixX3d x(space.nodes(), 3);
   for (int i = 0; i < space.nodes(); ++i) x.row(i) = space.mesh.position(i);
   Point first;
@@ -24,7 +24,7 @@ double asymmetry_around(const Point& axis, const SurfaceSpace& space) {
                   (quarter * second * quarter.transpose() - second).norm() / second.norm());
 }
 
-void require_revolution(const Point& axis, const SurfaceSpace& space) {
+void require_revolution(const Point& axis, const fem::SurfaceSpace& space) {
   constexpr double kOfTheMesh = 0.01;
   if (const double part = asymmetry_around(axis, space); part > kOfTheMesh)
     throw InputError(
@@ -50,14 +50,14 @@ EffectEntry rotation_effect() {
           EnergyClass::neutral,
           "place of rafts only",
           {},
-          [](const Parameters& p, CahnHilliardModel& model) {
+          [](const Parameters& p, problem::CahnHilliardModel& model) {
             const Point axis(p["x"], p["y"], p["z"]);
             if (axis.norm() == 0) throw InputError("effect rotation: the axis x, y, z is zero");
             const Point unit = axis.normalized(), omega = p["rate"] * unit;
             model.effects.push_back(advection(
                 "rotation", [omega](const Point& x, double) -> Point { return omega.cross(x); },
-                [unit](const SurfaceSpace& space) { require_revolution(unit, space); }));
+                [unit](const fem::SurfaceSpace& space) { require_revolution(unit, space); }));
           }};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::effects

@@ -1,7 +1,7 @@
 #include "kernel/effects/effects.hpp"
 #include "kernel/effects/local_density.hpp"
 
-namespace traceraft {
+namespace traceraft::effects {
 
 // Raft lipids that come in where there is no raft: ċ = … + s (1 − c).
 EffectEntry uptake_effect() {
@@ -13,14 +13,14 @@ EffectEntry uptake_effect() {
           EnergyClass::active,
           "drift of the raft fraction",
           {"cooling"},
-          [](const Parameters& p, CahnHilliardModel& model) {
+          [](const Parameters& p, problem::CahnHilliardModel& model) {
             const double s = p["rate"];
-            model.effects.push_back(
-                local_density({"uptake", Slot::source, false, false, [s](const DensityPoint& at) {
-                                 return DensityValue{-s * (1 - at.c), s};
-                               }}));
+            model.effects.push_back(local_density(
+                {"uptake", problem::Slot::source, false, false, [s](const DensityPoint& at) {
+                   return DensityValue{-s * (1 - at.c), s};
+                 }}));
           },
           true};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::effects

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-namespace traceraft::averaged_potential {
+namespace traceraft::fem::averaged_potential {
 namespace {
 
 using Nodes = Eigen::Vector4d;  // a number per node of a tetrahedron
@@ -16,7 +16,8 @@ Nodes values_at(const CutElement& element, VecView field) {
 // E_T and its derivatives by the nodal values of c.
 class ElementEnergy {
  public:
-  ElementEnergy(const SurfaceSpace& space, std::size_t e, const DoubleWell& well, VecView c)
+  ElementEnergy(const SurfaceSpace& space, std::size_t e, const physics::DoubleWell& well,
+                VecView c)
       : area_(space.elements[e].area),
         mass_(space.moments[e].mass),
         p_(space.moments[e].mean.data()),
@@ -55,7 +56,7 @@ class ElementEnergy {
     };
     for (int i = 0; i < 4; ++i) result(i, i) = s.m * mass_[i] + entry(i, i);
     for (int e = 0; e < 6; ++e) {
-      const auto& [i, j] = kTetEdges[e];
+      const auto& [i, j] = mesh::kTetEdges[e];
       result(i, j) = result(j, i) = s.m * mass_[4 + e] + entry(i, j);
     }
     return result;
@@ -77,7 +78,7 @@ class ElementEnergy {
   Nodes mass_product(const Nodes& v) const {
     Nodes product(mass_[0] * v[0], mass_[1] * v[1], mass_[2] * v[2], mass_[3] * v[3]);
     for (int e = 0; e < 6; ++e) {
-      const auto& [i, j] = kTetEdges[e];
+      const auto& [i, j] = mesh::kTetEdges[e];
       product[i] += mass_[4 + e] * v[j];
       product[j] += mass_[4 + e] * v[i];
     }
@@ -109,13 +110,14 @@ void add_element_loads(const SurfaceSpace& space, double factor, const Local& lo
 
 }  // namespace
 
-void add(const SurfaceSpace& space, const DoubleWell& well, double factor, VecView c, VecRef r) {
+void add(const SurfaceSpace& space, const physics::DoubleWell& well, double factor, VecView c,
+         VecRef r) {
   add_element_loads(
       space, factor, [&](std::size_t e) { return ElementEnergy(space, e, well, c).gradient(); }, r);
 }
 
-void add_tangent(const SurfaceSpace& space, const DoubleWell& well, double factor, VecView c,
-                 CsrMatrix& matrix) {
+void add_tangent(const SurfaceSpace& space, const physics::DoubleWell& well, double factor,
+                 VecView c, CsrMatrix& matrix) {
   add_element_matrices(
       space,
       [&](const CutElement&, int e) -> Eigen::Matrix4d {
@@ -124,7 +126,7 @@ void add_tangent(const SurfaceSpace& space, const DoubleWell& well, double facto
       matrix);
 }
 
-void add_tangent_product(const SurfaceSpace& space, const DoubleWell& well, double factor,
+void add_tangent_product(const SurfaceSpace& space, const physics::DoubleWell& well, double factor,
                          VecView c, VecView v, VecRef r) {
   add_element_loads(
       space, factor,
@@ -134,10 +136,10 @@ void add_tangent_product(const SurfaceSpace& space, const DoubleWell& well, doub
       r);
 }
 
-double energy(const SurfaceSpace& space, const DoubleWell& well, VecView c) {
+double energy(const SurfaceSpace& space, const physics::DoubleWell& well, VecView c) {
   return space.team->sum(space.elements.size(), [&](std::size_t e, double& total) {
     if (space.mesh.owns(space.mesh.tets[e])) total += ElementEnergy(space, e, well, c).value();
   });
 }
 
-}  // namespace traceraft::averaged_potential
+}  // namespace traceraft::fem::averaged_potential

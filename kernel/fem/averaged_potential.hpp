@@ -15,7 +15,7 @@
 #include "kernel/fem/surface_space.hpp"
 #include "kernel/physics/double_well.hpp"
 
-namespace traceraft::averaged_potential {
+namespace traceraft::fem::averaged_potential {
 
 inline constexpr double kVarianceInMean = 1.2;      // ξ
 inline constexpr double kSlopeTimesVariance = 0.4;  // η
@@ -23,11 +23,12 @@ inline constexpr double kSlopeTimesVariance = 0.4;  // η
 static_assert(kSlopeTimesVariance < kVarianceInMean, "the energy has to be bounded from below");
 
 // The meaning of potential.hpp; `c` and `v` have ghosts.
-void add(const SurfaceSpace& space, const DoubleWell& well, double factor, VecView c, VecRef r);
-void add_tangent(const SurfaceSpace& space, const DoubleWell& well, double factor, VecView c,
-                 CsrMatrix& matrix);
-void add_tangent_product(const SurfaceSpace& space, const DoubleWell& well, double factor,
+void add(const SurfaceSpace& space, const physics::DoubleWell& well, double factor, VecView c,
+         VecRef r);
+void add_tangent(const SurfaceSpace& space, const physics::DoubleWell& well, double factor,
+                 VecView c, CsrMatrix& matrix);
+void add_tangent_product(const SurfaceSpace& space, const physics::DoubleWell& well, double factor,
                          VecView c, VecView v, VecRef r);
-double energy(const SurfaceSpace& space, const DoubleWell& well, VecView c);
+double energy(const SurfaceSpace& space, const physics::DoubleWell& well, VecView c);
 
-}  // namespace traceraft::averaged_potential
+}  // namespace traceraft::fem::averaged_potential

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-namespace traceraft {
+namespace traceraft::fem {
 
-PatternPtr build_pattern(const ActiveMesh& mesh, std::shared_ptr<const Communicator> ranks) {
+PatternPtr build_pattern(const mesh::ActiveMesh& mesh, std::shared_ptr<const Communicator> ranks) {
   auto pattern = std::make_shared<SparsityPattern>();
   pattern->halo = {mesh.owned_nodes, mesh.nodes(), mesh.halo, std::move(ranks)};
   const int rows = mesh.owned_nodes;
@@ -79,4 +79,4 @@ double dot(VecView x, VecView y) {
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::fem

@@ -10,7 +10,7 @@
 #include "kernel/core/types.hpp"
 #include "kernel/mesh/active_mesh.hpp"
 
-namespace traceraft {
+namespace traceraft::fem {
 
 struct SparsityPattern {
   std::vector<int> row_begin;      // rows + 1
@@ -27,7 +27,7 @@ struct SparsityPattern {
 
 using PatternPtr = std::shared_ptr<const SparsityPattern>;
 
-PatternPtr build_pattern(const ActiveMesh& mesh, std::shared_ptr<const Communicator> ranks);
+PatternPtr build_pattern(const mesh::ActiveMesh& mesh, std::shared_ptr<const Communicator> ranks);
 
 struct CsrMatrix {
   PatternPtr pattern;
@@ -49,4 +49,4 @@ CsrMatrix combine(double a, const CsrMatrix& A, double b, const CsrMatrix& B);
 // xᵀy in one fixed order, so that a resumed run repeats it bitwise.
 double dot(VecView x, VecView y);
 
-}  // namespace traceraft
+}  // namespace traceraft::fem

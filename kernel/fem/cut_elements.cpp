@@ -1,24 +1,25 @@
 #include "kernel/fem/cut_elements.hpp"
 
-namespace traceraft {
+namespace traceraft::fem {
 namespace {
 
-Eigen::Matrix<double, 4, 3> basis_gradients(const ActiveMesh& mesh, const ActiveTet& tet) {
-  return scaled_gradients(tet.kuhn) / mesh.cube.h();
+Eigen::Matrix<double, 4, 3> basis_gradients(const mesh::ActiveMesh& mesh,
+                                            const mesh::ActiveTet& tet) {
+  return mesh::scaled_gradients(tet.kuhn) / mesh.cube.h();
 }
 
 }  // namespace
 
-std::vector<CutElement> build_cut_elements(const ActiveMesh& mesh,
-                                           const std::vector<LiftedTriangle>& lifted) {
+std::vector<CutElement> build_cut_elements(const mesh::ActiveMesh& mesh,
+                                           const std::vector<mesh::LiftedTriangle>& lifted) {
   std::vector<CutElement> elements;
   elements.reserve(mesh.tets.size());
   int triangle = 0;
-  for (const ActiveTet& tet : mesh.tets) {
+  for (const mesh::ActiveTet& tet : mesh.tets) {
     CutElement element{};
     element.node = tet.node;
     element.edge = tet.edge;
-    const CutPolygon polygon = cut_polygon(mesh, tet);
+    const mesh::CutPolygon polygon = mesh::cut_polygon(mesh, tet);
     element.corners = polygon.count;
     for (int v = 0; v < polygon.count; ++v)
       element.cut_edge[v] = static_cast<signed char>(polygon.edge[v]);
@@ -31,27 +32,28 @@ std::vector<CutElement> build_cut_elements(const ActiveMesh& mesh,
     const auto gradient = basis_gradients(mesh, tet);
     const Eigen::Matrix4d products =
         gradient * (inverse_metric / element.area) * gradient.transpose();
-    for (int e = 0; e < 6; ++e) element.coupling[e] = products(kTetEdges[e][0], kTetEdges[e][1]);
+    for (int e = 0; e < 6; ++e)
+      element.coupling[e] = products(mesh::kTetEdges[e][0], mesh::kTetEdges[e][1]);
     elements.push_back(element);
   }
   return elements;
 }
 
-std::array<double, 6> normal_coupling(const ActiveMesh& mesh, const ActiveTet& tet) {
+std::array<double, 6> normal_coupling(const mesh::ActiveMesh& mesh, const mesh::ActiveTet& tet) {
   const double h = mesh.cube.h(), volume = h * h * h / 6;
-  const Eigen::Vector4d along = basis_gradients(mesh, tet) * cut_normal(mesh, tet);
+  const Eigen::Vector4d along = basis_gradients(mesh, tet) * mesh::cut_normal(mesh, tet);
   std::array<double, 6> coupling;
   for (int e = 0; e < 6; ++e)
-    coupling[e] = volume * along[kTetEdges[e][0]] * along[kTetEdges[e][1]];
+    coupling[e] = volume * along[mesh::kTetEdges[e][0]] * along[mesh::kTetEdges[e][1]];
   return coupling;
 }
 
-Eigen::Matrix4d trace_matrix(const CutSurface& surface, const CutElement& element) {
+Eigen::Matrix4d trace_matrix(const mesh::CutSurface& surface, const CutElement& element) {
   Eigen::Matrix4d trace = Eigen::Matrix4d::Zero();
   for (int t = 0; t < element.triangles(); ++t)
     for (int k = 0; k < 3; ++k) {
       const int corner = kPolygonTriangles[t][k];
-      const auto& [low, high] = kTetEdges[element.cut_edge[corner]];
+      const auto& [low, high] = mesh::kTetEdges[element.cut_edge[corner]];
       const double s = surface.points[surface.triangles[element.first_triangle + t][k]].s;
       trace(corner, low) = 1 - s;
       trace(corner, high) = s;
@@ -59,7 +61,7 @@ Eigen::Matrix4d trace_matrix(const CutSurface& surface, const CutElement& elemen
   return trace;
 }
 
-std::vector<TraceMoments> build_trace_moments(const CutSurface& surface,
+std::vector<TraceMoments> build_trace_moments(const mesh::CutSurface& surface,
                                               const std::vector<CutElement>& elements) {
   std::vector<TraceMoments> result;
   result.reserve(elements.size());
@@ -78,7 +80,8 @@ std::vector<TraceMoments> build_trace_moments(const CutSurface& surface,
       moments.mean[i] = at_nodes.row(i).sum();  // the φ_j add up to 1
       moments.mass[i] = at_nodes(i, i);
     }
-    for (int e = 0; e < 6; ++e) moments.mass[4 + e] = at_nodes(kTetEdges[e][0], kTetEdges[e][1]);
+    for (int e = 0; e < 6; ++e)
+      moments.mass[4 + e] = at_nodes(mesh::kTetEdges[e][0], mesh::kTetEdges[e][1]);
     result.push_back(moments);
   }
   return result;
@@ -102,4 +105,4 @@ EdgeCouplings build_edge_couplings(const std::vector<CutElement>& elements, std:
   return result;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::fem

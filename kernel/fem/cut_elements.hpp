@@ -6,7 +6,7 @@
 
 #include "kernel/mesh/lifted_surface.hpp"
 
-namespace traceraft {
+namespace traceraft::fem {
 
 // On a tetrahedron ∇c_h is constant and Γ_h is one or two flat triangles, so every weighted
 // stiffness matrix is (∫ weight) times the same 4×4 matrix. Integrals are those over the triangles'
@@ -26,11 +26,11 @@ struct CutElement {
 inline constexpr std::array<std::array<int, 3>, 2> kPolygonTriangles = {{{0, 1, 2}, {0, 2, 3}}};
 
 // `lifted`: of each triangle of the surface.
-std::vector<CutElement> build_cut_elements(const ActiveMesh& mesh,
-                                           const std::vector<LiftedTriangle>& lifted);
+std::vector<CutElement> build_cut_elements(const mesh::ActiveMesh& mesh,
+                                           const std::vector<mesh::LiftedTriangle>& lifted);
 
 // ∫_T (n·∇λ_i)(n·∇λ_j) dx of the edges of a tetrahedron: the element matrix of S off the diagonal.
-std::array<double, 6> normal_coupling(const ActiveMesh& mesh, const ActiveTet& tet);
+std::array<double, 6> normal_coupling(const mesh::ActiveMesh& mesh, const mesh::ActiveTet& tet);
 
 // Integrals of the basis functions over Γ_T, divided by |Γ_T|. Pairs are those of each node with
 // itself, then those of kTetEdges. The mean could be summed up from the mass; a run takes 3 %
@@ -39,11 +39,11 @@ struct TraceMoments {
   std::array<double, 4> mean;   // ∫ φ_i
   std::array<double, 10> mass;  // ∫ φ_i φ_j
 };
-std::vector<TraceMoments> build_trace_moments(const CutSurface& surface,
+std::vector<TraceMoments> build_trace_moments(const mesh::CutSurface& surface,
                                               const std::vector<CutElement>& elements);
 
 // The traces at the polygon's corners (rows) of the element's four basis functions (columns).
-Eigen::Matrix4d trace_matrix(const CutSurface& surface, const CutElement& element);
+Eigen::Matrix4d trace_matrix(const mesh::CutSurface& surface, const CutElement& element);
 
 // Which elements contain an edge, and how strongly they couple its ends: with an integral I_T for
 // each element, ∫ weight ∇_Γφ_low·∇_Γφ_high = Σ_T coupling · I_T.
@@ -54,4 +54,4 @@ struct EdgeCouplings {
 };
 EdgeCouplings build_edge_couplings(const std::vector<CutElement>& elements, std::size_t edges);
 
-}  // namespace traceraft
+}  // namespace traceraft::fem

@@ -4,7 +4,7 @@
 #include "kernel/fem/trace.hpp"
 #include "kernel/fem/triangle_rule.hpp"
 
-namespace traceraft {
+namespace traceraft::fem {
 
 // A point of the quadrature on Γ_h.
 struct QuadraturePoint {
@@ -12,7 +12,7 @@ struct QuadraturePoint {
   Point x;
 };
 
-inline QuadraturePoint quadrature_point(const CutSurface& surface, std::size_t triangle,
+inline QuadraturePoint quadrature_point(const mesh::CutSurface& surface, std::size_t triangle,
                                         std::size_t point) {
   const auto& [i, j, k] = surface.triangles[triangle];
   const auto& at = kDegreeFourRule[point].at;
@@ -23,7 +23,7 @@ inline QuadraturePoint quadrature_point(const CutSurface& surface, std::size_t t
 // r_i += factor · ∫ g φ_i with g(QuadraturePoint).
 template <class Density>
 void add_density_load(const SurfaceSpace& space, double factor, const Density& g, VecRef r) {
-  const CutSurface& surface = space.surface;
+  const mesh::CutSurface& surface = space.surface;
   const Vec load = point_loads(space, [&](int triangle) {
     std::array<double, 3> corner_load{};
     for (std::size_t p = 0; p < kDegreeFourRule.size(); ++p) {
@@ -37,4 +37,4 @@ void add_density_load(const SurfaceSpace& space, double factor, const Density& g
   add_trace_transpose(space, factor, load, r);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::fem

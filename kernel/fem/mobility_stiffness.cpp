@@ -4,14 +4,14 @@
 
 #include "kernel/fem/trace.hpp"
 
-namespace traceraft {
+namespace traceraft::fem {
 namespace {
 
 // G_T μ_T: the flux through the nodes of an element whose mobility integrates to one.
 std::array<double, 4> unit_flux(const CutElement& element, VecView mu) {
   std::array<double, 4> flux{};
   for (int k = 0; k < 6; ++k) {
-    const auto& [i, j] = kTetEdges[k];
+    const auto& [i, j] = mesh::kTetEdges[k];
     const double along = element.coupling[k] * (mu[element.node[j]] - mu[element.node[i]]);
     flux[i] += along;
     flux[j] -= along;
@@ -24,14 +24,14 @@ constexpr int kBatch = 64;  // triangles evaluated by one call of the mobility l
 // Adds the derivative of one triangle's integral, given M' at the midpoints of its edges.
 void add_gradient(const SurfaceSpace& space, int triangle, const double* slope,
                   std::array<double, 4>& gradient) {
-  const CutSurface& surface = space.surface;
+  const mesh::CutSurface& surface = space.surface;
   const CutElement& element = space.elements[surface.triangle_tet[triangle]];
   const double weight = surface.triangle_area[triangle] / 6;
   const double at_corner[3] = {weight * (slope[0] + slope[2]), weight * (slope[0] + slope[1]),
                                weight * (slope[1] + slope[2])};
   for (int k = 0; k < 3; ++k) {
     const int corner = kPolygonTriangles[triangle - element.first_triangle][k];
-    const auto& [low, high] = kTetEdges[element.cut_edge[corner]];
+    const auto& [low, high] = mesh::kTetEdges[element.cut_edge[corner]];
     const double s = surface.points[surface.triangles[triangle][k]].s;
     gradient[low] += (1 - s) * at_corner[k];
     gradient[high] += s * at_corner[k];
@@ -39,10 +39,10 @@ void add_gradient(const SurfaceSpace& space, int triangle, const double* slope,
 }
 
 // The integrals over triangles [begin, end), added to their elements; gradient may be null.
-void add_integrals(const SurfaceSpace& space, const Mobility& law, const Vec& point_value,
+void add_integrals(const SurfaceSpace& space, const physics::Mobility& law, const Vec& point_value,
                    int begin, int end, std::vector<double>& integral,
                    std::vector<std::array<double, 4>>* gradient) {
-  const CutSurface& surface = space.surface;
+  const mesh::CutSurface& surface = space.surface;
   double midpoint[3 * kBatch], value[3 * kBatch], slope[3 * kBatch];
   for (int first = begin; first < end; first += kBatch) {
     const int count = std::min(kBatch, end - first);
@@ -63,8 +63,8 @@ void add_integrals(const SurfaceSpace& space, const Mobility& law, const Vec& po
   }
 }
 
-std::vector<double> evaluate_integrals(const SurfaceSpace& space, const Mobility& law, VecView c,
-                                       std::vector<std::array<double, 4>>* gradient) {
+std::vector<double> evaluate_integrals(const SurfaceSpace& space, const physics::Mobility& law,
+                                       VecView c, std::vector<std::array<double, 4>>* gradient) {
   const std::size_t elements = space.elements.size();
   const Vec point_value = trace(space, c);
   std::vector<double> integral(elements, 0.0);
@@ -101,12 +101,13 @@ std::vector<double> edge_weights(const SurfaceSpace& space, const std::vector<do
 
 }  // namespace
 
-std::vector<double> mobility_integrals(const SurfaceSpace& space, const Mobility& law, VecView c) {
+std::vector<double> mobility_integrals(const SurfaceSpace& space, const physics::Mobility& law,
+                                       VecView c) {
   return evaluate_integrals(space, law, c, nullptr);
 }
 
-std::vector<double> mobility_integrals(const SurfaceSpace& space, const Mobility& law, VecView c,
-                                       std::vector<std::array<double, 4>>& gradient) {
+std::vector<double> mobility_integrals(const SurfaceSpace& space, const physics::Mobility& law,
+                                       VecView c, std::vector<std::array<double, 4>>& gradient) {
   return evaluate_integrals(space, law, c, &gradient);
 }
 
@@ -155,4 +156,4 @@ void add_mobility_derivative(const SurfaceSpace& space, double factor, VecView m
       matrix);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::fem

@@ -8,14 +8,15 @@
 #include "kernel/fem/surface_space.hpp"
 #include "kernel/physics/mobility.hpp"
 
-namespace traceraft {
+namespace traceraft::fem {
 
 // I_T by the edge-midpoint rule on each triangle (exact for quadratic M). `c` has ghosts.
-std::vector<double> mobility_integrals(const SurfaceSpace& space, const Mobility& law, VecView c);
+std::vector<double> mobility_integrals(const SurfaceSpace& space, const physics::Mobility& law,
+                                       VecView c);
 
 // The same with ∂I_T/∂c_i at the four nodes of each element (zero where floored).
-std::vector<double> mobility_integrals(const SurfaceSpace& space, const Mobility& law, VecView c,
-                                       std::vector<std::array<double, 4>>& gradient);
+std::vector<double> mobility_integrals(const SurfaceSpace& space, const physics::Mobility& law,
+                                       VecView c, std::vector<std::array<double, 4>>& gradient);
 
 // Σ_T I_T G_T. Rows sum to zero exactly, so 1ᵀ K_M = 0 conserves mass to roundoff.
 void assemble_mobility_stiffness(const SurfaceSpace& space, const std::vector<double>& integral,
@@ -34,4 +35,4 @@ std::vector<double> mobility_change(const SurfaceSpace& space,
 void add_mobility_derivative(const SurfaceSpace& space, double factor, VecView mu,
                              const std::vector<std::array<double, 4>>& gradient, CsrMatrix& matrix);
 
-}  // namespace traceraft
+}  // namespace traceraft::fem

@@ -6,7 +6,7 @@
 #include "kernel/fem/trace.hpp"
 #include "kernel/fem/weighted_mass.hpp"
 
-namespace traceraft {
+namespace traceraft::fem {
 namespace {
 
 // Calls use(value at the point, barycentrics, area weight) for every quadrature point of a triangle
@@ -17,15 +17,15 @@ void for_each_point(double area, const std::array<double, 3>& corner, const Use&
     use(between_corners(corner, at), at, weight * area);
 }
 
-void add_nodal_tangent(const SurfaceSpace& space, const DoubleWell& well, double factor, VecView c,
-                       CsrMatrix& matrix) {
+void add_nodal_tangent(const SurfaceSpace& space, const physics::DoubleWell& well, double factor,
+                       VecView c, CsrMatrix& matrix) {
   for (std::size_t k = 0; k < matrix.values.size(); ++k)
     matrix.values[k] += factor * space.mass.values[k] * well.second(c[matrix.pattern->column[k]]);
 }
 
 }  // namespace
 
-void add_potential(const SurfaceSpace& space, const DoubleWell& well, PotentialRule rule,
+void add_potential(const SurfaceSpace& space, const physics::DoubleWell& well, PotentialRule rule,
                    double factor, VecView c, VecRef r) {
   if (rule == PotentialRule::averaged) return averaged_potential::add(space, well, factor, c, r);
   if (rule == PotentialRule::nodal) {
@@ -47,8 +47,8 @@ void add_potential(const SurfaceSpace& space, const DoubleWell& well, PotentialR
   add_trace_transpose(space, factor, load, r);
 }
 
-void add_potential_tangent(const SurfaceSpace& space, const DoubleWell& well, PotentialRule rule,
-                           double factor, VecView c, CsrMatrix& matrix) {
+void add_potential_tangent(const SurfaceSpace& space, const physics::DoubleWell& well,
+                           PotentialRule rule, double factor, VecView c, CsrMatrix& matrix) {
   if (rule == PotentialRule::averaged)
     return averaged_potential::add_tangent(space, well, factor, c, matrix);
   if (rule == PotentialRule::nodal) return add_nodal_tangent(space, well, factor, c, matrix);
@@ -62,7 +62,7 @@ void add_potential_tangent(const SurfaceSpace& space, const DoubleWell& well, Po
       matrix);
 }
 
-void add_potential_tangent_product(const SurfaceSpace& space, const DoubleWell& well,
+void add_potential_tangent_product(const SurfaceSpace& space, const physics::DoubleWell& well,
                                    PotentialRule rule, double factor, VecView c, VecView v,
                                    VecRef r) {
   if (rule == PotentialRule::averaged)
@@ -88,8 +88,8 @@ void add_potential_tangent_product(const SurfaceSpace& space, const DoubleWell& 
   add_trace_transpose(space, factor, load, r);
 }
 
-double potential_energy(const SurfaceSpace& space, const DoubleWell& well, PotentialRule rule,
-                        VecView c) {
+double potential_energy(const SurfaceSpace& space, const physics::DoubleWell& well,
+                        PotentialRule rule, VecView c) {
   if (rule == PotentialRule::averaged) return averaged_potential::energy(space, well, c);
   const Vec point_value = trace(space, c);
   const std::vector<double>& area = space.surface.triangle_area;
@@ -101,4 +101,4 @@ double potential_energy(const SurfaceSpace& space, const DoubleWell& well, Poten
   });
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::fem

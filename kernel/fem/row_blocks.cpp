@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace traceraft {
+namespace traceraft::fem {
 namespace {
 
 // From the first to the last item that touches.
@@ -16,7 +16,7 @@ IndexRange touching(const std::vector<Item>& items, const Touches& touches) {
 
 }  // namespace
 
-std::vector<RowBlock> split_rows(const ActiveMesh& mesh, const CutSurface& surface,
+std::vector<RowBlock> split_rows(const mesh::ActiveMesh& mesh, const mesh::CutSurface& surface,
                                  const std::vector<CutElement>& elements, int parts) {
   std::vector<RowBlock> blocks;
   for (int part = 0; part < parts; ++part) {
@@ -31,7 +31,7 @@ std::vector<RowBlock> split_rows(const ActiveMesh& mesh, const CutSurface& surfa
       return std::any_of(element.node.begin(), element.node.end(),
                          [&](int node) { return rows.contains(node); });
     });
-    block.touching_points = touching(surface.points, [&](const CutPoint& point) {
+    block.touching_points = touching(surface.points, [&](const mesh::CutPoint& point) {
       return rows.contains(point.low) || rows.contains(point.high);
     });
     block.touching_triangles = touching(surface.triangles, [&](const std::array<int, 3>& triangle) {
@@ -43,4 +43,4 @@ std::vector<RowBlock> split_rows(const ActiveMesh& mesh, const CutSurface& surfa
   return blocks;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::fem

@@ -6,7 +6,7 @@
 
 #include "kernel/fem/cut_elements.hpp"
 
-namespace traceraft {
+namespace traceraft::fem {
 
 struct IndexRange {
   int begin = 0, end = 0;
@@ -23,7 +23,7 @@ struct RowBlock {
   IndexRange touching_triangles;  // and triangles at these
 };
 
-std::vector<RowBlock> split_rows(const ActiveMesh& mesh, const CutSurface& surface,
+std::vector<RowBlock> split_rows(const mesh::ActiveMesh& mesh, const mesh::CutSurface& surface,
                                  const std::vector<CutElement>& elements, int parts);
 
-}  // namespace traceraft
+}  // namespace traceraft::fem

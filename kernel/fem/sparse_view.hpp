@@ -5,7 +5,7 @@
 
 #include "kernel/fem/surface_space.hpp"
 
-namespace traceraft {
+namespace traceraft::fem {
 
 using EigenMatrix = Eigen::SparseMatrix<double>;
 
@@ -15,4 +15,4 @@ inline EigenMatrix as_eigen(const SurfaceSpace& space, const CsrMatrix& A) {
       space.pattern->column.data(), A.values.data());
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::fem

@@ -5,26 +5,26 @@
 
 #include "kernel/mesh/gradient_check.hpp"
 
-namespace traceraft {
+namespace traceraft::fem {
 namespace {
 
-CutSurface checked_surface(const LevelSet& level_set, const ActiveMesh& mesh,
-                           const Communicator& ranks) {
-  CutSurface surface = build_cut_surface(mesh);
+mesh::CutSurface checked_surface(const geometry::LevelSet& level_set, const mesh::ActiveMesh& mesh,
+                                 const Communicator& ranks) {
+  mesh::CutSurface surface = mesh::build_cut_surface(mesh);
   // A mesh that is too coarse may be so near one place alone.
-  require_gradient(level_set, mesh, surface, 0.5, ranks);
-  require_resolution(mesh, surface, ranks);
-  require_gradient(level_set, mesh, surface, 0, ranks);
+  mesh::require_gradient(level_set, mesh, surface, 0.5, ranks);
+  mesh::require_resolution(mesh, surface, ranks);
+  mesh::require_gradient(level_set, mesh, surface, 0, ranks);
   return surface;
 }
 
-SurfaceSpace::Totals totals_of(const ActiveMesh& mesh, const CutSurface& surface,
+SurfaceSpace::Totals totals_of(const mesh::ActiveMesh& mesh, const mesh::CutSurface& surface,
                                const Communicator& ranks) {
   const auto elements = std::count_if(mesh.tets.begin(), mesh.tets.end(),
-                                      [&](const ActiveTet& tet) { return mesh.owns(tet); });
+                                      [&](const mesh::ActiveTet& tet) { return mesh.owns(tet); });
   return {std::llround(ranks.sum(mesh.owned_nodes)),
           std::llround(ranks.sum(static_cast<double>(elements))),
-          euler_characteristic(mesh, surface, ranks)};
+          mesh::euler_characteristic(mesh, surface, ranks)};
 }
 
 // From the entries off the diagonal, off_diagonal(element number) for the edges of an element.
@@ -69,15 +69,16 @@ CsrMatrix mass_matrix(const SurfaceSpace& space) {
 }  // namespace
 
 struct SurfaceSpace::Geometry {
-  ActiveMesh mesh;
-  CutSurface surface;
+  mesh::ActiveMesh mesh;
+  mesh::CutSurface surface;
   std::vector<CutElement> elements;
 
-  Geometry(const LevelSet& level_set, std::int64_t cells, const ThreadTeam& team,
+  Geometry(const geometry::LevelSet& level_set, std::int64_t cells, const ThreadTeam& team,
            const Communicator& ranks)
-      : mesh(build_active_mesh(level_set, cells, ranks)),
+      : mesh(mesh::build_active_mesh(level_set, cells, ranks)),
         surface(checked_surface(level_set, mesh, ranks)) {
-    const std::vector<LiftedTriangle> lifted = lifted_triangles(level_set, mesh, surface, team);
+    const std::vector<mesh::LiftedTriangle> lifted =
+        mesh::lifted_triangles(level_set, mesh, surface, team);
     elements = build_cut_elements(mesh, lifted);
     for (std::size_t t = 0; t < lifted.size(); ++t) surface.triangle_area[t] = lifted[t].area;
   }
@@ -90,7 +91,7 @@ void add_element_matrix(const CutElement& element, const Eigen::Matrix4d& local,
     if (block.rows.contains(element.node[i]))
       matrix.values[pattern.diagonal[element.node[i]]] += local(i, i);
   for (int e = 0; e < 6; ++e) {
-    const auto& [i, j] = kTetEdges[e];
+    const auto& [i, j] = mesh::kTetEdges[e];
     if (block.rows.contains(element.node[i]))
       matrix.values[pattern.low_high[element.edge[e]]] += local(i, j);
     if (block.rows.contains(element.node[j]))
@@ -124,7 +125,7 @@ void fill_zero_row_sum(const std::vector<double>& edge, const std::vector<RowBlo
   });
 }
 
-SurfaceSpace::SurfaceSpace(const LevelSet& level_set, std::int64_t cells,
+SurfaceSpace::SurfaceSpace(const geometry::LevelSet& level_set, std::int64_t cells,
                            std::shared_ptr<const ThreadTeam> team_,
                            std::shared_ptr<const Communicator> communicator_,
                            double mass_stabilisation_)
@@ -191,4 +192,4 @@ Status SurfaceSpace::solve_mass(VecView b, VecRef x) const {
   return {};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::fem

@@ -14,7 +14,7 @@
 #include "kernel/mesh/active_mesh.hpp"
 #include "kernel/mesh/cut_surface.hpp"
 
-namespace traceraft {
+namespace traceraft::fem {
 
 // How much of h S regularises the mass matrix. S adds to the mass of short waves, which slows them:
 // with 1, as in the paper's code, K/M of a wave of 3 h is 10 % too small, with 0.3 5 % too large
@@ -27,13 +27,13 @@ class SurfaceSpace {
  public:
   // Throws InputError when the surface is not closed inside the box, the mesh is too coarse, or the
   // level set has no gradient on its surface. `mass_stabilisation`: of M̃, in units of h.
-  SurfaceSpace(const LevelSet& level_set, std::int64_t cells,
+  SurfaceSpace(const geometry::LevelSet& level_set, std::int64_t cells,
                std::shared_ptr<const ThreadTeam> team,
                std::shared_ptr<const Communicator> communicator,
                double mass_stabilisation = kMassStabilisation);
 
-  const ActiveMesh mesh;
-  const CutSurface surface;
+  const mesh::ActiveMesh mesh;
+  const mesh::CutSurface surface;
   const std::vector<CutElement> elements;
   const std::vector<TraceMoments> moments;  // of each element
   const EdgeCouplings edge_couplings;
@@ -107,4 +107,4 @@ void fill_symmetric(const std::vector<double>& edge, const std::vector<double>& 
 void fill_zero_row_sum(const std::vector<double>& edge, const std::vector<RowBlock>& blocks,
                        const ThreadTeam& team, CsrMatrix& matrix);
 
-}  // namespace traceraft
+}  // namespace traceraft::fem

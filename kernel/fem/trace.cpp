@@ -1,9 +1,9 @@
 #include "kernel/fem/trace.hpp"
 
-namespace traceraft {
+namespace traceraft::fem {
 
 Vec trace(const SurfaceSpace& space, VecView nodal) {
-  const std::vector<CutPoint>& points = space.surface.points;
+  const std::vector<mesh::CutPoint>& points = space.surface.points;
   Vec values(points.size());
   space.team->for_range(points.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) values[p] = points[p].trace(nodal);
@@ -22,4 +22,4 @@ void add_trace_transpose(const SurfaceSpace& space, double factor, const Vec& lo
   });
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::fem

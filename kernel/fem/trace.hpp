@@ -6,7 +6,7 @@
 
 #include "kernel/fem/surface_space.hpp"
 
-namespace traceraft {
+namespace traceraft::fem {
 
 // P c. `nodal` has ghosts.
 Vec trace(const SurfaceSpace& space, VecView nodal);
@@ -31,4 +31,4 @@ Vec point_loads(const SurfaceSpace& space, const Local& local) {
   return load;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::fem

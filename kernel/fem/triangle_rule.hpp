@@ -3,7 +3,7 @@
 
 #include <array>
 
-namespace traceraft {
+namespace traceraft::fem {
 
 struct TrianglePoint {
   std::array<double, 3> at;  // barycentric coordinates
@@ -21,4 +21,4 @@ inline constexpr std::array<TrianglePoint, 6> kDegreeFourRule = [] {
                                        {{{b, b, 1 - 2 * b}}, wb}}};
 }();
 
-}  // namespace traceraft
+}  // namespace traceraft::fem

@@ -7,7 +7,7 @@
 #include "kernel/fem/surface_space.hpp"
 #include "kernel/fem/triangle_rule.hpp"
 
-namespace traceraft {
+namespace traceraft::fem {
 
 namespace detail {
 
@@ -45,7 +45,7 @@ Eigen::Matrix4d weighted_element(const SurfaceSpace& space, const CutElement& el
     std::array<int, 2> node[3];      // at the ends of the corner's edge,
     std::array<double, 2> share[3];  // and their traces at the corner
     for (int k = 0; k < 3; ++k) {
-      node[k] = kTetEdges[element.cut_edge[kPolygonTriangles[t][k]]];
+      node[k] = mesh::kTetEdges[element.cut_edge[kPolygonTriangles[t][k]]];
       const double s = space.surface.points[space.surface.triangles[triangle][k]].s;
       share[k] = {1 - s, s};
     }
@@ -112,4 +112,4 @@ void add_weighted_mass(const SurfaceSpace& space, double factor, const Weight& w
       {&matrix});
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::fem

@@ -2,7 +2,7 @@
 
 #include "kernel/geometry/surface_entries.hpp"
 
-namespace traceraft {
+namespace traceraft::geometry {
 namespace {
 
 // A red blood cell as the quartic (x²+y²+z²)² + P (x²+y²) + Q z² + S = 0 of Kuchel & Fackerell,
@@ -41,4 +41,4 @@ SurfaceEntry biconcave_surface() {
           }};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::geometry

@@ -1,6 +1,6 @@
 #include "kernel/geometry/surface_entries.hpp"
 
-namespace traceraft {
+namespace traceraft::geometry {
 namespace {
 
 // (x − z²)² + y² + z² = 1, the bent test surface of Dziuk, "Finite elements for the Beltrami
@@ -21,4 +21,4 @@ SurfaceEntry dziuk_surface() {
           }};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::geometry

@@ -1,6 +1,6 @@
 #include "kernel/geometry/surface_entries.hpp"
 
-namespace traceraft {
+namespace traceraft::geometry {
 namespace {
 
 class Ellipsoid final : public LevelSet {
@@ -27,4 +27,4 @@ SurfaceEntry ellipsoid_surface() {
           }};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::geometry

@@ -11,7 +11,7 @@
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/types.hpp"
 
-namespace traceraft {
+namespace traceraft::geometry {
 
 // Contract: continuously differentiable with ∇φ ≠ 0 near Γ, finite in the whole box, thread-safe.
 // φ need not be a distance: the discretisation uses its zero set and its normalised gradient.
@@ -59,4 +59,4 @@ const NamedList<SurfaceEntry>& surfaces();
 // "torus:major=0.9,minor=0.4" -> the level set. Throws InputError.
 LevelSetPtr make_surface(const std::string& specification);
 
-}  // namespace traceraft
+}  // namespace traceraft::geometry

@@ -1,6 +1,6 @@
 #include "kernel/geometry/surface_entries.hpp"
 
-namespace traceraft {
+namespace traceraft::geometry {
 namespace {
 
 // Exact signed distance to the unit sphere: the surface of the reference results.
@@ -17,4 +17,4 @@ SurfaceEntry sphere_surface() {
           }};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::geometry

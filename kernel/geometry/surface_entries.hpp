@@ -3,7 +3,7 @@
 
 #include "kernel/geometry/level_set.hpp"
 
-namespace traceraft {
+namespace traceraft::geometry {
 
 SurfaceEntry sphere_surface();
 SurfaceEntry ellipsoid_surface();
@@ -11,4 +11,4 @@ SurfaceEntry torus_surface();
 SurfaceEntry biconcave_surface();
 SurfaceEntry dziuk_surface();
 
-}  // namespace traceraft
+}  // namespace traceraft::geometry

@@ -1,6 +1,6 @@
 #include "kernel/geometry/surface_entries.hpp"
 
-namespace traceraft {
+namespace traceraft::geometry {
 
 const NamedList<SurfaceEntry>& surfaces() {
   static const std::vector<SurfaceEntry> entries = {
@@ -17,4 +17,4 @@ LevelSetPtr make_surface(const std::string& specification) {
       parse_parameters("surface '" + entry.name + "'", request.arguments, entry.parameters));
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::geometry

@@ -2,7 +2,7 @@
 
 #include "kernel/geometry/surface_entries.hpp"
 
-namespace traceraft {
+namespace traceraft::geometry {
 namespace {
 
 // Exact signed distance to a torus around the z axis.
@@ -32,4 +32,4 @@ SurfaceEntry torus_surface() {
           }};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::geometry

@@ -1,9 +1,9 @@
 #include "kernel/linear/block_jacobian.hpp"
 
-namespace traceraft {
+namespace traceraft::linear {
 
 void BlockJacobian::multiply(VecView x, VecRef y, const ThreadTeam& team) const {
-  const SparsityPattern& p = *cc.pattern;
+  const fem::SparsityPattern& p = *cc.pattern;
   const int n = p.rows();
   Vec c_buffer, mu_buffer;
   const auto c = p.halo.with_ghosts(x.head(n), c_buffer);
@@ -22,4 +22,4 @@ void BlockJacobian::multiply(VecView x, VecRef y, const ThreadTeam& team) const 
   });
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::linear

@@ -3,7 +3,7 @@
 
 #include "kernel/fem/csr.hpp"
 
-namespace traceraft {
+namespace traceraft::linear {
 
 enum class Tangent {
   exact,      // the derivative of the residual
@@ -15,10 +15,10 @@ enum class Tangent {
 //                                       [ mc  mm ] [δμ]
 // cc = σ M̃ (+ mobility derivative), cm = K_M + ρ S =: A, mc = −(b' + ε² (K + ρ S)) =: −B, mm = M̃.
 struct BlockJacobian {
-  explicit BlockJacobian(const PatternPtr& pattern)
+  explicit BlockJacobian(const fem::PatternPtr& pattern)
       : cc(pattern), cm(pattern), mc(pattern), mm(pattern) {}
 
-  CsrMatrix cc, cm, mc, mm;
+  fem::CsrMatrix cc, cm, mc, mm;
   double shift = 0;  // σ
   Tangent tangent = Tangent::exact;
 
@@ -35,4 +35,4 @@ struct BlockJacobian {
   void multiply(VecView x, VecRef y, const ThreadTeam& team) const;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::linear

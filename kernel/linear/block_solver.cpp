@@ -6,7 +6,7 @@
 #include "kernel/linear/setup_policy.hpp"
 #include "kernel/linear/two_solve_preconditioner.hpp"
 
-namespace traceraft {
+namespace traceraft::linear {
 namespace {
 
 constexpr int kMaxIterations = 200;
@@ -91,4 +91,4 @@ LinearSolverPtr make_block_solver(const SpdSolverFactory& make_spd_solver,
   return std::make_unique<BlockSolver>(make_spd_solver, make_krylov, std::move(team), lanes);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::linear

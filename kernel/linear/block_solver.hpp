@@ -5,7 +5,7 @@
 
 #include "kernel/linear/krylov.hpp"
 
-namespace traceraft {
+namespace traceraft::linear {
 
 // All lanes share the factors. Old factors are kept as long as the iterations they cost extra stay
 // below the price of new ones.
@@ -13,4 +13,4 @@ LinearSolverPtr make_block_solver(const SpdSolverFactory& make_spd_solver,
                                   const KrylovFactory& make_krylov,
                                   std::shared_ptr<const ThreadTeam> team, int lanes);
 
-}  // namespace traceraft
+}  // namespace traceraft::linear

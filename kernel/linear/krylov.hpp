@@ -8,7 +8,7 @@
 #include "kernel/fem/csr.hpp"
 #include "kernel/linear/linear_solver.hpp"
 
-namespace traceraft {
+namespace traceraft::linear {
 
 // out = A in, or out = P⁻¹ in. retry if it cannot be applied.
 using LinearOperator = std::function<Status(VecView in, VecRef out)>;
@@ -28,7 +28,7 @@ class KrylovMethod {
 class SpdSolver {
  public:
   virtual ~SpdSolver() = default;
-  virtual Status factorise(const CsrMatrix& A) = 0;  // retry: not positive definite
+  virtual Status factorise(const fem::CsrMatrix& A) = 0;  // retry: not positive definite
   // With the threads of the team, if it is not inside a task of it already.
   virtual void solve(VecView b, VecRef x, const ThreadTeam& team, int lane) = 0;
 };
@@ -37,4 +37,4 @@ using KrylovFactory = std::function<std::unique_ptr<KrylovMethod>()>;
 using SpdSolverPtr = std::unique_ptr<SpdSolver>;
 using SpdSolverFactory = std::function<SpdSolverPtr(int lanes)>;
 
-}  // namespace traceraft
+}  // namespace traceraft::linear

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace traceraft {
+namespace traceraft::linear {
 
 LinearStatistics operator+(const LinearStatistics& a, const LinearStatistics& b) {
   return {a.setups + b.setups,
@@ -17,8 +17,8 @@ LinearStatistics operator+(const LinearStatistics& a, const LinearStatistics& b)
 double scaled_norm(const BlockJacobian& J, VecView b) {
   const int n = J.block_size();
   const double scale = J.shift > 0 ? 1 / J.shift : 1.0;
-  return std::sqrt(
-      J.ranks().sum(scale * scale * dot(b.head(n), b.head(n)) + dot(b.tail(n), b.tail(n))));
+  return std::sqrt(J.ranks().sum(scale * scale * fem::dot(b.head(n), b.head(n)) +
+                                 fem::dot(b.tail(n), b.tail(n))));
 }
 
 Status judged_by_residual(const Status& said, const BlockJacobian& J, VecView b, VecView x,
@@ -34,7 +34,7 @@ Status judged_by_residual(const Status& said, const BlockJacobian& J, VecView b,
 
 void restore_mass(const BlockJacobian& J, VecView b, VecRef x) {
   const int n = J.block_size();
-  const SparsityPattern& pattern = *J.cc.pattern;
+  const fem::SparsityPattern& pattern = *J.cc.pattern;
   Vec c_buffer, mu_buffer;
   const auto c = pattern.halo.with_ghosts(x.head(n), c_buffer);
   const auto mu = pattern.halo.with_ghosts(x.tail(n), mu_buffer);
@@ -52,4 +52,4 @@ void restore_mass(const BlockJacobian& J, VecView b, VecRef x) {
   x.head(n).array() += (J.ranks().sum(wanted) - J.ranks().sum(held)) / weight;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::linear

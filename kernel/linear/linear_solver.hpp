@@ -11,7 +11,7 @@
 #include "kernel/core/types.hpp"
 #include "kernel/linear/block_jacobian.hpp"
 
-namespace traceraft {
+namespace traceraft::linear {
 
 struct SolveReport {
   Status status;
@@ -77,4 +77,4 @@ Status judged_by_residual(const Status& said, const BlockJacobian& J, VecView b,
 // stiffness terms drop out of that sum, so it is the mass balance of the step.
 void restore_mass(const BlockJacobian& J, VecView b, VecRef x);
 
-}  // namespace traceraft
+}  // namespace traceraft::linear

@@ -7,7 +7,7 @@
 
 #include "kernel/linear/linear_solver.hpp"
 
-namespace traceraft {
+namespace traceraft::linear {
 
 // Counts decide, not clocks, so that runs repeat themselves. Lanes may count at the same time.
 class SharedSetup {
@@ -90,4 +90,4 @@ class SharedSetup {
   double seconds_ = 0;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::linear

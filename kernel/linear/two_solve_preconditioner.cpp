@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace traceraft {
+namespace traceraft::linear {
 
 TwoSolveShifts two_solve_shifts(double sigma, double mobility, double stiffness, double curvature) {
   // Where the roots are complex the products of the two matrices can only be near the Schur
@@ -48,8 +48,8 @@ Status TwoSolvePreconditioner::factorise(const BlockJacobian& J, const ThreadTea
   Status status[2];
   team.run([&](int part) {
     for (int which = part; which < 2; which += team.size())
-      status[which] = which == 0 ? first_->factorise(combine(1, J.cm, shifts_.p, J.mm))
-                                 : second_->factorise(combine(-1, J.mc, -shifts_.q, J.mm));
+      status[which] = which == 0 ? first_->factorise(fem::combine(1, J.cm, shifts_.p, J.mm))
+                                 : second_->factorise(fem::combine(-1, J.mc, -shifts_.q, J.mm));
   });
   return status[0].ok() ? status[1] : status[0];
 }
@@ -67,4 +67,4 @@ void TwoSolvePreconditioner::apply(const BlockJacobian& J, VecView r, VecRef z,
   z.tail(n) = v + shifts_.q * z.head(n);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::linear

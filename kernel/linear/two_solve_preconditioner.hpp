@@ -6,7 +6,7 @@
 
 #include "kernel/linear/krylov.hpp"
 
-namespace traceraft {
+namespace traceraft::linear {
 
 // The Schur complement of [σM A; −B M] is a polynomial in M⁻¹A and M⁻¹B. With A ≈ m K and
 // B ≈ ε² K + β M (m: mean mobility) it factorises: take r₁ ≤ r₂, the roots of
@@ -56,4 +56,4 @@ class TwoSolvePreconditioner {
   std::vector<Work> work_;  // per lane
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::linear

@@ -8,7 +8,7 @@
 #include "kernel/core/error.hpp"
 #include "kernel/mesh/cut_cells.hpp"
 
-namespace traceraft {
+namespace traceraft::mesh {
 namespace {
 
 struct GlobalTet {
@@ -16,14 +16,14 @@ struct GlobalTet {
   int kuhn;
 };
 
-void require_outside(const LevelSet& surface, const CubeMesh& mesh) {
+void require_outside(const geometry::LevelSet& surface, const CubeMesh& mesh) {
   if (surface.value(mesh.position({0, 0, 0})) < 0)
     throw InputError(
         "the level set must be negative inside the surface and positive outside; change its sign");
 }
 
 // Those with a node of this rank, in global order.
-std::vector<GlobalTet> find_cut_tets(const LevelSet& surface, const CubeMesh& mesh,
+std::vector<GlobalTet> find_cut_tets(const geometry::LevelSet& surface, const CubeMesh& mesh,
                                      const Partition& partition, const Communicator& ranks) {
   std::vector<GlobalTet> tets;
   for (const std::int64_t id : find_cut_cells(surface, mesh, partition, ranks)) {
@@ -58,7 +58,7 @@ std::vector<std::int64_t> collect_vertices(const std::vector<GlobalTet>& tets) {
   return vertices;
 }
 
-std::vector<double> nodal_level_set(const LevelSet& surface, const CubeMesh& mesh,
+std::vector<double> nodal_level_set(const geometry::LevelSet& surface, const CubeMesh& mesh,
                                     const std::vector<std::int64_t>& node_id,
                                     const Communicator& ranks) {
   std::vector<double> phi;
@@ -171,7 +171,7 @@ HaloPlan plan_halo(const ActiveMesh& mesh, const std::vector<int>& owner) {
 
 }  // namespace
 
-ActiveMesh build_active_mesh(const LevelSet& surface, std::int64_t cells,
+ActiveMesh build_active_mesh(const geometry::LevelSet& surface, std::int64_t cells,
                              const Communicator& ranks) {
   ActiveMesh mesh;
   mesh.cube = {cells};
@@ -207,4 +207,4 @@ Eigen::Matrix<double, 4, 3> scaled_gradients(int kuhn) {
   return gradients;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::mesh

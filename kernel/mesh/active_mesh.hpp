@@ -10,7 +10,7 @@
 #include "kernel/geometry/level_set.hpp"
 #include "kernel/mesh/cube_mesh.hpp"
 
-namespace traceraft {
+namespace traceraft::mesh {
 
 struct ActiveTet {
   std::array<int, 4> node;  // in Kuhn order
@@ -48,10 +48,10 @@ struct ActiveMesh {
 // sign: Γ never passes exactly through a vertex, edge or face, no piece of it is counted twice, and
 // its area changes by some 1e-10 of itself (relative to the steepest part of φ).
 // Throws InputError (see find_cut_cells).
-ActiveMesh build_active_mesh(const LevelSet& surface, std::int64_t cells,
+ActiveMesh build_active_mesh(const geometry::LevelSet& surface, std::int64_t cells,
                              const Communicator& ranks = kAlone);
 
 // Gradients of the barycentric coordinates of a Kuhn tetrahedron, times h: row i is h ∇λ_i.
 Eigen::Matrix<double, 4, 3> scaled_gradients(int kuhn);
 
-}  // namespace traceraft
+}  // namespace traceraft::mesh

@@ -7,7 +7,7 @@
 
 #include "kernel/core/types.hpp"
 
-namespace traceraft {
+namespace traceraft::mesh {
 
 inline constexpr double kBoxHalfWidth = 5.0 / 3.0;  // in units of R, as in the reference results
 
@@ -54,4 +54,4 @@ inline Lattice corner_of(const Lattice& cell, int corner) {
   return {cell[0] + (corner & 1), cell[1] + (corner >> 1 & 1), cell[2] + (corner >> 2 & 1)};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::mesh

@@ -8,7 +8,7 @@
 
 #include "kernel/core/error.hpp"
 
-namespace traceraft {
+namespace traceraft::mesh {
 namespace {
 
 constexpr std::int64_t kSeedIntervals = 64;
@@ -20,7 +20,7 @@ std::string describe(const Point& x) {
   return text.str();
 }
 
-bool negative_at(const LevelSet& surface, const CubeMesh& mesh, const Lattice& vertex) {
+bool negative_at(const geometry::LevelSet& surface, const CubeMesh& mesh, const Lattice& vertex) {
   const Point x = mesh.position(vertex);
   const double phi = surface.value(x);
   if (!std::isfinite(phi))
@@ -32,7 +32,7 @@ bool negative_at(const LevelSet& surface, const CubeMesh& mesh, const Lattice& v
 // The lattice on which the walk looks for its starting points.
 class SeedLattice {
  public:
-  SeedLattice(const LevelSet& surface, const CubeMesh& mesh)
+  SeedLattice(const geometry::LevelSet& surface, const CubeMesh& mesh)
       : surface_(surface), mesh_(mesh), intervals_(std::min(mesh.cells, kSeedIntervals)) {
     const std::int64_t points = intervals_ + 1;
     negative_.reserve(static_cast<std::size_t>(points * points * points));
@@ -76,7 +76,7 @@ class SeedLattice {
     return from;
   }
 
-  const LevelSet& surface_;
+  const geometry::LevelSet& surface_;
   const CubeMesh& mesh_;
   std::int64_t intervals_;
   std::vector<bool> negative_;
@@ -90,7 +90,8 @@ int face_corner(std::size_t axis, int side, int which) {
 
 class Walk {
  public:
-  Walk(const LevelSet& surface, const CubeMesh& mesh, const Partition& partition, int rank)
+  Walk(const geometry::LevelSet& surface, const CubeMesh& mesh, const Partition& partition,
+       int rank)
       : surface_(surface),
         mesh_(mesh),
         partition_(partition),
@@ -165,7 +166,7 @@ class Walk {
     std::vector<std::int64_t> news;          // or will
   };
 
-  const LevelSet& surface_;
+  const geometry::LevelSet& surface_;
   const CubeMesh& mesh_;
   const Partition& partition_;
   const int rank_;
@@ -176,7 +177,7 @@ class Walk {
 
 }  // namespace
 
-std::vector<std::int64_t> find_cut_cells(const LevelSet& surface, const CubeMesh& mesh,
+std::vector<std::int64_t> find_cut_cells(const geometry::LevelSet& surface, const CubeMesh& mesh,
                                          const Partition& partition, const Communicator& ranks) {
   const SeedLattice seeds(surface, mesh);
   Walk walk(surface, mesh, partition, ranks.rank());
@@ -190,4 +191,4 @@ std::vector<std::int64_t> find_cut_cells(const LevelSet& surface, const CubeMesh
   return cells;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::mesh

@@ -9,7 +9,7 @@
 #include "kernel/mesh/cube_mesh.hpp"
 #include "kernel/mesh/partition.hpp"
 
-namespace traceraft {
+namespace traceraft::mesh {
 
 // Ids of the cells of this rank, those with a corner that it owns, whose corners differ in the sign
 // of φ (φ = 0 counts as positive), ascending.
@@ -21,8 +21,8 @@ namespace traceraft {
 // tell each other where a walk leaves them.
 //
 // Throws InputError if φ is not finite, has one sign on the lattice, or Γ reaches the box.
-std::vector<std::int64_t> find_cut_cells(const LevelSet& surface, const CubeMesh& mesh,
+std::vector<std::int64_t> find_cut_cells(const geometry::LevelSet& surface, const CubeMesh& mesh,
                                          const Partition& partition = {},
                                          const Communicator& ranks = kAlone);
 
-}  // namespace traceraft
+}  // namespace traceraft::mesh

@@ -6,7 +6,7 @@
 
 #include "kernel/core/error.hpp"
 
-namespace traceraft {
+namespace traceraft::mesh {
 namespace {
 
 int edge_between(int i, int j) {
@@ -125,4 +125,4 @@ void require_resolution(const ActiveMesh& mesh, const CutSurface& surface,
   throw InputError(text.str());
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::mesh

@@ -7,7 +7,7 @@
 
 #include "kernel/mesh/active_mesh.hpp"
 
-namespace traceraft {
+namespace traceraft::mesh {
 
 // Where Γ_h cuts one tetrahedron: 3 or 4 local edges, in cyclic order, seen counter-clockwise from
 // the positive side. Four of them split into the triangles (0,1,2) and (0,2,3).
@@ -65,4 +65,4 @@ Resolution surface_resolution(const ActiveMesh& mesh, const CutSurface& surface,
 void require_resolution(const ActiveMesh& mesh, const CutSurface& surface,
                         const Communicator& ranks = kAlone);
 
-}  // namespace traceraft
+}  // namespace traceraft::mesh

@@ -6,13 +6,13 @@
 
 #include "kernel/core/error.hpp"
 
-namespace traceraft {
+namespace traceraft::mesh {
 namespace {
 
 constexpr std::size_t kSamples = 500;
 constexpr double kMostRatio = 10;  // of the gradients, or of their inverses
 
-double gradient_norm(const LevelSet& surface, const Point& x, double step) {
+double gradient_norm(const geometry::LevelSet& surface, const Point& x, double step) {
   Point gradient;
   for (int axis = 0; axis < 3; ++axis) {
     const Point e = step * Point::Unit(axis);
@@ -22,7 +22,7 @@ double gradient_norm(const LevelSet& surface, const Point& x, double step) {
 }
 
 // Where φ changes its sign between two points: by bisection, which needs no gradient.
-Point root_between(const LevelSet& surface, Point low, Point high) {
+Point root_between(const geometry::LevelSet& surface, Point low, Point high) {
   constexpr int kHalvings = 50;
   const bool low_negative = surface.value(low) < 0;
   for (int i = 0; i < kHalvings; ++i) {
@@ -40,7 +40,7 @@ struct Samples {
   Point where = Point::Zero();
 };
 
-Samples sampled(const LevelSet& surface, const ActiveMesh& mesh, const CutSurface& cut) {
+Samples sampled(const geometry::LevelSet& surface, const ActiveMesh& mesh, const CutSurface& cut) {
   Samples samples;
   const std::size_t stride = std::max<std::size_t>(1, cut.points.size() / kSamples);
   for (std::size_t p = 0; p < cut.points.size(); p += stride) {
@@ -62,12 +62,12 @@ Samples sampled(const LevelSet& surface, const ActiveMesh& mesh, const CutSurfac
 
 }  // namespace
 
-double relative_gradient(const LevelSet& surface, const Point& on_surface, double h) {
+double relative_gradient(const geometry::LevelSet& surface, const Point& on_surface, double h) {
   return gradient_norm(surface, on_surface, 1e-6 * h) / gradient_norm(surface, on_surface, 0.5 * h);
 }
 
-void require_gradient(const LevelSet& surface, const ActiveMesh& mesh, const CutSurface& cut,
-                      double share, const Communicator& ranks) {
+void require_gradient(const geometry::LevelSet& surface, const ActiveMesh& mesh,
+                      const CutSurface& cut, double share, const Communicator& ranks) {
   const Samples mine = sampled(surface, mesh, cut);
   if (ranks.sum(mine.bad) <= share * ranks.sum(mine.all)) return;
   std::vector<double> worst = {mine.distance, mine.flat ? 1.0 : 0.0, mine.where[0], mine.where[1],
@@ -84,4 +84,4 @@ void require_gradient(const LevelSet& surface, const ActiveMesh& mesh, const Cut
   throw InputError(text.str());
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::mesh

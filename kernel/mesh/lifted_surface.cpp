@@ -2,14 +2,14 @@
 
 #include <cmath>
 
-namespace traceraft {
+namespace traceraft::mesh {
 namespace {
 
 using Tangents = Eigen::Matrix<double, 3, 2>;
 
 // From differences along the directions of a tetrahedron's corners: Σ d_k d_kᵀ = 4 I. Its error of
 // order `step` varies smoothly, and any smooth direction will do.
-Point gradient(const LevelSet& level_set, const Point& x, double step) {
+Point gradient(const geometry::LevelSet& level_set, const Point& x, double step) {
   static const Point directions[] = {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
   Point sum = Point::Zero();
   for (const Point& d : directions) sum += level_set.value(x + step * d) * d;
@@ -17,8 +17,8 @@ Point gradient(const LevelSet& level_set, const Point& x, double step) {
 }
 
 // How the lift maps lengths in a plane to lengths on Γ, at a point: gᵢⱼ = ∂ᵢy·∂ⱼy.
-Eigen::Matrix2d first_form(const LevelSet& level_set, const Point& x, const Tangents& plane,
-                           double h) {
+Eigen::Matrix2d first_form(const geometry::LevelSet& level_set, const Point& x,
+                           const Tangents& plane, double h) {
   const double step = 2e-4 * h;
   Tangents slope;
   for (int axis = 0; axis < 2; ++axis) {
@@ -29,8 +29,9 @@ Eigen::Matrix2d first_form(const LevelSet& level_set, const Point& x, const Tang
   return slope.transpose() * slope;
 }
 
-LiftedTriangle lifted_triangle(const LevelSet& level_set, const std::array<Point, 3>& corner,
-                               double flat_area, const Point& normal, double h) {
+LiftedTriangle lifted_triangle(const geometry::LevelSet& level_set,
+                               const std::array<Point, 3>& corner, double flat_area,
+                               const Point& normal, double h) {
   Tangents plane;
   plane.col(0) = normal.unitOrthogonal();
   plane.col(1) = normal.cross(plane.col(0));
@@ -50,7 +51,7 @@ LiftedTriangle lifted_triangle(const LevelSet& level_set, const std::array<Point
 
 }  // namespace
 
-Point lifted(const LevelSet& level_set, const Point& x, double h) {
+Point lifted(const geometry::LevelSet& level_set, const Point& x, double h) {
   const Point slope = gradient(level_set, x, 1e-4 * h);
   const double steepness = slope.norm();
   const Point direction = slope / steepness;
@@ -59,8 +60,9 @@ Point lifted(const LevelSet& level_set, const Point& x, double h) {
   return x + along * direction;
 }
 
-std::vector<LiftedTriangle> lifted_triangles(const LevelSet& level_set, const ActiveMesh& mesh,
-                                             const CutSurface& surface, const ThreadTeam& team) {
+std::vector<LiftedTriangle> lifted_triangles(const geometry::LevelSet& level_set,
+                                             const ActiveMesh& mesh, const CutSurface& surface,
+                                             const ThreadTeam& team) {
   std::vector<LiftedTriangle> result(surface.triangles.size());
   team.for_range(result.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
@@ -74,4 +76,4 @@ std::vector<LiftedTriangle> lifted_triangles(const LevelSet& level_set, const Ac
   return result;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::mesh

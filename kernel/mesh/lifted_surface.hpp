@@ -7,7 +7,7 @@
 #include "kernel/core/thread_team.hpp"
 #include "kernel/mesh/cut_surface.hpp"
 
-namespace traceraft {
+namespace traceraft::mesh {
 
 // The image of a triangle on Γ. A function u that is linear on the triangle lives there, too.
 struct LiftedTriangle {
@@ -18,11 +18,12 @@ struct LiftedTriangle {
 };
 
 // Where x, a point near Γ, is lifted to: along ∇φ(x), to φ = 0. `h` is the scale of differences.
-Point lifted(const LevelSet& level_set, const Point& x, double h);
+Point lifted(const geometry::LevelSet& level_set, const Point& x, double h);
 
 // The images of all triangles. A triangle stays flat where its image is not near it: at an edge of
 // Γ, on a mesh that is far too coarse, or where φ is not finite.
-std::vector<LiftedTriangle> lifted_triangles(const LevelSet& level_set, const ActiveMesh& mesh,
-                                             const CutSurface& surface, const ThreadTeam& team);
+std::vector<LiftedTriangle> lifted_triangles(const geometry::LevelSet& level_set,
+                                             const ActiveMesh& mesh, const CutSurface& surface,
+                                             const ThreadTeam& team);
 
-}  // namespace traceraft
+}  // namespace traceraft::mesh

@@ -7,7 +7,7 @@
 #include "kernel/core/error.hpp"
 #include "kernel/mesh/cut_surface.hpp"
 
-namespace traceraft {
+namespace traceraft::mesh {
 namespace {
 
 constexpr int kBits = 16;  // of the curve, per direction
@@ -58,7 +58,7 @@ std::uint64_t hilbert_position(Lattice point, int bits) {
   return position;
 }
 
-Partition::Partition(const LevelSet& surface, const CubeMesh& mesh, int ranks)
+Partition::Partition(const geometry::LevelSet& surface, const CubeMesh& mesh, int ranks)
     : cells_(mesh.cells), blocks_(block_count(mesh.cells, ranks)) {
   if (ranks == 1) return;
   const ActiveMesh coarse = build_active_mesh(surface, blocks_);
@@ -97,4 +97,4 @@ int Partition::owner(const Lattice& vertex) const {
                           first_.begin());
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::mesh

@@ -7,7 +7,7 @@
 #include "kernel/geometry/level_set.hpp"
 #include "kernel/mesh/cube_mesh.hpp"
 
-namespace traceraft {
+namespace traceraft::mesh {
 
 // The cube is cut into blocks, the blocks are lined up along a Hilbert curve, and the curve is cut
 // into one interval per rank, of equal amounts of surface as a mesh of the blocks sees it. Every
@@ -17,7 +17,7 @@ class Partition {
   // Everything belongs to rank 0.
   Partition() = default;
   // Throws InputError (see find_cut_cells).
-  Partition(const LevelSet& surface, const CubeMesh& mesh, int ranks);
+  Partition(const geometry::LevelSet& surface, const CubeMesh& mesh, int ranks);
 
   int ranks() const { return static_cast<int>(first_.size()) + 1; }
   int owner(const Lattice& vertex) const;
@@ -60,4 +60,4 @@ class Partition {
 // 707, 381, 2004): neighbours on the curve are neighbours in space.
 std::uint64_t hilbert_position(Lattice point, int bits);
 
-}  // namespace traceraft
+}  // namespace traceraft::mesh

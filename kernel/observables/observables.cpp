@@ -1,9 +1,9 @@
 #include "kernel/observables/observables.hpp"
 
-namespace traceraft {
+namespace traceraft::observables {
 
-Observer::Observer(const CahnHilliard& problem, std::shared_ptr<const SurfaceSpace> space,
-                   double interface_energy)
+Observer::Observer(const problem::CahnHilliard& problem,
+                   std::shared_ptr<const fem::SurfaceSpace> space, double interface_energy)
     : problem_(problem), interface_energy_(interface_energy), finder_(std::move(space)) {}
 
 double Observer::level() const {
@@ -19,7 +19,7 @@ RaftReport Observer::rafts(VecView y) const {
 }
 
 Observables Observer::measure(double t, VecView y, const RaftReport& report) const {
-  const SurfaceSpace& space = problem_.space();
+  const fem::SurfaceSpace& space = problem_.space();
   const auto c = problem_.c_of(y);
   const double gradient = problem_.model().epsilon * space.quadratic(space.stiffness, c);
   Observables row;
@@ -37,4 +37,4 @@ Observables Observer::measure(double t, VecView y, const RaftReport& report) con
   return row;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::observables

@@ -8,7 +8,7 @@
 #include "kernel/observables/rafts.hpp"
 #include "kernel/problem/cahn_hilliard.hpp"
 
-namespace traceraft {
+namespace traceraft::observables {
 
 // In units of R and R²/D.
 struct Observables {
@@ -28,7 +28,7 @@ class Observer {
  public:
   // interface_energy: ∫ ε|∇c|² per unit length of phase boundary, see resolved_boundary.hpp.
   // The problem must outlive this object.
-  Observer(const CahnHilliard& problem, std::shared_ptr<const SurfaceSpace> space,
+  Observer(const problem::CahnHilliard& problem, std::shared_ptr<const fem::SurfaceSpace> space,
            double interface_energy);
 
   Observables measure(double t, VecView y) const { return measure(t, y, rafts(y)); }
@@ -39,9 +39,9 @@ class Observer {
   double energy_scale() const { return problem_.energy_scale(); }
 
  private:
-  const CahnHilliard& problem_;
+  const problem::CahnHilliard& problem_;
   double interface_energy_;
   RaftFinder finder_;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::observables

@@ -8,7 +8,7 @@
 
 #include "kernel/fem/trace.hpp"
 
-namespace traceraft {
+namespace traceraft::observables {
 namespace {
 
 class DisjointSets {
@@ -48,7 +48,7 @@ Piece piece_above(const std::array<Point, 3>& x, const std::array<double, 3>& va
   }
   Piece piece;
   for (int i = 2; i < corners; ++i) {
-    const double area = triangle_area(corner[0], corner[i - 1], corner[i]);
+    const double area = mesh::triangle_area(corner[0], corner[i - 1], corner[i]);
     piece.area += area;
     piece.moment += area / 3 * (corner[0] + corner[i - 1] + corner[i]);
   }
@@ -79,8 +79,8 @@ struct Pieces {
   std::vector<int> of_point;  // −1: not in a piece
 };
 
-Pieces find_pieces(const SurfaceSpace& space, const Vec& value, double level) {
-  const CutSurface& surface = space.surface;
+Pieces find_pieces(const fem::SurfaceSpace& space, const Vec& value, double level) {
+  const mesh::CutSurface& surface = space.surface;
   DisjointSets sets(surface.points.size());
   std::vector<char> above(surface.points.size(), 0);  // and in a triangle of this rank
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
@@ -103,7 +103,7 @@ Pieces find_pieces(const SurfaceSpace& space, const Vec& value, double level) {
       pieces.sums.emplace_back();
     }
     pieces.of_point[p] = piece;
-    const CutPoint& point = surface.points[p];
+    const mesh::CutPoint& point = surface.points[p];
     pieces.sums[piece].see(space.mesh.node_id[point.low], space.mesh.node_id[point.high]);
   }
   const std::vector<Point>& x = surface.position;
@@ -113,7 +113,7 @@ Pieces find_pieces(const SurfaceSpace& space, const Vec& value, double level) {
     const int piece = std::max({pieces.of_point[i], pieces.of_point[j], pieces.of_point[k]});
     if (piece < 0) continue;
     const Piece part = piece_above({x[i], x[j], x[k]}, {value[i], value[j], value[k]}, level);
-    const double stretch = surface.triangle_area[t] / triangle_area(x[i], x[j], x[k]);
+    const double stretch = surface.triangle_area[t] / mesh::triangle_area(x[i], x[j], x[k]);
     const Point moment = stretch * part.moment;
     pieces.sums[piece].add(stretch * part.area, part.curve, moment.data());
   }
@@ -126,7 +126,8 @@ struct Link {
   std::int64_t piece;
 };
 
-std::vector<Link> find_links(const SurfaceSpace& space, const std::vector<int>& piece_of_point) {
+std::vector<Link> find_links(const fem::SurfaceSpace& space,
+                             const std::vector<int>& piece_of_point) {
   std::vector<Link> links;
   if (space.communicator->size() == 1) return links;
   std::vector<char> shared(piece_of_point.size(), 0);
@@ -134,7 +135,7 @@ std::vector<Link> find_links(const SurfaceSpace& space, const std::vector<int>& 
     if (!space.owns_triangle(t))
       for (const int p : space.surface.triangles[t]) shared[p] = 1;
   for (std::size_t p = 0; p < shared.size(); ++p) {
-    const CutPoint& point = space.surface.points[p];
+    const mesh::CutPoint& point = space.surface.points[p];
     const bool inner = !shared[p] && space.mesh.owns(point.low) && space.mesh.owns(point.high);
     if (piece_of_point[p] >= 0 && !inner)
       links.push_back(
@@ -149,7 +150,7 @@ struct Merged {
   std::vector<int> raft_of_piece;  // of this rank
 };
 
-Merged merge(const SurfaceSpace& space, const Pieces& pieces) {
+Merged merge(const fem::SurfaceSpace& space, const Pieces& pieces) {
   const Communicator& ranks = *space.communicator;
   const Lists<Sums> sums = gather_everywhere(ranks, pieces.sums);
   const Lists<Link> links = gather_everywhere(ranks, find_links(space, pieces.of_point));
@@ -190,7 +191,7 @@ Point centre_of(const Sums& raft) {
 }
 
 // From the centre of each raft to the nearest of its points.
-std::vector<double> find_distances(const SurfaceSpace& space, const Pieces& pieces,
+std::vector<double> find_distances(const fem::SurfaceSpace& space, const Pieces& pieces,
                                    const Merged& merged) {
   std::vector<double> nearest(merged.rafts.size(), 1e300);
   for (std::size_t p = 0; p < pieces.of_point.size(); ++p) {
@@ -229,11 +230,11 @@ std::vector<int> by_size(const std::vector<Sums>& rafts) {
 
 }  // namespace
 
-RaftFinder::RaftFinder(std::shared_ptr<const SurfaceSpace> space) : space_(std::move(space)) {}
+RaftFinder::RaftFinder(std::shared_ptr<const fem::SurfaceSpace> space) : space_(std::move(space)) {}
 
 RaftReport RaftFinder::find(VecView c, double level) const {
   Vec buffer;
-  const Vec value = trace(*space_, space_->with_ghosts(c, buffer));
+  const Vec value = fem::trace(*space_, space_->with_ghosts(c, buffer));
   const Pieces pieces = find_pieces(*space_, value, level);
   const Merged merged = merge(*space_, pieces);
   const std::vector<double> distances = find_distances(*space_, pieces, merged);
@@ -257,8 +258,8 @@ RaftReport RaftFinder::find(VecView c, double level) const {
 
 int RaftFinder::regions_below(VecView c, double level) const {
   Vec buffer;
-  const Vec value = -trace(*space_, space_->with_ghosts(c, buffer));
+  const Vec value = -fem::trace(*space_, space_->with_ghosts(c, buffer));
   return static_cast<int>(merge(*space_, find_pieces(*space_, value, -level)).rafts.size());
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::observables

@@ -6,7 +6,7 @@
 
 #include "kernel/fem/surface_space.hpp"
 
-namespace traceraft {
+namespace traceraft::observables {
 
 struct Raft {
   double area;
@@ -28,13 +28,13 @@ struct RaftReport {
 // level. Coordinates, areas and lengths in units of R. Collective; every rank has the whole report.
 class RaftFinder {
  public:
-  explicit RaftFinder(std::shared_ptr<const SurfaceSpace> space);
+  explicit RaftFinder(std::shared_ptr<const fem::SurfaceSpace> space);
   RaftReport find(VecView c, double level) const;
   // The number of connected components of {c < level}.
   int regions_below(VecView c, double level) const;
 
  private:
-  std::shared_ptr<const SurfaceSpace> space_;
+  std::shared_ptr<const fem::SurfaceSpace> space_;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::observables

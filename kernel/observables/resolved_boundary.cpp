@@ -5,20 +5,20 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace traceraft {
+namespace traceraft::observables {
 namespace {
 
 struct Row {
   double h;  // over the width of the boundary, ε for the default well
   double averaged, consistent, nodal;
 
-  double of(PotentialRule rule) const {
+  double of(fem::PotentialRule rule) const {
     switch (rule) {
-      case PotentialRule::averaged:
+      case fem::PotentialRule::averaged:
         return averaged;
-      case PotentialRule::consistent:
+      case fem::PotentialRule::consistent:
         return consistent;
-      case PotentialRule::nodal:
+      case fem::PotentialRule::nodal:
         return nodal;
     }
     throw std::logic_error("a potential without a table of boundaries");
@@ -40,7 +40,7 @@ constexpr std::array<Row, 12> kTable = {{{0, 1, 1, 1},
                                          {8, 1.0196, 0.8961, 0.7586}}};
 
 // Linear between rows; the last row beyond.
-double resolved_at(PotentialRule rule, double h) {
+double resolved_at(fem::PotentialRule rule, double h) {
   const auto above =
       std::find_if(kTable.begin() + 1, kTable.end() - 1, [&](const Row& row) { return h < row.h; });
   const Row &low = *(above - 1), &high = *above;
@@ -50,11 +50,11 @@ double resolved_at(PotentialRule rule, double h) {
 
 }  // namespace
 
-ResolvedBoundary resolved_boundary(const CahnHilliardModel& model, double h) {
-  const DoubleWell& well = model.well;
+ResolvedBoundary resolved_boundary(const problem::CahnHilliardModel& model, double h) {
+  const physics::DoubleWell& well = model.well;
   const double width = model.epsilon / (2 * std::sqrt(well.rho) * (well.b - well.a));
   const double resolved = resolved_at(model.rule, h / width);
   return {resolved * well.interface_energy(), resolved};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::observables

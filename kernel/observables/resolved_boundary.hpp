@@ -3,7 +3,7 @@
 
 #include "kernel/problem/cahn_hilliard.hpp"
 
-namespace traceraft {
+namespace traceraft::observables {
 
 struct ResolvedBoundary {
   double interface_energy;  // ∫ ε|∇c|² per unit length of phase boundary on this mesh: 1/p0
@@ -14,6 +14,6 @@ struct ResolvedBoundary {
 // how they may lie in the mesh. One of them is off by 0.3 % (averaged), 0.9 % (consistent) or 3 %
 // (nodal) at h/ε = 2.6. A great circle of the unit sphere has 4 (ε/R)² less than a straight line.
 // Tests measure it again.
-ResolvedBoundary resolved_boundary(const CahnHilliardModel& model, double h);
+ResolvedBoundary resolved_boundary(const problem::CahnHilliardModel& model, double h);
 
-}  // namespace traceraft
+}  // namespace traceraft::observables

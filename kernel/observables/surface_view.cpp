@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace traceraft {
+namespace traceraft::observables {
 namespace {
 
 constexpr int kSamples = 2;  // per pixel and direction
@@ -162,7 +162,7 @@ void fill(Image& image, int left, int top, int width, int height,
                 image.rgb.begin() + 3 * (static_cast<std::ptrdiff_t>(y) * image.width + x));
 }
 
-double view_half_width(const SurfaceSpace& space) {
+double view_half_width(const fem::SurfaceSpace& space) {
   return half_width_of(space.surface.position, *space.communicator);
 }
 
@@ -170,9 +170,9 @@ std::array<std::uint8_t, 3> surface_colour(double share) {
   return shaded(share, 1);
 }
 
-Image draw_front_and_back(const SurfaceSpace& space, const Vec& values, double low, double high,
-                          int size) {
-  const CutSurface& surface = space.surface;
+Image draw_front_and_back(const fem::SurfaceSpace& space, const Vec& values, double low,
+                          double high, int size) {
+  const mesh::CutSurface& surface = space.surface;
   return draw(surface.position, surface.triangles, values, low, high, size, *space.communicator);
 }
 
@@ -181,4 +181,4 @@ Image draw_front_and_back(const SurfaceMesh& mesh, const Vec& values, double low
   return draw(mesh.position, mesh.triangles, values, low, high, size, kAlone);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::observables

@@ -7,7 +7,7 @@
 
 #include "kernel/fem/surface_space.hpp"
 
-namespace traceraft {
+namespace traceraft::observables {
 
 struct Image {
   int width = 0, height = 0;
@@ -30,15 +30,15 @@ struct SurfaceMesh {
 // Parallel projection of the surface coloured by `values` (one per point of Γ_h), dark at `low` and
 // bright at `high`, on white. `size`: pixels per edge of each of the two squares. Collective; every
 // rank gets the whole picture.
-Image draw_front_and_back(const SurfaceSpace& space, const Vec& values, double low, double high,
-                          int size);
+Image draw_front_and_back(const fem::SurfaceSpace& space, const Vec& values, double low,
+                          double high, int size);
 
 // Half of what each of the two squares shows, in units of R. Collective.
-double view_half_width(const SurfaceSpace& space);
+double view_half_width(const fem::SurfaceSpace& space);
 // The colour of a surface that is lit from the front; share: 0 for `low`, 1 for `high`.
 std::array<std::uint8_t, 3> surface_colour(double share);
 
 Image draw_front_and_back(const SurfaceMesh& mesh, const Vec& values, double low, double high,
                           int size);
 
-}  // namespace traceraft
+}  // namespace traceraft::observables

@@ -2,7 +2,7 @@
 
 #include "kernel/physics/mobility.hpp"
 
-namespace traceraft {
+namespace traceraft::physics {
 namespace {
 
 class Constant final : public Mobility {
@@ -28,4 +28,4 @@ MobilityEntry constant_mobility() {
           [](const Parameters& p) { return std::make_shared<Constant>(p["value"]); }};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::physics

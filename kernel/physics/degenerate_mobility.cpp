@@ -1,6 +1,6 @@
 #include "kernel/physics/mobility.hpp"
 
-namespace traceraft {
+namespace traceraft::physics {
 namespace {
 
 // M(c) = c(1 − c): lipids move in the interface only. Curved phase boundaries push c out of [0, 1]
@@ -33,4 +33,4 @@ MobilityEntry degenerate_mobility() {
           [](const Parameters& p) { return std::make_shared<Degenerate>(p["outside"]); }};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::physics

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace traceraft {
+namespace traceraft::physics {
 
 // f0(c) = ρ (c − a)² (b − c)². Defaults: ¼ c² (1 − c)².
 struct DoubleWell {
@@ -30,4 +30,4 @@ struct DoubleWell {
   }
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::physics

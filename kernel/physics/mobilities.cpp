@@ -1,6 +1,6 @@
 #include "kernel/physics/mobility.hpp"
 
-namespace traceraft {
+namespace traceraft::physics {
 
 const NamedList<MobilityEntry>& mobilities() {
   static const std::vector<MobilityEntry> entries = {
@@ -18,4 +18,4 @@ MobilityPtr make_mobility(const std::string& specification) {
       parse_parameters("mobility '" + entry.name + "'", request.arguments, entry.parameters));
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::physics

@@ -9,7 +9,7 @@
 #include "kernel/core/named_list.hpp"
 #include "kernel/core/parameters.hpp"
 
-namespace traceraft {
+namespace traceraft::physics {
 
 // Contract: M is continuous; it may be negative outside [0, 1]. What enters the equations is the
 // mean of M(c_h) over Γ_h in each tetrahedron, floored at zero there (fem/mobility_stiffness.hpp):
@@ -42,4 +42,4 @@ const NamedList<MobilityEntry>& mobilities();
 // "constant:value=0.25" -> the law. Throws InputError.
 MobilityPtr make_mobility(const std::string& specification);
 
-}  // namespace traceraft
+}  // namespace traceraft::physics

@@ -1,7 +1,7 @@
 // Physical units and the program's own: lengths in R, times in R²/D.
 #pragma once
 
-namespace traceraft {
+namespace traceraft::physics {
 
 struct Units {
   double radius_um = 5.0;         // R in µm
@@ -20,4 +20,4 @@ struct Units {
   double time() const { return scaled ? 1.0 : seconds_per_unit(); }
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::physics

@@ -6,13 +6,15 @@
 
 #include "kernel/fem/mobility_stiffness.hpp"
 
-namespace traceraft {
-CsrMatrix gradient_energy_matrix(const SurfaceSpace& space, const CahnHilliardModel& model) {
+namespace traceraft::problem {
+fem::CsrMatrix gradient_energy_matrix(const fem::SurfaceSpace& space,
+                                      const CahnHilliardModel& model) {
   const double e2 = model.epsilon * model.epsilon;
-  return combine(e2, space.stiffness, e2 * model.stabilisation * space.h(), space.normal_stiffness);
+  return fem::combine(e2, space.stiffness, e2 * model.stabilisation * space.h(),
+                      space.normal_stiffness);
 }
 
-CahnHilliard::CahnHilliard(std::shared_ptr<const SurfaceSpace> space, CahnHilliardModel model)
+CahnHilliard::CahnHilliard(std::shared_ptr<const fem::SurfaceSpace> space, CahnHilliardModel model)
     : space_(std::move(space)),
       model_(std::move(model)),
       gradient_energy_(gradient_energy_matrix(*space_, model_)) {}
@@ -22,7 +24,7 @@ double CahnHilliard::flux_stabilisation() const {
 }
 
 Status CahnHilliard::residual(double t, VecView y, VecView ydot, VecRef r) const {
-  const SurfaceSpace& space = *space_;
+  const fem::SurfaceSpace& space = *space_;
   const int n = block_size();
   Vec c_buffer, mu_buffer, rate_buffer;
   const auto c = space.with_ghosts(c_of(y), c_buffer);
@@ -32,35 +34,37 @@ Status CahnHilliard::residual(double t, VecView y, VecView ydot, VecRef r) const
   VecRef first = r.head(n), second = r.tail(n);
 
   space.stabilised_mass.multiply_add(1, rate, first, *space.team);
-  add_mobility_flux(space, mobility_integrals(space, *model_.mobility, c), mu, first);
+  fem::add_mobility_flux(space, fem::mobility_integrals(space, *model_.mobility, c), mu, first);
   space.normal_stiffness.multiply_add(flux_stabilisation(), mu, first, *space.team);
 
   space.stabilised_mass.multiply_add(1, mu, second, *space.team);
-  add_potential(space, model_.well, model_.rule, -1, c, second);
+  fem::add_potential(space, model_.well, model_.rule, -1, c, second);
   gradient_energy_.multiply_add(-1, c, second, *space.team);
 
   for (const EffectPtr& effect : model_.effects)
     effect->add_residual(space, t, c, mu, first, second);
-  if (!std::isfinite(ranks().sum(dot(r, r)))) return Status::retry("the residual is not finite");
+  if (!std::isfinite(ranks().sum(fem::dot(r, r))))
+    return Status::retry("the residual is not finite");
   return {};
 }
 
-void CahnHilliard::fill_curvature(VecView c, Tangent tangent, BlockJacobian& J) const {
-  const double beta = tangent == Tangent::stabilised ? model_.beta() : 0;
+void CahnHilliard::fill_curvature(VecView c, linear::Tangent tangent,
+                                  linear::BlockJacobian& J) const {
+  const double beta = tangent == linear::Tangent::stabilised ? model_.beta() : 0;
   space_->team->for_range(J.mc.values.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
       J.mc.values[k] = -gradient_energy_.values[k] - beta * J.mm.values[k];
   });
   J.curvature = beta;
-  if (tangent == Tangent::stabilised) return;
-  add_potential_tangent(*space_, model_.well, model_.rule, -1, c, J.mc);
+  if (tangent == linear::Tangent::stabilised) return;
+  fem::add_potential_tangent(*space_, model_.well, model_.rule, -1, c, J.mc);
   double convex = 0;
   for (int i = 0; i < block_size(); ++i)
     convex += space_->node_area[i] * std::max(0.0, model_.well.second(c[i]));
   J.curvature = ranks().sum(convex) / space_->area;
 }
 
-double CahnHilliard::mean_mobility(const CsrMatrix& mobility_stiffness) const {
+double CahnHilliard::mean_mobility(const fem::CsrMatrix& mobility_stiffness) const {
   double weighted = 0, unweighted = 0;
   for (const int k : space_->pattern->diagonal) {
     weighted += mobility_stiffness.values[k];
@@ -69,10 +73,10 @@ double CahnHilliard::mean_mobility(const CsrMatrix& mobility_stiffness) const {
   return ranks().sum(weighted) / ranks().sum(unweighted);
 }
 
-Status CahnHilliard::jacobian(double t, VecView y, VecView, double shift, Tangent tangent,
-                              BlockJacobian& J) const {
-  const SurfaceSpace& space = *space_;
-  if (!std::isfinite(ranks().sum(dot(y, y)))) return Status::retry("the state is not finite");
+Status CahnHilliard::jacobian(double t, VecView y, VecView, double shift, linear::Tangent tangent,
+                              linear::BlockJacobian& J) const {
+  const fem::SurfaceSpace& space = *space_;
+  if (!std::isfinite(ranks().sum(fem::dot(y, y)))) return Status::retry("the state is not finite");
   Vec c_buffer, mu_buffer;
   const auto c = space.with_ghosts(c_of(y), c_buffer);
   const auto mu = space.with_ghosts(mu_of(y), mu_buffer);
@@ -88,17 +92,17 @@ Status CahnHilliard::jacobian(double t, VecView y, VecView, double shift, Tangen
   });
 
   std::vector<double> integral;
-  if (tangent == Tangent::exact) {
+  if (tangent == linear::Tangent::exact) {
     std::vector<std::array<double, 4>> gradient;
-    integral = mobility_integrals(space, *model_.mobility, c, gradient);
-    add_mobility_derivative(space, 1, mu, gradient, J.cc);
+    integral = fem::mobility_integrals(space, *model_.mobility, c, gradient);
+    fem::add_mobility_derivative(space, 1, mu, gradient, J.cc);
   } else {
-    integral = mobility_integrals(space, *model_.mobility, c);
+    integral = fem::mobility_integrals(space, *model_.mobility, c);
   }
-  assemble_mobility_stiffness(space, integral, J.cm);
+  fem::assemble_mobility_stiffness(space, integral, J.cm);
   fill_curvature(c, tangent, J);
   for (const EffectPtr& effect : model_.effects) {
-    if (tangent == Tangent::exact)
+    if (tangent == linear::Tangent::exact)
       effect->add_tangent(space, t, c, mu, J);
     else
       effect->add_stabilised(space, t, c, J);
@@ -112,9 +116,9 @@ Status CahnHilliard::jacobian(double t, VecView y, VecView, double shift, Tangen
   return {};
 }
 
-Status CahnHilliard::jacobian_product(double t, VecView y, VecView, double shift, Tangent tangent,
-                                      VecView v, VecRef product) const {
-  const SurfaceSpace& space = *space_;
+Status CahnHilliard::jacobian_product(double t, VecView y, VecView, double shift,
+                                      linear::Tangent tangent, VecView v, VecRef product) const {
+  const fem::SurfaceSpace& space = *space_;
   const int n = block_size();
   Vec buffers[4];
   const auto c = space.with_ghosts(c_of(y), buffers[0]);
@@ -128,17 +132,18 @@ Status CahnHilliard::jacobian_product(double t, VecView y, VecView, double shift
   space.stabilised_mass.multiply_add(1, vmu, second, *space.team);
   gradient_energy_.multiply_add(-1, vc, second, *space.team);
 
-  if (tangent == Tangent::stabilised) {
-    add_mobility_flux(space, mobility_integrals(space, *model_.mobility, c), vmu, first);
+  if (tangent == linear::Tangent::stabilised) {
+    fem::add_mobility_flux(space, fem::mobility_integrals(space, *model_.mobility, c), vmu, first);
     space.stabilised_mass.multiply_add(-model_.beta(), vc, second, *space.team);
     for (const EffectPtr& effect : model_.effects)
       effect->add_stabilised_product(space, t, c, vmu, first);
     return {};
   }
   std::vector<std::array<double, 4>> gradient;
-  add_mobility_flux(space, mobility_integrals(space, *model_.mobility, c, gradient), vmu, first);
-  add_mobility_flux(space, mobility_change(space, gradient, vc), mu, first);
-  add_potential_tangent_product(space, model_.well, model_.rule, -1, c, vc, second);
+  fem::add_mobility_flux(space, fem::mobility_integrals(space, *model_.mobility, c, gradient), vmu,
+                         first);
+  fem::add_mobility_flux(space, fem::mobility_change(space, gradient, vc), mu, first);
+  fem::add_potential_tangent_product(space, model_.well, model_.rule, -1, c, vc, second);
   for (const EffectPtr& effect : model_.effects)
     effect->add_tangent_product(space, t, c, mu, vc, vmu, first, second);
   return {};
@@ -171,7 +176,7 @@ double CahnHilliard::field_norm(VecView half) const {
 double CahnHilliard::energy(VecView y) const {
   Vec buffer;
   const auto c = space_->with_ghosts(c_of(y), buffer);
-  double energy = ranks().sum(potential_energy(*space_, model_.well, model_.rule, c)) +
+  double energy = ranks().sum(fem::potential_energy(*space_, model_.well, model_.rule, c)) +
                   0.5 * space_->quadratic(gradient_energy_, c_of(y));
   for (const EffectPtr& effect : model_.effects) energy += effect->energy(*space_, c);
   return energy;
@@ -188,7 +193,7 @@ double CahnHilliard::energy_scale() const {
 
 bool CahnHilliard::dissipates_energy() const {
   // With the nodal rule F2 is not the gradient of the energy.
-  return model_.rule != PotentialRule::nodal &&
+  return model_.rule != fem::PotentialRule::nodal &&
          std::all_of(model_.effects.begin(), model_.effects.end(),
                      [](const EffectPtr& effect) { return effect->dissipates_energy(); });
 }
@@ -206,4 +211,4 @@ double CahnHilliard::longest_step() const {
   return longest;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::problem

@@ -10,19 +10,19 @@
 #include "kernel/problem/dae_problem.hpp"
 #include "kernel/problem/effect.hpp"
 
-namespace traceraft {
+namespace traceraft::problem {
 
 // Physics in units of R (length) and R²/D (time).
 struct CahnHilliardModel {
-  MobilityPtr mobility;
-  DoubleWell well;
+  physics::MobilityPtr mobility;
+  physics::DoubleWell well;
   double epsilon = 0.05;  // width of the phase boundary
-  PotentialRule rule = PotentialRule::averaged;
-  double stabilisation = 1.0;                      // ρ = stabilisation · h
-  double mass_stabilisation = kMassStabilisation;  // of the space that the problem is posed on
+  fem::PotentialRule rule = fem::PotentialRule::averaged;
+  double stabilisation = 1.0;                           // ρ = stabilisation · h
+  double mass_stabilisation = fem::kMassStabilisation;  // of the space that the problem is posed on
   std::vector<EffectPtr> effects;
   // How fast lipids are in time, over `mobility`, where an effect changes that; empty: always 1.
-  std::function<double(double)> pace;
+  std::function<double(double)> diffusion_ratio;
   std::uint64_t seed = 1;  // of what effects draw at random
 
   // β of the stabilised tangent: 1 for the default well, as in the reference code. Twice the
@@ -31,7 +31,8 @@ struct CahnHilliardModel {
 };
 
 // ε² (K + ρ S): the gradient energy is half its quadratic form.
-CsrMatrix gradient_energy_matrix(const SurfaceSpace& space, const CahnHilliardModel& model);
+fem::CsrMatrix gradient_energy_matrix(const fem::SurfaceSpace& space,
+                                      const CahnHilliardModel& model);
 
 // y = (c, μ):
 //   F1 = M̃ ċ + K_M(c) μ + ρ m S μ                (m: scale of the mobility law)
@@ -41,15 +42,17 @@ CsrMatrix gradient_energy_matrix(const SurfaceSpace& space, const CahnHilliardMo
 // (not with PotentialRule::nodal).
 class CahnHilliard final : public DaeProblem {
  public:
-  CahnHilliard(std::shared_ptr<const SurfaceSpace> space, CahnHilliardModel model);
+  CahnHilliard(std::shared_ptr<const fem::SurfaceSpace> space, CahnHilliardModel model);
 
   int block_size() const override { return space_->nodes(); }
   Status residual(double t, VecView y, VecView ydot, VecRef r) const override;
-  Status jacobian(double t, VecView y, VecView ydot, double shift, Tangent tangent,
-                  BlockJacobian& J) const override;
-  Status jacobian_product(double t, VecView y, VecView ydot, double shift, Tangent tangent,
+  Status jacobian(double t, VecView y, VecView ydot, double shift, linear::Tangent tangent,
+                  linear::BlockJacobian& J) const override;
+  Status jacobian_product(double t, VecView y, VecView ydot, double shift, linear::Tangent tangent,
                           VecView v, VecRef product) const override;
-  BlockJacobian make_jacobian() const override { return BlockJacobian(space_->pattern); }
+  linear::BlockJacobian make_jacobian() const override {
+    return linear::BlockJacobian(space_->pattern);
+  }
   Status consistent_initial_state(double t, VecRef y, VecRef ydot) const override;
   double norm(VecView y) const override;
   double field_norm(VecView half) const override;  // √(vᵀ M̃ v)
@@ -62,7 +65,7 @@ class CahnHilliard final : public DaeProblem {
   double energy_scale() const override;  // of a surface halfway between the wells
   const Communicator& ranks() const override { return *space_->communicator; }
 
-  const SurfaceSpace& space() const { return *space_; }
+  const fem::SurfaceSpace& space() const { return *space_; }
   const CahnHilliardModel& model() const { return model_; }
 
   // Halves of a state vector.
@@ -71,12 +74,12 @@ class CahnHilliard final : public DaeProblem {
 
  private:
   double flux_stabilisation() const;
-  double mean_mobility(const CsrMatrix& mobility_stiffness) const;
-  void fill_curvature(VecView c, Tangent tangent, BlockJacobian& J) const;
+  double mean_mobility(const fem::CsrMatrix& mobility_stiffness) const;
+  void fill_curvature(VecView c, linear::Tangent tangent, linear::BlockJacobian& J) const;
 
-  std::shared_ptr<const SurfaceSpace> space_;
+  std::shared_ptr<const fem::SurfaceSpace> space_;
   CahnHilliardModel model_;
-  CsrMatrix gradient_energy_;  // ε² (K + ρ S)
+  fem::CsrMatrix gradient_energy_;  // ε² (K + ρ S)
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::problem

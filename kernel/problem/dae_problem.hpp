@@ -7,7 +7,7 @@
 #include "kernel/core/types.hpp"
 #include "kernel/linear/block_jacobian.hpp"
 
-namespace traceraft {
+namespace traceraft::problem {
 
 // A semi-explicit DAE of index 1. y = (c, μ): the first half is differential, the second algebraic;
 // both hold this rank's owned entries. Functions of the state are collective, and what they return
@@ -27,15 +27,15 @@ class DaeProblem {
   virtual Status residual(double t, VecView y, VecView ydot, VecRef r) const = 0;
 
   // Assembles J at (t, y, ẏ) with the shift σ and the given tangent.
-  virtual Status jacobian(double t, VecView y, VecView ydot, double shift, Tangent tangent,
-                          BlockJacobian& J) const = 0;
+  virtual Status jacobian(double t, VecView y, VecView ydot, double shift, linear::Tangent tangent,
+                          linear::BlockJacobian& J) const = 0;
 
   // product = J v without assembling J.
-  virtual Status jacobian_product(double t, VecView y, VecView ydot, double shift, Tangent tangent,
-                                  VecView v, VecRef product) const = 0;
+  virtual Status jacobian_product(double t, VecView y, VecView ydot, double shift,
+                                  linear::Tangent tangent, VecView v, VecRef product) const = 0;
 
   // An empty Jacobian with the pattern of this problem.
-  virtual BlockJacobian make_jacobian() const = 0;
+  virtual linear::BlockJacobian make_jacobian() const = 0;
 
   // Given c in the first half of y, sets μ so that the algebraic equations hold and ẏ so that
   // F(t, y, ẏ) = 0 (the second half of ẏ is zero: it does not appear).
@@ -66,4 +66,4 @@ class DaeProblem {
   virtual const Communicator& ranks() const = 0;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::problem

@@ -8,7 +8,7 @@
 #include "kernel/fem/surface_space.hpp"
 #include "kernel/linear/block_jacobian.hpp"
 
-namespace traceraft {
+namespace traceraft::problem {
 
 // Where the weak form ∫ (…) v of an effect enters:
 //   F1 = M̃ċ + K_M(c) μ + ρ S μ + source + flux,   F2 = M̃μ − b(c) − ε²(K + ρ S)c − potential.
@@ -24,9 +24,9 @@ class Effect {
   virtual bool dissipates_energy() const = 0;
   // The part that the stabilised tangent needs to be stable, with c frozen: a flux that is linear
   // in μ. Adds to J.cm and, for a direction of μ, to the product.
-  virtual void add_stabilised(const SurfaceSpace&, double /*t*/, VecView /*c*/,
-                              BlockJacobian&) const {}
-  virtual void add_stabilised_product(const SurfaceSpace&, double /*t*/, VecView /*c*/,
+  virtual void add_stabilised(const fem::SurfaceSpace&, double /*t*/, VecView /*c*/,
+                              linear::BlockJacobian&) const {}
+  virtual void add_stabilised_product(const fem::SurfaceSpace&, double /*t*/, VecView /*c*/,
                                       VecView /*direction_mu*/, VecRef /*product_c*/) const {}
   // Is the assembled tangent all of it? Effects that couple distant points leave their part of the
   // Jacobian to add_tangent_product; with the assembled one Newton's method then converges
@@ -38,19 +38,19 @@ class Effect {
   // As of DaeProblem.
   virtual double longest_step() const { return std::numeric_limits<double>::infinity(); }
   // Throws InputError if the effect is not made for this surface.
-  virtual void require_surface(const SurfaceSpace&) const {}
+  virtual void require_surface(const fem::SurfaceSpace&) const {}
   // What the effect adds to the energy, over all ranks; F2 is the gradient of the sum.
-  virtual double energy(const SurfaceSpace&, VecView /*c*/) const { return 0; }
+  virtual double energy(const fem::SurfaceSpace&, VecView /*c*/) const { return 0; }
 
-  virtual void add_residual(const SurfaceSpace& space, double t, VecView c, VecView mu,
+  virtual void add_residual(const fem::SurfaceSpace& space, double t, VecView c, VecView mu,
                             VecRef residual_c, VecRef residual_mu) const = 0;
-  virtual void add_tangent(const SurfaceSpace& space, double t, VecView c, VecView mu,
-                           BlockJacobian& J) const = 0;
-  virtual void add_tangent_product(const SurfaceSpace& space, double t, VecView c, VecView mu,
+  virtual void add_tangent(const fem::SurfaceSpace& space, double t, VecView c, VecView mu,
+                           linear::BlockJacobian& J) const = 0;
+  virtual void add_tangent_product(const fem::SurfaceSpace& space, double t, VecView c, VecView mu,
                                    VecView direction_c, VecView direction_mu, VecRef product_c,
                                    VecRef product_mu) const = 0;
 };
 
 using EffectPtr = std::shared_ptr<const Effect>;
 
-}  // namespace traceraft
+}  // namespace traceraft::problem

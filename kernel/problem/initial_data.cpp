@@ -6,7 +6,7 @@
 
 #include "kernel/fem/density_load.hpp"
 
-namespace traceraft {
+namespace traceraft::problem {
 
 const NamedList<InitialEntry>& initial_fields() {
   static const std::vector<InitialEntry> entries = {
@@ -21,7 +21,7 @@ const NamedList<InitialEntry>& initial_fields() {
 
 namespace {
 
-Vec projected_load(const SurfaceSpace& space, VecView load) {
+Vec projected_load(const fem::SurfaceSpace& space, VecView load) {
   if (!std::isfinite(space.communicator->sum(load.sum())))
     throw InputError("initial: the concentration is not finite everywhere on the surface");
   Vec projected(space.nodes());
@@ -32,11 +32,12 @@ Vec projected_load(const SurfaceSpace& space, VecView load) {
 
 // The first of the points, over all ranks, where a concentration is not finite.
 template <class Concentration>
-void require_finite(const SurfaceSpace& space, const Concentration& c, const std::string& name) {
+void require_finite(const fem::SurfaceSpace& space, const Concentration& c,
+                    const std::string& name) {
   std::vector<double> bad;
   for (std::size_t t = 0; t < space.surface.triangles.size() && bad.empty(); ++t)
-    for (std::size_t p = 0; p < kDegreeFourRule.size(); ++p)
-      if (const Point x = quadrature_point(space.surface, t, p).x; !std::isfinite(c(x)))
+    for (std::size_t p = 0; p < fem::kDegreeFourRule.size(); ++p)
+      if (const Point x = fem::quadrature_point(space.surface, t, p).x; !std::isfinite(c(x)))
         bad = {x[0], x[1], x[2]};
   for (const std::vector<double>& other : gather_everywhere(*space.communicator, bad))
     bad = std::max(bad, other);
@@ -48,14 +49,14 @@ void require_finite(const SurfaceSpace& space, const Concentration& c, const std
   throw InputError(text.str());
 }
 
-Vec projected_concentration(const SurfaceSpace& space, const InitialEntry& entry,
+Vec projected_concentration(const fem::SurfaceSpace& space, const InitialEntry& entry,
                             const InitialRequest& request) {
   const auto at_surface = [&, concentration = entry.concentration(request)](const Point& x) {
-    return concentration(request.surface ? lifted(*request.surface, x, space.h()) : x);
+    return concentration(request.surface ? mesh::lifted(*request.surface, x, space.h()) : x);
   };
   Vec load = Vec::Zero(space.nodes());
-  add_density_load(
-      space, 1, [&](const QuadraturePoint& at) { return at_surface(at.x); }, load);
+  fem::add_density_load(
+      space, 1, [&](const fem::QuadraturePoint& at) { return at_surface(at.x); }, load);
   if (!std::isfinite(space.communicator->sum(load.sum())))
     require_finite(space, at_surface, entry.name);
   return projected_load(space, load);
@@ -63,13 +64,13 @@ Vec projected_concentration(const SurfaceSpace& space, const InitialEntry& entry
 
 }  // namespace
 
-Vec project(const SurfaceSpace& space, VecView nodal) {
+Vec project(const fem::SurfaceSpace& space, VecView nodal) {
   Vec load(space.nodes()), buffer;
   space.mass.multiply(space.with_ghosts(nodal, buffer), load, *space.team);
   return projected_load(space, load);
 }
 
-Vec make_initial_field(const std::string& specification, const SurfaceSpace& space,
+Vec make_initial_field(const std::string& specification, const fem::SurfaceSpace& space,
                        const InitialRequest& request) {
   const NamedArguments parts = split_named_arguments(specification);
   const InitialEntry& entry = initial_fields().find(parts.name);
@@ -113,4 +114,4 @@ InitialEntry cap_rafts() {
           }};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::problem

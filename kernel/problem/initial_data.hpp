@@ -12,7 +12,7 @@
 #include "kernel/fem/surface_space.hpp"
 #include "kernel/physics/double_well.hpp"
 
-namespace traceraft {
+namespace traceraft::problem {
 
 struct CapRaft {
   Point direction;  // of the centre, seen from the origin
@@ -26,9 +26,10 @@ struct InitialRequest {
   std::uint64_t seed = 1;
   std::vector<CapRaft> caps;
   std::function<double(const Point&)> formula;  // thread-safe
-  LevelSetPtr surface;  // where formulas are evaluated; without it, on the triangles of Γ_h
+  geometry::LevelSetPtr
+      surface;  // where formulas are evaluated; without it, on the triangles of Γ_h
   double epsilon = 0.05;
-  DoubleWell well;
+  physics::DoubleWell well;
 };
 
 struct InitialEntry {
@@ -36,7 +37,7 @@ struct InitialEntry {
   std::string summary;
   std::vector<ParameterSpec> parameters;
   // One of both: values at the nodes, or at any point of the surface.
-  std::function<Vec(const SurfaceSpace&, const InitialRequest&, const Parameters&)> nodal;
+  std::function<Vec(const fem::SurfaceSpace&, const InitialRequest&, const Parameters&)> nodal;
   std::function<std::function<double(const Point&)>(const InitialRequest&)> concentration;
 };
 
@@ -48,11 +49,11 @@ InitialEntry formula_field();
 const NamedList<InitialEntry>& initial_fields();
 
 // "band-limited:wavelength=0.3" -> projected nodal concentrations. Throws InputError.
-Vec make_initial_field(const std::string& specification, const SurfaceSpace& space,
+Vec make_initial_field(const std::string& specification, const fem::SurfaceSpace& space,
                        const InitialRequest& request);
 
 // L² projection of nodal values with the stabilised mass matrix: M̃ c = M nodal. Throws InputError
 // if the data are not finite.
-Vec project(const SurfaceSpace& space, VecView nodal);
+Vec project(const fem::SurfaceSpace& space, VecView nodal);
 
-}  // namespace traceraft
+}  // namespace traceraft::problem

@@ -7,7 +7,7 @@
 #include "kernel/core/random.hpp"
 #include "kernel/problem/initial_data.hpp"
 
-namespace traceraft {
+namespace traceraft::problem {
 namespace {
 
 enum Stream : std::uint64_t { kBernoulliStream = 1, kWaveStream = 2 };
@@ -18,8 +18,9 @@ struct Interpolation {
   std::array<double, 4> weight;
 };
 
-Interpolation interpolate(const CubeMesh& coarse, const CubeMesh& fine, const Lattice& v) {
-  Lattice corner{};
+Interpolation interpolate(const mesh::CubeMesh& coarse, const mesh::CubeMesh& fine,
+                          const mesh::Lattice& v) {
+  mesh::Lattice corner{};
   std::array<double, 3> fraction{};
   for (int axis = 0; axis < 3; ++axis) {
     const std::int64_t scaled = v[axis] * coarse.cells;
@@ -64,9 +65,9 @@ Threshold find_threshold(double target, double total, const WeightBelow& weight_
   return {low, high, beyond > inside ? (target - inside) / (beyond - inside) : 0};
 }
 
-Vec bernoulli(const SurfaceSpace& space, const InitialRequest& request) {
-  const CubeMesh& fine = space.mesh.cube;
-  const CubeMesh coarse{request.noise_cells > 0 ? request.noise_cells : fine.cells};
+Vec bernoulli(const fem::SurfaceSpace& space, const InitialRequest& request) {
+  const mesh::CubeMesh& fine = space.mesh.cube;
+  const mesh::CubeMesh coarse{request.noise_cells > 0 ? request.noise_cells : fine.cells};
   struct Draw {
     double u, weight;
   };
@@ -109,7 +110,7 @@ Vec bernoulli(const SurfaceSpace& space, const InitialRequest& request) {
 
 // Σ cos(k·x + φ) with wave vectors of random direction and a length within 20 % of 2π/wavelength:
 // the same field on every mesh.
-Vec band_limited(const SurfaceSpace& space, const InitialRequest& request,
+Vec band_limited(const fem::SurfaceSpace& space, const InitialRequest& request,
                  const Parameters& parameters) {
   constexpr int kWaves = 64;
   struct Wave {
@@ -143,7 +144,7 @@ InitialEntry bernoulli_noise() {
   return {"noise",
           "raft or not, at random at every node of the noise mesh",
           {},
-          [](const SurfaceSpace& space, const InitialRequest& request, const Parameters&) {
+          [](const fem::SurfaceSpace& space, const InitialRequest& request, const Parameters&) {
             return bernoulli(space, request);
           },
           {}};
@@ -158,4 +159,4 @@ InitialEntry band_limited_noise() {
           {}};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::problem

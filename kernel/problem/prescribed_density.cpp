@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-namespace traceraft {
+namespace traceraft::problem {
 namespace {
 
 class PrescribedDensity final : public Effect {
@@ -14,16 +14,17 @@ class PrescribedDensity final : public Effect {
   bool conserves_mass() const override { return slot_ != Slot::source; }
   bool dissipates_energy() const override { return false; }
 
-  void add_residual(const SurfaceSpace& space, double t, VecView, VecView, VecRef residual_c,
+  void add_residual(const fem::SurfaceSpace& space, double t, VecView, VecView, VecRef residual_c,
                     VecRef residual_mu) const override {
     VecRef target = slot_ == Slot::source ? residual_c : residual_mu;
     const double sign = slot_ == Slot::source ? 1 : -1;
-    add_density_load(
-        space, sign, [&](const QuadraturePoint& at) { return density_(at, t); }, target);
+    fem::add_density_load(
+        space, sign, [&](const fem::QuadraturePoint& at) { return density_(at, t); }, target);
   }
-  void add_tangent(const SurfaceSpace&, double, VecView, VecView, BlockJacobian&) const override {}
-  void add_tangent_product(const SurfaceSpace&, double, VecView, VecView, VecView, VecView, VecRef,
-                           VecRef) const override {}
+  void add_tangent(const fem::SurfaceSpace&, double, VecView, VecView,
+                   linear::BlockJacobian&) const override {}
+  void add_tangent_product(const fem::SurfaceSpace&, double, VecView, VecView, VecView, VecView,
+                           VecRef, VecRef) const override {}
 
  private:
   std::string name_;
@@ -38,4 +39,4 @@ EffectPtr prescribed_density(std::string name, Slot slot, Density density) {
   return std::make_shared<PrescribedDensity>(std::move(name), slot, std::move(density));
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::problem

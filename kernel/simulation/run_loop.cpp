@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-namespace traceraft {
+namespace traceraft::simulation {
 
 void RunState::save(CheckpointOut out) const {
   write_binary(out, monitor);
@@ -20,10 +20,11 @@ void RunState::load(CheckpointIn in) {
   integrator.load(in);
 }
 
-void begin_run(RunState& state, const Observer& observer, const std::vector<double>& output_times,
+void begin_run(RunState& state, const observables::Observer& observer,
+               const std::vector<double>& output_times,
                const std::vector<RunListener*>& listeners) {
-  const Integrator& integrator = state.integrator;
-  const RaftReport rafts = observer.rafts(integrator.state());
+  const time::Integrator& integrator = state.integrator;
+  const observables::RaftReport rafts = observer.rafts(integrator.state());
   state.observables = observer.measure(integrator.time(), integrator.state(), rafts);
   state.monitor.start(state.observables, observer.mass_scale(), observer.energy_scale());
   for (; state.next_output < output_times.size() &&
@@ -34,11 +35,11 @@ void begin_run(RunState& state, const Observer& observer, const std::vector<doub
   for (RunListener* listener : listeners) listener->on_step(state);
 }
 
-RunResult continue_run(RunState& state, const Observer& observer, double t_end,
+RunResult continue_run(RunState& state, const observables::Observer& observer, double t_end,
                        const std::vector<double>& output_times,
                        const std::vector<RunListener*>& listeners,
                        const std::function<bool()>& stop) {
-  Integrator& integrator = state.integrator;
+  time::Integrator& integrator = state.integrator;
   while (integrator.time() < t_end) {
     if (stop()) return {RunEnd::stopped, ""};
     if (Status status = integrator.advance(); !status.ok()) return {RunEnd::failed, status.why};
@@ -51,8 +52,8 @@ RunResult continue_run(RunState& state, const Observer& observer, double t_end,
       const double t = output_times[state.next_output];
       if (Status status = integrator.interpolate(t, y); !status.ok())
         throw std::logic_error(integrator.name() + ": " + status.why);
-      const RaftReport rafts = observer.rafts(y);
-      const Observables row = observer.measure(t, y, rafts);
+      const observables::RaftReport rafts = observer.rafts(y);
+      const observables::Observables row = observer.measure(t, y, rafts);
       for (RunListener* listener : listeners) listener->on_output(row, rafts, y);
     }
     for (RunListener* listener : listeners) listener->on_step(state);
@@ -60,4 +61,4 @@ RunResult continue_run(RunState& state, const Observer& observer, double t_end,
   return {RunEnd::finished, ""};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::simulation

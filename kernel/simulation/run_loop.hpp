@@ -9,14 +9,14 @@
 #include "kernel/simulation/run_monitor.hpp"
 #include "kernel/time/integrator.hpp"
 
-namespace traceraft {
+namespace traceraft::simulation {
 
 // Everything that changes during a run; what a checkpoint holds.
 struct RunState {
-  Integrator& integrator;
+  time::Integrator& integrator;
   RunMonitor monitor;
-  std::size_t next_output = 0;  // first requested time not yet delivered
-  Observables observables;      // at the last accepted step
+  std::size_t next_output = 0;           // first requested time not yet delivered
+  observables::Observables observables;  // at the last accepted step
 
   void save(CheckpointOut out) const;
   void load(CheckpointIn in);  // throws IoError
@@ -30,7 +30,8 @@ class RunListener {
   // After every accepted step, and once before the first one.
   virtual void on_step(const RunState&) {}
   // At a requested time, interpolated within the last step: results never bend the steps.
-  virtual void on_output(const Observables&, const RaftReport&, VecView /*y*/) {}
+  virtual void on_output(const observables::Observables&, const observables::RaftReport&,
+                         VecView /*y*/) {}
 };
 
 enum class RunEnd { finished, stopped, failed };
@@ -41,14 +42,14 @@ struct RunResult {
 };
 
 // Measures the initial state and tells the listeners, unless the state was loaded.
-void begin_run(RunState& state, const Observer& observer, const std::vector<double>& output_times,
-               const std::vector<RunListener*>& listeners);
+void begin_run(RunState& state, const observables::Observer& observer,
+               const std::vector<double>& output_times, const std::vector<RunListener*>& listeners);
 
 // Advances to t_end. `stop` is asked after every step and says the same on all ranks.
 // `output_times` ascend.
-RunResult continue_run(RunState& state, const Observer& observer, double t_end,
+RunResult continue_run(RunState& state, const observables::Observer& observer, double t_end,
                        const std::vector<double>& output_times,
                        const std::vector<RunListener*>& listeners,
                        const std::function<bool()>& stop);
 
-}  // namespace traceraft
+}  // namespace traceraft::simulation

@@ -7,20 +7,20 @@
 #include "kernel/observables/observables.hpp"
 #include "kernel/time/energy_guard.hpp"
 
-namespace traceraft {
+namespace traceraft::simulation {
 
 class RunMonitor {
  public:
   // What a drift of the mass and a rise of the energy are relative to where these themselves are
   // nearly zero; energy_scale: DaeProblem's.
-  void start(const Observables& row, double mass_scale, double energy_scale) {
+  void start(const observables::Observables& row, double mass_scale, double energy_scale) {
     initial_mass_ = row.mass;
     mass_scale_ = std::fabs(row.mass) > 1e-3 * mass_scale ? std::fabs(row.mass) : mass_scale;
     initial_energy_ = std::fabs(row.energy) > 1e-3 * energy_scale ? row.energy : energy_scale;
     energy_ = row.energy;
-    allowed_rise_ = EnergyGuard::allowed_rise(row.energy, energy_scale);
+    allowed_rise_ = time::EnergyGuard::allowed_rise(row.energy, energy_scale);
   }
-  void accept(const Observables& row) {
+  void accept(const observables::Observables& row) {
     drift_ = std::max(drift_, std::fabs(relative_drift(row)));
     if (const double rise = row.energy - energy_; rise > allowed_rise_) {
       ++rises_;
@@ -29,7 +29,7 @@ class RunMonitor {
     energy_ = row.energy;
   }
 
-  double relative_drift(const Observables& row) const {
+  double relative_drift(const observables::Observables& row) const {
     return (row.mass - initial_mass_) / mass_scale_;
   }
   double mass_drift() const { return drift_; }  // largest so far
@@ -42,4 +42,4 @@ class RunMonitor {
   long rises_ = 0;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::simulation

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <utility>
 
-namespace traceraft {
+namespace traceraft::time {
 
-ControlledIntegrator::ControlledIntegrator(const DaeProblem& problem,
-                                           const LinearSolverChoice& solvers, int lanes,
+ControlledIntegrator::ControlledIntegrator(const problem::DaeProblem& problem,
+                                           const linear::LinearSolverChoice& solvers, int lanes,
                                            std::shared_ptr<const ThreadTeam> team,
                                            const IntegratorSettings& settings, int power,
                                            double first_change)
@@ -83,4 +83,4 @@ void ControlledIntegrator::load(CheckpointIn in) {
   solver_.load(in);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::time

@@ -10,7 +10,7 @@
 #include "kernel/time/state_history.hpp"
 #include "kernel/time/step_control.hpp"
 
-namespace traceraft {
+namespace traceraft::time {
 
 // Derived classes attempt steps; this one sizes, repeats, judges and accepts them, keeps the states
 // for interpolation, and saves and loads.
@@ -26,14 +26,15 @@ class ControlledIntegrator : public Integrator {
   const Vec& state() const final { return history_.state(0); }
 
   IntegratorStatistics statistics() const final;
-  LinearStatistics linear_statistics() const final { return solver_.linear_statistics(); }
+  linear::LinearStatistics linear_statistics() const final { return solver_.linear_statistics(); }
   void save(CheckpointOut out) const override;
   void load(CheckpointIn in) override;
 
  protected:
   // The estimated error grows like Δt^power; steps are interpolated to that order. The first one
   // changes the state by first_change · tolerance. The problem must outlive this object.
-  ControlledIntegrator(const DaeProblem& problem, const LinearSolverChoice& solvers, int lanes,
+  ControlledIntegrator(const problem::DaeProblem& problem,
+                       const linear::LinearSolverChoice& solvers, int lanes,
                        std::shared_ptr<const ThreadTeam> team, const IntegratorSettings& settings,
                        int power, double first_change);
 
@@ -44,7 +45,7 @@ class ControlledIntegrator : public Integrator {
   // That result is the next state. Called before it is.
   virtual void accepted() = 0;
 
-  const DaeProblem& problem_;
+  const problem::DaeProblem& problem_;
   const IntegratorSettings settings_;
   JacobianSolver solver_;
   IntegratorStatistics statistics_;
@@ -63,4 +64,4 @@ class ControlledIntegrator : public Integrator {
   double t_end_ = 0, span_ = 0, next_ = 0;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::time

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace traceraft {
+namespace traceraft::time {
 
 void EnergyGuard::start(VecView y) {
   if (!active_) return;
@@ -28,4 +28,4 @@ void EnergyGuard::load(CheckpointIn in) {
   read_binary(in, refused_);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::time

@@ -7,7 +7,7 @@
 #include "kernel/problem/dae_problem.hpp"
 #include "kernel/time/integrator.hpp"
 
-namespace traceraft {
+namespace traceraft::time {
 
 // Between accepted states the energy of a model with a mobility ≥ 0 falls; a step that lets it grow
 // by more than roundoff is wrong whatever its error estimate says. Does nothing unless the settings
@@ -19,7 +19,7 @@ class EnergyGuard {
     return 1e-10 * std::fabs(first_energy) + 1e-13 * energy_scale;
   }
 
-  EnergyGuard(const DaeProblem& problem, const IntegratorSettings& settings)
+  EnergyGuard(const problem::DaeProblem& problem, const IntegratorSettings& settings)
       : problem_(problem), active_(settings.reject_energy_rises && problem.dissipates_energy()) {}
 
   bool active() const { return active_; }
@@ -34,10 +34,10 @@ class EnergyGuard {
   void load(CheckpointIn in);
 
  private:
-  const DaeProblem& problem_;
+  const problem::DaeProblem& problem_;
   bool active_;
   double allowed_ = 0, energy_ = 0, candidate_ = 0;
   long refused_ = 0;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::time

@@ -10,7 +10,7 @@
 #include "kernel/linear/linear_solver.hpp"
 #include "kernel/problem/dae_problem.hpp"
 
-namespace traceraft {
+namespace traceraft::time {
 
 struct IntegratorSettings {
   double tolerance = 5e-3;      // relative, in L²(Γ): each method documents what it bounds
@@ -67,11 +67,11 @@ class Integrator {
   virtual bool promises_energy_decay() const = 0;
 
   virtual IntegratorStatistics statistics() const = 0;
-  virtual LinearStatistics linear_statistics() const = 0;
+  virtual linear::LinearStatistics linear_statistics() const = 0;
   virtual void save(CheckpointOut out) const = 0;
   virtual void load(CheckpointIn in) = 0;  // throws IoError if the data are not its own
 };
 
 using IntegratorPtr = std::unique_ptr<Integrator>;
 
-}  // namespace traceraft
+}  // namespace traceraft::time

@@ -2,10 +2,11 @@
 
 #include "kernel/core/stopwatch.hpp"
 
-namespace traceraft {
+namespace traceraft::time {
 
-JacobianSolver::JacobianSolver(const DaeProblem& problem, const LinearSolverChoice& choice,
-                               int lanes, std::shared_ptr<const ThreadTeam> team)
+JacobianSolver::JacobianSolver(const problem::DaeProblem& problem,
+                               const linear::LinearSolverChoice& choice, int lanes,
+                               std::shared_ptr<const ThreadTeam> team)
     : problem_(problem),
       primary_(choice.primary(lanes)),
       fallback_(choice.fallback ? choice.fallback(lanes) : nullptr),
@@ -43,8 +44,8 @@ Status JacobianSolver::renew(int lane) {
 }
 
 // Whatever a solver says: error estimates look at c only, and μ must be a number, too.
-void JacobianSolver::solve_with(LinearSolver& solver, NewtonSystem& system, double tolerance,
-                                int lane) {
+void JacobianSolver::solve_with(linear::LinearSolver& solver, NewtonSystem& system,
+                                double tolerance, int lane) {
   system.report = solver.solve(J_[lane], system.b, system.x, tolerance, lane);
   if (system.report.status.ok() && !problem_.ranks().all(system.x.allFinite()))
     system.report.status = Status::retry("the solution is not finite");
@@ -112,7 +113,7 @@ void JacobianSolver::solve_assembled(std::vector<NewtonSystem>& systems, double 
       repair(systems[lane], guesses[lane], static_cast<int>(lane), tolerance, fresh);
 }
 
-LinearStatistics JacobianSolver::linear_statistics() const {
+linear::LinearStatistics JacobianSolver::linear_statistics() const {
   return fallback_ ? primary_->statistics() + fallback_->statistics() : primary_->statistics();
 }
 
@@ -157,4 +158,4 @@ void JacobianSolver::load(CheckpointIn in) {
   if (fallback_) fallback_->load(in);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::time

@@ -8,16 +8,16 @@
 #include "kernel/problem/dae_problem.hpp"
 #include "kernel/time/integrator.hpp"
 
-namespace traceraft {
+namespace traceraft::time {
 
 // J(t, y, ẏ, σ) x = b, where J is the given tangent.
 struct NewtonSystem {
   double t = 0, shift = 0;
-  Tangent tangent = Tangent::exact;
+  linear::Tangent tangent = linear::Tangent::exact;
   Vec y, ydot;
   Vec b;
   Vec x;  // initial guess in, solution out
-  SolveReport report;
+  linear::SolveReport report;
 };
 
 struct JacobianSolverStatistics {
@@ -33,8 +33,8 @@ struct JacobianSolverStatistics {
 class JacobianSolver {
  public:
   // The problem must outlive this object.
-  JacobianSolver(const DaeProblem& problem, const LinearSolverChoice& choice, int lanes,
-                 std::shared_ptr<const ThreadTeam> team);
+  JacobianSolver(const problem::DaeProblem& problem, const linear::LinearSolverChoice& choice,
+                 int lanes, std::shared_ptr<const ThreadTeam> team);
 
   // Solves the systems, at most `lanes`. For each it tries, in this order: the factors at hand,
   // fresh ones, the fallback. A report of retry gives every reason.
@@ -43,7 +43,7 @@ class JacobianSolver {
   // Solves with the Jacobians of the last call, whatever the states of the systems.
   void solve_again(std::vector<NewtonSystem>& systems, double tolerance);
 
-  LinearStatistics linear_statistics() const;
+  linear::LinearStatistics linear_statistics() const;
   // An integrator's statistics with what happened here.
   IntegratorStatistics added_to(IntegratorStatistics statistics) const;
   const JacobianSolverStatistics& statistics() const { return statistics_; }
@@ -54,7 +54,7 @@ class JacobianSolver {
   // The state at which a Jacobian was assembled.
   struct Origin {
     double t = 0, shift = 0;
-    Tangent tangent = Tangent::exact;
+    linear::Tangent tangent = linear::Tangent::exact;
     Vec y, ydot;
   };
   template <class Action>
@@ -62,18 +62,18 @@ class JacobianSolver {
   void assemble(std::vector<NewtonSystem>& systems);
   Status renew(int lane);
   void solve_assembled(std::vector<NewtonSystem>& systems, double tolerance, bool new_jacobians);
-  void solve_with(LinearSolver& solver, NewtonSystem& system, double tolerance, int lane);
+  void solve_with(linear::LinearSolver& solver, NewtonSystem& system, double tolerance, int lane);
   void solve_with_factors(std::vector<NewtonSystem>& systems, double tolerance, bool fresh);
   void repair(NewtonSystem& system, const Vec& guess, int lane, double tolerance, bool fresh);
 
-  const DaeProblem& problem_;
-  LinearSolverPtr primary_, fallback_;
+  const problem::DaeProblem& problem_;
+  linear::LinearSolverPtr primary_, fallback_;
   std::shared_ptr<const ThreadTeam> team_;
-  std::vector<BlockJacobian> J_;  // per lane
-  std::vector<Origin> origins_;   // per lane
-  Origin anchor_;                 // of the factors in use, if they outlive a call: shared ones
-  bool anchored_ = false;         // the primary holds usable shared factors, made at the anchor
+  std::vector<linear::BlockJacobian> J_;  // per lane
+  std::vector<Origin> origins_;           // per lane
+  Origin anchor_;          // of the factors in use, if they outlive a call: shared ones
+  bool anchored_ = false;  // the primary holds usable shared factors, made at the anchor
   JacobianSolverStatistics statistics_;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::time

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace traceraft {
+namespace traceraft::time {
 
 void StateHistory::add(double t, Vec y) {
   entries_.push_back({t, std::move(y)});
@@ -40,4 +40,4 @@ void StateHistory::load(CheckpointIn in, Eigen::Index length) {
   }
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::time

@@ -7,7 +7,7 @@
 #include "kernel/core/checkpoint_stream.hpp"
 #include "kernel/core/types.hpp"
 
-namespace traceraft {
+namespace traceraft::time {
 
 // Keeps the newest states, at most `most`, with their times.
 class StateHistory {
@@ -37,4 +37,4 @@ class StateHistory {
   std::deque<Entry> entries_;  // oldest first
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::time

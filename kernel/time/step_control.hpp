@@ -7,7 +7,7 @@
 
 #include "kernel/time/integrator.hpp"
 
-namespace traceraft {
+namespace traceraft::time {
 
 // Δt ← 0.9 (tolerance/error)^(1/power) Δt, within bounds, for an error that grows like Δt^power
 // (power 2: Gomez–Hughes).
@@ -82,4 +82,4 @@ Status take_step(const StepControl& control, double t, double t_end, double dt,
   }
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::time

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <set>
 #include <string>
@@ -138,6 +139,30 @@ TEST(DependencyRule, FoldersHaveNoCycles) {
        {"kernel", "verification", "verification/assimilation", "verification/selection", "drivers"})
     for (const std::string& folder : folders_in_cycles(top))
       ADD_FAILURE() << top << "/" << folder << " is part of a cycle, or uses one";
+}
+
+// kernel/fem/space.hpp: traceraft::fem. The vocabulary of kernel/core is in traceraft itself; a
+// folder in a folder of verification shares the namespace of that one.
+std::string namespace_of(const fs::path& file) {
+  const std::string top = *file.begin(), folder = *std::next(file.begin());
+  if (folder == "core") return "traceraft";
+  return "traceraft::" + (std::next(file.begin(), 2) == file.end() ? top : folder);
+}
+
+TEST(NamespaceRule, EveryFolderHasItsOwn) {
+  const fs::path root = TRACERAFT_ROOT;
+  for (const char* top : {"kernel", "backends", "verification", "drivers"})
+    for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+      const fs::path file = fs::relative(entry.path(), root);
+      if (file.extension() != ".hpp" && file.extension() != ".cpp") continue;
+      if (file == "drivers/main.cpp") continue;  // main is in no namespace
+      std::ifstream in(entry.path());
+      const std::string text{std::istreambuf_iterator<char>(in), {}};
+      const std::string opening = "\nnamespace " + namespace_of(file);
+      EXPECT_TRUE(text.find(opening + " {") != std::string::npos ||
+                  text.find(opening + "::") != std::string::npos)
+          << file << " is not in " << namespace_of(file);
+    }
 }
 
 TEST(TopLevelFolders, AreFixed) {

@@ -7,17 +7,17 @@
 #include "verification/assimilation/forecast/resolved_forecast.hpp"
 #include "verification/bench/bench.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
-Vec nodal(const SurfaceSpace& space, const std::function<double(const Point&)>& f) {
+Vec nodal(const fem::SurfaceSpace& space, const std::function<double(const Point&)>& f) {
   Vec values(space.nodes());
   for (int k = 0; k < space.nodes(); ++k) values[k] = f(space.mesh.position(k).normalized());
   return values;
 }
 
 TEST(Blur, IsThatOfAGaussian) {
-  const SpacePtr space = serial_space(*make_surface("sphere"), 32);
+  const bench::SpacePtr space = serial_space(*geometry::make_surface("sphere"), 32);
   constexpr double kWidth = 0.2;
   const Blur blur(*space, kWidth);
   const Vec uniform = Vec::Constant(space->nodes(), 0.7);
@@ -32,4 +32,4 @@ TEST(Blur, IsThatOfAGaussian) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

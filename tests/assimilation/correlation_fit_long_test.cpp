@@ -9,7 +9,7 @@
 #include "verification/assimilation/filter/field_noise.hpp"
 #include "verification/selection/blind/noise_waves.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 Vec white_noise(Eigen::Index count, std::uint64_t stream) {
@@ -24,13 +24,14 @@ struct Drawn {
   std::vector<NoiseBlock> blocks;
   static constexpr int kPoints = 2000;
 
-  Drawn(double share, double length, NoiseShape shape, std::uint64_t first = 0) {
+  Drawn(double share, double length, selection::NoiseShape shape, std::uint64_t first = 0) {
     for (std::uint64_t s = first; s < first + 4; ++s) {
       std::vector<Point> points;
       for (std::uint64_t i = 0; i < kPoints; ++i)
         points.push_back(testing::random_direction(10 + s, i));
       Vec noise = std::sqrt(1 - share) * white_noise(kPoints, s);
-      if (share > 0) noise += std::sqrt(share) * noise_waves(points, length, shape, 5, s);
+      if (share > 0)
+        noise += std::sqrt(share) * selection::noise_waves(points, length, shape, 5, s);
       Vec direction(kPoints);
       for (int i = 0; i < kPoints; ++i) direction[i] = 0.2 * points[i][2];
       const Vec values = 0.1 * noise + direction;
@@ -45,7 +46,7 @@ struct Drawn {
 };
 
 TEST(CorrelationFit, FindsNoneInWhiteNoise) {
-  const Drawn drawn(0, 0, NoiseShape::gaussian);
+  const Drawn drawn(0, 0, selection::NoiseShape::gaussian);
   const ThreadTeam team(2);
   const CorrelationFit fit = fit_correlation(drawn.blocks, drawn.spacing(), team);
   EXPECT_TRUE(fit.correlation.white());
@@ -56,10 +57,11 @@ TEST(CorrelationFit, FindsShareAndLengthOfAnyShape) {
   const ThreadTeam team(2);
   struct Case {
     double share, length;
-    NoiseShape shape;
+    selection::NoiseShape shape;
   };
-  for (const Case& c : {Case{0.2, 0.1, NoiseShape::gaussian}, Case{1, 0.08, NoiseShape::gaussian},
-                        Case{0.6, 0.08, NoiseShape::exponential}}) {
+  for (const Case& c : {Case{0.2, 0.1, selection::NoiseShape::gaussian},
+                        Case{1, 0.08, selection::NoiseShape::gaussian},
+                        Case{0.6, 0.08, selection::NoiseShape::exponential}}) {
     const Drawn drawn(c.share, c.length, c.shape);
     const CorrelationFit fit = fit_correlation(drawn.blocks, drawn.spacing(), team);
     ASSERT_FALSE(fit.correlation.white());
@@ -74,7 +76,7 @@ TEST(CorrelationFit, FindsShareAndLengthOfAnyShape) {
                 0.2 * expected)
         << c.share << " over " << c.length;
     // The tail of an exponential is a long one.
-    EXPECT_EQ(fit.correlation.at_bound, c.shape == NoiseShape::exponential);
+    EXPECT_EQ(fit.correlation.at_bound, c.shape == selection::NoiseShape::exponential);
     EXPECT_NEAR(fit_variance(drawn.blocks, fit.correlation, team), fit.variance,
                 0.02 * fit.variance);
   }
@@ -86,7 +88,7 @@ TEST(CorrelationFit, StatesItsErrorOverSmoothPatterns) {
   const ThreadTeam team(2);
   double squares = 0, stated = 0;
   for (int k = 0; k < kDraws; ++k) {
-    const Drawn drawn(0.3, 0.1, NoiseShape::gaussian, 4 * static_cast<std::uint64_t>(k));
+    const Drawn drawn(0.3, 0.1, selection::NoiseShape::gaussian, 4 * static_cast<std::uint64_t>(k));
     const CorrelationFit fit = fit_correlation(drawn.blocks, drawn.spacing(), team);
     ASSERT_FALSE(fit.correlation.white());
     const double density = 1 / std::pow(drawn.spacing(), 2);
@@ -111,7 +113,8 @@ TEST(FieldNoise, IsFoundInFlatParts) {
         snapshot.points.push_back(testing::random_direction(10 + s, i));
       Vec noise = std::sqrt(1 - share) * white_noise(2000, s);
       if (share > 0)
-        noise += std::sqrt(share) * noise_waves(snapshot.points, 0.08, NoiseShape::gaussian, 5, s);
+        noise += std::sqrt(share) * selection::noise_waves(snapshot.points, 0.08,
+                                                           selection::NoiseShape::gaussian, 5, s);
       snapshot.values = 0.05 * noise;
       for (int i = 0; i < 2000; ++i)
         snapshot.values[i] += 0.5 + 0.5 * std::tanh((snapshot.points[i][2] - 0.3) / 0.25);
@@ -129,14 +132,14 @@ TEST(FieldNoise, IsFoundInFlatParts) {
 }
 
 TEST(CorrelationFit, SaysWhereItIsAsLongAsItMayBe) {
-  const Drawn drawn(0.5, 0.4, NoiseShape::gaussian);
+  const Drawn drawn(0.5, 0.4, selection::NoiseShape::gaussian);
   const CorrelationFit fit = fit_correlation(drawn.blocks, drawn.spacing(), ThreadTeam(2));
   EXPECT_TRUE(fit.correlation.at_bound);
   EXPECT_NE(text_of(fit.correlation).find("or more"), std::string::npos);
 }
 
 TEST(CorrelationFit, DoesNotDependOnTheNumberOfThreads) {
-  const Drawn drawn(0.2, 0.1, NoiseShape::gaussian);
+  const Drawn drawn(0.2, 0.1, selection::NoiseShape::gaussian);
   const auto share = [&](int threads) {
     return fit_correlation(drawn.blocks, drawn.spacing(), ThreadTeam(threads)).correlation.share();
   };
@@ -144,4 +147,4 @@ TEST(CorrelationFit, DoesNotDependOnTheNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -4,11 +4,11 @@
 
 #include "tests/support/spaces.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 double contrast(const std::string& surface) {
-  return curvature_contrast(*make_surface(surface),
+  return curvature_contrast(*geometry::make_surface(surface),
                             testing::make_space(16, surface)->surface.position);
 }
 
@@ -20,4 +20,4 @@ TEST(CurvatureContrast, IsThatOfKnownSurfaces) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

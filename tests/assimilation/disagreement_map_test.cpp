@@ -5,7 +5,7 @@
 #include "kernel/core/random.hpp"
 #include "tests/support/spaces.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 constexpr int kSpots = 600, kReplicates = 400;
@@ -81,4 +81,4 @@ TEST(DisagreementMaps, AreZeroWhereNothingWasMeasured) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

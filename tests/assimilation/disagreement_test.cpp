@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 std::vector<Disagreement> with(const std::vector<double>& p) {
@@ -22,4 +22,4 @@ TEST(Disagreements, AreSignificantTogether) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

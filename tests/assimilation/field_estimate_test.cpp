@@ -6,7 +6,7 @@
 
 #include "tests/support/spaces.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 using testing::make_space;
@@ -20,7 +20,7 @@ double field(const Point& x) {
 }
 
 struct Measured {
-  std::shared_ptr<const SurfaceSpace> space = make_space(16);
+  std::shared_ptr<const fem::SurfaceSpace> space = make_space(16);
   std::vector<Point> points;
   NoisyValues values;
 
@@ -81,4 +81,4 @@ TEST(FieldEstimate, CompressKeepsTheLargestDirections) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -7,7 +7,7 @@
 #include "backends/openblas/dense_algebra.hpp"
 #include "tests/support/spaces.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 using Eigen::MatrixXd;
@@ -19,7 +19,7 @@ Innovation make_innovation() {
   in.directions =
       testing::random_vector(kValues * (kState + kGaps), 1).reshaped(kValues, kState + kGaps);
   in.state_directions = kState;
-  in.gram = gram(in.directions);
+  in.gram = openblas::gram(in.directions);
   in.values = testing::random_vector(kValues, 2);
   return in;
 }
@@ -97,4 +97,4 @@ TEST(RootMeanSquare, CountsValues) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

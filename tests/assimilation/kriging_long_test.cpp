@@ -8,7 +8,7 @@
 #include "verification/assimilation/fields/kriging.hpp"
 #include "verification/selection/blind/noise_waves.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 using testing::make_space;
@@ -21,7 +21,7 @@ double caps(const Point& x) {
 }
 
 struct Shared {
-  std::shared_ptr<const SurfaceSpace> space = make_space(16);
+  std::shared_ptr<const fem::SurfaceSpace> space = make_space(16);
   std::vector<Point> points;
   NoisyValues values;
 
@@ -30,8 +30,8 @@ struct Shared {
       points.push_back(testing::random_direction(5, static_cast<std::uint64_t>(k)));
     values.deviation = Vec::Ones(kCount);
     values.trace = point_trace(*space, points, space->h());
-    values.values =
-        kSpread * std::sqrt(share) * noise_waves(points, 0.1, NoiseShape::gaussian, 5, 1);
+    values.values = kSpread * std::sqrt(share) *
+                    selection::noise_waves(points, 0.1, selection::NoiseShape::gaussian, 5, 1);
     for (int k = 0; k < kCount; ++k)
       values.values[k] += caps(points[k]) + kSpread * std::sqrt(1 - share) * normal_random(5, 3, k);
   }
@@ -92,4 +92,4 @@ TEST(Kriging, GivesTheFieldOnAnotherMesh) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

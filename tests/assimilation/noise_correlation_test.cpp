@@ -12,7 +12,7 @@
 #include "verification/assimilation/filter/variance_components.hpp"
 #include "verification/selection/blind/noise_waves.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 using Eigen::MatrixXd;
@@ -58,7 +58,7 @@ TEST(NoiseWhitening, IsARootOfTheDenseMatrix) {
   EXPECT_TRUE(whitening.whitened(root).isApprox(one, 1e-10));
   EXPECT_EQ(whitening.whitened(MatrixXd(200, 0)).cols(), 0);
   EXPECT_EQ(whitening.coloured(MatrixXd(200, 0)).cols(), 0);
-  EXPECT_EQ(traceraft::whitening(points, {}), nullptr);
+  EXPECT_EQ(assimilation::whitening(points, {}), nullptr);
 }
 
 TEST(NoiseWhitening, RefusesWhatIsNoCorrelation) {
@@ -84,16 +84,18 @@ TEST(CompactBlocks, HoldEveryPointOnce) {
 TEST(NoiseWaves, HaveTheirCorrelation) {
   const std::vector<Point> points{{0, 0, 1}, {0.05, 0, 1}, {0, 0.1, 1}, {0.3, 0, 1}};
   constexpr int kDraws = 400;
-  for (const NoiseShape shape : {NoiseShape::gaussian, NoiseShape::exponential}) {
+  for (const selection::NoiseShape shape :
+       {selection::NoiseShape::gaussian, selection::NoiseShape::exponential}) {
     MatrixXd covariance = MatrixXd::Zero(4, 4);
     for (std::uint64_t k = 0; k < kDraws; ++k) {
-      const Vec x = noise_waves(points, 0.1, shape, 3, k);
+      const Vec x = selection::noise_waves(points, 0.1, shape, 3, k);
       covariance += x * x.transpose() / kDraws;
     }
     for (int i = 0; i < 4; ++i)
       for (int j = 0; j < 4; ++j) {
         const double d = (points[i] - points[j]).norm() / 0.1;
-        const double expected = shape == NoiseShape::gaussian ? std::exp(-d * d / 2) : std::exp(-d);
+        const double expected =
+            shape == selection::NoiseShape::gaussian ? std::exp(-d * d / 2) : std::exp(-d);
         // Standard deviation of a product's mean: at most √(2/400).
         EXPECT_NEAR(covariance(i, j), expected, 0.2) << i << j;
       }
@@ -119,4 +121,4 @@ TEST(VarianceComponents, FitOneVariance) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

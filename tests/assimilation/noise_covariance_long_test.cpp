@@ -7,12 +7,12 @@
 #include "verification/assimilation/filter/noise_levels.hpp"
 #include "verification/selection/fit/score_test.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 // Nothing hidden, measured with noise of 10 %.
-BlindRequest vesicle(double share) {
-  BlindRequest asked = testing::small_vesicle(3);
+selection::BlindRequest vesicle(double share) {
+  selection::BlindRequest asked = testing::small_vesicle(3);
   asked.effects = {};
   asked.noise = 0.1;
   asked.first = 40;
@@ -22,18 +22,20 @@ BlindRequest vesicle(double share) {
 }
 
 struct Measured {
-  BlindRequest asked;
-  BlindCase drawn;
+  selection::BlindRequest asked;
+  selection::BlindCase drawn;
   FilterSettings settings;
   FilterModel model;
   FilterProblems data;
 
   explicit Measured(double share)
-      : asked(vesicle(share)), drawn(draw_blind_case(asked)), model{asked.base, 1, {}, {}} {
+      : asked(vesicle(share)),
+        drawn(selection::draw_blind_case(asked)),
+        model{asked.base, 1, {}, {}} {
     settings.rank = 40;
     settings.replicates = 99;
-    data = make_filter_problems(drawn.vesicles, *make_surface("sphere"), asked.base, 12, 2, false,
-                                settings);
+    data = make_filter_problems(drawn.vesicles, *geometry::make_surface("sphere"), asked.base, 12,
+                                2, false, settings);
   }
   FilterResult pass() const {
     std::vector<ErrorMaps> maps;
@@ -43,7 +45,7 @@ struct Measured {
 
 TEST(NoiseCovariance, IsFoundBesideTheStateAndMakesNoGap) {
   Measured m(0.7);
-  const double gap_if_white = screen(m.pass(), {}, {}).gap_p;
+  const double gap_if_white = selection::screen(m.pass(), {}, {}).gap_p;
   bool settled = false;
   for (int k = 0; k < 4 && !settled; ++k)
     settled = !fit_noise_covariance(m.data, m.pass(), m.asked.base, m.settings);
@@ -52,7 +54,7 @@ TEST(NoiseCovariance, IsFoundBesideTheStateAndMakesNoGap) {
   EXPECT_NEAR(found.length(), 0.1, 0.03);
   EXPECT_NEAR(noise_of(m.data), m.drawn.noise, 0.1 * m.drawn.noise);
   const FilterResult pass = m.pass();
-  EXPECT_GT(screen(pass, {}, {}).gap_p, 0.01);
+  EXPECT_GT(selection::screen(pass, {}, {}).gap_p, 0.01);
   EXPECT_LT(gap_if_white, 0.01);
   // Replicates are white in units of the noise, and shared at the points.
   const Innovation& in = pass.innovations.front();
@@ -103,4 +105,4 @@ TEST(NoiseCovariance, CanBeGivenAndTakenBack) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 // A vesicle with five snapshots, the last of which is held out.
@@ -72,4 +72,4 @@ TEST(NoiseLevels, AreNoPartOfTheContrast) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

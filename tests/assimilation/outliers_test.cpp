@@ -4,7 +4,7 @@
 
 #include "kernel/core/random.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 constexpr int kPoints = 2000;
@@ -56,4 +56,4 @@ TEST(Outliers, AreNoShallowGap) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

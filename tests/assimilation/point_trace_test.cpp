@@ -5,7 +5,7 @@
 #include "kernel/core/error.hpp"
 #include "tests/support/spaces.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 using testing::make_space;
@@ -47,4 +47,4 @@ TEST(PointTrace, RefusesAPointFarFromTheSurface) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -9,7 +9,7 @@
 #include "tests/support/spaces.hpp"
 #include "verification/assimilation/fields/mesh_transfer.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 using testing::make_space;
@@ -20,7 +20,7 @@ double rafts_at(const Point& x) {
   return 0.5 + 0.5 * std::tanh(level / 0.15);
 }
 
-Vec rafts_on(const SurfaceSpace& space) {
+Vec rafts_on(const fem::SurfaceSpace& space) {
   Vec nodal(space.nodes());
   for (int k = 0; k < space.nodes(); ++k) nodal[k] = rafts_at(space.mesh.position(k).normalized());
   return nodal;
@@ -83,9 +83,10 @@ TEST(Registration, IsTheLeastOfThoseThatLookAlike) {
 }
 
 TEST(Registration, IsOfSpheresAlone) {
-  EXPECT_TRUE(is_sphere(*make_surface("sphere")));
-  EXPECT_FALSE(is_sphere(*make_surface("ellipsoid")));
-  EXPECT_FALSE(is_sphere(ShiftedLevelSet(make_surface("sphere"), Point(0.01, 0, 0))));
+  EXPECT_TRUE(is_sphere(*geometry::make_surface("sphere")));
+  EXPECT_FALSE(is_sphere(*geometry::make_surface("ellipsoid")));
+  EXPECT_FALSE(
+      is_sphere(geometry::ShiftedLevelSet(geometry::make_surface("sphere"), Point(0.01, 0, 0))));
 }
 
 TEST(SphereMap, IsTheField) {
@@ -115,4 +116,4 @@ TEST(MeshTransfer, TurnsFields) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -5,7 +5,7 @@
 #include "verification/assimilation/forecast/forecast.hpp"
 #include "verification/assimilation/forecast/resolved_forecast.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 using testing::make_model;
@@ -15,16 +15,16 @@ using testing::random_directions;
 constexpr double kWidth = 0.2;
 
 // Rafts with phase boundaries as wide as two cells at n = 16.
-Vec rafts(const SurfaceSpace& space) {
+Vec rafts(const fem::SurfaceSpace& space) {
   Vec nodal(space.nodes());
   for (int k = 0; k < space.nodes(); ++k) {
     const Point x = space.mesh.position(k).normalized();
     nodal[k] = 0.5 + 0.45 * std::tanh((std::sin(3 * x[0] + 1) * x[1] + 0.3 * x[2]) / kWidth);
   }
-  return project(space, nodal);
+  return problem::project(space, nodal);
 }
 
-double mean(const SurfaceSpace& space, VecView c) {
+double mean(const fem::SurfaceSpace& space, VecView c) {
   return space.integral(c) / space.area;
 }
 
@@ -54,32 +54,33 @@ class ResolvedForecastTest : public ::testing::Test {
 
   ResolvedForecastTest() { series.snapshots.assign(2, {0, random_directions(500), {}, {}}); }
 
-  Vec alone(const SpacePtr& space) const {
-    const CahnHilliard problem(space, model);
-    const auto on_it = [&](const DaeProblem& p) { return integrator(p, *space); };
+  Vec alone(const bench::SpacePtr& space) const {
+    const problem::CahnHilliard problem(space, model);
+    const auto on_it = [&](const problem::DaeProblem& p) { return integrator(p, *space); };
     return forecast(problem, on_it, rafts(*space), kBegin, kEnd).end;
   }
 
-  CahnHilliardModel model = make_model("degenerate", kWidth);
+  problem::CahnHilliardModel model = make_model("degenerate", kWidth);
   FieldSeries series;
-  MakeForecaster integrator = [](const DaeProblem& problem, const SurfaceSpace& space) {
-    IntegratorSettings settings;
+  MakeForecaster integrator = [](const problem::DaeProblem& problem,
+                                 const fem::SurfaceSpace& space) {
+    time::IntegratorSettings settings;
     settings.tolerance = 1e-4;
-    return integrators().find("ida").make(problem, choose_linear_solver("block", space), space.team,
-                                          settings);
+    return backends::integrators().find("ida").make(
+        problem, backends::choose_linear_solver("block", space), space.team, settings);
   };
 };
 
 TEST_F(ResolvedForecastTest, LeavesLittleOfTheErrorOfTheMesh) {
-  const LevelSetPtr surface = make_surface("sphere");
-  const SpacePtr own = serial_space(*surface, 16);
+  const geometry::LevelSetPtr surface = geometry::make_surface("sphere");
+  const bench::SpacePtr own = serial_space(*surface, 16);
   const FinerMeshes meshes = finer_meshes(*surface, own, 16);
   const FinerTraces traces = finer_traces(meshes, series);
   ResolvedForecast resolved(meshes, traces, model, rafts(*meshes.spaces[1]), integrator);
   const ResolvedForecast::End end = resolved.advance(1, kBegin, kEnd);
 
   // On its own mesh, so that what no field on it can represent does not count.
-  const SpacePtr exact_space = serial_space(*surface, 80);
+  const bench::SpacePtr exact_space = serial_space(*surface, 80);
   const Vec exact = MeshTransfer(*exact_space, own)(alone(exact_space));
   const auto norm = [&](const Vec& c) { return std::sqrt(own->inner(c, c)); };
   const double error = norm(end.field - exact);
@@ -89,8 +90,8 @@ TEST_F(ResolvedForecastTest, LeavesLittleOfTheErrorOfTheMesh) {
 }
 
 TEST_F(ResolvedForecastTest, GoesOnFromACorrectedState) {
-  const LevelSetPtr surface = make_surface("sphere");
-  const SpacePtr own = serial_space(*surface, 16);
+  const geometry::LevelSetPtr surface = geometry::make_surface("sphere");
+  const bench::SpacePtr own = serial_space(*surface, 16);
   const FinerMeshes meshes = finer_meshes(*surface, own, 16);
   const FinerTraces traces = finer_traces(meshes, series);
   ResolvedForecast plain(meshes, traces, model, rafts(*meshes.spaces[1]), integrator),
@@ -102,4 +103,4 @@ TEST_F(ResolvedForecastTest, GoesOnFromACorrectedState) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

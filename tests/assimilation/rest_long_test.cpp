@@ -7,29 +7,29 @@
 #include "verification/assimilation/filter/rest.hpp"
 #include "verification/selection/search/steps.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 constexpr int kRestCells = 20;
 
 // Three snapshots of rafts with nothing hidden, 5 % noise.
-BlindRequest rafts_between(double first, double last) {
-  BlindRequest asked = testing::small_vesicle(3);
+selection::BlindRequest rafts_between(double first, double last) {
+  selection::BlindRequest asked = testing::small_vesicle(3);
   asked.effects.clear();
   asked.first = first;
   asked.last = last;
   return asked;
 }
 
-bool rest(const std::vector<FieldSeries>& vesicles, const CahnHilliardModel& base,
+bool rest(const std::vector<FieldSeries>& vesicles, const problem::CahnHilliardModel& base,
           const FilterSettings& settings = {}) {
-  return are_at_rest(
-      make_filter_problems(vesicles, *make_surface("sphere"), base, kRestCells, 2, false, settings),
-      base);
+  return are_at_rest(make_filter_problems(vesicles, *geometry::make_surface("sphere"), base,
+                                          kRestCells, 2, false, settings),
+                     base);
 }
 
-const BlindCase& late() {
-  static const BlindCase drawn = draw_blind_case(rafts_between(4000, 9000));
+const selection::BlindCase& late() {
+  static const selection::BlindCase drawn = selection::draw_blind_case(rafts_between(4000, 9000));
   return drawn;
 }
 const std::vector<FieldSeries>& late_vesicle() {
@@ -37,7 +37,7 @@ const std::vector<FieldSeries>& late_vesicle() {
 }
 
 TEST(Rest, IsSeenAlsoOfAVesicleThatTurns) {
-  const CahnHilliardModel base = testing::small_vesicle(3).base;
+  const problem::CahnHilliardModel base = testing::small_vesicle(3).base;
   EXPECT_TRUE(rest(late_vesicle(), base));
   std::vector<FieldSeries> turned = late_vesicle();
   double angle = 0;
@@ -51,9 +51,9 @@ TEST(Rest, IsSeenAlsoOfAVesicleThatTurns) {
 }
 
 TEST(Rest, IsSeenThroughAMicroscope) {
-  BlindRequest asked = rafts_between(4000, 9000);
+  selection::BlindRequest asked = rafts_between(4000, 9000);
   asked.blur = 0.3;
-  const std::vector<FieldSeries> blurred = draw_blind_case(asked).vesicles;
+  const std::vector<FieldSeries> blurred = selection::draw_blind_case(asked).vesicles;
   FilterSettings microscope;
   microscope.blur = asked.blur;
   EXPECT_TRUE(rest(blurred, asked.base, microscope));
@@ -62,8 +62,8 @@ TEST(Rest, IsSeenThroughAMicroscope) {
 
 // One vesicle that changes is enough.
 TEST(Rest, IsNotWhereRaftsChange) {
-  BlindRequest asked = rafts_between(20, 60);
-  const std::vector<FieldSeries> moving = draw_blind_case(asked).vesicles;
+  selection::BlindRequest asked = rafts_between(20, 60);
+  const std::vector<FieldSeries> moving = selection::draw_blind_case(asked).vesicles;
   EXPECT_FALSE(rest(moving, asked.base));
   std::vector<FieldSeries> both = late_vesicle();
   both.push_back(moving.front());
@@ -72,54 +72,54 @@ TEST(Rest, IsNotWhereRaftsChange) {
 
 // Rafts that the model would coarsen, but stay; and boundaries of another width than its.
 TEST(Rest, IsNotWhereTheModelDoesNotRest) {
-  BlindRequest asked = rafts_between(20, 20.002);
-  std::vector<FieldSeries> arrested = draw_blind_case(asked).vesicles;
+  selection::BlindRequest asked = rafts_between(20, 20.002);
+  std::vector<FieldSeries> arrested = selection::draw_blind_case(asked).vesicles;
   for (std::size_t k = 0; k < 3; ++k)
     arrested.front().snapshots[k].time = 20 + 1000 * static_cast<double>(k);
   EXPECT_FALSE(rest(arrested, asked.base));
 
-  CahnHilliardModel wider = asked.base;
+  problem::CahnHilliardModel wider = asked.base;
   wider.epsilon *= 1.4;
   EXPECT_FALSE(rest(late_vesicle(), wider));
 }
 
-ExplainRequest request_for_rest() {
-  ExplainRequest request;
+selection::ExplainRequest request_for_rest() {
+  selection::ExplainRequest request;
   request.base = testing::small_vesicle(3).base;
-  request.surface = make_surface("sphere");
+  request.surface = geometry::make_surface("sphere");
   request.cells = kRestCells;
   return request;
 }
 
 // Rafts that the model with its own effects would not leave as they are.
 TEST(Rest, IsHeldAgainstTheWholeModel) {
-  ExplainRequest request = request_for_rest();
+  selection::ExplainRequest request = request_for_rest();
   request.own = of_model({{"uptake", {1e-4}}});
   // The search begins by a fit of D; more of it is not needed.
   struct Begun {};
   request.progress = [](const std::string& news) {
     if (news.rfind("fit D", 0) == 0) throw Begun();
   };
-  Search search(late_vesicle(), request);
-  EXPECT_THROW(next_state(search, {}), Begun);
+  selection::Search search(late_vesicle(), request);
+  EXPECT_THROW(selection::next_state(search, {}), Begun);
   request.own = {};
   request.progress = nullptr;
-  Search without(late_vesicle(), request);
-  EXPECT_TRUE(next_state(without, {}).so_far.at_rest);
+  selection::Search without(late_vesicle(), request);
+  EXPECT_TRUE(selection::next_state(without, {}).so_far.at_rest);
 }
 
 // Nothing is fitted then, and the search ends at once.
 TEST(Rest, EndsTheSearch) {
-  ExplainRequest request = request_for_rest();
+  selection::ExplainRequest request = request_for_rest();
   int states = 0;
-  request.save = [&](const SearchState&) { ++states; };
-  const Explanation found = explain_fields(late_vesicle(), request);
+  request.save = [&](const selection::SearchState&) { ++states; };
+  const selection::Explanation found = selection::explain_fields(late_vesicle(), request);
   EXPECT_TRUE(found.at_rest);
-  EXPECT_EQ(found.finding, Finding::not_identifiable);
+  EXPECT_EQ(found.finding, selection::Finding::not_identifiable);
   EXPECT_EQ(states, 1);
-  EXPECT_TRUE(bounds_of(found).empty());
+  EXPECT_TRUE(selection::bounds_of(found).empty());
   EXPECT_NEAR(found.noise, late().noise, 0.05 * late().noise);
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -7,7 +7,7 @@
 #include "verification/assimilation/forecast/tangent_flow.hpp"
 #include "verification/selection/blind/effect_size.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 using testing::make_model;
@@ -23,18 +23,18 @@ class TangentFlowTest : public ::testing::Test {
     along = advance(base, c, kBegin, kEnd, kSteps);
   }
 
-  Forecast advance(const CahnHilliard& problem, VecView from, double begin, double end,
+  Forecast advance(const problem::CahnHilliard& problem, VecView from, double begin, double end,
                    int steps) const {
-    const auto make_integrator = [this](const DaeProblem& p) {
-      IntegratorSettings settings;
+    const auto make_integrator = [this](const problem::DaeProblem& p) {
+      time::IntegratorSettings settings;
       settings.tolerance = 1e-9;
-      return integrators().find("ida").make(p, choose_linear_solver("direct", *space), space->team,
-                                            settings);
+      return backends::integrators().find("ida").make(
+          p, backends::choose_linear_solver("direct", *space), space->team, settings);
     };
     return forecast(problem, make_integrator, from, begin, end, {steps});
   }
   Columns derivative(Columns S, const Forcing& forcing = {}) const {
-    TangentFlow flow(base, choose_linear_solver("direct", *space).primary,
+    TangentFlow flow(base, backends::choose_linear_solver("direct", *space).primary,
                      std::make_shared<ThreadTeam>(2));
     flow.advance(along.paths.front(), S, forcing);
     return S;
@@ -48,8 +48,8 @@ class TangentFlowTest : public ::testing::Test {
     EXPECT_LT(large / small, 4.6);
   }
 
-  std::shared_ptr<const SurfaceSpace> space;
-  CahnHilliard base;
+  std::shared_ptr<const fem::SurfaceSpace> space;
+  problem::CahnHilliard base;
   Vec c;
   Forecast along;
 };
@@ -60,19 +60,19 @@ TEST_F(TangentFlowTest, CarriesPerturbationsOfTheState) {
     const Point x = space->mesh.position(k);
     direction[k] = x[0] * x[1] + 0.5 * x[2];
   }
-  direction = project(*space, direction);
+  direction = problem::project(*space, direction);
   expect_slope_two(
       [&](double step) { return advance(base, c + step * direction, kBegin, kEnd, kSteps).end; },
       derivative(direction), 0.05);
 }
 
 TEST_F(TangentFlowTest, KeepsTheMassOfPerturbations) {
-  const Vec direction = project(*space, testing::random_vector(space->nodes(), 5));
+  const Vec direction = problem::project(*space, testing::random_vector(space->nodes(), 5));
   const Vec moved = derivative(direction);
   EXPECT_NEAR(space->integral(moved), space->integral(direction), 1e-10);
 }
 
-// The change of the pace is the same as that of the time.
+// The change of the diffusion ratio is the same as that of the time.
 TEST_F(TangentFlowTest, RateIsTheDerivativeByTime) {
   const double step = 1e-3;
   const Vec later = advance(base, c, kBegin, kEnd + step, 1).end;
@@ -89,18 +89,19 @@ TEST_F(TangentFlowTest, IsExactWhereDistantPointsAreCoupled) {
                     [](const Candidate& candidate) { return candidate.effect == "ohta-kawasaki"; });
   constexpr double kStrength = 0.6;  // changes c by 6 % of its contrast
   const auto with = [&](double strength) {
-    return CahnHilliard(space, with_effects(base.model(), {repulsion.term({strength})}));
+    return problem::CahnHilliard(space,
+                                 effects::with_effects(base.model(), {repulsion.term({strength})}));
   };
   const auto end = [&](double strength, VecView from) {
     return advance(with(strength), from, kBegin, kEnd, kSteps).end;
   };
-  const CahnHilliard problem = with(kStrength);
+  const problem::CahnHilliard problem = with(kStrength);
   const Forecast path = advance(problem, c, kBegin, kEnd, kSteps);
   const CoefficientForcing forcing(problem, problem.model(), {}, {repulsion});
-  const Vec direction = project(*space, testing::random_vector(space->nodes(), 5));
+  const Vec direction = problem::project(*space, testing::random_vector(space->nodes(), 5));
   Columns S(space->nodes(), 2);
   S << direction, Vec::Zero(space->nodes());
-  TangentFlow flow(problem, choose_linear_solver("direct", *space).primary,
+  TangentFlow flow(problem, backends::choose_linear_solver("direct", *space).primary,
                    std::make_shared<ThreadTeam>(2));
   flow.advance(path.paths.front(), S, [&](double t, VecView y) { return forcing(t, y); });
   const double step = 1e-3;
@@ -127,7 +128,8 @@ TEST_P(TangentOfEffect, IsTheDerivativeOfTheForecast) {
         [&](double size) {
           std::vector<double> a(candidate.directions, 0.0);
           a[d] = size;
-          const CahnHilliard changed(space, with_effects(base.model(), {candidate.term(a)}));
+          const problem::CahnHilliard changed(
+              space, effects::with_effects(base.model(), {candidate.term(a)}));
           return advance(changed, c, kBegin, kEnd, 1).end;
         },
         slope, step);
@@ -135,8 +137,8 @@ TEST_P(TangentOfEffect, IsTheDerivativeOfTheForecast) {
 }
 
 // All that a sphere shows.
-INSTANTIATE_TEST_SUITE_P(Effects, TangentOfEffect, ::testing::ValuesIn(effects_to_hide()),
-                         [](const auto& info) {
+INSTANTIATE_TEST_SUITE_P(Effects, TangentOfEffect,
+                         ::testing::ValuesIn(selection::effects_to_hide()), [](const auto& info) {
                            std::string name = info.param;
                            for (char& letter : name)
                              if (letter == '-') letter = '_';
@@ -144,4 +146,4 @@ INSTANTIATE_TEST_SUITE_P(Effects, TangentOfEffect, ::testing::ValuesIn(effects_t
                          });
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -23,7 +23,7 @@ TEST(BlasDeathTest, HasNoThreadsOfItsOwn) {
   const auto check = [] {
     const std::ptrdiff_t before = threads();
     const Eigen::MatrixXd A = Eigen::MatrixXd::Identity(400, 400), B = 2 * A;
-    const bool right = product(A, B) == B;
+    const bool right = openblas::product(A, B) == B;
     std::fprintf(stderr, "%td and %td threads, the product is %s\n", before, threads(),
                  right ? "right" : "wrong");
     std::exit(0);

@@ -5,13 +5,13 @@
 namespace traceraft {
 namespace {
 
-Image white(int width, int height) {
+observables::Image white(int width, int height) {
   return {width, height,
           std::vector<std::uint8_t>(3 * static_cast<std::size_t>(width) * height, 255)};
 }
 
 // Dark pixels of some columns and rows.
-int ink(const Image& image, int left, int right, int top, int bottom) {
+int ink(const observables::Image& image, int left, int right, int top, int bottom) {
   int count = 0;
   for (int y = top; y < bottom; ++y)
     for (int x = left; x < right; ++x)
@@ -20,8 +20,8 @@ int ink(const Image& image, int left, int right, int top, int bottom) {
 }
 
 TEST(Label, StandsInTheMiddleOfTheBottom) {
-  Image image = white(100, 60);
-  write_label(image, "L");
+  observables::Image image = white(100, 60);
+  gif::write_label(image, "L");
   EXPECT_EQ(ink(image, 0, 100, 0, 48), 0);
   EXPECT_EQ(ink(image, 0, 46, 48, 60) + ink(image, 54, 100, 48, 60), 0);
   // Upright and not mirrored: the stem is on the left, the foot at the bottom.
@@ -30,12 +30,12 @@ TEST(Label, StandsInTheMiddleOfTheBottom) {
 }
 
 TEST(Label, GrowsWithThePictureAndIsCutAtItsEdge) {
-  Image small = white(400, 240), large = white(800, 480);
-  write_label(small, "t = 1 s");
-  write_label(large, "t = 1 s");
+  observables::Image small = white(400, 240), large = white(800, 480);
+  gif::write_label(small, "t = 1 s");
+  gif::write_label(large, "t = 1 s");
   EXPECT_EQ(ink(large, 0, 800, 0, 480), 4 * ink(small, 0, 400, 0, 240));
-  Image narrow = white(20, 30);
-  write_label(narrow, "t = 123456789 s");
+  observables::Image narrow = white(20, 30);
+  gif::write_label(narrow, "t = 123456789 s");
   EXPECT_GT(ink(narrow, 0, 20, 0, 30), 0);
 }
 

@@ -8,23 +8,23 @@
 namespace traceraft {
 namespace {
 
-using Verdict = NewtonTest::Verdict;
+using Verdict = sundials::NewtonTest::Verdict;
 constexpr double kBound = 0.1;
 
 // A step whose first correction is `first` and whose second is `second`.
-void measure(NewtonTest& test, double first, double second) {
+void measure(sundials::NewtonTest& test, double first, double second) {
   ASSERT_EQ(test.judge(0, first, kBound), Verdict::go_on);
   (void)test.judge(1, second, kBound);
 }
 
 TEST(NewtonTest, WithoutExperienceAsksForASecondCorrection) {
-  NewtonTest test;
+  sundials::NewtonTest test;
   EXPECT_EQ(test.judge(0, 2 * kBound, kBound), Verdict::go_on);
   EXPECT_EQ(test.judge(0, 0.9 * kBound, kBound), Verdict::converged);  // small enough as it is
 }
 
 TEST(NewtonTest, TrustsWhatItMeasuredForEightSteps) {
-  NewtonTest test;
+  sundials::NewtonTest test;
   measure(test, 1.0, 0.01);  // a hundredth is left of each correction
   for (int step = 0; step < 8; ++step)
     EXPECT_EQ(test.judge(0, 1.0, kBound), Verdict::converged) << step;
@@ -32,17 +32,17 @@ TEST(NewtonTest, TrustsWhatItMeasuredForEightSteps) {
 }
 
 TEST(NewtonTest, ExpectsMoreOfLargerCorrections) {
-  NewtonTest test;
+  sundials::NewtonTest test;
   measure(test, 1.0, 0.01);
   // Quadratic convergence: what is left grows with the square, 2 * 0.01 * 3 * 3 > 0.1.
   EXPECT_EQ(test.judge(0, 3.0, kBound), Verdict::go_on);
-  NewtonTest slow;
+  sundials::NewtonTest slow;
   measure(slow, 1.0, 0.2);  // more is left than the bound
   EXPECT_EQ(slow.judge(0, 1.0, kBound), Verdict::go_on);
 }
 
 TEST(NewtonTest, JudgesLaterCorrectionsByTheirRate) {
-  NewtonTest test;
+  sundials::NewtonTest test;
   EXPECT_EQ(test.judge(0, 1.0, kBound), Verdict::go_on);
   EXPECT_EQ(test.judge(1, 0.5, kBound), Verdict::go_on);  // 0.5/(1 − 0.5) · 0.5 is left
   EXPECT_EQ(test.judge(2, 0.01, kBound), Verdict::converged);
@@ -52,11 +52,11 @@ TEST(NewtonTest, JudgesLaterCorrectionsByTheirRate) {
 }
 
 TEST(NewtonTest, RemembersItsExperienceOverARestart) {
-  NewtonTest test;
+  sundials::NewtonTest test;
   measure(test, 1.0, 0.01);
   std::stringstream saved;
   test.save(static_cast<std::ostream&>(saved));
-  NewtonTest resumed;
+  sundials::NewtonTest resumed;
   resumed.load(static_cast<std::istream&>(saved));
   EXPECT_EQ(resumed.judge(0, 1.0, kBound), Verdict::converged);
 }

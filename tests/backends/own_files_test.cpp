@@ -30,8 +30,8 @@ class OwnFilesTest : public ::testing::Test {
 TEST_F(OwnFilesTest, AreDeletedWithTheirFolder) {
   std::ofstream(folder / ".traceraft-0123456789abcdef.part") << "left by a killed process";
   std::ofstream(folder / "fields/.traceraft-0123456789abcdef.part") << "and there";
-  EXPECT_EQ(first_foreign(folder, names), "");
-  remove_own_folder(folder, names);
+  EXPECT_EQ(posix::first_foreign(folder, names), "");
+  posix::remove_own_folder(folder, names);
   EXPECT_FALSE(fs::exists(folder));
   EXPECT_TRUE(fs::exists(outside.path / "victim"));
 }
@@ -40,25 +40,25 @@ TEST_F(OwnFilesTest, KeepEverythingBesideAForeignFile) {
   for (const char* foreign : {"notes.txt", "fields/notes.txt", "fields/field-1.vtu",
                               "table.csv.bak", "fields/field-0001.vtu.part"}) {
     std::ofstream(folder / foreign) << "mine";
-    EXPECT_EQ(first_foreign(folder, names), foreign);
-    EXPECT_THROW(remove_own_folder(folder, names), IoError) << foreign;
+    EXPECT_EQ(posix::first_foreign(folder, names), foreign);
+    EXPECT_THROW(posix::remove_own_folder(folder, names), IoError) << foreign;
     EXPECT_TRUE(fs::exists(folder / "table.csv")) << "deleted although " << foreign << " is there";
     EXPECT_TRUE(fs::exists(folder / foreign));
     fs::remove(folder / foreign);
   }
   fs::create_directories(folder / "other");
-  EXPECT_THROW(remove_own_folder(folder, names), IoError);
+  EXPECT_THROW(posix::remove_own_folder(folder, names), IoError);
 }
 
 TEST_F(OwnFilesTest, AreNoLinks) {
   fs::create_symlink(outside.path / "victim", folder / "fields/field-0002.vtu");
-  EXPECT_THROW(remove_own_folder(folder, names), IoError);
+  EXPECT_THROW(posix::remove_own_folder(folder, names), IoError);
   fs::remove(folder / "fields/field-0002.vtu");
   fs::create_directory_symlink(outside.path, folder / "linked");
-  EXPECT_THROW(remove_own_folder(folder, names), IoError);
+  EXPECT_THROW(posix::remove_own_folder(folder, names), IoError);
   fs::remove(folder / "linked");
   fs::create_directory_symlink(folder, outside.path / "link");
-  EXPECT_THROW(remove_own_folder(outside.path / "link", names), IoError);
+  EXPECT_THROW(posix::remove_own_folder(outside.path / "link", names), IoError);
   EXPECT_TRUE(fs::exists(folder / "table.csv"));
   EXPECT_TRUE(fs::exists(outside.path / "victim"));
 }
@@ -67,7 +67,7 @@ TEST_F(OwnFilesTest, OfKilledWritersAloneAreCleanedUp) {
   std::ofstream(folder / ".traceraft-0123456789abcdef.part") << "left";
   std::ofstream(folder / ".traceraft-mine.part") << "mine";
   fs::create_symlink(outside.path / "victim", folder / ".traceraft-0123456789abcde0.part");
-  remove_temporary_files(folder);
+  posix::remove_temporary_files(folder);
   EXPECT_FALSE(fs::exists(folder / ".traceraft-0123456789abcdef.part"));
   EXPECT_TRUE(fs::exists(folder / ".traceraft-mine.part"));
   EXPECT_TRUE(fs::exists(folder / ".traceraft-0123456789abcde0.part"));

@@ -9,7 +9,7 @@
 namespace traceraft {
 namespace {
 
-std::array<int, 3> pixel(const Image& image, int column, int row) {
+std::array<int, 3> pixel(const observables::Image& image, int column, int row) {
   const std::size_t at = 3 * (static_cast<std::size_t>(row) * image.width + column);
   return {image.rgb[at], image.rgb[at + 1], image.rgb[at + 2]};
 }
@@ -22,7 +22,7 @@ TEST(SurfaceView, ShowsFrontAndBack) {
   for (int p = 0; p < values.size(); ++p)
     values[p] = space->surface.position[p].dot(viewer) > 0 ? 1 : 0;
   const int size = 100;
-  const Image image = draw_front_and_back(*space, values, 0, 1, size);
+  const observables::Image image = observables::draw_front_and_back(*space, values, 0, 1, size);
   ASSERT_EQ(image.width, 2 * size);
   ASSERT_EQ(image.height, size);
   const auto front = pixel(image, size / 2, size / 2), back = pixel(image, 3 * size / 2, size / 2);
@@ -38,9 +38,9 @@ TEST(SurfaceView, ShowsFrontAndBack) {
 }
 
 TEST(PngWriter, WritesWhatLibpngReads) {
-  Image image{3, 2, std::vector<std::uint8_t>(18)};
+  observables::Image image{3, 2, std::vector<std::uint8_t>(18)};
   std::iota(image.rgb.begin(), image.rgb.end(), std::uint8_t{100});
-  const std::string bytes = png_bytes(image);
+  const std::string bytes = png::png_bytes(image);
   png_image header{};
   header.version = PNG_IMAGE_VERSION;
   ASSERT_TRUE(png_image_begin_read_from_memory(&header, bytes.data(), bytes.size()));

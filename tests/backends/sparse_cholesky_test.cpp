@@ -38,7 +38,7 @@ double ln_determinant(int k, double shift) {
 
 TEST(SparseCholesky, SolvesAndKnowsDeterminants) {
   constexpr int kSide = 40;
-  SparseCholesky factors;
+  suitesparse::SparseCholesky factors;
   for (const double shift : {0.0, 0.5}) {  // the second with the ordering of the first
     const Eigen::SparseMatrix<double> A = grid(kSide, shift);
     factors.factorise(A);
@@ -46,7 +46,7 @@ TEST(SparseCholesky, SolvesAndKnowsDeterminants) {
     const Eigen::MatrixXd X = Eigen::MatrixXd::Random(kSide * kSide, 7);
     EXPECT_LT((factors.solve(A * X) - X).norm(), 1e-10 * X.norm());
   }
-  const SparseCholesky moved = std::move(factors);
+  const suitesparse::SparseCholesky moved = std::move(factors);
   EXPECT_NEAR(moved.log_determinant(), ln_determinant(kSide, 0.5), 1e-9);
 }
 
@@ -54,14 +54,14 @@ TEST(SparseCholesky, CorrelatesAsTheInverse) {
   constexpr int kSide = 9;
   const Eigen::SparseMatrix<double> A = grid(kSide, 0.1);
   const auto one = Eigen::MatrixXd::Identity(kSide * kSide, kSide * kSide);
-  const Eigen::MatrixXd X = SparseCholesky(A).correlated(one);
+  const Eigen::MatrixXd X = suitesparse::SparseCholesky(A).correlated(one);
   EXPECT_LT((A * (X * X.transpose()) - one).norm(), 1e-12 * one.norm());
 }
 
 TEST(SparseCholesky, WhitensAndColours) {
   constexpr int kSide = 30;
   const Eigen::SparseMatrix<double> A = grid(kSide, 0.1);
-  const SparseCholesky factors(A);
+  const suitesparse::SparseCholesky factors(A);
   const auto one = Eigen::MatrixXd::Identity(kSide * kSide, kSide * kSide);
   const Eigen::MatrixXd root = factors.coloured(one);
   EXPECT_LT((root * root.transpose() - A).norm(), 1e-12 * A.norm());
@@ -69,7 +69,7 @@ TEST(SparseCholesky, WhitensAndColours) {
 }
 
 TEST(SparseCholesky, RefusesWhatIsNotPositiveDefinite) {
-  SparseCholesky factors;
+  suitesparse::SparseCholesky factors;
   EXPECT_THROW(factors.factorise(grid(10, -1)), std::runtime_error);
   factors.factorise(grid(10, 1));  // and goes on
   EXPECT_NEAR(factors.log_determinant(), ln_determinant(10, 1), 1e-10);

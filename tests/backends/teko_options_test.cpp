@@ -19,18 +19,18 @@ using testing::noise_state;
 class TekoOptionsTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!linear_solvers().find("teko").built) GTEST_SKIP() << "Trilinos was not built in";
+    if (!backends::linear_solvers().find("teko").built) GTEST_SKIP() << "Trilinos was not built in";
   }
-  LinearSolverPtr make(const WordOptions& options) const {
-    return linear_solvers().find("teko").make(*space, options)(1);
+  linear::LinearSolverPtr make(const backends::WordOptions& options) const {
+    return backends::linear_solvers().find("teko").make(*space, options)(1);
   }
   std::string file(const std::string& content) const {
     const auto path = folder.path / "list.xml";
-    write_durably(path, "<ParameterList>" + content + "</ParameterList>");
+    posix::write_durably(path, "<ParameterList>" + content + "</ParameterList>");
     return path.string();
   }
   // What is wrong, after the option it is said of.
-  std::string complaint(const WordOptions& options) const {
+  std::string complaint(const backends::WordOptions& options) const {
     try {
       (void)make(options);
     } catch (const OptionError& error) {
@@ -38,11 +38,12 @@ class TekoOptionsTest : public ::testing::Test {
     }
     return "";
   }
-  SolveReport solve(LinearSolver& solver, double shift = 50, double tolerance = 1e-8,
-                    double size = 1) const {
+  linear::SolveReport solve(linear::LinearSolver& solver, double shift = 50,
+                            double tolerance = 1e-8, double size = 1) const {
     const testing::StartState start = noise_state(problem);
-    BlockJacobian J = problem.make_jacobian();
-    EXPECT_TRUE(problem.jacobian(0, start.y, start.ydot, shift, Tangent::stabilised, J).ok());
+    linear::BlockJacobian J = problem.make_jacobian();
+    EXPECT_TRUE(
+        problem.jacobian(0, start.y, start.ydot, shift, linear::Tangent::stabilised, J).ok());
     if (solver.wants_setup(J)) {
       EXPECT_TRUE(solver.setup(J).ok());
     }
@@ -51,8 +52,8 @@ class TekoOptionsTest : public ::testing::Test {
   }
 
   testing::TemporaryFolder folder;
-  std::shared_ptr<const SurfaceSpace> space = make_space(16);
-  CahnHilliard problem{space, make_model("degenerate", 0.1)};
+  std::shared_ptr<const fem::SurfaceSpace> space = make_space(16);
+  problem::CahnHilliard problem{space, make_model("degenerate", 0.1)};
 };
 
 TEST_F(TekoOptionsTest, WordsAreRefusedByTheirFlag) {
@@ -80,7 +81,7 @@ TEST_F(TekoOptionsTest, ALoosenedTestDoesNotMakeASolution) {
   for (const char* scaling : {"Implicit Residual Scaling", "Explicit Residual Scaling"})
     lists += "<Parameter name=\"" + std::string(scaling) + "\" type=\"string\" value=\"None\"/>";
   const std::string loose = file(lists + "</ParameterList>");
-  const SolveReport report =
+  const linear::SolveReport report =
       solve(*make({{"method", "gmres"}, {"parameters", loose}}), 50, 1e-8, 1e-12);
   EXPECT_EQ(report.status.outcome, Outcome::retry);
   EXPECT_EQ(report.status.why, "the residual is larger than the method says");
@@ -122,14 +123,14 @@ TEST_F(TekoOptionsTest, FilesHaveAnEffect) {
       "<Parameter name=\"Prec Type\" type=\"string\" value=\"RILUK\"/>"
       "<ParameterList name=\"Ifpack2 Settings\"><Parameter name=\"fact: iluk level-of-fill\" "
       "type=\"int\" value=\"0\"/></ParameterList></ParameterList></ParameterList>");
-  const SolveReport own = solve(*make({{"parameters", mine}, {"inverse", "mine"}}));
-  const SolveReport other = solve(*make({{"inverse", "ifpack2"}}));
+  const linear::SolveReport own = solve(*make({{"parameters", mine}, {"inverse", "mine"}}));
+  const linear::SolveReport other = solve(*make({{"inverse", "ifpack2"}}));
   EXPECT_TRUE(own.status.ok()) << own.status.why;
   EXPECT_GT(own.iterations, other.iterations);
 }
 
 TEST_F(TekoOptionsTest, RenewalAlwaysIsASetUpForEverySolve) {
-  const LinearSolverPtr always = make({{"renewal", "always"}}), worn = make({});
+  const linear::LinearSolverPtr always = make({{"renewal", "always"}}), worn = make({});
   for (int k = 0; k < 3; ++k) {
     EXPECT_TRUE(solve(*always).status.ok());
     EXPECT_TRUE(solve(*worn).status.ok());
@@ -141,11 +142,11 @@ TEST_F(TekoOptionsTest, RenewalAlwaysIsASetUpForEverySolve) {
 // A preconditioner is made of vectors one by one: with gcrodr, which brings ten at a time, it is as
 // good as with gmres.
 TEST_F(TekoOptionsTest, RecyclingNeedsNoMoreIterations) {
-  const LinearSolverPtr recycling = make({{"method", "gcrodr"}}),
-                        plain = make({{"method", "gmres"}});
+  const linear::LinearSolverPtr recycling = make({{"method", "gcrodr"}}),
+                                plain = make({{"method", "gmres"}});
   int with = 0, without = 0;
   for (int k = 0; k < 6; ++k) {
-    const SolveReport a = solve(*recycling, 0.1, 1e-10), b = solve(*plain, 0.1, 1e-10);
+    const linear::SolveReport a = solve(*recycling, 0.1, 1e-10), b = solve(*plain, 0.1, 1e-10);
     EXPECT_TRUE(a.status.ok()) << a.status.why;
     with += a.iterations;
     without += b.iterations;
@@ -158,11 +159,12 @@ TEST_F(TekoOptionsTest, RecyclingNeedsNoMoreIterations) {
 TEST_F(TekoOptionsTest, EveryMethodGoesOnAsSaved) {
   for (const char* method : {"fgmres", "gmres", "gcrodr", "bicgstab"}) {
     const auto integrator = [&] {
-      return integrators().find("euler").make(
-          problem, choose_linear_solver("teko", *space, {{"method", method}}), space->team, {});
+      return backends::integrators().find("euler").make(
+          problem, backends::choose_linear_solver("teko", *space, {{"method", method}}),
+          space->team, {});
     };
     const testing::StartState start = noise_state(problem);
-    const IntegratorPtr one = integrator(), other = integrator();
+    const time::IntegratorPtr one = integrator(), other = integrator();
     ASSERT_TRUE(one->start(0, start.y, start.ydot, 10).ok());
     for (int k = 0; k < 5; ++k) ASSERT_TRUE(one->advance().ok());
     std::stringstream saved;

@@ -62,8 +62,8 @@ std::vector<T> array_named(const std::string& file, const std::string& name) {
 TEST(VtuWriter, WritesTheSurfaceAndItsFields) {
   const auto space = testing::make_space(32);
   const Vec field = testing::random_vector(space->nodes(), 1);
-  const Vec trace = traceraft::trace(*space, field);
-  const std::string file = vtu_text(*space, 5.0, {{"c", trace}});
+  const Vec trace = fem::trace(*space, field);
+  const std::string file = zlib::vtu_text(*space, 5.0, {{"c", trace}});
   const auto c = array_named<float>(file, "c");
   ASSERT_EQ(c.size(), space->surface.points.size());
   for (std::size_t p = 0; p < c.size(); ++p) ASSERT_EQ(c[p], static_cast<float>(trace[p]));
@@ -80,13 +80,13 @@ TEST(VtuWriter, WritesWholeNumbersOfTriangles) {
   const auto space = testing::make_space(16);
   std::vector<int> number(space->surface.triangles.size());
   for (std::size_t t = 0; t < number.size(); ++t) number[t] = static_cast<int>(t % 5);
-  const std::string file = vtu_text(*space, 1.0, {}, {{"raft", number}});
+  const std::string file = zlib::vtu_text(*space, 1.0, {}, {{"raft", number}});
   const std::size_t begin = file.find("<CellData>"), end = file.find("</CellData>");
   ASSERT_LT(begin, file.find("Name=\"raft\""));
   EXPECT_GT(end, file.find("Name=\"raft\""));
   const auto written = array_named<std::int32_t>(file, "raft");
   EXPECT_EQ(std::vector<int>(written.begin(), written.end()), number);
-  EXPECT_NE(pvtu_text({"a.vtu"}, {"c"}, {"raft"})
+  EXPECT_NE(zlib::pvtu_text({"a.vtu"}, {"c"}, {"raft"})
                 .find("<PCellData>\n<PDataArray type=\"Int32\" Name=\"raft\"/>"),
             std::string::npos);
 }
@@ -96,9 +96,10 @@ TEST(VtuWriter, RanksWritePiecesOfTheWhole) {
   std::size_t triangles = 0;
   std::mutex mutex;
   testing::run_on_ranks(3, [&](const auto& ranks) {
-    const SurfaceSpace part(*make_surface("sphere"), 16, std::make_shared<ThreadTeam>(1), ranks);
+    const fem::SurfaceSpace part(*geometry::make_surface("sphere"), 16,
+                                 std::make_shared<ThreadTeam>(1), ranks);
     const Vec numbers = Vec::Constant(static_cast<Eigen::Index>(part.surface.points.size()), 7);
-    const std::string file = vtu_text(part, 1.0, {{"c", numbers}});
+    const std::string file = zlib::vtu_text(part, 1.0, {{"c", numbers}});
     const auto points = array_named<float>(file, "Points");
     const auto connectivity = array_named<std::int32_t>(file, "connectivity");
     EXPECT_EQ(array_named<float>(file, "c").size(), points.size() / 3);
@@ -107,14 +108,14 @@ TEST(VtuWriter, RanksWritePiecesOfTheWhole) {
     triangles += connectivity.size() / 3;
   });
   EXPECT_EQ(triangles, whole->surface.triangles.size());
-  const std::string joined = pvtu_text({"a.vtu", "b.vtu"}, {"c", "mu"});
+  const std::string joined = zlib::pvtu_text({"a.vtu", "b.vtu"}, {"c", "mu"});
   for (const char* part :
        {"PUnstructuredGrid", "Source=\"a.vtu\"", "Source=\"b.vtu\"", "Name=\"c\"", "Name=\"mu\""})
     EXPECT_NE(joined.find(part), std::string::npos) << part;
 }
 
 TEST(Checksum, IsCrc32) {
-  EXPECT_EQ(crc32_of("123456789"), 0xCBF43926u);
+  EXPECT_EQ(zlib::crc32_of("123456789"), 0xCBF43926u);
 }
 
 }  // namespace

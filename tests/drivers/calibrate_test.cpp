@@ -218,25 +218,27 @@ TEST_F(CalibrateTest, SaysWhatItDoesNotUse) {
 
 // At the ends of its range, too; and it says what was really run, which is whole cells of noise.
 TEST(CalibrationPoints, CanBeRun) {
-  const Configuration model({}, {{"cells", {"32", "--cells"}}, {"epsilon", {"0.3", "--epsilon"}}});
+  const config::Configuration model(
+      {}, {{"cells", {"32", "--cells"}}, {"epsilon", {"0.3", "--epsilon"}}});
   for (const char* name : {"epsilon", "fraction", "noise-length"}) {
-    const Interval range = range_of(model, name, 48);
-    EXPECT_LE(range.low, values_of(model, {name})[0]) << name;
-    EXPECT_GE(range.high, values_of(model, {name})[0]) << name;
+    const statistics::Interval range = calibrate::range_of(model, name, 48);
+    EXPECT_LE(range.low, calibrate::values_of(model, {name})[0]) << name;
+    EXPECT_GE(range.high, calibrate::values_of(model, {name})[0]) << name;
     for (const double value : {range.low, range.high}) {
-      const Configuration there = configuration_at(model, {name}, {value}, 1);
-      EXPECT_NEAR(values_of(there, {name})[0] / value, 1, 1e-6) << name;
+      const config::Configuration there = calibrate::configuration_at(model, {name}, {value}, 1);
+      EXPECT_NEAR(calibrate::values_of(there, {name})[0] / value, 1, 1e-6) << name;
     }
   }
-  const Configuration there = configuration_at(model, {"noise-length"}, {0.7}, 1);
-  EXPECT_DOUBLE_EQ(range_of(model, "epsilon", 48).low, 0.2);
+  const config::Configuration there =
+      calibrate::configuration_at(model, {"noise-length"}, {0.7}, 1);
+  EXPECT_DOUBLE_EQ(calibrate::range_of(model, "epsilon", 48).low, 0.2);
   // No finer than allowed, though values are rounded: 0.05 * 128/212 = 0.030189 to 0.03019.
-  const Configuration paper({}, {{"case", {"guv-3to1", "--case"}}});
-  EXPECT_EQ(usual_most_cells(paper), 212);
-  EXPECT_EQ(configuration_at(paper, {"epsilon"}, {0.03019}, 1).options().cells, 212);
-  EXPECT_EQ(configuration_at(paper, {"epsilon"}, {0.03333}, 1).options().cells, 192);
+  const config::Configuration paper({}, {{"case", {"guv-3to1", "--case"}}});
+  EXPECT_EQ(calibrate::usual_most_cells(paper), 212);
+  EXPECT_EQ(calibrate::configuration_at(paper, {"epsilon"}, {0.03019}, 1).options().cells, 212);
+  EXPECT_EQ(calibrate::configuration_at(paper, {"epsilon"}, {0.03333}, 1).options().cells, 192);
   EXPECT_EQ(there.options().noise_cells, 24);
-  EXPECT_NEAR(values_of(there, {"noise-length"})[0], 5 * 10.0 / 3 / 24, 1e-9);
+  EXPECT_NEAR(calibrate::values_of(there, {"noise-length"})[0], 5 * 10.0 / 3 / 24, 1e-9);
 }
 
 TEST_F(CalibrateTest, RefusesWhatItCannotCalibrate) {

@@ -9,8 +9,8 @@ namespace {
 using Reasons = std::vector<std::string>;
 
 // R²/D and ε, of which the data know D ε² to 7 %.
-Calibration calibrated() {
-  Calibration result;
+calibration::Calibration calibrated() {
+  calibration::Calibration result;
   result.parameters = {{"seconds_per_unit", 0.02, {0.016, 0.025}, true, true},
                        {"epsilon", 0.2, {0.18, 0.22}, true, true}};
   result.best_powers = {0.5, 1};
@@ -20,34 +20,34 @@ Calibration calibrated() {
   return result;
 }
 
-Reasons reasons(const Calibration& result, std::size_t k) {
-  return why_undetermined(result.parameters[k], result);
+Reasons reasons(const calibration::Calibration& result, std::size_t k) {
+  return calibrate::why_undetermined(result.parameters[k], result);
 }
 
 TEST(CalibrationFindings, SayWhatTheDataKnowBest) {
-  Calibration result = calibrated();
-  EXPECT_EQ(best_known(result), "mobility^0.50 * epsilon to 7 % (one standard error)");
+  calibration::Calibration result = calibrated();
+  EXPECT_EQ(calibrate::best_known(result), "mobility^0.50 * epsilon to 7 % (one standard error)");
   result.best_powers = {0.05, 1};
-  EXPECT_EQ(best_known(result), "epsilon to 7 % (one standard error)");
+  EXPECT_EQ(calibrate::best_known(result), "epsilon to 7 % (one standard error)");
 }
 
 // Known no better than what was looked at, whichever parameter it is.
 TEST(CalibrationFindings, DoNotKnowWhatReachesTheEnd) {
   for (const std::size_t k : {0, 1}) {
-    Calibration result = calibrated();
+    calibration::Calibration result = calibrated();
     result.parameters[k].within = false;
-    EXPECT_EQ(best_known(result), "") << k;
+    EXPECT_EQ(calibrate::best_known(result), "") << k;
   }
-  Calibration result = calibrated();
-  mark_unconverged(result);
-  EXPECT_EQ(best_known(result), "");
+  calibration::Calibration result = calibrated();
+  calibration::mark_unconverged(result);
+  EXPECT_EQ(calibrate::best_known(result), "");
 }
 
 TEST(CalibrationFindings, SayAllReasonsOnce) {
-  Calibration result = calibrated();
+  calibration::Calibration result = calibrated();
   EXPECT_TRUE(reasons(result, 0).empty());
   result.unit_at_bound = true;  // as calibrate() has it
-  for (CalibratedParameter& p : result.parameters) p.determined = false;
+  for (calibration::CalibratedParameter& p : result.parameters) p.determined = false;
   result.parameters[0].within = false;
   result.parameters[0].interval = {0.01, 0.03};
   EXPECT_EQ(reasons(result, 0), (Reasons{"D lies at the end of the range searched",
@@ -58,7 +58,7 @@ TEST(CalibrationFindings, SayAllReasonsOnce) {
   EXPECT_EQ(reasons(result, 0), (Reasons{"its interval reaches the end of the range searched",
                                          "its interval spans a factor of 3"}));
   EXPECT_EQ(reasons(result, 1), Reasons{"its interval reaches the end of what was simulated"});
-  mark_unconverged(result);
+  calibration::mark_unconverged(result);
   EXPECT_EQ(reasons(result, 1), (Reasons{"the search did not converge",
                                          "its interval reaches the end of what was simulated"}));
 }

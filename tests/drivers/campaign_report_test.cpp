@@ -14,25 +14,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-CaseScore score(int number, const std::string& hidden, const std::string& found,
-                CaseOutcome outcome, double deviations) {
+campaign::CaseScore score(int number, const std::string& hidden, const std::string& found,
+                          campaign::CaseOutcome outcome, double deviations) {
   // Of 5² − 3² the named model closes 5² − 4², the placebo nothing.
   return {{"naming", number}, hidden, "named", found, outcome, 0.01 * number,
           deviations,         0.005,  5,       4,     5,       3,
           10.0 * number};
 }
 
-using Scores = std::vector<CaseScore>;
+using Scores = std::vector<campaign::CaseScore>;
 
 Scores scores() {
-  return {score(1, "gravity", "gravity", CaseOutcome::right, 1.9),
-          score(2, "uptake", "exchange", CaseOutcome::in_class, std::nan("")),
-          score(3, "uptake", "gravity", CaseOutcome::wrong, -2.1),
-          score(5, "cooling", "cooling", CaseOutcome::right, -0.3)};
+  return {score(1, "gravity", "gravity", campaign::CaseOutcome::right, 1.9),
+          score(2, "uptake", "exchange", campaign::CaseOutcome::in_class, std::nan("")),
+          score(3, "uptake", "gravity", campaign::CaseOutcome::wrong, -2.1),
+          score(5, "cooling", "cooling", campaign::CaseOutcome::right, -0.3)};
 }
 
 TEST(CampaignReport, SumsUpGroups) {
-  const auto rows = table_rows(summary_of(scores()));
+  const auto rows = output::table_rows(campaign::summary_of(scores()));
   ASSERT_EQ(rows.size(), 2u);
   const auto of = [&](const std::string& column) {
     for (std::size_t k = 0; k < rows[0].size(); ++k)
@@ -55,8 +55,8 @@ TEST(CampaignReport, SumsUpGroups) {
 
 // A case that came to no verdict is one of its group, not one that never was.
 TEST(CampaignReport, CountsWhatFailed) {
-  const auto rows = table_rows(
-      summary_of(scores(), {{{"naming", 4}, "no forecast"}, {{"two", 1}, "no forecast"}}));
+  const auto rows = output::table_rows(campaign::summary_of(
+      scores(), {{{"naming", 4}, "no forecast"}, {{"two", 1}, "no forecast"}}));
   ASSERT_EQ(rows.size(), 3u);
   const auto column = [&](const std::string& name) {
     return std::find(rows[0].begin(), rows[0].end(), name) - rows[0].begin();
@@ -69,7 +69,7 @@ TEST(CampaignReport, CountsWhatFailed) {
 }
 
 TEST(CampaignReport, TellsClassesFromConfusion) {
-  const auto rows = table_rows(confusion_of(scores()));
+  const auto rows = output::table_rows(campaign::confusion_of(scores()));
   ASSERT_EQ(rows.size(), 4u);
   const std::vector<std::string> columns{"hidden \\ found", "cooling", "exchange (in class)",
                                          "gravity"};
@@ -81,10 +81,10 @@ TEST(CampaignReport, TellsClassesFromConfusion) {
 }
 
 TEST(CampaignReport, ShowsWhatIsSeenWhereNothingIs) {
-  CaseScore none = score(1, "", "", CaseOutcome::right, std::nan(""));
+  campaign::CaseScore none = score(1, "", "", campaign::CaseOutcome::right, std::nan(""));
   none.id.group = "null";
   none.verdict = "none";
-  const auto rows = table_rows(confusion_of({none, none}));
+  const auto rows = output::table_rows(campaign::confusion_of({none, none}));
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(rows[0][1], "none");
   EXPECT_EQ(rows[1][0], "nothing");
@@ -92,9 +92,9 @@ TEST(CampaignReport, ShowsWhatIsSeenWhereNothingIs) {
 }
 
 TEST(CampaignReport, CountsPairsOnceInWhateverOrder) {
-  const auto rows = table_rows(
-      confusion_of({score(1, "gravity + uptake", "uptake + gravity", CaseOutcome::right, 0),
-                    score(2, "uptake + gravity", "gravity + uptake", CaseOutcome::right, 0)}));
+  const auto rows = output::table_rows(campaign::confusion_of(
+      {score(1, "gravity + uptake", "uptake + gravity", campaign::CaseOutcome::right, 0),
+       score(2, "uptake + gravity", "gravity + uptake", campaign::CaseOutcome::right, 0)}));
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(rows[0], (std::vector<std::string>{"hidden \\ found", "gravity + uptake"}));
   EXPECT_EQ(rows[1][0], "gravity + uptake");
@@ -105,18 +105,18 @@ TEST(CampaignReport, CountsPairsOnceInWhateverOrder) {
 TEST(CampaignReport, TellsWhichBuildsExplained) {
   const fs::path folder = fs::path(::testing::TempDir()) / "campaign-of-builds";
   fs::create_directories(folder);
-  const CampaignFolder campaign(folder);
+  const campaign::CampaignFolder campaign(folder);
   Scores all = scores();
-  for (CaseScore& one : all) one.program = "0000000a";
-  write_campaign(campaign, all);
-  EXPECT_EQ(read_file(folder / "campaign.md", 1 << 20).find("Builds"), std::string::npos);
+  for (campaign::CaseScore& one : all) one.program = "0000000a";
+  campaign::write_campaign(campaign, all);
+  EXPECT_EQ(posix::read_file(folder / "campaign.md", 1 << 20).find("Builds"), std::string::npos);
   all[2].program = "0000000b";
   all[3].program = "";
-  write_campaign(campaign, all);
-  const std::string text = read_file(folder / "campaign.md", 1 << 20);
+  campaign::write_campaign(campaign, all);
+  const std::string text = posix::read_file(folder / "campaign.md", 1 << 20);
   for (const char* line : {"- 0000000a: 2\n", "- 0000000b: 1\n", "- not known: 1\n"})
     EXPECT_NE(text.find(line), std::string::npos) << line << text;
-  const Scores again = read_cases(campaign.cases());
+  const Scores again = campaign::read_cases(campaign.cases());
   ASSERT_EQ(again.size(), all.size());
   for (std::size_t k = 0; k < all.size(); ++k) EXPECT_EQ(again[k].program, all[k].program);
 }
@@ -124,10 +124,11 @@ TEST(CampaignReport, TellsWhichBuildsExplained) {
 // Earlier tables do not say it.
 TEST(CampaignReport, ReadsCasesOfNoKnownBuild) {
   const fs::path csv = fs::path(::testing::TempDir()) / "cases-of-no-build.csv";
-  write_durably(csv,
-                "case,hidden,verdict,found,outcome,error,deviations,p,base gap,named gap,placebo "
-                "gap,floor,seconds\nnull-000,,none,,right,,,0.9,0.3,0.3,,0.3,36\n");
-  const Scores cases = read_cases(csv);
+  posix::write_durably(
+      csv,
+      "case,hidden,verdict,found,outcome,error,deviations,p,base gap,named gap,placebo "
+      "gap,floor,seconds\nnull-000,,none,,right,,,0.9,0.3,0.3,,0.3,36\n");
+  const Scores cases = campaign::read_cases(csv);
   ASSERT_EQ(cases.size(), 1u);
   EXPECT_EQ(cases[0].program, "");
   EXPECT_EQ(cases[0].seconds, 36);

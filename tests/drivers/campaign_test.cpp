@@ -26,19 +26,19 @@ class HideTest : public ::testing::Test {
 };
 
 TEST_F(HideTest, WritesMeasurementsAndSealsTheirTruth) {
-  const auto end = hide("--effects uptake,gravity --seed 5 --pace 1.2 --stated 2");
+  const auto end = hide("--effects uptake,gravity --seed 5 --diffusion-ratio 1.2 --stated 2");
   ASSERT_EQ(end.code, 0) << end.output;
-  const HiddenTruth truth = open_truth(folder.path / "riddle");
+  const campaign::HiddenTruth truth = campaign::open_truth(folder.path / "riddle");
   ASSERT_EQ(truth.effects.size(), 2u);
   EXPECT_EQ(truth.effects[0].effect, "uptake");
   EXPECT_EQ(truth.effects[1].effect, "gravity");
-  EXPECT_EQ(truth.pace, 1.2);
-  const FieldDataset data = read_field_dataset(folder.path / "riddle" / "data");
+  EXPECT_EQ(truth.diffusion_ratio, 1.2);
+  const input::FieldDataset data = input::read_field_dataset(folder.path / "riddle" / "data");
   ASSERT_EQ(data.vesicles.front().snapshots.size(), 3u);
   // Every second snapshot states another noise than it has.
   const double stated[] = {1, 2, 1};
   for (int k = 0; k < 3; ++k) {
-    const FieldSnapshot& snapshot = data.vesicles.front().snapshots[k];
+    const assimilation::FieldSnapshot& snapshot = data.vesicles.front().snapshots[k];
     EXPECT_EQ(snapshot.points.size(), 300u);
     EXPECT_NEAR(snapshot.deviation[0], stated[k] * truth.noise, 1e-5 * truth.noise) << k;
   }
@@ -54,16 +54,16 @@ TEST_F(HideTest, WritesMeasurementsAndSealsTheirTruth) {
 TEST_F(HideTest, SeesAChangedTruth) {
   // Of an attempt that was killed while it wrote more snapshots.
   fs::create_directories(folder.path / "riddle" / "data");
-  write_durably(folder.path / "riddle" / "truth.json", "{}\n");
-  write_durably(folder.path / "riddle" / "data" / "snapshot_004.csv", "x,y,z,c\n");
+  posix::write_durably(folder.path / "riddle" / "truth.json", "{}\n");
+  posix::write_durably(folder.path / "riddle" / "data" / "snapshot_004.csv", "x,y,z,c\n");
   ASSERT_EQ(hide("--effects none --seed 5").code, 0);
   EXPECT_FALSE(fs::exists(folder.path / "riddle" / "data" / "snapshot_004.csv"));
   const fs::path truth = folder.path / "riddle" / "truth.json";
-  EXPECT_TRUE(open_truth(folder.path / "riddle").effects.empty());
+  EXPECT_TRUE(campaign::open_truth(folder.path / "riddle").effects.empty());
   std::string text = testing::content(truth);
-  text.replace(text.find("\"pace\": 1.0"), 11, "\"pace\": 1.1");
-  write_durably(truth, text);
-  EXPECT_THROW(open_truth(folder.path / "riddle"), IoError);
+  text.replace(text.find("\"diffusion_ratio\": 1.0"), 11, "\"diffusion_ratio\": 1.1");
+  posix::write_durably(truth, text);
+  EXPECT_THROW(campaign::open_truth(folder.path / "riddle"), IoError);
 }
 
 TEST_F(HideTest, RefusesWhatCannotBeHidden) {
@@ -128,11 +128,11 @@ TEST(CampaignTest, CountsWhatWasFoundAndGoesOn) {
   EXPECT_EQ(testing::content(other / "cases.csv"), testing::content(out / "cases.csv"));
   std::string plan = testing::content(other / "plan.json");
   plan.replace(plan.find("\"seed\": 1"), 9, "\"seed\": 2");
-  write_durably(other / "plan.json", plan);
+  posix::write_durably(other / "plan.json", plan);
   EXPECT_TRUE(refuses(testing::traceraft(there), "plan"));
 
   // A search that no longer fits is made again.
-  write_durably(out / "cases" / "null-000" / "explain" / "search.json", "{}");
+  posix::write_durably(out / "cases" / "null-000" / "explain" / "search.json", "{}");
   fs::remove(out / "cases" / "null-000" / "score.json");
   ASSERT_EQ(testing::traceraft(command).code, 0);
   nlohmann::json before = nlohmann::json::parse(first),

@@ -11,11 +11,11 @@ namespace {
 // The labelled tics of y.
 std::string tics_of(const std::vector<double>& y) {
   const testing::TemporaryFolder folder;
-  Chart chart{"a chart", "t", "y", true, true, {{"y", {}, Mark::line}}};
+  bench::Chart chart{"a chart", "t", "y", true, true, {{"y", {}, bench::Mark::line}}};
   for (std::size_t k = 0; k < y.size(); ++k)
     chart.series[0].points.emplace_back(1 + static_cast<double>(k), y[k]);
-  (void)draw_chart(chart, folder.path / "chart");
-  const std::string script = read_file(folder.path / "chart.gp", 1 << 20);
+  (void)output::draw_chart(chart, folder.path / "chart");
+  const std::string script = posix::read_file(folder.path / "chart.gp", 1 << 20);
   const std::size_t begin = script.find("set ytics (") + 11;
   return script.substr(begin, script.find(')', begin) - begin);
 }
@@ -31,10 +31,11 @@ TEST(Chart, HasAFewLabelsOnALogarithmicAxisOfAnyLength) {
 // What falls to 0 goes down to the edge of a logarithmic chart, whose times are those there are.
 TEST(Chart, EndsBandsAtTheAxis) {
   const testing::TemporaryFolder folder;
-  const Chart chart{"a chart", "t",  "y",
-                    true,      true, {{"runs", {{1, 4}, {2, 0}, {8, 0}}, Mark::band, {5, 3, 0}}}};
-  (void)draw_chart(chart, folder.path / "chart");
-  const std::string script = read_file(folder.path / "chart.gp", 1 << 20);
+  const bench::Chart chart{
+      "a chart", "t",  "y",
+      true,      true, {{"runs", {{1, 4}, {2, 0}, {8, 0}}, bench::Mark::band, {5, 3, 0}}}};
+  (void)output::draw_chart(chart, folder.path / "chart");
+  const std::string script = posix::read_file(folder.path / "chart.gp", 1 << 20);
   EXPECT_NE(script.find("set xrange [1:8]"), std::string::npos) << script;
   EXPECT_NE(script.find("END\n1 4 5\n2 2.5"), std::string::npos) << script;  // 3/1.18
   EXPECT_EQ(script.find("\n8 "), std::string::npos) << script;

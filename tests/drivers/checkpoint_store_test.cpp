@@ -12,8 +12,8 @@ namespace {
 
 using testing::TemporaryFolder;
 
-Checkpoint sample(long step) {
-  Checkpoint checkpoint;
+run::Checkpoint sample(long step) {
+  run::Checkpoint checkpoint;
   checkpoint.configuration = "cells = 16\n";
   checkpoint.tables = {{"series.csv", {1234, 0xDEADBEEF}}, {"rafts.csv", {99, 7}}};
   checkpoint.state = std::string(5000, 'q') + std::to_string(step);
@@ -31,7 +31,7 @@ std::size_t count_files(const std::filesystem::path& folder) {
 }
 
 TEST(Checkpoint, RoundTrips) {
-  const Checkpoint a = sample(7), b = decode(encode(a));
+  const run::Checkpoint a = sample(7), b = run::decode(run::encode(a));
   EXPECT_EQ(a.configuration, b.configuration);
   EXPECT_TRUE(a.tables == b.tables);
   EXPECT_EQ(a.state, b.state);
@@ -42,26 +42,26 @@ TEST(Checkpoint, RoundTrips) {
 }
 
 TEST(Checkpoint, AnyDamageIsRefused) {
-  const std::string good = encode(sample(3));
+  const std::string good = run::encode(sample(3));
   for (std::size_t size = 0; size < good.size(); size += 37)
-    EXPECT_THROW(decode(good.substr(0, size)), IoError) << size;
-  EXPECT_THROW(decode(good + "x"), IoError);
+    EXPECT_THROW(run::decode(good.substr(0, size)), IoError) << size;
+  EXPECT_THROW(run::decode(good + "x"), IoError);
   for (std::uint64_t seed = 0; seed < 3000; ++seed) {
     std::string bad = good;
     const auto at = static_cast<std::size_t>(uniform_random(seed, 0, 0) * bad.size());
     const char before = bad[at];
     bad[at] = static_cast<char>(256 * uniform_random(seed, 0, 1));
     if (bad[at] != before) {
-      EXPECT_THROW(decode(bad), IoError) << at;
+      EXPECT_THROW(run::decode(bad), IoError) << at;
     }
   }
 }
 
 TEST(CheckpointStore, KeepsTheTwoNewestAndNothingOfOthers) {
   const TemporaryFolder folder;
-  write_durably(folder.path / "notes.txt", "mine");
-  write_durably(folder.path / "step-old.ckpt", "not ours either");
-  CheckpointStore store(folder.path);
+  posix::write_durably(folder.path / "notes.txt", "mine");
+  posix::write_durably(folder.path / "step-old.ckpt", "not ours either");
+  run::CheckpointStore store(folder.path);
   for (const long step : {1, 20, 300, 4000}) store.write(sample(step));
   EXPECT_EQ(count_files(folder.path), 4u);
   std::vector<std::string> refused;
@@ -71,13 +71,13 @@ TEST(CheckpointStore, KeepsTheTwoNewestAndNothingOfOthers) {
 
 TEST(CheckpointStore, PassesOverADamagedOneAndSaysSo) {
   const TemporaryFolder folder;
-  CheckpointStore store(folder.path);
+  run::CheckpointStore store(folder.path);
   std::vector<std::string> refused;
   EXPECT_THROW(store.newest(refused), IoError);
   store.write(sample(1));
   store.write(sample(2));
   const auto newest = folder.path / "step-0000000002.ckpt";
-  write_durably(newest, read_file(newest, 1 << 20).substr(0, 3000));
+  posix::write_durably(newest, posix::read_file(newest, 1 << 20).substr(0, 3000));
   EXPECT_EQ(store.newest(refused).step, 1);
   ASSERT_EQ(refused.size(), 1u);
   EXPECT_NE(refused[0].find("step-0000000002.ckpt: its end is missing"), std::string::npos);

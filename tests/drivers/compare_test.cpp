@@ -119,7 +119,8 @@ TEST_F(CompareTest, ErrorsTimesAndCountsAreThoseOfTheRuns) {
   ASSERT_EQ(traceraft("compare " + out() + references() + "--target-error 0").code, 0);
   const auto space = testing::make_space(12);
   const auto concentration = [&](const fs::path& run) {
-    return concentration_of(CheckpointStore(run / "checkpoints").newest(), run, space->nodes());
+    return run::concentration_of(run::CheckpointStore(run / "checkpoints").newest(), run,
+                                 space->nodes());
   };
   const Vec reference = concentration(all_references().at(0));
   const std::vector<std::string> jobs = {"ida-block-0.01", "ida-block-1e-04",
@@ -210,14 +211,14 @@ TEST_F(CompareTest, LeavesNoRunBehindWhenItIsKilled) {
     if (fs::exists(folder.path / "references") && !fs::is_empty(folder.path / "references"))
       reference = all_references().at(0);
   for (int i = 0; i < 3000 && testing::lines_of(reference / "series.csv") < 3; ++i) usleep(10000);
-  EXPECT_THROW(FolderLock{reference}, LockedError);
+  EXPECT_THROW(posix::FolderLock{reference}, posix::LockedError);
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
   bool free = false;
   for (int i = 0; i < 1000 && !free; ++i, usleep(10000)) try {
-      const FolderLock lock(reference);
+      const posix::FolderLock lock(reference);
       free = true;
-    } catch (const LockedError&) {
+    } catch (const posix::LockedError&) {
     }
   EXPECT_TRUE(free);
   EXPECT_EQ(nlohmann::json::parse(content(reference / "summary.json")).at("end"), "stopped");
@@ -228,7 +229,7 @@ TEST_F(CompareTest, OneAtATimeWorksOnAFolder) {
                       "--integrators ida --tolerances 1e-2 --repeat 1")
                 .code,
             0);
-  const FolderLock lock(folder.path / "c");
+  const posix::FolderLock lock(folder.path / "c");
   EXPECT_EQ(traceraft("compare --quiet " + out() + references()).code, 6);
 }
 
@@ -241,7 +242,7 @@ TEST_F(CompareTest, DoesNotMixBuildsOfTheProgram) {
   const fs::path file = folder.path / "c/plan.json";
   nlohmann::json plan = nlohmann::json::parse(content(file));
   plan["program"] = "00000000";
-  write_durably(file, plan.dump());
+  posix::write_durably(file, plan.dump());
   EXPECT_TRUE(testing::refuses(compare("--repeat 2"), "build"));
   EXPECT_EQ(content(file), plan.dump());
 }

@@ -35,11 +35,11 @@ Names lines(const std::string& text) {
 }
 
 // The registered commands, as a parser that no command line has been given to.
-DescribedProgram registered() {
+manual::DescribedProgram registered() {
   CLI::App app{"", "traceraft"};
-  for (const Command& command : commands())
+  for (const drivers::Command& command : drivers::commands())
     (void)command.define(*app.add_subcommand(command.name, command.summary));
-  return describe(app);
+  return manual::describe(app);
 }
 
 // A shell with the completions in a file.
@@ -50,11 +50,11 @@ class CompletionsTest : public ::testing::Test {
   void write(const std::string& language) {
     const ProgramEnd end = traceraft("completions " + language);
     ASSERT_EQ(end.code, 0) << end.output;
-    write_durably(folder.path / language, end.output);
+    posix::write_durably(folder.path / language, end.output);
   }
   // The output of a shell that reads that file before a script.
   std::string said(const std::string& language, const std::string& script) {
-    write_durably(folder.path / "script", script);
+    posix::write_durably(folder.path / "script", script);
     return shell("cd " + folder.path.string() + " && " + language + " script").output;
   }
   // Bash has split the words, also at "=".
@@ -80,7 +80,7 @@ class CompletionsTest : public ::testing::Test {
   // Names come with a tab and what they mean.
   Names fish(const std::string& line) {
     return lines(said("fish --no-config", "source ./fish\ncomplete -C " +
-                                              in_fish("traceraft " + line) +
+                                              text::in_fish("traceraft " + line) +
                                               " | string split -f 1 \\t\n"));
   }
 };
@@ -96,17 +96,18 @@ TEST_F(CompletionsTest, BashCompletesCommandsAndOptions) {
   EXPECT_EQ(bash("run --integ"), Names{"--integrator"});
   EXPECT_EQ(bash("run --cells 24 --integ"), Names{"--integrator"});
   EXPECT_EQ(bash("nonsense --"), Names{});
-  const DescribedProgram program = registered();
-  EXPECT_EQ(program.commands.size(), commands().names().size());
-  for (const DescribedCommand& command : program.commands)
-    EXPECT_EQ(bash(command.name + " --"), names_of(long_flags(command.options))) << command.name;
+  const manual::DescribedProgram program = registered();
+  EXPECT_EQ(program.commands.size(), drivers::commands().names().size());
+  for (const manual::DescribedCommand& command : program.commands)
+    EXPECT_EQ(bash(command.name + " --"), names_of(manual::long_flags(command.options)))
+        << command.name;
 }
 
 TEST_F(CompletionsTest, BashCompletesValues) {
   write("bash");
-  EXPECT_EQ(bash("run --integrator ''"), names_of(integrators().names()));
-  EXPECT_EQ(bash("run --integrator = ''"), names_of(integrators().names()));
-  EXPECT_EQ(bash("run --integrator ="), names_of(integrators().names()));
+  EXPECT_EQ(bash("run --integrator ''"), names_of(backends::integrators().names()));
+  EXPECT_EQ(bash("run --integrator = ''"), names_of(backends::integrators().names()));
+  EXPECT_EQ(bash("run --integrator ="), names_of(backends::integrators().names()));
   EXPECT_EQ(bash("run --integrator = eu"), Names{"euler"});
   EXPECT_EQ(bash("compare --integrators euler,i"), Names{"euler,ida"});
   EXPECT_EQ(bash("run --keep f"), Names{"first"});
@@ -122,7 +123,7 @@ TEST_F(CompletionsTest, BashCompletesArguments) {
   EXPECT_EQ(bash("data check ''"), Names{"<dirnames>"});
   EXPECT_EQ(bash("data --seed 1 --facts = x check ''"), Names{"<dirnames>"});
   EXPECT_EQ(bash("data --quiet ch"), Names{"check"});
-  Names all = names_of(studies().names());
+  Names all = names_of(studies::studies().names());
   all.insert("all");
   EXPECT_EQ(bash("verify mass --quick ''"), all);
   EXPECT_EQ(bash("run ''"), bash("run --")) << "no argument: options are all there is";
@@ -131,14 +132,15 @@ TEST_F(CompletionsTest, BashCompletesArguments) {
 TEST_F(CompletionsTest, ZshCompletes) {
   write("zsh");
   EXPECT_EQ(zsh("ru"), names_of([] {
-              std::vector<std::string> all = commands().names();
+              std::vector<std::string> all = drivers::commands().names();
               all.insert(all.end(), {"--help", "--version"});
               return all;
             }()));
-  for (const DescribedCommand& command : registered().commands)
-    EXPECT_EQ(zsh(command.name + " --"), names_of(long_flags(command.options))) << command.name;
-  EXPECT_EQ(zsh("run --integrator ''"), names_of(integrators().names()));
-  EXPECT_EQ(zsh("run --integrator="), names_of(integrators().names()));
+  for (const manual::DescribedCommand& command : registered().commands)
+    EXPECT_EQ(zsh(command.name + " --"), names_of(manual::long_flags(command.options)))
+        << command.name;
+  EXPECT_EQ(zsh("run --integrator ''"), names_of(backends::integrators().names()));
+  EXPECT_EQ(zsh("run --integrator="), names_of(backends::integrators().names()));
   EXPECT_EQ(zsh("data ''"), (Names{"check", "compare", "draw"}));
   EXPECT_EQ(zsh("data --quiet check ''"), Names{"<files -/>"});
   EXPECT_EQ(zsh("run --config ''"), Names{"<files >"});
@@ -149,12 +151,13 @@ TEST_F(CompletionsTest, FishCompletes) {
   write("fish");
   EXPECT_EQ(fish("ru"), Names{"run"});
   EXPECT_EQ(fish("run --integ"), Names{"--integrator"});
-  EXPECT_EQ(fish("run --integrator "), names_of(integrators().names()));
+  EXPECT_EQ(fish("run --integrator "), names_of(backends::integrators().names()));
   EXPECT_EQ(fish("compare --integrators euler,i"), Names{"euler,ida"});
   EXPECT_EQ(fish("run --config scr"), Names{"script"});
   EXPECT_EQ(fish("run --cells "), Names{});
-  for (const DescribedCommand& command : registered().commands)
-    EXPECT_EQ(fish(command.name + " --"), names_of(long_flags(command.options))) << command.name;
+  for (const manual::DescribedCommand& command : registered().commands)
+    EXPECT_EQ(fish(command.name + " --"), names_of(manual::long_flags(command.options)))
+        << command.name;
 }
 
 // A placeholder in the help stands for a list, words, files, folders, a number or free text.
@@ -162,10 +165,11 @@ TEST(Completions, EveryPlaceholderIsKnown) {
   const Names others = {"TEXT",    "NUMBER", "NUMBER,...", "NUMBER,NUMBER", "INT", "UINT", "FLOAT",
                         "INT,...", ""};
   std::size_t lists = 0;
-  for (const DescribedCommand& command : registered().commands)
+  for (const manual::DescribedCommand& command : registered().commands)
     for (const auto* options : {&command.positionals, &command.options})
-      for (const DescribedOption& option : *options) {
-        const bool known = offered_values(option.placeholder).kind != OfferedValues::Kind::anything;
+      for (const manual::DescribedOption& option : *options) {
+        const bool known = manual::offered_values(option.placeholder).kind !=
+                           manual::OfferedValues::Kind::anything;
         lists += known;
         EXPECT_TRUE(known || others.count(option.placeholder) > 0)
             << command.name << " " << option.help << ": " << option.placeholder;
@@ -175,11 +179,11 @@ TEST(Completions, EveryPlaceholderIsKnown) {
 
 // Names that are offered are taken.
 TEST(Completions, WordsAreAccepted) {
-  const DescribedProgram program = registered();
+  const manual::DescribedProgram program = registered();
   std::size_t accepted = 0;
-  for (const DescribedOption& option : program.commands.front().options) {
+  for (const manual::DescribedOption& option : program.commands.front().options) {
     if (option.placeholder.find('|') == std::string::npos) continue;
-    for (const auto& [word, meaning] : offered_values(option.placeholder).values) {
+    for (const auto& [word, meaning] : manual::offered_values(option.placeholder).values) {
       const ProgramEnd end = traceraft(
           "run --validate --quiet --case two-rafts --cells 12 --epsilon 1 --integrator euler " +
           option.flags.front() + " " + word);
@@ -202,19 +206,20 @@ TEST(Completions, UnknownShellsAreAnswered) {
 TEST(Completions, ScriptsExecuteNothing) {
   for (const std::string& text : testing::hostile_texts()) {
     if (text.find('\0') != std::string::npos) continue;
-    DescribedOption option;
+    manual::DescribedOption option;
     option.flags = {"--" + text};
     option.placeholder = "a|" + text;
     option.help = text;
-    const DescribedProgram program{
+    const manual::DescribedProgram program{
         "traceraft", text, text, {option}, {{text, text, text, {}, {option}}}};
     for (const auto& [name, begin] : {std::pair("bash", "bash"), std::pair("zsh", "zsh -f"),
                                       std::pair("fish", "fish --no-config")}) {
       const TemporaryFolder folder;
       const std::string before =
           std::string(name) == "zsh" ? "words=(traceraft x) CURRENT=2\n_describe() { :; }\n" : "";
-      write_durably(folder.path / "script", before + "cd " + folder.path.string() + "\n" +
-                                                shells().find(name).completions(program));
+      posix::write_durably(folder.path / "script",
+                           before + "cd " + folder.path.string() + "\n" +
+                               manual::shells().find(name).completions(program));
       const ProgramEnd end = shell(std::string(begin) + " " + (folder.path / "script").string());
       EXPECT_EQ(end.code, 0) << name << ": " << text << "\n" << end.output;
       EXPECT_EQ(folder.entries(), 1u) << name << " executed a command: " << text;

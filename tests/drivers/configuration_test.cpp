@@ -16,8 +16,8 @@ namespace {
 
 using testing::TemporaryFolder;
 
-GivenValues flags(std::initializer_list<std::pair<std::string, std::string>> values) {
-  GivenValues result;
+config::GivenValues flags(std::initializer_list<std::pair<std::string, std::string>> values) {
+  config::GivenValues result;
   for (const auto& [name, text] : values) result[name] = {text, "--" + name};
   return result;
 }
@@ -32,62 +32,64 @@ std::string complaint(const Action& action) {
   }
 }
 
-GivenValues read_text(const std::string& text) {
+config::GivenValues read_text(const std::string& text) {
   const TemporaryFolder folder;
   std::ofstream(folder.path / "run.toml") << text;  // syncing it 2000 times takes half a minute
-  return read_config_file(folder.path / "run.toml");
+  return config::read_config_file(folder.path / "run.toml");
 }
 
 TEST(Configuration, FlagsBeatTheFileWhichBeatsTheCaseWhichBeatsDefaults) {
-  const GivenValues file = read_text("case = \"spinodal\"\ncells = 48\ntolerance = 1e-3\n");
-  const Configuration c(file, flags({{"tolerance", "1e-4"}}));
+  const config::GivenValues file = read_text("case = \"spinodal\"\ncells = 48\ntolerance = 1e-3\n");
+  const config::Configuration c(file, flags({{"tolerance", "1e-4"}}));
   EXPECT_EQ(c.options().tolerance, 1e-4);
   EXPECT_EQ(c.options().cells, 48);
   EXPECT_EQ(c.options().raft_fraction, 0.5);
   EXPECT_EQ(c.options().integrator, "ida");
-  EXPECT_EQ(Configuration({}, flags({{"integrator", "euler"}})).options().tolerance, 5e-3);
+  EXPECT_EQ(config::Configuration({}, flags({{"integrator", "euler"}})).options().tolerance, 5e-3);
 }
 
 TEST(Configuration, KnowsTheFlagsThatRepeatIt) {
-  EXPECT_EQ(flags_text(Configuration({}, {})), "");
-  const Configuration given(read_text("case = \"guv-3to1\"\ncells = 48\n"),
-                            flags({{"scaled", "false"},
-                                   {"integrator", "euler"},
-                                   {"initial", "formula"},
-                                   {"initial-formula", "sin(3*x)^2"}}));
-  EXPECT_EQ(flags_text(given),
+  EXPECT_EQ(config::flags_text(config::Configuration({}, {})), "");
+  const config::Configuration given(read_text("case = \"guv-3to1\"\ncells = 48\n"),
+                                    flags({{"scaled", "false"},
+                                           {"integrator", "euler"},
+                                           {"initial", "formula"},
+                                           {"initial-formula", "sin(3*x)^2"}}));
+  EXPECT_EQ(config::flags_text(given),
             "--case guv-3to1 --cells 48 --initial formula --initial-formula 'sin(3*x)^2' "
             "--integrator euler");
   // What does nothing is not repeated: it would be refused.
-  const Configuration idle({}, flags({{"case", "spinodal"},
-                                      {"cells", "8"},
-                                      {"initial", "caps"},
-                                      {"initial-caps", "0 0 1 40"},
-                                      {"keep", "first"}}));
-  EXPECT_EQ(flags_text(idle), "--case spinodal --cells 8 --initial caps --initial-caps '0 0 1 40'");
+  const config::Configuration idle({}, flags({{"case", "spinodal"},
+                                              {"cells", "8"},
+                                              {"initial", "caps"},
+                                              {"initial-caps", "0 0 1 40"},
+                                              {"keep", "first"}}));
+  EXPECT_EQ(config::flags_text(idle),
+            "--case spinodal --cells 8 --initial caps --initial-caps '0 0 1 40'");
   // Defaults of a scaled model depend on what one unit is.
-  const Configuration scaled(
+  const config::Configuration scaled(
       {}, flags({{"case", "guv-3to1"}, {"scaled", "true"}, {"radius", "10"}, {"epsilon", "0.01"}}));
-  const std::string text = flags_text(scaled);
+  const std::string text = config::flags_text(scaled);
   EXPECT_NE(text.find("--epsilon 0.01"), std::string::npos) << text;
   EXPECT_NE(text.find("--radius 10"), std::string::npos) << text;
 }
 
 TEST(Configuration, ConvertsDefaultsUnderScaled) {
-  const Configuration physical({}, flags({{"case", "guv-3to1"}}));
+  const config::Configuration physical({}, flags({{"case", "guv-3to1"}}));
   EXPECT_EQ(physical.options().epsilon, 0.05);
   EXPECT_NEAR(physical.units().seconds_per_unit(), 0.025, 1e-15);
-  const Configuration scaled({}, flags({{"case", "guv-3to1"}, {"scaled", "true"}}));
+  const config::Configuration scaled({}, flags({{"case", "guv-3to1"}, {"scaled", "true"}}));
   EXPECT_NEAR(scaled.options().epsilon, 0.01, 1e-15);
   EXPECT_NEAR(scaled.options().t_end, 1e6, 1e-6);
-  const Configuration given({}, flags({{"scaled", "true"}, {"epsilon", "0.05"}, {"t-end", "20"}}));
+  const config::Configuration given(
+      {}, flags({{"scaled", "true"}, {"epsilon", "0.05"}, {"t-end", "20"}}));
   EXPECT_EQ(given.options().epsilon, 0.05);
   EXPECT_EQ(given.options().t_end, 20);
 }
 
 TEST(Configuration, NamesWhatIsWrongAndWhatIsAllowed) {
   const auto of = [](const std::string& name, const std::string& text) {
-    return complaint([&] { Configuration({}, flags({{name, text}})); });
+    return complaint([&] { config::Configuration({}, flags({{name, text}})); });
   };
   EXPECT_EQ(of("cells", "abc"), "--cells: 'abc' is not a finite number");
   EXPECT_EQ(of("cells", "12.5"), "--cells: '12.5' is not a whole number");
@@ -103,7 +105,7 @@ TEST(Configuration, NamesWhatIsWrongAndWhatIsAllowed) {
 // A double would make 9007199254740992 of it.
 TEST(Configuration, RefusesSeedsThatLoseDigits) {
   const auto of = [](const std::string& text) {
-    return complaint([&] { Configuration({}, flags({{"seed", text}})); });
+    return complaint([&] { config::Configuration({}, flags({{"seed", text}})); });
   };
   for (const char* good : {"0", "+7", "1e3", "9007199254740991", "9007199254740992"})
     EXPECT_EQ(of(good), "") << good;
@@ -112,7 +114,7 @@ TEST(Configuration, RefusesSeedsThatLoseDigits) {
     EXPECT_EQ(of(bad),
               std::string("--seed: ") + bad + " is out of range (allowed: 0 to 9007199254740992)");
   const auto in_file = [](const std::string& text) {
-    return complaint([&] { Configuration(read_text("seed = " + text + "\n"), {}); });
+    return complaint([&] { config::Configuration(read_text("seed = " + text + "\n"), {}); });
   };
   EXPECT_EQ(in_file("9007199254740992"), "");
   EXPECT_NE(in_file("9007199254740993").find("run.toml:1: seed: 9007199254740993 is out of range"),
@@ -125,7 +127,7 @@ TEST(Configuration, SaysHowNumbersAreSeparated) {
   for (const char* text : {"100 20 9", "1;2"})
     EXPECT_EQ(
         complaint([&] {
-          Configuration({}, flags({{"output-times", text}}));
+          config::Configuration({}, flags({{"output-times", text}}));
         }),
         std::string("--output-times: '") + text + "' is not a number; separate numbers by commas");
 }
@@ -144,33 +146,34 @@ TEST(ConfigFile, NamesFileLineAndKey) {
   EXPECT_NE(of("[section]\ncells = 3\n").find("unknown key 'section'"), std::string::npos);
   EXPECT_NE(of(std::string("cells = 3\0\n", 11)).find("not a text file"), std::string::npos);
   EXPECT_NE(of(std::string(3 << 20, ' ')).find("more than the"), std::string::npos);
-  EXPECT_NE(complaint([] { read_config_file("/nonexistent/run.toml"); }).find("cannot open"),
-            std::string::npos);
-  const GivenValues nan = read_text("epsilon = nan\n");
-  EXPECT_NE(complaint([&] { Configuration(nan, {}); }).find("not a finite number"),
+  EXPECT_NE(
+      complaint([] { config::read_config_file("/nonexistent/run.toml"); }).find("cannot open"),
+      std::string::npos);
+  const config::GivenValues nan = read_text("epsilon = nan\n");
+  EXPECT_NE(complaint([&] { config::Configuration(nan, {}); }).find("not a finite number"),
             std::string::npos);
 }
 
 TEST(ConfigFile, TheResolvedConfigurationReadsBackAsTheSameRun) {
-  for (const CaseEntry& entry : cases()) {
-    const Configuration first({}, flags({{"case", entry.name},
-                                         {"output-times", "0.5, 1,2"},
-                                         {"initial-formula", "0.5*\"x\\y\""},
-                                         {"epsilon", ".3"}}));
-    const Configuration second(read_text(config_text(first)), {});
-    EXPECT_EQ(numerical_identity(first), numerical_identity(second));
-    EXPECT_EQ(config_text(first), config_text(second));
+  for (const config::CaseEntry& entry : config::cases()) {
+    const config::Configuration first({}, flags({{"case", entry.name},
+                                                 {"output-times", "0.5, 1,2"},
+                                                 {"initial-formula", "0.5*\"x\\y\""},
+                                                 {"epsilon", ".3"}}));
+    const config::Configuration second(read_text(config::config_text(first)), {});
+    EXPECT_EQ(config::numerical_identity(first), config::numerical_identity(second));
+    EXPECT_EQ(config::config_text(first), config::config_text(second));
   }
 }
 
 TEST(ConfigFile, ACasesNoiseOnASmallerMeshReadsBack) {
-  const Configuration configuration({}, flags({{"case", "spinodal"}, {"cells", "24"}}));
+  const config::Configuration configuration({}, flags({{"case", "spinodal"}, {"cells", "24"}}));
   EXPECT_EQ(configuration.options().noise_cells, 24);
-  EXPECT_NE(config_text(configuration).find("noise-cells = 24"), std::string::npos);
+  EXPECT_NE(config::config_text(configuration).find("noise-cells = 24"), std::string::npos);
 }
 
 TEST(ConfigFile, SurvivesRandomDamage) {
-  const std::string good = config_text(Configuration({}, {}));
+  const std::string good = config::config_text(config::Configuration({}, {}));
   int refused = 0;
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
     std::string text = good;
@@ -180,7 +183,7 @@ TEST(ConfigFile, SurvivesRandomDamage) {
     }
     if (uniform_random(seed, 99, 0) < 0.3)
       text.resize(static_cast<std::size_t>(uniform_random(seed, 99, 1) * text.size()));
-    const std::string answer = complaint([&] { Configuration(read_text(text), {}); });
+    const std::string answer = complaint([&] { config::Configuration(read_text(text), {}); });
     refused += !answer.empty();
     EXPECT_EQ(answer.find('\n'), std::string::npos);
   }
@@ -190,11 +193,11 @@ TEST(ConfigFile, SurvivesRandomDamage) {
 // A factor moves no surface, even one whose square is no number: by rounding of differences alone.
 TEST(RunSetup, TakesALevelSetOfAnySize) {
   const auto area = [](const std::string& formula) {
-    return build_run(Configuration({}, flags({{"cells", "16"},
-                                              {"epsilon", "0.8"},
-                                              {"surface", "formula"},
-                                              {"surface-formula", formula}})),
-                     InitialState::build)
+    return run::build_run(config::Configuration({}, flags({{"cells", "16"},
+                                                           {"epsilon", "0.8"},
+                                                           {"surface", "formula"},
+                                                           {"surface-formula", formula}})),
+                          run::InitialState::build)
         .space->area;
   };
   const double usual = area("x^2+y^2+z^2-1");
@@ -204,9 +207,10 @@ TEST(RunSetup, TakesALevelSetOfAnySize) {
 
 TEST(RunSetup, ChecksEverythingBeforeAnythingRuns) {
   const auto of = [](std::initializer_list<std::pair<std::string, std::string>> values) {
-    GivenValues given = flags(values);
-    given.emplace("cells", GivenValue{"16", "--cells"});
-    return complaint([&] { build_run(Configuration({}, given), InitialState::build); });
+    config::GivenValues given = flags(values);
+    given.emplace("cells", config::GivenValue{"16", "--cells"});
+    return complaint(
+        [&] { run::build_run(config::Configuration({}, given), run::InitialState::build); });
   };
   EXPECT_EQ(of({{"epsilon", "0.5"}}), "");
   EXPECT_EQ(of({{"surface", "spere"}}).find("--surface: unknown surface 'spere'; did you mean"),
@@ -244,9 +248,11 @@ TEST(RunSetup, ChecksEverythingBeforeAnythingRuns) {
 // Steps are divided by, and the quotients squared.
 TEST(RunSetup, RefusesTimesThatDoublesCannotHold) {
   const auto of = [](std::initializer_list<std::pair<std::string, std::string>> values) {
-    GivenValues given = flags(values);
-    given.emplace("cells", GivenValue{"8", "--cells"});
-    return complaint([&] { build_run(Configuration({}, given), InitialState::from_checkpoint); });
+    config::GivenValues given = flags(values);
+    given.emplace("cells", config::GivenValue{"8", "--cells"});
+    return complaint([&] {
+      run::build_run(config::Configuration({}, given), run::InitialState::from_checkpoint);
+    });
   };
   const std::string allowed = " is too short or too long to compute with (allowed: ";
   EXPECT_EQ(of({{"t-end", "1e-300"}}), "--t-end: 1e-300" + allowed + "1e-102 to 1e+98)");
@@ -266,11 +272,12 @@ TEST(RunSetup, RefusesTimesThatDoublesCannotHold) {
 
 TEST(RunSetup, SortsOutputTimesAndNamesThoseThatAreRepeated) {
   const auto of = [](const std::string& times) {
-    return build_run(
-        Configuration({}, flags({{"cells", "8"}, {"t-end", "100"}, {"output-times", times}})),
-        InitialState::from_checkpoint);
+    return run::build_run(
+        config::Configuration({},
+                              flags({{"cells", "8"}, {"t-end", "100"}, {"output-times", times}})),
+        run::InitialState::from_checkpoint);
   };
-  const RunSetup run = of("100,20,9,1e1,10, 20.0,10");
+  const run::RunSetup run = of("100,20,9,1e1,10, 20.0,10");
   EXPECT_EQ(run.output_labels, (std::vector<double>{9, 10, 20, 100}));
   EXPECT_EQ(run.output_times.size(), 4u);
   EXPECT_EQ(run.repeated_labels, (std::vector<double>{10, 20}));
@@ -278,22 +285,24 @@ TEST(RunSetup, SortsOutputTimesAndNamesThoseThatAreRepeated) {
 }
 
 TEST(RunSetup, RefusesOptionsOfMethodsThatAreNotChosen) {
-  GivenValues given = flags({{"cells", "8"}, {"ida-maxord", "2"}});
+  config::GivenValues given = flags({{"cells", "8"}, {"ida-maxord", "2"}});
   const auto of = [&](const auto&... compared) {
-    return complaint(
-        [&] { build_run(Configuration({}, given), InitialState::from_checkpoint, compared...); });
+    return complaint([&] {
+      run::build_run(config::Configuration({}, given), run::InitialState::from_checkpoint,
+                     compared...);
+    });
   };
   EXPECT_EQ(of(), "");
   given["keep"] = {"first", "--keep"};
   EXPECT_EQ(of().find("--keep: it needs --integrator euler"), 0u);
   given["integrator"] = {"euler", "--integrator"};
   EXPECT_EQ(of().find("--ida-maxord: it needs --integrator ida"), 0u);
-  EXPECT_EQ(of(Compared{{"integrator", {"euler", "ida"}}}), "");
+  EXPECT_EQ(of(config::Compared{{"integrator", {"euler", "ida"}}}), "");
   given["ida-maxord"].where = "run.toml:4: ida-maxord";
   EXPECT_EQ(of(), "");
   given["teko-inverse"] = {"ifpack2", "--teko-inverse"};
   EXPECT_EQ(of().find("--teko-inverse: it needs --linear-solver teko"), 0u);
-  EXPECT_EQ(of(Compared{{"linear-solver", {"teko", "block"}}}), "");
+  EXPECT_EQ(of(config::Compared{{"linear-solver", {"teko", "block"}}}), "");
 }
 
 }  // namespace

@@ -71,16 +71,17 @@ TEST(DataTest, ComparesNothingWithoutSayingSo) {
 // In the unit of the file, beside what it says already.
 TEST(DataTest, SaysWhichOffsetWouldRemoveATrend) {
   const testing::TemporaryFolder folder;
-  const MeasuredVesicles kept =
-      read_dataset(TRACERAFT_ROOT "/verification/data/synthetic/guv-3to1");
+  const observations::MeasuredVesicles kept =
+      input::read_dataset(TRACERAFT_ROOT "/verification/data/synthetic/guv-3to1");
   std::ofstream(folder.path / "dataset.toml")
       << "name = \"late\"\nkind = \"measured\"\ntime_zero = \"start\"\nlength_unit = "
          "\"um\"\ntime_unit = \"min\"\ntime_offset = -0.5\n";
   std::ofstream table(folder.path / "measurements.csv");
   table << "vesicle,time,radius,perimeter,rafts\n";
-  for (const Measurement& m : kept.measurements)
+  for (const observations::Measurement& m : kept.measurements)
     table << m.vesicle << "," << m.time / 60 + 0.5 << "," << m.radius << ","
-          << *m.of(Quantity::perimeter) * m.radius << "," << *m.of(Quantity::rafts) << "\n";
+          << *m.of(observations::Quantity::perimeter) * m.radius << ","
+          << *m.of(observations::Quantity::rafts) << "\n";
   table.close();
   const ProgramEnd compared =
       traceraft("data compare " + folder.path.string() +

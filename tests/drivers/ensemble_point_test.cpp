@@ -6,8 +6,8 @@ namespace traceraft {
 namespace {
 
 // Runs that carry their seed as their only time.
-PointEnd end_of(const std::vector<std::uint64_t>& seeds) {
-  PointEnd end;
+ensemble::PointEnd end_of(const std::vector<std::uint64_t>& seeds) {
+  ensemble::PointEnd end;
   end.seeds = seeds;
   for (const std::uint64_t seed : seeds) {
     end.runs.emplace_back();
@@ -17,9 +17,9 @@ PointEnd end_of(const std::vector<std::uint64_t>& seeds) {
 }
 
 TEST(EnsemblePoint, KeepsTheSeedsThatAllPointsHave) {
-  std::vector<PointEnd> ends{end_of({1, 2, 3, 4}), end_of({2, 3, 4}), end_of({1, 2, 4})};
-  keep_common_seeds(ends);
-  for (const PointEnd& end : ends) {
+  std::vector<ensemble::PointEnd> ends{end_of({1, 2, 3, 4}), end_of({2, 3, 4}), end_of({1, 2, 4})};
+  ensemble::keep_common_seeds(ends);
+  for (const ensemble::PointEnd& end : ends) {
     EXPECT_EQ(end.seeds, (std::vector<std::uint64_t>{2, 4}));
     ASSERT_EQ(end.runs.size(), 2u);
     EXPECT_EQ(end.runs[1].time[0], 4);

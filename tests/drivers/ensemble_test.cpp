@@ -31,7 +31,7 @@ class EnsembleTest : public ::testing::Test {
   std::string out(const std::string& name) const { return (folder.path / name).string(); }
   fs::path csv(const std::string& name) const { return folder.path / name / "ensemble.csv"; }
   std::vector<double> misfits(const std::string& name) const {
-    return CsvTable::read(folder.path / name / "comparison.csv").numbers("misfit");
+    return input::CsvTable::read(folder.path / name / "comparison.csv").numbers("misfit");
   }
 };
 
@@ -200,7 +200,7 @@ TEST_F(EnsembleTest, GathersTheOthersOfADamagedRun) {
   const std::string page = content(folder.path / "a/report.html");
   for (const char* fact : {"seed-4", "seed 2"}) EXPECT_TRUE(names(page, fact));
   // Time goes on to the end of the run that is whole.
-  EXPECT_NEAR(CsvTable::read(csv("a")).numbers("t").back(), 100, 10);
+  EXPECT_NEAR(input::CsvTable::read(csv("a")).numbers("t").back(), 100, 10);
 }
 
 TEST_F(EnsembleTest, IsAnArrayJobToo) {

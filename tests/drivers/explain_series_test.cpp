@@ -25,7 +25,7 @@ class ExplainSeriesTest : public ::testing::Test {
   static void SetUpTestSuite() {
     folder_ = std::make_unique<testing::TemporaryFolder>();
     // Coarse, and with a raft that is one from the start, which no measured vesicle is.
-    write_durably(in("model.toml"), "epsilon = 0.8\ncells = 16\nraft-fraction = 0.3\n");
+    posix::write_durably(in("model.toml"), "epsilon = 0.8\ncells = 16\nraft-fraction = 0.3\n");
     made_ = std::make_unique<ProgramEnd>(traceraft(command("model.toml")));
     ASSERT_EQ(made_->code, 0) << made_->output;
     ASSERT_EQ(
@@ -92,7 +92,7 @@ TEST_F(ExplainSeriesTest, SimulatesOnce) {
   const std::string series = content(in("out/series.json"));
   const fs::path plan = simulations() / "base/plan.json";
   const std::string planned = content(plan);
-  write_durably(plan, "{");  // which is written anew
+  posix::write_durably(plan, "{");  // which is written anew
   const ProgramEnd again = traceraft(command("model.toml"));
   EXPECT_EQ(again.code, 0) << again.output;
   EXPECT_EQ(content(plan), planned);
@@ -123,16 +123,16 @@ TEST_F(ExplainSeriesTest, TakesNoSimulationsThatAreOthers) {
   const nlohmann::json older{{"identity", json_of(file)["identity"]},
                              {"strengths", json_of(file)["strengths"]}};
   for (const nlohmann::json& strengths : {older, foreign}) {
-    write_durably(file, strengths.dump());
+    posix::write_durably(file, strengths.dump());
     EXPECT_TRUE(refuses(traceraft(of_others("third", simulations())),
                         "--ensembles: " + simulations().string()));
   }
-  write_durably(file, kept);
+  posix::write_durably(file, kept);
   EXPECT_FALSE(fs::exists(in("third")));
 }
 
 TEST_F(ExplainSeriesTest, DoesNotMixModelsInAFolder) {
-  write_durably(in("other.toml"), "epsilon = 0.8\ncells = 16\nraft-fraction = 0.4\n");
+  posix::write_durably(in("other.toml"), "epsilon = 0.8\ncells = 16\nraft-fraction = 0.4\n");
   EXPECT_TRUE(refuses(traceraft(command("other.toml")), in("out").string()));
 }
 
@@ -141,7 +141,7 @@ TEST_F(ExplainSeriesTest, RefusesModelsThatSeriesCannotTell) {
       refuses(traceraft(command("model.toml") + " --effect gravity:strength=0.1"), "--effect"));
   const std::string torus = "epsilon = 0.8\ncells = 16\nsurface = \"torus\"\n";
   const auto explain_on = [](const std::string& model) {
-    write_durably(in("torus.toml"), model);
+    posix::write_durably(in("torus.toml"), model);
     return traceraft("explain --series " + kMeasured + " --model " + in("torus.toml").string() +
                      " --out " + in("none").string());
   };

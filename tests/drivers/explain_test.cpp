@@ -20,9 +20,9 @@ using testing::refuses;
 class ExplainTest : public ::testing::Test {
  protected:
   // What a vesicle of 5 µm with ε = 0.75 µm and D = 1e-5 cm²/s would show.
-  BlindRequest request() const {
-    BlindRequest request;
-    request.base = bench_model("degenerate", 0.15);
+  selection::BlindRequest request() const {
+    selection::BlindRequest request;
+    request.base = bench::bench_model("degenerate", 0.15);
     request.cells = 24;
     request.first = 30;
     request.last = 140;
@@ -31,24 +31,26 @@ class ExplainTest : public ::testing::Test {
     request.seed = 2;
     return request;
   }
-  BlindCase draw(const std::string& effect, double gap = BlindRequest{}.gap) const {
-    BlindRequest asked = request();
+  selection::BlindCase draw(const std::string& effect,
+                            double gap = selection::BlindRequest{}.gap) const {
+    selection::BlindRequest asked = request();
     asked.gap = gap;
     if (!effect.empty()) asked.effects = {effect};
-    BlindCase drawn = draw_blind_case(asked);
+    selection::BlindCase drawn = selection::draw_blind_case(asked);
     write(drawn.vesicles);
     return drawn;
   }
-  void write(std::vector<FieldSeries> vesicles) const {
-    FieldDataset data;
+  void write(std::vector<assimilation::FieldSeries> vesicles) const {
+    input::FieldDataset data;
     data.name = "drawn";
     data.synthetic = true;
     data.radius_um = 5;
     data.blur_um = 0;
     data.vesicles = std::move(vesicles);
-    for (FieldSeries& vesicle : data.vesicles)
-      for (FieldSnapshot& snapshot : vesicle.snapshots) snapshot.time *= Units().time();
-    write_field_dataset(folder.path / "data", data, "drawn by a test");
+    for (assimilation::FieldSeries& vesicle : data.vesicles)
+      for (assimilation::FieldSnapshot& snapshot : vesicle.snapshots)
+        snapshot.time *= physics::Units().time();
+    input::write_field_dataset(folder.path / "data", data, "drawn by a test");
   }
   std::string command(int cells = 15, int replicates = 49) const {
     return "explain --data " + (folder.path / "data").string() + " --epsilon 0.75 --cells " +
@@ -79,11 +81,11 @@ class ExplainTest : public ::testing::Test {
 
 TEST_F(ExplainTest, NamesWhatWasHidden) {
   // Strong enough for its gap to be told to a tenth from the noise of so few values.
-  const BlindCase drawn = draw("uptake", 0.1);
+  const selection::BlindCase drawn = draw("uptake", 0.1);
   const nlohmann::json verdict = explain();
   EXPECT_EQ(verdict["effect"], "uptake") << verdict.dump(2);
   const nlohmann::json& rate = verdict["parameters"]["uptake.rate"];
-  const double truth = drawn.truth[0].values[0] / Units().time();
+  const double truth = drawn.truth[0].values[0] / physics::Units().time();
   EXPECT_NEAR(rate["value"], truth, 4 * rate["sigma"].get<double>());
   EXPECT_LT(rate["sigma"], 0.2 * truth);
   EXPECT_NEAR(verdict["noise"]["level"], drawn.noise, 0.05 * drawn.noise);
@@ -132,12 +134,12 @@ TEST_F(ExplainTest, NamesNothingWhereNothingIsHidden) {
 // A killed search goes on from its last refit and ends as if nothing had happened.
 TEST_F(ExplainTest, GoesOnWhereItWasKilled) {
   constexpr int kCells = 10;
-  BlindRequest asked = request();
+  selection::BlindRequest asked = request();
   asked.effects = {"uptake"};
   asked.gap = 0.2;
   asked.points = 500;
   asked.last = 90;
-  write(draw_blind_case(asked).vesicles);
+  write(selection::draw_blind_case(asked).vesicles);
   const pid_t child = testing::start_traceraft(command_of_few(kCells));
   const fs::path saved = folder.path / "out" / "search.json";
   const auto has_a_refit = [&] {
@@ -176,12 +178,12 @@ TEST_F(ExplainTest, GoesOnWhereItWasKilled) {
 
 // Vesicles with few snapshots tell together what one of them tells with more.
 TEST_F(ExplainTest, JoinsWhatVesiclesSay) {
-  BlindRequest asked = request();
+  selection::BlindRequest asked = request();
   asked.effects = {"uptake"};
   asked.vesicles = 2;
   asked.snapshots = 3;
   asked.points = 1000;
-  const BlindCase drawn = draw_blind_case(asked);
+  const selection::BlindCase drawn = selection::draw_blind_case(asked);
   ASSERT_EQ(drawn.vesicles.size(), 2u);
   EXPECT_NE(drawn.vesicles[0].snapshots[0].values[0], drawn.vesicles[1].snapshots[0].values[0]);
   write(drawn.vesicles);
@@ -189,7 +191,7 @@ TEST_F(ExplainTest, JoinsWhatVesiclesSay) {
   const nlohmann::json found = verdict();
   EXPECT_EQ(found["effect"], "uptake") << found.dump(2);
   const nlohmann::json& rate = found["parameters"]["uptake.rate"];
-  EXPECT_NEAR(rate["value"], drawn.truth[0].values[0] / Units().time(),
+  EXPECT_NEAR(rate["value"], drawn.truth[0].values[0] / physics::Units().time(),
               4 * rate["sigma"].get<double>());
 
   // The model that has what was found lacks nothing; its rate is fitted once more.
@@ -211,12 +213,12 @@ TEST_F(ExplainTest, JoinsWhatVesiclesSay) {
 }
 
 TEST_F(ExplainTest, SaysWhatIsOddAboutTheData) {
-  BlindRequest asked = request();
+  selection::BlindRequest asked = request();
   asked.snapshots = 4;
   asked.points = 600;
   asked.last = 90;
-  std::vector<FieldSeries> vesicles = draw_blind_case(asked).vesicles;
-  std::vector<FieldSnapshot>& snapshots = vesicles[0].snapshots;
+  std::vector<assimilation::FieldSeries> vesicles = selection::draw_blind_case(asked).vesicles;
+  std::vector<assimilation::FieldSnapshot>& snapshots = vesicles[0].snapshots;
   for (Point& x : snapshots[2].points)
     x = Point(std::cos(0.3) * x[0] - std::sin(0.3) * x[1],
               std::sin(0.3) * x[0] + std::cos(0.3) * x[1], x[2]);
@@ -245,7 +247,7 @@ class ExplainRefusalTest : public ExplainTest {
   ExplainRefusalTest() {
     asked_.snapshots = 3;
     asked_.points = 150;
-    vesicles_ = draw_blind_case(asked_).vesicles;
+    vesicles_ = selection::draw_blind_case(asked_).vesicles;
     write(vesicles_);
   }
   testing::ProgramEnd checked() const {
@@ -253,10 +255,10 @@ class ExplainRefusalTest : public ExplainTest {
     EXPECT_EQ(end.code, 0) << end.output;
     return end;
   }
-  FieldSnapshot& snapshot(std::size_t k) { return vesicles_[0].snapshots[k]; }
+  assimilation::FieldSnapshot& snapshot(std::size_t k) { return vesicles_[0].snapshots[k]; }
 
-  BlindRequest asked_ = request();
-  std::vector<FieldSeries> vesicles_;
+  selection::BlindRequest asked_ = request();
+  std::vector<assimilation::FieldSeries> vesicles_;
 };
 
 TEST_F(ExplainRefusalTest, NeedsDataAndAModel) {
@@ -270,14 +272,14 @@ TEST_F(ExplainRefusalTest, NeedsDataAndAModel) {
 TEST_F(ExplainRefusalTest, LeavesFoldersOfOthersAlone) {
   const std::string explain = "explain --data " + (folder.path / "data").string();
   fs::create_directories(folder.path / "mine");
-  write_durably(folder.path / "mine" / "notes.txt", "mine");
+  posix::write_durably(folder.path / "mine" / "notes.txt", "mine");
   EXPECT_TRUE(refuses(testing::traceraft(explain + " --epsilon 0.75 --cells 13 --out " +
                                          (folder.path / "mine").string()),
                       "notes.txt"));
   // What was found would take the place of the model that it was given.
   fs::create_directories(folder.path / "out");
   const fs::path own = folder.path / "out" / "model.toml";
-  write_durably(own, "epsilon = 0.75\ncells = 13\n");
+  posix::write_durably(own, "epsilon = 0.75\ncells = 13\n");
   EXPECT_TRUE(refuses(testing::traceraft(explain + " --model " + own.string() + " --out " +
                                          (folder.path / "out").string()),
                       "--out: " + (folder.path / "out").string()));
@@ -323,10 +325,10 @@ TEST_F(ExplainRefusalTest, SaysWhichSnapshotIsNone) {
 
 TEST_F(ExplainRefusalTest, SaysThatCMayMarkTheOtherPhase) {
   asked_.raft_fraction = 0.35;
-  vesicles_ = draw_blind_case(asked_).vesicles;
+  vesicles_ = selection::draw_blind_case(asked_).vesicles;
   write(vesicles_);
   double mean = 0;
-  for (const FieldSnapshot& snapshot : vesicles_[0].snapshots)
+  for (const assimilation::FieldSnapshot& snapshot : vesicles_[0].snapshots)
     mean += snapshot.values.mean() / static_cast<double>(vesicles_[0].snapshots.size());
   EXPECT_TRUE(refuses(
       testing::traceraft(command(13) + " --raft-fraction " + format_number(1 - mean)), "1 - c"));

@@ -14,18 +14,19 @@ class ExtendedModelTest : public ::testing::Test {
  protected:
   // What is written for the original, with D and gravity found.
   std::string extended(const std::string& original) {
-    GivenValues wanted;
+    config::GivenValues wanted;
     if (!original.empty()) {
-      write_durably(original_, original);
-      wanted = read_config_file(original_);
+      posix::write_durably(original_, original);
+      wanted = config::read_config_file(original_);
     }
     wanted["radius"] = {"5", "dataset.toml: radius"};
     wanted["epsilon"] = {"0.6", "--epsilon"};
     wanted["diffusion"] = {"2.6e-05", ""};
     wanted["effect"] = {"gravity:strength=0.01", ""};
-    write_extended_model(file_, original.empty() ? "" : original_, wanted, "found");
-    EXPECT_EQ(config_text({read_config_file(file_), {}}), config_text({wanted, {}}));
-    return read_file(file_, 1 << 20);
+    explain::write_extended_model(file_, original.empty() ? "" : original_, wanted, "found");
+    EXPECT_EQ(config::config_text({config::read_config_file(file_), {}}),
+              config::config_text({wanted, {}}));
+    return posix::read_file(file_, 1 << 20);
   }
 
   testing::TemporaryFolder folder;

@@ -10,7 +10,7 @@ namespace {
 
 TEST(JobPool, DoesEveryJobOnce) {
   std::vector<std::atomic<int>> times(50);
-  JobPool pool(times.size(), [&](std::size_t k) {
+  jobs::JobPool pool(times.size(), [&](std::size_t k) {
     ++times[k];
     return true;
   });
@@ -23,7 +23,7 @@ TEST(JobPool, DoesEveryJobOnce) {
 
 TEST(JobPool, StopsWhereAJobWantsIt) {
   std::atomic<int> begun{0};
-  JobPool pool(50, [&](std::size_t k) {
+  jobs::JobPool pool(50, [&](std::size_t k) {
     ++begun;
     return k != 3;
   });
@@ -33,7 +33,7 @@ TEST(JobPool, StopsWhereAJobWantsIt) {
 }
 
 TEST(JobPool, PassesOnWhatAJobThrows) {
-  JobPool pool(50, [](std::size_t k) -> bool {
+  jobs::JobPool pool(50, [](std::size_t k) -> bool {
     if (k == 2) throw std::runtime_error("no");
     return true;
   });
@@ -42,7 +42,7 @@ TEST(JobPool, PassesOnWhatAJobThrows) {
 }
 
 TEST(JobPool, WithNothingToDoIsDone) {
-  JobPool pool(0, [](std::size_t) { return false; });
+  jobs::JobPool pool(0, [](std::size_t) { return false; });
   pool.start(2);
   EXPECT_TRUE(pool.finish());
 }

@@ -23,14 +23,14 @@ using testing::traceraft;
 // As it is shown, or what groff has against it. Needs the Debian package groff-base.
 ProgramEnd typeset(const std::string& page, const std::string& options) {
   const TemporaryFolder folder;
-  write_durably(folder.path / "page.1", page);
+  posix::write_durably(folder.path / "page.1", page);
   return shell("cd " + folder.path.string() + " && groff -man -Tutf8 -ww -P-cbou " + options +
                " page.1");
 }
 
 // From one heading of a command to the next.
 std::string section_of(const std::string& page, const std::string& command) {
-  const std::string heading = ".SS traceraft " + in_roff(command) + "\n";
+  const std::string heading = ".SS traceraft " + text::in_roff(command) + "\n";
   const std::size_t begin = page.find(heading);
   if (begin == std::string::npos) return "";
   return page.substr(begin, page.find("\n.S", begin + heading.size()) - begin);
@@ -39,19 +39,19 @@ std::string section_of(const std::string& page, const std::string& command) {
 TEST(ManualPage, NamesEveryOptionOfEveryCommand) {
   const std::string page = traceraft("man").output;
   std::size_t options = 0;
-  for (const Command& command : commands()) {
+  for (const drivers::Command& command : drivers::commands()) {
     CLI::App app;
-    const Action action = command.define(app);
+    const drivers::Action action = command.define(app);
     const std::string section = section_of(page, command.name);
     EXPECT_NE(section, "") << command.name;
     for (const CLI::Option* option : app.get_options()) {
       for (const std::string& name : option->get_lnames()) {
-        EXPECT_NE(section.find("\\fB" + in_roff("--" + name) + "\\fR"), std::string::npos)
+        EXPECT_NE(section.find("\\fB" + text::in_roff("--" + name) + "\\fR"), std::string::npos)
             << command.name << " --" << name;
         ++options;
       }
       if (option->get_positional()) {
-        EXPECT_NE(section.find("\\fI" + in_roff(option->get_single_name()) + "\\fR"),
+        EXPECT_NE(section.find("\\fI" + text::in_roff(option->get_single_name()) + "\\fR"),
                   std::string::npos)
             << command.name << " " << option->get_single_name();
       }
@@ -62,10 +62,10 @@ TEST(ManualPage, NamesEveryOptionOfEveryCommand) {
 
 TEST(ManualPage, ListsTheNamesThatOptionsTake) {
   const std::string page = traceraft("man").output;
-  for (const ValueList& list : value_lists()) {
+  for (const manual::ValueList& list : manual::value_lists()) {
     EXPECT_NE(page.find("(" + list.name + ")\n"), std::string::npos) << list.name;
     for (const auto& [name, meaning] : list.values)
-      EXPECT_NE(page.find("\n\\fB" + in_roff(name) + "\\fR\n"), std::string::npos) << name;
+      EXPECT_NE(page.find("\n\\fB" + text::in_roff(name) + "\\fR\n"), std::string::npos) << name;
   }
 }
 
@@ -84,13 +84,13 @@ TEST(ManualPage, IsTypesetWithoutWarnings) {
 // Whatever is written as the help of an option stays text.
 TEST(ManualPage, HelpIsText) {
   for (const std::string& text : testing::hostile_texts()) {
-    DescribedOption option;
+    manual::DescribedOption option;
     option.flags = {"--flag"};
     option.placeholder = option.default_text = option.help = option.group = text;
-    const DescribedProgram program{
+    const manual::DescribedProgram program{
         "name", text, text, {option}, {{text, text, text, {option}, {}}}};
     // Lines that are too long to be broken are shown all the same.
-    const ProgramEnd end = typeset(manual_page(program, text, text), "-z -Wbreak");
+    const ProgramEnd end = typeset(manual::manual_page(program, text, text), "-z -Wbreak");
     EXPECT_EQ(end.code, 0) << text;
     EXPECT_EQ(end.output, "") << text;
   }

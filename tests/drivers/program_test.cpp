@@ -142,7 +142,7 @@ TEST_F(ProgramTest, AFailedClaimOfAStudyExitsWithOne) {
   ASSERT_EQ(good.code, 0) << good.output;
   auto result = json_of(folder.path / "v/geometry.json");
   result.at("claims").at(0).at("measured") = 7;
-  write_durably(folder.path / "v/geometry.json", result.dump());
+  posix::write_durably(folder.path / "v/geometry.json", result.dump());
   const ProgramEnd bad = traceraft(verify);  // which takes the study from there
   EXPECT_EQ(bad.code, 1) << bad.output;
 }
@@ -195,7 +195,8 @@ TEST_F(ProgramTest, StartsAgainWhenKilledBeforeTheFirstCheckpoint) {
   ASSERT_EQ(traceraft("run --quiet " + quick + "--out " + out("whole")).code, 0);
   // As a kill right after the configuration was written leaves it.
   fs::create_directory(folder.path / "early");
-  write_durably(folder.path / "early/config.toml", content(folder.path / "whole/config.toml"));
+  posix::write_durably(folder.path / "early/config.toml",
+                       content(folder.path / "whole/config.toml"));
   const ProgramEnd resumed = traceraft("resume " + out("early"));
   ASSERT_EQ(resumed.code, 0) << resumed.output;
   expect_same_results("whole", "early");
@@ -251,7 +252,7 @@ TEST_F(ProgramTest, RefusesADamagedCheckpointAndUsesTheOneBefore) {
   ASSERT_LE(files.size(), 3u);  // if killed before the oldest was removed
   std::string data = content(files.back());
   data[data.size() / 2] ^= 1;
-  write_durably(files.back(), data);
+  posix::write_durably(files.back(), data);
   const ProgramEnd resumed = traceraft("resume --quiet " + out("a"));
   EXPECT_EQ(resumed.code, 0);
   EXPECT_TRUE(names(resumed.output, files.back().string()));
@@ -261,7 +262,7 @@ TEST_F(ProgramTest, RefusesADamagedCheckpointAndUsesTheOneBefore) {
 TEST_F(ProgramTest, RefusesAllDamagedCheckpoints) {
   ASSERT_EQ(traceraft("run --quiet " + quick + "--out " + out("a")).code, 0);
   for (const auto& entry : fs::directory_iterator(folder.path / "a/checkpoints"))
-    write_durably(entry.path(), "rubbish");
+    posix::write_durably(entry.path(), "rubbish");
   EXPECT_EQ(traceraft("resume " + out("a")).code, 4);
 }
 
@@ -278,13 +279,13 @@ TEST_F(ProgramTest, LocksItsFolder) {
 TEST_F(ProgramTest, LeavesForeignFilesAlone) {
   fs::create_directories(folder.path / "a/checkpoints-of-mine");
   fs::create_directories(folder.path / "mine");
-  write_durably(folder.path / "a/notes.txt", "mine");
-  write_durably(folder.path / "mine/view.png", "mine");
+  posix::write_durably(folder.path / "a/notes.txt", "mine");
+  posix::write_durably(folder.path / "mine/view.png", "mine");
   EXPECT_EQ(traceraft("run --quiet " + quick + "--out " + out("mine")).code, 2);
   EXPECT_EQ(content(folder.path / "mine/view.png"), "mine");
   // Folders of other commands are no place for a run.
   fs::create_directories(folder.path / "measured");
-  write_durably(folder.path / "measured/dataset.toml", "mine");
+  posix::write_durably(folder.path / "measured/dataset.toml", "mine");
   const ProgramEnd beside = traceraft("run --quiet " + quick + "--out " + out("measured"));
   EXPECT_TRUE(refuses(beside, "dataset.toml"));
   EXPECT_FALSE(fs::exists(folder.path / "measured/config.toml"));
@@ -297,7 +298,7 @@ TEST_F(ProgramTest, LeavesForeignFilesAlone) {
 
 TEST_F(ProgramTest, LeavesNothingInAFolderThatItRefuses) {
   fs::create_directories(folder.path / "a");
-  write_durably(folder.path / "a/notes.txt", "mine");
+  posix::write_durably(folder.path / "a/notes.txt", "mine");
   for (const std::string& command :
        {"run " + quick, "compare " + quick, std::string("ensemble --runs 3 "),
         std::string("verify conservation "), std::string("hide --effects none ")}) {

@@ -156,12 +156,12 @@ TEST_F(RanksTest, FieldsAreThoseOfTheLastWriter) {
 // Fields of all pieces at the n-th output time: raft numbers of the triangles by their midpoints.
 std::map<std::array<long, 3>, int> raft_numbers(const fs::path& run, const std::string& file) {
   std::vector<std::string> names = {file};
-  if (file.substr(file.rfind('.')) == ".pvtu") names = pieces_of_pvtu(content(run / file));
+  if (file.substr(file.rfind('.')) == ".pvtu") names = zlib::pieces_of_pvtu(content(run / file));
   std::map<std::array<long, 3>, int> numbers;
   for (const std::string& name : names) {
     const std::string text = content((run / file).parent_path() / fs::path(name).filename());
-    const SurfaceMesh mesh = read_vtu(text, "c").mesh;
-    const std::vector<int> rafts = read_cells(text, "raft");
+    const observables::SurfaceMesh mesh = zlib::read_vtu(text, "c").mesh;
+    const std::vector<int> rafts = zlib::read_cells(text, "raft");
     EXPECT_EQ(rafts.size(), mesh.triangles.size());
     for (std::size_t t = 0; t < rafts.size(); ++t) {
       Point middle = Point::Zero();
@@ -189,12 +189,12 @@ TEST_F(RanksTest, SpiralsOverAllRanksAreCountedOnce) {
       const std::string name = std::to_string(arms) + "-" + std::to_string(ranks);
       const ProgramEnd end = on(ranks, spiral + at(name));
       ASSERT_EQ(end.code, 0) << end.output;
-      const CsvTable row = CsvTable::read(at(name) + "/observables.csv");
+      const input::CsvTable row = input::CsvTable::read(at(name) + "/observables.csv");
       EXPECT_EQ(row.number(0, "rafts"), arms);
       const double length = row.number(0, "perimeter_level");
       if (ranks == 1) perimeter = length;
       EXPECT_NEAR(length / perimeter, 1, 1e-12);
-      const auto files = files_of_pvd(content(at(name) + "/fields.pvd"));
+      const auto files = zlib::files_of_pvd(content(at(name) + "/fields.pvd"));
       ASSERT_EQ(files.size(), 1u);
       const auto numbers = raft_numbers(at(name), files[0].second);
       int most = 0;
@@ -221,8 +221,8 @@ TEST_F(RanksTest, EveryTimeIsCollectedOnce) {
   }
   const ProgramEnd last = on(2, "resume --quiet " + at(name));
   ASSERT_EQ(last.code, 0) << last.output;
-  const auto files = files_of_pvd(content(at(name) + "/fields.pvd"));
-  const CsvTable observables = CsvTable::read(at(name) + "/observables.csv");
+  const auto files = zlib::files_of_pvd(content(at(name) + "/fields.pvd"));
+  const input::CsvTable observables = input::CsvTable::read(at(name) + "/observables.csv");
   ASSERT_EQ(files.size(), observables.rows());
   for (std::size_t k = 0; k < files.size(); ++k) {
     EXPECT_EQ(files[k].first, observables.number(k, "t"));

@@ -21,52 +21,52 @@ class SeriesVerdictTest : public ::testing::Test {
     model["radius"] = {"10", "--radius"};
     model["diffusion"] = {"1e-5", "--diffusion"};
     const auto score = [](const std::string& effect, double gain, double value) {
-      SeriesScore s{};
+      selection::SeriesScore s{};
       s.effect = effect;
       s.gain = gain;
       s.null_mean = 1;
       s.ln_unit = std::log(0.1 / 3);
       s.value = value;
       s.sigma = 0.1 * value;
-      s.telling = Quantity::fraction;
+      s.telling = observations::Quantity::fraction;
       return s;
     };
-    found.finding = Finding::ambiguous;
+    found.finding = selection::Finding::ambiguous;
     found.base.ln_unit = std::log(0.05);
     found.scores = {score("uptake", 30, 2e-3), score("cooling", 29, 1e-3),
                     score("gravity", 1, 1e-3)};
     found.named = {{"cooling", "uptake"}};
-    found.offsets = {{Quantity::fraction, 0.02, 4, 0.001, 1}};
-    ensembles.terms = {find_candidate("cooling")->term({5e-4}),
-                       find_candidate("uptake")->term({1e-3})};
+    found.offsets = {{observations::Quantity::fraction, 0.02, 4, 0.001, 1}};
+    ensembles.terms = {assimilation::find_candidate("cooling")->term({5e-4}),
+                       assimilation::find_candidate("uptake")->term({1e-3})};
   }
-  Json json(const std::string& file) const {
-    return from_json(folder.path / file, [](const Json& content) { return content; });
+  input::Json json(const std::string& file) const {
+    return input::from_json(folder.path / file, [](const input::Json& content) { return content; });
   }
 
   const testing::TemporaryFolder folder;
-  GivenValues model;
-  SeriesExplanation found{};
-  SeriesEnsembles ensembles;
+  config::GivenValues model;
+  selection::SeriesExplanation found{};
+  explain::SeriesEnsembles ensembles;
 };
 
 TEST_F(SeriesVerdictTest, NamesWhatExplainsMostInPhysicalUnits) {
-  write_series_verdict(folder.path, "", model, ensembles, found,
-                       {UnitPrior::within_factor(0.1, 8)});
-  const Json verdict = json("verdict.json");
+  explain::write_series_verdict(folder.path, "", model, ensembles, found,
+                                {likelihood::UnitPrior::within_factor(0.1, 8)});
+  const input::Json verdict = json("verdict.json");
   EXPECT_EQ(verdict["verdict"], "ambiguous");
   EXPECT_EQ(verdict["effect"], "uptake");
-  EXPECT_EQ(verdict["class"], Json({"uptake", "cooling"}));
+  EXPECT_EQ(verdict["class"], input::Json({"uptake", "cooling"}));
   EXPECT_NEAR(verdict["parameters"]["uptake.rate"]["value"].get<double>(), 2e-3 * 30, 1e-6);
   EXPECT_NEAR(verdict["parameters"]["uptake.rate"]["sigma"].get<double>(), 2e-4 * 30, 1e-6);
   EXPECT_EQ(verdict["parameters"]["uptake.rate"]["unit"], "1/s");
   EXPECT_NEAR(verdict["parameters"]["diffusion"]["value"].get<double>(), 3e-5, 1e-10);
   for (const char* gap : {"base", "named", "placebo", "floor"})
     EXPECT_TRUE(verdict["gap"][gap]["heldout"].is_null()) << gap;
-  EXPECT_EQ(verdict["alternatives"][1], Json({{"effect", "cooling"}, {"score", 29.0}}));
+  EXPECT_EQ(verdict["alternatives"][1], input::Json({{"effect", "cooling"}, {"score", 29.0}}));
   EXPECT_EQ(verdict["null"]["replicates"], 199);
 
-  const Configuration named(read_config_file(folder.path / "model.toml"), {});
+  const config::Configuration named(config::read_config_file(folder.path / "model.toml"), {});
   EXPECT_NEAR(named.options().diffusion, 3e-5, 1e-10);
   const std::string effect = named.options().effect, name = "uptake:rate=";
   ASSERT_EQ(effect.substr(0, name.size()), name);
@@ -75,21 +75,21 @@ TEST_F(SeriesVerdictTest, NamesWhatExplainsMostInPhysicalUnits) {
 
 // What is fitted may lie beyond what is possible.
 TEST_F(SeriesVerdictTest, WritesAModelThatCanBeRun) {
-  ensembles.terms = {find_candidate("asymmetry")->term({0.5})};
+  ensembles.terms = {assimilation::find_candidate("asymmetry")->term({0.5})};
   found.scores.front().effect = "asymmetry";
   found.scores.front().value = 1e3;
-  write_series_verdict(folder.path, "", model, ensembles, found,
-                       {UnitPrior::within_factor(0.1, 8)});
-  const Configuration named(read_config_file(folder.path / "model.toml"), {});
-  EXPECT_EQ(physical_model(named).effects.size(), 1u);
+  explain::write_series_verdict(folder.path, "", model, ensembles, found,
+                                {likelihood::UnitPrior::within_factor(0.1, 8)});
+  const config::Configuration named(config::read_config_file(folder.path / "model.toml"), {});
+  EXPECT_EQ(run::physical_model(named).effects.size(), 1u);
 }
 
 TEST_F(SeriesVerdictTest, ATrendNamesNothing) {
-  found.finding = Finding::unnamed;
+  found.finding = selection::Finding::unnamed;
   found.named = {{"uptake"}};
-  write_series_verdict(folder.path, "", model, ensembles, found,
-                       {UnitPrior::within_factor(0.1, 8)});
-  const Json verdict = json("verdict.json");
+  explain::write_series_verdict(folder.path, "", model, ensembles, found,
+                                {likelihood::UnitPrior::within_factor(0.1, 8)});
+  const input::Json verdict = json("verdict.json");
   EXPECT_TRUE(verdict["effect"].is_null());
   EXPECT_EQ(verdict["closest"], "uptake");
   EXPECT_TRUE(verdict["class"].empty());
@@ -99,20 +99,20 @@ TEST_F(SeriesVerdictTest, ATrendNamesNothing) {
 
 // What was not looked for is said.
 TEST_F(SeriesVerdictTest, SaysWhatWasAssumed) {
-  ensembles.terms = {find_candidate("exchange")->term({3e-3, 1e-3})};
+  ensembles.terms = {assimilation::find_candidate("exchange")->term({3e-3, 1e-3})};
   found.scores.front().effect = "exchange";
-  write_series_verdict(folder.path, "", model, ensembles, found,
-                       {UnitPrior::within_factor(0.1, 8)});
-  const Json parameters = json("verdict.json")["parameters"];
+  explain::write_series_verdict(folder.path, "", model, ensembles, found,
+                                {likelihood::UnitPrior::within_factor(0.1, 8)});
+  const input::Json parameters = json("verdict.json")["parameters"];
   EXPECT_NEAR(parameters["exchange.target"]["value"].get<double>(), 0.25, 1e-12);
   EXPECT_TRUE(parameters["exchange.target"]["sigma"].is_null());
-  const Json series = series_json({model, {}}, ensembles, found, {});
+  const input::Json series = explain::series_json({model, {}}, ensembles, found, {});
   EXPECT_NEAR(series["scores"][0]["assumed"]["target"]["value"].get<double>(), 0.25, 1e-12);
   EXPECT_TRUE(series["scores"][1]["assumed"].empty());
 }
 
 TEST_F(SeriesVerdictTest, SaysHowMeasurementsLieBesideTheModel) {
-  const Json series = series_json({model, {}}, ensembles, found, {});
+  const input::Json series = explain::series_json({model, {}}, ensembles, found, {});
   EXPECT_EQ(series["offsets"][0]["quantity"], "fraction");
   EXPECT_EQ(series["offsets"][0]["of"], "ln");
   EXPECT_EQ(series["offsets"][0]["level_deviations"], 4);

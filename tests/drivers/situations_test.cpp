@@ -25,8 +25,8 @@ class SituationsTest : public ::testing::Test {
   nlohmann::json summary(const std::string& name) const {
     return testing::json_of(folder.path / name / "summary.json");
   }
-  CsvTable table(const std::string& name, const char* file) const {
-    return CsvTable::read(folder.path / name / file);
+  input::CsvTable table(const std::string& name, const char* file) const {
+    return input::CsvTable::read(folder.path / name / file);
   }
 };
 
@@ -76,7 +76,7 @@ TEST_F(SituationsTest, TheMinorityOfAnOrderedMembraneIsCounted) {
       "--initial formula --initial-formula '0.75-0.7*x*y*z/0.19' --out " +
       out("a"));
   ASSERT_EQ(run.code, 0) << run.output;
-  const CsvTable row = table("a", "observables.csv");
+  const input::CsvTable row = table("a", "observables.csv");
   EXPECT_GT(row.number(0, "raft_fraction"), 0.5);
   EXPECT_EQ(row.number(0, "rafts"), 1);
   EXPECT_EQ(row.number(0, "domains"), 4);
@@ -113,7 +113,7 @@ TEST_F(SituationsTest, AdvectionKeepsMassAndComesBackAfterATurn) {
       out("a"));
   ASSERT_EQ(run.code, 0) << run.output;
   EXPECT_LE(summary("a")["mass_drift"].get<double>(), 1e-12);
-  const CsvTable rafts = table("a", "rafts.csv");
+  const input::CsvTable rafts = table("a", "rafts.csv");
   ASSERT_EQ(rafts.rows(), 4u);
   const auto centre = [&](std::size_t k) {
     return Point(rafts.number(k, "x"), rafts.number(k, "y"), rafts.number(k, "z"));

@@ -14,8 +14,8 @@ namespace traceraft {
 namespace {
 
 // Five points of a square grid.
-SparsityPattern grid(int side) {
-  SparsityPattern pattern;
+fem::SparsityPattern grid(int side) {
+  fem::SparsityPattern pattern;
   pattern.row_begin.push_back(0);
   for (int i = 0; i < side * side; ++i) {
     const int x = i % side, y = i / side;
@@ -33,10 +33,10 @@ SparsityPattern grid(int side) {
 constexpr int kStopped = 5;
 
 [[noreturn]] void order_until_stopped(int ready) {
-  end_on_stop_signals(kStopped, "");
-  const SparsityPattern pattern = grid(100);
+  posix::end_on_stop_signals(kStopped, "");
+  const fem::SparsityPattern pattern = grid(100);
   std::thread worker([&] {
-    for (;;) metis_ordering(pattern);
+    for (;;) suitesparse::metis_ordering(pattern);
   });
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
   if (write(ready, "r", 1) != 1) _exit(1);

@@ -10,7 +10,7 @@ namespace traceraft {
 namespace {
 
 TEST(TimeLeft, IsThatOfStepsThatGrowWithTime) {
-  TimeLeft left(1e4);
+  output::TimeLeft left(1e4);
   for (int k = 0; k <= 50; ++k) left.note(std::pow(10, 0.04 * k), k);
   EXPECT_NEAR(left.seconds(), 50, 1e-6);
   EXPECT_NEAR(left.share(), 0.5, 1e-6);
@@ -18,7 +18,7 @@ TEST(TimeLeft, IsThatOfStepsThatGrowWithTime) {
 
 // Ten steps before the end there is little time for them to grow.
 TEST(TimeLeft, IsNearlyThatOfStepsOfOneLengthAtTheEnd) {
-  TimeLeft left(100);
+  output::TimeLeft left(100);
   for (int k = 0; k <= 90; ++k) left.note(k, 2.0 * k);
   EXPECT_NEAR(left.seconds(), 20, 5);
   EXPECT_LE(left.seconds(), 20);
@@ -26,7 +26,7 @@ TEST(TimeLeft, IsNearlyThatOfStepsOfOneLengthAtTheEnd) {
 
 // A hundred steps, then ten short ones while a raft vanishes.
 TEST(TimeLeft, IsNotWhatAFewShortStepsSay) {
-  TimeLeft left(1000);
+  output::TimeLeft left(1000);
   double seconds = 0, before = 0;
   for (int k = 0; k < 110; ++k) {
     before = left.share();
@@ -42,7 +42,7 @@ TEST(TimeLeft, IsNotWhatAFewShortStepsSay) {
 
 // An integrator that begins with a tiny step would be at the end soon if it went on so.
 TEST(TimeLeft, IsUnknownWhileAnIntegratorFeelsItsWay) {
-  TimeLeft left(200);
+  output::TimeLeft left(200);
   for (int k = 0; k <= 40; ++k) left.note(1e-12 * std::pow(1.7, k), k);
   EXPECT_EQ(left.seconds(), 0);
   EXPECT_EQ(left.share(), 0);
@@ -72,13 +72,13 @@ TEST(TimeLeft, IsWithinItsRangeInNineOfTenMoments) {
   int all = 0, within = 0;
   double ratio = 1;
   for (const Marks* marks : {&kTwoToOne, &kThreeToOne}) {
-    TimeLeft left(marks->back().first);
+    output::TimeLeft left(marks->back().first);
     for (std::size_t k = 1; k < marks->size(); ++k) {
       const auto [t0, spent0] = (*marks)[k - 1];
       const auto [t1, spent1] = (*marks)[k];
       for (int step = 0; step < 15; ++step)
         left.note(t0 * std::pow(t1 / t0, step / 15.0), spent0 + (spent1 - spent0) * step / 15.0);
-      const TimeLeft::Range range = left.range();
+      const output::TimeLeft::Range range = left.range();
       if (!(range.high > 0)) continue;
       const double now = spent0 + (spent1 - spent0) * 14 / 15;
       const double truth = marks->back().second - now;
@@ -93,15 +93,15 @@ TEST(TimeLeft, IsWithinItsRangeInNineOfTenMoments) {
 }
 
 TEST(TimeLeft, HasARangeAroundStepsOfOneLength) {
-  TimeLeft left(100);
+  output::TimeLeft left(100);
   for (int k = 1; k <= 60; ++k) left.note(k, 2.0 * k);
   EXPECT_LT(left.range().low, 80);
   EXPECT_GT(left.range().high, 80);
-  EXPECT_EQ(TimeLeft(10).range().high, 0);
+  EXPECT_EQ(output::TimeLeft(10).range().high, 0);
 }
 
 TEST(TimeLeft, IsUnknownAtFirst) {
-  TimeLeft left(10);
+  output::TimeLeft left(10);
   left.note(0, 0);
   EXPECT_EQ(left.seconds(), 0);
   EXPECT_EQ(left.share(), 0);

@@ -18,21 +18,22 @@ std::string dotted(int parts, const std::string& part = "a") {
 }
 
 TEST(TomlDepth, CountsThePartsOfKeysAndOfHeadings) {
-  EXPECT_EQ(line_of_deep_key("cells = 3\n" + dotted(kMostKeyParts) + " = 1\n"), 0);
-  EXPECT_EQ(line_of_deep_key("cells = 3\n" + dotted(kMostKeyParts + 1) + " = 1\n"), 2);
-  EXPECT_EQ(line_of_deep_key("\n\n[" + dotted(100) + "]\n"), 3);
-  EXPECT_EQ(line_of_deep_key("x = {" + dotted(100, "\"a b\"") + " = 1}"), 1);
-  EXPECT_EQ(line_of_deep_key(dotted(100, "'a' ") + " = 1"), 1);
+  EXPECT_EQ(config::line_of_deep_key("cells = 3\n" + dotted(config::kMostKeyParts) + " = 1\n"), 0);
+  EXPECT_EQ(config::line_of_deep_key("cells = 3\n" + dotted(config::kMostKeyParts + 1) + " = 1\n"),
+            2);
+  EXPECT_EQ(config::line_of_deep_key("\n\n[" + dotted(100) + "]\n"), 3);
+  EXPECT_EQ(config::line_of_deep_key("x = {" + dotted(100, "\"a b\"") + " = 1}"), 1);
+  EXPECT_EQ(config::line_of_deep_key(dotted(100, "'a' ") + " = 1"), 1);
 }
 
 TEST(TomlDepth, IsNotThatOfTextsRemarksAndNumbers) {
   const std::string dots(200, '.');
-  EXPECT_EQ(line_of_deep_key("x = \"" + dots + "\\\"" + dots + "\"\n"), 0);
-  EXPECT_EQ(line_of_deep_key("x = '" + dots + "'\n# " + dots + "\n"), 0);
-  EXPECT_EQ(line_of_deep_key("x = \"\"\"\n" + dots + "\n\"\"\"\n"), 0);
+  EXPECT_EQ(config::line_of_deep_key("x = \"" + dots + "\\\"" + dots + "\"\n"), 0);
+  EXPECT_EQ(config::line_of_deep_key("x = '" + dots + "'\n# " + dots + "\n"), 0);
+  EXPECT_EQ(config::line_of_deep_key("x = \"\"\"\n" + dots + "\n\"\"\"\n"), 0);
   std::string list = "times = [0.5";
   for (int k = 0; k < 500; ++k) list += ", 1.5";
-  EXPECT_EQ(line_of_deep_key(list + "]\n"), 0);
+  EXPECT_EQ(config::line_of_deep_key(list + "]\n"), 0);
 }
 
 // The parser calls itself for every part: the stack was gone.
@@ -41,7 +42,7 @@ TEST(TomlTable, RefusesKeysOfManyPartsInOneLine) {
   for (const std::string& text : {dotted(87000) + " = 1\n", "[" + dotted(87000) + "]\n"}) {
     std::ofstream(folder.path / "deep.toml") << text;
     try {
-      TomlTable::read(folder.path / "deep.toml", {"a"});
+      config::TomlTable::read(folder.path / "deep.toml", {"a"});
       FAIL();
     } catch (const InputError& error) {
       const std::string said = error.what();
@@ -56,7 +57,7 @@ TEST(TomlTable, RefusesWholeNumbersWithTooManyDigits) {
   const testing::TemporaryFolder folder;
   const auto table = [&](const std::string& text) {
     std::ofstream(folder.path / "data.toml") << text;
-    return TomlTable::read(folder.path / "data.toml", {"a"});
+    return config::TomlTable::read(folder.path / "data.toml", {"a"});
   };
   EXPECT_EQ(table("a = 9007199254740992\n").number("a"), 9007199254740992.0);
   EXPECT_THROW(table("a = 9007199254740993\n").number("a"), InputError);

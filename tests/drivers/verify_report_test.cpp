@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-StudyResult result_with(std::vector<Claim> claims) {
-  StudyResult result;
+verify::StudyResult result_with(std::vector<studies::Claim> claims) {
+  verify::StudyResult result;
   result.study = {"example", "an example", {}};
   result.report.claims = std::move(claims);
   result.report.tables = {
@@ -27,33 +27,34 @@ StudyResult result_with(std::vector<Claim> claims) {
 }
 
 TEST(Claims, HoldWithinTheirInterval) {
-  EXPECT_TRUE(claim_near("x", 2.1, 2, 0.15).holds());
-  EXPECT_FALSE(claim_near("x", 2.2, 2, 0.15).holds());
-  EXPECT_TRUE(claim_at_most("x", -5, 1).holds());
-  EXPECT_FALSE(claim_at_most("x", 1.1, 1).holds());
-  EXPECT_FALSE(claim_at_most("x", std::nan(""), 1).holds());
-  EXPECT_FALSE(claim_between("x", 0.9, 1, 2).holds());
+  EXPECT_TRUE(studies::claim_near("x", 2.1, 2, 0.15).holds());
+  EXPECT_FALSE(studies::claim_near("x", 2.2, 2, 0.15).holds());
+  EXPECT_TRUE(studies::claim_at_most("x", -5, 1).holds());
+  EXPECT_FALSE(studies::claim_at_most("x", 1.1, 1).holds());
+  EXPECT_FALSE(studies::claim_at_most("x", std::nan(""), 1).holds());
+  EXPECT_FALSE(studies::claim_between("x", 0.9, 1, 2).holds());
 }
 
 TEST(Verdicts, AreThoseOfTheWorstClaim) {
-  const Claim good = claim_at_most("good", 0, 1), bad = claim_at_most("bad", 2, 1);
-  EXPECT_EQ(result_with({good}).outcome(), StudyOutcome::holds);
-  EXPECT_EQ(result_with({good, bad, good}).outcome(), StudyOutcome::fails);
-  EXPECT_EQ(result_with({}).outcome(), StudyOutcome::fails)
+  const studies::Claim good = studies::claim_at_most("good", 0, 1),
+                       bad = studies::claim_at_most("bad", 2, 1);
+  EXPECT_EQ(result_with({good}).outcome(), verify::StudyOutcome::holds);
+  EXPECT_EQ(result_with({good, bad, good}).outcome(), verify::StudyOutcome::fails);
+  EXPECT_EQ(result_with({}).outcome(), verify::StudyOutcome::fails)
       << "a study without claims shows nothing";
-  StudyResult failed = result_with({good});
+  verify::StudyResult failed = result_with({good});
   failed.failure = "it broke";
-  EXPECT_EQ(failed.outcome(), StudyOutcome::fails);
-  StudyResult skipped;
+  EXPECT_EQ(failed.outcome(), verify::StudyOutcome::fails);
+  verify::StudyResult skipped;
   skipped.report.skipped = "not built in";
-  EXPECT_EQ(skipped.outcome(), StudyOutcome::not_measured);
+  EXPECT_EQ(skipped.outcome(), verify::StudyOutcome::not_measured);
 }
 
 TEST(VerifyReport, ClaimsAreRowsForPeople) {
-  Claim near = claim_near("order", 1.98, 2, 0.25);
+  studies::Claim near = studies::claim_near("order", 1.98, 2, 0.25);
   near.uncertainty = 0.03;
-  const auto rows =
-      claim_rows({near, claim_at_most("drift", 2e-12, 1e-12), claim_at_least("steps", 23, 10)});
+  const auto rows = verify::claim_rows({near, studies::claim_at_most("drift", 2e-12, 1e-12),
+                                        studies::claim_at_least("steps", 23, 10)});
   ASSERT_EQ(rows.size(), 4u);
   EXPECT_EQ(rows[0],
             (std::vector<std::string>{"claim", "measured", "expected", "tolerance", "verdict"}));
@@ -64,55 +65,58 @@ TEST(VerifyReport, ClaimsAreRowsForPeople) {
 
 TEST(VerifyReport, FilesHoldAllOfIt) {
   const testing::TemporaryFolder folder;
-  const std::vector<StudyResult> results = {result_with({claim_near("x", 1, 1, 0.1)}),
-                                            result_with({claim_at_most("y", INFINITY, 1)})};
-  write_study(folder.path, results[0], "this program");
-  EXPECT_EQ(read_file(folder.path / "example-numbers.csv", 1 << 20),
+  const std::vector<verify::StudyResult> results = {
+      result_with({studies::claim_near("x", 1, 1, 0.1)}),
+      result_with({studies::claim_at_most("y", INFINITY, 1)})};
+  verify::write_study(folder.path, results[0], "this program");
+  EXPECT_EQ(posix::read_file(folder.path / "example-numbers.csv", 1 << 20),
             "name,value\n\"a, \"\"quoted\"\" one\",0.1\nnothing,nan\n");
-  (void)write_verification(folder.path, {"traceraft verify example", "2 threads.", "this program"},
-                           results);
-  const auto json = nlohmann::json::parse(read_file(folder.path / "verify.json", 1 << 20));
+  (void)verify::write_verification(
+      folder.path, {"traceraft verify example", "2 threads.", "this program"}, results);
+  const auto json = nlohmann::json::parse(posix::read_file(folder.path / "verify.json", 1 << 20));
   EXPECT_EQ(json["command"], "traceraft verify example");
   EXPECT_EQ(json["studies"][0]["verdict"], "holds");
   EXPECT_EQ(json["studies"][0]["claims"][0]["expected"], 1.0);
   EXPECT_EQ(json["studies"][0]["tables"]["numbers"]["rows"][0][1], 0.1);
   EXPECT_EQ(json["studies"][1]["verdict"], "FAILS");
   EXPECT_TRUE(json["studies"][1]["claims"][0]["measured"].is_null());
-  const std::string page = read_file(folder.path / "verify.html", 1 << 24);
+  const std::string page = posix::read_file(folder.path / "verify.html", 1 << 24);
   for (const char* part : {"A note with &lt;angles&gt;.", "traceraft verify example", "FAILS"})
     EXPECT_NE(page.find(part), std::string::npos) << part;
 }
 
 TEST(VerifyResult, IsReadBackWhole) {
   const testing::TemporaryFolder folder;
-  const StudyResult written =
-      result_with({claim_near("x", 1, 1, 0.1, 0.02), claim_at_most("y", INFINITY, 1),
-                   claim_between("z", 0.1 + 0.2, -1, 2)});
-  write_study(folder.path, written, "this program");
-  EXPECT_FALSE(measured_before(folder.path, written.study, "another program"));
-  const auto read = measured_before(folder.path, written.study, "this program");
+  const verify::StudyResult written = result_with({studies::claim_near("x", 1, 1, 0.1, 0.02),
+                                                   studies::claim_at_most("y", INFINITY, 1),
+                                                   studies::claim_between("z", 0.1 + 0.2, -1, 2)});
+  verify::write_study(folder.path, written, "this program");
+  EXPECT_FALSE(verify::measured_before(folder.path, written.study, "another program"));
+  const auto read = verify::measured_before(folder.path, written.study, "this program");
   ASSERT_TRUE(read);
-  EXPECT_EQ(to_json(*read, "this program"), to_json(written, "this program"));
+  EXPECT_EQ(verify::to_json(*read, "this program"), verify::to_json(written, "this program"));
   EXPECT_FALSE(read->report.claims[1].holds());
   EXPECT_EQ(read->report.claims[2].measured, 0.1 + 0.2);
   EXPECT_TRUE(std::isnan(read->report.tables[0].rows[1][1].number));
 
-  StudyResult failed = written;
+  verify::StudyResult failed = written;
   failed.failure = "it broke";
-  write_study(folder.path, failed, "this program");
-  EXPECT_FALSE(measured_before(folder.path, written.study, "this program"))
+  verify::write_study(folder.path, failed, "this program");
+  EXPECT_FALSE(verify::measured_before(folder.path, written.study, "this program"))
       << "what failed is tried again";
-  write_durably(folder.path / "example.json", "{\"study\": 1}");
-  EXPECT_THROW(measured_before(folder.path, written.study, "this program"), IoError);
+  posix::write_durably(folder.path / "example.json", "{\"study\": 1}");
+  EXPECT_THROW(verify::measured_before(folder.path, written.study, "this program"), IoError);
 }
 
 TEST(VerifyReport, ADocumentHasItsFiguresBesideIt) {
   const testing::TemporaryFolder folder;
-  const VerificationContext context{"traceraft verify example", "2 threads.", "this program"};
-  const std::vector<StudyResult> results = {result_with({claim_near("x", 1, 1, 0.1)})};
-  const bool drawn = write_verification(folder.path, context, results).empty();
-  write_document(folder.path / "report.md", folder.path, context, results);
-  const std::string text = read_file(folder.path / "report.md", 1 << 20);
+  const verify::VerificationContext context{"traceraft verify example", "2 threads.",
+                                            "this program"};
+  const std::vector<verify::StudyResult> results = {
+      result_with({studies::claim_near("x", 1, 1, 0.1)})};
+  const bool drawn = verify::write_verification(folder.path, context, results).empty();
+  verify::write_document(folder.path / "report.md", folder.path, context, results);
+  const std::string text = posix::read_file(folder.path / "report.md", 1 << 20);
   for (const char* part : {"# Verification", "    traceraft verify example\n", "| x | 1 | 1 |",
                            "| a, \"quoted\" one | 0.1 |"})
     EXPECT_NE(text.find(part), std::string::npos) << part << text;

@@ -7,8 +7,9 @@
 namespace traceraft {
 namespace {
 
-Image uniform(int size, std::uint8_t front, std::uint8_t back) {
-  Image image{2 * size, size, std::vector<std::uint8_t>(6 * static_cast<std::size_t>(size) * size)};
+observables::Image uniform(int size, std::uint8_t front, std::uint8_t back) {
+  observables::Image image{2 * size, size,
+                           std::vector<std::uint8_t>(6 * static_cast<std::size_t>(size) * size)};
   for (int y = 0; y < size; ++y)
     for (int x = 0; x < 2 * size; ++x)
       for (int channel = 0; channel < 3; ++channel)
@@ -17,20 +18,20 @@ Image uniform(int size, std::uint8_t front, std::uint8_t back) {
   return image;
 }
 
-int red_at(const Image& image, int x, int y) {
+int red_at(const observables::Image& image, int x, int y) {
   return image.rgb[3 * (static_cast<std::size_t>(y) * image.width + x)];
 }
 
 TEST(ViewStrip, ShowsTheFirstAndTheLastAndNoMoreThanAsked) {
-  EXPECT_EQ(strip_choice(1), (std::vector<std::size_t>{0}));
-  EXPECT_EQ(strip_choice(3), (std::vector<std::size_t>{0, 1, 2}));
-  EXPECT_EQ(strip_choice(17), (std::vector<std::size_t>{0, 3, 6, 10, 13, 16}));
+  EXPECT_EQ(run::strip_choice(1), (std::vector<std::size_t>{0}));
+  EXPECT_EQ(run::strip_choice(3), (std::vector<std::size_t>{0, 1, 2}));
+  EXPECT_EQ(run::strip_choice(17), (std::vector<std::size_t>{0, 3, 6, 10, 13, 16}));
 }
 
 TEST(ViewStrip, HasFrontsAboveBacksAndALegend) {
   constexpr int kSize = 200;
-  const StripLegend legend{5, "um", 0, 1};
-  const Image strip = compose_strip(
+  const run::StripLegend legend{5, "um", 0, 1};
+  const observables::Image strip = run::compose_strip(
       {{uniform(kSize, 10, 20), "t = 0 s"}, {uniform(kSize, 30, 40), "t = 1 s"}}, legend);
   EXPECT_EQ(strip.width, kSize);
   ASSERT_GT(strip.height, kSize);
@@ -47,8 +48,8 @@ TEST(ViewStrip, HasFrontsAboveBacksAndALegend) {
   }
   EXPECT_EQ(longest, 20);
   // A file holds the same image.
-  EXPECT_EQ(image_of_png(png_bytes(strip)).rgb, strip.rgb);
-  EXPECT_THROW(image_of_png("no image"), std::runtime_error);
+  EXPECT_EQ(png::image_of_png(png::png_bytes(strip)).rgb, strip.rgb);
+  EXPECT_THROW(png::image_of_png("no image"), std::runtime_error);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include "tests/support/spaces.hpp"
 #include "tests/support/strong_effects.hpp"
 
-namespace traceraft {
+namespace traceraft::effects {
 namespace {
 
 using testing::kStrong;
@@ -14,21 +14,21 @@ using testing::make_space;
 using testing::random_state;
 using testing::random_vector;
 
-constexpr Units kScaled{1, 1, true};
+constexpr physics::Units kScaled{1, 1, true};
 constexpr double kTime = 0.37;
 
 class EffectContract : public ::testing::TestWithParam<std::string> {
  protected:
   EffectContract() : space(make_space(12, "ellipsoid:a=1.1,b=1,c=0.8")), base(space, make_model()) {
-    CahnHilliardModel model = make_model();
+    problem::CahnHilliardModel model = make_model();
     add_effects(GetParam() + ":" + kStrong.at(GetParam()), kScaled, model);
-    problem = std::make_unique<CahnHilliard>(space, model);
+    problem = std::make_unique<problem::CahnHilliard>(space, model);
   }
   const EffectEntry& entry() const { return effects().find(GetParam()); }
 
-  std::shared_ptr<const SurfaceSpace> space;
-  CahnHilliard base;
-  std::unique_ptr<CahnHilliard> problem;
+  std::shared_ptr<const fem::SurfaceSpace> space;
+  problem::CahnHilliard base;
+  std::unique_ptr<problem::CahnHilliard> problem;
 };
 
 TEST_P(EffectContract, IsSeenInTheResidual) {
@@ -55,10 +55,10 @@ TEST_P(EffectContract, CommutesWithTheOthers) {
   const Vec y = random_state(*problem, 1), still = Vec::Zero(problem->size());
   const std::string one = GetParam() + ":" + kStrong.at(GetParam());
   const auto residual_of = [&](const std::string& specification) {
-    CahnHilliardModel model = make_model();
+    problem::CahnHilliardModel model = make_model();
     add_effects(specification, kScaled, model);
     Vec r(problem->size());
-    EXPECT_TRUE(CahnHilliard(space, model).residual(kTime, y, still, r).ok());
+    EXPECT_TRUE(problem::CahnHilliard(space, model).residual(kTime, y, still, r).ok());
     return r;
   };
   for (const auto& [name, parameters] : kStrong) {
@@ -83,7 +83,8 @@ TEST_P(EffectContract, TangentIsTheDerivativeOfTheResidual) {
       return r;
     };
     Vec product(problem->size());
-    ASSERT_TRUE(problem->jacobian_product(kTime, y, ydot, shift, Tangent::exact, v, product).ok());
+    ASSERT_TRUE(
+        problem->jacobian_product(kTime, y, ydot, shift, linear::Tangent::exact, v, product).ok());
     const Vec difference = (residual_at(step) - residual_at(-step)) / (2 * step);
     EXPECT_LT((product - difference).norm(), 2e-6 * product.norm()) << "seed " << seed;
   }
@@ -92,13 +93,14 @@ TEST_P(EffectContract, TangentIsTheDerivativeOfTheResidual) {
 TEST_P(EffectContract, AssembledTangentIsAllOfItIfItSaysSo) {
   const Vec y = random_state(*problem, 7), ydot = random_vector(problem->size(), 8),
             v = random_vector(problem->size(), 9);
-  BlockJacobian J = problem->make_jacobian();
-  ASSERT_TRUE(problem->jacobian(kTime, y, ydot, 1.3, Tangent::exact, J).ok());
+  linear::BlockJacobian J = problem->make_jacobian();
+  ASSERT_TRUE(problem->jacobian(kTime, y, ydot, 1.3, linear::Tangent::exact, J).ok());
   Vec assembled(problem->size()), direct(problem->size());
   J.multiply(v, assembled, *space->team);
-  ASSERT_TRUE(problem->jacobian_product(kTime, y, ydot, 1.3, Tangent::exact, v, direct).ok());
+  ASSERT_TRUE(
+      problem->jacobian_product(kTime, y, ydot, 1.3, linear::Tangent::exact, v, direct).ok());
   bool all = true;
-  for (const EffectPtr& effect : problem->model().effects)
+  for (const problem::EffectPtr& effect : problem->model().effects)
     all = all && effect->tangent_is_assembled();
   EXPECT_EQ((assembled - direct).norm() < 1e-12 * direct.norm(), all);
 }
@@ -106,11 +108,12 @@ TEST_P(EffectContract, AssembledTangentIsAllOfItIfItSaysSo) {
 TEST_P(EffectContract, StabilisedTangentAndItsProductAreOne) {
   const Vec y = random_state(*problem, 7), ydot = random_vector(problem->size(), 8),
             v = random_vector(problem->size(), 9);
-  BlockJacobian J = problem->make_jacobian();
-  ASSERT_TRUE(problem->jacobian(kTime, y, ydot, 1.3, Tangent::stabilised, J).ok());
+  linear::BlockJacobian J = problem->make_jacobian();
+  ASSERT_TRUE(problem->jacobian(kTime, y, ydot, 1.3, linear::Tangent::stabilised, J).ok());
   Vec assembled(problem->size()), direct(problem->size());
   J.multiply(v, assembled, *space->team);
-  ASSERT_TRUE(problem->jacobian_product(kTime, y, ydot, 1.3, Tangent::stabilised, v, direct).ok());
+  ASSERT_TRUE(
+      problem->jacobian_product(kTime, y, ydot, 1.3, linear::Tangent::stabilised, v, direct).ok());
   EXPECT_LT((assembled - direct).norm(), 1e-12 * direct.norm());
 }
 
@@ -169,7 +172,7 @@ TEST(Effects, AllAreTestedAndNameEachOther) {
 }
 
 TEST(Effects, SayWhatIsWrong) {
-  CahnHilliardModel model = make_model();
+  problem::CahnHilliardModel model = make_model();
   const auto complaint = [&](const std::string& text) -> std::string {
     try {
       add_effects(text, kScaled, model);
@@ -191,7 +194,7 @@ TEST(Effects, SayWhatIsWrong) {
 }
 
 TEST(Effects, RefuseWellsTheyAreNotMadeFor) {
-  CahnHilliardModel model = make_model();
+  problem::CahnHilliardModel model = make_model();
   model.well = {1, 0.3, 0.7};
   EXPECT_NO_THROW(add_effects("exchange:rate=1; gravity:strength=1", kScaled, model));
   for (const char* effect : {"asymmetry:strength=0.1", "cooling:rate=1", "uptake:rate=1",
@@ -202,9 +205,9 @@ TEST(Effects, RefuseWellsTheyAreNotMadeFor) {
 TEST(Effects, AreTheSameInAnyOrder) {
   const auto space = make_space(10);
   const auto residual = [&](const std::string& text) {
-    CahnHilliardModel model = make_model();
+    problem::CahnHilliardModel model = make_model();
     add_effects(text, kScaled, model);
-    const CahnHilliard problem(space, model);
+    const problem::CahnHilliard problem(space, model);
     Vec r(problem.size());
     const Status status =
         problem.residual(0.7, random_state(problem, 4), random_vector(problem.size(), 5), r);
@@ -218,12 +221,12 @@ TEST(Effects, AreTheSameInAnyOrder) {
 }
 
 TEST(Effects, TakeTheirParametersInPhysicalUnits) {
-  const Units units{5, 1e-5, false};  // R²/D = 0.025 s
-  CahnHilliardModel physical = make_model(), scaled = make_model();
+  const physics::Units units{5, 1e-5, false};  // R²/D = 0.025 s
+  problem::CahnHilliardModel physical = make_model(), scaled = make_model();
   add_effects("exchange:rate=40; ohta-kawasaki:strength=1,range=2.5", units, physical);
   add_effects("exchange:rate=1; ohta-kawasaki:strength=1,range=0.5", kScaled, scaled);
   const auto space = make_space(10);
-  const CahnHilliard one(space, physical), other(space, scaled);
+  const problem::CahnHilliard one(space, physical), other(space, scaled);
   const Vec y = random_state(one, 4), ydot = random_vector(one.size(), 5);
   Vec r(one.size()), s(one.size());
   ASSERT_TRUE(one.residual(0, y, ydot, r).ok());
@@ -235,9 +238,9 @@ TEST(Effects, TakeTheirParametersInPhysicalUnits) {
 TEST(Effects, HaveTheSameDefaultsInAnyUnits) {
   const auto space = make_space(10);
   const auto residual = [&](const std::string& effect, bool scaled) {
-    CahnHilliardModel model = make_model();
+    problem::CahnHilliardModel model = make_model();
     add_effects(effect, {5, 1e-5, scaled}, model);
-    const CahnHilliard problem(space, model);
+    const problem::CahnHilliard problem(space, model);
     Vec r(problem.size());
     EXPECT_TRUE(problem.residual(0.7, random_state(problem, 4), Vec::Zero(problem.size()), r).ok());
     return r;
@@ -250,10 +253,11 @@ TEST(Effects, HaveTheSameDefaultsInAnyUnits) {
 
 TEST(Effects, RefuseSurfacesThatTheyAreNotMadeFor) {
   const auto complaint = [&](const std::string& effect, const std::string& surface) -> std::string {
-    CahnHilliardModel model = make_model();
+    problem::CahnHilliardModel model = make_model();
     add_effects(effect, kScaled, model);
     try {
-      for (const EffectPtr& one : model.effects) one->require_surface(*make_space(32, surface));
+      for (const problem::EffectPtr& one : model.effects)
+        one->require_surface(*make_space(32, surface));
     } catch (const InputError& error) {
       return error.what();
     }
@@ -271,4 +275,4 @@ TEST(Effects, RefuseSurfacesThatTheyAreNotMadeFor) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::effects

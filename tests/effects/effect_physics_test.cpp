@@ -6,7 +6,7 @@
 #include "kernel/effects/effects.hpp"
 #include "tests/support/spaces.hpp"
 
-namespace traceraft {
+namespace traceraft::effects {
 namespace {
 
 using testing::make_model;
@@ -14,18 +14,18 @@ using testing::make_space;
 using testing::random_state;
 using testing::random_vector;
 
-constexpr Units kUnits{1, 1, true};
+constexpr physics::Units kUnits{1, 1, true};
 
-CahnHilliardModel model_with(const std::string& effect) {
-  CahnHilliardModel model = make_model();
+problem::CahnHilliardModel model_with(const std::string& effect) {
+  problem::CahnHilliardModel model = make_model();
   add_effects(effect, kUnits, model);
   return model;
 }
 
 // F with the model's effects minus F without them.
-Vec contribution(const std::shared_ptr<const SurfaceSpace>& space, const CahnHilliardModel& model,
-                 const Vec& y, double t = 0) {
-  const CahnHilliard base(space, make_model()), problem(space, model);
+Vec contribution(const std::shared_ptr<const fem::SurfaceSpace>& space,
+                 const problem::CahnHilliardModel& model, const Vec& y, double t = 0) {
+  const problem::CahnHilliard base(space, make_model()), problem(space, model);
   const Vec still = Vec::Zero(y.size());
   Vec with(y.size()), without(y.size());
   EXPECT_TRUE(problem.residual(t, y, still, with).ok());
@@ -33,7 +33,7 @@ Vec contribution(const std::shared_ptr<const SurfaceSpace>& space, const CahnHil
   return with - without;
 }
 
-Vec contribution(const std::shared_ptr<const SurfaceSpace>& space, const std::string& effect,
+Vec contribution(const std::shared_ptr<const fem::SurfaceSpace>& space, const std::string& effect,
                  const Vec& y, double t = 0) {
   return contribution(space, model_with(effect), y, t);
 }
@@ -52,7 +52,7 @@ class EffectPhysics : public ::testing::Test {
     for (int i = 0; i < n; ++i) values[i] = f(space->mesh.position(i));
     return values;
   }
-  const std::shared_ptr<const SurfaceSpace> space;
+  const std::shared_ptr<const fem::SurfaceSpace> space;
   const int n;
   Vec y;
 };
@@ -96,7 +96,7 @@ TEST_F(EffectPhysics, AsymmetryAddsTheSlopeOfItsEnergy) {
 }
 
 TEST_F(EffectPhysics, CoolingSlowsDiffusionDown) {
-  const CahnHilliard base(space, make_model());
+  const problem::CahnHilliard base(space, make_model());
   Vec flux(2 * n);
   ASSERT_TRUE(base.residual(0, y, Vec::Zero(2 * n), flux).ok());
   space->normal_stiffness.multiply_add(-space->h(), y.tail(n), flux.head(n), *space->team);
@@ -140,8 +140,8 @@ TEST_F(EffectPhysics, OhtaKawasakiSolvesItsEquation) {
 // One model serves several meshes, and outlives them.
 TEST_F(EffectPhysics, OhtaKawasakiKnowsOnWhichMeshItIs) {
   const std::string effect = "ohta-kawasaki:strength=3,range=0.5";
-  const CahnHilliardModel shared = model_with(effect);
-  const auto check_on = [&](const std::shared_ptr<const SurfaceSpace>& mesh) {
+  const problem::CahnHilliardModel shared = model_with(effect);
+  const auto check_on = [&](const std::shared_ptr<const fem::SurfaceSpace>& mesh) {
     const Vec state = random_vector(2 * mesh->nodes(), 5, 0.1, 0.9);
     EXPECT_EQ((contribution(mesh, shared, state) - contribution(mesh, effect, state))
                   .lpNorm<Eigen::Infinity>(),
@@ -195,7 +195,7 @@ TEST_F(EffectPhysics, CurvatureOfATorusHasTheRightSign) {
 TEST_F(EffectPhysics, MobilitiesAreTheLawsTheySay) {
   const double c[3] = {0.2, 0.5, 0.9};
   double value[3], derivative[3];
-  CahnHilliardModel model = make_model();
+  problem::CahnHilliardModel model = make_model();
   add_effects("mobility-contrast:strength=0.4", kUnits, model);
   model.mobility->evaluate(c, 3, value, derivative);
   for (int i = 0; i < 3; ++i)
@@ -216,10 +216,10 @@ TEST_F(EffectPhysics, MobilitiesAreTheLawsTheySay) {
     EXPECT_NEAR(value[i], 2 * std::sqrt(s) * s * (1 + 0.4 * (2 * c[i] - 1)) + 0.3, 1e-14);
   }
   // A constant added to a constant law is that of a larger one.
-  CahnHilliardModel sum = make_model("constant:value=0.2"),
-                    whole = make_model("constant:value=0.5");
+  problem::CahnHilliardModel sum = make_model("constant:value=0.2"),
+                             whole = make_model("constant:value=0.5");
   add_effects("bulk-mobility:strength=0.3", kUnits, sum);
-  const CahnHilliard one(space, sum), other(space, whole);
+  const problem::CahnHilliard one(space, sum), other(space, whole);
   Vec r(2 * n), s(2 * n);
   ASSERT_TRUE(one.residual(0, y, Vec::Zero(2 * n), r).ok());
   ASSERT_TRUE(other.residual(0, y, Vec::Zero(2 * n), s).ok());
@@ -236,11 +236,11 @@ TEST_F(EffectPhysics, CoolingSlowsDownWhateverTheMobilityIs) {
   const std::string slower = "cooling:rate=2,out=0,in=0,activation=0.3";
   const double t = 0.7, factor = std::exp(-0.3 * 2 * t);
   const auto flux = [&](const std::string& effects) {
-    CahnHilliardModel model = make_model();
+    problem::CahnHilliardModel model = make_model();
     model.stabilisation = 0;
     add_effects(effects, kUnits, model);
     Vec r(2 * n);
-    EXPECT_TRUE(CahnHilliard(space, model).residual(t, y, Vec::Zero(2 * n), r).ok());
+    EXPECT_TRUE(problem::CahnHilliard(space, model).residual(t, y, Vec::Zero(2 * n), r).ok());
     return Vec(r.head(n));
   };
   const Vec still = flux("bulk-mobility:strength=0.3");
@@ -249,7 +249,7 @@ TEST_F(EffectPhysics, CoolingSlowsDownWhateverTheMobilityIs) {
 }
 
 TEST_F(EffectPhysics, LineTensionIsThatOfALargerEpsilon) {
-  CahnHilliardModel model = make_model();
+  problem::CahnHilliardModel model = make_model();
   add_effects("line-tension:excess=0.44", kUnits, model);
   EXPECT_DOUBLE_EQ(model.epsilon, 1.2 * make_model().epsilon);
 }
@@ -260,7 +260,7 @@ TEST_F(EffectPhysics, LineTensionIsThatOfALargerEpsilon) {
 TEST_F(EffectPhysics, ThermalNoiseHasTheVarianceOfItsDissipation) {
   constexpr int kDirections = 40, kDraws = 100;
   constexpr double kVariance = 2 * 0.01 / 0.25;
-  const CahnHilliard base(space, make_model());
+  const problem::CahnHilliard base(space, make_model());
   const auto dissipation = [&](const Vec& v) {
     Vec flux = y, response(2 * n);
     flux.tail(n) = v;
@@ -302,11 +302,11 @@ TEST_F(EffectPhysics, ThermalNoiseIsAsMuchSlowerAsItsDissipation) {
 
 TEST_F(EffectPhysics, ThermalNoiseOfAnotherRunIsAnother) {
   const auto noise_of = [&](std::uint64_t run, const std::string& own) {
-    CahnHilliardModel model = make_model();
+    problem::CahnHilliardModel model = make_model();
     model.seed = run;
     add_effects("thermal:strength=0.01,time=0.25" + own, kUnits, model);
     Vec r(2 * n);
-    EXPECT_TRUE(CahnHilliard(space, model).residual(0.1, y, Vec::Zero(2 * n), r).ok());
+    EXPECT_TRUE(problem::CahnHilliard(space, model).residual(0.1, y, Vec::Zero(2 * n), r).ok());
     return r;
   };
   EXPECT_EQ(noise_of(1, ""), noise_of(1, ",seed=1"));
@@ -320,9 +320,9 @@ TEST_F(EffectPhysics, ThermalNoiseOfAnotherRunIsAnother) {
 TEST_F(EffectPhysics, AsymmetryLeavesTheWellsTheDeepestPlaces) {
   const Vec direction = random_vector(2 * n, 8);
   for (const char* effect : {"asymmetry:strength=0.2", "asymmetry:strength=-0.2"}) {
-    CahnHilliardModel model = make_model();
+    problem::CahnHilliardModel model = make_model();
     add_effects(effect, kUnits, model);
-    const CahnHilliard problem(space, model);
+    const problem::CahnHilliard problem(space, model);
     for (const double c : {-3.0, -0.5, -0.1, 0.1, 0.5, 0.9, 1.1, 1.5, 4.0})
       EXPECT_GT(problem.energy(Vec::Constant(2 * n, c)), 0) << effect << " at " << c;
     // Outside, too, the tangent is the derivative, and continuous at the wells.
@@ -334,13 +334,14 @@ TEST_F(EffectPhysics, AsymmetryLeavesTheWellsTheDeepestPlaces) {
       return r;
     };
     Vec product(2 * n);
-    ASSERT_TRUE(
-        problem.jacobian_product(0, wide, Vec::Zero(2 * n), 0, Tangent::exact, direction, product)
-            .ok());
+    ASSERT_TRUE(problem
+                    .jacobian_product(0, wide, Vec::Zero(2 * n), 0, linear::Tangent::exact,
+                                      direction, product)
+                    .ok());
     const Vec difference = (residual_at(1e-6) - residual_at(-1e-6)) / 2e-6;
     EXPECT_LT((product - difference).tail(n).norm(), 1e-6 * product.tail(n).norm()) << effect;
   }
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::effects

@@ -10,7 +10,7 @@
 #include "tests/support/dense.hpp"
 #include "tests/support/spaces.hpp"
 
-namespace traceraft {
+namespace traceraft::effects {
 namespace {
 
 using testing::dense;
@@ -20,7 +20,7 @@ using testing::make_space;
 constexpr double kT = 1e-8;  // so little that a phase stays where it is linear
 
 // Integrals of c with spherical harmonics of degrees 1 and 2: what is slow.
-Eigen::MatrixXd harmonics(const SurfaceSpace& space) {
+Eigen::MatrixXd harmonics(const fem::SurfaceSpace& space) {
   const int n = space.nodes();
   Eigen::MatrixXd values(n, 8);
   for (int i = 0; i < n; ++i) {
@@ -28,32 +28,35 @@ Eigen::MatrixXd harmonics(const SurfaceSpace& space) {
     values.row(i) << x[0], x[1], x[2], x[0] * x[1], x[1] * x[2], x[2] * x[0],
         x[0] * x[0] - x[1] * x[1], 3 * x[2] * x[2] - x.squaredNorm();
   }
-  return product(dense(space.mass), values);
+  return openblas::product(dense(space.mass), values);
 }
 
 // Around a uniform phase M̃ ċ = −A μ + η with M̃ μ = B c, B = L Lᵀ and ⟨η ηᵀ⟩ = 2 kT K_M δ(t − t').
 // In the eigenvectors of Lᵀ M̃⁻¹ A M̃⁻¹ L, with its eigenvalues λ, z = Lᵀ c has the covariance
 // Q_ij/(λ_i + λ_j), Q = 2 kT Lᵀ M̃⁻¹ K_M M̃⁻¹ L.
-Vec variances(const CahnHilliard& base, const Vec& y, const Eigen::MatrixXd& of) {
-  BlockJacobian J = base.make_jacobian();
-  EXPECT_TRUE(base.jacobian(0, y, Vec::Zero(y.size()), 0, Tangent::exact, J).ok());
-  const SurfaceSpace& space = base.space();
+Vec variances(const problem::CahnHilliard& base, const Vec& y, const Eigen::MatrixXd& of) {
+  linear::BlockJacobian J = base.make_jacobian();
+  EXPECT_TRUE(base.jacobian(0, y, Vec::Zero(y.size()), 0, linear::Tangent::exact, J).ok());
+  const fem::SurfaceSpace& space = base.space();
   const Eigen::MatrixXd M = dense(J.mm), A = dense(J.cm);
   const Eigen::MatrixXd K =
       A - space.h() * base.model().mobility->scale() * dense(space.normal_stiffness);
-  const SymmetricEigen B = symmetric_eigen(-dense(J.mc));
+  const openblas::SymmetricEigen B = openblas::symmetric_eigen(-dense(J.mc));
   const Vec root = B.values.cwiseSqrt();
   const Eigen::MatrixXd L = B.vectors * root.asDiagonal(), half = M.llt().solve(L);
-  const auto [rate, vectors] = symmetric_eigen(transposed_product(half, product(A, half)));
-  const Eigen::MatrixXd modes = product(half, vectors);
-  Eigen::MatrixXd covariance = 2 * kT * transposed_product(modes, product(K, modes));
+  const auto [rate, vectors] =
+      openblas::symmetric_eigen(openblas::transposed_product(half, openblas::product(A, half)));
+  const Eigen::MatrixXd modes = openblas::product(half, vectors);
+  Eigen::MatrixXd covariance =
+      2 * kT * openblas::transposed_product(modes, openblas::product(K, modes));
   for (int i = 0; i < rate.size(); ++i)
     for (int j = 0; j < rate.size(); ++j)
       // The mean has no rate, and no noise.
       covariance(i, j) = i == 0 || j == 0 ? 0 : covariance(i, j) / (rate[i] + rate[j]);
   const Eigen::MatrixXd inverse = B.vectors * root.cwiseInverse().asDiagonal(),
-                        to_z = transposed_product(product(inverse, vectors), of);
-  return transposed_product(to_z, product(covariance, to_z)).diagonal();
+                        to_z =
+                            openblas::transposed_product(openblas::product(inverse, vectors), of);
+  return openblas::transposed_product(to_z, openblas::product(covariance, to_z)).diagonal();
 }
 
 class ThermalNoiseTest : public ::testing::TestWithParam<const char*> {};
@@ -62,10 +65,10 @@ class ThermalNoiseTest : public ::testing::TestWithParam<const char*> {};
 TEST_P(ThermalNoiseTest, MovesAPhaseAsMuchAsItsDissipationAllows) {
   constexpr double kBegin = 10, kEnd = 210;
   const auto space = make_space(8);
-  CahnHilliardModel model = make_model("constant");
-  const CahnHilliard base(space, model);
+  problem::CahnHilliardModel model = make_model("constant");
+  const problem::CahnHilliard base(space, model);
   add_effects("thermal:strength=1e-8,time=0.1", {1, 1, true}, model);
-  const CahnHilliard problem(space, model);
+  const problem::CahnHilliard problem(space, model);
   EXPECT_DOUBLE_EQ(problem.longest_step(), 0.05);
   EXPECT_TRUE(std::isinf(base.longest_step()));
 
@@ -75,12 +78,12 @@ TEST_P(ThermalNoiseTest, MovesAPhaseAsMuchAsItsDissipationAllows) {
   const Eigen::MatrixXd slow = harmonics(*space);
   const Vec expected = variances(base, y, slow);
   ASSERT_TRUE(problem.consistent_initial_state(0, y, ydot).ok());
-  IntegratorSettings settings;
+  time::IntegratorSettings settings;
   settings.tolerance = 1e-2;
-  const IntegratorPtr integrator =
-      integrators()
+  const time::IntegratorPtr integrator =
+      backends::integrators()
           .find(GetParam())
-          .make(problem, choose_linear_solver("block", *space), space->team, settings);
+          .make(problem, backends::choose_linear_solver("block", *space), space->team, settings);
   ASSERT_TRUE(integrator->start(0, y, ydot, kEnd).ok());
   double sum = 0, time = 0;
   while (integrator->time() < kEnd) {
@@ -97,4 +100,4 @@ TEST_P(ThermalNoiseTest, MovesAPhaseAsMuchAsItsDissipationAllows) {
 INSTANTIATE_TEST_SUITE_P(All, ThermalNoiseTest, ::testing::Values("euler", "ida", "rosenbrock"));
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::effects

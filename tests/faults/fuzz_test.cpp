@@ -30,8 +30,8 @@ struct FuzzedPart {
 };
 template <class Members>
 void describe(Members& members, FuzzedPart& part) {
-  members("name", part.name, OneOf{"effect", effects().names()});
-  members("value", part.value, WithinRange{-1, 1, true});
+  members("name", part.name, input::OneOf{"effect", effects::effects().names()});
+  members("value", part.value, input::WithinRange{-1, 1, true});
 }
 struct FuzzedPlan {
   int runs = 1;
@@ -39,8 +39,8 @@ struct FuzzedPlan {
 };
 template <class Members>
 void describe(Members& members, FuzzedPlan& plan) {
-  members("runs", plan.runs, WithinRange{1, 1000});
-  members("parts", plan.parts, AsDescribed{});
+  members("runs", plan.runs, input::WithinRange{1, 1000});
+  members("parts", plan.parts, input::AsDescribed{});
 }
 
 namespace {
@@ -108,11 +108,11 @@ int read_all(const std::vector<std::string>& samples,
       read(text);
       ++accepted;
     } catch (const InputError& refused) {
-      EXPECT_LE(in_one_line(refused.what(), 300).size(), 300u);
+      EXPECT_LE(text::in_one_line(refused.what(), 300).size(), 300u);
     } catch (const IoError& refused) {
-      EXPECT_LE(in_one_line(refused.what(), 300).size(), 300u);
+      EXPECT_LE(text::in_one_line(refused.what(), 300).size(), 300u);
     } catch (const std::exception& error) {
-      ADD_FAILURE() << error.what() << " on " << in_one_line(text, 300);
+      ADD_FAILURE() << error.what() << " on " << text::in_one_line(text, 300);
     }
   }
   EXPECT_GT(accepted, 0);
@@ -133,11 +133,11 @@ class FuzzTest : public ::testing::Test {
 TEST_F(FuzzTest, Configurations) {
   read_all({"case = \"guv-2to1\"\ncells = 32\nepsilon = 0.1\noutput-times = [1, 10, 100]\n"
             "effect = \"exchange:rate=1e-3,target=0.2\"\nfields = false\n",
-            config_text({{}, {}})},
+            config::config_text({{}, {}})},
            [&](const std::string& text) {
-             const Configuration read({read_config_file(file("c.toml", text)), {}});
-             (void)numerical_identity(read);
-             (void)flags_text(read);
+             const config::Configuration read({config::read_config_file(file("c.toml", text)), {}});
+             (void)config::numerical_identity(read);
+             (void)config::flags_text(read);
            });
 }
 
@@ -145,7 +145,7 @@ TEST_F(FuzzTest, Tables) {
   read_all({"vesicle,time,perimeter\n1,10,20\n1,20,15.5\n\"3\",1e3,0\n",
             "# a remark\nt,c\r\n1,2\r\n3,4\r\n"},
            [&](const std::string& text) {
-             const CsvTable table = CsvTable::read(file("t.csv", text));
+             const input::CsvTable table = input::CsvTable::read(file("t.csv", text));
              for (const std::string& column : table.columns()) (void)table.numbers(column);
            });
 }
@@ -158,7 +158,7 @@ TEST_F(FuzzTest, DescriptionsOfSeries) {
   (void)file("measurements.csv", "vesicle,time,perimeter\n1,10,20\n1,20,15\n");
   read_all({kSeries}, [&](const std::string& text) {
     (void)file("dataset.toml", text);
-    (void)read_dataset(folder.path);
+    (void)input::read_dataset(folder.path);
   });
 }
 
@@ -169,7 +169,7 @@ TEST_F(FuzzTest, Series) {
             "vesicle,time,cap_radius,cap_radius_sigma\n1,10,1.5,0.1\n1,10,0.7,0.1\n1,20,,\n"},
            [&](const std::string& text) {
              (void)file("measurements.csv", text);
-             (void)read_dataset(folder.path);
+             (void)input::read_dataset(folder.path);
            });
 }
 
@@ -192,7 +192,7 @@ TEST_F(FuzzTest, DescriptionsOfFields) {
   for (const char* name : {"snapshot_001.csv", "snapshot_002.csv"}) (void)file(name, snapshot());
   read_all({kFields}, [&](const std::string& text) {
     (void)file("dataset.toml", text);
-    (void)read_field_dataset(folder.path);
+    (void)input::read_field_dataset(folder.path);
   });
 }
 
@@ -201,7 +201,7 @@ TEST_F(FuzzTest, Fields) {
   (void)file("snapshot_001.csv", snapshot());
   read_all({snapshot()}, [&](const std::string& text) {
     (void)file("snapshot_002.csv", text);
-    (void)read_field_dataset(folder.path);
+    (void)input::read_field_dataset(folder.path);
   });
 }
 
@@ -211,45 +211,47 @@ TEST_F(FuzzTest, Facts) {
     return std::string(std::istreambuf_iterator<char>(in), {});
   }();
   ASSERT_FALSE(facts.empty());
-  read_all({facts}, [&](const std::string& text) { (void)read_facts(file("f.toml", text)); });
+  read_all({facts},
+           [&](const std::string& text) { (void)input::read_facts(file("f.toml", text)); });
 }
 
 TEST_F(FuzzTest, Formulas) {
   read_all({"x^2+y^2+2*z^2-1", "0.5+0.45*sin(8*acos(z/sqrt(x^2+y^2+z^2))+atan2(y,x))",
             "x>0 ? exp(-x) : min(y,z,pi)", "abs(x)*(y<0.5 && z>=0)"},
            [&](const std::string& text) {
-             const auto formula = parse_formula("--initial-formula", text);
+             const auto formula = muparser::parse_formula("--initial-formula", text);
              for (const double t : {-1.0, 0.0, 0.3}) (void)formula({t, 1 - t, t * t});
            });
 }
 
 TEST_F(FuzzTest, Effects) {
-  Units units;
+  physics::Units units;
   units.radius_um = 5;
   units.diffusion_cm2_s = 1e-5;
   read_all({"exchange:rate=1e-3,target=0.2", "gravity:strength=0.01;uptake:rate=1e-4",
             "rotation:rate=0.1,x=0,y=0,z=1"},
-           [&](const std::string& text) { (void)read_effects(text, units); });
+           [&](const std::string& text) { (void)effects::read_effects(text, units); });
 }
 
 TEST_F(FuzzTest, Plans) {
-  read_all({"{\"runs\": 10, \"parts\": [{\"name\": \"gravity\", \"value\": 0.5}, {\"name\": "
-            "\"uptake\", \"value\": null}]}",
-            "{\"runs\": 1, \"parts\": []}"},
-           [&](const std::string& text) { (void)read_object<FuzzedPlan>(file("p.json", text)); });
+  read_all(
+      {"{\"runs\": 10, \"parts\": [{\"name\": \"gravity\", \"value\": 0.5}, {\"name\": "
+       "\"uptake\", \"value\": null}]}",
+       "{\"runs\": 1, \"parts\": []}"},
+      [&](const std::string& text) { (void)input::read_object<FuzzedPlan>(file("p.json", text)); });
 }
 
 TEST_F(FuzzTest, Encoders) {
   const Mutations mutations(testing::hostile_texts(), tokens());
   for (std::uint64_t k = 0; k < kInputsOfEach; ++k) {
     const std::string text = mutations.text(k);
-    EXPECT_TRUE(is_utf8(in_terminal(text)));
-    EXPECT_TRUE(is_utf8(in_html(text)));
-    EXPECT_EQ(in_html(text).find_first_of("<>\"'"), std::string::npos);
-    EXPECT_EQ(in_gnuplot(text).find_first_of("'\n\r", 1), in_gnuplot(text).size() - 1);
-    EXPECT_EQ(in_markdown(text).find_first_of("<>\n\r"), std::string::npos);
-    EXPECT_EQ(in_comment(text).find_first_of("\n\r"), std::string::npos);
-    EXPECT_LE(in_one_line(text, 100).size(), 100u);
+    EXPECT_TRUE(text::is_utf8(text::in_terminal(text)));
+    EXPECT_TRUE(text::is_utf8(text::in_html(text)));
+    EXPECT_EQ(text::in_html(text).find_first_of("<>\"'"), std::string::npos);
+    EXPECT_EQ(text::in_gnuplot(text).find_first_of("'\n\r", 1), text::in_gnuplot(text).size() - 1);
+    EXPECT_EQ(text::in_markdown(text).find_first_of("<>\n\r"), std::string::npos);
+    EXPECT_EQ(text::in_comment(text).find_first_of("\n\r"), std::string::npos);
+    EXPECT_LE(text::in_one_line(text, 100).size(), 100u);
   }
 }
 

@@ -30,9 +30,10 @@ namespace fs = std::filesystem;
 TEST(HostileStrings, ChartsExecuteNothing) {
   for (const std::string& text : hostile_texts()) {
     const TemporaryFolder folder;
-    const Chart chart{text, text, text, false, true, {{text, {{1, 1}, {2, 3}}, Mark::both}}};
+    const bench::Chart chart{text,  text, text,
+                             false, true, {{text, {{1, 1}, {2, 3}}, bench::Mark::both}}};
     std::string svg;
-    ASSERT_NO_THROW(svg = draw_chart(chart, folder.path / "chart"))
+    ASSERT_NO_THROW(svg = output::draw_chart(chart, folder.path / "chart"))
         << text << content(folder.path / "chart.log");
     ASSERT_NE(svg, "") << "is gnuplot installed?";
     EXPECT_EQ(folder.entries(), 3u) << "something else was written for: " << text;
@@ -42,10 +43,11 @@ TEST(HostileStrings, ChartsExecuteNothing) {
 
 TEST(HostileStrings, ChartsHavePlainNames) {
   const TemporaryFolder folder;
-  const Chart chart{"t", "x", "y", false, false, {{"s", {{1, 1}, {2, 3}}}}};
+  const bench::Chart chart{"t", "x", "y", false, false, {{"s", {{1, 1}, {2, 3}}}}};
   for (const std::string& name : hostile_texts()) {
     if (name.find('/') != std::string::npos) continue;  // a folder
-    EXPECT_THROW(draw_chart(chart, folder.path / name), std::logic_error) << name.substr(0, 60);
+    EXPECT_THROW(output::draw_chart(chart, folder.path / name), std::logic_error)
+        << name.substr(0, 60);
   }
   EXPECT_EQ(folder.entries(), 0u);
 }
@@ -61,10 +63,10 @@ TEST(HostileStrings, FoldersExecuteNothing) {
     };
     ASSERT_EQ(within("run --quiet --case two-rafts --cells 12 --epsilon 1 "
                      "--t-end 0.1 --out=" +
-                     in_shell(name))
+                     text::in_shell(name))
                   .code,
               0);
-    const ProgramEnd report = within("report -- " + in_shell(name));
+    const ProgramEnd report = within("report -- " + text::in_shell(name));
     EXPECT_EQ(report.code, 0) << report.output;
     EXPECT_EQ(report.output.find("missing"), std::string::npos) << report.output;
     EXPECT_EQ(folder.entries(), 1u) << name;
@@ -76,12 +78,13 @@ TEST(HostileStrings, ScriptsOfArrayJobsExecuteOneCommand) {
     if (text.find('\0') != std::string::npos || text.size() > 255) continue;
     const TemporaryFolder folder;
     const fs::path ensemble = folder.path / fs::path(text).relative_path();
-    const std::string script = array_job_script(EnsembleFolder(ensemble), {}, {1, 1, 10, 1}, {});
+    const std::string script =
+        ensemble::array_job_script(ensemble::EnsembleFolder(ensemble), {}, {1, 1, 10, 1}, {});
     // `exec` is replaced by a function that says what it was asked to execute.
-    write_durably(folder.path / "job.sh",
-                  "cd " + in_shell(folder.path.string()) +
-                      "\ntold() { for word; do printf '[%s]' \"$word\"; done; }\n" +
-                      std::string(script).replace(script.rfind("\nexec "), 6, "\ntold "));
+    posix::write_durably(folder.path / "job.sh",
+                         "cd " + text::in_shell(folder.path.string()) +
+                             "\ntold() { for word; do printf '[%s]' \"$word\"; done; }\n" +
+                             std::string(script).replace(script.rfind("\nexec "), 6, "\ntold "));
     const ProgramEnd end = shell("SLURM_ARRAY_TASK_ID=0 sh " + (folder.path / "job.sh").string());
     EXPECT_EQ(end.output.find("[ensemble][--out]["), end.output.find(']') + 1) << end.output;
     EXPECT_NE(end.output.find("[--member][1]"), std::string::npos) << end.output;
@@ -91,7 +94,7 @@ TEST(HostileStrings, ScriptsOfArrayJobsExecuteOneCommand) {
 
 TEST(HostileStrings, PagesAndTablesHoldText) {
   for (const std::string& text : hostile_texts()) {
-    Page page(text);
+    output::Page page(text);
     page.heading(text);
     page.paragraph(text);
     page.code(text);
@@ -100,8 +103,8 @@ TEST(HostileStrings, PagesAndTablesHoldText) {
     std::string html = page.html();
     EXPECT_EQ(html.find("<script"), std::string::npos) << text;
     EXPECT_EQ(html.find("<img"), std::string::npos) << text;
-    EXPECT_TRUE(is_utf8(html));
-    const std::string markdown = markdown_table({{"a", "b"}, {text, text}});
+    EXPECT_TRUE(text::is_utf8(html));
+    const std::string markdown = output::markdown_table({{"a", "b"}, {text, text}});
     EXPECT_EQ(std::count(markdown.begin(), markdown.end(), '\n'), 4) << markdown;
     EXPECT_EQ(markdown.find("<script"), std::string::npos);
   }
@@ -125,14 +128,14 @@ TEST_F(TamperedFilesTest, ResultsOfStudiesExecuteNothing) {
   ASSERT_FALSE(bad.at("charts").empty());
   bad["charts"][0]["title"] = "x\nsystem \"touch " + at("hit") + "\"\n<script>alert(1)</script>";
   bad["notes"] = {"<script>alert(1)</script>\n# heading"};
-  write_durably(at("v/geometry.json"), bad.dump());
+  posix::write_durably(at("v/geometry.json"), bad.dump());
   EXPECT_EQ(traceraft("verify geometry" + out + " --document " + at("d.md")).code, 0);
   EXPECT_FALSE(fs::exists(at("hit")));
   EXPECT_EQ(content(at("d.md")).find("<script"), std::string::npos);
   EXPECT_EQ(content(at("v/verify.html")).find("<script"), std::string::npos);
   bad = good;
   bad["tables"]["../../hit"] = bad["tables"].front();
-  write_durably(at("v/geometry.json"), bad.dump());
+  posix::write_durably(at("v/geometry.json"), bad.dump());
   EXPECT_EQ(traceraft("verify geometry" + out).code, 4);
 }
 
@@ -143,12 +146,12 @@ TEST_F(TamperedFilesTest, PlansDeleteNothing) {
                 .code,
             0);
   fs::create_directories(at("victim"));
-  write_durably(at("victim/mine"), "of somebody");
+  posix::write_durably(at("victim/mine"), "of somebody");
   const nlohmann::ordered_json good = json_of(at("c/plan.json"));
   const auto complaint = [&](const char* member, const nlohmann::ordered_json& value, int code) {
     nlohmann::ordered_json bad = good;
     bad[member] = value;
-    write_durably(at("c/plan.json"), bad.dump());
+    posix::write_durably(at("c/plan.json"), bad.dump());
     const ProgramEnd end = traceraft(compare);
     EXPECT_EQ(end.code, code) << member << ": " << end.output;
     EXPECT_EQ(std::count(end.output.begin(), end.output.end(), '\n'), 1) << end.output;
@@ -165,15 +168,15 @@ TEST_F(TamperedFilesTest, PlansDeleteNothing) {
   (void)complaint("tolerances", {0.01, 0.01}, 4);
   (void)complaint("repeet", 1, 4);
   EXPECT_NE(complaint("integrators", {"i\x1b[2J"}, 2).find("\\x1b"), std::string::npos);
-  write_durably(at("c/plan.json"), "{\"integrators\": [");
+  posix::write_durably(at("c/plan.json"), "{\"integrators\": [");
   const ProgramEnd torn = traceraft(compare);
   EXPECT_EQ(torn.code, 4);
   EXPECT_EQ(torn.output.find("json.exception"), std::string::npos) << torn.output;
   EXPECT_EQ(content(at("victim/mine")), "of somebody");
   // A file of somebody in the folder of a run that was interrupted.
-  write_durably(at("c/plan.json"), good.dump());
+  posix::write_durably(at("c/plan.json"), good.dump());
   fs::remove(at("c/runs/ida-block-0.01-1.json"));
-  write_durably(at("c/runs/ida-block-0.01-1/notes.txt"), "of somebody");
+  posix::write_durably(at("c/runs/ida-block-0.01-1/notes.txt"), "of somebody");
   const ProgramEnd end = traceraft(compare);
   EXPECT_EQ(end.code, 4) << end.output;
   EXPECT_NE(end.output.find("notes.txt"), std::string::npos) << end.output;
@@ -189,7 +192,8 @@ TEST_F(TamperedFilesTest, PlansOfEnsemblesAndCampaignsAreChecked) {
                 .code,
             0);
   for (const char* runs : {"-5", "0", "2147483647", "1e8"}) {
-    write_durably(at("e/plan.json"), "{\"runs\": " + std::string(runs) + ", \"first_seed\": 1}");
+    posix::write_durably(at("e/plan.json"),
+                         "{\"runs\": " + std::string(runs) + ", \"first_seed\": 1}");
     const ProgramEnd end = traceraft("ensemble --quiet --out " + at("e"));
     EXPECT_EQ(end.code, 2) << end.output;
     EXPECT_NE(end.output.find("allowed: 1 to 1e+05"), std::string::npos) << end.output;
@@ -204,7 +208,7 @@ TEST_F(TamperedFilesTest, PlansOfEnsemblesAndCampaignsAreChecked) {
         std::pair("{}", "{\"cells\": \"3\"}"), std::pair("49", "-49")}) {
     std::string bad = plan;
     bad.replace(bad.find(from), std::string(from).size(), to);
-    write_durably(at("k/plan.json"), bad);
+    posix::write_durably(at("k/plan.json"), bad);
     const ProgramEnd end = traceraft("campaign --quiet --out " + at("k"));
     EXPECT_EQ(end.code, 2) << bad << end.output;
     EXPECT_EQ(std::count(end.output.begin(), end.output.end(), '\n'), 1) << end.output;
@@ -213,11 +217,12 @@ TEST_F(TamperedFilesTest, PlansOfEnsemblesAndCampaignsAreChecked) {
 
 TEST_F(TamperedFilesTest, NamesOfDataReachTheTerminalAsText) {
   fs::create_directories(at("d"));
-  write_durably(at("d/dataset.toml"),
-                "name = \"a\\u001b]0;title\\u0007\\u001b[2J\\u202e\"\nkind = \"measured\"\n"
-                "time_zero = \"\\u009b31m\"\nlength_unit = \"um\"\ntime_unit = \"s\"\n"
-                "radius = 5\n");
-  write_durably(at("d/measurements.csv"), "vesicle,time,perimeter\n1,10,20\n1,20,15\n1,40,12\n");
+  posix::write_durably(at("d/dataset.toml"),
+                       "name = \"a\\u001b]0;title\\u0007\\u001b[2J\\u202e\"\nkind = \"measured\"\n"
+                       "time_zero = \"\\u009b31m\"\nlength_unit = \"um\"\ntime_unit = \"s\"\n"
+                       "radius = 5\n");
+  posix::write_durably(at("d/measurements.csv"),
+                       "vesicle,time,perimeter\n1,10,20\n1,20,15\n1,40,12\n");
   const ProgramEnd end = traceraft("data check " + at("d"));
   EXPECT_EQ(end.code, 0) << end.output;
   for (const char* sequence : {"\x1b", "\x07", "\xC2\x9B", "\xE2\x80\xAE"})
@@ -228,7 +233,7 @@ TEST_F(TamperedFilesTest, NamesOfDataReachTheTerminalAsText) {
 TEST_F(TamperedFilesTest, FoldersOfOthersAreRefused) {
   const std::string run = "run --quiet --case two-rafts --cells 12 --epsilon 1 --t-end 0.1 --out ";
   fs::create_directories(at("mine"));
-  write_durably(at("mine/notes.txt"), "of somebody");
+  posix::write_durably(at("mine/notes.txt"), "of somebody");
   for (const std::string& folder_of_others : {std::string("/"), at("mine")})
     for (const std::string& command :
          {run, std::string("compare --quiet --case two-rafts --out "),

@@ -52,9 +52,9 @@ TEST(Kills, LoseNothing) {
     ++finished;
     for (const char* table : {"series.csv", "observables.csv", "rafts.csv", "config.toml"})
       EXPECT_TRUE(content(torn + "/" + table) == content(whole + "/" + table)) << table;
-    EXPECT_EQ(first_foreign(torn, files_of_a_run()), "");
-    const Checkpoint a = CheckpointStore(torn + "/checkpoints").newest(),
-                     b = CheckpointStore(whole + "/checkpoints").newest();
+    EXPECT_EQ(posix::first_foreign(torn, run::files_of_a_run()), "");
+    const run::Checkpoint a = run::CheckpointStore(torn + "/checkpoints").newest(),
+                          b = run::CheckpointStore(whole + "/checkpoints").newest();
     EXPECT_TRUE(a.concentration == b.concentration);
     fs::remove_all(torn);
   }
@@ -69,7 +69,7 @@ TEST(Damage, OfTablesIsNoticedBeforeARunGoesOn) {
   for (int i = 0; i < 3000 && testing::lines_of(run + "/series.csv") < 30; ++i) usleep(5000);
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
-  const Checkpoint last = CheckpointStore(run + "/checkpoints").newest();
+  const run::Checkpoint last = run::CheckpointStore(run + "/checkpoints").newest();
   for (const char* name : {"series.csv", "observables.csv", "rafts.csv"}) {
     const std::string path = run + "/" + name, rows = content(path);
     const auto counted = static_cast<double>(last.tables.at(name).bytes);
@@ -77,19 +77,19 @@ TEST(Damage, OfTablesIsNoticedBeforeARunGoesOn) {
       std::string bad = rows;
       const auto at = static_cast<std::size_t>(counted * uniform_random(5, k, bad.size()));
       bad[at] = static_cast<char>(bad[at] ^ (1 << (k % 8)));
-      write_durably(path, bad);
+      posix::write_durably(path, bad);
       const testing::ProgramEnd end = traceraft("resume --quiet " + run);
       EXPECT_EQ(end.code, 4) << end.output;
       EXPECT_NE(end.output.find(name), std::string::npos) << end.output;
       EXPECT_TRUE(content(path) == bad);
     }
-    write_durably(path, rows);
+    posix::write_durably(path, rows);
   }
   EXPECT_EQ(traceraft("resume --quiet " + run).code, 0);
   // And of a run that has reached its end before it is shown.
   std::string bad = content(run + "/series.csv");
   bad[bad.size() / 2] ^= 1;
-  write_durably(run + "/series.csv", bad);
+  posix::write_durably(run + "/series.csv", bad);
   EXPECT_EQ(traceraft("report " + run).code, 4);
 }
 

@@ -7,7 +7,7 @@
 
 #include "tests/support/relaxed_boundary.hpp"
 
-namespace traceraft {
+namespace traceraft::fem {
 namespace {
 
 using testing::make_model;
@@ -30,9 +30,9 @@ Sample excess_energy(PotentialRule rule) {
     const double h = 10.0 / 3 / kCells;
     const Point offset = 0.5 * h * random_direction(5, cut);
     const auto space = make_space(kCells, "sphere", 1, offset);
-    CahnHilliardModel model = make_model("constant:value=0.25", h / kHOverEpsilon);
+    problem::CahnHilliardModel model = make_model("constant:value=0.25", h / kHOverEpsilon);
     model.rule = rule;
-    const CahnHilliard problem(space, model);
+    const problem::CahnHilliard problem(space, model);
     Vec y = Vec::Zero(problem.size());
     y.head(space->nodes()) = relaxed_boundary(*space, model, random_direction(6, cut));
     // On the sphere of the mesh's area, ∫ cos(s) over the profile: 1 − (π²/3 − 2) ε².
@@ -59,7 +59,7 @@ TEST(AveragedPotential, GivesABoundaryItsLineTensionWhereverItLies) {
 // Where c is constant it is f0 itself.
 TEST(AveragedPotential, IsTheDensityOfAConstant) {
   const auto space = make_space(12);
-  const DoubleWell well{0.7, -0.3, 1.1};
+  const physics::DoubleWell well{0.7, -0.3, 1.1};
   for (const double c : {-0.5, -0.3, 0.2, 0.4, 1.3}) {
     const double energy =
         averaged_potential::energy(*space, well, Vec::Constant(space->nodes(), c));
@@ -68,4 +68,4 @@ TEST(AveragedPotential, IsTheDensityOfAConstant) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::fem

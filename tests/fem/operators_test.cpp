@@ -8,7 +8,7 @@
 #include "tests/support/dense.hpp"
 #include "tests/support/spaces.hpp"
 
-namespace traceraft {
+namespace traceraft::fem {
 namespace {
 
 using testing::dense;
@@ -18,16 +18,16 @@ using testing::random_vector;
 // ∫_Γ f(x, c_h, ∇c_h) by brute force over the images of the triangles of Γ_h, with (∇c_h)² by their
 // metric: slow and easy to check by hand.
 template <class F>
-double integrate(const SurfaceSpace& space, const std::vector<LiftedTriangle>& lifted, const Vec& c,
-                 const F& f) {
-  const Vec trace = traceraft::trace(space, c);
+double integrate(const SurfaceSpace& space, const std::vector<mesh::LiftedTriangle>& lifted,
+                 const Vec& c, const F& f) {
+  const Vec trace = fem::trace(space, c);
   double sum = 0;
   for (std::size_t k = 0; k < lifted.size(); ++k) {
     const auto& [i, j, l] = space.surface.triangles[k];
-    const ActiveTet& tet = space.mesh.tets[space.surface.triangle_tet[k]];
+    const mesh::ActiveTet& tet = space.mesh.tets[space.surface.triangle_tet[k]];
     Point gradient = Point::Zero();
     for (int v = 0; v < 4; ++v)
-      gradient += c[tet.node[v]] / space.h() * scaled_gradients(tet.kuhn).row(v).transpose();
+      gradient += c[tet.node[v]] / space.h() * mesh::scaled_gradients(tet.kuhn).row(v).transpose();
     const double squared_slope = gradient.dot(lifted[k].inverse_metric * gradient);
     for (const auto& [at, weight] : kDegreeFourRule)
       sum += weight * lifted[k].area *
@@ -40,8 +40,9 @@ class OperatorTest : public ::testing::TestWithParam<std::string> {
  protected:
   std::shared_ptr<const SurfaceSpace> space =
       make_space(GetParam() == "sphere" ? 12 : 24, GetParam());
-  std::vector<LiftedTriangle> lifted = lifted_triangles(
-      *make_surface(GetParam()), space->mesh, build_cut_surface(space->mesh), *space->team);
+  std::vector<mesh::LiftedTriangle> lifted =
+      mesh::lifted_triangles(*geometry::make_surface(GetParam()), space->mesh,
+                             mesh::build_cut_surface(space->mesh), *space->team);
   Vec c = random_vector(space->nodes(), 1), d = random_vector(space->nodes(), 2);
 };
 
@@ -74,7 +75,7 @@ TEST_P(OperatorTest, StabilisedMassIsWellConditionedAfterDiagonalScaling) {
   Eigen::MatrixXd full = dense(space->stabilised_mass);
   const Vec scale = full.diagonal().cwiseSqrt().cwiseInverse();
   full = scale.asDiagonal() * full * scale.asDiagonal();
-  const Vec eigenvalues = symmetric_eigen(full).values;
+  const Vec eigenvalues = openblas::symmetric_eigen(full).values;
   EXPECT_GT(eigenvalues.minCoeff(), 0);
   EXPECT_LT(eigenvalues.maxCoeff() / eigenvalues.minCoeff(), 40);
 }
@@ -88,11 +89,12 @@ TEST_P(OperatorTest, MassIsInverted) {
 }
 
 TEST_P(OperatorTest, MobilityStiffnessIsTheWeightedIntegral) {
-  const MobilityPtr law = make_mobility("degenerate:outside=-1");  // needs the floor
+  const physics::MobilityPtr law =
+      physics::make_mobility("degenerate:outside=-1");  // needs the floor
   const std::vector<double> integral = mobility_integrals(*space, *law, c);
   // Reference: ∫ c(1 − c) tetrahedron by tetrahedron.
   std::vector<double> expected(space->elements.size(), 0.0);
-  const Vec trace = traceraft::trace(*space, c);
+  const Vec trace = fem::trace(*space, c);
   for (std::size_t k = 0; k < space->surface.triangles.size(); ++k) {
     const auto& triangle = space->surface.triangles[k];
     for (const auto& [at, weight] : kDegreeFourRule) {
@@ -115,11 +117,11 @@ TEST_P(OperatorTest, MobilityStiffnessIsTheWeightedIntegral) {
   add_mobility_flux(*space, integral, d, direct);
   EXPECT_LT((assembled - direct).norm(), 1e-13 * direct.norm());
   EXPECT_LT(std::fabs(direct.sum()), 1e-14 * direct.cwiseAbs().sum()) << "mass leaks";
-  EXPECT_GT(symmetric_eigen(dense(matrix)).values.minCoeff(), -1e-12);
+  EXPECT_GT(openblas::symmetric_eigen(dense(matrix)).values.minCoeff(), -1e-12);
 }
 
 TEST_P(OperatorTest, PotentialIsTheGradientOfItsEnergy) {
-  const DoubleWell well{0.7, -0.3, 1.1};
+  const physics::DoubleWell well{0.7, -0.3, 1.1};
   for (const PotentialRule rule : {PotentialRule::averaged, PotentialRule::consistent}) {
     const auto energy = [&](const Vec& at) { return potential_energy(*space, well, rule, at); };
     Vec b = Vec::Zero(space->nodes());
@@ -139,23 +141,23 @@ INSTANTIATE_TEST_SUITE_P(Surfaces, OperatorTest, ::testing::Values("sphere", "to
 TEST(Threads, DoNotChangeABit) {
   const auto one = make_space(24, "sphere", 1), three = make_space(24, "sphere", 3);
   const auto model = testing::make_model();
-  const CahnHilliard first(one, model), second(three, model);
+  const problem::CahnHilliard first(one, model), second(three, model);
   const Vec y = testing::random_state(first, 5), ydot = random_vector(first.size(), 6);
   Vec r1(first.size()), r2(first.size());
   ASSERT_TRUE(first.residual(0, y, ydot, r1).ok());
   ASSERT_TRUE(second.residual(0, y, ydot, r2).ok());
   EXPECT_EQ(r1, r2);
   EXPECT_EQ(first.energy(y), second.energy(y));
-  BlockJacobian J1 = first.make_jacobian(), J2 = second.make_jacobian();
-  ASSERT_TRUE(first.jacobian(0, y, ydot, 2.5, Tangent::exact, J1).ok());
-  ASSERT_TRUE(second.jacobian(0, y, ydot, 2.5, Tangent::exact, J2).ok());
+  linear::BlockJacobian J1 = first.make_jacobian(), J2 = second.make_jacobian();
+  ASSERT_TRUE(first.jacobian(0, y, ydot, 2.5, linear::Tangent::exact, J1).ok());
+  ASSERT_TRUE(second.jacobian(0, y, ydot, 2.5, linear::Tangent::exact, J2).ok());
   EXPECT_EQ(J1.cc.values, J2.cc.values);
   EXPECT_EQ(J1.cm.values, J2.cm.values);
   EXPECT_EQ(J1.mc.values, J2.mc.values);
 }
 
 TEST(DoubleWell, HasTheDerivativesItClaims) {
-  const DoubleWell well{0.4, -1, 2};
+  const physics::DoubleWell well{0.4, -1, 2};
   for (double c = -1.5; c < 2.5; c += 0.1) {
     const double h = 1e-5;
     EXPECT_NEAR(well.derivative(c), (well.energy(c + h) - well.energy(c - h)) / (2 * h), 1e-7);
@@ -166,7 +168,7 @@ TEST(DoubleWell, HasTheDerivativesItClaims) {
   for (int i = 0; i < 30000; ++i)
     integral += 1e-4 * std::sqrt(2 * well.energy(-1 + (i + 0.5) * 1e-4));
   EXPECT_NEAR(well.interface_energy(), integral, 1e-6);
-  EXPECT_NEAR(DoubleWell{}.interface_energy(), 1 / (6 * std::sqrt(2.0)), 1e-15);
+  EXPECT_NEAR(physics::DoubleWell{}.interface_energy(), 1 / (6 * std::sqrt(2.0)), 1e-15);
   // The profile solves ε² c'' = f0'(c).
   const double e = 0.3, s = 0.17, h = 1e-3;
   const double second =
@@ -175,8 +177,8 @@ TEST(DoubleWell, HasTheDerivativesItClaims) {
 }
 
 TEST(Mobilities, HaveTheDerivativesTheyClaim) {
-  for (const MobilityEntry& entry : mobilities()) {
-    const MobilityPtr law = make_mobility(entry.name);
+  for (const physics::MobilityEntry& entry : physics::mobilities()) {
+    const physics::MobilityPtr law = physics::make_mobility(entry.name);
     for (double c = -0.325; c < 1.3; c += 0.05) {  // not at the kinks 0 and 1
       const double at[3] = {c - 1e-6, c, c + 1e-6};
       double value[3], slope[3];
@@ -187,4 +189,4 @@ TEST(Mobilities, HaveTheDerivativesTheyClaim) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::fem

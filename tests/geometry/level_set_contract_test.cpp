@@ -7,7 +7,7 @@
 #include "kernel/core/random.hpp"
 #include "kernel/mesh/cut_surface.hpp"
 
-namespace traceraft {
+namespace traceraft::geometry {
 namespace {
 
 class LevelSetContract : public ::testing::TestWithParam<std::string> {
@@ -16,7 +16,9 @@ class LevelSetContract : public ::testing::TestWithParam<std::string> {
 };
 
 Point random_point(int i) {
-  const auto u = [&](int axis) { return kBoxHalfWidth * (2 * uniform_random(5, axis, i) - 1); };
+  const auto u = [&](int axis) {
+    return mesh::kBoxHalfWidth * (2 * uniform_random(5, axis, i) - 1);
+  };
   return {u(0), u(1), u(2)};
 }
 
@@ -33,7 +35,7 @@ TEST_P(LevelSetContract, IsFiniteInTheBoxAndPositiveOnItsBoundary) {
   for (int i = 0; i < 2000; ++i) {
     Point x = random_point(i);
     EXPECT_TRUE(std::isfinite(surface->value(x)));
-    x[i % 3] = i % 2 ? kBoxHalfWidth : -kBoxHalfWidth;
+    x[i % 3] = i % 2 ? mesh::kBoxHalfWidth : -mesh::kBoxHalfWidth;
     EXPECT_GT(surface->value(x), 0) << x.transpose();
   }
 }
@@ -47,7 +49,8 @@ TEST_P(LevelSetContract, IsDifferentiableWithAGradientOnTheSurface) {
       if (g.squaredNorm() == 0) break;
       x -= std::clamp(surface->value(x) / g.norm(), -0.1, 0.1) * g.normalized();
     }
-    if (!(std::fabs(surface->value(x)) < 1e-9) || x.cwiseAbs().maxCoeff() > kBoxHalfWidth) continue;
+    if (!(std::fabs(surface->value(x)) < 1e-9) || x.cwiseAbs().maxCoeff() > mesh::kBoxHalfWidth)
+      continue;
     ++checked;
     const Point fine = gradient(*surface, x, 1e-5), coarse = gradient(*surface, x, 2e-4);
     EXPECT_GT(fine.norm(), 0.02) << x.transpose();
@@ -57,10 +60,10 @@ TEST_P(LevelSetContract, IsDifferentiableWithAGradientOnTheSurface) {
 }
 
 TEST_P(LevelSetContract, GivesAClosedSurfaceWithNormalsPointingOut) {
-  const ActiveMesh mesh = build_active_mesh(*surface, 48);
-  const CutSurface cut = build_cut_surface(mesh);
-  EXPECT_NO_THROW(require_resolution(mesh, cut));
-  EXPECT_EQ(euler_characteristic(mesh, cut), GetParam() == "torus" ? 0 : 2);
+  const mesh::ActiveMesh mesh = mesh::build_active_mesh(*surface, 48);
+  const mesh::CutSurface cut = mesh::build_cut_surface(mesh);
+  EXPECT_NO_THROW(mesh::require_resolution(mesh, cut));
+  EXPECT_EQ(mesh::euler_characteristic(mesh, cut), GetParam() == "torus" ? 0 : 2);
   // Closed and consistently oriented: the area vectors sum to zero, the enclosed volume is
   // positive.
   Point area = Point::Zero();
@@ -104,4 +107,4 @@ TEST(Surfaces, RefuseImpossibleShapes) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::geometry

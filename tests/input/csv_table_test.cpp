@@ -7,7 +7,7 @@
 #include "kernel/core/error.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace traceraft {
+namespace traceraft::input {
 namespace {
 
 class CsvTableTest : public ::testing::Test {
@@ -99,4 +99,4 @@ TEST_F(CsvTableTest, SaysWhereItIsNoTable) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::input

@@ -11,7 +11,7 @@
 #include "kernel/core/types.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace traceraft {
+namespace traceraft::input {
 namespace {
 
 constexpr char kDescription[] =
@@ -21,7 +21,7 @@ constexpr char kDescription[] =
 class DatasetTest : public ::testing::Test {
  protected:
   testing::TemporaryFolder folder;
-  MeasuredVesicles read(const std::string& csv, const std::string& more = "") const {
+  observations::MeasuredVesicles read(const std::string& csv, const std::string& more = "") const {
     std::ofstream(folder.path / "dataset.toml") << kDescription << more;
     std::ofstream(folder.path / "measurements.csv") << csv;
     return read_dataset(folder.path);
@@ -38,19 +38,19 @@ class DatasetTest : public ::testing::Test {
 };
 
 TEST_F(DatasetTest, ConvertsUnits) {
-  const MeasuredVesicles data = read(
+  const observations::MeasuredVesicles data = read(
       "vesicle,time,radius,perimeter,perimeter_sigma,rafts,fraction\n"
       "a,1,5000,20000,1000,3,0.1\na,2,5000,,,2,\nb,1,4000,8000,,,\n");
   ASSERT_EQ(data.measurements.size(), 3u);
-  const Measurement& m = data.measurements[0];
+  const observations::Measurement& m = data.measurements[0];
   EXPECT_DOUBLE_EQ(m.time, 60);
   EXPECT_DOUBLE_EQ(m.radius, 5);
-  EXPECT_DOUBLE_EQ(*m.of(Quantity::perimeter), 4);
-  EXPECT_DOUBLE_EQ(m.sigma_of(Quantity::perimeter), 0.2);
-  EXPECT_DOUBLE_EQ(*m.of(Quantity::rafts), 3);
-  EXPECT_FALSE(data.measurements[1].of(Quantity::perimeter));
+  EXPECT_DOUBLE_EQ(*m.of(observations::Quantity::perimeter), 4);
+  EXPECT_DOUBLE_EQ(m.sigma_of(observations::Quantity::perimeter), 0.2);
+  EXPECT_DOUBLE_EQ(*m.of(observations::Quantity::rafts), 3);
+  EXPECT_FALSE(data.measurements[1].of(observations::Quantity::perimeter));
   EXPECT_EQ(data.vesicles().size(), 2u);
-  const MeasuredVesicles later =
+  const observations::MeasuredVesicles later =
       read("vesicle,time,rafts\na,1,2\n", "radius = 5000\ntime_offset = 0.5\n");
   EXPECT_DOUBLE_EQ(later.measurements[0].time, 90);
   EXPECT_DOUBLE_EQ(later.measurements[0].radius, 5);
@@ -61,38 +61,40 @@ TEST_F(DatasetTest, ConvertsUnits) {
 }
 
 TEST_F(DatasetTest, ComputesRaftsFromCaps) {
-  const MeasuredVesicles data =
+  const observations::MeasuredVesicles data =
       read("vesicle,time,radius,cap_radius\na,1,5000,3000\na,1,5000,4000\na,2,5000,5000\n");
   ASSERT_EQ(data.measurements.size(), 2u);
-  const Measurement& two = data.measurements[0];
-  EXPECT_DOUBLE_EQ(*two.of(Quantity::rafts), 2);
-  EXPECT_NEAR(*two.of(Quantity::perimeter), 2 * kPi * 1.4, 1e-12);
+  const observations::Measurement& two = data.measurements[0];
+  EXPECT_DOUBLE_EQ(*two.of(observations::Quantity::rafts), 2);
+  EXPECT_NEAR(*two.of(observations::Quantity::perimeter), 2 * kPi * 1.4, 1e-12);
   // 1 − cos θ is 1/5 and 2/5 for sin θ of 3/5 and 4/5.
-  EXPECT_NEAR(*two.of(Quantity::fraction), 0.3, 1e-12);
-  EXPECT_NEAR(*data.measurements[1].of(Quantity::fraction), 0.5, 1e-12);
-  const MeasuredVesicles none = read("vesicle,time,radius,cap_radius\na,1,5000,\na,2,5000,100\n");
-  EXPECT_EQ(*none.measurements[0].of(Quantity::rafts), 0);
-  EXPECT_EQ(*none.measurements[0].of(Quantity::fraction), 0);
-  EXPECT_EQ(*none.measurements[1].of(Quantity::rafts), 1);
+  EXPECT_NEAR(*two.of(observations::Quantity::fraction), 0.3, 1e-12);
+  EXPECT_NEAR(*data.measurements[1].of(observations::Quantity::fraction), 0.5, 1e-12);
+  const observations::MeasuredVesicles none =
+      read("vesicle,time,radius,cap_radius\na,1,5000,\na,2,5000,100\n");
+  EXPECT_EQ(*none.measurements[0].of(observations::Quantity::rafts), 0);
+  EXPECT_EQ(*none.measurements[0].of(observations::Quantity::fraction), 0);
+  EXPECT_EQ(*none.measurements[1].of(observations::Quantity::rafts), 1);
 }
 
 TEST_F(DatasetTest, ComputesSigmasFromThoseOfCaps) {
   const std::string heading = "vesicle,time,radius,cap_radius,cap_radius_sigma\n";
-  const MeasuredVesicles data =
+  const observations::MeasuredVesicles data =
       read(heading + "a,1,5000,3000,5\na,1,5000,4000,12\na,2,5000,5000,300\na,3,5000,1000,\n");
-  const Measurement& two = data.measurements[0];
-  EXPECT_NEAR(two.sigma_of(Quantity::perimeter), 2 * kPi * 13 / 5000, 1e-12);
+  const observations::Measurement& two = data.measurements[0];
+  EXPECT_NEAR(two.sigma_of(observations::Quantity::perimeter), 2 * kPi * 13 / 5000, 1e-12);
   // df/da = tan θ/(2 r) for each cap.
-  EXPECT_NEAR(two.sigma_of(Quantity::fraction), std::hypot(0.75 * 5, 4.0 / 3 * 12) / (2 * 5000),
-              1e-6);
-  EXPECT_FALSE(two.sigma[static_cast<std::size_t>(Quantity::rafts)]);
+  EXPECT_NEAR(two.sigma_of(observations::Quantity::fraction),
+              std::hypot(0.75 * 5, 4.0 / 3 * 12) / (2 * 5000), 1e-6);
+  EXPECT_FALSE(two.sigma[static_cast<std::size_t>(observations::Quantity::rafts)]);
   // Of half of the sphere only less can be meant: cos θ = 0.34 for 300 less.
-  EXPECT_NEAR(data.measurements[1].sigma_of(Quantity::fraction), std::sqrt(1 - 0.94 * 0.94) / 2,
-              1e-12);
+  EXPECT_NEAR(data.measurements[1].sigma_of(observations::Quantity::fraction),
+              std::sqrt(1 - 0.94 * 0.94) / 2, 1e-12);
   EXPECT_FALSE(data.measurements[2].sigma[0]);
-  const MeasuredVesicles halves =
+  const observations::MeasuredVesicles halves =
       read(heading + "a,1,5000,3000,9.79982\n", "sigma = \"95 % interval\"\n");
-  EXPECT_NEAR(halves.measurements[0].sigma_of(Quantity::perimeter), 2 * kPi * 0.001, 1e-9);
+  EXPECT_NEAR(halves.measurements[0].sigma_of(observations::Quantity::perimeter), 2 * kPi * 0.001,
+              1e-9);
   expect_complaint(heading + "a,1,5000,3000,5\na,1,5000,4000,\n",
                    ":3: column 'cap_radius_sigma': within one observation, all rafts");
   expect_complaint(heading + "a,1,5000,3000,-1\n", "column 'cap_radius_sigma': -1 is impossible");
@@ -177,18 +179,18 @@ TEST_F(DatasetTest, SaysWhatADescriptionLacks) {
 }
 
 TEST_F(DatasetTest, WhatIsDrawnFromFactsReadsBack) {
-  const PublishedFacts facts =
+  const observations::PublishedFacts facts =
       read_facts(std::string(TRACERAFT_ROOT) + "/verification/data/published/guv-3to1.toml");
   EXPECT_EQ(facts.vesicles, 17);
   EXPECT_EQ(facts.measurements, 62);
-  const MeasuredVesicles drawn = draw_measurements(facts, 5);
+  const observations::MeasuredVesicles drawn = observations::draw_measurements(facts, 5);
   write_dataset(folder.path / "drawn", drawn, "a test");
-  const MeasuredVesicles back = read_dataset(folder.path / "drawn");
+  const observations::MeasuredVesicles back = read_dataset(folder.path / "drawn");
   EXPECT_TRUE(back.synthetic);
   ASSERT_EQ(back.measurements.size(), drawn.measurements.size());
   for (std::size_t i = 0; i < drawn.measurements.size(); ++i) {
     EXPECT_DOUBLE_EQ(back.measurements[i].time, drawn.measurements[i].time);
-    for (const Quantity quantity : kQuantities) {
+    for (const observations::Quantity quantity : observations::kQuantities) {
       EXPECT_NEAR(*back.measurements[i].of(quantity), *drawn.measurements[i].of(quantity), 1e-12);
       EXPECT_NEAR(back.measurements[i].sigma_of(quantity), drawn.measurements[i].sigma_of(quantity),
                   1e-12);
@@ -198,19 +200,20 @@ TEST_F(DatasetTest, WhatIsDrawnFromFactsReadsBack) {
 
 // Vesicles that have lost their rafts show none, and no area of them.
 TEST_F(DatasetTest, WhatIsDrawnFromRunsReadsBack) {
-  const PublishedFacts facts =
+  const observations::PublishedFacts facts =
       read_facts(std::string(TRACERAFT_ROOT) + "/verification/data/published/guv-3to1.toml");
   const double later = 0.5 * facts.window.end;
-  History run;
+  observations::History run;
   run.time = {1, later, facts.window.end};
-  run.of(Quantity::perimeter) = {10, 10, 10};
-  run.of(Quantity::rafts) = {3, 0, 0};
-  run.of(Quantity::fraction) = {0.1, 0.1, 0.1};
-  write_dataset(folder.path / "drawn", draw_from_runs(facts, {run, run, run}, 6, 5), "a test");
+  run.of(observations::Quantity::perimeter) = {10, 10, 10};
+  run.of(observations::Quantity::rafts) = {3, 0, 0};
+  run.of(observations::Quantity::fraction) = {0.1, 0.1, 0.1};
+  write_dataset(folder.path / "drawn", observations::draw_from_runs(facts, {run, run, run}, 6, 5),
+                "a test");
   int empty = 0;
-  for (const Measurement& m : read_dataset(folder.path / "drawn").measurements) {
-    empty += *m.of(Quantity::rafts) == 0;
-    EXPECT_EQ(*m.of(Quantity::fraction) == 0, m.time >= later);
+  for (const observations::Measurement& m : read_dataset(folder.path / "drawn").measurements) {
+    empty += *m.of(observations::Quantity::rafts) == 0;
+    EXPECT_EQ(*m.of(observations::Quantity::fraction) == 0, m.time >= later);
   }
   EXPECT_GT(empty, 0);
 }
@@ -219,16 +222,16 @@ TEST_F(DatasetTest, WhatIsDrawnFromRunsReadsBack) {
 TEST_F(DatasetTest, KeptSyntheticSetsAreMarked) {
   for (const std::string name : {"guv-3to1", "guv-2to1"}) {
     const std::string data = std::string(TRACERAFT_ROOT) + "/verification/data/";
-    const MeasuredVesicles kept = read_dataset(data + "synthetic/" + name);
+    const observations::MeasuredVesicles kept = read_dataset(data + "synthetic/" + name);
     EXPECT_TRUE(kept.synthetic);
-    const MeasuredVesicles drawn =
-        draw_measurements(read_facts(data + "published/" + name + ".toml"), 1);
+    const observations::MeasuredVesicles drawn =
+        observations::draw_measurements(read_facts(data + "published/" + name + ".toml"), 1);
     ASSERT_EQ(kept.measurements.size(), drawn.measurements.size());
     EXPECT_NE(kept.name.find("SYNTHETIC"), std::string::npos);
     for (std::size_t i = 0; i < kept.measurements.size(); ++i) {
-      const Measurement &one = kept.measurements[i], &other = drawn.measurements[i];
+      const observations::Measurement &one = kept.measurements[i], &other = drawn.measurements[i];
       EXPECT_NEAR(one.time, other.time, 1e-9);
-      for (const Quantity quantity : kQuantities) {
+      for (const observations::Quantity quantity : observations::kQuantities) {
         EXPECT_NEAR(*one.of(quantity), *other.of(quantity), 1e-9);
         EXPECT_NEAR(one.sigma_of(quantity), other.sigma_of(quantity), 1e-9);
       }
@@ -237,4 +240,4 @@ TEST_F(DatasetTest, KeptSyntheticSetsAreMarked) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::input

@@ -8,7 +8,7 @@
 #include "kernel/core/error.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace traceraft {
+namespace traceraft::input {
 namespace {
 
 FieldDataset small_dataset() {
@@ -16,9 +16,9 @@ FieldDataset small_dataset() {
   data.name = "small";
   data.synthetic = true;
   data.radius_um = 5;
-  FieldSeries series{"1", {}};
+  assimilation::FieldSeries series{"1", {}};
   for (int k = 0; k < 3; ++k) {
-    FieldSnapshot snapshot{10.0 * k, {}, Vec(120), Vec::Ones(120)};
+    assimilation::FieldSnapshot snapshot{10.0 * k, {}, Vec(120), Vec::Ones(120)};
     for (int i = 0; i < 120; ++i) {
       const double angle = 0.1 * i;
       snapshot.points.emplace_back(std::cos(angle), std::sin(angle), 0);
@@ -69,8 +69,8 @@ TEST_F(FieldDatasetTest, ReadsWhatItHasWritten) {
   ASSERT_EQ(data.vesicles[0].snapshots.size(), 3u);
   EXPECT_TRUE(data.synthetic);
   const FieldDataset written = small_dataset();
-  const FieldSnapshot &before = written.vesicles[0].snapshots[2],
-                      &after = data.vesicles[0].snapshots[2];
+  const assimilation::FieldSnapshot &before = written.vesicles[0].snapshots[2],
+                                    &after = data.vesicles[0].snapshots[2];
   EXPECT_EQ(after.time, before.time);
   EXPECT_LT((after.points[7] - before.points[7]).norm(), 1e-8);
   EXPECT_LT((after.values - before.values).norm(), 1e-4);
@@ -99,7 +99,7 @@ TEST_F(FieldDatasetTest, AsksAboutARadiusThatThePointsContradict) {
   EXPECT_EQ(note_on_distance(data), "");
   data.vesicles[0].snapshots[0].points[3] *= 1.5;  // one that is off is another matter
   EXPECT_EQ(note_on_distance(data), "");
-  for (FieldSnapshot& snapshot : data.vesicles[0].snapshots)
+  for (assimilation::FieldSnapshot& snapshot : data.vesicles[0].snapshots)
     for (Point& x : snapshot.points) x *= 0.9;
   const std::string note = note_on_distance(data);
   EXPECT_NE(note.find("from the centre is 4.5 um"), std::string::npos) << note;
@@ -108,10 +108,10 @@ TEST_F(FieldDatasetTest, AsksAboutARadiusThatThePointsContradict) {
 
 TEST_F(FieldDatasetTest, AsksAboutValuesOnAnotherScale) {
   FieldDataset data = small_dataset();
-  for (FieldSnapshot& snapshot : data.vesicles[0].snapshots)
+  for (assimilation::FieldSnapshot& snapshot : data.vesicles[0].snapshots)
     for (Eigen::Index i = 0; i < snapshot.values.size(); ++i) snapshot.values[i] = i % 2;
   const auto scale = [&](double factor, double zero) {
-    for (FieldSnapshot& snapshot : data.vesicles[0].snapshots)
+    for (assimilation::FieldSnapshot& snapshot : data.vesicles[0].snapshots)
       snapshot.values = (factor * snapshot.values.array() + zero).matrix();
   };
   EXPECT_EQ(note_on_scale(data, 0, 1), "");
@@ -137,7 +137,7 @@ TEST_F(FieldDatasetTest, ReadsAFolderOfBothKinds) {
   EXPECT_TRUE(holds_series(folder.path));
   EXPECT_TRUE(holds_fields(folder.path));
   EXPECT_EQ(read_field_dataset(folder.path).vesicles[0].snapshots[1].time, 150);
-  const Measurement look = read_dataset(folder.path).measurements.at(0);
+  const observations::Measurement look = read_dataset(folder.path).measurements.at(0);
   EXPECT_EQ(look.time, 90);
   EXPECT_EQ(look.radius, 5);
 }
@@ -185,4 +185,4 @@ TEST_F(FieldDatasetTest, RefusesWhatIsWrongWithItsPlace) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::input

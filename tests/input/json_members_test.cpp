@@ -4,7 +4,7 @@
 
 #include "tests/support/temporary_folder.hpp"
 
-namespace traceraft {
+namespace traceraft::input {
 namespace {
 
 struct Part {
@@ -42,7 +42,7 @@ class JsonMembersTest : public ::testing::Test {
   std::string complaint(const char* member, const Json& value) {
     Json json = object_of(whole);
     json[member] = value;
-    write_durably(file, json.dump());
+    posix::write_durably(file, json.dump());
     try {
       (void)read_object<Whole>(file);
     } catch (const std::runtime_error& error) {
@@ -53,7 +53,7 @@ class JsonMembersTest : public ::testing::Test {
 };
 
 TEST_F(JsonMembersTest, ComeBackAsTheyWere) {
-  write_durably(file, object_of(whole).dump());
+  posix::write_durably(file, object_of(whole).dump());
   const Whole read = read_object<Whole>(file);
   EXPECT_EQ(read.runs, 3);
   EXPECT_EQ(read.seed, whole.seed);
@@ -98,14 +98,14 @@ TEST_F(JsonMembersTest, AreAllNeeded) {
   for (const auto& [name, value] : all.items()) {
     Json json = all;
     json.erase(name);
-    write_durably(file, json.dump());
+    posix::write_durably(file, json.dump());
     EXPECT_THROW((void)read_object<Whole>(file), DamagedFile) << name;
   }
   for (const char* text : {"[1]", "{", "", "3", "null"}) {
-    write_durably(file, text);
+    posix::write_durably(file, text);
     EXPECT_THROW((void)read_object<Whole>(file), DamagedFile) << text;
   }
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::input

@@ -14,7 +14,7 @@
 #include "tests/support/dense.hpp"
 #include "tests/support/spaces.hpp"
 
-namespace traceraft {
+namespace traceraft::linear {
 namespace {
 
 using testing::make_model;
@@ -27,7 +27,7 @@ class LinearSolverContract : public ::testing::TestWithParam<std::string> {
   LinearSolverContract()
       : space(make_space(16)),
         problem(space, make_model("degenerate", 0.1)),
-        solver(linear_solvers().find(GetParam()).make(*space, {})(1)),
+        solver(backends::linear_solvers().find(GetParam()).make(*space, {})(1)),
         J(problem.make_jacobian()) {}
 
   void assemble(double shift, std::uint64_t seed = 1, Tangent tangent = Tangent::stabilised) {
@@ -40,8 +40,8 @@ class LinearSolverContract : public ::testing::TestWithParam<std::string> {
     return scaled_norm(J, b - product) / scaled_norm(J, b);
   }
 
-  std::shared_ptr<const SurfaceSpace> space;
-  CahnHilliard problem;
+  std::shared_ptr<const fem::SurfaceSpace> space;
+  problem::CahnHilliard problem;
   LinearSolverPtr solver;
   BlockJacobian J;
 };
@@ -159,22 +159,23 @@ TEST_P(LinearSolverContract, CountsWhatItDoes) {
   EXPECT_EQ(statistics.solves, 1);
   std::stringstream saved;
   solver->save(saved);
-  LinearSolverPtr other = linear_solvers().find(GetParam()).make(*space, {})(1);
+  LinearSolverPtr other = backends::linear_solvers().find(GetParam()).make(*space, {})(1);
   other->load(saved);
   EXPECT_EQ(other->statistics().iterations, statistics.iterations);
   EXPECT_EQ(other->statistics().setup_seconds, statistics.setup_seconds);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, LinearSolverContract, ::testing::ValuesIn(built_linear_solvers()));
+INSTANTIATE_TEST_SUITE_P(All, LinearSolverContract,
+                         ::testing::ValuesIn(backends::built_linear_solvers()));
 
 // Factors that are off by a factor.
-class Inexact final : public SparseLu {
+class Inexact final : public suitesparse::SparseLu {
  public:
   explicit Inexact(double factor) : factor_(factor) {}
-  Status factorise(AssembledSystem& system, const std::vector<int>& order) override {
+  Status factorise(suitesparse::AssembledSystem& system, const std::vector<int>& order) override {
     return lu_->factorise(system, order);
   }
-  Status solve(AssembledSystem& system, const Vec& right, Vec& solution) override {
+  Status solve(suitesparse::AssembledSystem& system, const Vec& right, Vec& solution) override {
     const Status status = lu_->solve(system, right, solution);
     solution *= factor_;
     return status;
@@ -182,14 +183,14 @@ class Inexact final : public SparseLu {
 
  private:
   double factor_;
-  std::unique_ptr<SparseLu> lu_ = make_umfpack_lu();
+  std::unique_ptr<suitesparse::SparseLu> lu_ = suitesparse::make_umfpack_lu();
 };
 
 // A Krylov method that says what it is told to, of an iterate that is off by a factor.
 class Mistaken final : public KrylovMethod {
  public:
   Mistaken(int size, double factor, Status said)
-      : factor_(factor), said_(std::move(said)), method_(make_spfgmr(size)) {}
+      : factor_(factor), said_(std::move(said)), method_(sundials::make_spfgmr(size)) {}
   SolveReport solve(const LinearOperator& A, const LinearOperator& preconditioner, VecView b,
                     VecRef x, double tolerance, int max_iterations) override {
     SolveReport report = method_->solve(A, preconditioner, b, x, 0.01 * tolerance, max_iterations);
@@ -207,7 +208,7 @@ class Mistaken final : public KrylovMethod {
 // Only the explicit residual decides.
 TEST(BlockSolver, DoesNotTakeItsKrylovMethodAtItsWord) {
   const auto space = make_space(12);
-  const CahnHilliard problem(space, make_model("degenerate", 0.1));
+  const problem::CahnHilliard problem(space, make_model("degenerate", 0.1));
   const auto size = static_cast<int>(problem.size());
   BlockJacobian J = problem.make_jacobian();
   const testing::StartState start = noise_state(problem, 1);
@@ -215,7 +216,7 @@ TEST(BlockSolver, DoesNotTakeItsKrylovMethodAtItsWord) {
   const Vec b = random_vector(size, 2);
   const auto solves = [&](double factor, const Status& said) {
     const LinearSolverPtr solver = make_block_solver(
-        supernodal_factory(space->pattern),
+        suitesparse::supernodal_factory(space->pattern),
         [&] { return std::make_unique<Mistaken>(size, factor, said); }, space->team, 1);
     EXPECT_TRUE(solver->setup(J).ok());
     Vec x = Vec::Zero(size);
@@ -230,13 +231,13 @@ TEST(BlockSolver, DoesNotTakeItsKrylovMethodAtItsWord) {
 
 TEST(DirectSolver, RefinesWhereItsFactorsAreNotGoodEnough) {
   const auto space = make_space(12);
-  const CahnHilliard problem(space, make_model("degenerate", 0.1));
+  const problem::CahnHilliard problem(space, make_model("degenerate", 0.1));
   BlockJacobian J = problem.make_jacobian();
   const testing::StartState start = noise_state(problem, 1);
   ASSERT_TRUE(problem.jacobian(0, start.y, start.ydot, 10, Tangent::exact, J).ok());
   const Vec b = random_vector(problem.size(), 2);
   const auto solves = [&](double factor) {
-    const LinearSolverPtr solver = make_direct_solver(
+    const LinearSolverPtr solver = suitesparse::make_direct_solver(
         "inexact", [factor] { return std::make_unique<Inexact>(factor); }, space->pattern, 1);
     EXPECT_TRUE(solver->setup(J).ok());
     Vec x = Vec::Zero(b.size());
@@ -299,7 +300,7 @@ TEST(TwoSolve, ShiftsAreTheRootsTheyStandFor) {
 // Dense Cholesky: exact to roundoff, and checkable by hand.
 class DenseSolver final : public SpdSolver {
  public:
-  Status factorise(const CsrMatrix& A) override {
+  Status factorise(const fem::CsrMatrix& A) override {
     factor_.compute(testing::dense(A));
     return factor_.info() == Eigen::Success ? Status{} : Status::retry("not positive definite");
   }
@@ -311,7 +312,7 @@ class DenseSolver final : public SpdSolver {
 
 TEST(TwoSolve, IsTheExactInverseForConstantMobilityAndRealRoots) {
   const auto space = make_space(12);
-  const CahnHilliard problem(space, make_model("constant:value=0.25", 0.2));
+  const problem::CahnHilliard problem(space, make_model("constant:value=0.25", 0.2));
   const testing::StartState start = noise_state(problem);
   BlockJacobian J = problem.make_jacobian();
   TwoSolvePreconditioner inverse([](int) { return std::make_unique<DenseSolver>(); }, 1);
@@ -335,8 +336,8 @@ TEST(TwoSolve, IsTheExactInverseForConstantMobilityAndRealRoots) {
 
 TEST(SupernodalSolver, SolvesToThePrecisionOfItsCopyOnEveryLane) {
   const auto space = make_space(24);
-  const CsrMatrix A = combine(1, space->stabilised_mass, 0.01, space->stiffness);
-  const SpdSolverPtr solver = supernodal_factory(space->pattern)(2);
+  const fem::CsrMatrix A = fem::combine(1, space->stabilised_mass, 0.01, space->stiffness);
+  const SpdSolverPtr solver = suitesparse::supernodal_factory(space->pattern)(2);
   DenseSolver reference;
   ASSERT_TRUE(solver->factorise(A).ok());
   ASSERT_TRUE(reference.factorise(A).ok());
@@ -351,7 +352,7 @@ TEST(SupernodalSolver, SolvesToThePrecisionOfItsCopyOnEveryLane) {
   EXPECT_EQ(first, second);
   solver->solve(b, second, three, 0);
   EXPECT_EQ(first, second);
-  CsrMatrix indefinite = A;
+  fem::CsrMatrix indefinite = A;
   for (const int k : space->pattern->diagonal) indefinite.values[k] *= -1;
   EXPECT_EQ(solver->factorise(indefinite).outcome, Outcome::retry);
   ASSERT_TRUE(solver->factorise(A).ok());
@@ -360,4 +361,4 @@ TEST(SupernodalSolver, SolvesToThePrecisionOfItsCopyOnEveryLane) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::linear

@@ -12,15 +12,15 @@
 #include "kernel/mesh/cut_cells.hpp"
 #include "kernel/mesh/cut_surface.hpp"
 
-namespace traceraft {
+namespace traceraft::mesh {
 namespace {
 
 constexpr double kSphereArea = 4 * M_PI;
 
 // Counts how often the level set is asked for.
-class Counting final : public LevelSet {
+class Counting final : public geometry::LevelSet {
  public:
-  explicit Counting(LevelSetPtr base) : base_(std::move(base)) {}
+  explicit Counting(geometry::LevelSetPtr base) : base_(std::move(base)) {}
   double value(const Point& x) const override {
     ++calls;
     return base_->value(x);
@@ -28,7 +28,7 @@ class Counting final : public LevelSet {
   mutable long calls = 0;
 
  private:
-  LevelSetPtr base_;
+  geometry::LevelSetPtr base_;
 };
 
 double area_of(const ActiveMesh& mesh) {
@@ -36,7 +36,7 @@ double area_of(const ActiveMesh& mesh) {
   return std::accumulate(surface.triangle_area.begin(), surface.triangle_area.end(), 0.0);
 }
 
-std::string complaint(const LevelSet& surface, int cells) {
+std::string complaint(const geometry::LevelSet& surface, int cells) {
   try {
     const ActiveMesh mesh = build_active_mesh(surface, cells);
     require_resolution(mesh, build_cut_surface(mesh));
@@ -47,15 +47,15 @@ std::string complaint(const LevelSet& surface, int cells) {
 }
 
 TEST(ActiveMesh, IsTheMeshOfTheReferenceResults) {
-  const ActiveMesh mesh = build_active_mesh(*make_surface("sphere"), 128);
+  const ActiveMesh mesh = build_active_mesh(*geometry::make_surface("sphere"), 128);
   EXPECT_EQ(mesh.tets.size(), 127080u);
   EXPECT_EQ(mesh.nodes(), 43864);
   EXPECT_NEAR(area_of(mesh) / kSphereArea - 1, -1.7e-4, 1e-5);
 }
 
 TEST(ActiveMesh, FindsExactlyTheCellsThatASearchOfTheWholeCubeFinds) {
-  for (const std::string& name : surfaces().names()) {
-    const LevelSetPtr surface = make_surface(name);
+  for (const std::string& name : geometry::surfaces().names()) {
+    const geometry::LevelSetPtr surface = geometry::make_surface(name);
     const CubeMesh mesh{32};
     std::vector<std::int64_t> expected;
     for (std::int64_t id = 0; id < 32 * 32 * 32; ++id) {
@@ -69,7 +69,7 @@ TEST(ActiveMesh, FindsExactlyTheCellsThatASearchOfTheWholeCubeFinds) {
 }
 
 TEST(ActiveMesh, FindsSeveralSurfaces) {
-  const FunctionLevelSet two([](const Point& x) {
+  const geometry::FunctionLevelSet two([](const Point& x) {
     return std::min((x - Point(0.7, 0, 0)).norm() - 0.5, (x + Point(0.7, 0, 0)).norm() - 0.3);
   });
   const ActiveMesh mesh = build_active_mesh(two, 96);
@@ -80,7 +80,7 @@ TEST(ActiveMesh, FindsSeveralSurfaces) {
 TEST(ActiveMesh, CostsGrowLikeTheSurfaceNotTheCube) {
   std::vector<double> calls;
   for (const int cells : {128, 256}) {
-    const Counting surface(make_surface("sphere"));
+    const Counting surface(geometry::make_surface("sphere"));
     find_cut_cells(surface, {cells});
     calls.push_back(static_cast<double>(surface.calls - 65 * 65 * 65));
   }
@@ -88,7 +88,7 @@ TEST(ActiveMesh, CostsGrowLikeTheSurfaceNotTheCube) {
 }
 
 TEST(ActiveMesh, SharesEdgesAndKeepsGlobalOrder) {
-  const ActiveMesh mesh = build_active_mesh(*make_surface("dziuk"), 24);
+  const ActiveMesh mesh = build_active_mesh(*geometry::make_surface("dziuk"), 24);
   EXPECT_TRUE(std::is_sorted(mesh.node_id.begin(), mesh.node_id.end()));
   std::set<std::pair<int, int>> pairs;
   for (const ActiveTet& tet : mesh.tets)
@@ -105,7 +105,7 @@ TEST(ActiveMesh, SharesEdgesAndKeepsGlobalOrder) {
 // through mesh nodes (n = 90: h = 1/27).
 TEST(CutGeometry, SurvivesASurfaceThroughVertices) {
   for (const int cells : {60, 90, 180}) {
-    const ActiveMesh mesh = build_active_mesh(*make_surface("sphere"), cells);
+    const ActiveMesh mesh = build_active_mesh(*geometry::make_surface("sphere"), cells);
     EXPECT_NEAR(area_of(mesh) / kSphereArea - 1, -1.7e-4 * std::pow(128.0 / cells, 2), 4e-5)
         << cells;
     EXPECT_EQ(euler_characteristic(mesh, build_cut_surface(mesh)), 2) << cells;
@@ -113,26 +113,28 @@ TEST(CutGeometry, SurvivesASurfaceThroughVertices) {
   // A cube whose faces are faces of cells: nothing is lost or counted twice against a cube that is
   // smaller by 1e-7 and in general position.
   const auto cube = [](double half_width) {
-    return build_active_mesh(
-        FunctionLevelSet([=](const Point& x) { return x.cwiseAbs().maxCoeff() - half_width; }), 20);
+    return build_active_mesh(geometry::FunctionLevelSet([=](const Point& x) {
+                               return x.cwiseAbs().maxCoeff() - half_width;
+                             }),
+                             20);
   };
   EXPECT_NEAR(area_of(cube(1)) / area_of(cube(1 - 1e-7)), 1, 1e-6);
   EXPECT_EQ(euler_characteristic(cube(1), build_cut_surface(cube(1))), 2);
 }
 
 TEST(CutGeometry, DoesNotDependOnWhereTheMeshLies) {
-  const LevelSetPtr sphere = make_surface("sphere");
+  const geometry::LevelSetPtr sphere = geometry::make_surface("sphere");
   for (int i = 0; i < 100; ++i) {
     const Point offset = 0.2 * Point(uniform_random(1, 0, i) - 0.5, uniform_random(1, 1, i) - 0.5,
                                      uniform_random(1, 2, i) - 0.5);
-    const ActiveMesh mesh = build_active_mesh(ShiftedLevelSet(sphere, offset), 24);
+    const ActiveMesh mesh = build_active_mesh(geometry::ShiftedLevelSet(sphere, offset), 24);
     EXPECT_NEAR(area_of(mesh) / kSphereArea - 1, -4.8e-3, 5e-4) << offset.transpose();
     EXPECT_EQ(euler_characteristic(mesh, build_cut_surface(mesh)), 2);
   }
 }
 
 TEST(CutGeometry, AgreesBetweenElementsAndSurface) {
-  const ActiveMesh mesh = build_active_mesh(*make_surface("torus"), 32);
+  const ActiveMesh mesh = build_active_mesh(*geometry::make_surface("torus"), 32);
   const CutSurface surface = build_cut_surface(mesh);
   double area = 0;
   for (std::size_t k = 0; k < surface.triangles.size(); ++k) {
@@ -147,18 +149,18 @@ TEST(CutGeometry, AgreesBetweenElementsAndSurface) {
 }
 
 TEST(CutGeometry, RefusesWhatItCannotRepresent) {
-  const LevelSetPtr sphere = make_surface("sphere");
+  const geometry::LevelSetPtr sphere = geometry::make_surface("sphere");
   EXPECT_NE(complaint(*sphere, 4).find("too coarse"), std::string::npos);
   EXPECT_EQ(complaint(*sphere, 8), "");
-  EXPECT_NE(complaint(*make_surface("biconcave"), 8), "");
-  EXPECT_NE(complaint(ShiftedLevelSet(sphere, {1, 0, 0}), 32).find("boundary of the box"),
+  EXPECT_NE(complaint(*geometry::make_surface("biconcave"), 8), "");
+  EXPECT_NE(complaint(geometry::ShiftedLevelSet(sphere, {1, 0, 0}), 32).find("boundary of the box"),
             std::string::npos);
-  EXPECT_NE(complaint(ShiftedLevelSet(sphere, {9, 0, 0}), 32).find("no surface"),
+  EXPECT_NE(complaint(geometry::ShiftedLevelSet(sphere, {9, 0, 0}), 32).find("no surface"),
             std::string::npos);
-  EXPECT_NE(complaint(FunctionLevelSet([](const Point& x) { return std::log(x[0]); }), 16)
+  EXPECT_NE(complaint(geometry::FunctionLevelSet([](const Point& x) { return std::log(x[0]); }), 16)
                 .find("not finite"),
             std::string::npos);
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::mesh

@@ -6,16 +6,17 @@
 
 #include "tests/support/spaces.hpp"
 
-namespace traceraft {
+namespace traceraft::mesh {
 namespace {
 
 // What is said of the sphere as the zero of f(|x|² − 1), "" if nothing.
 template <class F>
 std::string complaint(const F& f, int cells = 32) {
   try {
-    const FunctionLevelSet surface([f](const Point& x) { return f(x.squaredNorm() - 1); });
-    const SurfaceSpace space(surface, cells, std::make_shared<ThreadTeam>(1),
-                             std::make_shared<SerialCommunicator>());
+    const geometry::FunctionLevelSet surface(
+        [f](const Point& x) { return f(x.squaredNorm() - 1); });
+    const fem::SurfaceSpace space(surface, cells, std::make_shared<ThreadTeam>(1),
+                                  std::make_shared<SerialCommunicator>());
     return "";
   } catch (const InputError& error) {
     return error.what();
@@ -23,7 +24,7 @@ std::string complaint(const F& f, int cells = 32) {
 }
 
 TEST(GradientCheck, TakesEverySurfaceOnTheMeshesThatResolveIt) {
-  for (const std::string& name : surfaces().names())
+  for (const std::string& name : geometry::surfaces().names())
     for (const int cells : {32, 48, 64}) EXPECT_NO_THROW(testing::make_space(cells, name)) << name;
 }
 
@@ -52,10 +53,10 @@ TEST(GradientCheck, RefusesALevelSetThatJumps) {
 }
 
 TEST(GradientCheck, ComparesWithTheGradientAcrossACell) {
-  const FunctionLevelSet curved([](const Point& x) { return x[0] * x[0] * x[0] + x[0]; });
+  const geometry::FunctionLevelSet curved([](const Point& x) { return x[0] * x[0] * x[0] + x[0]; });
   EXPECT_NEAR(relative_gradient(curved, Point(0, 0, 0), 2), 0.5, 1e-6);
-  EXPECT_NEAR(relative_gradient(*make_surface("sphere"), Point(1, 0, 0), 0.1), 1, 1e-2);
+  EXPECT_NEAR(relative_gradient(*geometry::make_surface("sphere"), Point(1, 0, 0), 0.1), 1, 1e-2);
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::mesh

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace traceraft {
+namespace traceraft::mesh {
 namespace {
 
 struct Lift {
@@ -12,7 +12,7 @@ struct Lift {
   CutSurface surface;
   std::vector<LiftedTriangle> triangles;
 
-  Lift(const LevelSet& level_set, int cells)
+  Lift(const geometry::LevelSet& level_set, int cells)
       : mesh(build_active_mesh(level_set, cells)),
         surface(build_cut_surface(mesh)),
         triangles(lifted_triangles(level_set, mesh, surface, ThreadTeam(1))) {}
@@ -28,7 +28,7 @@ struct Lift {
 
 // x ↦ x/|x| has the derivative (1 − n nᵀ)/|x|, n = x/|x|.
 TEST(LiftedSurface, HasTheMetricOfTheUnitSphere) {
-  const Lift lift(*make_surface("sphere"), 16);
+  const Lift lift(*geometry::make_surface("sphere"), 16);
   for (std::size_t t = 0; t < lift.triangles.size(); ++t) {
     const Point normal = cut_normal(lift.mesh, lift.mesh.tets[lift.surface.triangle_tet[t]]);
     double stretch = 0;
@@ -51,7 +51,7 @@ TEST(LiftedSurface, HasTheMetricOfTheUnitSphere) {
 }
 
 TEST(LiftedSurface, LiesOnASurfaceWhoseLevelSetIsNoDistance) {
-  const LevelSetPtr ellipsoid = make_surface("ellipsoid");
+  const geometry::LevelSetPtr ellipsoid = geometry::make_surface("ellipsoid");
   const Lift lift(*ellipsoid, 32);
   const double h = lift.mesh.cube.h();
   double before = 0, after = 0;
@@ -68,7 +68,7 @@ TEST(LiftedSurface, LiesOnASurfaceWhoseLevelSetIsNoDistance) {
 TEST(LiftedSurface, AreasConvergeInOrderFour) {
   for (const auto& [name, exact] :
        {std::pair("sphere", 4 * M_PI), std::pair("torus", 4 * M_PI * M_PI * 0.4)}) {
-    const LevelSetPtr surface = make_surface(name);
+    const geometry::LevelSetPtr surface = geometry::make_surface(name);
     double error[2];
     for (int level = 0; level < 2; ++level)
       error[level] = std::fabs(Lift(*surface, 24 << level).area() / exact - 1);
@@ -79,7 +79,8 @@ TEST(LiftedSurface, AreasConvergeInOrderFour) {
 
 // Where the surface has an edge there is no lift that is nearly flat.
 TEST(LiftedSurface, StaysFlatAtAnEdge) {
-  const FunctionLevelSet cube([](const Point& x) { return x.cwiseAbs().maxCoeff() - 0.7; });
+  const geometry::FunctionLevelSet cube(
+      [](const Point& x) { return x.cwiseAbs().maxCoeff() - 0.7; });
   const Lift lift(cube, 20);
   EXPECT_NEAR(lift.area() / (6 * 1.4 * 1.4), 1, 0.03);
   for (const LiftedTriangle& triangle : lift.triangles) {
@@ -89,7 +90,7 @@ TEST(LiftedSurface, StaysFlatAtAnEdge) {
 }
 
 TEST(LiftedSurface, StaysFlatWhereTheLevelSetIsNotFinite) {
-  const FunctionLevelSet shell([](const Point& x) {
+  const geometry::FunctionLevelSet shell([](const Point& x) {
     const double distance = x.norm() - 1;
     return std::fabs(distance) < 1e-4 ? std::nan("") : distance;
   });
@@ -99,4 +100,4 @@ TEST(LiftedSurface, StaysFlatWhereTheLevelSetIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::mesh

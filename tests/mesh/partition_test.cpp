@@ -13,7 +13,7 @@
 #include "tests/support/rank_contract.hpp"
 #include "tests/support/thread_ranks.hpp"
 
-namespace traceraft {
+namespace traceraft::mesh {
 namespace {
 
 using testing::run_on_ranks;
@@ -64,14 +64,15 @@ TEST(Partition, FollowsAHilbertCurve) {
 TEST(Partition, SharesTheMeshEvenlyAndCompletely) {
   for (const std::string surface : {"sphere", "torus", "biconcave"})
     for (const int ranks : {2, 3, 7}) {
-      const ActiveMesh whole = build_active_mesh(*make_surface(surface), 64);
+      const ActiveMesh whole = build_active_mesh(*geometry::make_surface(surface), 64);
       const std::vector<Tet> expected = tets_of(whole, false);
       std::multiset<Tet> owned;
       std::set<std::int64_t> nodes;
       std::size_t most = 0;
       std::mutex mutex;
       run_on_ranks(ranks, [&](const auto& communicator) {
-        const ActiveMesh part = build_active_mesh(*make_surface(surface), 64, *communicator);
+        const ActiveMesh part =
+            build_active_mesh(*geometry::make_surface(surface), 64, *communicator);
         const std::vector<Tet> mine = tets_of(part, true);
         const std::lock_guard lock(mutex);
         owned.insert(mine.begin(), mine.end());
@@ -88,9 +89,9 @@ TEST(Partition, SharesTheMeshEvenlyAndCompletely) {
 
 // Ghosts are where the plan says, and in global order everything that adds to an owned row is here.
 TEST(Partition, RefusesMoreRanksThanItHasWorkFor) {
-  EXPECT_NO_THROW(Partition(*make_surface("sphere"), {8}, 7));
+  EXPECT_NO_THROW(Partition(*geometry::make_surface("sphere"), {8}, 7));
   try {
-    Partition(*make_surface("sphere"), {8}, 5000);
+    Partition(*geometry::make_surface("sphere"), {8}, 5000);
     FAIL();
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("5000 ranks are too many"), std::string::npos);
@@ -98,12 +99,13 @@ TEST(Partition, RefusesMoreRanksThanItHasWorkFor) {
 }
 
 TEST(Partition, EveryRankHasAllThatTouchesItsNodes) {
-  const ActiveMesh whole = build_active_mesh(*make_surface("ellipsoid"), 48);
+  const ActiveMesh whole = build_active_mesh(*geometry::make_surface("ellipsoid"), 48);
   std::map<std::int64_t, std::vector<Tet>> at_node;
   for (const Tet& tet : tets_of(whole, false))
     for (const std::int64_t id : tet) at_node[id].push_back(tet);
   run_on_ranks(4, [&](const auto& communicator) {
-    const ActiveMesh part = build_active_mesh(*make_surface("ellipsoid"), 48, *communicator);
+    const ActiveMesh part =
+        build_active_mesh(*geometry::make_surface("ellipsoid"), 48, *communicator);
     std::map<std::int64_t, std::vector<Tet>> mine;
     for (const Tet& tet : tets_of(part, false))
       for (const std::int64_t id : tet) mine[id].push_back(tet);
@@ -119,7 +121,7 @@ TEST(Partition, EveryRankHasAllThatTouchesItsNodes) {
 }
 
 TEST(Partition, WalksGoOnWhereAnotherRankBegins) {
-  const FunctionLevelSet surface(dumbbell);
+  const geometry::FunctionLevelSet surface(dumbbell);
   const std::size_t expected = build_active_mesh(surface, 256).tets.size();
   for (const int ranks : {2, 5}) {
     std::size_t found = 0;
@@ -136,10 +138,11 @@ TEST(Partition, WalksGoOnWhereAnotherRankBegins) {
 TEST(Partition, RefusesMoreRanksThanTheMeshHasRoomFor) {
   EXPECT_THROW(run_on_ranks(40,
                             [](const auto& communicator) {
-                              (void)build_active_mesh(*make_surface("sphere"), 4, *communicator);
+                              (void)build_active_mesh(*geometry::make_surface("sphere"), 4,
+                                                      *communicator);
                             }),
                InputError);
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::mesh

@@ -8,12 +8,12 @@
 #include "kernel/observables/resolved_boundary.hpp"
 #include "tests/support/spaces.hpp"
 
-namespace traceraft {
+namespace traceraft::observables {
 namespace {
 
 using testing::make_space;
 
-Vec nodal(const SurfaceSpace& space, const std::function<double(const Point&)>& f) {
+Vec nodal(const fem::SurfaceSpace& space, const std::function<double(const Point&)>& f) {
   Vec c(space.nodes());
   for (int i = 0; i < space.nodes(); ++i) c[i] = f(space.mesh.position(i));
   return c;
@@ -67,7 +67,7 @@ TEST(Rafts, TheNumberAtAPointIsThatOfItsRaft) {
   const Vec c = nodal(*space, [](const Point& x) { return 0.45 + x[0] * x[1] * x[2]; });
   const RaftReport report = RaftFinder(space).find(c, 0.5);
   ASSERT_EQ(report.rafts.size(), 4u);
-  const Vec value = trace(*space, c);
+  const Vec value = fem::trace(*space, c);
   ASSERT_EQ(report.of_point.size(), space->surface.points.size());
   for (std::size_t p = 0; p < report.of_point.size(); ++p) {
     const int number = report.of_point[p];
@@ -92,7 +92,7 @@ TEST(Rafts, RegionsBelowAreCounted) {
 
 TEST(Observables, DomainsAreThoseOfThePhaseThatCoversLess) {
   const auto space = make_space(48);
-  const CahnHilliard problem(space, testing::make_model());
+  const problem::CahnHilliard problem(space, testing::make_model());
   const Observer observer(problem, space, 1);
   for (const double mean : {0.45, 0.55}) {
     Vec y = Vec::Zero(problem.size());
@@ -131,12 +131,13 @@ TEST(Rafts, DoNotDependOnThePositionOfTheSurface) {
 
 TEST(Observables, PerimetersAgreeForAnEquilibriumProfile) {
   const auto space = make_space(96);
-  const CahnHilliard problem(space, testing::make_model("degenerate", 0.06));
+  const problem::CahnHilliard problem(space, testing::make_model("degenerate", 0.06));
   Vec y = Vec::Zero(problem.size());
   y.head(problem.block_size()) = nodal(*space, [](const Point& x) {
-    return DoubleWell{}.profile(std::acos(x[2] / x.norm()) - M_PI / 2, 0.06);
+    return physics::DoubleWell{}.profile(std::acos(x[2] / x.norm()) - M_PI / 2, 0.06);
   });
-  const Observables row = Observer(problem, space, DoubleWell{}.interface_energy()).measure(1.5, y);
+  const Observables row =
+      Observer(problem, space, physics::DoubleWell{}.interface_energy()).measure(1.5, y);
   EXPECT_EQ(row.t, 1.5);
   EXPECT_EQ(row.rafts, 1);
   EXPECT_NEAR(row.perimeter_level, 2 * M_PI, 0.01);
@@ -148,7 +149,7 @@ TEST(Observables, PerimetersAgreeForAnEquilibriumProfile) {
 }
 
 TEST(ResolvedBoundary, DependsOnTheWidthThatTheWellMakes) {
-  CahnHilliardModel model = testing::make_model("degenerate", 0.02);
+  problem::CahnHilliardModel model = testing::make_model("degenerate", 0.02);
   const double resolved = resolved_boundary(model, 0.05).resolved;
   model.well = {4, 0.3, 0.8};  // half as wide
   model.epsilon = 0.04;
@@ -158,7 +159,7 @@ TEST(ResolvedBoundary, DependsOnTheWidthThatTheWellMakes) {
 }
 
 TEST(ResolvedBoundary, ItsTableHasNoGapsAndEnds) {
-  CahnHilliardModel model = testing::make_model("degenerate", 1);
+  problem::CahnHilliardModel model = testing::make_model("degenerate", 1);
   double before = 1;
   for (double h = 0; h < 20; h += 0.05) {
     const double resolved = resolved_boundary(model, h).resolved;
@@ -169,4 +170,4 @@ TEST(ResolvedBoundary, ItsTableHasNoGapsAndEnds) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::observables

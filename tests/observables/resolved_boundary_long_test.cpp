@@ -3,13 +3,14 @@
 #include "kernel/observables/resolved_boundary.hpp"
 #include "tests/support/relaxed_boundary.hpp"
 
-namespace traceraft {
+namespace traceraft::observables {
 namespace {
 
 using testing::make_space;
 
 // ∫ ε|∇c|² of two halves in equilibrium over that of a straight boundary of the same length.
-double measured_resolution(const CahnHilliardModel& model, const SurfaceSpace& space, int axes) {
+double measured_resolution(const problem::CahnHilliardModel& model, const fem::SurfaceSpace& space,
+                           int axes) {
   double sum = 0;
   for (int k = 0; k < axes; ++k) {
     const Vec c =
@@ -23,10 +24,11 @@ TEST(ResolvedBoundary, IsWhatBoundariesHaveOnAverage) {
   constexpr int kAxes = 16;
   const auto space = make_space(48);
   for (const double h_over_epsilon : {1.3, 2.6, 4.5})
-    for (const auto& [rule, scatter] :
-         {std::pair(PotentialRule::averaged, 0.0013), std::pair(PotentialRule::consistent, 0.0035),
-          std::pair(PotentialRule::nodal, 0.011)}) {
-      CahnHilliardModel model = testing::make_model("degenerate", space->h() / h_over_epsilon);
+    for (const auto& [rule, scatter] : {std::pair(fem::PotentialRule::averaged, 0.0013),
+                                        std::pair(fem::PotentialRule::consistent, 0.0035),
+                                        std::pair(fem::PotentialRule::nodal, 0.011)}) {
+      problem::CahnHilliardModel model =
+          testing::make_model("degenerate", space->h() / h_over_epsilon);
       model.rule = rule;
       const double straight = 1 - 4 * model.epsilon * model.epsilon;
       EXPECT_NEAR(measured_resolution(model, *space, kAxes) / straight,
@@ -37,4 +39,4 @@ TEST(ResolvedBoundary, IsWhatBoundariesHaveOnAverage) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::observables

@@ -7,7 +7,8 @@
 #include "verification/calibration/calibration.hpp"
 #include "verification/calibration/calibration_data.hpp"
 
-namespace traceraft::simulated_rafts {
+namespace traceraft::observations {
+using namespace simulated_rafts;
 namespace {
 
 // Five vesicles and five runs: without the factor for few 81 of 120 sets hold the truth. Of 155
@@ -22,7 +23,7 @@ TEST(Calibration, KnowsHowLittleFewSay) {
     std::vector<History> vesicles = simulate(kEpsilon, true, kFew, 1000 * seed);
     for (History& vesicle : vesicles)
       for (double& t : vesicle.time) t *= kSeconds;
-    const Calibration found = calibrate(
+    const calibration::Calibration found = calibration::calibrate(
         draw_from_runs(facts, vesicles, 5, seed), {},
         {{{}, simulate(kEpsilon, true, kFew, 500000 + 1000 * seed)}}, around(1.5 * kSeconds));
     held += found.parameters[0].interval.contains(kSeconds);
@@ -37,7 +38,7 @@ TEST(Calibration, FindsWhatTheDataDetermine) {
   std::vector<double> time_errors, epsilon_errors;
   constexpr int kSets = 16;
   for (int seed = 1; seed <= kSets; ++seed) {
-    const Calibration found = calibrated(true, seed, 0.11);
+    const calibration::Calibration found = calibrated(true, seed, 0.11);
     ASSERT_EQ(found.parameters.size(), 2u);
     EXPECT_TRUE(found.parameters[1].determined) << seed;
     time_errors.push_back(std::fabs(std::log(found.parameters[0].value / kSeconds)));
@@ -48,15 +49,15 @@ TEST(Calibration, FindsWhatTheDataDetermine) {
   // vesicle ln t is known to 0.4 at best (x = 4, N = 20), of 17 to 0.1, and a little worse with 40
   // simulations and looks that do not share information as well as that. At a given time ln N goes
   // with −3 ln ε, so that an error of ε makes one of time that is six times as large.
-  EXPECT_LT(quantile(epsilon_errors, 0.5), 0.02);
-  EXPECT_LT(quantile(time_errors, 0.5), 0.15);
+  EXPECT_LT(statistics::quantile(epsilon_errors, 0.5), 0.02);
+  EXPECT_LT(statistics::quantile(time_errors, 0.5), 0.15);
   EXPECT_GE(held, kSets - 2);
 }
 
 // D and ε enter as D ε² alone.
 TEST(Calibration, SaysWhatTheDataDoNotDetermine) {
   for (int seed = 1; seed <= 4; ++seed) {
-    const Calibration found = calibrated(false, seed, 0.11);
+    const calibration::Calibration found = calibrated(false, seed, 0.11);
     EXPECT_FALSE(found.parameters[1].determined) << seed;
     ASSERT_EQ(found.best_powers.size(), 2u);
     EXPECT_NEAR(found.best_powers[0] / found.best_powers[1], 0.5, 0.1) << seed;
@@ -69,23 +70,25 @@ TEST(Calibration, SaysWhatTheDataDoNotDetermine) {
 
 // Without other parameters the unit of time alone is found, from one ensemble.
 TEST(Calibration, OfTheUnitOfTimeAloneTakesOneEnsemble) {
-  const std::vector<CalibrationPoint> points = {{{}, simulate(kEpsilon, true, 40, 77)}};
+  const std::vector<calibration::CalibrationPoint> points = {
+      {{}, simulate(kEpsilon, true, 40, 77)}};
   std::vector<double> errors, scatter;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const Calibration found = calibrate(measured(true, seed), {}, points, around(2 * kSeconds));
+    const calibration::Calibration found =
+        calibration::calibrate(measured(true, seed), {}, points, around(2 * kSeconds));
     errors.push_back(std::fabs(std::log(found.parameters[0].value / kSeconds)));
     scatter.push_back(found.best.scatter_beyond_runs(Quantity::perimeter));
   }
-  EXPECT_LT(quantile(errors, 0.5), 0.15);
-  EXPECT_LT(quantile(scatter, 0.5), 0.05);  // beyond what the data say themselves
+  EXPECT_LT(statistics::quantile(errors, 0.5), 0.15);
+  EXPECT_LT(statistics::quantile(scatter, 0.5), 0.05);  // beyond what the data say themselves
 }
 
 // The raft fraction is what was measured of it, whatever perimeters and numbers say.
 TEST(Calibration, FindsTheFractionThatWasMeasured) {
   constexpr double kFraction = 0.1;  // that of the data
-  std::vector<CalibrationPoint> points;
+  std::vector<calibration::CalibrationPoint> points;
   for (const double step : {0.25, 0.1})
-    for (const auto& ln : design_around({std::log(1.2 * kFraction)}, step)) {
+    for (const auto& ln : calibration::design_around({std::log(1.2 * kFraction)}, step)) {
       points.push_back({ln, simulate(kEpsilon, true, 20, 5)});
       for (History& run : points.back().runs)
         for (double& value : run.of(Quantity::fraction)) value = std::exp(ln[0]);
@@ -98,11 +101,12 @@ TEST(Calibration, FindsTheFractionThatWasMeasured) {
       ++count;
     }
     mean /= count;
-    const auto found = calibrate(data, {{"fraction", {0.02, 0.9}}}, points, around(kSeconds));
+    const auto found =
+        calibration::calibrate(data, {{"fraction", {0.02, 0.9}}}, points, around(kSeconds));
     EXPECT_NEAR(found.parameters[1].value, mean, 0.02 * mean) << seed;
     EXPECT_TRUE(found.parameters[1].determined) << seed;
   }
 }
 
 }  // namespace
-}  // namespace traceraft::simulated_rafts
+}  // namespace traceraft::observations

@@ -13,14 +13,14 @@
 #include "verification/observations/perimeter_law.hpp"
 #include "verification/statistics/sample.hpp"
 
-namespace traceraft {
+namespace traceraft::observations {
 namespace {
 
 TEST(PowerLaw, IsFoundWithItsOriginOfTime) {
   for (const double t0 : {-30.0, 0.0, 21.1, 80.0}) {
-    Points points;
+    statistics::Points points;
     for (double t = 100; t <= 1000; t *= 1.2) points.emplace_back(t, 53 * std::pow(t - t0, -0.37));
-    const PowerLaw law = fit_power_law_from(points);
+    const statistics::PowerLaw law = statistics::fit_power_law_from(points);
     EXPECT_NEAR(law.t0, t0, 0.01) << t0;
     EXPECT_NEAR(law.b, -0.37, 1e-4);
     EXPECT_NEAR(law.c, 53, 0.05);
@@ -42,7 +42,8 @@ TEST(Published, DrawsWhatWasPublished) {
     residuals.push_back(std::log(*m.of(Quantity::perimeter) / many.perimeter.at(m.time)));
     EXPECT_TRUE(many.window.contains(m.time));
   }
-  const Sample fraction = sample_of(fractions), residual = sample_of(residuals);
+  const statistics::Sample fraction = statistics::sample_of(fractions),
+                           residual = statistics::sample_of(residuals);
   EXPECT_NEAR(fraction.mean, 0.09, 0.001);
   EXPECT_NEAR(fraction.deviation, 0.011, 0.0005);
   EXPECT_NEAR(residual.mean, 0, 0.01);
@@ -332,4 +333,4 @@ TEST(PowerLaw, OfRunsHasAnInterval) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::observations

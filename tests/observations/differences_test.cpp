@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace traceraft {
+namespace traceraft::observations {
 namespace {
 
 MeasuredVesicles vesicles(const std::vector<double>& radii, const std::vector<double>& fractions) {
@@ -53,4 +53,4 @@ TEST(Differences, AreThoseFromWhatRunsShow) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::observations

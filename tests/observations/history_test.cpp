@@ -6,7 +6,7 @@
 
 #include "verification/statistics/sample.hpp"
 
-namespace traceraft {
+namespace traceraft::observations {
 namespace {
 
 History history(std::vector<double> time, std::vector<double> values) {
@@ -37,4 +37,4 @@ TEST(History, CommonTimesAreWhatAllCover) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::observations

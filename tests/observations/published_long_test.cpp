@@ -4,7 +4,7 @@
 #include "tests/support/published_facts.hpp"
 #include "verification/observations/perimeter_law.hpp"
 
-namespace traceraft {
+namespace traceraft::observations {
 namespace {
 
 // The 95 % interval of the exponent holds the truth as often as it says. Of 155 sets more than 17
@@ -23,4 +23,4 @@ TEST(Published, IntervalsHoldTheTruth) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::observations

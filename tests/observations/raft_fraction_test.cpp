@@ -7,7 +7,7 @@
 
 #include "kernel/core/error.hpp"
 
-namespace traceraft {
+namespace traceraft::observations {
 namespace {
 
 double estimate(const std::string& composition, double celsius) {
@@ -79,4 +79,4 @@ TEST(RaftFraction, RefusesPhasesWithoutPhospholipid) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::observations

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-namespace traceraft {
+namespace traceraft::observations {
 namespace {
 
 MeasuredVesicles look(double perimeter, std::optional<double> fraction) {
@@ -78,4 +78,4 @@ TEST(Resolvable, NamesBoundariesShorterThanThatOfACap) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::observations

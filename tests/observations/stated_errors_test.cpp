@@ -9,7 +9,7 @@
 #include "kernel/core/random.hpp"
 #include "verification/observations/mean_of_logarithm.hpp"
 
-namespace traceraft {
+namespace traceraft::observations {
 namespace {
 
 constexpr double kValues[] = {2, 5, 3, 8};
@@ -209,4 +209,4 @@ TEST(StatedErrors, OfCountsAreThoseOfRoundingAtLeast) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::observations

@@ -8,7 +8,7 @@
 #include "kernel/problem/prescribed_density.hpp"
 #include "tests/support/spaces.hpp"
 
-namespace traceraft {
+namespace traceraft::problem {
 namespace {
 
 using testing::make_model;
@@ -19,7 +19,7 @@ using testing::random_vector;
 struct DaeCase {
   std::string name;
   std::string mobility;
-  PotentialRule rule;
+  fem::PotentialRule rule;
   bool with_source;
 };
 void PrintTo(const DaeCase& dae, std::ostream* out) {
@@ -35,7 +35,7 @@ class DaeContract : public ::testing::TestWithParam<DaeCase> {
     if (GetParam().with_source)
       for (const Slot slot : {Slot::source, Slot::potential})
         model.effects.push_back(prescribed_density(
-            "g", slot, [](const QuadraturePoint& at, double t) { return at.x[0] + t; }));
+            "g", slot, [](const fem::QuadraturePoint& at, double t) { return at.x[0] + t; }));
     problem = std::make_unique<CahnHilliard>(make_space(12), model);
   }
   std::unique_ptr<CahnHilliard> problem;
@@ -52,7 +52,8 @@ TEST_P(DaeContract, ExactTangentIsTheDerivativeOfTheResidual) {
       return r;
     };
     Vec product(problem->size());
-    ASSERT_TRUE(problem->jacobian_product(0.3, y, ydot, shift, Tangent::exact, v, product).ok());
+    ASSERT_TRUE(
+        problem->jacobian_product(0.3, y, ydot, shift, linear::Tangent::exact, v, product).ok());
     // The floor of the mobility makes F piecewise smooth: a small step crosses few kinks.
     const double step = 1e-6;
     const Vec difference = (residual_at(step) - residual_at(-step)) / (2 * step);
@@ -65,10 +66,10 @@ TEST_P(DaeContract, StabilisedTangentIsTheDerivativeWithMobilityAndCurvatureFroz
   const double shift = 0.8;
   const Vec y = random_state(*problem, 3), ydot = Vec::Zero(problem->size());
   const Vec v = random_vector(problem->size(), 4);
-  BlockJacobian J = problem->make_jacobian();
-  ASSERT_TRUE(problem->jacobian(0.3, y, ydot, shift, Tangent::stabilised, J).ok());
+  linear::BlockJacobian J = problem->make_jacobian();
+  ASSERT_TRUE(problem->jacobian(0.3, y, ydot, shift, linear::Tangent::stabilised, J).ok());
   const int n = problem->block_size();
-  const SurfaceSpace& space = problem->space();
+  const fem::SurfaceSpace& space = problem->space();
   Vec expected = Vec::Zero(2 * n);
   // Mobility frozen: F is linear in μ, so its derivative in μ is a difference of residuals.
   Vec y_mu = y, r0(2 * n), r1(2 * n);
@@ -90,8 +91,8 @@ TEST_P(DaeContract, StabilisedTangentIsTheDerivativeWithMobilityAndCurvatureFroz
 TEST_P(DaeContract, ProductNeedsNoMatrix) {
   const Vec y = random_state(*problem, 7), ydot = random_vector(problem->size(), 8);
   const Vec v = random_vector(problem->size(), 9);
-  for (const Tangent tangent : {Tangent::exact, Tangent::stabilised}) {
-    BlockJacobian J = problem->make_jacobian();
+  for (const linear::Tangent tangent : {linear::Tangent::exact, linear::Tangent::stabilised}) {
+    linear::BlockJacobian J = problem->make_jacobian();
     ASSERT_TRUE(problem->jacobian(0.1, y, ydot, 1.3, tangent, J).ok());
     Vec assembled(problem->size()), direct(problem->size());
     J.multiply(v, assembled, *problem->space().team);
@@ -150,20 +151,22 @@ TEST_P(DaeContract, SaysSoWhenTheStateIsNotFinite) {
   for (const double poison : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     y[problem->block_size() / 2] = poison;
     EXPECT_EQ(problem->residual(0, y, ydot, r).outcome, Outcome::retry);
-    BlockJacobian J = problem->make_jacobian();
-    EXPECT_EQ(problem->jacobian(0, y, ydot, 1, Tangent::stabilised, J).outcome, Outcome::retry);
-    EXPECT_EQ(problem->jacobian(0, y, ydot, 1, Tangent::exact, J).outcome, Outcome::retry);
+    linear::BlockJacobian J = problem->make_jacobian();
+    EXPECT_EQ(problem->jacobian(0, y, ydot, 1, linear::Tangent::stabilised, J).outcome,
+              Outcome::retry);
+    EXPECT_EQ(problem->jacobian(0, y, ydot, 1, linear::Tangent::exact, J).outcome, Outcome::retry);
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(
     All, DaeContract,
-    ::testing::Values(DaeCase{"averaged", "degenerate", PotentialRule::averaged, false},
-                      DaeCase{"degenerate", "degenerate", PotentialRule::consistent, false},
-                      DaeCase{"floored", "degenerate:outside=-1", PotentialRule::consistent, false},
-                      DaeCase{"constant", "constant:value=0.3", PotentialRule::consistent, false},
-                      DaeCase{"nodal", "degenerate", PotentialRule::nodal, false},
-                      DaeCase{"sources", "degenerate", PotentialRule::consistent, true}),
+    ::testing::Values(
+        DaeCase{"averaged", "degenerate", fem::PotentialRule::averaged, false},
+        DaeCase{"degenerate", "degenerate", fem::PotentialRule::consistent, false},
+        DaeCase{"floored", "degenerate:outside=-1", fem::PotentialRule::consistent, false},
+        DaeCase{"constant", "constant:value=0.3", fem::PotentialRule::consistent, false},
+        DaeCase{"nodal", "degenerate", fem::PotentialRule::nodal, false},
+        DaeCase{"sources", "degenerate", fem::PotentialRule::consistent, true}),
     [](const auto& info) { return info.param.name; });
 
 TEST(Norm, DoesNotSeeTheMesh) {
@@ -189,4 +192,4 @@ TEST(DaeInvariants, HoldOnAHundredPositionsOfTheSurface) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::problem

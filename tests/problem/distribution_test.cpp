@@ -17,7 +17,7 @@
 #include "tests/support/strong_effects.hpp"
 #include "tests/support/thread_ranks.hpp"
 
-namespace traceraft {
+namespace traceraft::problem {
 namespace {
 
 using testing::make_model;
@@ -27,14 +27,14 @@ using testing::run_on_ranks;
 
 constexpr int kCells = 24;
 
-std::shared_ptr<const SurfaceSpace> part_of(std::shared_ptr<const Communicator> ranks,
-                                            const std::string& surface = "sphere") {
-  return std::make_shared<SurfaceSpace>(*make_surface(surface), kCells,
-                                        std::make_shared<ThreadTeam>(1), std::move(ranks));
+std::shared_ptr<const fem::SurfaceSpace> part_of(std::shared_ptr<const Communicator> ranks,
+                                                 const std::string& surface = "sphere") {
+  return std::make_shared<fem::SurfaceSpace>(*geometry::make_surface(surface), kCells,
+                                             std::make_shared<ThreadTeam>(1), std::move(ranks));
 }
 
 // A state that is a function of the nodes' ids.
-Vec state_on(const SurfaceSpace& space, std::uint64_t seed) {
+Vec state_on(const fem::SurfaceSpace& space, std::uint64_t seed) {
   const int n = space.nodes();
   Vec y(2 * n);
   for (int i = 0; i < n; ++i) {
@@ -47,7 +47,7 @@ Vec state_on(const SurfaceSpace& space, std::uint64_t seed) {
 
 // Row by row and column by column in terms of ids, which is what all distributions share.
 using Row = std::map<std::int64_t, double>;
-std::map<std::int64_t, Row> rows_of(const SurfaceSpace& space, const CsrMatrix& A) {
+std::map<std::int64_t, Row> rows_of(const fem::SurfaceSpace& space, const fem::CsrMatrix& A) {
   std::map<std::int64_t, Row> rows;
   for (int i = 0; i < space.nodes(); ++i)
     for (int k = A.pattern->row_begin[i]; k < A.pattern->row_begin[i + 1]; ++k)
@@ -59,7 +59,7 @@ void expect_rows_within(const std::map<std::int64_t, Row>& part,
   for (const auto& [id, row] : part) EXPECT_EQ(row, whole.at(id)) << what << ", row " << id;
 }
 
-std::map<std::int64_t, double> entries_of(const SurfaceSpace& space, VecView field) {
+std::map<std::int64_t, double> entries_of(const fem::SurfaceSpace& space, VecView field) {
   std::map<std::int64_t, double> entries;
   for (int i = 0; i < space.nodes(); ++i) entries[space.mesh.node_id[i]] = field[i];
   return entries;
@@ -89,25 +89,25 @@ TEST_P(Distribution, MatricesAreBitwiseThoseOfOneRank) {
 }
 
 TEST_P(Distribution, ResidualAndJacobianAreBitwiseThoseOfOneRank) {
-  for (const PotentialRule rule :
-       {PotentialRule::averaged, PotentialRule::consistent, PotentialRule::nodal}) {
+  for (const fem::PotentialRule rule :
+       {fem::PotentialRule::averaged, fem::PotentialRule::consistent, fem::PotentialRule::nodal}) {
     CahnHilliardModel model = make_model();
     model.rule = rule;
-    model.effects = {prescribed_density("g", Slot::source, [](const QuadraturePoint& at, double t) {
-      return at.x[0] * at.x[1] + t * at.x[2];
-    })};
+    model.effects = {prescribed_density(
+        "g", Slot::source,
+        [](const fem::QuadraturePoint& at, double t) { return at.x[0] * at.x[1] + t * at.x[2]; })};
     const auto whole = make_space(kCells);
     const CahnHilliard problem(whole, model);
     struct Parts {
       std::map<std::int64_t, double> first, second, product_first, product_second;
       std::map<std::int64_t, Row> cc, cm, mc, mm;
     };
-    const auto evaluate = [](const CahnHilliard& p, Tangent tangent) {
-      const SurfaceSpace& space = p.space();
+    const auto evaluate = [](const CahnHilliard& p, linear::Tangent tangent) {
+      const fem::SurfaceSpace& space = p.space();
       const int n = p.block_size();
       const Vec y = state_on(space, 5), ydot = state_on(space, 6), v = state_on(space, 7);
       Vec r(2 * n), product(2 * n), assembled(2 * n);
-      BlockJacobian J = p.make_jacobian();
+      linear::BlockJacobian J = p.make_jacobian();
       EXPECT_TRUE(p.residual(0.3, y, ydot, r).ok());
       EXPECT_TRUE(p.jacobian(0.3, y, ydot, 4.0, tangent, J).ok());
       EXPECT_TRUE(p.jacobian_product(0.3, y, ydot, 4.0, tangent, v, product).ok());
@@ -122,7 +122,7 @@ TEST_P(Distribution, ResidualAndJacobianAreBitwiseThoseOfOneRank) {
                    rows_of(space, J.mc),
                    rows_of(space, J.mm)};
     };
-    for (const Tangent tangent : {Tangent::exact, Tangent::stabilised}) {
+    for (const linear::Tangent tangent : {linear::Tangent::exact, linear::Tangent::stabilised}) {
       const Parts expected = evaluate(problem, tangent);
       run_on_ranks(GetParam(), [&](const auto& ranks) {
         const Parts part = evaluate(CahnHilliard(part_of(ranks), model), tangent);
@@ -143,15 +143,15 @@ TEST_P(Distribution, ResidualAndJacobianAreBitwiseThoseOfOneRank) {
 TEST_P(Distribution, EffectsAreThoseOfOneRank) {
   const auto whole = make_space(kCells);
   for (const auto& [name, parameters] : testing::kStrong) {
-    const auto evaluate = [&](const std::shared_ptr<const SurfaceSpace>& of) {
+    const auto evaluate = [&](const std::shared_ptr<const fem::SurfaceSpace>& of) {
       CahnHilliardModel model = make_model();  // ranks share nothing, as processes do
-      add_effects(name + ":" + parameters, {1, 1, true}, model);
+      effects::add_effects(name + ":" + parameters, {1, 1, true}, model);
       const CahnHilliard p(of, model);
-      const SurfaceSpace& space = *of;
+      const fem::SurfaceSpace& space = *of;
       const Vec y = state_on(space, 5), ydot = state_on(space, 6), v = state_on(space, 7);
       Vec r(p.size()), product(p.size());
       EXPECT_TRUE(p.residual(0.3, y, ydot, r).ok());
-      EXPECT_TRUE(p.jacobian_product(0.3, y, ydot, 4.0, Tangent::exact, v, product).ok());
+      EXPECT_TRUE(p.jacobian_product(0.3, y, ydot, 4.0, linear::Tangent::exact, v, product).ok());
       std::vector<std::map<std::int64_t, double>> all;
       for (const Vec& both : {r, product})
         for (const bool first : {true, false})
@@ -192,11 +192,11 @@ TEST_P(Distribution, ConsistentStatesNormsAndObservablesAreTheSame) {
   const CahnHilliard problem(whole, make_model("degenerate", 0.1));
   const auto start = noise_state(problem, 3, 0.4);
   const double interface_energy = problem.model().well.interface_energy();
-  const Observer observer(problem, whole, interface_energy);
-  const Observables expected = observer.measure(0, start.y);
-  const RaftReport rafts = observer.rafts(start.y);
-  const Vec values = trace(*whole, problem.c_of(start.y));
-  const Image picture = draw_front_and_back(*whole, values, 0, 1, 40);
+  const observables::Observer observer(problem, whole, interface_energy);
+  const observables::Observables expected = observer.measure(0, start.y);
+  const observables::RaftReport rafts = observer.rafts(start.y);
+  const Vec values = fem::trace(*whole, problem.c_of(start.y));
+  const observables::Image picture = observables::draw_front_and_back(*whole, values, 0, 1, 40);
   run_on_ranks(GetParam(), [&](const auto& ranks) {
     const auto part = part_of(ranks);
     const CahnHilliard mine(part, make_model("degenerate", 0.1));
@@ -204,8 +204,8 @@ TEST_P(Distribution, ConsistentStatesNormsAndObservablesAreTheSame) {
     EXPECT_NEAR(mine.norm(my_start.y), problem.norm(start.y), 1e-11);
     EXPECT_NEAR(mine.field_norm(my_start.ydot.head(mine.block_size())),
                 problem.field_norm(start.ydot.head(problem.block_size())), 1e-6);
-    const Observer my_observer(mine, part, interface_energy);
-    const Observables row = my_observer.measure(0, my_start.y);
+    const observables::Observer my_observer(mine, part, interface_energy);
+    const observables::Observables row = my_observer.measure(0, my_start.y);
     EXPECT_NEAR(row.mass, expected.mass, 1e-11);
     EXPECT_NEAR(row.energy, expected.energy, 1e-11);
     EXPECT_NEAR(row.perimeter, expected.perimeter, 1e-6);
@@ -214,15 +214,16 @@ TEST_P(Distribution, ConsistentStatesNormsAndObservablesAreTheSame) {
     EXPECT_NEAR(row.raft_fraction, expected.raft_fraction, 1e-9);
     EXPECT_NEAR(row.c_min, expected.c_min, 1e-10);
     EXPECT_NEAR(row.c_max, expected.c_max, 1e-10);
-    const RaftReport my_rafts = my_observer.rafts(my_start.y);
+    const observables::RaftReport my_rafts = my_observer.rafts(my_start.y);
     ASSERT_EQ(my_rafts.rafts.size(), rafts.rafts.size());
     for (std::size_t k = 0; k < rafts.rafts.size(); ++k) {
       EXPECT_NEAR(my_rafts.rafts[k].area, rafts.rafts[k].area, 1e-9);
       EXPECT_LT((my_rafts.rafts[k].centre - rafts.rafts[k].centre).norm(), 1e-9);
     }
     Vec buffer;
-    const Vec my_values = trace(*part, part->with_ghosts(mine.c_of(my_start.y), buffer));
-    const Image mine_drawn = draw_front_and_back(*part, my_values, 0, 1, 40);
+    const Vec my_values = fem::trace(*part, part->with_ghosts(mine.c_of(my_start.y), buffer));
+    const observables::Image mine_drawn =
+        observables::draw_front_and_back(*part, my_values, 0, 1, 40);
     ASSERT_EQ(mine_drawn.rgb.size(), picture.rgb.size());
     int different = 0;
     for (std::size_t i = 0; i < picture.rgb.size(); ++i)
@@ -243,15 +244,15 @@ std::vector<std::pair<int, std::function<double(const Point&)>>> fields_of_rafts
           {4, [](const Point& x) { return 0.45 + x[0] * x[1] * x[2]; }}};
 }
 
-Vec at_nodes(const SurfaceSpace& space, const std::function<double(const Point&)>& f) {
+Vec at_nodes(const fem::SurfaceSpace& space, const std::function<double(const Point&)>& f) {
   Vec c(space.nodes());
   for (int i = 0; i < space.nodes(); ++i) c[i] = f(space.mesh.position(i));
   return c;
 }
 
 using NodePair = std::pair<std::int64_t, std::int64_t>;
-NodePair place_of(const SurfaceSpace& space, int point) {
-  const CutPoint& cut = space.surface.points[point];
+NodePair place_of(const fem::SurfaceSpace& space, int point) {
+  const mesh::CutPoint& cut = space.surface.points[point];
   return {space.mesh.node_id[cut.low], space.mesh.node_id[cut.high]};
 }
 
@@ -259,14 +260,16 @@ NodePair place_of(const SurfaceSpace& space, int point) {
 TEST_P(Distribution, RaftsAreTheSameAndHaveTheSameNumbers) {
   const auto whole = make_space(kCells);
   for (const auto& [count, field] : fields_of_rafts()) {
-    const RaftReport rafts = RaftFinder(whole).find(at_nodes(*whole, field), 0.5);
+    const observables::RaftReport rafts =
+        observables::RaftFinder(whole).find(at_nodes(*whole, field), 0.5);
     EXPECT_EQ(static_cast<int>(rafts.rafts.size()), count);
     std::map<NodePair, int> numbers;
     for (std::size_t p = 0; p < rafts.of_point.size(); ++p)
       numbers[place_of(*whole, static_cast<int>(p))] = rafts.of_point[p];
     run_on_ranks(GetParam(), [&, &f = field](const auto& ranks) {
       const auto part = part_of(ranks);
-      const RaftReport mine = RaftFinder(part).find(at_nodes(*part, f), 0.5);
+      const observables::RaftReport mine =
+          observables::RaftFinder(part).find(at_nodes(*part, f), 0.5);
       EXPECT_NEAR(mine.perimeter / rafts.perimeter, 1, 1e-12);
       ASSERT_EQ(mine.rafts.size(), rafts.rafts.size());
       for (std::size_t k = 0; k < rafts.rafts.size(); ++k) {
@@ -313,14 +316,14 @@ TEST_P(Distribution, CheckpointsAreWrittenAndReadOnAnyNumberOfRanks) {
 
 TEST_P(Distribution, MassIsRestoredAndNormsAreTakenOverAllRanks) {
   const CahnHilliardModel model = make_model();
-  const auto evaluate = [&](const std::shared_ptr<const SurfaceSpace>& space) {
+  const auto evaluate = [&](const std::shared_ptr<const fem::SurfaceSpace>& space) {
     const CahnHilliard problem(space, model);
-    BlockJacobian J = problem.make_jacobian();
+    linear::BlockJacobian J = problem.make_jacobian();
     const Vec y = state_on(*space, 5), b = state_on(*space, 8);
-    EXPECT_TRUE(problem.jacobian(0, y, Vec::Zero(y.size()), 4.0, Tangent::exact, J).ok());
+    EXPECT_TRUE(problem.jacobian(0, y, Vec::Zero(y.size()), 4.0, linear::Tangent::exact, J).ok());
     Vec x = state_on(*space, 10);
-    restore_mass(J, b, x);
-    return std::pair(space->integral(x.head(space->nodes())), scaled_norm(J, b));
+    linear::restore_mass(J, b, x);
+    return std::pair(space->integral(x.head(space->nodes())), linear::scaled_norm(J, b));
   };
   const auto expected = evaluate(make_space(kCells));
   run_on_ranks(GetParam(), [&](const auto& ranks) {
@@ -340,7 +343,8 @@ TEST_P(Distribution, AMeshThatIsTooCoarseIsRefusedAlike) {
     }
   };
   const auto build = [](std::shared_ptr<const Communicator> ranks) {
-    SurfaceSpace(*make_surface("dziuk"), 10, std::make_shared<ThreadTeam>(1), std::move(ranks));
+    fem::SurfaceSpace(*geometry::make_surface("dziuk"), 10, std::make_shared<ThreadTeam>(1),
+                      std::move(ranks));
   };
   const std::string expected = complaint([&] { build(std::make_shared<SerialCommunicator>()); });
   ASSERT_NE(expected.find("too coarse"), std::string::npos);
@@ -352,4 +356,4 @@ INSTANTIATE_TEST_SUITE_P(Ranks, Distribution, ::testing::Values(1, 2, 3, 5),
                          [](const auto& test) { return "On" + std::to_string(test.param); });
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::problem

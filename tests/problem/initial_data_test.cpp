@@ -6,12 +6,12 @@
 #include "kernel/observables/rafts.hpp"
 #include "tests/support/spaces.hpp"
 
-namespace traceraft {
+namespace traceraft::problem {
 namespace {
 
 using testing::make_space;
 
-double mean(const SurfaceSpace& space, const Vec& c) {
+double mean(const fem::SurfaceSpace& space, const Vec& c) {
   return space.integral(c) / space.area;
 }
 
@@ -85,7 +85,7 @@ TEST(Caps, ArePlacedWhereTheyWereAskedFor) {
   request.epsilon = 0.04;
   request.caps = {{{0, 0, 1}, 0.8}, {{2, 0, -1}, 0.5}};
   const Vec c = make_initial_field("caps", *space, request);
-  const RaftReport report = RaftFinder(space).find(c, 0.5);
+  const observables::RaftReport report = observables::RaftFinder(space).find(c, 0.5);
   ASSERT_EQ(report.rafts.size(), 2u);
   EXPECT_NEAR(report.rafts[0].area, 2 * M_PI * (1 - std::cos(0.8)), 0.02);
   EXPECT_NEAR(report.rafts[0].perimeter, 2 * M_PI * std::sin(0.8), 0.05);
@@ -107,7 +107,7 @@ TEST(Formula, IsProjected) {
   EXPECT_THROW(make_initial_field("formula", *space, request), InputError);
   request.formula = [](const Point& x) { return 0.5 + 0.3 * x[2]; };
   const Vec c = make_initial_field("formula", *space, request);
-  const Vec trace = traceraft::trace(*space, c);
+  const Vec trace = fem::trace(*space, c);
   double worst = 0;
   for (int p = 0; p < trace.size(); ++p)
     worst = std::max(worst, std::fabs(trace[p] - request.formula(space->surface.position[p])));
@@ -119,7 +119,7 @@ TEST(Formula, IsProjected) {
 TEST(Formula, IsTakenOnTheSurfaceWhereThatIsKnown) {
   const auto space = make_space(16);
   InitialRequest request;
-  request.surface = make_surface("sphere");
+  request.surface = geometry::make_surface("sphere");
   // ∫ z² = 4π/3, and acos(z) is a number on the sphere alone.
   request.formula = [](const Point& x) { return x[2] * x[2] + 0 * std::acos(0.999999 * x[2]); };
   const Vec c = make_initial_field("formula", *space, request);
@@ -133,7 +133,7 @@ TEST(Formula, IsTakenOnTheSurfaceWhereThatIsKnown) {
 TEST(Formula, ThatIsNotFiniteIsRefusedWithThePlace) {
   const auto space = make_space(16);
   InitialRequest request;
-  request.surface = make_surface("sphere");
+  request.surface = geometry::make_surface("sphere");
   request.formula = [](const Point& x) { return std::log(x[2] - 0.5); };
   try {
     make_initial_field("formula", *space, request);
@@ -150,4 +150,4 @@ TEST(InitialFields, UnknownNamesAreAnswered) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::problem

@@ -6,11 +6,11 @@
 #include "backends/suitesparse/blas.hpp"
 
 int main(int argc, char** argv) {
-  traceraft::restart_with_environment(traceraft::preferred_environment(), argv);
-  traceraft::use_one_blas_thread();
+  traceraft::posix::restart_with_environment(traceraft::suitesparse::preferred_environment(), argv);
+  traceraft::suitesparse::use_one_blas_thread();
   ::testing::InitGoogleTest(&argc, argv);
-  const traceraft::RankSession session;
-  const auto ranks = traceraft::world();
+  const traceraft::backends::RankSession session;
+  const auto ranks = traceraft::backends::world();
   if (!ranks->root()) {
     auto& listeners = ::testing::UnitTest::GetInstance()->listeners();
     delete listeners.Release(listeners.default_result_printer());

@@ -6,7 +6,7 @@
 #include "tests/support/small_vesicle.hpp"
 #include "verification/selection/blind/effect_size.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
 // A hidden effect has to be one that a model may have.
@@ -14,8 +14,9 @@ TEST(BlindCase, HidesNoMoreThanTheRangeOfAnEffect) {
   BlindRequest asked = testing::small_vesicle(3);
   asked.effects = {"asymmetry"};
   asked.gap = 2;
-  const EffectTerm term = size_effects(asked).front();
-  EXPECT_EQ(std::fabs(term.values.front()), effects().find("asymmetry").parameters.front().max);
+  const effects::EffectTerm term = size_effects(asked).front();
+  EXPECT_EQ(std::fabs(term.values.front()),
+            effects::effects().find("asymmetry").parameters.front().max);
   asked.gap = 0.02;
   EXPECT_LT(std::fabs(size_effects(asked).front().values.front()), 0.2);
 }
@@ -43,4 +44,4 @@ TEST(BlindCase, StartsFromWhatTheModelDoes) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::selection

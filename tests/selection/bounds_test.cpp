@@ -4,14 +4,15 @@
 
 #include <cmath>
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
 Bound bound_of(const std::string& effect, const std::vector<double>& coefficients,
                const Eigen::MatrixXd& covariance, double null_mean) {
   Screening screening;
   screening.scores = {{effect, coefficients, 0, null_mean, 1, 0, covariance, 1}};
-  const std::vector<Bound> bounds = bounds_of(screening, {find_candidate(effect).value()});
+  const std::vector<Bound> bounds =
+      bounds_of(screening, {assimilation::find_candidate(effect).value()});
   return bounds.at(0);
 }
 
@@ -50,4 +51,4 @@ TEST(Bounds, AreNoneOfWhatIsNotSeen) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::selection

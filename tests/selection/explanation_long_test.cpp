@@ -14,21 +14,21 @@
 #include "verification/selection/search/rerun.hpp"
 #include "verification/selection/search/steps.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
 // A small vesicle with an uptake, measured with little noise; the last of four looks is held out.
 class RivalsTest : public ::testing::Test {
  protected:
-  static const std::vector<FieldSeries>& measured() {
-    static const std::vector<FieldSeries> vesicles =
+  static const std::vector<assimilation::FieldSeries>& measured() {
+    static const std::vector<assimilation::FieldSeries> vesicles =
         draw_blind_case(testing::small_vesicle(4)).vesicles;
     return vesicles;
   }
 
   RivalsTest() {
     request_.base = testing::small_vesicle(4).base;
-    request_.surface = make_surface("sphere");
+    request_.surface = geometry::make_surface("sphere");
     request_.cells = 10;
     request_.filter.rank = 30;
     // The first look is right: with three that count uptake would be one with what it might lack.
@@ -37,7 +37,7 @@ class RivalsTest : public ::testing::Test {
     request_.most_effects = 1;  // what was found, or its rivals
     request_.confirm = false;
     const std::set<std::string> some{"exchange", "gravity", "line-tension", "uptake"};
-    for (const Candidate& candidate : candidates())
+    for (const assimilation::Candidate& candidate : assimilation::candidates())
       if (some.count(candidate.effect) == 0) request_.without.push_back(candidate.effect);
   }
 
@@ -45,11 +45,11 @@ class RivalsTest : public ::testing::Test {
   Refit fit_of(const std::string& effect) const {
     static std::map<std::string, Refit> known;
     if (const auto before = known.find(effect); before != known.end()) return before->second;
-    FilterModel model{request_.base, 1, {}, {}};
-    model.hypothesis.parts = {{find_candidate(effect).value(), {0.0}}};
-    const FilterProblems data = problems_of(measured(), request_);
-    std::vector<ErrorMaps> maps;
-    (void)filter_fields(data, model, request_.filter, maps);
+    assimilation::FilterModel model{request_.base, 1, {}, {}};
+    model.hypothesis.parts = {{assimilation::find_candidate(effect).value(), {0.0}}};
+    const assimilation::FilterProblems data = problems_of(measured(), request_);
+    std::vector<assimilation::ErrorMaps> maps;
+    (void)assimilation::filter_fields(data, model, request_.filter, maps);
     return known[effect] = refit(data, model, request_.filter, maps);
   }
 
@@ -60,7 +60,7 @@ class RivalsTest : public ::testing::Test {
     state.so_far.found = state.so_far.base = found;
     state.so_far.rivals = rivals;
     state.so_far.finding = rivals.empty() ? Finding::named : Finding::ambiguous;
-    state.so_far.noise_model = noise_model(problems_of(measured(), request_));
+    state.so_far.noise_model = assimilation::noise_model(problems_of(measured(), request_));
     return state;
   }
 
@@ -110,8 +110,8 @@ TEST_F(RivalsTest, AGapIsLookedForWhereNothingWasFound) {
   Explanation found;
   found.finding = Finding::unnamed;
   found.without_gap = Finding::none;
-  found.found.pace = 1;
-  found.noise_model = noise_model(problems_of(measured(), request_));
+  found.found.diffusion_ratio = 1;
+  found.noise_model = assimilation::noise_model(problems_of(measured(), request_));
   run_again(measured(), request_, found);
   EXPECT_EQ(found.finding, Finding::unnamed);  // of the uptake
   EXPECT_LT(found.rerun->gap_p.value(), 0.005);
@@ -153,7 +153,7 @@ TEST_F(RivalsTest, MoreIsMissingThanWhatTheMeshCouldBe) {
   constexpr double kGain = 40;
   strong.deviance = round.without.deviance - kGain;
   strong.hypothesis.parts[0].coefficients = {std::sqrt(kGain * strong.covariance(0, 0))};
-  const double values = count_values(problems_of(measured(), request_));
+  const double values = assimilation::count_values(problems_of(measured(), request_));
   ASSERT_LT(criterion(strong, values), criterion(round.without, values));
   ASSERT_GT(certainty(strong, 0), kTelling);
   ASSERT_FALSE(all_resolved(strong, values, round.screening.mesh_error));
@@ -182,8 +182,9 @@ TEST_F(RivalsTest, AreToldApartByAllThatWasMeasured) {
   // As a search that holds out nothing has it, but for the noise, which is that of the found model.
   request_.hold_out = false;
   const auto criterion_of = [&](const Refit& start) {
-    const FilterProblems data = problems_of(measured(), request_);
-    return criterion(refit_of(data, request_.base, start, request_.filter), count_values(data));
+    const assimilation::FilterProblems data = problems_of(measured(), request_);
+    return criterion(refit_of(data, request_.base, start, request_.filter),
+                     assimilation::count_values(data));
   };
   const double all = criterion_of(wrong) - criterion_of(right),
                counting = wrong.deviance - right.deviance;
@@ -196,7 +197,7 @@ TEST_F(RivalsTest, AreToldApartByAllThatWasMeasured) {
 TEST_F(RivalsTest, EffectsThatTurnOutToBeNoneAreDropped) {
   request_.most_effects = 2;
   Refit both = fit_of("uptake");
-  both.hypothesis.parts.push_back({find_candidate("gravity").value(), {0.001}});
+  both.hypothesis.parts.push_back({assimilation::find_candidate("gravity").value(), {0.001}});
   SearchState state = state_of(both, {});
   state.so_far.rounds = {Round{{request_.base, 1, {}, {}}, {}, state.so_far.base, {}, {}, {}}};
   const Explanation found = explain_fields(measured(), request_, state);
@@ -227,8 +228,8 @@ class OwnEffectsTest : public RivalsTest {
     request_.without.push_back("exchange");  // another form of uptake
     asked_.noise = 0.15;
   }
-  Explanation explained_with(const EffectTerm& own) {
-    request_.own = of_model({own});
+  Explanation explained_with(const effects::EffectTerm& own) {
+    request_.own = assimilation::of_model({own});
     return explain_fields(draw_blind_case(asked_).vesicles, request_);
   }
   static double deviation(const Explanation& found) {
@@ -244,7 +245,7 @@ TEST_F(OwnEffectsTest, AreFittedAndNotFound) {
   EXPECT_EQ(whole.finding, Finding::none);
   EXPECT_TRUE(class_of(whole).empty());
   ASSERT_EQ(whole.found.hypothesis.parts.size(), 1u);
-  const double rate = whole.found.pace * whole.found.hypothesis.parts[0].coefficients[0];
+  const double rate = whole.found.diffusion_ratio * whole.found.hypothesis.parts[0].coefficients[0];
   EXPECT_NEAR(rate, truth, 4 * deviation(whole));
   EXPECT_LT(deviation(whole), 0.15 * std::fabs(truth));
 
@@ -263,10 +264,10 @@ TEST_F(OwnEffectsTest, AreFittedAndNotFound) {
 // One so strong that its perturbations cannot be advanced, and of which there is nothing.
 TEST_F(OwnEffectsTest, MayBeNone) {
   asked_.effects.clear();
-  const EffectTerm strong{"ohta-kawasaki", {0.3, 1}};
+  const effects::EffectTerm strong{"ohta-kawasaki", {0.3, 1}};
   const Explanation found = explained_with(strong);
   EXPECT_EQ(found.finding, Finding::none);
-  EXPECT_NEAR(std::log(found.found.pace), 0, 4 * found.found.pace_deviation);
+  EXPECT_NEAR(std::log(found.found.diffusion_ratio), 0, 4 * found.found.diffusion_ratio_deviation);
   EXPECT_LT(found.found.hypothesis.parts[0].coefficients[0], 4 * deviation(found));
   EXPECT_LT(deviation(found), 0.05);
 }
@@ -280,7 +281,7 @@ TEST_F(OwnEffectsTest, AfterAnyStopTheNextStateIsTheSame) {
   asked_.noise_correlation = 0.1;
   std::vector<SearchState> saved;
   request_.save = [&](const SearchState& state) { saved.push_back(state); };
-  const std::vector<FieldSeries> vesicles = draw_blind_case(asked_).vesicles;
+  const std::vector<assimilation::FieldSeries> vesicles = draw_blind_case(asked_).vesicles;
   ASSERT_TRUE(is_named(explain_fields(vesicles, request_)));
   request_.save = nullptr;
   std::set<SearchStep> steps;
@@ -292,7 +293,8 @@ TEST_F(OwnEffectsTest, AfterAnyStopTheNextStateIsTheSame) {
     const SearchState next = next_state(search, saved[k]);
     const auto whole = std::find_if(saved.begin() + static_cast<std::ptrdiff_t>(k) + 1, saved.end(),
                                     [](const SearchState& state) { return state.refits.empty(); });
-    EXPECT_EQ(search_json(next).dump(), search_json(*whole).dump()) << word_for(saved[k].next);
+    EXPECT_EQ(explain::search_json(next).dump(), explain::search_json(*whole).dump())
+        << word_for(saved[k].next);
   }
   const std::set<SearchStep> expected{
       SearchStep::calibrate, SearchStep::eliminate, SearchStep::screen, SearchStep::refit,
@@ -327,4 +329,4 @@ TEST_F(RivalsTest, RefitsOfAnInterruptedStepAreNotDoneAgain) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::selection

@@ -4,7 +4,7 @@
 
 #include "verification/assimilation/forecast/candidates.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
 // The second best: not what was found with something more, nor what failed; by what it leaves, and
@@ -13,7 +13,7 @@ TEST(RunnerUp, IsTheBestThatIsAnother) {
   const auto fit = [](const std::vector<std::string>& effects, double gap, double deviance) {
     Refit result;
     for (const std::string& effect : effects)
-      result.hypothesis.parts.push_back({find_candidate(effect).value(), {0.0}});
+      result.hypothesis.parts.push_back({assimilation::find_candidate(effect).value(), {0.0}});
     result.gap = {gap, 2 * gap};
     result.deviance = deviance;
     return result;
@@ -37,4 +37,4 @@ TEST(RunnerUp, IsTheBestThatIsAnother) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::selection

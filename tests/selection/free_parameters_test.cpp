@@ -3,41 +3,42 @@
 
 #include <gtest/gtest.h>
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
 using Indices = std::vector<Eigen::Index>;
 
 // Exchange, whose two coefficients may not be negative, then gravity, which may be anything.
-Hypothesis hypothesis(double first, double second) {
-  return {{{find_candidate("exchange").value(), {first, second}},
-           {find_candidate("gravity").value(), {0}}}};
+assimilation::Hypothesis hypothesis(double first, double second) {
+  return {{{assimilation::find_candidate("exchange").value(), {first, second}},
+           {assimilation::find_candidate("gravity").value(), {0}}}};
 }
 
-FilterResult pass_with(const Vec& score) {
-  FilterResult pass;
+assimilation::FilterResult pass_with(const Vec& score) {
+  assimilation::FilterResult pass;
   pass.information = Eigen::MatrixXd::Identity(5, 5);
   pass.score = score;
   return pass;
 }
 
 TEST(FreeParameters, AreAllWithinTheirRanges) {
-  const FilterResult pass = pass_with(Vec::Constant(5, -1));
+  const assimilation::FilterResult pass = pass_with(Vec::Constant(5, -1));
   EXPECT_EQ(free_parameters(pass, hypothesis(1, 1)), (Indices{0, 1, 2, 3, 4}));
   EXPECT_EQ(free_parameters(pass, {}), (Indices{0, 1}));
 }
 
 TEST(FreeParameters, StayWhereTheyCannotGoFurther) {
-  const FilterResult down = pass_with(Vec::Constant(5, -1)), up = pass_with(Vec::Constant(5, 1));
+  const assimilation::FilterResult down = pass_with(Vec::Constant(5, -1)),
+                                   up = pass_with(Vec::Constant(5, 1));
   EXPECT_EQ(free_parameters(down, hypothesis(0, 1)), (Indices{0, 1, 3, 4}));
   EXPECT_EQ(free_parameters(down, hypothesis(0, 0)), (Indices{0, 1, 4}));
   EXPECT_EQ(free_parameters(up, hypothesis(0, 0)), (Indices{0, 1, 2, 3, 4}));
 }
 
 TEST(FreeParameters, StayBelowTheUpperEnd) {
-  const Candidate asymmetry = find_candidate("asymmetry").value();
-  const auto at = [&](double value) { return Hypothesis{{{asymmetry, {value}}}}; };
-  FilterResult pass = pass_with(Vec::Constant(5, 1));
+  const assimilation::Candidate asymmetry = assimilation::find_candidate("asymmetry").value();
+  const auto at = [&](double value) { return assimilation::Hypothesis{{{asymmetry, {value}}}}; };
+  assimilation::FilterResult pass = pass_with(Vec::Constant(5, 1));
   EXPECT_EQ(free_parameters(pass, at(asymmetry.most)), (Indices{0, 1}));
   EXPECT_EQ(free_parameters(pass, at(0.9 * asymmetry.most)), (Indices{0, 1, 2}));
   EXPECT_EQ(free_parameters(pass, at(asymmetry.least)), (Indices{0, 1, 2}));
@@ -48,10 +49,11 @@ TEST(FreeParameters, StayBelowTheUpperEnd) {
 
 // What a coefficient that is held would explain is left to the others, and they may be free then.
 TEST(FreeParameters, HaveTheirOptimumBesideThoseThatAreHeld) {
-  FilterResult pass = pass_with(Vec::Zero(5));
-  pass.information(kPace, 2) = pass.information(2, kPace) = 0.8;
-  pass.score[kPace] = 1;
-  pass.score[2] = -1;  // together: pace 5, coefficient −5
+  assimilation::FilterResult pass = pass_with(Vec::Zero(5));
+  pass.information(assimilation::kDiffusionRatio, 2) =
+      pass.information(2, assimilation::kDiffusionRatio) = 0.8;
+  pass.score[assimilation::kDiffusionRatio] = 1;
+  pass.score[2] = -1;  // together: diffusion ratio 5, coefficient −5
   const Indices free = free_parameters(pass, hypothesis(0, 1));
   EXPECT_EQ(free, (Indices{0, 1, 3, 4}));
   EXPECT_NEAR(newton_step(pass, free)[0], 1, 1e-12);
@@ -72,4 +74,4 @@ TEST(FreeParameters, HaveACovarianceOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::selection

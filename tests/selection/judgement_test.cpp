@@ -4,7 +4,7 @@
 
 #include "verification/selection/search/explanation.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
 constexpr double kMeasuredValues = 10000, kLevel = 0.02, kUsual = 0.5;
@@ -12,7 +12,7 @@ constexpr double kMeasuredValues = 10000, kLevel = 0.02, kUsual = 0.5;
 Refit refit_with(const std::vector<std::string>& effects, double deviance) {
   Refit fit;
   for (const std::string& effect : effects) {
-    const Candidate c = find_candidate(effect).value();
+    const assimilation::Candidate c = assimilation::find_candidate(effect).value();
     fit.hypothesis.parts.push_back({c, std::vector<double>(c.directions, 0.1)});
   }
   fit.deviance = deviance;
@@ -68,9 +68,9 @@ TEST(Judgement, FindsNothingOnlyWhereKineticsWereTested) {
   round.refits.clear();
   round.screening.p = 0.5;
   round.screening.gap_p = 0.5;
-  round.without.pace_deviation = 0.9 * kKineticsUntested;
+  round.without.diffusion_ratio_deviation = 0.9 * kKineticsUntested;
   EXPECT_EQ(judged(round).finding, Finding::none);
-  round.without.pace_deviation = 1.1 * kKineticsUntested;
+  round.without.diffusion_ratio_deviation = 1.1 * kKineticsUntested;
   EXPECT_EQ(judged(round).finding, Finding::not_identifiable);
 }
 
@@ -265,4 +265,4 @@ TEST(Judgement, HasAWordForEveryFinding) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::selection

@@ -2,17 +2,18 @@
 
 #include <gtest/gtest.h>
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
 constexpr double kEnough = 10000;
 
-Hypothesis::Part part(const std::string& effect, double coefficient) {
-  const Candidate c = find_candidate(effect).value();
+assimilation::Hypothesis::Part part(const std::string& effect, double coefficient) {
+  const assimilation::Candidate c = assimilation::find_candidate(effect).value();
   return {c, std::vector<double>(static_cast<std::size_t>(c.directions), coefficient)};
 }
 
-Refit refit_of(const std::vector<Hypothesis::Part>& parts, double deviance, double sigma = 0.01) {
+Refit refit_of(const std::vector<assimilation::Hypothesis::Part>& parts, double deviance,
+               double sigma = 0.01) {
   Refit fit;
   fit.hypothesis.parts = parts;
   fit.deviance = deviance;
@@ -32,20 +33,21 @@ std::vector<Round> rounds() {
   return result;
 }
 
-std::vector<std::string> names(const std::vector<Hypothesis>& hypotheses) {
+std::vector<std::string> names(const std::vector<assimilation::Hypothesis>& hypotheses) {
   std::vector<std::string> result;
-  for (const Hypothesis& h : hypotheses) result.push_back(h.name());
+  for (const assimilation::Hypothesis& h : hypotheses) result.push_back(h.name());
   return result;
 }
 
 TEST(Neighbours, ReplaceByWhatCameNear) {
   const Refit fit = refit_of({part("uptake", 1), part("gravity", 1)}, 700);
-  EXPECT_EQ(names(neighbours(fit, rounds(), kEnough, candidates())),
+  EXPECT_EQ(names(neighbours(fit, rounds(), kEnough, assimilation::candidates())),
             std::vector<std::string>{"exchange + gravity"});
 }
 
 TEST(Neighbours, OfOneEffectAreThoseThatCameNear) {
-  EXPECT_EQ(names(neighbours(refit_of({part("uptake", 1)}, 800), rounds(), kEnough, candidates())),
+  EXPECT_EQ(names(neighbours(refit_of({part("uptake", 1)}, 800), rounds(), kEnough,
+                             assimilation::candidates())),
             std::vector<std::string>{"exchange"});
 }
 
@@ -62,4 +64,4 @@ TEST(Neighbours, DropWhatIsUncertain) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::selection

@@ -5,7 +5,7 @@
 
 #include "kernel/core/random.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
 constexpr Eigen::Index kMeasured = 1000;
@@ -14,10 +14,10 @@ constexpr double kSpread = 0.03;
 // Measurements of noise around a truth of zero, held against a forecast that is off by a share of a
 // wave. The state is unknown along another wave, whose amplitude has so many standard deviations of
 // the noise.
-FilterResult pass_with(double share, std::uint64_t seed, double unknown = 0) {
-  FilterResult pass;
+assimilation::FilterResult pass_with(double share, std::uint64_t seed, double unknown = 0) {
+  assimilation::FilterResult pass;
   for (const bool held_out : {false, true}) {
-    Innovation in{};
+    assimilation::Innovation in{};
     in.held_out = held_out;
     in.noise = Vec::Constant(kMeasured, kSpread);
     const Vec place = 0.05 * Vec::LinSpaced(kMeasured, 0, kMeasured - 1);
@@ -71,7 +71,7 @@ TEST(Rerun, SeldomRefutesTheTruth) {
 
 // Forecasts are no better than their mesh.
 TEST(Rerun, DoesNotRefuteByErrorsOfTheMesh) {
-  const FilterResult base = pass_with(0, 1), found = pass_with(0.5, 1);
+  const assimilation::FilterResult base = pass_with(0, 1), found = pass_with(0.5, 1);
   const double shortfall = compare_forecasts(base, found, 0).shortfall;
   // Half of the error, times the root of the number of values, is what it may be.
   const double enough = 2 * shortfall / std::sqrt(kMeasured);
@@ -86,4 +86,4 @@ TEST(Rerun, SaysNothingOfModelsThatAreAlike) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::selection

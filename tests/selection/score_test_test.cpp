@@ -5,32 +5,33 @@
 
 #include "kernel/core/random.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
 constexpr int kDraws = 400;
 
-// Pace, mesh, then gravity (two-sided), uptake (two-sided), exchange (two, not negative).
-const std::vector<Candidate>& screened() {
-  static const std::vector<Candidate> list{find_candidate("gravity").value(),
-                                           find_candidate("uptake").value(),
-                                           find_candidate("exchange").value()};
+// DiffusionRatio, mesh, then gravity (two-sided), uptake (two-sided), exchange (two, not negative).
+const std::vector<assimilation::Candidate>& screened() {
+  static const std::vector<assimilation::Candidate> list{
+      assimilation::find_candidate("gravity").value(),
+      assimilation::find_candidate("uptake").value(),
+      assimilation::find_candidate("exchange").value()};
   return list;
 }
-constexpr Eigen::Index kParameters = kFirstParameter + 4;
+constexpr Eigen::Index kParameters = assimilation::kFirstParameter + 4;
 
 // Scores of noise have the information as their covariance.
-FilterResult pass_with(const Eigen::MatrixXd& information) {
-  FilterResult pass;
+assimilation::FilterResult pass_with(const Eigen::MatrixXd& information) {
+  assimilation::FilterResult pass;
   pass.information = information;
   pass.score = Vec::Zero(kParameters);
   Eigen::MatrixXd z(kParameters, kDraws);
   for (Eigen::Index i = 0; i < z.size(); ++i)
     z.data()[i] = normal_random(1, 1, static_cast<std::uint64_t>(i));
   pass.null_scores = Eigen::MatrixXd(information.llt().matrixL()) * z;
-  Innovation in{};
+  assimilation::Innovation in{};
   in.values = Vec::Zero(10);
-  in.parameters = Columns::Ones(10, kParameters);
+  in.parameters = assimilation::Columns::Ones(10, kParameters);
   pass.innovations.push_back(in);
   return pass;
 }
@@ -42,7 +43,8 @@ const CandidateScore& score_of(const Screening& screening, const std::string& ef
 }
 
 TEST(ScoreTest, GainsWhatTheLikelihoodDoes) {
-  FilterResult pass = pass_with(4 * Eigen::MatrixXd::Identity(kParameters, kParameters));
+  assimilation::FilterResult pass =
+      pass_with(4 * Eigen::MatrixXd::Identity(kParameters, kParameters));
   pass.score[2] = 20;  // gravity
   pass.score[3] = -6;  // uptake
   const Screening screening = screen(pass, screened(), {});
@@ -57,7 +59,7 @@ TEST(ScoreTest, GainsWhatTheLikelihoodDoes) {
 
 // Coefficients that may not be negative are 0 then, and noise gains half as much by them.
 TEST(ScoreTest, KeepsSigns) {
-  FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
+  assimilation::FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
   pass.score[4] = -5;
   pass.score[5] = 3;
   const Screening screening = screen(pass, screened(), {});
@@ -71,10 +73,11 @@ TEST(ScoreTest, KeepsSigns) {
 // What a nuisance explains as well is no evidence.
 TEST(ScoreTest, ProjectsNuisancesOut) {
   Eigen::MatrixXd information = Eigen::MatrixXd::Identity(kParameters, kParameters);
-  information(kPace, 2) = information(2, kPace) = 0.8;
-  FilterResult pass = pass_with(information);
-  pass.score[kPace] = 10;
-  pass.score[2] = 8 + 1;  // what a pace of 10 makes of it, and 1
+  information(assimilation::kDiffusionRatio, 2) = information(2, assimilation::kDiffusionRatio) =
+      0.8;
+  assimilation::FilterResult pass = pass_with(information);
+  pass.score[assimilation::kDiffusionRatio] = 10;
+  pass.score[2] = 8 + 1;  // what a diffusion ratio of 10 makes of it, and 1
   const Screening screening = screen(pass, screened(), {});
   EXPECT_NEAR(score_of(screening, "gravity").score, 1 / (1 - 0.64), 1e-9);
   EXPECT_GT(screening.p, 0.2);
@@ -82,7 +85,7 @@ TEST(ScoreTest, ProjectsNuisancesOut) {
 
 // The level of p, over all candidates, is what it says.
 TEST(ScoreTest, CallsNoiseNoise) {
-  FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
+  assimilation::FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
   int alarms = 0;
   constexpr int kTrials = 300;
   for (int k = 0; k < kTrials; ++k) {
@@ -97,7 +100,7 @@ TEST(ScoreTest, CallsNoiseNoise) {
 TEST(ScoreTest, SeesNothingWhereNothingResponds) {
   Eigen::MatrixXd information = Eigen::MatrixXd::Identity(kParameters, kParameters);
   information(2, 2) = 1e-12;
-  FilterResult pass = pass_with(information);
+  assimilation::FilterResult pass = pass_with(information);
   pass.score[2] = 1e-3;
   const Screening screening = screen(pass, screened(), {});
   EXPECT_EQ(score_of(screening, "gravity").score, 0);
@@ -106,13 +109,13 @@ TEST(ScoreTest, SeesNothingWhereNothingResponds) {
 
 // With uptake found, one of the two coefficients of exchange is uptake once more.
 TEST(ScoreTest, LeavesOutCoefficientsThatAreKnownAlready) {
-  const Hypothesis known{{{find_candidate("uptake").value(), {1}}}};
-  const std::vector<Candidate> left{find_candidate("gravity").value(),
-                                    find_candidate("exchange").value()};
-  // Pace, mesh, uptake, gravity, exchange: the last is uptake but for roundoff.
+  const assimilation::Hypothesis known{{{assimilation::find_candidate("uptake").value(), {1}}}};
+  const std::vector<assimilation::Candidate> left{assimilation::find_candidate("gravity").value(),
+                                                  assimilation::find_candidate("exchange").value()};
+  // DiffusionRatio, mesh, uptake, gravity, exchange: the last is uptake but for roundoff.
   Eigen::MatrixXd information = Eigen::MatrixXd::Identity(kParameters, kParameters);
   information(2, 5) = information(5, 2) = 1 - 1e-15;
-  FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
+  assimilation::FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
   pass.information = information;
   pass.score[4] = 3;
   pass.score[5] = 1e-6;
@@ -126,7 +129,7 @@ TEST(ScoreTest, LeavesOutCoefficientsThatAreKnownAlready) {
 
 // Of two coefficients that do the same, one is left.
 TEST(ScoreTest, LeavesOutCoefficientsThatAreAlike) {
-  FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
+  assimilation::FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
   pass.information(4, 5) = pass.information(5, 4) = 1 - 1e-15;
   pass.score[4] = pass.score[5] = 3;
   const Screening screening = screen(pass, screened(), {});
@@ -140,9 +143,9 @@ TEST(ScoreTest, LeavesOutCoefficientsThatAreAlike) {
 // tail beyond 37.65 is 0.05, and beyond 73.1, further than any of 400 goes, 1.4e-6.
 TEST(ScoreTest, JoinsGapsThatCountAndThatAreHeldOut) {
   constexpr int kPatterns = 25;
-  FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
+  assimilation::FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
   const auto parts = [](double squares, std::uint64_t seed) {
-    Columns all = Columns::Zero(kPatterns, 1 + kParameters + kDraws);
+    assimilation::Columns all = assimilation::Columns::Zero(kPatterns, 1 + kParameters + kDraws);
     all.col(0).setConstant(std::sqrt(squares / kPatterns));
     for (Eigen::Index r = 0; r < kDraws; ++r)
       for (Eigen::Index i = 0; i < kPatterns; ++i)
@@ -179,26 +182,27 @@ TEST(ScoreTest, KnowsTheTailsOfSumsOfSquares) {
 
 // What nuisances explain is no gap; the replicates are freed of it as well.
 TEST(ScoreTest, FreesGapsOfNuisances) {
-  FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
-  Columns row = Columns::Zero(1, 1 + kParameters + kDraws);
+  assimilation::FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
+  assimilation::Columns row = assimilation::Columns::Zero(1, 1 + kParameters + kDraws);
   row(0, 0) = 10;
-  row(0, 1 + kPace) = 2;
-  for (int r = 0; r < kDraws; ++r) row(0, 1 + kParameters + r) = 1 + 2 * pass.null_scores(kPace, r);
+  row(0, 1 + assimilation::kDiffusionRatio) = 2;
+  for (int r = 0; r < kDraws; ++r)
+    row(0, 1 + kParameters + r) = 1 + 2 * pass.null_scores(assimilation::kDiffusionRatio, r);
   pass.gap_parts = {row};
-  pass.score[kPace] = 5;  // the pace explains all of it
+  pass.score[assimilation::kDiffusionRatio] = 5;  // the diffusion ratio explains all of it
   EXPECT_EQ(screen(pass, {}, {}).train_gap_p, 1);
-  pass.score[kPace] = 4;
+  pass.score[assimilation::kDiffusionRatio] = 4;
   EXPECT_LT(screen(pass, {}, {}).train_gap_p, 1e-12);
 }
 
 TEST(ScoreTest, MayHaveNothingToLookFor) {
-  FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
-  pass.score[kPace] = 2;
+  assimilation::FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
+  pass.score[assimilation::kDiffusionRatio] = 2;
   const Screening screening = screen(pass, {}, {});
   EXPECT_TRUE(screening.scores.empty());
   EXPECT_EQ(screening.p, 1);
-  EXPECT_NEAR(screening.pace_change, 2, 1e-9);
+  EXPECT_NEAR(screening.diffusion_ratio_change, 2, 1e-9);
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::selection

@@ -7,7 +7,8 @@
 #include "kernel/core/error.hpp"
 #include "tests/support/law_vesicles.hpp"
 
-namespace traceraft::law_vesicles {
+namespace traceraft::selection {
+using namespace law_vesicles;
 namespace {
 
 TEST(SeriesExplanation, NamesTheClassOfWhatIsMissing) {
@@ -21,7 +22,7 @@ TEST(SeriesExplanation, NamesTheClassOfWhatIsMissing) {
                                   [](const SeriesScore& s) { return s.effect == "uptake"; });
   EXPECT_LT(score->low, 2);
   EXPECT_GT(score->high, 2);
-  EXPECT_EQ(score->telling, Quantity::fraction);
+  EXPECT_EQ(score->telling, observations::Quantity::fraction);
   EXPECT_LT(score->vesicles, 15);
 }
 
@@ -40,8 +41,8 @@ TEST(SeriesExplanation, NamesNothingWhereNothingIsMissing) {
 
 // Zero has no logarithm, and a stated error of it adds nothing.
 TEST(SeriesExplanation, LooksWithoutRaftsSayNothing) {
-  MeasuredVesicles data = measured({}, 10, 0.05, 1);
-  const auto rafts = static_cast<std::size_t>(Quantity::rafts);
+  observations::MeasuredVesicles data = measured({}, 10, 0.05, 1);
+  const auto rafts = static_cast<std::size_t>(observations::Quantity::rafts);
   data.measurements.back().values[rafts].reset();
   const SeriesExplanation without = explained(data);
   data.measurements.back().values[rafts] = 0;
@@ -57,14 +58,14 @@ TEST(SeriesExplanation, StaysWithinTheRuns) {
   const SeriesExplanation found = explained(measured({}, 15, 0.05, 0.2));
   EXPECT_GT(std::exp(found.base.ln_unit), 0.15);
   // At the same times, of vesicles three times as fast.
-  MeasuredVesicles fast = measured({}, 15, 0.05, 1);
-  for (Measurement& m : fast.measurements) {
-    const History run = vesicle({}, 3);
-    for (const Quantity quantity : kQuantities)
-      m.values[index_of(quantity)] = run.at(quantity, std::min(1000.0, 3 * m.time));
+  observations::MeasuredVesicles fast = measured({}, 15, 0.05, 1);
+  for (observations::Measurement& m : fast.measurements) {
+    const observations::History run = vesicle({}, 3);
+    for (const observations::Quantity quantity : observations::kQuantities)
+      m.values[observations::index_of(quantity)] = run.at(quantity, std::min(1000.0, 3 * m.time));
   }
   EXPECT_GT(std::exp(explained(fast).base.ln_unit), 0.6);
-  for (Measurement& m : fast.measurements) m.time *= 20;
+  for (observations::Measurement& m : fast.measurements) m.time *= 20;
   EXPECT_THROW(explained(fast), InputError);
 }
 
@@ -74,7 +75,7 @@ TEST(SeriesExplanation, AdmitsATrendThatNothingExplains) {
   EXPECT_LE(found.trend_p, 0.02);
   // The trend: perimeters fall faster than t^(-1/3), and soon one raft is left.
   ASSERT_EQ(found.offsets.size(), 3u);
-  EXPECT_EQ(found.offsets[0].quantity, Quantity::perimeter);
+  EXPECT_EQ(found.offsets[0].quantity, observations::Quantity::perimeter);
   EXPECT_NEAR(found.offsets[0].slope, -0.6 + 1 / 3.0, 0.03);
   EXPECT_LT(found.offsets[0].slope_deviations, -5);
   EXPECT_LT(std::fabs(found.offsets[2].slope_deviations), 3);
@@ -90,13 +91,13 @@ TEST(EnsembleFit, SaysHowFarMeasurementsLieBesideIt) {
 
 // Effects that another D imitates are seen where D is known.
 TEST(SeriesExplanation, SeesWhatAnotherDDoesIfDIsKnown) {
-  MeasuredVesicles data = measured({}, 20, 0.05, 1);
-  for (Measurement& m : data.measurements)  // whole numbers are not quite alike
-    m.values[static_cast<std::size_t>(Quantity::rafts)].reset();
-  std::vector<History> slower;
+  observations::MeasuredVesicles data = measured({}, 20, 0.05, 1);
+  for (observations::Measurement& m : data.measurements)  // whole numbers are not quite alike
+    m.values[static_cast<std::size_t>(observations::Quantity::rafts)].reset();
+  std::vector<observations::History> slower;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) slower.push_back(vesicle({}, seed, 2));
   const auto explained_with = [&](double factor) {
-    SeriesRequest request{UnitPrior::within_factor(1, factor)};
+    SeriesRequest request{likelihood::UnitPrior::within_factor(1, factor)};
     request.replicates = 49;
     return explain_series(data, ensemble({}), {{"bulk-mobility", 1, true, slower}}, request);
   };
@@ -109,11 +110,11 @@ TEST(SeriesExplanation, SeesWhatAnotherDDoesIfDIsKnown) {
 
 // By its logarithm, like the others.
 TEST(EnsembleFit, SaysHowFarTheRaftFractionLiesBesideIt) {
-  MeasuredVesicles data = measured({}, 15, 0.02, 1);
-  for (Measurement& m : data.measurements)
-    *m.values[static_cast<std::size_t>(Quantity::fraction)] *= 2;
+  observations::MeasuredVesicles data = measured({}, 15, 0.02, 1);
+  for (observations::Measurement& m : data.measurements)
+    *m.values[static_cast<std::size_t>(observations::Quantity::fraction)] *= 2;
   const SeriesOffset offset = explained(data).offsets.at(2);
-  EXPECT_EQ(offset.quantity, Quantity::fraction);
+  EXPECT_EQ(offset.quantity, observations::Quantity::fraction);
   EXPECT_NEAR(offset.level, std::log(2.0), 0.02);
 }
 
@@ -139,7 +140,7 @@ TEST(SeriesExplanation, SaysWhatWouldTellClassesApart) {
   constexpr int kVesicles = 8, kMore = 20;
   std::vector<SeriesCandidate> two = {candidates()[0]};                  // a drift of the fraction
   two.push_back({"cooling", 1, true, ensemble({-1 / 3.0, 0.6, 0.05})});  // and a plateau
-  SeriesRequest request{UnitPrior::within_factor(1, 8)};
+  SeriesRequest request{likelihood::UnitPrior::within_factor(1, 8)};
   request.replicates = 99;
   const auto explain = [&](const RaftLaw& law, int vesicles) {
     return explain_series(measured(law, vesicles, 0.1, 1), ensemble({}), two, request);
@@ -152,7 +153,7 @@ TEST(SeriesExplanation, SaysWhatWouldTellClassesApart) {
   const SeriesTie& tie = found.ties.front();
   EXPECT_EQ(tie.effect, "cooling");
   EXPECT_EQ(tie.other, "uptake");
-  EXPECT_NE(tie.telling, Quantity::fraction);
+  EXPECT_NE(tie.telling, observations::Quantity::fraction);
   // These do not tell them apart, more of one of them do.
   EXPECT_GT(tie.vesicles, kVesicles);
   EXPECT_LT(tie.vesicles, kMore);
@@ -162,4 +163,4 @@ TEST(SeriesExplanation, SaysWhatWouldTellClassesApart) {
 }
 
 }  // namespace
-}  // namespace traceraft::law_vesicles
+}  // namespace traceraft::selection

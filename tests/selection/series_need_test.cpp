@@ -7,7 +7,7 @@
 #include "kernel/core/random.hpp"
 #include "verification/selection/search/judgement.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
 constexpr double kSquare = kSeen * kSeen;
@@ -42,33 +42,33 @@ TEST(SeriesNeed, WhatIsSeenNowIsNoLess) {
 // The mean of three runs is off, which eight times as many vesicles see.
 TEST(SeriesNeed, NoiseOfMoreVesiclesHasThatOfTheRuns) {
   const auto run = [](std::uint64_t seed, double more) {
-    History history;
+    observations::History history;
     for (int k = 0; k <= 40; ++k) {
       const double t = std::pow(10.0, k / 20.0);
       history.time.push_back(t);
-      history.of(Quantity::perimeter).push_back(20 * std::pow(t, -0.3));
-      history.of(Quantity::rafts).push_back(5);
-      history.of(Quantity::fraction)
+      history.of(observations::Quantity::perimeter).push_back(20 * std::pow(t, -0.3));
+      history.of(observations::Quantity::rafts).push_back(5);
+      history.of(observations::Quantity::fraction)
           .push_back(0.1 * std::exp((more + 0.1 * normal_random(seed, 1, 0)) * std::log(t)));
     }
     return history;
   };
-  std::vector<History> runs;
+  std::vector<observations::History> runs;
   SeriesCandidate uptake{"uptake", 1, true, {}};
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     runs.push_back(run(seed, 0));
     uptake.runs.push_back(run(seed, 0.2));
   }
-  MeasuredVesicles data;
+  observations::MeasuredVesicles data;
   for (int v = 0; v < 6; ++v)
     for (const double t : {2.0, 8.0, 30.0}) {
-      Measurement m{std::to_string(v), t, 5, {}, {}};
-      for (const Quantity quantity : kQuantities)
-        m.values[index_of(quantity)] = runs[0].at(quantity, t);
+      observations::Measurement m{std::to_string(v), t, 5, {}, {}};
+      for (const observations::Quantity quantity : observations::kQuantities)
+        m.values[observations::index_of(quantity)] = runs[0].at(quantity, t);
       data.measurements.push_back(m);
     }
-  const UnitPrior unit = UnitPrior::within_factor(1, 2);
-  EnsembleFit fit;
+  const likelihood::UnitPrior unit = likelihood::UnitPrior::within_factor(1, 2);
+  likelihood::EnsembleFit fit;
   fit.scatter = {{0.02, 0.02, 0.02}, {0.02, 0.02, 0.02}};
   const SeriesNull null = null_of(data, runs, {uptake}, fit, unit, 99);
   const std::vector<SeriesNoise> noise = noise_of_more(data, runs, {uptake}, fit, unit, null);
@@ -84,4 +84,4 @@ TEST(SeriesNeed, AnotherDMayDoTheSame) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::selection

@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
 CandidateScore score(const std::string& effect, double gained) {
-  const Candidate candidate = find_candidate(effect).value();
+  const assimilation::Candidate candidate = assimilation::find_candidate(effect).value();
   CandidateScore result{};
   result.effect = effect;
   result.coefficients.assign(candidate.directions, gained > 0 ? 0.1 : 0);
@@ -16,7 +16,7 @@ CandidateScore score(const std::string& effect, double gained) {
   return result;
 }
 
-std::vector<std::string> names(const std::vector<Hypothesis::Part>& parts) {
+std::vector<std::string> names(const std::vector<assimilation::Hypothesis::Part>& parts) {
   std::vector<std::string> result;
   for (const auto& part : parts) result.push_back(part.candidate.effect);
   return result;
@@ -52,7 +52,7 @@ TEST(Shortlist, HoldsWhatCouldBeTheBestOne) {
 }
 
 // Another D takes the place of a little bulk mobility, not of much.
-TEST(Shortlist, HoldsWhatResemblesAnotherPaceHoweverLittleItGains) {
+TEST(Shortlist, HoldsWhatResemblesAnotherDiffusionRatioHoweverLittleItGains) {
   Screening screening;
   screening.scores = {score("gravity", 100), score("uptake", 30), score("exchange", 26),
                       score("mobility-exponent", 2), score("bulk-mobility", 0)};
@@ -63,4 +63,4 @@ TEST(Shortlist, HoldsWhatResemblesAnotherPaceHoweverLittleItGains) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::selection

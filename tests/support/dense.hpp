@@ -7,8 +7,8 @@
 
 namespace traceraft::testing {
 
-inline Eigen::MatrixXd dense(const CsrMatrix& matrix) {
-  const SparsityPattern& p = *matrix.pattern;
+inline Eigen::MatrixXd dense(const fem::CsrMatrix& matrix) {
+  const fem::SparsityPattern& p = *matrix.pattern;
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(p.rows(), p.rows());
   for (int i = 0; i < p.rows(); ++i)
     for (int k = p.row_begin[i]; k < p.row_begin[i + 1]; ++k)

@@ -17,18 +17,18 @@ class Faulty final : public ForwardingSolver {
     std::function<bool(long)> solve_fails = [](long) { return false; };
     bool lazy = false;  // never asks for a set-up by itself
   };
-  Faulty(LinearSolverPtr inner, Plan plan)
+  Faulty(linear::LinearSolverPtr inner, Plan plan)
       : ForwardingSolver(std::move(inner)), plan_(std::move(plan)) {}
 
-  Status setup(const BlockJacobian& J, int lane) override {
+  Status setup(const linear::BlockJacobian& J, int lane) override {
     if (plan_.setup_fails(setups_++)) return Status::retry("injected set-up failure");
     return ForwardingSolver::setup(J, lane);
   }
-  bool wants_setup(const BlockJacobian& J, int lane) const override {
+  bool wants_setup(const linear::BlockJacobian& J, int lane) const override {
     return !plan_.lazy && ForwardingSolver::wants_setup(J, lane);
   }
-  SolveReport solve(const BlockJacobian& J, VecView b, VecRef x, double tolerance,
-                    int lane) override {
+  linear::SolveReport solve(const linear::BlockJacobian& J, VecView b, VecRef x, double tolerance,
+                            int lane) override {
     if (plan_.solve_fails(solves_++)) {
       x.setConstant(std::nan(""));  // as a failed solve may leave anything behind
       return {Status::retry("injected solve failure"), 3};
@@ -44,7 +44,7 @@ class Faulty final : public ForwardingSolver {
 // A problem whose residual is not a number from some evaluation on, or at all large steps.
 class Poisoned final : public ForwardingProblem {
  public:
-  Poisoned(const DaeProblem& inner, std::function<bool(double)> poisoned_at)
+  Poisoned(const problem::DaeProblem& inner, std::function<bool(double)> poisoned_at)
       : ForwardingProblem(inner), poisoned_at_(std::move(poisoned_at)) {}
   Status residual(double t, VecView y, VecView ydot, VecRef r) const override {
     if (poisoned_at_(t) && !silent) return Status::retry("injected failure");

@@ -7,22 +7,22 @@
 
 namespace traceraft::testing {
 
-class ForwardingProblem : public DaeProblem {
+class ForwardingProblem : public problem::DaeProblem {
  public:
-  explicit ForwardingProblem(const DaeProblem& inner) : inner_(inner) {}
+  explicit ForwardingProblem(const problem::DaeProblem& inner) : inner_(inner) {}
   int block_size() const override { return inner_.block_size(); }
   Status residual(double t, VecView y, VecView ydot, VecRef r) const override {
     return inner_.residual(t, y, ydot, r);
   }
-  Status jacobian(double t, VecView y, VecView ydot, double shift, Tangent tangent,
-                  BlockJacobian& J) const override {
+  Status jacobian(double t, VecView y, VecView ydot, double shift, linear::Tangent tangent,
+                  linear::BlockJacobian& J) const override {
     return inner_.jacobian(t, y, ydot, shift, tangent, J);
   }
-  Status jacobian_product(double t, VecView y, VecView ydot, double shift, Tangent tangent,
+  Status jacobian_product(double t, VecView y, VecView ydot, double shift, linear::Tangent tangent,
                           VecView v, VecRef product) const override {
     return inner_.jacobian_product(t, y, ydot, shift, tangent, v, product);
   }
-  BlockJacobian make_jacobian() const override { return inner_.make_jacobian(); }
+  linear::BlockJacobian make_jacobian() const override { return inner_.make_jacobian(); }
   Status consistent_initial_state(double t, VecRef y, VecRef ydot) const override {
     return inner_.consistent_initial_state(t, y, ydot);
   }
@@ -40,28 +40,28 @@ class ForwardingProblem : public DaeProblem {
   const Communicator& ranks() const override { return inner_.ranks(); }
 
  private:
-  const DaeProblem& inner_;
+  const problem::DaeProblem& inner_;
 };
 
-class ForwardingSolver : public LinearSolver {
+class ForwardingSolver : public linear::LinearSolver {
  public:
-  explicit ForwardingSolver(LinearSolverPtr inner) : inner_(std::move(inner)) {}
+  explicit ForwardingSolver(linear::LinearSolverPtr inner) : inner_(std::move(inner)) {}
   std::string name() const override { return "faulty"; }
   bool shares_factors() const override { return inner_->shares_factors(); }
-  Status setup(const BlockJacobian& J, int lane) override { return inner_->setup(J, lane); }
-  bool wants_setup(const BlockJacobian& J, int lane) const override {
+  Status setup(const linear::BlockJacobian& J, int lane) override { return inner_->setup(J, lane); }
+  bool wants_setup(const linear::BlockJacobian& J, int lane) const override {
     return inner_->wants_setup(J, lane);
   }
-  SolveReport solve(const BlockJacobian& J, VecView b, VecRef x, double tolerance,
-                    int lane) override {
+  linear::SolveReport solve(const linear::BlockJacobian& J, VecView b, VecRef x, double tolerance,
+                            int lane) override {
     return inner_->solve(J, b, x, tolerance, lane);
   }
-  LinearStatistics statistics() const override { return inner_->statistics(); }
+  linear::LinearStatistics statistics() const override { return inner_->statistics(); }
   void save(CheckpointOut out) const override { inner_->save(out); }
   void load(CheckpointIn in) override { inner_->load(in); }
 
  private:
-  LinearSolverPtr inner_;
+  linear::LinearSolverPtr inner_;
 };
 
 }  // namespace traceraft::testing

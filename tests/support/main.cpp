@@ -6,8 +6,8 @@
 #include "backends/suitesparse/blas.hpp"
 
 int main(int argc, char** argv) {
-  traceraft::restart_with_environment(traceraft::preferred_environment(), argv);
-  traceraft::use_one_blas_thread();
+  traceraft::posix::restart_with_environment(traceraft::suitesparse::preferred_environment(), argv);
+  traceraft::suitesparse::use_one_blas_thread();
   ::testing::InitGoogleTest(&argc, argv);
   return RUN_ALL_TESTS();
 }

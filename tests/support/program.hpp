@@ -46,7 +46,7 @@ inline pid_t start_traceraft(const std::string& arguments) {
 }
 
 inline std::string content(const std::filesystem::path& path) {
-  return read_file(path, 1 << 28);
+  return posix::read_file(path, 1 << 28);
 }
 
 inline nlohmann::json json_of(const std::filesystem::path& path) {

@@ -5,8 +5,8 @@
 
 namespace traceraft::testing {
 
-inline PublishedFacts facts_of_3to1() {
-  PublishedFacts facts;
+inline observations::PublishedFacts facts_of_3to1() {
+  observations::PublishedFacts facts;
   facts.vesicles = 17;
   facts.measurements = 62;
   facts.fraction = 0.09;

@@ -6,9 +6,9 @@
 
 namespace traceraft::testing {
 
-inline BlindRequest small_vesicle(int snapshots) {
-  BlindRequest asked;
-  asked.base = bench_model("degenerate", 0.2);
+inline selection::BlindRequest small_vesicle(int snapshots) {
+  selection::BlindRequest asked;
+  asked.base = bench::bench_model("degenerate", 0.2);
   asked.cells = 22;
   asked.first = 10;
   asked.last = 60;

@@ -11,19 +11,19 @@
 
 namespace traceraft::testing {
 
-inline std::shared_ptr<const SurfaceSpace> make_space(int cells,
-                                                      const std::string& surface = "sphere",
-                                                      int threads = 1,
-                                                      const Point& offset = Point::Zero()) {
-  return std::make_shared<SurfaceSpace>(ShiftedLevelSet(make_surface(surface), offset), cells,
-                                        std::make_shared<ThreadTeam>(threads),
-                                        std::make_shared<SerialCommunicator>());
+inline std::shared_ptr<const fem::SurfaceSpace> make_space(int cells,
+                                                           const std::string& surface = "sphere",
+                                                           int threads = 1,
+                                                           const Point& offset = Point::Zero()) {
+  return std::make_shared<fem::SurfaceSpace>(
+      geometry::ShiftedLevelSet(geometry::make_surface(surface), offset), cells,
+      std::make_shared<ThreadTeam>(threads), std::make_shared<SerialCommunicator>());
 }
 
-inline CahnHilliardModel make_model(const std::string& mobility = "degenerate",
-                                    double epsilon = 0.2) {
-  CahnHilliardModel model;
-  model.mobility = make_mobility(mobility);
+inline problem::CahnHilliardModel make_model(const std::string& mobility = "degenerate",
+                                             double epsilon = 0.2) {
+  problem::CahnHilliardModel model;
+  model.mobility = physics::make_mobility(mobility);
   model.epsilon = epsilon;
   return model;
 }
@@ -48,7 +48,7 @@ inline Vec random_vector(Eigen::Index size, std::uint64_t seed, double low = -1,
 }
 
 // A state whose concentrations lie inside and outside of [0, 1].
-inline Vec random_state(const DaeProblem& problem, std::uint64_t seed) {
+inline Vec random_state(const problem::DaeProblem& problem, std::uint64_t seed) {
   Vec y(problem.size());
   y.head(problem.block_size()) = random_vector(problem.block_size(), seed, -0.2, 1.2);
   y.tail(problem.block_size()) = random_vector(problem.block_size(), seed + 1000);
@@ -59,13 +59,14 @@ inline Vec random_state(const DaeProblem& problem, std::uint64_t seed) {
 struct StartState {
   Vec y, ydot;
 };
-inline StartState noise_state(const CahnHilliard& problem, std::uint64_t seed = 1,
+inline StartState noise_state(const problem::CahnHilliard& problem, std::uint64_t seed = 1,
                               double fraction = 0.5) {
-  InitialRequest request;
+  problem::InitialRequest request;
   request.raft_fraction = fraction;
   request.seed = seed;
   StartState start{Vec::Zero(problem.size()), Vec::Zero(problem.size())};
-  start.y.head(problem.block_size()) = make_initial_field("noise", problem.space(), request);
+  start.y.head(problem.block_size()) =
+      problem::make_initial_field("noise", problem.space(), request);
   const Status status = problem.consistent_initial_state(0, start.y, start.ydot);
   if (!status.ok()) throw std::runtime_error(status.why);
   return start;

@@ -6,7 +6,7 @@
 #include "backends/list.hpp"
 #include "tests/support/spaces.hpp"
 
-namespace traceraft {
+namespace traceraft::time {
 namespace {
 
 using testing::make_model;
@@ -18,8 +18,8 @@ class Accuracy : public ::testing::TestWithParam<std::string> {
   Accuracy() : space(make_space(10)), problem(space, make_model("degenerate", 0.3)) {}
 
   IntegratorPtr make(const std::string& name, const IntegratorSettings& settings) const {
-    return integrators().find(name).make(problem, choose_linear_solver("direct", *space),
-                                         space->team, settings);
+    return backends::integrators().find(name).make(
+        problem, backends::choose_linear_solver("direct", *space), space->team, settings);
   }
   static IntegratorSettings tight() {
     IntegratorSettings settings;
@@ -37,8 +37,8 @@ class Accuracy : public ::testing::TestWithParam<std::string> {
     return exact->state();
   }
 
-  std::shared_ptr<const SurfaceSpace> space;
-  CahnHilliard problem;
+  std::shared_ptr<const fem::SurfaceSpace> space;
+  problem::CahnHilliard problem;
 };
 
 // The error of each step alone stays below the tolerance, but not by much: the estimates are of the
@@ -101,7 +101,7 @@ TEST_P(Accuracy, InterpolationKeepsTheOrder) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Accuracy, ::testing::ValuesIn(integrators().names()));
+INSTANTIATE_TEST_SUITE_P(All, Accuracy, ::testing::ValuesIn(backends::integrators().names()));
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::time

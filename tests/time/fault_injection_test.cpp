@@ -7,7 +7,7 @@
 #include "tests/support/forwarding.hpp"
 #include "tests/support/spaces.hpp"
 
-namespace traceraft {
+namespace traceraft::time {
 namespace {
 
 using testing::make_model;
@@ -33,15 +33,16 @@ struct Fault {
 
 class FaultyProblem final : public testing::ForwardingProblem {
  public:
-  FaultyProblem(const DaeProblem& inner, Fault& fault) : ForwardingProblem(inner), fault_(fault) {}
+  FaultyProblem(const problem::DaeProblem& inner, Fault& fault)
+      : ForwardingProblem(inner), fault_(fault) {}
   Status residual(double t, VecView y, VecView ydot, VecRef r) const override {
     if (fault_.strikes(Site::residual)) return Status::retry("injected failure");
     const Status status = ForwardingProblem::residual(t, y, ydot, r);
     if (fault_.strikes(Site::silent_residual)) r[r.size() / 3] = std::nan("");
     return status;
   }
-  Status jacobian(double t, VecView y, VecView ydot, double shift, Tangent tangent,
-                  BlockJacobian& J) const override {
+  Status jacobian(double t, VecView y, VecView ydot, double shift, linear::Tangent tangent,
+                  linear::BlockJacobian& J) const override {
     if (fault_.strikes(Site::jacobian)) return Status::retry("injected failure");
     return ForwardingProblem::jacobian(t, y, ydot, shift, tangent, J);
   }
@@ -52,19 +53,19 @@ class FaultyProblem final : public testing::ForwardingProblem {
 
 class FaultySolver final : public testing::ForwardingSolver {
  public:
-  FaultySolver(LinearSolverPtr inner, Fault& fault)
+  FaultySolver(linear::LinearSolverPtr inner, Fault& fault)
       : ForwardingSolver(std::move(inner)), fault_(fault) {}
-  Status setup(const BlockJacobian& J, int lane) override {
+  Status setup(const linear::BlockJacobian& J, int lane) override {
     if (fault_.strikes(Site::setup)) return Status::retry("injected failure");
     return ForwardingSolver::setup(J, lane);
   }
-  SolveReport solve(const BlockJacobian& J, VecView b, VecRef x, double tolerance,
-                    int lane) override {
+  linear::SolveReport solve(const linear::BlockJacobian& J, VecView b, VecRef x, double tolerance,
+                            int lane) override {
     if (fault_.strikes(Site::solve)) {
       x.setConstant(1e68);  // as a failed solve may leave anything behind
       return {Status::retry("injected failure"), 3};
     }
-    const SolveReport report = ForwardingSolver::solve(J, b, x, tolerance, lane);
+    const linear::SolveReport report = ForwardingSolver::solve(J, b, x, tolerance, lane);
     // A solver that breaks its contract is caught as long as what it returns is no number.
     if (fault_.strikes(Site::silent_solve)) x[x.size() / 3] = std::nan("");
     return report;
@@ -86,7 +87,7 @@ class FaultInjection : public ::testing::TestWithParam<std::string> {
   };
   Outcome run(Fault& fault, bool with_fallback) const {
     const FaultyProblem faulty(problem, fault);
-    LinearSolverChoice choice = choose_linear_solver("block", *space);
+    linear::LinearSolverChoice choice = backends::choose_linear_solver("block", *space);
     choice.primary = [inner = choice.primary, &fault](int lanes) {
       return std::make_unique<FaultySolver>(inner(lanes), fault);
     };
@@ -95,15 +96,15 @@ class FaultInjection : public ::testing::TestWithParam<std::string> {
     settings.tolerance = 1e-2;
     settings.linear_tolerance = 1e-6;
     const IntegratorPtr integrator =
-        integrators().find(GetParam()).make(faulty, choice, space->team, settings);
+        backends::integrators().find(GetParam()).make(faulty, choice, space->team, settings);
     const testing::StartState start = noise_state(problem);
     Status status = integrator->start(0, start.y, start.ydot, kEnd);
     while (status.ok() && integrator->time() < kEnd) status = integrator->advance();
     return {status, integrator->state(), integrator->statistics()};
   }
 
-  std::shared_ptr<const SurfaceSpace> space;
-  CahnHilliard problem;
+  std::shared_ptr<const fem::SurfaceSpace> space;
+  problem::CahnHilliard problem;
 };
 
 TEST_P(FaultInjection, OneFailureAtAnyCallChangesNothingButTheSteps) {
@@ -149,7 +150,7 @@ TEST_P(FaultInjection, FailuresWithoutEndEndTheRunAtItsLastState) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, FaultInjection, ::testing::ValuesIn(integrators().names()));
+INSTANTIATE_TEST_SUITE_P(All, FaultInjection, ::testing::ValuesIn(backends::integrators().names()));
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::time

@@ -10,7 +10,7 @@
 #include "tests/support/forwarding.hpp"
 #include "tests/support/spaces.hpp"
 
-namespace traceraft {
+namespace traceraft::time {
 namespace {
 
 using testing::make_model;
@@ -19,10 +19,10 @@ using testing::noise_state;
 
 TEST(Ida, RefusesTheMemoryOfAnotherVersion) {
   const auto space = make_space(8);
-  const CahnHilliard problem(space, make_model());
+  const problem::CahnHilliard problem(space, make_model());
   const auto make = [&] {
-    return integrators().find("ida").make(problem, choose_linear_solver("direct", *space),
-                                          space->team, {});
+    return backends::integrators().find("ida").make(
+        problem, backends::choose_linear_solver("direct", *space), space->team, {});
   };
   const testing::StartState start = noise_state(problem);
   const IntegratorPtr integrator = make();
@@ -47,10 +47,10 @@ TEST(Ida, RefusesTheMemoryOfAnotherVersion) {
 TEST(Ida, SolvesEveryCorrectionAsItPromises) {
   class Watching final : public testing::ForwardingSolver {
    public:
-    Watching(LinearSolverPtr inner, std::vector<double>& asked)
+    Watching(linear::LinearSolverPtr inner, std::vector<double>& asked)
         : ForwardingSolver(std::move(inner)), asked_(asked) {}
-    SolveReport solve(const BlockJacobian& J, VecView b, VecRef x, double tolerance,
-                      int lane) override {
+    linear::SolveReport solve(const linear::BlockJacobian& J, VecView b, VecRef x, double tolerance,
+                              int lane) override {
       asked_.push_back(tolerance);
       return ForwardingSolver::solve(J, b, x, tolerance, lane);
     }
@@ -59,12 +59,13 @@ TEST(Ida, SolvesEveryCorrectionAsItPromises) {
     std::vector<double>& asked_;
   };
   const auto space = make_space(8);
-  const CahnHilliard problem(space, make_model());
+  const problem::CahnHilliard problem(space, make_model());
   std::vector<double> asked;
-  LinearSolverChoice choice = choose_linear_solver("block", *space);
-  const LinearSolverFactory inner = choice.primary;
+  linear::LinearSolverChoice choice = backends::choose_linear_solver("block", *space);
+  const linear::LinearSolverFactory inner = choice.primary;
   choice.primary = [&](int lanes) { return std::make_unique<Watching>(inner(lanes), asked); };
-  const IntegratorPtr integrator = integrators().find("ida").make(problem, choice, space->team, {});
+  const IntegratorPtr integrator =
+      backends::integrators().find("ida").make(problem, choice, space->team, {});
   const testing::StartState start = noise_state(problem);
   ASSERT_TRUE(integrator->start(0, start.y, start.ydot, 5).ok());
   while (integrator->time() < 5) ASSERT_TRUE(integrator->advance().ok());
@@ -77,4 +78,4 @@ TEST(Ida, SolvesEveryCorrectionAsItPromises) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::time

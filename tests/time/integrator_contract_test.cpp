@@ -7,7 +7,7 @@
 #include "tests/support/faulty.hpp"
 #include "tests/support/spaces.hpp"
 
-namespace traceraft {
+namespace traceraft::time {
 namespace {
 
 using testing::Faulty;
@@ -21,16 +21,17 @@ class IntegratorContract : public ::testing::TestWithParam<std::string> {
   // Two threads, so that the solves of a step really run at the same time.
   IntegratorContract() : space(make_space(12, "sphere", 2)), problem(space, make_model()) {}
 
-  IntegratorPtr make(const DaeProblem& dae, const std::string& solver = "direct",
+  IntegratorPtr make(const problem::DaeProblem& dae, const std::string& solver = "direct",
                      IntegratorSettings settings = {}) const {
-    return integrators()
+    return backends::integrators()
         .find(GetParam())
-        .make(dae, choose_linear_solver(solver, *space), space->team, settings);
+        .make(dae, backends::choose_linear_solver(solver, *space), space->team, settings);
   }
-  IntegratorPtr started(const DaeProblem& dae, double t_end, const LinearSolverChoice& choice,
+  IntegratorPtr started(const problem::DaeProblem& dae, double t_end,
+                        const linear::LinearSolverChoice& choice,
                         IntegratorSettings settings = {}) const {
     IntegratorPtr integrator =
-        integrators().find(GetParam()).make(dae, choice, space->team, settings);
+        backends::integrators().find(GetParam()).make(dae, choice, space->team, settings);
     const testing::StartState start = noise_state(problem);
     EXPECT_TRUE(integrator->start(0, start.y, start.ydot, t_end).ok());
     return integrator;
@@ -40,9 +41,9 @@ class IntegratorContract : public ::testing::TestWithParam<std::string> {
     while (status.ok() && integrator.time() < t_end) status = integrator.advance();
     return status;
   }
-  LinearSolverChoice faulty(Faulty::Plan plan, bool with_fallback) const {
-    LinearSolverChoice choice = choose_linear_solver("block", *space);
-    LinearSolverFactory inner = choice.primary;
+  linear::LinearSolverChoice faulty(Faulty::Plan plan, bool with_fallback) const {
+    linear::LinearSolverChoice choice = backends::choose_linear_solver("block", *space);
+    linear::LinearSolverFactory inner = choice.primary;
     choice.primary = [inner, plan](int lanes) {
       return std::make_unique<Faulty>(inner(lanes), plan);
     };
@@ -50,12 +51,13 @@ class IntegratorContract : public ::testing::TestWithParam<std::string> {
     return choice;
   }
 
-  std::shared_ptr<const SurfaceSpace> space;
-  CahnHilliard problem;
+  std::shared_ptr<const fem::SurfaceSpace> space;
+  problem::CahnHilliard problem;
 };
 
 TEST_P(IntegratorContract, EndsExactlyAtTheEndAndGoesNoFurther) {
-  const IntegratorPtr integrator = started(problem, 0.7, choose_linear_solver("block", *space));
+  const IntegratorPtr integrator =
+      started(problem, 0.7, backends::choose_linear_solver("block", *space));
   ASSERT_TRUE(run(*integrator, 0.7).ok());
   EXPECT_EQ(integrator->time(), 0.7);
   EXPECT_EQ(integrator->advance().outcome, Outcome::fatal);
@@ -64,7 +66,7 @@ TEST_P(IntegratorContract, EndsExactlyAtTheEndAndGoesNoFurther) {
 
 TEST_P(IntegratorContract, KeepsMassWithEverySolver) {
   std::uint64_t seed = 0;  // each solver has another initial state
-  for (const std::string& solver : built_linear_solvers()) {
+  for (const std::string& solver : backends::built_linear_solvers()) {
     const IntegratorPtr integrator = make(problem, solver);
     const testing::StartState start = noise_state(problem, ++seed, 0.3);
     ASSERT_TRUE(integrator->start(0, start.y, start.ydot, 20).ok());
@@ -76,16 +78,18 @@ TEST_P(IntegratorContract, KeepsMassWithEverySolver) {
 TEST_P(IntegratorContract, SolversGiveTheSameTrajectory) {
   IntegratorSettings settings;
   settings.linear_tolerance = 1e-10;
-  const IntegratorPtr block = started(problem, 5, choose_linear_solver("block", *space), settings);
+  const IntegratorPtr block =
+      started(problem, 5, backends::choose_linear_solver("block", *space), settings);
   const IntegratorPtr direct =
-      started(problem, 5, choose_linear_solver("direct", *space), settings);
+      started(problem, 5, backends::choose_linear_solver("direct", *space), settings);
   ASSERT_TRUE(run(*block, 5).ok());
   ASSERT_TRUE(run(*direct, 5).ok());
   EXPECT_LT(problem.norm(block->state() - direct->state()), 1e-6);
 }
 
 TEST_P(IntegratorContract, InterpolatesItsLastStepWithoutLosingMass) {
-  const IntegratorPtr integrator = started(problem, 1e6, choose_linear_solver("block", *space));
+  const IntegratorPtr integrator =
+      started(problem, 1e6, backends::choose_linear_solver("block", *space));
   const double mass = problem.mass(integrator->state());
   Vec before = integrator->state(), y(problem.size());
   std::vector<double> ends = {0};
@@ -108,8 +112,9 @@ TEST_P(IntegratorContract, InterpolatesItsLastStepWithoutLosingMass) {
 }
 
 TEST_P(IntegratorContract, ContinuesBitwiseFromWhatItSaved) {
-  for (const std::string& solver : built_linear_solvers()) {
-    const IntegratorPtr whole = started(problem, 300, choose_linear_solver(solver, *space));
+  for (const std::string& solver : backends::built_linear_solvers()) {
+    const IntegratorPtr whole =
+        started(problem, 300, backends::choose_linear_solver(solver, *space));
     std::vector<std::string> saved;
     for (int step = 0; step < 25; ++step) {
       std::ostringstream out;
@@ -131,7 +136,7 @@ TEST_P(IntegratorContract, ContinuesBitwiseFromWhatItSaved) {
 }
 
 TEST_P(IntegratorContract, TheEnergyGuardContinuesBitwise) {
-  const CahnHilliard model(space, make_model("degenerate", 0.1));
+  const problem::CahnHilliard model(space, make_model("degenerate", 0.1));
   IntegratorSettings settings;
   settings.reject_energy_rises = true;
   settings.tolerance = 0.3;
@@ -157,7 +162,8 @@ TEST_P(IntegratorContract, TheEnergyGuardContinuesBitwise) {
 }
 
 TEST_P(IntegratorContract, RefusesDataThatAreNotItsOwn) {
-  const IntegratorPtr integrator = started(problem, 3, choose_linear_solver("block", *space));
+  const IntegratorPtr integrator =
+      started(problem, 3, backends::choose_linear_solver("block", *space));
   ASSERT_TRUE(integrator->advance().ok());
   std::ostringstream out;
   integrator->save(out);
@@ -167,12 +173,13 @@ TEST_P(IntegratorContract, RefusesDataThatAreNotItsOwn) {
     std::istringstream torn(data.substr(0, size));
     EXPECT_THROW(make(problem, "block")->load(torn), IoError) << size;
   }
-  const CahnHilliard other(make_space(16), make_model());
+  const problem::CahnHilliard other(make_space(16), make_model());
   std::istringstream in(data);
   const IntegratorPtr larger =
-      integrators()
+      backends::integrators()
           .find(GetParam())
-          .make(other, choose_linear_solver("block", other.space()), other.space().team, {});
+          .make(other, backends::choose_linear_solver("block", other.space()), other.space().team,
+                {});
   EXPECT_THROW(larger->load(in), IoError);
 }
 
@@ -190,7 +197,8 @@ TEST_P(IntegratorContract, RenewsFactorsBeforeItFallsBack) {
 TEST_P(IntegratorContract, FallsBackAndStaysRight) {
   IntegratorSettings settings;
   settings.linear_tolerance = 1e-10;
-  const IntegratorPtr good = started(problem, 2, choose_linear_solver("block", *space), settings);
+  const IntegratorPtr good =
+      started(problem, 2, backends::choose_linear_solver("block", *space), settings);
   ASSERT_TRUE(run(*good, 2).ok());
   for (const bool setup : {true, false}) {
     Faulty::Plan plan;
@@ -218,10 +226,11 @@ TEST_P(IntegratorContract, EndsWhenNoSolverWorksAndKeepsTheLastState) {
 
 TEST_P(IntegratorContract, CutsTheStepWhenTheModelFailsAndEndsWhenItAlwaysFails) {
   for (const bool silent : {false, true})
-    for (const std::string& solver : built_linear_solvers()) {
+    for (const std::string& solver : backends::built_linear_solvers()) {
       Poisoned late(problem, [](double t) { return t > 0.5; });
       late.silent = silent;
-      const IntegratorPtr integrator = started(late, 2, choose_linear_solver(solver, *space));
+      const IntegratorPtr integrator =
+          started(late, 2, backends::choose_linear_solver(solver, *space));
       const Status status = run(*integrator, 2);
       EXPECT_EQ(status.outcome, Outcome::fatal);
       EXPECT_NE(status.why.find("no step size"), std::string::npos) << status.why;
@@ -239,7 +248,7 @@ TEST_P(IntegratorContract, ReportsAStepSizeThatCollapses) {
   settings.tolerance = 1e-9;
   settings.min_step = 0.01;  // far too large for that tolerance
   const IntegratorPtr integrator =
-      started(problem, 2, choose_linear_solver("block", *space), settings);
+      started(problem, 2, backends::choose_linear_solver("block", *space), settings);
   const Status status = run(*integrator, 2);
   EXPECT_EQ(status.outcome, Outcome::fatal);
   EXPECT_NE(status.why.find("no step size"), std::string::npos) << status.why;
@@ -248,7 +257,7 @@ TEST_P(IntegratorContract, ReportsAStepSizeThatCollapses) {
 
 TEST_P(IntegratorContract, SaysThatTheErrorIsWhyThereIsNoStepSize) {
   // Nearly linear, so that Newton's method is not what fails.
-  const CahnHilliard gentle(space, make_model("constant", 0.2));
+  const problem::CahnHilliard gentle(space, make_model("constant", 0.2));
   const int n = gentle.block_size();
   Vec y = Vec::Zero(2 * n), ydot = y;
   y.head(n) = Vec::Constant(n, 0.5) + 1e-3 * noise_state(problem).y.head(n);
@@ -285,7 +294,7 @@ TEST_P(IntegratorContract, TighterTolerancesGiveSmallerErrors) {
     settings.tolerance = tolerance;
     settings.linear_tolerance = 1e-8;
     const IntegratorPtr integrator =
-        started(problem, 1, choose_linear_solver("block", *space), settings);
+        started(problem, 1, backends::choose_linear_solver("block", *space), settings);
     ASSERT_TRUE(run(*integrator, 1).ok());
     states.push_back(integrator->state());
   }
@@ -300,7 +309,7 @@ TEST_P(IntegratorContract, RefusesStepsThatGainEnergyIfAskedTo) {
   long gained[2] = {0, 0}, refused[2] = {0, 0};
   for (const bool reject : {false, true})
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-      const CahnHilliard model(space, make_model("degenerate", 0.1));
+      const problem::CahnHilliard model(space, make_model("degenerate", 0.1));
       IntegratorSettings settings;
       settings.reject_energy_rises = reject;
       settings.tolerance = 0.3;
@@ -324,7 +333,8 @@ TEST_P(IntegratorContract, RefusesStepsThatGainEnergyIfAskedTo) {
   EXPECT_GT(refused[1], 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, IntegratorContract, ::testing::ValuesIn(integrators().names()));
+INSTANTIATE_TEST_SUITE_P(All, IntegratorContract,
+                         ::testing::ValuesIn(backends::integrators().names()));
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::time

@@ -9,7 +9,7 @@
 #include "tests/support/faulty.hpp"
 #include "tests/support/spaces.hpp"
 
-namespace traceraft {
+namespace traceraft::time {
 namespace {
 
 using testing::Faulty;
@@ -20,20 +20,20 @@ using testing::make_space;
 // compute them there again.
 TEST(JacobianSolver, RemembersTheStateOfRenewedFactorsWhicheverLaneNeededThem) {
   const auto space = make_space(10);
-  const CahnHilliard problem(space, make_model());
+  const problem::CahnHilliard problem(space, make_model());
   const testing::StartState start = testing::noise_state(problem);
   Faulty::Plan plan;
   plan.lazy = true;
   plan.solve_fails = [](long call) { return call == 3; };  // lane 1 in the second round
-  LinearSolverChoice choice = choose_linear_solver("block", *space);
+  linear::LinearSolverChoice choice = backends::choose_linear_solver("block", *space);
   choice.fallback = nullptr;
-  LinearSolverChoice faulty = choice;
+  linear::LinearSolverChoice faulty = choice;
   faulty.primary = [&](int lanes) { return std::make_unique<Faulty>(choice.primary(lanes), plan); };
   const auto systems = [&](double shift) {
     std::vector<NewtonSystem> list(2);
     for (std::size_t lane = 0; lane < 2; ++lane) {
       list[lane].shift = shift * (lane == 0 ? 1 : 30);
-      list[lane].tangent = Tangent::stabilised;
+      list[lane].tangent = linear::Tangent::stabilised;
       list[lane].y = (lane == 0 ? 1 : 0.7) * start.y;
       list[lane].ydot = Vec::Zero(problem.size());
       list[lane].b = testing::random_vector(problem.size(), 5 + lane);
@@ -58,4 +58,4 @@ TEST(JacobianSolver, RemembersTheStateOfRenewedFactorsWhicheverLaneNeededThem) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::time

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace traceraft {
+namespace traceraft::time {
 namespace {
 
 StepControl control_of(double min_step, double span) {
@@ -54,4 +54,4 @@ TEST(StepControl, GivesUpNearTheEndToo) {
 }
 
 }  // namespace
-}  // namespace traceraft
+}  // namespace traceraft::time

@@ -21,8 +21,8 @@ TEST(DynamicScaling, SizesInUnitsOfTheirMeanAreOneDistribution) {
   const std::vector<double> areas = {1, 4, 9, 16};
   std::vector<double> grown;
   for (const double area : areas) grown.push_back(6.25 * area);
-  const Cumulative curve = cumulative_radii(areas);
-  EXPECT_LT(largest_difference(curve, cumulative_radii(grown)), 1e-14);
+  const bench::Cumulative curve = bench::cumulative_radii(areas);
+  EXPECT_LT(bench::largest_difference(curve, bench::cumulative_radii(grown)), 1e-14);
   ASSERT_EQ(curve.size(), 5u);  // radii 1, 2, 3, 4 over 2.5
   EXPECT_NEAR(curve[1].first, 0.4, 1e-14);
   EXPECT_NEAR(curve[2].second, 0.5, 1e-14);
@@ -35,9 +35,9 @@ TEST(DynamicScaling, SpectraInUnitsOfTheirMedianDegreeAreOneDistribution) {
       power.push_back(std::exp(-std::pow(std::log(l / scale), 2)) / scale);
     return power;
   };
-  EXPECT_LT(
-      largest_difference(cumulative_spectrum(spectrum(20)), cumulative_spectrum(spectrum(40))),
-      0.01);
+  EXPECT_LT(bench::largest_difference(bench::cumulative_spectrum(spectrum(20)),
+                                      bench::cumulative_spectrum(spectrum(40))),
+            0.01);
 }
 
 // Of one distribution two in 32 differ by more than what 6 members can be exchanged to.
@@ -53,19 +53,20 @@ TEST(DynamicScaling, TheDifferenceOfChanceTellsDistributionsApart) {
     std::vector<double> first, second;
     for (const auto& areas : a) first.insert(first.end(), areas.begin(), areas.end());
     for (const auto& areas : b) second.insert(second.end(), areas.begin(), areas.end());
-    return largest_difference(cumulative_radii(first), cumulative_radii(second));
+    return bench::largest_difference(bench::cumulative_radii(first),
+                                     bench::cumulative_radii(second));
   };
   constexpr int kPairs = 400;
   int exceeded = 0;
   for (std::uint64_t seed = 0; seed < kPairs; ++seed) {
     const auto early = members(2 * seed, 13, 0.2), late = members(2 * seed + 1, 10, 0.2);
-    exceeded += difference(early, late) > chance_difference(early, late);
+    exceeded += difference(early, late) > bench::chance_difference(early, late);
   }
   EXPECT_NEAR(exceeded, kPairs * 2 / 32.0, 3 * std::sqrt(kPairs * 2 / 32.0));
   const auto narrow = members(1, 13, 0.8), wide = members(2, 10, 0.0);
   // Where one member of six is exchanged two thirds of a difference are left.
-  EXPECT_GT(difference(narrow, wide), 1.2 * chance_difference(narrow, wide));
-  EXPECT_THROW((void)chance_difference(narrow, {}), std::invalid_argument);
+  EXPECT_GT(difference(narrow, wide), 1.2 * bench::chance_difference(narrow, wide));
+  EXPECT_THROW((void)bench::chance_difference(narrow, {}), std::invalid_argument);
 }
 
 }  // namespace

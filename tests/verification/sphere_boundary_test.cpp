@@ -11,9 +11,9 @@ namespace {
 
 // ε² (c'' − tan φ c') = f0'(c), by differences over a distance that the solution does not know.
 TEST(SphereBoundary, SolvesItsEquation) {
-  const DoubleWell well;
+  const physics::DoubleWell well;
   for (const double epsilon : {0.05, 0.3}) {
-    const SphereBoundary boundary(well, epsilon);
+    const analytic::SphereBoundary boundary(well, epsilon);
     const double d = 0.05 * epsilon;
     for (double latitude = -1.2; latitude <= 1.2; latitude += 0.1) {
       const double south = boundary.profile(latitude - d), here = boundary.profile(latitude),
@@ -29,9 +29,9 @@ TEST(SphereBoundary, SolvesItsEquation) {
 
 // The first correction to the energy of a flat boundary, from ∫ |∇c|² cos φ of the tanh profile.
 TEST(SphereBoundary, ApproachesAFlatBoundary) {
-  const DoubleWell well;
+  const physics::DoubleWell well;
   for (const double epsilon : {0.02, 0.04}) {
-    const SphereBoundary boundary(well, epsilon);
+    const analytic::SphereBoundary boundary(well, epsilon);
     const double flat = 2 * kPi * epsilon * well.interface_energy();
     const double correction = 4 * epsilon * epsilon * (kPi * kPi / 12 - 0.5);
     EXPECT_NEAR(boundary.energy() / flat, 1 - correction, 0.03 * correction);

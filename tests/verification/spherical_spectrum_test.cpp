@@ -18,7 +18,7 @@ TEST(SphericalSpectrum, SeparatesTheDegrees) {
     const Point x = space->mesh.position(i).normalized();
     c[i] = 0.7 + 10 * x[0] * x[1] * x[2] + 2 * (x[2] * x[2] - 1.0 / 3);
   }
-  const std::vector<double> spectrum = spherical_spectrum(*space, c, 8);
+  const std::vector<double> spectrum = bench::spherical_spectrum(*space, c, 8);
   ASSERT_EQ(spectrum.size(), 9u);
   const std::vector<double> expected = {
       0.49 * 4 * kPi, 0, 4 * 16 * kPi / 45, 100 * 4 * kPi / 105, 0, 0, 0, 0, 0};
@@ -29,7 +29,8 @@ TEST(SphericalSpectrum, SeparatesTheDegrees) {
     total += spectrum[l];
   }
   EXPECT_NEAR(total, space->inner(c, c), 3e-3 * total);
-  EXPECT_NEAR(median_degree(spectrum), 2.5 + 0.5 * (expected[3] - expected[2]) / expected[3], 0.02);
+  EXPECT_NEAR(bench::median_degree(spectrum), 2.5 + 0.5 * (expected[3] - expected[2]) / expected[3],
+              0.02);
 }
 
 // A zonal harmonic of high degree around a tilted axis: all orders m take part.
@@ -41,10 +42,10 @@ TEST(SphericalSpectrum, DoesNotDependOnTheAxis) {
   for (int i = 0; i < space->nodes(); ++i)
     c[i] = std::legendre(kDegree, axis.dot(space->mesh.position(i).normalized()));
   // Beyond 1/h = 22 there is no noise that adds up.
-  const std::vector<double> spectrum = spherical_spectrum(*space, c, 33);
+  const std::vector<double> spectrum = bench::spherical_spectrum(*space, c, 33);
   EXPECT_NEAR(spectrum[kDegree], space->inner(c, c), 5e-3 * spectrum[kDegree]);
   EXPECT_NEAR(spectrum[kDegree], 4 * kPi / 15, 0.02 * 4 * kPi / 15);
-  EXPECT_NEAR(median_degree(spectrum), kDegree, 0.05);
+  EXPECT_NEAR(bench::median_degree(spectrum), kDegree, 0.05);
 }
 
 }  // namespace

@@ -8,11 +8,12 @@ namespace traceraft {
 namespace {
 
 const auto kSphere = [](const auto& x) { return x[0] * x[0] + x[1] * x[1] + x[2] * x[2] - 1.0; };
-const Vector3<double> kPlace = {0.48, 0.6, 0.64};  // on the unit sphere
+const analytic::Vector3<double> kPlace = {0.48, 0.6, 0.64};  // on the unit sphere
 
 TEST(Jet, FollowsTheChainRule) {
-  const auto x = with_derivatives(Vector3<double>{2, 3, 5});
-  const Jet<double> f = sqrt(x[0] * x[0] * x[1]) + 7.0 * x[2] - inverse(x[1]);
+  const auto x = analytic::with_derivatives(analytic::Vector3<double>{2, 3, 5});
+  const analytic::Jet<double> f =
+      analytic::sqrt(x[0] * x[0] * x[1]) + 7.0 * x[2] - analytic::inverse(x[1]);
   EXPECT_NEAR(f.value, 2 * std::sqrt(3.0) + 35 - 1.0 / 3, 1e-13);
   EXPECT_NEAR(f.gradient[0], std::sqrt(3.0), 1e-13);
   EXPECT_NEAR(f.gradient[1], 1 / std::sqrt(3.0) + 1.0 / 9, 1e-13);
@@ -25,8 +26,8 @@ TEST(Jet, FollowsTheChainRule) {
 // A spherical harmonic of degree 3, to the fourth derivative.
 TEST(SurfaceCalculus, KnowsTheEigenvaluesOfTheSphere) {
   const auto u = [](const auto& x) { return x[0] * x[1] * x[2]; };
-  const auto laplacian = laplace_beltrami(kSphere, u);
-  const auto twice = laplace_beltrami(kSphere, laplacian);
+  const auto laplacian = analytic::laplace_beltrami(kSphere, u);
+  const auto twice = analytic::laplace_beltrami(kSphere, laplacian);
   EXPECT_NEAR(laplacian(kPlace), -12 * u(kPlace), 1e-12);
   EXPECT_NEAR(twice(kPlace), 144 * u(kPlace), 1e-10);
 }
@@ -34,7 +35,7 @@ TEST(SurfaceCalculus, KnowsTheEigenvaluesOfTheSphere) {
 // What a function does away from the surface changes nothing.
 TEST(SurfaceCalculus, DoesNotSeeTheExtension) {
   const auto u = [](const auto& x) { return x[0] * x[1] * x[2] + 3.0 * (kSphere(x) * x[0]); };
-  EXPECT_NEAR(laplace_beltrami(kSphere, u)(kPlace), -12 * 0.48 * 0.6 * 0.64, 1e-12);
+  EXPECT_NEAR(analytic::laplace_beltrami(kSphere, u)(kPlace), -12 * 0.48 * 0.6 * 0.64, 1e-12);
 }
 
 TEST(SurfaceCalculus, CurvatureOfTheTorus) {
@@ -45,7 +46,8 @@ TEST(SurfaceCalculus, CurvatureOfTheTorus) {
   };
   // On the outer equator 1/r + 1/(R + r), on the inner one 1/r − 1/(R − r).
   for (const auto& [x, expected] : {std::pair(1.4, 2.5 + 1 / 1.4), std::pair(0.6, 2.5 - 1 / 0.6)}) {
-    const LocalSurface<double> local(torus(with_derivatives(Vector3<double>{x, 0, 0})));
+    const analytic::LocalSurface<double> local(
+        torus(analytic::with_derivatives(analytic::Vector3<double>{x, 0, 0})));
     EXPECT_NEAR(local.div_normal, expected, 1e-12);
   }
 }
@@ -57,12 +59,12 @@ TEST(SurfaceCalculus, GradientsAreThoseOfDifferences) {
   for (const auto& [name, place] : {std::pair("sphere", Point(0.48, 0.6, 0.64)),
                                     std::pair("ellipsoid", Point(1.2 * 0.48, 0.6, 0.8 * 0.64)),
                                     std::pair("torus", Point(1.24 * 0.6, 1.24 * 0.8, 0.32))}) {
-    const SurfaceFunction function = surface_function(name);
-    const SurfacePoint p = function(place);
+    const analytic::SurfaceFunction function = analytic::surface_function(name);
+    const analytic::SurfacePoint p = function(place);
     const double step = 1e-5;
     for (const auto& [gradient, value] :
-         {std::pair(p.gradient, &SurfacePoint::u),
-          std::pair(p.laplacian_gradient, &SurfacePoint::laplacian)}) {
+         {std::pair(p.gradient, &analytic::SurfacePoint::u),
+          std::pair(p.laplacian_gradient, &analytic::SurfacePoint::laplacian)}) {
       const Point along = gradient.normalized();
       const double slope =
           (function(place + step * along).*value - function(place - step * along).*value) /

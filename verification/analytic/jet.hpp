@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace traceraft {
+namespace traceraft::analytic {
 
 template <class T>
 struct Jet;
@@ -74,4 +74,4 @@ Jet<T> sqrt(const Jet<T>& a) {
   const T f = sqrt(a.value), df = T(0.5) * inverse(f);
   return compose(a, f, df, -(T(0.5) * df * inverse(a.value)));
 }
-}  // namespace traceraft
+}  // namespace traceraft::analytic

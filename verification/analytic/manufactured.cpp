@@ -7,7 +7,7 @@
 #include "kernel/problem/prescribed_density.hpp"
 #include "verification/analytic/surface_calculus.hpp"
 
-namespace traceraft {
+namespace traceraft::analytic {
 namespace {
 
 constexpr double kAmplitude = 0.25;
@@ -32,7 +32,7 @@ SurfaceFunction on(const Surface& F) {
 }
 
 // g with ∂c/∂t − ∇·(M(c) ∇μ) = g for c = ½ + a u.
-double source(const DoubleWell& well, double epsilon, double a, double rate,
+double source(const physics::DoubleWell& well, double epsilon, double a, double rate,
               const SurfacePoint& p) {
   const double c = 0.5 + a * p.u, e2 = epsilon * epsilon;
   const double M = c * (1 - c), dM = 1 - 2 * c;
@@ -44,24 +44,24 @@ double source(const DoubleWell& well, double epsilon, double a, double rate,
   return rate * p.u - M * laplacian_mu - dM * slope_product;
 }
 
-EffectPtr manufactured_source(const SurfaceSpace& space, const std::string& surface,
-                              const DoubleWell& well, double epsilon) {
+problem::EffectPtr manufactured_source(const fem::SurfaceSpace& space, const std::string& surface,
+                                       const physics::DoubleWell& well, double epsilon) {
   const auto function = surface_function(surface);
   // What does not change in time is computed once, at every point of the quadrature.
   const auto points = std::make_shared<std::vector<SurfacePoint>>(space.surface.triangles.size() *
-                                                                  kDegreeFourRule.size());
+                                                                  fem::kDegreeFourRule.size());
   space.team->for_range(space.surface.triangles.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t triangle = begin; triangle < end; ++triangle)
-      for (std::size_t p = 0; p < kDegreeFourRule.size(); ++p) {
-        const QuadraturePoint at = quadrature_point(space.surface, triangle, p);
+      for (std::size_t p = 0; p < fem::kDegreeFourRule.size(); ++p) {
+        const fem::QuadraturePoint at = fem::quadrature_point(space.surface, triangle, p);
         (*points)[at.number] = function(at.x);
       }
   });
-  return prescribed_density("manufactured source", Slot::source,
-                            [=](const QuadraturePoint& at, double t) {
-                              return -source(well, epsilon, kAmplitude * std::cos(t),
-                                             -kAmplitude * std::sin(t), (*points)[at.number]);
-                            });
+  return problem::prescribed_density(
+      "manufactured source", problem::Slot::source, [=](const fem::QuadraturePoint& at, double t) {
+        return -source(well, epsilon, kAmplitude * std::cos(t), -kAmplitude * std::sin(t),
+                       (*points)[at.number]);
+      });
 }
 
 }  // namespace
@@ -82,48 +82,50 @@ SurfaceFunction surface_function(const std::string& surface) {
   throw std::logic_error("no manufactured solution on " + surface);
 }
 
-ErrorNorms stationary_error(const SurfaceSpace& space, const SurfaceFunction& function) {
-  const CsrMatrix stiffness = combine(1, space.stiffness, space.h(), space.normal_stiffness);
-  const CsrMatrix A = combine(1, stiffness, 1, space.mass);
+bench::ErrorNorms stationary_error(const fem::SurfaceSpace& space,
+                                   const SurfaceFunction& function) {
+  const fem::CsrMatrix stiffness =
+      fem::combine(1, space.stiffness, space.h(), space.normal_stiffness);
+  const fem::CsrMatrix A = fem::combine(1, stiffness, 1, space.mass);
   Vec b = Vec::Zero(space.nodes());
-  add_density_load(
+  fem::add_density_load(
       space, 1,
-      [&](const QuadraturePoint& at) {
+      [&](const fem::QuadraturePoint& at) {
         const SurfacePoint p = function(at.x);
         return p.u - p.laplacian;
       },
       b);
   // Conjugate gradients with Eigen, independent of the program's own solvers.
-  const EigenMatrix matrix = as_eigen(space, A);
-  Eigen::ConjugateGradient<EigenMatrix, Eigen::Lower | Eigen::Upper> solver;
+  const fem::EigenMatrix matrix = fem::as_eigen(space, A);
+  Eigen::ConjugateGradient<fem::EigenMatrix, Eigen::Lower | Eigen::Upper> solver;
   solver.setTolerance(1e-12);
   solver.compute(matrix);
   const Vec solution = solver.solve(b);
   if (solver.info() != Eigen::Success) throw std::runtime_error("conjugate gradients failed");
-  return error_norms(space, solution,
-                     {[&](const Point& x) { return function(x).u; },
-                      [&](const Point& x) { return function(x).gradient; }});
+  return bench::error_norms(space, solution,
+                            {[&](const Point& x) { return function(x).u; },
+                             [&](const Point& x) { return function(x).gradient; }});
 }
 
-ManufacturedCahnHilliard::ManufacturedCahnHilliard(const Bench& bench, SpacePtr space,
+ManufacturedCahnHilliard::ManufacturedCahnHilliard(const bench::Bench& bench, bench::SpacePtr space,
                                                    std::string surface_, double epsilon)
     : surface(std::move(surface_)) {
-  CahnHilliardModel model = bench_model("degenerate", epsilon);
+  problem::CahnHilliardModel model = bench::bench_model("degenerate", epsilon);
   model.effects.push_back(manufactured_source(*space, surface, model.well, epsilon));
   problem = bench.problem(std::move(space), model);
 }
 
-ExactFunction ManufacturedCahnHilliard::c(double t) const {
+bench::ExactFunction ManufacturedCahnHilliard::c(double t) const {
   const double a = kAmplitude * std::cos(t);
   const auto function = surface_function(surface);
   return {[=](const Point& x) { return 0.5 + a * function(x).u; },
           [=](const Point& x) { return Point(a * function(x).gradient); }};
 }
 
-ExactFunction ManufacturedCahnHilliard::mu(double t) const {
+bench::ExactFunction ManufacturedCahnHilliard::mu(double t) const {
   const double a = kAmplitude * std::cos(t), epsilon = problem->model().epsilon;
   const double e2 = epsilon * epsilon;
-  const DoubleWell well = problem->model().well;
+  const physics::DoubleWell well = problem->model().well;
   const auto function = surface_function(surface);
   return {
       [=](const Point& x) {
@@ -136,11 +138,11 @@ ExactFunction ManufacturedCahnHilliard::mu(double t) const {
       }};
 }
 
-StartState ManufacturedCahnHilliard::initial_state() const {
-  const ExactFunction exact = c(0);
+bench::StartState ManufacturedCahnHilliard::initial_state() const {
+  const bench::ExactFunction exact = c(0);
   Vec nodal(space().nodes());
   for (int i = 0; i < space().nodes(); ++i) nodal[i] = exact.value(space().mesh.position(i));
-  return consistent_state(*problem, nodal);
+  return bench::consistent_state(*problem, nodal);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::analytic

@@ -8,7 +8,7 @@
 #include "verification/bench/bench.hpp"
 #include "verification/bench/error_norms.hpp"
 
-namespace traceraft {
+namespace traceraft::analytic {
 
 // What manufactured problems need of u = xyz at a point of the surface. On the unit sphere u is a
 // spherical harmonic of degree 3: Δ_Γ u = −12 u.
@@ -23,19 +23,20 @@ using SurfaceFunction = std::function<SurfacePoint(const Point&)>;
 SurfaceFunction surface_function(const std::string& surface);
 
 // −Δ_Γ u + u = f with the matrices M, K and S of the program.
-ErrorNorms stationary_error(const SurfaceSpace& space, const SurfaceFunction& u);
+bench::ErrorNorms stationary_error(const fem::SurfaceSpace& space, const SurfaceFunction& u);
 
 // The full system with c = ½ + ¼ cos(t) u and μ = f0'(c) − ε² Δ_Γ c, driven by the source that
 // makes them a solution. `surface` is that of the space.
 struct ManufacturedCahnHilliard {
   std::string surface;
-  ProblemPtr problem;
+  bench::ProblemPtr problem;
 
-  ManufacturedCahnHilliard(const Bench& bench, SpacePtr space, std::string surface, double epsilon);
-  const SurfaceSpace& space() const { return problem->space(); }
-  ExactFunction c(double t) const;
-  ExactFunction mu(double t) const;
-  StartState initial_state() const;  // nodal values of c(0), consistent μ
+  ManufacturedCahnHilliard(const bench::Bench& bench, bench::SpacePtr space, std::string surface,
+                           double epsilon);
+  const fem::SurfaceSpace& space() const { return problem->space(); }
+  bench::ExactFunction c(double t) const;
+  bench::ExactFunction mu(double t) const;
+  bench::StartState initial_state() const;  // nodal values of c(0), consistent μ
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::analytic

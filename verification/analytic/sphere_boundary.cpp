@@ -7,7 +7,7 @@
 
 #include "kernel/core/types.hpp"
 
-namespace traceraft {
+namespace traceraft::analytic {
 namespace {
 
 constexpr int kCells = 20000;  // errors below 1e-6 from ε = 0.02 on
@@ -26,7 +26,7 @@ struct Balance {
   Eigen::SparseMatrix<double> jacobian;
 };
 
-Balance balance(const DoubleWell& well, double epsilon, const Vec& c) {
+Balance balance(const physics::DoubleWell& well, double epsilon, const Vec& c) {
   const double diffusion = epsilon * epsilon / kWidth;
   Balance result{Vec::Zero(kCells), Eigen::SparseMatrix<double>(kCells, kCells)};
   std::vector<Eigen::Triplet<double>> entries;
@@ -53,7 +53,7 @@ Balance balance(const DoubleWell& well, double epsilon, const Vec& c) {
 
 }  // namespace
 
-SphereBoundary::SphereBoundary(const DoubleWell& well, double epsilon) : well_(well) {
+SphereBoundary::SphereBoundary(const physics::DoubleWell& well, double epsilon) : well_(well) {
   Vec c(kCells);
   for (int i = 0; i < kCells; ++i) c[i] = well.profile(-latitude_of(i), epsilon);
   double change = 1;
@@ -94,4 +94,4 @@ double SphereBoundary::profile(double latitude) const {
   return latitude < 0 ? well_.a + well_.b - c : c;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::analytic

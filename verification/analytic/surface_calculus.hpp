@@ -8,7 +8,7 @@
 #include "kernel/core/types.hpp"
 #include "verification/analytic/jet.hpp"
 
-namespace traceraft {
+namespace traceraft::analytic {
 
 template <class T>
 using Vector3 = std::array<T, 3>;
@@ -81,4 +81,4 @@ Point point_on(const Surface& F, Point x) {
   return x;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::analytic

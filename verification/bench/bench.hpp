@@ -10,10 +10,10 @@
 #include "kernel/problem/initial_data.hpp"
 #include "kernel/time/integrator.hpp"
 
-namespace traceraft {
+namespace traceraft::bench {
 
-using SpacePtr = std::shared_ptr<const SurfaceSpace>;
-using ProblemPtr = std::unique_ptr<const CahnHilliard>;
+using SpacePtr = std::shared_ptr<const fem::SurfaceSpace>;
+using ProblemPtr = std::unique_ptr<const problem::CahnHilliard>;
 
 // A run of the whole program, as its user would start it.
 struct ProgramRun {
@@ -60,21 +60,24 @@ class Bench {
   std::string integrator() const;
   std::string linear_solver() const;
 
-  virtual SpacePtr space(const LevelSet& surface, int cells, int threads) const;
+  virtual SpacePtr space(const geometry::LevelSet& surface, int cells, int threads) const;
   SpacePtr space(const std::string& surface, int cells) const;
-  virtual ProblemPtr problem(SpacePtr space, CahnHilliardModel model) const;
-  virtual IntegratorPtr make_integrator(const DaeProblem& problem, const SurfaceSpace& space,
-                                        const std::string& name, const std::string& linear_solver,
-                                        const IntegratorSettings& settings) const;
+  virtual ProblemPtr problem(SpacePtr space, problem::CahnHilliardModel model) const;
+  virtual time::IntegratorPtr make_integrator(const problem::DaeProblem& problem,
+                                              const fem::SurfaceSpace& space,
+                                              const std::string& name,
+                                              const std::string& linear_solver,
+                                              const time::IntegratorSettings& settings) const;
   // The bench's integrator and solver; tolerance 0: the integrator's own.
-  IntegratorPtr default_integrator(const CahnHilliard& problem, double tolerance = 0) const;
+  time::IntegratorPtr default_integrator(const problem::CahnHilliard& problem,
+                                         double tolerance = 0) const;
 
   // job(0) … job(count − 1), as many at a time as there are threads: each has to work on spaces of
   // one thread.
   void in_parallel(int count, const std::function<void(int)>& job, Part part = {}) const;
 };
 
-CahnHilliardModel bench_model(const std::string& mobility, double epsilon);
+problem::CahnHilliardModel bench_model(const std::string& mobility, double epsilon);
 
 // Throws std::runtime_error, as the functions below do where a computation fails.
 void require(const Status& status);
@@ -83,13 +86,13 @@ void require(const Status& status);
 struct StartState {
   Vec y, ydot;
 };
-StartState consistent_state(const CahnHilliard& problem, VecView c);
+StartState consistent_state(const problem::CahnHilliard& problem, VecView c);
 // `initial` as in --initial; ε and the well are the problem's.
-StartState initial_state(const CahnHilliard& problem, const std::string& initial,
-                         InitialRequest request);
+StartState initial_state(const problem::CahnHilliard& problem, const std::string& initial,
+                         problem::InitialRequest request);
 
 // Steps to t_end; on_step, which may be empty, sees every accepted one.
-void advance_to(Integrator& integrator, const StartState& start, double t_end,
+void advance_to(time::Integrator& integrator, const StartState& start, double t_end,
                 const std::function<void()>& on_step = {});
 
-}  // namespace traceraft
+}  // namespace traceraft::bench

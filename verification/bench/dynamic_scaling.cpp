@@ -8,7 +8,7 @@
 #include "verification/bench/spherical_spectrum.hpp"
 #include "verification/statistics/sample.hpp"
 
-namespace traceraft {
+namespace traceraft::bench {
 namespace {
 
 double value_at(const Cumulative& curve, double x) {
@@ -69,7 +69,7 @@ double largest_difference(const Cumulative& p, const Cumulative& q) {
   double largest = 0;
   for (const Cumulative* curve : {&p, &q})
     for (const auto& [x, share] : *curve)
-      largest = larger(largest, std::fabs(value_at(p, x) - value_at(q, x)));
+      largest = statistics::larger(largest, std::fabs(value_at(p, x) - value_at(q, x)));
   return largest;
 }
 
@@ -95,4 +95,4 @@ double chance_difference(const AreasOfMembers& early_areas, const AreasOfMembers
                                               0.5)];
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::bench

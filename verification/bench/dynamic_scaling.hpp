@@ -6,11 +6,11 @@
 
 #include "verification/statistics/power_law.hpp"
 
-namespace traceraft {
+namespace traceraft::bench {
 
 // The share of the whole at or below x, as points with ascending x from 0 to 1 of a curve that is
 // straight in between.
-using Cumulative = Points;
+using Cumulative = statistics::Points;
 
 // Of the radii √(area/π) over their mean.
 Cumulative cumulative_radii(const std::vector<double>& areas);
@@ -25,4 +25,4 @@ double largest_difference(const Cumulative& p, const Cumulative& q);
 double chance_difference(const std::vector<std::vector<double>>& early,
                          const std::vector<std::vector<double>>& late);
 
-}  // namespace traceraft
+}  // namespace traceraft::bench

@@ -6,19 +6,19 @@
 #include "verification/bench/spherical_spectrum.hpp"
 #include "verification/statistics/power_law.hpp"
 
-namespace traceraft {
+namespace traceraft::bench {
 namespace {
 
 constexpr double kLevel = 0.5;
 
 Member run_member(const Bench& bench, const EnsembleRequest& request, std::uint64_t seed) {
-  const SpacePtr space = bench.space(*make_surface("sphere"), request.cells, 1);
+  const SpacePtr space = bench.space(*geometry::make_surface("sphere"), request.cells, 1);
   const ProblemPtr problem = bench.problem(space, bench_model(request.mobility, request.epsilon));
-  InitialRequest initial;
+  problem::InitialRequest initial;
   initial.raft_fraction = request.raft_fraction;
   initial.seed = seed;
-  const IntegratorPtr integrator = bench.default_integrator(*problem, request.tolerance);
-  const RaftFinder finder(space);
+  const time::IntegratorPtr integrator = bench.default_integrator(*problem, request.tolerance);
+  const observables::RaftFinder finder(space);
   Member member;
   std::size_t next_snapshot = 0;
   Vec y(problem->size());
@@ -30,7 +30,8 @@ Member run_member(const Bench& bench, const EnsembleRequest& request, std::uint6
     ++member.steps;
     while (member.perimeter.size() < request.times.size() &&
            request.times[member.perimeter.size()] <= integrator->time()) {
-      const RaftReport rafts = finder.find(at(request.times[member.perimeter.size()]), kLevel);
+      const observables::RaftReport rafts =
+          finder.find(at(request.times[member.perimeter.size()]), kLevel);
       const double count = static_cast<double>(rafts.rafts.size());
       member.perimeter.push_back(rafts.perimeter);
       member.rafts.push_back(count);
@@ -43,7 +44,7 @@ Member run_member(const Bench& bench, const EnsembleRequest& request, std::uint6
       if (request.highest_degree > 0)
         member.spectra.push_back(spherical_spectrum(*space, c, request.highest_degree));
       member.areas.emplace_back();
-      for (const Raft& raft : finder.find(c, kLevel).rafts)
+      for (const observables::Raft& raft : finder.find(c, kLevel).rafts)
         member.areas.back().push_back(raft.area);
     }
   });
@@ -80,18 +81,18 @@ Exponent fit_exponent(const std::vector<Member>& members, std::vector<double> Me
   };
   const auto fit = [&](const std::vector<int>& sample) -> Law {
     const std::vector<double> mean = geometric_mean(members, quantity, sample);
-    Points points;
+    statistics::Points points;
     for (std::size_t i = 0; i < times.size(); ++i)
       if (times[i] >= begin && times[i] <= end) points.emplace_back(times[i], mean[i]);
-    if (origin == Origin::zero) return {fit_power_law(points).slope, 0};
-    const PowerLaw law = fit_power_law_from(points, 0);
+    if (origin == Origin::zero) return {statistics::fit_power_law(points).slope, 0};
+    const statistics::PowerLaw law = statistics::fit_power_law_from(points, 0);
     return {law.b, -law.t0};
   };
   const int count = static_cast<int>(members.size());
-  const Law all = fit(each_once(members.size()));
-  const Interval percentiles = bootstrap(
+  const Law all = fit(statistics::each_once(members.size()));
+  const statistics::Interval percentiles = statistics::bootstrap(
       count, 1000, 0.95, 1, [&](const std::vector<int>& sample) { return fit(sample).b; });
-  return {all.b, all.offset, widened_for_few(percentiles, all.b, count)};
+  return {all.b, all.offset, statistics::widened_for_few(percentiles, all.b, count)};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::bench

@@ -8,7 +8,7 @@
 #include "verification/bench/bench.hpp"
 #include "verification/statistics/bootstrap.hpp"
 
-namespace traceraft {
+namespace traceraft::bench {
 
 struct EnsembleRequest {
   std::string mobility;
@@ -44,10 +44,10 @@ std::vector<double> geometric_mean(const std::vector<Member>& members,
 // are few.
 struct Exponent {
   double b, offset;
-  Interval interval;
+  statistics::Interval interval;
 };
 enum class Origin { zero, fitted };
 Exponent fit_exponent(const std::vector<Member>& members, std::vector<double> Member::*quantity,
                       const std::vector<double>& times, double begin, double end, Origin origin);
 
-}  // namespace traceraft
+}  // namespace traceraft::bench

@@ -5,7 +5,7 @@
 
 #include "kernel/fem/surface_space.hpp"
 
-namespace traceraft {
+namespace traceraft::bench {
 
 struct ExactFunction {
   std::function<double(const Point&)> value;    // at points near Γ
@@ -17,6 +17,6 @@ struct ErrorNorms {
   double h1;  // ‖∇_Γ(u_h − u)‖ in L²(Γ_h)
 };
 
-ErrorNorms error_norms(const SurfaceSpace& space, VecView nodal, const ExactFunction& exact);
+ErrorNorms error_norms(const fem::SurfaceSpace& space, VecView nodal, const ExactFunction& exact);
 
-}  // namespace traceraft
+}  // namespace traceraft::bench

@@ -7,7 +7,7 @@
 
 #include "verification/statistics/power_law.hpp"
 
-namespace traceraft {
+namespace traceraft::bench {
 
 struct Cell {
   bool is_number;
@@ -29,7 +29,7 @@ struct Table {
 enum class Mark { line, points, both, band, bars };
 struct ChartSeries {
   std::string name;
-  Points points;
+  statistics::Points points;
   Mark mark = Mark::both;
   std::vector<double> other = {};
 };
@@ -39,4 +39,4 @@ struct Chart {
   std::vector<ChartSeries> series;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::bench

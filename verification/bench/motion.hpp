@@ -8,7 +8,7 @@
 #include "kernel/geometry/level_set.hpp"
 #include "verification/statistics/random_streams.hpp"
 
-namespace traceraft {
+namespace traceraft::bench {
 
 // A rotation, uniform on all of them, and a shift of up to `largest_shift` along each axis; each
 // number gives another.
@@ -18,7 +18,7 @@ struct Motion {
 
   Motion(std::uint64_t number, double largest_shift) {
     const auto draw = [&](std::uint64_t k) {
-      return uniform_random(number, position_stream::motion, k);
+      return uniform_random(number, statistics::position_stream::motion, k);
     };
     // Shoemake, Graphics Gems III (1992).
     const double u = draw(0), v = 2 * kPi * draw(1), w = 2 * kPi * draw(2);
@@ -30,8 +30,8 @@ struct Motion {
   Point home(const Point& x) const { return turn * (x - shift); }
 };
 
-inline FunctionLevelSet moved(const LevelSetPtr& base, const Motion& motion) {
-  return FunctionLevelSet([=](const Point& x) { return base->value(motion.home(x)); });
+inline geometry::FunctionLevelSet moved(const geometry::LevelSetPtr& base, const Motion& motion) {
+  return geometry::FunctionLevelSet([=](const Point& x) { return base->value(motion.home(x)); });
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::bench

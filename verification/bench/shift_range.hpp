@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace traceraft {
+namespace traceraft::bench {
 
 // Those of the fastest and of the slowest steps, in units of D/R²: eight decades.
 inline std::vector<double> shift_range() {
@@ -19,4 +19,4 @@ inline std::string shift_label(double shift) {
   return "s=1e" + std::to_string(std::lround(std::log10(shift)));
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::bench

@@ -4,7 +4,7 @@
 
 #include "kernel/fem/density_load.hpp"
 
-namespace traceraft {
+namespace traceraft::bench {
 namespace {
 
 // P̄_l^m(cos θ) for l = m … highest, normalised so that ∫ (P̄_l^m)² dΩ = 1 with the factor 1 for m =
@@ -47,9 +47,9 @@ class Legendre {
 
 }  // namespace
 
-std::vector<double> spherical_spectrum(const SurfaceSpace& space, VecView c, int highest) {
-  const CutSurface& surface = space.surface;
-  const Vec values = trace(space, c);
+std::vector<double> spherical_spectrum(const fem::SurfaceSpace& space, VecView c, int highest) {
+  const mesh::CutSurface& surface = space.surface;
+  const Vec values = fem::trace(space, c);
   const Legendre legendre(highest);
   const std::size_t size = static_cast<std::size_t>(highest) + 1;
   // Coefficients of cos(mφ) and sin(mφ), row m, column l.
@@ -70,11 +70,11 @@ std::vector<double> spherical_spectrum(const SurfaceSpace& space, VecView c, int
     }
   };
   for (std::size_t t = 0; t < surface.triangles.size(); ++t)
-    for (std::size_t k = 0; k < kDegreeFourRule.size(); ++k) {
-      const auto& [at, weight] = kDegreeFourRule[k];
+    for (std::size_t k = 0; k < fem::kDegreeFourRule.size(); ++k) {
+      const auto& [at, weight] = fem::kDegreeFourRule[k];
       double value = 0;
       for (int v = 0; v < 3; ++v) value += at[v] * values[surface.triangles[t][v]];
-      add(quadrature_point(surface, t, k).x.normalized(),
+      add(fem::quadrature_point(surface, t, k).x.normalized(),
           weight * surface.triangle_area[t] * value);
     }
   std::vector<double> spectrum(size, 0);
@@ -91,4 +91,4 @@ double median_degree(const std::vector<double>& spectrum) {
   return static_cast<double>(l) - 0.5 + (half - below) / spectrum[l];
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::bench

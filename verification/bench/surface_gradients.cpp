@@ -1,19 +1,19 @@
 #include "verification/bench/surface_gradients.hpp"
 
-namespace traceraft {
+namespace traceraft::bench {
 
-std::vector<Point> surface_gradients(const SurfaceSpace& space, VecView nodal) {
+std::vector<Point> surface_gradients(const fem::SurfaceSpace& space, VecView nodal) {
   std::vector<Point> gradients;
   for (const int number : space.surface.triangle_tet) {
-    const ActiveTet& tet = space.mesh.tets[number];
-    const auto basis = scaled_gradients(tet.kuhn);
+    const mesh::ActiveTet& tet = space.mesh.tets[number];
+    const auto basis = mesh::scaled_gradients(tet.kuhn);
     Point gradient = Point::Zero();
     for (int i = 0; i < 4; ++i)
       gradient += nodal[tet.node[i]] / space.h() * basis.row(i).transpose();
-    const Point normal = cut_normal(space.mesh, tet);
+    const Point normal = mesh::cut_normal(space.mesh, tet);
     gradients.push_back(gradient - gradient.dot(normal) * normal);
   }
   return gradients;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::bench

@@ -3,9 +3,9 @@
 
 #include "kernel/fem/surface_space.hpp"
 
-namespace traceraft {
+namespace traceraft::bench {
 
 // ∇_Γ u_h, which is constant on every triangle.
-std::vector<Point> surface_gradients(const SurfaceSpace& space, VecView nodal);
+std::vector<Point> surface_gradients(const fem::SurfaceSpace& space, VecView nodal);
 
-}  // namespace traceraft
+}  // namespace traceraft::bench

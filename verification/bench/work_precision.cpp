@@ -6,7 +6,7 @@
 #include "kernel/core/text.hpp"
 #include "verification/statistics/sample.hpp"
 
-namespace traceraft {
+namespace traceraft::bench {
 namespace {
 
 std::map<std::string, std::vector<int>> by_method(const std::vector<WorkPoint>& points) {
@@ -40,13 +40,13 @@ std::string sentence(const std::vector<WorkPoint>& points, const Recommendation&
                            advice.target)
                : std::string("No combination has a result.");
   const WorkPoint& best = points[advice.cheapest[0]];
-  const Sample wall = sample_of(best.wall_s);
-  std::string advised =
-      formatted("For an error of %.1e at the end, use %s: %.3g s wall time, %.3g s CPU",
-                advice.target, describe(best).c_str(), wall.median, sample_of(best.cpu_s).median);
+  const statistics::Sample wall = statistics::sample_of(best.wall_s);
+  std::string advised = formatted(
+      "For an error of %.1e at the end, use %s: %.3g s wall time, %.3g s CPU", advice.target,
+      describe(best).c_str(), wall.median, statistics::sample_of(best.cpu_s).median);
   if (advice.cheapest.size() > 1) {
     const WorkPoint& next = points[advice.cheapest[1]];
-    const Sample other = sample_of(next.wall_s);
+    const statistics::Sample other = statistics::sample_of(next.wall_s);
     advised +=
         other.min <= wall.max
             ? formatted("; %s is as fast within the spread of the times", describe(next).c_str())
@@ -68,7 +68,7 @@ bool any_result(const std::vector<WorkPoint>& points) {
 Recommendation recommend(const std::vector<WorkPoint>& points, double target_error) {
   Recommendation advice;
   advice.target = target_error > 0 ? target_error : common_error(points);
-  const auto wall = [&](int i) { return sample_of(points[i].wall_s).median; };
+  const auto wall = [&](int i) { return statistics::sample_of(points[i].wall_s).median; };
   for (const auto& [name, own] : by_method(points)) {
     int cheapest = -1;
     for (const int i : own)
@@ -85,4 +85,4 @@ Recommendation recommend(const std::vector<WorkPoint>& points, double target_err
   return advice;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::bench

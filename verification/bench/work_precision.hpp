@@ -7,7 +7,7 @@
 
 #include "verification/statistics/sample.hpp"
 
-namespace traceraft {
+namespace traceraft::bench {
 
 // A method at one tolerance.
 struct WorkPoint {
@@ -41,4 +41,4 @@ struct Recommendation {
 // target_error 0: the smallest error that all methods with a result have reached.
 Recommendation recommend(const std::vector<WorkPoint>& points, double target_error);
 
-}  // namespace traceraft
+}  // namespace traceraft::bench

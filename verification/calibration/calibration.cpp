@@ -6,7 +6,7 @@
 
 #include "verification/calibration/calibration_fit.hpp"
 
-namespace traceraft {
+namespace traceraft::calibration {
 namespace {
 
 // How close to the end of what was looked at counts as its end, in ln: the range of R²/D is wide.
@@ -28,7 +28,7 @@ std::vector<double> column(const std::vector<std::vector<double>>& replicates, s
   return values;
 }
 
-Interval logarithms(const Interval& range) {
+statistics::Interval logarithms(const statistics::Interval& range) {
   return {std::log(range.low), std::log(range.high)};
 }
 
@@ -38,13 +38,16 @@ Interval logarithms(const Interval& range) {
 // what ends within `edge` of its ends nothing is known.
 CalibratedParameter parameter(const std::string& name, double found,
                               const std::vector<double>& replicates, int samples,
-                              const Interval& probable, const Interval& searched, double edge) {
-  const auto corrected = [&](double share) { return 2 * found - quantile(replicates, share); };
+                              const statistics::Interval& probable,
+                              const statistics::Interval& searched, double edge) {
+  const auto corrected = [&](double share) {
+    return 2 * found - statistics::quantile(replicates, share);
+  };
   const double middle =
       std::clamp(corrected(0.5), std::min(found, searched.low), std::max(found, searched.high));
-  const double centre = corrected(0.5), factor = factor_for_few(samples);
-  const Interval wide{centre - factor * (centre - corrected(0.975)),
-                      centre + factor * (corrected(0.025) - centre)};
+  const double centre = corrected(0.5), factor = statistics::factor_for_few(samples);
+  const statistics::Interval wide{centre - factor * (centre - corrected(0.975)),
+                                  centre + factor * (corrected(0.025) - centre)};
   const double low =
       std::max(std::min({wide.low, probable.low, middle}), std::min(middle, searched.low));
   const double high =
@@ -69,11 +72,13 @@ void set_best_powers(const Eigen::MatrixXd& spread, Calibration& result) {
   result.best_powers.assign(powers.data(), powers.data() + powers.size());
 }
 
-int count_at_bound(const std::vector<EnsembleFit>& fits, const Interval& allowed) {
-  return static_cast<int>(std::count_if(fits.begin(), fits.end(), [&](const EnsembleFit& fit) {
-    return fit.seconds_per_unit() < 1.01 * allowed.low ||
-           fit.seconds_per_unit() > 0.99 * allowed.high;
-  }));
+int count_at_bound(const std::vector<likelihood::EnsembleFit>& fits,
+                   const statistics::Interval& allowed) {
+  return static_cast<int>(
+      std::count_if(fits.begin(), fits.end(), [&](const likelihood::EnsembleFit& fit) {
+        return fit.seconds_per_unit() < 1.01 * allowed.low ||
+               fit.seconds_per_unit() > 0.99 * allowed.high;
+      }));
 }
 
 // What was found beside it goes with the unit of time, and that was not found.
@@ -83,15 +88,17 @@ void mark_undetermined(Calibration& calibration) {
 
 }  // namespace
 
-std::vector<double> most_probable(const MeasuredVesicles& data,
+std::vector<double> most_probable(const observations::MeasuredVesicles& data,
                                   const std::vector<SoughtParameter>& sought,
                                   const std::vector<CalibrationPoint>& points,
-                                  const UnitPrior& unit) {
+                                  const likelihood::UnitPrior& unit) {
   return CalibrationFit(data, sought, points, unit).found().ln_parameters;
 }
 
-Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtParameter>& sought,
-                      const std::vector<CalibrationPoint>& points, const UnitPrior& unit) {
+Calibration calibrate(const observations::MeasuredVesicles& data,
+                      const std::vector<SoughtParameter>& sought,
+                      const std::vector<CalibrationPoint>& points,
+                      const likelihood::UnitPrior& unit) {
   const CalibrationFit fit(data, sought, points, unit);
   const std::vector<std::vector<double>> replicates = fit.replicates();
   const Box simulated = explored(fit.points(), sought, 0);
@@ -100,9 +107,9 @@ Calibration calibrate(const MeasuredVesicles& data, const std::vector<SoughtPara
   result.parameters = {parameter("seconds_per_unit", found[0], column(replicates, 0), fit.samples(),
                                  logarithms(fit.units()), logarithms(unit.allowed), kUnitEdge)};
   for (std::size_t i = 0; i < sought.size(); ++i) {
-    const Interval range{simulated.lower[i], simulated.upper[i]};
+    const statistics::Interval range{simulated.lower[i], simulated.upper[i]};
     const double deviation = fit.found().deviations[i];
-    const Interval probable{found[i + 1] - deviation, found[i + 1] + deviation};
+    const statistics::Interval probable{found[i + 1] - deviation, found[i + 1] + deviation};
     result.parameters.push_back(parameter(sought[i].name, found[i + 1], column(replicates, i + 1),
                                           fit.samples(), probable, range,
                                           kSimulatedEdge * (range.high - range.low)));
@@ -144,4 +151,4 @@ std::vector<std::vector<double>> design_around(const std::vector<double>& centre
   return points;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::calibration

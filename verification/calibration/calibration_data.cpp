@@ -5,19 +5,20 @@
 
 #include "kernel/core/error.hpp"
 
-namespace traceraft {
+namespace traceraft::calibration {
 namespace {
 
 constexpr std::size_t kLeastVesicles = 3;  // to know how they scatter
 
-bool tells(const Measurement& m) {
+bool tells(const observations::Measurement& m) {
   return m.time > 0 && m.shows_rafts();
 }
 
 }  // namespace
 
-std::vector<int> telling_vesicles(const MeasuredVesicles& data) {
-  if (!(looks(data).end > 0)) throw InputError("a calibration needs observations after time zero");
+std::vector<int> telling_vesicles(const observations::MeasuredVesicles& data) {
+  if (!(observations::looks(data).end > 0))
+    throw InputError("a calibration needs observations after time zero");
   std::vector<int> result;
   const auto vesicles = data.vesicles();
   for (std::size_t k = 0; k < vesicles.size(); ++k) {
@@ -34,9 +35,10 @@ std::vector<int> telling_vesicles(const MeasuredVesicles& data) {
   return result;
 }
 
-int looks_that_tell_nothing(const MeasuredVesicles& data) {
-  return static_cast<int>(std::count_if(data.measurements.begin(), data.measurements.end(),
-                                        [](const Measurement& m) { return !tells(m); }));
+int looks_that_tell_nothing(const observations::MeasuredVesicles& data) {
+  return static_cast<int>(
+      std::count_if(data.measurements.begin(), data.measurements.end(),
+                    [](const observations::Measurement& m) { return !tells(m); }));
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::calibration

@@ -11,7 +11,7 @@
 #include "verification/statistics/bootstrap.hpp"
 #include "verification/statistics/random_streams.hpp"
 
-namespace traceraft {
+namespace traceraft::calibration {
 namespace {
 
 constexpr int kReplicates = 200;
@@ -25,8 +25,9 @@ const std::vector<CalibrationPoint>& enough(const std::vector<CalibrationPoint>&
   return points;
 }
 
-Interval as_probable(const Evidence& evidence, const RunCurves& runs, const EnsembleFit& fit) {
-  return as_probable(evidence.observations, {&runs}, evidence.unit, fit);
+statistics::Interval as_probable(const Evidence& evidence, const likelihood::RunCurves& runs,
+                                 const likelihood::EnsembleFit& fit) {
+  return likelihood::as_probable(evidence.observations, {&runs}, evidence.unit, fit);
 }
 
 // D alone, at each of the points.
@@ -80,11 +81,12 @@ std::size_t nearest(const std::vector<CalibrationPoint>& points, const std::vect
 }
 
 // The raft fraction is an input of a simulation: measured fractions count where it is looked for.
-std::vector<Quantity> quantities_for(const std::vector<SoughtParameter>& sought) {
-  std::vector<Quantity> result{Quantity::perimeter, Quantity::rafts};
+std::vector<observations::Quantity> quantities_for(const std::vector<SoughtParameter>& sought) {
+  std::vector<observations::Quantity> result{observations::Quantity::perimeter,
+                                             observations::Quantity::rafts};
   if (std::any_of(sought.begin(), sought.end(),
                   [](const SoughtParameter& s) { return s.name == "fraction"; }))
-    result.push_back(Quantity::fraction);
+    result.push_back(observations::Quantity::fraction);
   return result;
 }
 
@@ -112,9 +114,10 @@ std::vector<double> estimates(const JointFit& fit) {
   return ln;
 }
 
-CalibrationFit::CalibrationFit(const MeasuredVesicles& data,
+CalibrationFit::CalibrationFit(const observations::MeasuredVesicles& data,
                                const std::vector<SoughtParameter>& sought,
-                               const std::vector<CalibrationPoint>& points, const UnitPrior& unit)
+                               const std::vector<CalibrationPoint>& points,
+                               const likelihood::UnitPrior& unit)
     : data_(data),
       unit_(unit),
       vesicles_(telling_vesicles(data)),
@@ -128,46 +131,47 @@ CalibrationFit::CalibrationFit(const MeasuredVesicles& data,
       found_(fit_jointly(evidence(), runs_, box_, best_of(at_points_))) {}
 
 // At each of the points.
-std::vector<Interval> CalibrationFit::probable_units() const {
+std::vector<statistics::Interval> CalibrationFit::probable_units() const {
   const Evidence measured = evidence();
-  std::vector<Interval> units;
+  std::vector<statistics::Interval> units;
   for (std::size_t k = 0; k < at_points_.size(); ++k)
     units.push_back(as_probable(measured, runs_.at_point(k), at_points_[k].fit));
   return units;
 }
 
-Interval CalibrationFit::units() const {
+statistics::Interval CalibrationFit::units() const {
   return as_probable(evidence(), runs_.at(found_.ln_parameters), found_.fit);
 }
 
 // The point whose runs are the nearest to what was found, moved there, stand for the vesicles.
 std::vector<std::vector<double>> CalibrationFit::replicates() const {
-  const StatedErrors errors(data_);
+  const observations::StatedErrors errors(data_);
   const std::size_t near = nearest(points_, found_.ln_parameters);
-  const RunCurves there = runs_.at_point(near), here = runs_.at(found_.ln_parameters);
-  const ModelRuns model{&points_[near].runs, &there, &here};
-  const std::vector<Interval> units = probable_units();
+  const likelihood::RunCurves there = runs_.at_point(near), here = runs_.at(found_.ln_parameters);
+  const likelihood::ModelRuns model{&points_[near].runs, &there, &here};
+  const std::vector<statistics::Interval> units = probable_units();
   const auto count = static_cast<std::size_t>(count_);
   std::vector<std::vector<double>> all;
   for (std::uint64_t r = 1; r <= kReplicates; ++r) {
-    const MeasuredVesicles vesicles = drawn_vesicles(data_, errors, model, found_.fit, r);
-    const UnitPrior unit = drawn_unit(found_.fit, unit_, r);
-    const Evidence drawn{observed_series(vesicles, vesicles_, quantities_), unit};
-    const RunEmulator others =
-        runs_.with_others(weights_of_other_runs(count, r, replicate_stream::other_runs));
+    const observations::MeasuredVesicles vesicles =
+        likelihood::drawn_vesicles(data_, errors, model, found_.fit, r);
+    const likelihood::UnitPrior unit = likelihood::drawn_unit(found_.fit, unit_, r);
+    const Evidence drawn{likelihood::observed_series(vesicles, vesicles_, quantities_), unit};
+    const RunEmulator others = runs_.with_others(
+        likelihood::weights_of_other_runs(count, r, statistics::replicate_stream::other_runs));
     // From another point each time, and another D: what is flat is not to be taken for known.
     const std::size_t k = r % at_points_.size();
     JointFit start = at_points_[k];
-    start.fit.ln_unit =
-        std::log(units[k].low) + std::log(units[k].high / units[k].low) *
-                                     uniform_random(r, replicate_stream::search_start, 0);
+    start.fit.ln_unit = std::log(units[k].low) +
+                        std::log(units[k].high / units[k].low) *
+                            uniform_random(r, statistics::replicate_stream::search_start, 0);
     const JointFit fit = fit_jointly(drawn, others, box_, {start});
     // It may have stayed in a valley of its own, which is not as deep.
     const JointFit back = fit_jointly(drawn, others, box_, {found_});
-    const bool as_deep = fit.fit.deviance < back.fit.deviance + kAboutAsProbable;
+    const bool as_deep = fit.fit.deviance < back.fit.deviance + likelihood::kAboutAsProbable;
     all.push_back(estimates(as_deep ? fit : back));
   }
   return all;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::calibration

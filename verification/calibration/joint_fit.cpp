@@ -5,10 +5,10 @@
 
 #include "verification/likelihood/ensemble_likelihood.hpp"
 
-namespace traceraft {
+namespace traceraft::calibration {
 namespace {
 
-using Kind = FreeParameter::Kind;
+using Kind = likelihood::FreeParameter::Kind;
 
 // First what every fit has free, then the parameters that cost simulations.
 class JointLikelihood {
@@ -30,7 +30,7 @@ class JointLikelihood {
   JointFit from(const JointFit& start) const {
     Vec x(free_.lower.size() + sought_);
     x << free_.get(start.fit), Eigen::Map<const Vec>(start.ln_parameters.data(), sought_);
-    const ScoredMinimum found = minimise_by_scoring(problem_, x);
+    const likelihood::ScoredMinimum found = likelihood::minimise_by_scoring(problem_, x);
     JointFit fit{sought(found.x), ensemble(found.x), deviations(found.at.hessian)};
     fit.fit.deviance = found.at.value;
     return fit;
@@ -48,29 +48,29 @@ class JointLikelihood {
   std::vector<double> sought(const Vec& x) const {
     return {x.data() + free_.lower.size(), x.data() + x.size()};
   }
-  EnsembleFit ensemble(const Vec& x) const {
-    EnsembleFit fit;
+  likelihood::EnsembleFit ensemble(const Vec& x) const {
+    likelihood::EnsembleFit fit;
     free_.set(x, fit);
     return fit;
   }
 
-  DevianceExpansion expand(const Vec& x) const {
+  likelihood::DevianceExpansion expand(const Vec& x) const {
     const std::vector<double> ln = sought(x);
-    const RunCurves curves = runs_.at(ln);
-    std::vector<RunCurves> derivatives;
+    const likelihood::RunCurves curves = runs_.at(ln);
+    std::vector<likelihood::RunCurves> derivatives;
     for (std::size_t i = 0; i < ln.size(); ++i) derivatives.push_back(runs_.derivative(ln, i));
-    std::vector<FreeParameter> all = free_.all;
-    for (const RunCurves& derivative : derivatives)
-      all.push_back({Kind::curve, Quantity::perimeter, &derivative});
-    return EnsembleLikelihood(evidence_.observations, {&curves}, evidence_.unit)
+    std::vector<likelihood::FreeParameter> all = free_.all;
+    for (const likelihood::RunCurves& derivative : derivatives)
+      all.push_back({Kind::curve, observations::Quantity::perimeter, &derivative});
+    return likelihood::EnsembleLikelihood(evidence_.observations, {&curves}, evidence_.unit)
         .expand(ensemble(x), all);
   }
 
   const Evidence& evidence_;
   const RunEmulator& runs_;
-  const FreeParameters free_;
+  const likelihood::FreeParameters free_;
   const Eigen::Index sought_;
-  ScoringProblem problem_;
+  likelihood::ScoringProblem problem_;
 };
 
 }  // namespace
@@ -87,4 +87,4 @@ JointFit fit_jointly(const Evidence& evidence, const RunEmulator& runs, const Bo
   return best;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::calibration

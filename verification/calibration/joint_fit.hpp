@@ -7,7 +7,7 @@
 #include "verification/calibration/run_emulator.hpp"
 #include "verification/likelihood/ensemble_fit.hpp"
 
-namespace traceraft {
+namespace traceraft::calibration {
 
 // Where parameters are looked for.
 struct Box {
@@ -16,19 +16,22 @@ struct Box {
 
 // The observations that count, and what is known of the unit of time.
 struct Evidence {
-  std::vector<ObservedSeries> observations;
-  const UnitPrior& unit;
+  std::vector<likelihood::ObservedSeries> observations;
+  const likelihood::UnitPrior& unit;
 
   // The unit of time and the scatter that make the observations most probable.
-  EnsembleFit fit(const RunCurves& runs) const { return fit_ensemble(observations, {&runs}, unit); }
-  EnsembleFit fit(const RunCurves& runs, const EnsembleFit& near) const {
-    return fit_ensemble(observations, {&runs}, unit, near);
+  likelihood::EnsembleFit fit(const likelihood::RunCurves& runs) const {
+    return likelihood::fit_ensemble(observations, {&runs}, unit);
+  }
+  likelihood::EnsembleFit fit(const likelihood::RunCurves& runs,
+                              const likelihood::EnsembleFit& near) const {
+    return likelihood::fit_ensemble(observations, {&runs}, unit, near);
   }
 };
 
 struct JointFit {
   std::vector<double> ln_parameters;
-  EnsembleFit fit;
+  likelihood::EnsembleFit fit;
   std::vector<double> deviations;  // of ln_parameters, by Fisher's information
 };
 
@@ -36,4 +39,4 @@ struct JointFit {
 JointFit fit_jointly(const Evidence& evidence, const RunEmulator& runs, const Box& box,
                      const std::vector<JointFit>& starts);
 
-}  // namespace traceraft
+}  // namespace traceraft::calibration

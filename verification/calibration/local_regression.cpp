@@ -7,7 +7,7 @@
 
 #include "kernel/core/types.hpp"
 
-namespace traceraft {
+namespace traceraft::calibration {
 namespace {
 
 // However far away, a point decides where nothing else does.
@@ -54,4 +54,4 @@ std::vector<double> regression_weights(const std::vector<std::vector<double>>& p
   return {weights.data(), weights.data() + weights.size()};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::calibration

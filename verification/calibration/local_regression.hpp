@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace traceraft {
+namespace traceraft::calibration {
 
 // Local quadratic regression (Cleveland, Devlin 1988): the value at `at` of the parabola that fits
 // values at the points best, those at a distance d counting exp(−d²/(2 width²)) times as much. It
@@ -18,4 +18,4 @@ constexpr int points_of_parabola(int variables) {
   return (variables + 1) * (variables + 2) / 2;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::calibration

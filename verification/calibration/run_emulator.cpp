@@ -4,23 +4,23 @@
 
 #include "verification/calibration/local_regression.hpp"
 
-namespace traceraft {
+namespace traceraft::calibration {
 namespace {
 
 // Width of the neighbourhood in which curves are parabolas, in ln of the parameters.
 constexpr double kWidth = 0.5;
 
-RunScatter mean_scatter(const std::vector<RunSamples>& samples) {
+likelihood::RunScatter mean_scatter(const std::vector<likelihood::RunSamples>& samples) {
   const double share = 1 / static_cast<double>(samples.size());
-  RunScatter mean = samples.front().scatter();
-  for (std::size_t q = 0; q < kQuantities.size(); ++q) {
+  likelihood::RunScatter mean = samples.front().scatter();
+  for (std::size_t q = 0; q < observations::kQuantities.size(); ++q) {
     std::vector<double>& variance = mean.variance[q];
     std::fill(variance.begin(), variance.end(), 0);
     mean.correlation[q] = 0;
   }
-  for (const RunSamples& runs : samples) {
-    const RunScatter more = runs.scatter();
-    for (std::size_t q = 0; q < kQuantities.size(); ++q) {
+  for (const likelihood::RunSamples& runs : samples) {
+    const likelihood::RunScatter more = runs.scatter();
+    for (std::size_t q = 0; q < observations::kQuantities.size(); ++q) {
       mean.correlation[q] += share * more.correlation[q];
       for (std::size_t i = 0; i < more.variance[q].size(); ++i)
         mean.variance[q][i] += share * more.variance[q][i];
@@ -32,11 +32,11 @@ RunScatter mean_scatter(const std::vector<RunSamples>& samples) {
 }  // namespace
 
 RunEmulator::RunEmulator(const std::vector<CalibrationPoint>& points)
-    : samples_(std::make_shared<std::vector<RunSamples>>()) {
-  std::vector<History> all;
+    : samples_(std::make_shared<std::vector<likelihood::RunSamples>>()) {
+  std::vector<observations::History> all;
   for (const CalibrationPoint& point : points)
     all.insert(all.end(), point.runs.begin(), point.runs.end());
-  const std::vector<double> times = common_times(all, kCurveTimes);
+  const std::vector<double> times = observations::common_times(all, observations::kCurveTimes);
   for (const CalibrationPoint& point : points) {
     ln_parameters_.push_back(point.ln_parameters);
     samples_->emplace_back(point.runs, times);
@@ -45,18 +45,20 @@ RunEmulator::RunEmulator(const std::vector<CalibrationPoint>& points)
 }
 
 RunEmulator RunEmulator::with_others(const Eigen::MatrixXd& weights) const {
-  std::vector<RunSamples> others;
-  for (const RunSamples& samples : *samples_) others.push_back(samples.others(weights));
+  std::vector<likelihood::RunSamples> others;
+  for (const likelihood::RunSamples& samples : *samples_) others.push_back(samples.others(weights));
   RunEmulator result = *this;
   result.set_curves(others);
   return result;
 }
 
-RunCurves RunEmulator::at(const std::vector<double>& ln_parameters) const {
-  return RunCurves::combined(at_points_, regression_weights(ln_parameters_, ln_parameters, kWidth));
+likelihood::RunCurves RunEmulator::at(const std::vector<double>& ln_parameters) const {
+  return likelihood::RunCurves::combined(at_points_,
+                                         regression_weights(ln_parameters_, ln_parameters, kWidth));
 }
 
-RunCurves RunEmulator::derivative(const std::vector<double>& ln_parameters, std::size_t i) const {
+likelihood::RunCurves RunEmulator::derivative(const std::vector<double>& ln_parameters,
+                                              std::size_t i) const {
   constexpr double kStep = 1e-4;
   std::vector<double> above = ln_parameters, below = ln_parameters;
   above[i] += kStep;
@@ -65,14 +67,14 @@ RunCurves RunEmulator::derivative(const std::vector<double>& ln_parameters, std:
   const std::vector<double> less = regression_weights(ln_parameters_, below, kWidth);
   for (std::size_t k = 0; k < weights.size(); ++k)
     weights[k] = (weights[k] - less[k]) / (2 * kStep);
-  return RunCurves::combined(at_points_, weights);
+  return likelihood::RunCurves::combined(at_points_, weights);
 }
 
-void RunEmulator::set_curves(const std::vector<RunSamples>& samples) {
-  const RunScatter scatter = mean_scatter(samples);
+void RunEmulator::set_curves(const std::vector<likelihood::RunSamples>& samples) {
+  const likelihood::RunScatter scatter = mean_scatter(samples);
   at_points_.clear();
-  for (const RunSamples& runs : samples)
+  for (const likelihood::RunSamples& runs : samples)
     at_points_.emplace_back(runs.times(), runs.means(), scatter, runs.count());
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::calibration

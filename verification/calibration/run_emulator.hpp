@@ -6,12 +6,12 @@
 
 #include "verification/likelihood/run_curves.hpp"
 
-namespace traceraft {
+namespace traceraft::calibration {
 
 // Simulations at one choice of the parameters that cost simulations. Parameters are logarithms.
 struct CalibrationPoint {
   std::vector<double> ln_parameters;
-  std::vector<History> runs;  // in units of R²/D
+  std::vector<observations::History> runs;  // in units of R²/D
 };
 
 // The mean curves are local parabolas of the parameters: they are smooth where deviances, which
@@ -25,17 +25,17 @@ class RunEmulator {
   // common cancels in the comparison of points.
   RunEmulator with_others(const Eigen::MatrixXd& weights) const;
 
-  const RunCurves& at_point(std::size_t point) const { return at_points_[point]; }
-  RunCurves at(const std::vector<double>& ln_parameters) const;
+  const likelihood::RunCurves& at_point(std::size_t point) const { return at_points_[point]; }
+  likelihood::RunCurves at(const std::vector<double>& ln_parameters) const;
   // Curves whose mean is the derivative of that by the i-th parameter.
-  RunCurves derivative(const std::vector<double>& ln_parameters, std::size_t i) const;
+  likelihood::RunCurves derivative(const std::vector<double>& ln_parameters, std::size_t i) const;
 
  private:
-  void set_curves(const std::vector<RunSamples>& samples);
+  void set_curves(const std::vector<likelihood::RunSamples>& samples);
 
   std::vector<std::vector<double>> ln_parameters_;
-  std::shared_ptr<std::vector<RunSamples>> samples_;  // one per point
-  std::vector<RunCurves> at_points_;
+  std::shared_ptr<std::vector<likelihood::RunSamples>> samples_;  // one per point
+  std::vector<likelihood::RunCurves> at_points_;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::calibration

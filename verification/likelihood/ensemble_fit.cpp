@@ -8,7 +8,7 @@
 #include "verification/statistics/bootstrap.hpp"
 #include "verification/statistics/sample.hpp"
 
-namespace traceraft {
+namespace traceraft::likelihood {
 namespace {
 
 constexpr double kUsualScatter = 0.1;
@@ -41,10 +41,10 @@ EnsembleFit fit_from(const EnsembleFit& start, const EnsembleLikelihood& likelih
 
 UnitPrior UnitPrior::within_factor(double start, double factor, double reach) {
   const double most = std::pow(factor, reach);
-  return {start, std::log(factor) / kNormal95, {start / most, start * most}};
+  return {start, std::log(factor) / statistics::kNormal95, {start / most, start * most}};
 }
 
-UnitPrior UnitPrior::uniform(double start, const Interval& allowed) {
+UnitPrior UnitPrior::uniform(double start, const statistics::Interval& allowed) {
   return {start, std::numeric_limits<double>::infinity(), allowed};
 }
 
@@ -69,8 +69,9 @@ double EnsembleFit::seconds_per_unit() const {
   return std::exp(ln_unit);
 }
 
-double EnsembleFit::scatter_beyond_runs(Quantity quantity) const {
-  return std::hypot(scatter.vesicle[index_of(quantity)], scatter.look[index_of(quantity)]);
+double EnsembleFit::scatter_beyond_runs(observations::Quantity quantity) const {
+  return std::hypot(scatter.vesicle[observations::index_of(quantity)],
+                    scatter.look[observations::index_of(quantity)]);
 }
 
 EnsembleFit fit_ensemble(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
@@ -98,14 +99,15 @@ EnsembleFit fit_ensemble(const std::vector<ObservedSeries>& blocks, const Ensemb
                   FreeParameters(blocks, model, unit));
 }
 
-Interval as_probable(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
-                     const UnitPrior& unit, const EnsembleFit& fit) {
+statistics::Interval as_probable(const std::vector<ObservedSeries>& blocks,
+                                 const EnsembleModel& model, const UnitPrior& unit,
+                                 const EnsembleFit& fit) {
   constexpr int kUnits = 200;
   const double low = unit.lowest(), high = unit.highest();
   const EnsembleLikelihood likelihood(blocks, model, unit);
   const double most = likelihood.deviance(fit) + kAboutAsProbable;
   EnsembleFit at = fit;
-  Interval range{fit.ln_unit, fit.ln_unit};
+  statistics::Interval range{fit.ln_unit, fit.ln_unit};
   for (int k = 0; k <= kUnits; ++k) {
     at.ln_unit = low + (high - low) * k / kUnits;
     if (likelihood.deviance(at) > most) continue;
@@ -152,4 +154,4 @@ Vec unit_response(const std::vector<ObservedSeries>& blocks, const RunCurves& ba
   });
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::likelihood

@@ -8,7 +8,7 @@
 #include "verification/likelihood/observations.hpp"
 #include "verification/statistics/bootstrap.hpp"
 
-namespace traceraft {
+namespace traceraft::likelihood {
 
 // The model with an effect of strength a has the logarithms mean + a (changed − mean).
 struct EnsembleModel {
@@ -17,14 +17,14 @@ struct EnsembleModel {
   bool two_sided = true;
 
   // The logarithm at a time (in units of the runs) with the effect at that amplitude.
-  double mean(Quantity quantity, double ln_t, double amplitude) const {
+  double mean(observations::Quantity quantity, double ln_t, double amplitude) const {
     return base->mean(quantity, ln_t) + amplitude * response(quantity, ln_t);
   }
   // Its derivatives by the amplitude and by ln t.
-  double response(Quantity quantity, double ln_t) const {
+  double response(observations::Quantity quantity, double ln_t) const {
     return changed == nullptr ? 0 : changed->mean(quantity, ln_t) - base->mean(quantity, ln_t);
   }
-  double slope(Quantity quantity, double ln_t, double amplitude) const {
+  double slope(observations::Quantity quantity, double ln_t, double amplitude) const {
     const double slope = base->slope(quantity, ln_t);
     return changed == nullptr ? slope
                               : slope + amplitude * (changed->slope(quantity, ln_t) - slope);
@@ -43,21 +43,21 @@ struct EnsembleFit {
 
   double seconds_per_unit() const;
   // Standard deviation of ln of one look beyond that of the runs, between vesicles and looks.
-  double scatter_beyond_runs(Quantity quantity) const;
+  double scatter_beyond_runs(observations::Quantity quantity) const;
 };
 
 // R²/D in seconds, by which the time of the runs is multiplied: what is known of it before.
 struct UnitPrior {
-  double start;      // where a fit begins, and the median of what is known
-  double deviation;  // standard deviation of ln of the unit; infinite: nothing is known
-  Interval allowed;  // where a fit may end
+  double start;                  // where a fit begins, and the median of what is known
+  double deviation;              // standard deviation of ln of the unit; infinite: nothing is known
+  statistics::Interval allowed;  // where a fit may end
   double drawn = 0;  // in data that are drawn: ln of what is said to be known, over start
 
   // The unit is within the factor with 95 % confidence. A fit may end within the `reach`-th power
   // of it.
   static UnitPrior within_factor(double start, double factor, double reach = 1);
   // Each ln of the unit in the interval is as probable as any other.
-  static UnitPrior uniform(double start, const Interval& allowed);
+  static UnitPrior uniform(double start, const statistics::Interval& allowed);
   // ln of `allowed`.
   double lowest() const;
   double highest() const;
@@ -75,8 +75,9 @@ EnsembleFit fit_ensemble(const std::vector<ObservedSeries>& blocks, const Ensemb
 inline constexpr double kAboutAsProbable = 1;
 // Units of time (s), from the shortest to the longest, by which the data are about as probable as
 // by `fit`, at its scatter: where curves are flat, these are many.
-Interval as_probable(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
-                     const UnitPrior& unit, const EnsembleFit& fit);
+statistics::Interval as_probable(const std::vector<ObservedSeries>& blocks,
+                                 const EnsembleModel& model, const UnitPrior& unit,
+                                 const EnsembleFit& fit);
 
 // The model, an entry per look.
 Vec expected(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
@@ -93,4 +94,4 @@ Vec response(const std::vector<ObservedSeries>& blocks, const RunCurves& base,
              const RunCurves& changed, double ln_unit);
 Vec unit_response(const std::vector<ObservedSeries>& blocks, const RunCurves& base, double ln_unit);
 
-}  // namespace traceraft
+}  // namespace traceraft::likelihood

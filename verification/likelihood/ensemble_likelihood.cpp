@@ -6,7 +6,7 @@
 
 #include "verification/statistics/log_of_product.hpp"
 
-namespace traceraft {
+namespace traceraft::likelihood {
 namespace {
 
 using Kind = FreeParameter::Kind;
@@ -18,7 +18,7 @@ double square(double x) {
 }
 
 double log_determinant(const Eigen::LLT<Eigen::MatrixXd>& factor) {
-  LogOfProduct diagonal;
+  statistics::LogOfProduct diagonal;
   for (Eigen::Index i = 0; i < factor.cols(); ++i) diagonal.multiply(factor.matrixLLT()(i, i));
   return 2 * diagonal.value();
 }
@@ -32,9 +32,9 @@ double FreeParameter::get(const EnsembleFit& fit) const {
     case Kind::amplitude:
       return fit.amplitude;
     case Kind::vesicle_scatter:
-      return square(fit.scatter.vesicle[index_of(quantity)]);
+      return square(fit.scatter.vesicle[observations::index_of(quantity)]);
     default:
-      return square(fit.scatter.look[index_of(quantity)]);
+      return square(fit.scatter.look[observations::index_of(quantity)]);
   }
 }
 
@@ -47,10 +47,10 @@ void FreeParameter::set(double value, EnsembleFit& fit) const {
       fit.amplitude = value;
       break;
     case Kind::vesicle_scatter:
-      fit.scatter.vesicle[index_of(quantity)] = std::sqrt(value);
+      fit.scatter.vesicle[observations::index_of(quantity)] = std::sqrt(value);
       break;
     default:
-      fit.scatter.look[index_of(quantity)] = std::sqrt(value);
+      fit.scatter.look[observations::index_of(quantity)] = std::sqrt(value);
   }
 }
 
@@ -72,12 +72,12 @@ EnsembleLikelihood::Looks EnsembleLikelihood::looks(const Block& block,
                                                     const EnsembleFit& at) const {
   const ObservedSeries& series = *block.series;
   const Eigen::Index count = series.values.size();
-  const double scatter = square(at.scatter.look[index_of(series.quantity)]);
+  const double scatter = square(at.scatter.look[observations::index_of(series.quantity)]);
   Looks result{Vec(count), Vec(count), Vec(count)};
   for (Eigen::Index i = 0; i < count; ++i) {
     const double t = series.ln_t[i] - at.ln_unit;
     const double mean = model_.mean(series.quantity, t, at.amplitude);
-    const StatedError& stated = series.stated[static_cast<std::size_t>(i)];
+    const observations::StatedError& stated = series.stated[static_cast<std::size_t>(i)];
     result.residual[i] = series.values[i] - mean - stated.bias(mean);
     result.run[i] = std::sqrt(model_.base->variance(series.quantity, t));
     result.own[i] = stated.of_logarithm(mean) + scatter;
@@ -85,7 +85,8 @@ EnsembleLikelihood::Looks EnsembleLikelihood::looks(const Block& block,
   return result;
 }
 
-double EnsembleLikelihood::mean_derivative(Quantity quantity, double t, const EnsembleFit& at,
+double EnsembleLikelihood::mean_derivative(observations::Quantity quantity, double t,
+                                           const EnsembleFit& at,
                                            const FreeParameter& parameter) const {
   switch (parameter.kind) {
     case Kind::unit:
@@ -107,7 +108,7 @@ EnsembleLikelihood::Looks EnsembleLikelihood::derivative(const Block& block, con
     const double t = series.ln_t[i] - at.ln_unit;
     const double mean = model_.mean(series.quantity, t, at.amplitude);
     const double change = mean_derivative(series.quantity, t, at, parameter);
-    const StatedError& stated = series.stated[static_cast<std::size_t>(i)];
+    const observations::StatedError& stated = series.stated[static_cast<std::size_t>(i)];
     const double above = mean + kStep, below = mean - kStep;
     const double bias = (stated.bias(above) - stated.bias(below)) / (2 * kStep);
     result.residual[i] = -(1 + bias) * change;
@@ -123,7 +124,7 @@ EnsembleLikelihood::Looks EnsembleLikelihood::derivative(const Block& block, con
 Eigen::MatrixXd EnsembleLikelihood::covariance(const Block& block, const Looks& looks,
                                                const EnsembleFit& at) const {
   Eigen::MatrixXd result = looks.run.asDiagonal() * block.correlation * looks.run.asDiagonal();
-  result.array() += square(at.scatter.vesicle[index_of(block.series->quantity)]);
+  result.array() += square(at.scatter.vesicle[observations::index_of(block.series->quantity)]);
   result.diagonal() += looks.own;
   return result;
 }
@@ -149,7 +150,7 @@ void EnsembleLikelihood::add_block(const Block& block, const EnsembleFit& at,
     Vec solved;             // K⁻¹ ∂r
     Eigen::MatrixXd share;  // B
   };
-  const Quantity quantity = block.series->quantity;
+  const observations::Quantity quantity = block.series->quantity;
   const Eigen::Index count = block.series->values.size();
   const Looks here = looks(block, at);
   const Eigen::LLT<Eigen::MatrixXd> factor(covariance(block, here, at));
@@ -205,7 +206,7 @@ DevianceExpansion EnsembleLikelihood::expand(const EnsembleFit& at,
 
 FreeParameters::FreeParameters(const std::vector<ObservedSeries>& blocks,
                                const EnsembleModel& model, const UnitPrior& unit) {
-  std::vector<Interval> bounds;
+  std::vector<statistics::Interval> bounds;
   const auto add = [&](const FreeParameter& parameter, double low, double high) {
     all.push_back(parameter);
     bounds.push_back({low, high});
@@ -213,7 +214,7 @@ FreeParameters::FreeParameters(const std::vector<ObservedSeries>& blocks,
   add({Kind::unit}, unit.lowest(), unit.highest());
   if (model.changed != nullptr)
     add({Kind::amplitude}, model.two_sided ? -kLargestAmplitude : 0.0, kLargestAmplitude);
-  for (const Quantity quantity : kQuantities)
+  for (const observations::Quantity quantity : observations::kQuantities)
     if (std::any_of(blocks.begin(), blocks.end(),
                     [&](const ObservedSeries& block) { return block.quantity == quantity; }))
       for (const Kind kind : {Kind::vesicle_scatter, Kind::look_scatter})
@@ -239,4 +240,4 @@ void FreeParameters::set(const Vec& values, EnsembleFit& fit) const {
     all[p].set(values[static_cast<Eigen::Index>(p)], fit);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::likelihood

@@ -8,7 +8,7 @@
 #include "verification/likelihood/ensemble_fit.hpp"
 #include "verification/likelihood/scoring.hpp"
 
-namespace traceraft {
+namespace traceraft::likelihood {
 
 // A free number of a fit: ln of the unit, the amplitude, the variance of a scatter, or another
 // number on which the mean curves depend. Near zero a likelihood is smooth in a variance, but flat
@@ -16,8 +16,8 @@ namespace traceraft {
 struct FreeParameter {
   enum class Kind { unit, amplitude, vesicle_scatter, look_scatter, curve };
   Kind kind;
-  Quantity quantity = Quantity::perimeter;  // of a scatter
-  const RunCurves* derivative = nullptr;    // of a curve: its mean is that of the mean curves
+  observations::Quantity quantity = observations::Quantity::perimeter;  // of a scatter
+  const RunCurves* derivative = nullptr;  // of a curve: its mean is that of the mean curves
 
   bool scatters() const { return kind == Kind::vesicle_scatter || kind == Kind::look_scatter; }
   // Not of a curve.
@@ -49,7 +49,7 @@ class EnsembleLikelihood {
   Looks looks(const Block& block, const EnsembleFit& at) const;
   // Derivatives by a parameter that is no scatter.
   Looks derivative(const Block& block, const EnsembleFit& at, const FreeParameter& parameter) const;
-  double mean_derivative(Quantity quantity, double t, const EnsembleFit& at,
+  double mean_derivative(observations::Quantity quantity, double t, const EnsembleFit& at,
                          const FreeParameter& parameter) const;
   Eigen::MatrixXd covariance(const Block& block, const Looks& looks, const EnsembleFit& at) const;
   void add_block(const Block& block, const EnsembleFit& at,
@@ -73,4 +73,4 @@ struct FreeParameters {
   void set(const Vec& values, EnsembleFit& fit) const;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::likelihood

@@ -5,25 +5,25 @@
 #include "verification/statistics/bootstrap.hpp"
 #include "verification/statistics/log_of_product.hpp"
 
-namespace traceraft {
+namespace traceraft::likelihood {
 
-std::vector<ObservedSeries> observed_series(const MeasuredVesicles& data,
+std::vector<ObservedSeries> observed_series(const observations::MeasuredVesicles& data,
                                             const std::vector<int>& vesicles,
-                                            const std::vector<Quantity>& quantities) {
+                                            const std::vector<observations::Quantity>& quantities) {
   std::vector<ObservedSeries> blocks;
-  const StatedErrors errors(data);
+  const observations::StatedErrors errors(data);
   const auto all = data.vesicles();
   for (const int vesicle : vesicles)
-    for (const Quantity quantity : quantities) {
+    for (const observations::Quantity quantity : quantities) {
       const auto [first, last] = all[static_cast<std::size_t>(vesicle)];
       std::vector<double> t, y;
-      std::vector<StatedError> stated;
+      std::vector<observations::StatedError> stated;
       for (std::size_t i = first; i < last; ++i) {
-        const Measurement& m = data.measurements[i];
+        const observations::Measurement& m = data.measurements[i];
         const double value = m.of(quantity).value_or(0);
         if (!(value > 0) || !(m.time > 0)) continue;
         t.push_back(std::log(m.time));
-        y.push_back(logarithm_of(quantity, value));
+        y.push_back(observations::logarithm_of(quantity, value));
         stated.push_back(errors.of(m, quantity));
       }
       const auto vec = [](const std::vector<double>& v) {
@@ -34,8 +34,8 @@ std::vector<ObservedSeries> observed_series(const MeasuredVesicles& data,
   return blocks;
 }
 
-std::vector<ObservedSeries> observed_series(const MeasuredVesicles& data) {
-  return observed_series(data, each_once(data.vesicles().size()));
+std::vector<ObservedSeries> observed_series(const observations::MeasuredVesicles& data) {
+  return observed_series(data, statistics::each_once(data.vesicles().size()));
 }
 
 BlockCovariances known_covariance(const std::vector<ObservedSeries>& blocks, const RunCurves& base,
@@ -56,13 +56,13 @@ BlockCovariances known_covariance(const std::vector<ObservedSeries>& blocks, con
 ObservationMetric::ObservationMetric(const std::vector<ObservedSeries>& blocks,
                                      const BlockCovariances& known,
                                      const ObservationScatter& scatter,
-                                     std::optional<Quantity> only) {
+                                     std::optional<observations::Quantity> only) {
   Eigen::Index first = 0;
   for (std::size_t b = 0; b < blocks.size(); ++b) {
-    const Quantity quantity = blocks[b].quantity;
+    const observations::Quantity quantity = blocks[b].quantity;
     const Eigen::Index count = blocks[b].values.size();
     if (!only || quantity == *only) {
-      const auto q = index_of(quantity);
+      const auto q = observations::index_of(quantity);
       Eigen::MatrixXd covariance = known[b].array() + scatter.vesicle[q] * scatter.vesicle[q];
       covariance.diagonal().array() += scatter.look[q] * scatter.look[q];
       blocks_.push_back({quantity, first, count, covariance.llt()});
@@ -71,7 +71,8 @@ ObservationMetric::ObservationMetric(const std::vector<ObservedSeries>& blocks,
   }
 }
 
-double ObservationMetric::product(const Vec& u, const Vec& v, std::optional<Quantity> only) const {
+double ObservationMetric::product(const Vec& u, const Vec& v,
+                                  std::optional<observations::Quantity> only) const {
   double sum = 0;
   for (const Block& block : blocks_) {
     if (only && block.quantity != *only) continue;
@@ -84,7 +85,7 @@ double ObservationMetric::product(const Vec& u, const Vec& v, std::optional<Quan
 }
 
 double ObservationMetric::log_determinant() const {
-  LogOfProduct diagonal;
+  statistics::LogOfProduct diagonal;
   for (const Block& block : blocks_) {
     const auto& L = block.factor.matrixLLT();
     for (Eigen::Index i = 0; i < block.count; ++i) diagonal.multiply(L(i, i));
@@ -92,4 +93,4 @@ double ObservationMetric::log_determinant() const {
   return 2 * diagonal.value();
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::likelihood

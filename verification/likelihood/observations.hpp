@@ -12,23 +12,23 @@
 #include "verification/observations/measurements.hpp"
 #include "verification/observations/stated_errors.hpp"
 
-namespace traceraft {
+namespace traceraft::likelihood {
 
 // Looks at one quantity of one vesicle.
 struct ObservedSeries {
-  Quantity quantity;
+  observations::Quantity quantity;
   Vec ln_t;    // of seconds
   Vec values;  // logarithms
-  std::vector<StatedError> stated;
+  std::vector<observations::StatedError> stated;
 };
 // Looks at time zero and values that are not positive say nothing, and are left out. `vesicles`:
 // indices, with repetition; `quantities`: those that count.
-std::vector<ObservedSeries> observed_series(const MeasuredVesicles& data,
-                                            const std::vector<int>& vesicles,
-                                            const std::vector<Quantity>& quantities = {
-                                                kQuantities.begin(), kQuantities.end()});
+std::vector<ObservedSeries> observed_series(
+    const observations::MeasuredVesicles& data, const std::vector<int>& vesicles,
+    const std::vector<observations::Quantity>& quantities = {observations::kQuantities.begin(),
+                                                             observations::kQuantities.end()});
 // All vesicles, once each.
-std::vector<ObservedSeries> observed_series(const MeasuredVesicles& data);
+std::vector<ObservedSeries> observed_series(const observations::MeasuredVesicles& data);
 
 // Vesicles scatter around the mean of the runs; looks at a vesicle scatter around what is its own.
 struct ObservationScatter {
@@ -69,17 +69,18 @@ class ObservationMetric {
  public:
   // `only`: products and determinant are those of the looks at one quantity alone.
   ObservationMetric(const std::vector<ObservedSeries>& blocks, const BlockCovariances& known,
-                    const ObservationScatter& scatter, std::optional<Quantity> only = {});
-  double product(const Vec& u, const Vec& v, std::optional<Quantity> only = {}) const;
+                    const ObservationScatter& scatter,
+                    std::optional<observations::Quantity> only = {});
+  double product(const Vec& u, const Vec& v, std::optional<observations::Quantity> only = {}) const;
   double log_determinant() const;  // of the covariance
 
  private:
   struct Block {
-    Quantity quantity;
+    observations::Quantity quantity;
     Eigen::Index first, count;
     Eigen::LLT<Eigen::MatrixXd> factor;
   };
   std::vector<Block> blocks_;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::likelihood

@@ -7,7 +7,7 @@
 #include "kernel/core/error.hpp"
 #include "kernel/core/random.hpp"
 
-namespace traceraft {
+namespace traceraft::likelihood {
 namespace {
 
 constexpr double kMostCorrelated = 0.999;
@@ -50,17 +50,18 @@ Eigen::MatrixXd weights_of_other_runs(std::size_t runs, std::uint64_t seed, std:
   return weights;
 }
 
-RunSamples::RunSamples(const std::vector<History>& runs, std::vector<double> times)
+RunSamples::RunSamples(const std::vector<observations::History>& runs, std::vector<double> times)
     : times_(std::move(times)) {
   const auto rows = static_cast<Eigen::Index>(times_.size());
   const auto columns = static_cast<Eigen::Index>(runs.size());
-  for (const Quantity quantity : kQuantities) {
-    Eigen::MatrixXd& values = values_[index_of(quantity)];
+  for (const observations::Quantity quantity : observations::kQuantities) {
+    Eigen::MatrixXd& values = values_[observations::index_of(quantity)];
     values.resize(rows, columns);
     for (Eigen::Index j = 0; j < columns; ++j)
       for (Eigen::Index i = 0; i < rows; ++i)
-        values(i, j) = logarithm_of(quantity, runs[static_cast<std::size_t>(j)].at(
-                                                  quantity, times_[static_cast<std::size_t>(i)]));
+        values(i, j) = observations::logarithm_of(
+            quantity,
+            runs[static_cast<std::size_t>(j)].at(quantity, times_[static_cast<std::size_t>(i)]));
   }
 }
 
@@ -82,7 +83,7 @@ RunScatter RunSamples::scatter() const {
   const double step = times_.size() > 1 ? std::log(times_[1] / times_[0]) : 1;
   const auto rows = static_cast<Eigen::Index>(times_.size());
   const auto lag = std::min<Eigen::Index>(rows - 1, std::lround(1 / step));
-  for (std::size_t q = 0; q < kQuantities.size(); ++q) {
+  for (std::size_t q = 0; q < observations::kQuantities.size(); ++q) {
     const Eigen::MatrixXd off = values_[q].colwise() - values_[q].rowwise().mean().eval();
     const Vec squares = off.rowwise().squaredNorm();
     result.variance[q] = smoothed(vector_of(squares / static_cast<double>(off.cols() - 1)));
@@ -121,8 +122,8 @@ double LogSpline::slope(const std::vector<double>& values, double ln_t) const {
   return ((0.5 + p.offset) * (p.after - p.here) + (0.5 - p.offset) * (p.here - p.before)) / step_;
 }
 
-RunCurves::RunCurves(const std::vector<History>& runs)
-    : RunCurves(RunSamples(runs, common_times(runs, kCurveTimes))) {}
+RunCurves::RunCurves(const std::vector<observations::History>& runs)
+    : RunCurves(RunSamples(runs, observations::common_times(runs, observations::kCurveTimes))) {}
 
 RunCurves::RunCurves(const RunSamples& samples)
     : RunCurves(samples.times(), samples.means(), samples.scatter(), samples.count()) {}
@@ -138,7 +139,7 @@ RunCurves::RunCurves(const std::vector<double>& times, QuantityCurves mean, RunS
 RunCurves RunCurves::combined(const std::vector<RunCurves>& all,
                               const std::vector<double>& weights) {
   RunCurves result = all.front();
-  for (std::size_t q = 0; q < kQuantities.size(); ++q)
+  for (std::size_t q = 0; q < observations::kQuantities.size(); ++q)
     for (std::size_t i = 0; i < result.mean_[q].size(); ++i) {
       double& value = result.mean_[q][i] = 0;
       for (std::size_t k = 0; k < all.size(); ++k) value += weights[k] * all[k].mean_[q][i];
@@ -146,11 +147,11 @@ RunCurves RunCurves::combined(const std::vector<RunCurves>& all,
   return result;
 }
 
-double RunCurves::correlation(Quantity quantity, double ln_factor) const {
-  return std::pow(scatter_.correlation[index_of(quantity)], std::fabs(ln_factor));
+double RunCurves::correlation(observations::Quantity quantity, double ln_factor) const {
+  return std::pow(scatter_.correlation[observations::index_of(quantity)], std::fabs(ln_factor));
 }
 
-Eigen::MatrixXd RunCurves::covariance(Quantity quantity, const Vec& ln_t) const {
+Eigen::MatrixXd RunCurves::covariance(observations::Quantity quantity, const Vec& ln_t) const {
   const Eigen::Index count = ln_t.size();
   Eigen::MatrixXd result(count, count);
   for (Eigen::Index i = 0; i < count; ++i)
@@ -161,4 +162,4 @@ Eigen::MatrixXd RunCurves::covariance(Quantity quantity, const Vec& ln_t) const 
   return result;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::likelihood

@@ -8,16 +8,16 @@
 #include "kernel/core/types.hpp"
 #include "verification/observations/history.hpp"
 
-namespace traceraft {
+namespace traceraft::likelihood {
 
 // A number per time for each quantity, in the order of kQuantities.
-using QuantityCurves = std::array<std::vector<double>, kQuantities.size()>;
+using QuantityCurves = std::array<std::vector<double>, observations::kQuantities.size()>;
 
 // How runs scatter around their mean: unbiased variances, and the correlation of two logarithms of
 // one run at times that differ by a factor e. At a factor e^x it is taken as its x-th power.
 struct RunScatter {
   QuantityCurves variance;
-  std::array<double, kQuantities.size()> correlation;
+  std::array<double, observations::kQuantities.size()> correlation;
 };
 
 // Weights of `runs` runs, two at least, that sum to 1. Logarithms weighted by them are those of
@@ -31,7 +31,7 @@ Eigen::MatrixXd weights_of_other_runs(std::size_t runs, std::uint64_t seed, std:
 // Logarithms of runs at times that are evenly spaced in ln t.
 class RunSamples {
  public:
-  RunSamples(const std::vector<History>& runs, std::vector<double> times);
+  RunSamples(const std::vector<observations::History>& runs, std::vector<double> times);
 
   const std::vector<double>& times() const { return times_; }
   // Samples of other runs; `weights`: a column for each of them.
@@ -42,7 +42,8 @@ class RunSamples {
 
  private:
   std::vector<double> times_;
-  std::array<Eigen::MatrixXd, kQuantities.size()> values_;  // a row per time, a column per run
+  std::array<Eigen::MatrixXd, observations::kQuantities.size()>
+      values_;  // a row per time, a column per run
 };
 
 // Functions of ln t by values at times that are evenly spaced in it: quadratic B-splines with the
@@ -69,7 +70,7 @@ class LogSpline {
 class RunCurves {
  public:
   // `runs`: at least two that have times > 0 in common.
-  explicit RunCurves(const std::vector<History>& runs);
+  explicit RunCurves(const std::vector<observations::History>& runs);
   explicit RunCurves(const RunSamples& samples);
   // `scatter`: of one run. `count`: how many runs `mean` is the mean of.
   RunCurves(const std::vector<double>& times, QuantityCurves mean, RunScatter scatter,
@@ -78,24 +79,24 @@ class RunCurves {
   // Σ weights[k] × means of the k-th, with the scatter of the first. All have the same times.
   static RunCurves combined(const std::vector<RunCurves>& all, const std::vector<double>& weights);
 
-  double mean(Quantity quantity, double ln_t) const {
-    return spline_.at(mean_[index_of(quantity)], ln_t);
+  double mean(observations::Quantity quantity, double ln_t) const {
+    return spline_.at(mean_[observations::index_of(quantity)], ln_t);
   }
   // One more run beside the mean of these: the variance of a run times 1 + 1/count.
-  double variance(Quantity quantity, double ln_t) const {
-    return spline_.at(scatter_.variance[index_of(quantity)], ln_t);
+  double variance(observations::Quantity quantity, double ln_t) const {
+    return spline_.at(scatter_.variance[observations::index_of(quantity)], ln_t);
   }
   // The correlation of two logarithms of one run at times that differ by a factor, whose logarithm
   // is given.
-  double correlation(Quantity quantity, double ln_factor) const;
+  double correlation(observations::Quantity quantity, double ln_factor) const;
   // The covariance of one more run at several times: a row and a column for each.
-  Eigen::MatrixXd covariance(Quantity quantity, const Vec& ln_t) const;
+  Eigen::MatrixXd covariance(observations::Quantity quantity, const Vec& ln_t) const;
   // The derivatives of the mean and of the variance by ln t.
-  double slope(Quantity quantity, double ln_t) const {
-    return spline_.slope(mean_[index_of(quantity)], ln_t);
+  double slope(observations::Quantity quantity, double ln_t) const {
+    return spline_.slope(mean_[observations::index_of(quantity)], ln_t);
   }
-  double variance_slope(Quantity quantity, double ln_t) const {
-    return spline_.slope(scatter_.variance[index_of(quantity)], ln_t);
+  double variance_slope(observations::Quantity quantity, double ln_t) const {
+    return spline_.slope(scatter_.variance[observations::index_of(quantity)], ln_t);
   }
 
  private:
@@ -104,4 +105,4 @@ class RunCurves {
   RunScatter scatter_;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::likelihood

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace traceraft {
+namespace traceraft::likelihood {
 namespace {
 
 constexpr int kMostIterations = 60;
@@ -58,4 +58,4 @@ ScoredMinimum minimise_by_scoring(const ScoringProblem& problem, const Vec& star
   return here;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::likelihood

@@ -6,7 +6,7 @@
 
 #include "kernel/core/types.hpp"
 
-namespace traceraft {
+namespace traceraft::likelihood {
 
 // A deviance, −2 ln of a likelihood, around a point, with an entry per parameter.
 struct DevianceExpansion {
@@ -29,4 +29,4 @@ struct ScoredMinimum {
 // deviance falls.
 ScoredMinimum minimise_by_scoring(const ScoringProblem& problem, const Vec& start);
 
-}  // namespace traceraft
+}  // namespace traceraft::likelihood

@@ -10,7 +10,7 @@
 #include "verification/observations/stated_errors.hpp"
 #include "verification/statistics/sample.hpp"
 
-namespace traceraft {
+namespace traceraft::observations {
 namespace {
 
 bool relative(Quantity quantity) {
@@ -37,7 +37,7 @@ Deviation deviation_of(const Measurement& m, Quantity quantity,
   const bool within = y >= *low && y <= *high;
   if (relative(quantity))
     for (double& value : values) value = logarithm_of(quantity, value);
-  const Sample runs_here = sample_of(values);
+  const statistics::Sample runs_here = statistics::sample_of(values);
   const double ln_expected =
       relative(quantity) ? runs_here.mean : logarithm_of(quantity, runs_here.mean);
   const StatedError error = errors.of(m, quantity);
@@ -148,7 +148,7 @@ class Comparison {
     const auto n = static_cast<double>(runs_.size());
     result_.trend = slope.value;
     result_.trend_error =
-        std::hypot(slope.error, sample_of(without).deviation * (n - 1) / std::sqrt(n));
+        std::hypot(slope.error, statistics::sample_of(without).deviation * (n - 1) / std::sqrt(n));
   }
 
   const std::vector<const History*> runs_;
@@ -203,4 +203,4 @@ double share_without_rafts(const MeasuredVesicles& data, const std::vector<Histo
   return all > 0 ? none / all : 0;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::observations

@@ -6,7 +6,7 @@
 #include "verification/observations/history.hpp"
 #include "verification/observations/measurements.hpp"
 
-namespace traceraft {
+namespace traceraft::observations {
 
 // How well the runs of an ensemble foretell one quantity.
 struct Agreement {
@@ -48,4 +48,4 @@ bool lies_beside(const Agreement& agreement, std::size_t runs);
 // raft; 0 if there are no such looks.
 double share_without_rafts(const MeasuredVesicles& data, const std::vector<History>& runs);
 
-}  // namespace traceraft
+}  // namespace traceraft::observations

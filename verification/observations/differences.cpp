@@ -5,7 +5,7 @@
 #include "kernel/core/text.hpp"
 #include "verification/statistics/sample.hpp"
 
-namespace traceraft {
+namespace traceraft::observations {
 namespace {
 
 constexpr double kSameSize = 1.2;                       // ratio of radii
@@ -15,7 +15,7 @@ std::string difference_of_radii(const MeasuredVesicles& data, double radius) {
   std::vector<double> radii;
   for (const auto& [first, last] : data.vesicles())
     radii.push_back(data.measurements[first].radius);
-  const Sample d = sample_of(radii);
+  const statistics::Sample d = statistics::sample_of(radii);
   if (d.max <= kSameSize * radius && d.min >= radius / kSameSize) return "";
   return formatted(
              "The vesicles have radii of %.3g to %.3g um (median %.3g um); the simulated one has "
@@ -30,7 +30,7 @@ std::string difference_of_fractions(const MeasuredVesicles& data, double fractio
   for (const auto& vesicle : fractions_of_vesicles(data))
     if (vesicle) means.push_back(vesicle->mean);
   if (means.size() < 2) return "";
-  const Sample d = sample_of(means);
+  const statistics::Sample d = statistics::sample_of(means);
   const double off = std::fabs(d.mean - fraction);
   if (off <= kDeviations * d.deviation || off <= kSameFraction * fraction) return "";
   return formatted(
@@ -80,4 +80,4 @@ std::vector<std::string> differences(const MeasuredVesicles& data, const Simulat
   return sentences;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::observations

@@ -7,7 +7,7 @@
 
 #include "verification/observations/measurements.hpp"
 
-namespace traceraft {
+namespace traceraft::observations {
 
 struct SimulatedVesicle {
   double radius;         // µm
@@ -31,4 +31,4 @@ std::string effect_of_size(const MeasuredVesicles& data, double radius);
 // more than two standard deviations between vesicles, and a tenth, off.
 std::vector<std::string> differences(const MeasuredVesicles& data, const SimulatedVesicle& model);
 
-}  // namespace traceraft
+}  // namespace traceraft::observations

@@ -5,7 +5,7 @@
 
 #include "verification/statistics/sample.hpp"
 
-namespace traceraft {
+namespace traceraft::observations {
 
 QuantityName name_of(Quantity quantity) {
   switch (quantity) {
@@ -47,15 +47,15 @@ std::vector<double> common_times(const std::vector<History>& histories, int per_
   return times;
 }
 
-std::vector<Sample> samples_at(const std::vector<History>& histories, Quantity quantity,
-                               const std::vector<double>& times) {
-  std::vector<Sample> result;
+std::vector<statistics::Sample> samples_at(const std::vector<History>& histories, Quantity quantity,
+                                           const std::vector<double>& times) {
+  std::vector<statistics::Sample> result;
   for (const double t : times) {
     std::vector<double> values;
     for (const History& history : histories) values.push_back(history.at(quantity, t));
-    result.push_back(sample_of(values));
+    result.push_back(statistics::sample_of(values));
   }
   return result;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::observations

@@ -7,7 +7,7 @@
 
 #include "verification/statistics/sample.hpp"
 
-namespace traceraft {
+namespace traceraft::observations {
 
 // The three quantities of Zhiliakov et al. (BBA Biomembranes 1863 (2021) 183446): total length of
 // the raft boundaries over the radius, number of rafts, and their share of the area.
@@ -47,7 +47,7 @@ inline constexpr int kCurveTimes = 20;
 std::vector<double> common_times(const std::vector<History>& histories, int per_decade);
 
 // A quantity of several histories at each of the times.
-std::vector<Sample> samples_at(const std::vector<History>& histories, Quantity quantity,
-                               const std::vector<double>& times);
+std::vector<statistics::Sample> samples_at(const std::vector<History>& histories, Quantity quantity,
+                                           const std::vector<double>& times);
 
-}  // namespace traceraft
+}  // namespace traceraft::observations

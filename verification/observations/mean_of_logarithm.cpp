@@ -7,7 +7,7 @@
 
 #include "verification/statistics/interpolation.hpp"
 
-namespace traceraft {
+namespace traceraft::observations {
 namespace {
 
 // Tables are in s/(1 + s), up to that of the largest s, as which larger ones are taken.
@@ -121,8 +121,8 @@ double from_table(double n, double share, double power) {
   static const CountTable table = table_of_counts();
   const auto row = std::min(static_cast<std::size_t>(n), static_cast<std::size_t>(kMany) - 1) - 1;
   const auto of_power = [&](std::size_t b) {
-    return between(n - static_cast<double>(row + 1), interpolated(table[b][row], share),
-                   interpolated(table[b][row + 1], share));
+    return between(n - static_cast<double>(row + 1), statistics::interpolated(table[b][row], share),
+                   statistics::interpolated(table[b][row + 1], share));
   };
   const double at = kPowers * (1 - std::sqrt(1 - power));
   const auto b = std::min(static_cast<std::size_t>(at), std::size_t{kPowers - 1});
@@ -144,7 +144,8 @@ double mean_of_logarithm(double s, double power) {
     const double square = within * within;
     return -square * (0.5 + square * (0.75 + 2.5 * square)) / absolute;
   }
-  return (std::log1p(within) + interpolated(table, kSteps * share_of(within))) / absolute;
+  return (std::log1p(within) + statistics::interpolated(table, kSteps * share_of(within))) /
+         absolute;
 }
 
 double mean_of_count_logarithm(double n, double s, double power) {
@@ -155,4 +156,4 @@ double mean_of_count_logarithm(double n, double s, double power) {
   return mean_of_logarithm(s, power) + beside * std::min(most / n, 1.0);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::observations

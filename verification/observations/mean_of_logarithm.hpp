@@ -1,7 +1,7 @@
 // What errors do to logarithms, in which only relative ones are normal.
 #pragma once
 
-namespace traceraft {
+namespace traceraft::observations {
 
 // Whether errors that go with this power of the value are normal in its logarithm.
 bool is_relative(double power);
@@ -15,4 +15,4 @@ double mean_of_logarithm(double s, double power);
 // whole numbers n >= 1: between theirs. Where s <= 1.5 within 0.01, of more than 32 within 0.03.
 double mean_of_count_logarithm(double n, double s, double power);
 
-}  // namespace traceraft
+}  // namespace traceraft::observations

@@ -5,7 +5,7 @@
 
 #include "kernel/core/types.hpp"
 
-namespace traceraft {
+namespace traceraft::observations {
 
 std::vector<std::pair<std::size_t, std::size_t>> MeasuredVesicles::vesicles() const {
   std::vector<std::pair<std::size_t, std::size_t>> ranges;
@@ -16,8 +16,8 @@ std::vector<std::pair<std::size_t, std::size_t>> MeasuredVesicles::vesicles() co
   return ranges;
 }
 
-Window looks(const MeasuredVesicles& data) {
-  Window window{HUGE_VAL, 0};
+statistics::Window looks(const MeasuredVesicles& data) {
+  statistics::Window window{HUGE_VAL, 0};
   for (const Measurement& m : data.measurements) {
     if (m.time > 0) window.begin = std::min(window.begin, m.time);
     window.end = std::max(window.end, m.time);
@@ -78,4 +78,4 @@ double equal_caps(double perimeter, double fraction) {
   return fraction + perimeter * perimeter / (16 * kPi * kPi * fraction);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::observations

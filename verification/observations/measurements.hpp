@@ -9,7 +9,7 @@
 #include "verification/observations/history.hpp"
 #include "verification/statistics/power_law.hpp"
 
-namespace traceraft {
+namespace traceraft::observations {
 
 // One look at one vesicle.
 struct Measurement {
@@ -43,7 +43,7 @@ struct MeasuredVesicles {
 };
 
 // From the first look after time zero to the last one; nothing if there is none, {inf, 0}.
-Window looks(const MeasuredVesicles& data);
+statistics::Window looks(const MeasuredVesicles& data);
 
 // The raft fraction of a vesicle: the mean over the times (s) after time zero at which it was
 // measured.
@@ -68,4 +68,4 @@ void set_caps(Measurement& measurement, const std::vector<Cap>& caps);
 // the area: P = 2π N sin θ with cos θ = 1 − 2f/N gives N = f + P²/(16 π² f).
 double equal_caps(double perimeter, double fraction);
 
-}  // namespace traceraft
+}  // namespace traceraft::observations

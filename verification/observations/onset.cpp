@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace traceraft {
+namespace traceraft::observations {
 namespace {
 
 constexpr int kDelays = 40;
@@ -43,4 +43,4 @@ std::optional<Onset> onset_without_trend(const MeasuredVesicles& data,
   return any_trend(best.agreements) ? std::nullopt : std::optional(std::move(best));
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::observations

@@ -7,7 +7,7 @@
 
 #include "verification/observations/comparison.hpp"
 
-namespace traceraft {
+namespace traceraft::observations {
 
 struct Onset {
   double delay;  // s
@@ -21,4 +21,4 @@ struct Onset {
 std::optional<Onset> onset_without_trend(const MeasuredVesicles& data,
                                          const std::vector<History>& runs);
 
-}  // namespace traceraft
+}  // namespace traceraft::observations

@@ -6,7 +6,7 @@
 
 #include "verification/statistics/sample.hpp"
 
-namespace traceraft {
+namespace traceraft::observations {
 namespace {
 
 constexpr int kResampled = 400;
@@ -16,13 +16,13 @@ constexpr int kLeastVesicles = 3;
 constexpr double kLeastPerimeter = 1e-3;  // of rafts, over the radius
 
 // Four points at three different times at least: three parameters.
-bool enough(const Points& points) {
+bool enough(const statistics::Points& points) {
   std::set<double> times;
   for (const auto& point : points) times.insert(point.first);
   return points.size() >= kLeastPoints && times.size() >= 3;
 }
 
-Interval exponential(const Interval& logarithms) {
+statistics::Interval exponential(const statistics::Interval& logarithms) {
   return {std::exp(logarithms.low), std::exp(logarithms.high)};
 }
 
@@ -30,39 +30,42 @@ Interval exponential(const Interval& logarithms) {
 // it is, which is positive, as c is.
 template <class PointsOf>
 FittedLaw with_intervals(const PointsOf& points_of, int count) {
-  const Points points = points_of(each_once(static_cast<std::size_t>(count)));
-  FittedLaw fitted{fit_power_law_from(points),      {},   {}, {}, false,
-                   static_cast<int>(points.size()), count};
-  const double first = first_time(points);
-  const auto parameters_of = [&](const PowerLaw& law) {
-    const double before =
-        std::max(first - law.t0, (1 - kLatestOrigin) * first);  // others may be seen later
+  const statistics::Points points =
+      points_of(statistics::each_once(static_cast<std::size_t>(count)));
+  FittedLaw fitted{statistics::fit_power_law_from(points), {},   {}, {}, false,
+                   static_cast<int>(points.size()),        count};
+  const double first = statistics::first_time(points);
+  const auto parameters_of = [&](const statistics::PowerLaw& law) {
+    const double before = std::max(
+        first - law.t0, (1 - statistics::kLatestOrigin) * first);  // others may be seen later
     return std::vector<double>{std::log(law.c), std::log(before), law.b};
   };
   const std::vector<double> centre = parameters_of(fitted.law);
-  const std::vector<Interval> intervals =
-      bootstrap_all(count, kResampled, kConfidence, 1, [&](const std::vector<int>& sample) {
-        const Points drawn = points_of(sample);
-        return enough(drawn) ? parameters_of(fit_power_law_from(drawn)) : centre;
+  const std::vector<statistics::Interval> intervals = statistics::bootstrap_all(
+      count, kResampled, kConfidence, 1, [&](const std::vector<int>& sample) {
+        const statistics::Points drawn = points_of(sample);
+        return enough(drawn) ? parameters_of(statistics::fit_power_law_from(drawn)) : centre;
       });
   const auto widened = [&](std::size_t k) {
-    return widened_for_few(intervals[k], centre[k], count);
+    return statistics::widened_for_few(intervals[k], centre[k], count);
   };
   fitted.c = exponential(widened(0));
-  const Interval before = exponential(widened(1));
-  fitted.t0 = {std::max(first - before.high, kEarliestOrigin * first), first - before.low};
-  fitted.t0_open = fitted.t0.low < 0.99 * kEarliestOrigin * first;
+  const statistics::Interval before = exponential(widened(1));
+  fitted.t0 = {std::max(first - before.high, statistics::kEarliestOrigin * first),
+               first - before.low};
+  fitted.t0_open = fitted.t0.low < 0.99 * statistics::kEarliestOrigin * first;
   fitted.b = widened(2);
   return fitted;
 }
 
 }  // namespace
 
-std::optional<FittedLaw> fit_measurements(const MeasuredVesicles& data, const Window& window) {
-  std::vector<Points> vesicles;
-  Points all;
+std::optional<FittedLaw> fit_measurements(const MeasuredVesicles& data,
+                                          const statistics::Window& window) {
+  std::vector<statistics::Points> vesicles;
+  statistics::Points all;
   for (const auto& [begin, end] : data.vesicles()) {
-    Points points;
+    statistics::Points points;
     for (std::size_t i = begin; i < end; ++i) {
       const Measurement& m = data.measurements[i];
       const auto& y = m.of(Quantity::perimeter);
@@ -74,7 +77,7 @@ std::optional<FittedLaw> fit_measurements(const MeasuredVesicles& data, const Wi
   if (!enough(all) || static_cast<int>(vesicles.size()) < kLeastVesicles) return std::nullopt;
   return with_intervals(
       [&](const std::vector<int>& sample) {
-        Points points;
+        statistics::Points points;
         for (const int k : sample)
           points.insert(points.end(), vesicles[k].begin(), vesicles[k].end());
         return points;
@@ -83,7 +86,8 @@ std::optional<FittedLaw> fit_measurements(const MeasuredVesicles& data, const Wi
 }
 
 std::optional<FittedLaw> fit_runs(const std::vector<History>& runs,
-                                  const std::vector<double>& times, const Window& window) {
+                                  const std::vector<double>& times,
+                                  const statistics::Window& window) {
   const auto have_rafts = [&](double t) {
     const auto none = std::count_if(runs.begin(), runs.end(), [&](const History& run) {
       return run.at(Quantity::perimeter, t) < kLeastPerimeter;
@@ -97,7 +101,7 @@ std::optional<FittedLaw> fit_runs(const std::vector<History>& runs,
     return std::nullopt;
   return with_intervals(
       [&](const std::vector<int>& sample) {
-        Points points;
+        statistics::Points points;
         for (const double t : within) {
           double sum = 0;
           for (const int k : sample)
@@ -109,4 +113,4 @@ std::optional<FittedLaw> fit_runs(const std::vector<History>& runs,
       static_cast<int>(runs.size()));
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::observations

@@ -8,20 +8,22 @@
 #include "verification/statistics/bootstrap.hpp"
 #include "verification/statistics/power_law.hpp"
 
-namespace traceraft {
+namespace traceraft::observations {
 
 // The law with its 95 % intervals by the bootstrap over vesicles, or over runs, widened for few.
 struct FittedLaw {
-  PowerLaw law;
-  Interval c, t0, b;
+  statistics::PowerLaw law;
+  statistics::Interval c, t0, b;
   bool t0_open;  // the interval of t0 begins where the search for it ends
   int points, vesicles;
 };
 // Perimeters over radius within the window. Nothing if they are fewer than four, or of fewer than
 // three vesicles.
-std::optional<FittedLaw> fit_measurements(const MeasuredVesicles& data, const Window& window);
+std::optional<FittedLaw> fit_measurements(const MeasuredVesicles& data,
+                                          const statistics::Window& window);
 // The geometric mean over the runs at `times` within the window. Nothing likewise.
 std::optional<FittedLaw> fit_runs(const std::vector<History>& runs,
-                                  const std::vector<double>& times, const Window& window);
+                                  const std::vector<double>& times,
+                                  const statistics::Window& window);
 
-}  // namespace traceraft
+}  // namespace traceraft::observations

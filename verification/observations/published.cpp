@@ -8,14 +8,14 @@
 #include "kernel/core/types.hpp"
 #include "verification/statistics/random_streams.hpp"
 
-namespace traceraft {
+namespace traceraft::observations {
 namespace {
 
 // Draws in the order of the calls.
 class Draws {
  public:
   explicit Draws(std::uint64_t seed) : seed_(seed) {}
-  double uniform() { return uniform_random(seed_, stream::drawn_vesicles, index_++); }
+  double uniform() { return uniform_random(seed_, statistics::stream::drawn_vesicles, index_++); }
   double normal() {
     const double u = uniform();
     return normal_pair(u, uniform())[0];
@@ -41,7 +41,7 @@ int looks_at(std::int64_t vesicle, std::int64_t vesicles, std::int64_t measureme
                           measurements * vesicle / vesicles);
 }
 
-std::vector<double> draw_times(Draws& draw, int count, const Window& window) {
+std::vector<double> draw_times(Draws& draw, int count, const statistics::Window& window) {
   std::vector<double> times;
   for (int i = 0; i < count; ++i)
     times.push_back(window.begin * std::pow(window.end / window.begin, draw.uniform()));
@@ -125,4 +125,4 @@ MeasuredVesicles draw_from_runs(const PublishedFacts& facts, const std::vector<H
   return data;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::observations

@@ -7,17 +7,17 @@
 #include "verification/observations/measurements.hpp"
 #include "verification/observations/perimeter_law.hpp"
 
-namespace traceraft {
+namespace traceraft::observations {
 
 struct PublishedFacts {
   std::string name, origin, composition;
   double celsius;
   int vesicles, measurements;
-  double fraction, fraction_sd;   // raft area fraction, mean and standard deviation
-  double radius_min, radius_max;  // µm
-  PowerLaw perimeter;             // over radius; the scatter is an assumption
-  Window window;                  // s, of the law
-  int outliers;                   // measurements outside the range of the published simulations
+  double fraction, fraction_sd;    // raft area fraction, mean and standard deviation
+  double radius_min, radius_max;   // µm
+  statistics::PowerLaw perimeter;  // over radius; the scatter is an assumption
+  statistics::Window window;       // s, of the law
+  int outliers;                    // measurements outside the range of the published simulations
 };
 
 // Vesicles that could have been measured: as many as published, radii evenly spread, times evenly
@@ -35,4 +35,4 @@ MeasuredVesicles draw_measurements(const PublishedFacts& facts, std::uint64_t se
 MeasuredVesicles draw_from_runs(const PublishedFacts& facts, const std::vector<History>& runs,
                                 double radius, std::uint64_t seed);
 
-}  // namespace traceraft
+}  // namespace traceraft::observations

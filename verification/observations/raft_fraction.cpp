@@ -9,7 +9,7 @@
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::observations {
 namespace {
 
 constexpr double kFarthest = 5;       // °C beyond the published temperatures
@@ -144,4 +144,4 @@ RaftFractionEstimate estimated_raft_fraction(const LipidMixture& membrane, doubl
                     100 * here, known.celsius, 100 * known.other_area, known.other_celsius)};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::observations

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace traceraft {
+namespace traceraft::observations {
 
 // Mole fractions; their sum is 1.
 struct LipidMixture {
@@ -48,4 +48,4 @@ struct RaftFractionEstimate {
 // Throws InputError for a membrane or a temperature of which nothing is published.
 RaftFractionEstimate estimated_raft_fraction(const LipidMixture& membrane, double celsius);
 
-}  // namespace traceraft
+}  // namespace traceraft::observations

@@ -6,7 +6,7 @@
 #include "kernel/core/text.hpp"
 #include "kernel/core/types.hpp"
 
-namespace traceraft {
+namespace traceraft::observations {
 namespace {
 
 constexpr double kDiffraction = 0.2;  // µm
@@ -98,4 +98,4 @@ std::vector<std::string> doubts_about(const MeasuredVesicles& data) {
   return doubts;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::observations

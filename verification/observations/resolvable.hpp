@@ -6,7 +6,7 @@
 
 #include "verification/observations/measurements.hpp"
 
-namespace traceraft {
+namespace traceraft::observations {
 
 // Boundaries so long, or rafts so many, that they are smaller than the limit of diffraction, half a
 // wavelength: N equal discs with the area A and the perimeter P together have the diameter 4 A / P,
@@ -24,4 +24,4 @@ std::string unusual_times(const MeasuredVesicles& data);
 // All of these that there are.
 std::vector<std::string> doubts_about(const MeasuredVesicles& data);
 
-}  // namespace traceraft
+}  // namespace traceraft::observations

@@ -9,7 +9,7 @@
 #include "verification/statistics/power_law.hpp"
 #include "verification/statistics/sample.hpp"
 
-namespace traceraft {
+namespace traceraft::observations {
 namespace {
 
 constexpr double kRoundingVariance = 1 / 12.0;  // of whole numbers
@@ -24,7 +24,7 @@ StatedErrors::StatedErrors(const MeasuredVesicles& data) {
 }
 
 StatedErrors::Law StatedErrors::law_of(const MeasuredVesicles& data, Quantity quantity) {
-  Points points;
+  statistics::Points points;
   std::vector<double> ln_values, ln_sigmas;
   for (const Measurement& m : data.measurements) {
     const double value = m.of(quantity).value_or(0), sigma = m.sigma_of(quantity);
@@ -34,10 +34,11 @@ StatedErrors::Law StatedErrors::law_of(const MeasuredVesicles& data, Quantity qu
     points.emplace_back(ln_values.back(), ln_sigmas.back());
   }
   if (points.empty()) return {};
-  const Sample values = sample_of(ln_values);
-  const double power =
-      values.deviation < kLeastSpread ? 0.0 : std::clamp(fit_line(points).slope, 0.0, 1.0);
-  return {power, sample_of(ln_sigmas).mean - power * values.mean};
+  const statistics::Sample values = statistics::sample_of(ln_values);
+  const double power = values.deviation < kLeastSpread
+                           ? 0.0
+                           : std::clamp(statistics::fit_line(points).slope, 0.0, 1.0);
+  return {power, statistics::sample_of(ln_sigmas).mean - power * values.mean};
 }
 
 StatedError StatedErrors::of(const Measurement& m, Quantity quantity) const {
@@ -78,4 +79,4 @@ double StatedError::drawn(double ln_value,
       return ln_value + std::log1p(error) / absolute;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::observations

@@ -8,7 +8,7 @@
 
 #include "verification/observations/measurements.hpp"
 
-namespace traceraft {
+namespace traceraft::observations {
 
 // Of one value: σ goes with the power of what is expected.
 struct StatedError {
@@ -48,4 +48,4 @@ class StatedErrors {
   std::array<Law, kQuantities.size()> laws_{};
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::observations

@@ -7,7 +7,7 @@
 #include "kernel/core/random.hpp"
 #include "verification/statistics/random_streams.hpp"
 
-namespace traceraft {
+namespace traceraft::statistics {
 
 std::vector<int> each_once(std::size_t count) {
   std::vector<int> all(count);
@@ -72,4 +72,4 @@ Interval widened_for_few(const Interval& interval, double centre, int count) {
   return {centre - factor * (centre - interval.low), centre + factor * (interval.high - centre)};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::statistics

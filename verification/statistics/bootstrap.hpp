@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-namespace traceraft {
+namespace traceraft::statistics {
 
 // Samples of 0 … count − 1: each of them once; or as many drawn with replacement, by the random
 // numbers from `first` on.
@@ -34,4 +34,4 @@ double factor_for_few(int count);
 // average, but known from so many.
 double student_factor(int count);
 
-}  // namespace traceraft
+}  // namespace traceraft::statistics

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace traceraft {
+namespace traceraft::statistics {
 
 // Linear between the values; `place`: from 0 to the number of the last one. Two values at least.
 inline double interpolated(const std::vector<double>& values, double place) {
@@ -14,4 +14,4 @@ inline double interpolated(const std::vector<double>& values, double place) {
   return values[below] + share * (values[below + 1] - values[below]);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::statistics

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace traceraft {
+namespace traceraft::statistics {
 
 class LogOfProduct {
  public:
@@ -20,4 +20,4 @@ class LogOfProduct {
   double sum_ = 0, product_ = 1;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::statistics

@@ -6,7 +6,7 @@
 
 #include "backends/nlopt/minimise.hpp"
 
-namespace traceraft {
+namespace traceraft::statistics {
 namespace {
 
 // For a given t0 the rest is a line through logarithms.
@@ -59,12 +59,12 @@ PowerLaw fit_power_law_from(const Points& points, double latest) {
   // Two valleys are possible: one where t0 explains the first points alone.
   PowerLaw best = law_from(points, 0);
   for (const double start : {-first, 0.0, 0.5 * first}) {
-    const Minimum found =
-        minimise({[&](const std::vector<double>& x) { return law_from(points, x[0]).scatter; },
-                  {std::min(start, upper)},
-                  {lower},
-                  {upper},
-                  {0.2 * first}});
+    const nlopt::Minimum found = nlopt::minimise(
+        {[&](const std::vector<double>& x) { return law_from(points, x[0]).scatter; },
+         {std::min(start, upper)},
+         {lower},
+         {upper},
+         {0.2 * first}});
     if (found.value < best.scatter) best = law_from(points, found.x[0]);
   }
   return best;
@@ -81,4 +81,4 @@ ObservedOrder observed_order(const Points& levels) {
   return {order, levels.size() > 2 ? std::fabs(order - between(last - 1)) : 0};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::statistics

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-namespace traceraft {
+namespace traceraft::statistics {
 
 using Points = std::vector<std::pair<double, double>>;
 
@@ -44,4 +44,4 @@ struct ObservedOrder {
 };
 ObservedOrder observed_order(const Points& size_and_error);
 
-}  // namespace traceraft
+}  // namespace traceraft::statistics

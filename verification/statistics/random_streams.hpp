@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace traceraft {
+namespace traceraft::statistics {
 
 // Streams of a seed that a user gives or a campaign makes.
 namespace stream {
@@ -57,4 +57,4 @@ enum : std::uint64_t {
 };
 }  // namespace fixed_seed
 
-}  // namespace traceraft
+}  // namespace traceraft::statistics

@@ -5,7 +5,7 @@
 
 #include "verification/statistics/interpolation.hpp"
 
-namespace traceraft {
+namespace traceraft::statistics {
 namespace {
 
 double quantile_of_sorted(const std::vector<double>& values, double share) {
@@ -40,4 +40,4 @@ double larger(double a, double b) {
   return std::isnan(a) || b <= a ? a : b;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::statistics

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace traceraft {
+namespace traceraft::statistics {
 
 // 95 % of normally distributed values are within so many standard deviations.
 inline constexpr double kNormal95 = 1.96;
@@ -20,4 +20,4 @@ double quantile(std::vector<double> values, double share);
 // The larger one of two errors, which have to be small: NaN is the largest of all.
 double larger(double a, double b);
 
-}  // namespace traceraft
+}  // namespace traceraft::statistics

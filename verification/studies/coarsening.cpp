@@ -10,7 +10,7 @@
 #include "verification/studies/coarsening_laws.hpp"
 #include "verification/studies/studies.hpp"
 
-namespace traceraft {
+namespace traceraft::studies {
 namespace {
 
 // Where the law is looked for. It is one of sharp boundaries, L³ = L₀³ + K t: a power law of t only
@@ -28,48 +28,51 @@ bool in_range(const Ensemble& ensemble, double perimeter, double widths) {
          perimeter >= kGreatCirclesAtEnd * 2 * kPi;
 }
 
-Window window_of_lengths(const Ensemble& ensemble, const std::vector<double>& perimeter,
-                         double widths) {
+statistics::Window window_of_lengths(const Ensemble& ensemble, const std::vector<double>& perimeter,
+                                     double widths) {
   return window_where(ensemble.request.times,
                       [&](std::size_t i) { return in_range(ensemble, perimeter[i], widths); });
 }
 
 // The spectra of all members at each snapshot in one, over the median degree.
 void measure_spectra(const Ensemble& ensemble, const std::string& name, Findings& findings) {
-  Chart chart = {"Spectrum below a degree, " + name, "l / median", "share", false, false, {}};
-  Points median_degrees;
-  std::vector<Cumulative> curves;
+  bench::Chart chart = {
+      "Spectrum below a degree, " + name, "l / median", "share", false, false, {}};
+  statistics::Points median_degrees;
+  std::vector<bench::Cumulative> curves;
   for (std::size_t k = 0; k < ensemble.request.snapshot_times.size(); ++k) {
     std::vector<double> sum(ensemble.members.front().spectra[k].size(), 0);
-    for (const Member& member : ensemble.members)
+    for (const bench::Member& member : ensemble.members)
       for (std::size_t l = 0; l < sum.size(); ++l) sum[l] += member.spectra[k][l];
     const double t = ensemble.request.snapshot_times[k];
-    median_degrees.emplace_back(t, median_degree(sum));
-    curves.push_back(cumulative_spectrum(sum));
-    chart.series.push_back({at_time(t), curves.back(), Mark::line});
+    median_degrees.emplace_back(t, bench::median_degree(sum));
+    curves.push_back(bench::cumulative_spectrum(sum));
+    chart.series.push_back({at_time(t), curves.back(), bench::Mark::line});
   }
   findings.report.charts.push_back(chart);
   findings.exponents.rows.push_back({name, "median degree of the spectrum", "t",
                                      median_degrees.front().first, median_degrees.back().first,
-                                     fit_power_law(median_degrees).slope, "", "", -1.0 / 3});
+                                     statistics::fit_power_law(median_degrees).slope, "", "",
+                                     -1.0 / 3});
   findings.report.claims.push_back(
       claim_at_most(name + ": largest difference between the first and the last scaled spectrum",
-                    largest_difference(curves.front(), curves.back()), 0.1));
+                    bench::largest_difference(curves.front(), curves.back()), 0.1));
 }
 
-void measure_equal(const Bench& bench, const Sizes& sizes, double margin, Findings& findings) {
-  const Law perimeter{"50:50, constant mobility", "perimeter", &Member::perimeter, -1.0 / 3};
+void measure_equal(const bench::Bench& bench, const Sizes& sizes, double margin,
+                   Findings& findings) {
+  const Law perimeter{"50:50, constant mobility", "perimeter", &bench::Member::perimeter, -1.0 / 3};
   // The perimeter reaches three great circles near 0.8/ε.
-  EnsembleRequest request = ensemble_request(kConstant, 0.5, sizes, 1 / sizes.epsilon);
+  bench::EnsembleRequest request = ensemble_request(kConstant, 0.5, sizes, 1 / sizes.epsilon);
   // A boundary has no power beyond 1/ε, nor has the mesh the means to tell.
   request.highest_degree = static_cast<int>(1 / sizes.epsilon);
   for (const double share : {0.1, 0.2, 0.4})
     request.snapshot_times.push_back(share * request.t_end);
   const Ensemble runs = measured_ensemble(bench, perimeter.ensemble, request, findings);
-  const std::vector<double> mean = runs.mean(&Member::perimeter);
-  const Window absorbed = window_of_lengths(runs, mean, kWidthsAbsorbed);
-  const Exponent shifted =
-      measure_law(runs, perimeter, absorbed, Origin::fitted, findings.exponents);
+  const std::vector<double> mean = runs.mean(&bench::Member::perimeter);
+  const statistics::Window absorbed = window_of_lengths(runs, mean, kWidthsAbsorbed);
+  const bench::Exponent shifted =
+      measure_law(runs, perimeter, absorbed, bench::Origin::fitted, findings.exponents);
   std::vector<Claim>& claims = findings.report.claims;
   if (bench.quick()) {
     // Boundaries that are wide against the sphere make it smaller; a mobility that vanishes in the
@@ -77,43 +80,45 @@ void measure_equal(const Bench& bench, const Sizes& sizes, double margin, Findin
     claims.push_back(claim_between(perimeter.ensemble + ", wide boundaries: exponent in t + offset",
                                    shifted.b, -0.4, -0.24));
   } else {
-    const Window late = window_of_lengths(runs, mean, kWidthsLate);
-    const Exponent plain = measure_law(runs, perimeter, late, Origin::zero, findings.exponents);
+    const statistics::Window late = window_of_lengths(runs, mean, kWidthsLate);
+    const bench::Exponent plain =
+        measure_law(runs, perimeter, late, bench::Origin::zero, findings.exponents);
     for (const double widths : kWidthsBetween)
-      (void)measure_law(runs, perimeter, window_of_lengths(runs, mean, widths), Origin::fitted,
-                        findings.exponents);
+      (void)measure_law(runs, perimeter, window_of_lengths(runs, mean, widths),
+                        bench::Origin::fitted, findings.exponents);
     claims.push_back(exponent_claim(perimeter, "t", plain, margin));
     claims.push_back(interval_claim(perimeter, "t", plain));
     // Its interval knows the scatter between runs, not the widths of early boundaries.
     claims.push_back(exponent_claim(perimeter, "t + offset", shifted, margin));
   }
-  const Points points = as_points(request.times, mean);
+  const statistics::Points points = as_points(request.times, mean);
   findings.report.charts.push_back(
       coarsening_chart("Length of all phase boundaries, " + perimeter.ensemble, "length (R)",
-                       {{"mean of the runs", points, Mark::line},
+                       {{"mean of the runs", points, bench::Mark::line},
                         law_line("t^(-1/3)", points, absorbed, -1.0 / 3)}));
   measure_spectra(runs, perimeter.ensemble, findings);
 }
 
 // Reported beside the theory, between −1/4 and −1/3, and not claimed.
-void measure_degenerate(const Bench& bench, const Sizes& sizes, Findings& findings) {
-  const Law perimeter{"50:50, degenerate mobility", "perimeter", &Member::perimeter, -0.25};
-  const EnsembleRequest request = ensemble_request("degenerate", 0.5, sizes, 4 / sizes.epsilon);
+void measure_degenerate(const bench::Bench& bench, const Sizes& sizes, Findings& findings) {
+  const Law perimeter{"50:50, degenerate mobility", "perimeter", &bench::Member::perimeter, -0.25};
+  const bench::EnsembleRequest request =
+      ensemble_request("degenerate", 0.5, sizes, 4 / sizes.epsilon);
   const Ensemble runs = measured_ensemble(bench, perimeter.ensemble, request, findings);
-  const std::vector<double> mean = runs.mean(&Member::perimeter);
-  const Window window = window_of_lengths(runs, mean, kWidthsAbsorbed);
-  (void)measure_law(runs, perimeter, window, Origin::fitted, findings.exponents);
-  const Window late = window_of_lengths(runs, mean, kWidthsLate);
-  (void)measure_law(runs, perimeter, late, Origin::zero, findings.exponents);
-  const Points points = as_points(request.times, mean);
+  const std::vector<double> mean = runs.mean(&bench::Member::perimeter);
+  const statistics::Window window = window_of_lengths(runs, mean, kWidthsAbsorbed);
+  (void)measure_law(runs, perimeter, window, bench::Origin::fitted, findings.exponents);
+  const statistics::Window late = window_of_lengths(runs, mean, kWidthsLate);
+  (void)measure_law(runs, perimeter, late, bench::Origin::zero, findings.exponents);
+  const statistics::Points points = as_points(request.times, mean);
   findings.report.charts.push_back(
       coarsening_chart("Length of all phase boundaries, " + perimeter.ensemble, "length (R)",
-                       {{"mean of the runs", points, Mark::line},
+                       {{"mean of the runs", points, bench::Mark::line},
                         law_line("t^(-1/4)", points, window, -0.25),
                         law_line("t^(-1/3)", points, window, -1.0 / 3)}));
 }
 
-StudyReport run(const Bench& bench) {
+StudyReport run(const bench::Bench& bench) {
   Findings findings;
   if (bench.quick()) {
     measure_equal(bench, {64, 0.04, 8}, 0.06, findings);
@@ -135,4 +140,4 @@ StudyEntry coarsening_study() {
   return {"coarsening", "the t^(-1/3) law of coarsening from ensembles of seeded runs", run};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::studies

@@ -7,10 +7,10 @@
 #include "kernel/core/stopwatch.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::studies {
 
-Window window_where(const std::vector<double>& times,
-                    const std::function<bool(std::size_t)>& holds) {
+statistics::Window window_where(const std::vector<double>& times,
+                                const std::function<bool(std::size_t)>& holds) {
   std::size_t end = times.size();
   while (end > 0 && !holds(end - 1)) --end;
   if (end == 0) return {times.back(), times.back()};
@@ -19,68 +19,71 @@ Window window_where(const std::vector<double>& times,
   return {times[begin], times[end - 1]};
 }
 
-Ensemble::Ensemble(const Bench& bench, EnsembleRequest request_)
-    : request(std::move(request_)), members(run_ensemble(bench, request)) {}
+Ensemble::Ensemble(const bench::Bench& bench, bench::EnsembleRequest request_)
+    : request(std::move(request_)), members(bench::run_ensemble(bench, request)) {}
 
-std::vector<double> Ensemble::mean(std::vector<double> Member::*values) const {
-  return geometric_mean(members, values, each_once(members.size()));
+std::vector<double> Ensemble::mean(std::vector<double> bench::Member::*values) const {
+  return bench::geometric_mean(members, values, statistics::each_once(members.size()));
 }
 
-Table exponents_table() {
+bench::Table exponents_table() {
   return {"exponents",
           {"ensemble", "quantity", "law of", "from", "to", "exponent", "low", "high", "theory"},
           {}};
 }
 
-Exponent measure_law(const Ensemble& ensemble, const Law& law, const Window& window, Origin origin,
-                     Table& exponents) {
+bench::Exponent measure_law(const Ensemble& ensemble, const Law& law,
+                            const statistics::Window& window, bench::Origin origin,
+                            bench::Table& exponents) {
   if (!(window.end >= 3 * window.begin))
     throw std::runtime_error("the window of the " + law.quantity + " is too short to fit a law");
-  const Exponent found = fit_exponent(ensemble.members, law.values, ensemble.request.times,
-                                      window.begin, window.end, origin);
-  exponents.rows.push_back({law.ensemble, law.quantity,
-                            origin == Origin::zero ? "t" : formatted("t + %.3g", found.offset),
-                            window.begin, window.end, found.b, found.interval.low,
-                            found.interval.high, law.theory});
+  const bench::Exponent found = bench::fit_exponent(
+      ensemble.members, law.values, ensemble.request.times, window.begin, window.end, origin);
+  exponents.rows.push_back(
+      {law.ensemble, law.quantity,
+       origin == bench::Origin::zero ? "t" : formatted("t + %.3g", found.offset), window.begin,
+       window.end, found.b, found.interval.low, found.interval.high, law.theory});
   return found;
 }
 
-Claim exponent_claim(const Law& law, const std::string& of, const Exponent& found, double margin) {
+Claim exponent_claim(const Law& law, const std::string& of, const bench::Exponent& found,
+                     double margin) {
   return claim_near(law.ensemble + ": exponent of the " + law.quantity + " in " + of, found.b,
                     law.theory, margin, 0.5 * (found.interval.high - found.interval.low));
 }
 
-Claim interval_claim(const Law& law, const std::string& of, const Exponent& found) {
+Claim interval_claim(const Law& law, const std::string& of, const bench::Exponent& found) {
   return claim_between(formatted("%.3g", law.theory) + " lies in the 95 % interval of the " +
                            law.quantity + " in " + of + " (1: yes)",
                        found.interval.contains(law.theory), 1, 1);
 }
 
-Points as_points(const std::vector<double>& times, const std::vector<double>& values) {
-  Points points;
+statistics::Points as_points(const std::vector<double>& times, const std::vector<double>& values) {
+  statistics::Points points;
   for (std::size_t i = 0; i < times.size(); ++i) points.emplace_back(times[i], values[i]);
   return points;
 }
 
-ChartSeries law_line(const std::string& name, const Points& points, const Window& window,
-                     double b) {
+bench::ChartSeries law_line(const std::string& name, const statistics::Points& points,
+                            const statistics::Window& window, double b) {
   const double middle = std::sqrt(window.begin * window.end);
   const auto near =
       std::min_element(points.begin(), points.end(), [&](const auto& p, const auto& q) {
         return std::fabs(std::log(p.first / middle)) < std::fabs(std::log(q.first / middle));
       });
   const auto at = [&](double t) { return near->second * std::pow(t / near->first, b); };
-  return {name, {{window.begin, at(window.begin)}, {window.end, at(window.end)}}, Mark::line};
+  return {
+      name, {{window.begin, at(window.begin)}, {window.end, at(window.end)}}, bench::Mark::line};
 }
 
-Chart coarsening_chart(const std::string& title, const std::string& y_label,
-                       std::vector<ChartSeries> series) {
+bench::Chart coarsening_chart(const std::string& title, const std::string& y_label,
+                              std::vector<bench::ChartSeries> series) {
   return {title, "t (R^2/D)", y_label, true, true, std::move(series)};
 }
 
-EnsembleRequest ensemble_request(const std::string& mobility, double fraction, const Sizes& sizes,
-                                 double t_end) {
-  EnsembleRequest request;
+bench::EnsembleRequest ensemble_request(const std::string& mobility, double fraction,
+                                        const Sizes& sizes, double t_end) {
+  bench::EnsembleRequest request;
   request.mobility = mobility;
   request.raft_fraction = fraction;
   request.cells = sizes.cells;
@@ -95,13 +98,13 @@ EnsembleRequest ensemble_request(const std::string& mobility, double fraction, c
   return request;
 }
 
-Ensemble measured_ensemble(const Bench& bench, const std::string& name,
-                           const EnsembleRequest& request, Findings& findings) {
+Ensemble measured_ensemble(const bench::Bench& bench, const std::string& name,
+                           const bench::EnsembleRequest& request, Findings& findings) {
   const Stopwatch watch;
   Ensemble ensemble(bench, request);
   const double seconds = watch.seconds();
   double steps = 0;
-  for (const Member& member : ensemble.members)
+  for (const bench::Member& member : ensemble.members)
     steps += member.steps / static_cast<double>(ensemble.members.size());
   findings.cost.rows.push_back({name, static_cast<double>(request.cells), request.epsilon,
                                 10.0 / 3 / request.cells / request.epsilon,
@@ -124,4 +127,4 @@ std::string at_time(double t) {
   return formatted("t = %.3g", t);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::studies

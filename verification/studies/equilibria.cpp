@@ -15,33 +15,33 @@
 #include "verification/statistics/sample.hpp"
 #include "verification/studies/studies.hpp"
 
-namespace traceraft {
+namespace traceraft::studies {
 namespace {
 
 constexpr const char* kMobility = "constant:value=0.25";
 
 struct Equilibrium {
-  SpacePtr space;
-  ProblemPtr problem;
+  bench::SpacePtr space;
+  bench::ProblemPtr problem;
   Vec y;
-  RaftReport rafts;
+  observables::RaftReport rafts;
 };
 
 // An axis that lies anyhow in the mesh.
 const Point kAxis = Point(1, 2, 3).normalized();
 
 // A cap of the given half angle, left to itself.
-Equilibrium relaxed_cap(const Bench& bench, const SpacePtr& space, double epsilon, double angle,
-                        double t_end, const Point& axis = kAxis) {
+Equilibrium relaxed_cap(const bench::Bench& bench, const bench::SpacePtr& space, double epsilon,
+                        double angle, double t_end, const Point& axis = kAxis) {
   Equilibrium result;
   result.space = space;
-  result.problem = bench.problem(result.space, bench_model(kMobility, epsilon));
-  InitialRequest request;
+  result.problem = bench.problem(result.space, bench::bench_model(kMobility, epsilon));
+  problem::InitialRequest request;
   request.caps = {{axis, angle}};
-  const IntegratorPtr integrator = bench.default_integrator(*result.problem);
-  advance_to(*integrator, initial_state(*result.problem, "caps", request), t_end);
+  const time::IntegratorPtr integrator = bench.default_integrator(*result.problem);
+  bench::advance_to(*integrator, bench::initial_state(*result.problem, "caps", request), t_end);
   result.y = integrator->state();
-  result.rafts = RaftFinder(result.space).find(result.problem->c_of(result.y), 0.5);
+  result.rafts = observables::RaftFinder(result.space).find(result.problem->c_of(result.y), 0.5);
   return result;
 }
 
@@ -53,28 +53,31 @@ double width(const Equilibrium& state) {
 
 // Largest distance, over the points of Γ_h, of c from the profile around the great circle at
 // `axis`.
-double profile_error(const Equilibrium& state, const SphereBoundary& boundary, const Point& axis) {
-  const CutSurface& surface = state.space->surface;
+double profile_error(const Equilibrium& state, const analytic::SphereBoundary& boundary,
+                     const Point& axis) {
+  const mesh::CutSurface& surface = state.space->surface;
   const auto c = state.problem->c_of(state.y);
   double worst = 0;
   for (std::size_t i = 0; i < surface.points.size(); ++i) {
     const double angle =
         std::asin(std::clamp(axis.dot(surface.position[i].normalized()), -1.0, 1.0));
-    worst = larger(worst, std::fabs(surface.points[i].trace(c) - boundary.profile(angle)));
+    worst =
+        statistics::larger(worst, std::fabs(surface.points[i].trace(c) - boundary.profile(angle)));
   }
   return worst;
 }
 
-void measure_boundary(const Bench& bench, StudyReport& report) {
-  Table table{"boundary",
-              {"cells", "epsilon", "h/epsilon", "energy", "width", "level curve", "profile"},
-              {}};
+void measure_boundary(const bench::Bench& bench, StudyReport& report) {
+  bench::Table table{"boundary",
+                     {"cells", "epsilon", "h/epsilon", "energy", "width", "level curve", "profile"},
+                     {}};
   const int finest = bench.quick() ? 128 : 256;
   const double epsilon = 0.05;
-  const SphereBoundary boundary(DoubleWell{}, epsilon);
+  const analytic::SphereBoundary boundary(physics::DoubleWell{}, epsilon);
   const double length = 2 * kPi;
-  const double flat = boundary.energy() / length / (epsilon * DoubleWell{}.interface_energy());
-  Points energy, profile;
+  const double flat =
+      boundary.energy() / length / (epsilon * physics::DoubleWell{}.interface_energy());
+  statistics::Points energy, profile;
   double last_width = 0, level_curve = 0;
   for (int cells = finest / 4; cells <= finest; cells *= 2) {
     const Equilibrium state =
@@ -109,24 +112,25 @@ void measure_boundary(const Bench& bench, StudyReport& report) {
 }
 
 // On a mesh as coarse as the paper's the energy depends on how a boundary lies in the mesh.
-void measure_directions(const Bench& bench, StudyReport& report) {
+void measure_directions(const bench::Bench& bench, StudyReport& report) {
   constexpr int kCells = 48;
   constexpr double kRatio = 2.6;  // h/ε
-  const SpacePtr space = bench.space("sphere", kCells);
+  const bench::SpacePtr space = bench.space("sphere", kCells);
   const double epsilon = space->h() / kRatio;
-  const double exact = SphereBoundary(DoubleWell{}, epsilon).energy();
-  Table table{"directions", {"axis", "energy"}, {}};
+  const double exact = analytic::SphereBoundary(physics::DoubleWell{}, epsilon).energy();
+  bench::Table table{"directions", {"axis", "energy"}, {}};
   std::vector<double> energies;
   for (std::uint64_t k = 0; k < 30; ++k) {
-    const Point axis = uniform_direction(uniform_random(fixed_seed::test_vectors, 1, k),
-                                         uniform_random(fixed_seed::test_vectors, 2, k));
+    const Point axis =
+        uniform_direction(uniform_random(statistics::fixed_seed::test_vectors, 1, k),
+                          uniform_random(statistics::fixed_seed::test_vectors, 2, k));
     const Equilibrium state = relaxed_cap(bench, space, epsilon, kPi / 2, 100, axis);
     energies.push_back(state.problem->energy(state.y) / exact);
     table.rows.push_back(
         {formatted("(%.2f, %.2f, %.2f)", axis[0], axis[1], axis[2]), energies.back()});
   }
   report.tables.push_back(table);
-  const Sample found = sample_of(energies);
+  const statistics::Sample found = statistics::sample_of(energies);
   report.claims.push_back(claim_near(
       "energy of a boundary / energy of the equilibrium at h/epsilon = 2.6, mean over directions",
       found.mean, 1, 0.005));
@@ -155,7 +159,8 @@ struct CapErrors {
   double angle, perimeter, shift;  // relative
 };
 
-CapErrors measure_cap(const Bench& bench, int cells, double epsilon, double start, Table& table) {
+CapErrors measure_cap(const bench::Bench& bench, int cells, double epsilon, double start,
+                      bench::Table& table) {
   const Equilibrium state = relaxed_cap(bench, bench.space("sphere", cells), epsilon, start, 30);
   if (state.rafts.rafts.size() != 1) throw std::runtime_error("a cap did not remain one raft");
   const double mass = state.problem->mass(state.y);
@@ -171,11 +176,11 @@ CapErrors measure_cap(const Bench& bench, int cells, double epsilon, double star
 
 // The same number of cells across a boundary at either width: what is left is theory's own error,
 // ε² in the angle and ε in the shift.
-void measure_caps(const Bench& bench, StudyReport& report) {
-  Table table{"caps",
-              {"raft fraction", "cells", "epsilon", "angle", "theory", "perimeter/(2 pi sin)",
-               "shift of c", "theory of shift"},
-              {}};
+void measure_caps(const bench::Bench& bench, StudyReport& report) {
+  bench::Table table{"caps",
+                     {"raft fraction", "cells", "epsilon", "angle", "theory",
+                      "perimeter/(2 pi sin)", "shift of c", "theory of shift"},
+                     {}};
   const int cells = bench.quick() ? 128 : 256;
   const double epsilon = bench.quick() ? 0.06 : 0.03;
   for (const double start : {0.95, 1.2}) {
@@ -202,30 +207,30 @@ struct Dissolution {
 };
 
 // Within the last step, by its interpolation.
-double moment_of_merging(const Integrator& integrator, const CahnHilliard& problem,
-                         const RaftFinder& finder) {
+double moment_of_merging(const time::Integrator& integrator, const problem::CahnHilliard& problem,
+                         const observables::RaftFinder& finder) {
   double two = integrator.time() - integrator.step(), one = integrator.time();
   Vec y(problem.size());
   for (int i = 0; i < 30; ++i) {
     const double t = 0.5 * (two + one);
-    require(integrator.interpolate(t, y));
+    bench::require(integrator.interpolate(t, y));
     (finder.find(problem.c_of(y), 0.5).rafts.size() == 2 ? two : one) = t;
   }
   return one;
 }
 
-Dissolution dissolve(const Bench& bench, int cells, double tolerance) {
+Dissolution dissolve(const bench::Bench& bench, int cells, double tolerance) {
   constexpr double kEnd = 20;
-  const SpacePtr space = bench.space("sphere", cells);
-  const ProblemPtr problem = bench.problem(space, bench_model(kMobility, 0.1));
-  InitialRequest request;
+  const bench::SpacePtr space = bench.space("sphere", cells);
+  const bench::ProblemPtr problem = bench.problem(space, bench::bench_model(kMobility, 0.1));
+  problem::InitialRequest request;
   request.caps = {{Point(0.3, 0.2, 1), 0.9}, {Point(-0.1, 0.2, -1), 0.45}};
-  const IntegratorPtr integrator = bench.default_integrator(*problem, tolerance);
-  const RaftFinder finder(space);
+  const time::IntegratorPtr integrator = bench.default_integrator(*problem, tolerance);
+  const observables::RaftFinder finder(space);
   Dissolution found;
   double before = 0;
-  advance_to(*integrator, initial_state(*problem, "caps", request), kEnd, [&] {
-    const RaftReport rafts = finder.find(problem->c_of(integrator->state()), 0.5);
+  bench::advance_to(*integrator, bench::initial_state(*problem, "caps", request), kEnd, [&] {
+    const observables::RaftReport rafts = finder.find(problem->c_of(integrator->state()), 0.5);
     if (found.time > 0) return;
     if (rafts.rafts.size() != 2) {
       found.time = moment_of_merging(*integrator, *problem, finder);
@@ -239,10 +244,10 @@ Dissolution dissolve(const Bench& bench, int cells, double tolerance) {
   return found;
 }
 
-void measure_dissolution(const Bench& bench, StudyReport& report) {
-  Table table{"dissolution", {"cells", "tolerance", "time", "smaller one shrinks"}, {}};
+void measure_dissolution(const bench::Bench& bench, StudyReport& report) {
+  bench::Table table{"dissolution", {"cells", "tolerance", "time", "smaller one shrinks"}, {}};
   const int finest = bench.quick() ? 64 : 256;
-  Points levels;
+  statistics::Points levels;
   bool shrinks = true;
   const auto measured = [&](int cells, double tolerance) {
     const Dissolution found = dissolve(bench, cells, tolerance);
@@ -267,7 +272,7 @@ void measure_dissolution(const Bench& bench, StudyReport& report) {
                     std::fabs(loose / levels[1].second - 1), 0.01));
 }
 
-StudyReport run(const Bench& bench) {
+StudyReport run(const bench::Bench& bench) {
   StudyReport report;
   report.notes = {
       "Caps relax with constant mobility, to t = 30 for caps and t = 100 for a boundary at the "
@@ -290,4 +295,4 @@ StudyEntry equilibria_study() {
   return {"equilibria", "a boundary, caps and two rafts against the theory of equilibria", run};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::studies

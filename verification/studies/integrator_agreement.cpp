@@ -10,7 +10,7 @@
 #include "verification/statistics/sample.hpp"
 #include "verification/studies/studies.hpp"
 
-namespace traceraft {
+namespace traceraft::studies {
 namespace {
 
 constexpr int kCells = 16;
@@ -21,28 +21,28 @@ constexpr double kAccurate = 1e-10, kSame = 1e-7;
 
 class Agreement {
  public:
-  explicit Agreement(const Bench& bench)
+  explicit Agreement(const bench::Bench& bench)
       : bench_(bench),
         space_(bench.space("sphere", kCells)),
-        problem_(bench.problem(space_, bench_model("degenerate", kEpsilon))) {
-    InitialRequest request;
+        problem_(bench.problem(space_, bench::bench_model("degenerate", kEpsilon))) {
+    problem::InitialRequest request;
     request.raft_fraction = kFraction;
-    start_ = initial_state(*problem_, "noise", request);
+    start_ = bench::initial_state(*problem_, "noise", request);
   }
   Vec solve(const std::string& integrator, const std::string& solver, double tolerance,
             double linear_tolerance) const {
-    IntegratorSettings settings;
+    time::IntegratorSettings settings;
     settings.tolerance = tolerance;
     settings.linear_tolerance = linear_tolerance;
-    const IntegratorPtr method =
+    const time::IntegratorPtr method =
         bench_.make_integrator(*problem_, *space_, integrator, solver, settings);
-    advance_to(*method, start_, kEnd);
+    bench::advance_to(*method, start_, kEnd);
     return method->state();
   }
   // The whole program, on ranks.
   Vec solve_on(int ranks, const std::string& integrator, const std::string& solver,
                double end) const {
-    const ProgramRun run = bench_.request.run_program(
+    const bench::ProgramRun run = bench_.request.run_program(
         {"--integrator", integrator, "--linear-solver", solver, "--cells", std::to_string(kCells),
          "--epsilon", format_number(kEpsilon), "--raft-fraction", format_number(kFraction),
          "--tolerance", format_number(solver_tolerance()), "--linear-tolerance",
@@ -60,17 +60,18 @@ class Agreement {
   }
 
  private:
-  const Bench& bench_;
-  SpacePtr space_;
-  ProblemPtr problem_;
-  StartState start_;
+  const bench::Bench& bench_;
+  bench::SpacePtr space_;
+  bench::ProblemPtr problem_;
+  bench::StartState start_;
 };
 
-void compare_integrators(const Bench& bench, const Agreement& runs, StudyReport& report) {
+void compare_integrators(const bench::Bench& bench, const Agreement& runs, StudyReport& report) {
   const double tightest = bench.quick() ? 1e-5 : 1e-6;
   const std::string apart_from = "distance from ida at " + format_number(tightest);
-  Table table{"integrators", {"integrator", "tolerance", apart_from}, {}};
-  Chart chart{"Approach: " + apart_from, "tolerance", "relative, of c in L2", true, true, {}};
+  bench::Table table{"integrators", {"integrator", "tolerance", apart_from}, {}};
+  bench::Chart chart{
+      "Approach: " + apart_from, "tolerance", "relative, of c in L2", true, true, {}};
   const auto solve = [&](const std::string& name, double tolerance) {
     return runs.solve(name, bench.linear_solver(), tolerance, std::min(1e-4, tolerance));
   };
@@ -78,12 +79,12 @@ void compare_integrators(const Bench& bench, const Agreement& runs, StudyReport&
   double apart = 0;
   bool compared = false;
   for (const std::string& name : bench.integrators()) {
-    Points levels;
+    statistics::Points levels;
     for (double tolerance = 1e-2; tolerance > (bench.quick() ? 5e-4 : 5e-6); tolerance /= 10)
       levels.emplace_back(tolerance, runs.distance(solve(name, tolerance), reference));
     if (name != "ida") {
       levels.emplace_back(tightest, runs.distance(solve(name, tightest), reference));
-      apart = larger(apart, levels.back().second);
+      apart = statistics::larger(apart, levels.back().second);
       compared = true;
     }
     for (const auto& [tolerance, distance] : levels)
@@ -103,7 +104,7 @@ void compare_integrators(const Bench& bench, const Agreement& runs, StudyReport&
 
 // What computations of one thing differ by; nothing is claimed of none.
 void claim_sameness(const std::string& what, double apart, const std::string& if_none,
-                    const Table& table, StudyReport& report) {
+                    const bench::Table& table, StudyReport& report) {
   if (table.rows.empty()) {
     report.notes.push_back(if_none);
     return;
@@ -113,8 +114,8 @@ void claim_sameness(const std::string& what, double apart, const std::string& if
 }
 
 // With one integrator and one tolerance solvers differ by what their solves leave over.
-void compare_solvers(const Bench& bench, const Agreement& runs, StudyReport& report) {
-  Table table{"solvers", {"integrator", "solver", "distance from direct"}, {}};
+void compare_solvers(const bench::Bench& bench, const Agreement& runs, StudyReport& report) {
+  bench::Table table{"solvers", {"integrator", "solver", "distance from direct"}, {}};
   const double tolerance = runs.solver_tolerance();
   double apart = 0;
   for (const std::string& name : bench.integrators()) {
@@ -125,7 +126,7 @@ void compare_solvers(const Bench& bench, const Agreement& runs, StudyReport& rep
       const double distance =
           runs.distance(runs.solve(name, solver, tolerance, kAccurate), *reference);
       table.rows.push_back({name, solver, distance});
-      apart = larger(apart, distance);
+      apart = statistics::larger(apart, distance);
     }
   }
   claim_sameness("largest distance between two solvers at tolerance " + format_number(tolerance),
@@ -134,22 +135,22 @@ void compare_solvers(const Bench& bench, const Agreement& runs, StudyReport& rep
                  table, report);
 }
 
-void compare_ranks(const Bench& bench, const Agreement& runs, StudyReport& report) {
+void compare_ranks(const bench::Bench& bench, const Agreement& runs, StudyReport& report) {
   const double end = bench.quick() ? 0.1 : kEnd;  // many steps even so
-  Table table{"ranks", {"integrator", "solver", "distance of 2 ranks from 1"}, {}};
+  bench::Table table{"ranks", {"integrator", "solver", "distance of 2 ranks from 1"}, {}};
   double apart = 0;
   for (const std::string& solver : bench.linear_solvers_on_ranks())
     for (const std::string& name : bench.integrators()) {
       const double distance =
           runs.distance(runs.solve_on(2, name, solver, end), runs.solve_on(1, name, solver, end));
       table.rows.push_back({name, solver, distance});
-      apart = larger(apart, distance);
+      apart = statistics::larger(apart, distance);
     }
   claim_sameness("largest distance between 1 and 2 ranks at t = " + format_number(end), apart,
                  "This build has no solver that works on several ranks.", table, report);
 }
 
-StudyReport run(const Bench& bench) {
+StudyReport run(const bench::Bench& bench) {
   const Agreement runs(bench);
   StudyReport report;
   report.notes = {
@@ -170,4 +171,4 @@ StudyEntry integrator_agreement_study() {
           true};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::studies

@@ -11,7 +11,7 @@
 #include "verification/statistics/power_law.hpp"
 #include "verification/studies/studies.hpp"
 
-namespace traceraft {
+namespace traceraft::studies {
 namespace {
 
 constexpr double kEpsilon = 0.1;
@@ -20,7 +20,7 @@ constexpr int kHighest = 12;
 constexpr const char* kConstant = "constant:value=0.25";
 
 // P_l of the angle to an axis that lies anyhow in the mesh, constant along normals.
-Vec harmonic(const SurfaceSpace& space, int degree) {
+Vec harmonic(const fem::SurfaceSpace& space, int degree) {
   const Point axis = Point(1, 2, 3).normalized();
   Vec nodal(space.nodes());
   for (int i = 0; i < space.nodes(); ++i)
@@ -33,9 +33,10 @@ Vec harmonic(const SurfaceSpace& space, int degree) {
 // values but rates of up to M ε²/h⁴.
 class RitzProjection {
  public:
-  explicit RitzProjection(const SurfaceSpace& space) : space_(space) {
-    const CsrMatrix stiffness = combine(1, space.stiffness, space.h(), space.normal_stiffness);
-    factors_.compute(as_eigen(space, combine(1, stiffness, 1, space.mass)));
+  explicit RitzProjection(const fem::SurfaceSpace& space) : space_(space) {
+    const fem::CsrMatrix stiffness =
+        fem::combine(1, space.stiffness, space.h(), space.normal_stiffness);
+    factors_.compute(fem::as_eigen(space, fem::combine(1, stiffness, 1, space.mass)));
     if (factors_.info() != Eigen::Success) throw std::runtime_error("no factors of K + M + h S");
   }
   Vec operator()(const Vec& Y, int degree) const {
@@ -46,11 +47,11 @@ class RitzProjection {
   }
 
  private:
-  const SurfaceSpace& space_;
-  Eigen::SimplicialLDLT<EigenMatrix> factors_;
+  const fem::SurfaceSpace& space_;
+  Eigen::SimplicialLDLT<fem::EigenMatrix> factors_;
 };
 
-double exact_rate(const CahnHilliardModel& model, double c0, int degree) {
+double exact_rate(const problem::CahnHilliardModel& model, double c0, int degree) {
   double mobility = 0;
   model.mobility->evaluate(&c0, 1, &mobility, nullptr);
   const double lambda = degree * (degree + 1);
@@ -61,38 +62,38 @@ double exact_rate(const CahnHilliardModel& model, double c0, int degree) {
 struct Mode {
   Vec exact, discrete;  // nodal values of Y, and its projection
 
-  Mode(const SurfaceSpace& space, const RitzProjection& projection, int degree)
+  Mode(const fem::SurfaceSpace& space, const RitzProjection& projection, int degree)
       : exact(harmonic(space, degree)), discrete(projection(exact, degree)) {}
 };
 
 // (ċ, Y)/(c − c0, Y) of the semi-discrete system: no integrator takes part.
-double semidiscrete_rate(const CahnHilliard& problem, double c0, const Mode& mode) {
-  const SurfaceSpace& space = problem.space();
+double semidiscrete_rate(const problem::CahnHilliard& problem, double c0, const Mode& mode) {
+  const fem::SurfaceSpace& space = problem.space();
   const Vec perturbation = kAmplitude * mode.discrete;
-  const StartState state =
-      consistent_state(problem, Vec::Constant(space.nodes(), c0) + perturbation);
+  const bench::StartState state =
+      bench::consistent_state(problem, Vec::Constant(space.nodes(), c0) + perturbation);
   return space.inner(problem.c_of(state.ydot), mode.exact) / space.inner(perturbation, mode.exact);
 }
 
 // ln of the growth over `span` divided by it, from a run of the bench's integrator.
-double integrated_rate(const Bench& bench, const CahnHilliard& problem, double c0, const Mode& mode,
-                       double span, int steps) {
-  const SurfaceSpace& space = problem.space();
+double integrated_rate(const bench::Bench& bench, const problem::CahnHilliard& problem, double c0,
+                       const Mode& mode, double span, int steps) {
+  const fem::SurfaceSpace& space = problem.space();
   const Vec perturbation = kAmplitude * mode.discrete;
   const Vec uniform = Vec::Constant(space.nodes(), c0);
-  IntegratorSettings settings;
+  time::IntegratorSettings settings;
   settings.tolerance = 1e-6;  // of c, of which the perturbation is a millionth: the steps are set
   settings.initial_step = settings.max_step = span / steps;
   settings.linear_tolerance = 1e-12;
-  const IntegratorPtr integrator =
+  const time::IntegratorPtr integrator =
       bench.make_integrator(problem, space, bench.integrator(), bench.linear_solver(), settings);
-  advance_to(*integrator, consistent_state(problem, uniform + perturbation), span);
+  bench::advance_to(*integrator, bench::consistent_state(problem, uniform + perturbation), span);
   const Vec end = problem.c_of(integrator->state()) - uniform;
   return std::log(space.inner(end, mode.exact) / space.inner(perturbation, mode.exact)) / span;
 }
 
 // Differences are relative to the largest rate at this c0: some rates are nearly zero.
-double scale(const CahnHilliardModel& model, double c0) {
+double scale(const problem::CahnHilliardModel& model, double c0) {
   double largest = 0;
   for (int l = 1; l <= kHighest; ++l)
     largest = std::max(largest, std::fabs(exact_rate(model, c0, l)));
@@ -102,14 +103,14 @@ double scale(const CahnHilliardModel& model, double c0) {
 struct Background {
   std::string mobility;
   double c0;
-  Points errors = {}, found = {}, theory = {};  // found and theory on the finest mesh
+  statistics::Points errors = {}, found = {}, theory = {};  // found and theory on the finest mesh
 
   std::string label() const { return mobility + ", c0 = " + formatted("%.2f", c0); }
 };
 
-void measure_mesh(const Bench& bench, int cells, std::vector<Background>& backgrounds,
-                  Table& table) {
-  const SpacePtr space = bench.space("sphere", cells);
+void measure_mesh(const bench::Bench& bench, int cells, std::vector<Background>& backgrounds,
+                  bench::Table& table) {
+  const bench::SpacePtr space = bench.space("sphere", cells);
   const RitzProjection projection(*space);
   std::vector<double> squares(backgrounds.size(), 0);
   for (Background& at : backgrounds) at.found = at.theory = {};
@@ -117,8 +118,8 @@ void measure_mesh(const Bench& bench, int cells, std::vector<Background>& backgr
     const Mode mode(*space, projection, degree);
     for (std::size_t k = 0; k < backgrounds.size(); ++k) {
       Background& at = backgrounds[k];
-      const CahnHilliardModel model = bench_model(at.mobility, kEpsilon);
-      const ProblemPtr problem = bench.problem(space, model);
+      const problem::CahnHilliardModel model = bench::bench_model(at.mobility, kEpsilon);
+      const bench::ProblemPtr problem = bench.problem(space, model);
       const double rate = semidiscrete_rate(*problem, at.c0, mode);
       const double exact = exact_rate(model, at.c0, degree);
       squares[k] += std::pow((rate - exact) / scale(model, at.c0), 2) / kHighest;
@@ -132,13 +133,14 @@ void measure_mesh(const Bench& bench, int cells, std::vector<Background>& backgr
     backgrounds[k].errors.emplace_back(space->h(), std::sqrt(squares[k]));
 }
 
-void measure_rates(const Bench& bench, StudyReport& report) {
+void measure_rates(const bench::Bench& bench, StudyReport& report) {
   std::vector<Background> backgrounds;
   for (const char* mobility : {kConstant, "degenerate"})
     for (const double c0 : {0.5, 0.35, 0.15}) backgrounds.push_back({mobility, c0});
-  Table table{"rates", {"mobility", "c0", "l", "cells", "rate", "theory"}, {}};
-  Chart chart{"Growth rates of spherical harmonics", "degree l", "rate (D/R^2)", false, false, {}};
-  Chart errors{"Error of the rates", "h", "RMS over l, relative", true, true, {}};
+  bench::Table table{"rates", {"mobility", "c0", "l", "cells", "rate", "theory"}, {}};
+  bench::Chart chart{
+      "Growth rates of spherical harmonics", "degree l", "rate (D/R^2)", false, false, {}};
+  bench::Chart errors{"Error of the rates", "h", "RMS over l, relative", true, true, {}};
   const int finest = bench.quick() ? 128 : 256;
   for (int cells = finest / 4; cells <= finest; cells *= 2) {
     measure_mesh(bench, cells, backgrounds, table);
@@ -151,18 +153,18 @@ void measure_rates(const Bench& bench, StudyReport& report) {
                                           at.errors.back().second, bench.quick() ? 0.02 : 0.005));
     errors.series.push_back({at.label(), at.errors});
     if (at.mobility != kConstant) continue;  // the same but for a factor
-    chart.series.push_back({at.label(), at.found, Mark::points});
-    chart.series.push_back({"theory", at.theory, Mark::line});
+    chart.series.push_back({at.label(), at.found, bench::Mark::points});
+    chart.series.push_back({"theory", at.theory, bench::Mark::line});
   }
   report.tables.push_back(table);
   report.charts = {chart, errors};
 }
 
-void measure_run(const Bench& bench, StudyReport& report) {
-  const SpacePtr space = bench.space("sphere", 32);
+void measure_run(const bench::Bench& bench, StudyReport& report) {
+  const bench::SpacePtr space = bench.space("sphere", 32);
   const Mode mode(*space, RitzProjection(*space), 3);
   for (const double c0 : {0.5, 0.15}) {
-    const ProblemPtr problem = bench.problem(space, bench_model(kConstant, kEpsilon));
+    const bench::ProblemPtr problem = bench.problem(space, bench::bench_model(kConstant, kEpsilon));
     const double rate = semidiscrete_rate(*problem, c0, mode);
     const double integrated = integrated_rate(bench, *problem, c0, mode, 1 / std::fabs(rate), 200);
     report.claims.push_back(
@@ -172,7 +174,7 @@ void measure_run(const Bench& bench, StudyReport& report) {
   }
 }
 
-StudyReport run(const Bench& bench) {
+StudyReport run(const bench::Bench& bench) {
   StudyReport report;
   report.notes = {
       "A sphere with the uniform concentration c0 is perturbed by spherical harmonics of degree l, "
@@ -191,4 +193,4 @@ StudyEntry linear_theory_study() {
   return {"linear", "growth and decay of spherical harmonics against linear theory", run};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::studies

@@ -9,7 +9,7 @@
 #include "verification/statistics/sample.hpp"
 #include "verification/studies/studies.hpp"
 
-namespace traceraft {
+namespace traceraft::studies {
 namespace {
 
 constexpr double kBound = 1e-12;  // relative
@@ -17,7 +17,7 @@ constexpr double kEnough = 10;    // steps of a run
 constexpr int kCells = 24;
 constexpr double kEpsilon = 0.2, kFraction = 0.3, kTolerance = 1e-2;
 
-double end_of_run(const Bench& bench) {
+double end_of_run(const bench::Bench& bench) {
   return bench.quick() ? 2 : 20;
 }
 
@@ -29,7 +29,7 @@ struct Combination {
 
 // Of every factor all levels, the other factors at their first one; without --quick the full
 // product of integrators, solvers, surfaces and mobilities.
-std::vector<Combination> combinations(const Bench& bench) {
+std::vector<Combination> combinations(const bench::Bench& bench) {
   const std::vector<std::string> on = {"sphere", "ellipsoid", "torus",
                                        "biconcave:middle=0.4,rim=0.7", "dziuk"};
   const std::vector<std::string> laws = {"degenerate", "constant:value=0.25"};
@@ -56,8 +56,8 @@ struct Drift {
   double steps = 0;
 };
 
-Drift drift_on_ranks(const Bench& bench, const Combination& what) {
-  const ProgramRun run =
+Drift drift_on_ranks(const bench::Bench& bench, const Combination& what) {
+  const bench::ProgramRun run =
       bench.request.run_program({"--surface",       what.surface,
                                  "--mobility",      what.mobility,
                                  "--integrator",    what.integrator,
@@ -72,32 +72,35 @@ Drift drift_on_ranks(const Bench& bench, const Combination& what) {
   return {run.mass_drift, run.steps};
 }
 
-Drift drift_of(const Bench& bench, const Combination& what) {
+Drift drift_of(const bench::Bench& bench, const Combination& what) {
   if (what.ranks > 1) return drift_on_ranks(bench, what);
-  const SpacePtr space = bench.space(*make_surface(what.surface), kCells, 1);
-  const ProblemPtr problem = bench.problem(space, bench_model(what.mobility, kEpsilon));
-  InitialRequest request;
+  const bench::SpacePtr space = bench.space(*geometry::make_surface(what.surface), kCells, 1);
+  const bench::ProblemPtr problem =
+      bench.problem(space, bench::bench_model(what.mobility, kEpsilon));
+  problem::InitialRequest request;
   request.raft_fraction = kFraction;
   request.seed = what.seed;
-  const StartState start = initial_state(*problem, "noise", request);
-  IntegratorSettings settings;
+  const bench::StartState start = bench::initial_state(*problem, "noise", request);
+  time::IntegratorSettings settings;
   settings.tolerance = kTolerance;
-  const IntegratorPtr integrator =
+  const time::IntegratorPtr integrator =
       bench.make_integrator(*problem, *space, what.integrator, what.solver, settings);
   const double mass = problem->mass(start.y);
   Drift drift;
-  advance_to(*integrator, start, end_of_run(bench), [&] {
-    drift.largest = larger(drift.largest, std::fabs(problem->mass(integrator->state()) / mass - 1));
+  bench::advance_to(*integrator, start, end_of_run(bench), [&] {
+    drift.largest =
+        statistics::larger(drift.largest, std::fabs(problem->mass(integrator->state()) / mass - 1));
     ++drift.steps;
   });
   return drift;
 }
 
-StudyReport run(const Bench& bench) {
+StudyReport run(const bench::Bench& bench) {
   const std::vector<Combination> list = combinations(bench);
-  Table table{"drift",
-              {"surface", "mobility", "integrator", "solver", "ranks", "seed", "steps", "drift"},
-              {}};
+  bench::Table table{
+      "drift",
+      {"surface", "mobility", "integrator", "solver", "ranks", "seed", "steps", "drift"},
+      {}};
   double largest = 0, largest_on_ranks = 0, steps = 0, fewest = HUGE_VAL;
   for (std::size_t k = 0; k < list.size(); ++k) {
     const Combination& what = list[k];
@@ -106,7 +109,7 @@ StudyReport run(const Bench& bench) {
                           static_cast<double>(what.ranks), static_cast<double>(what.seed),
                           drift.steps, drift.largest});
     double& so_far = what.ranks > 1 ? largest_on_ranks : largest;
-    so_far = larger(so_far, drift.largest);
+    so_far = statistics::larger(so_far, drift.largest);
     steps += drift.steps;
     fewest = std::min(fewest, drift.steps);
     bench.progress(static_cast<double>(k + 1) / static_cast<double>(list.size()));
@@ -133,4 +136,4 @@ StudyEntry mass_balance_study() {
           run, false, true};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::studies

@@ -3,7 +3,7 @@
 #include "verification/statistics/power_law.hpp"
 #include "verification/studies/studies.hpp"
 
-namespace traceraft {
+namespace traceraft::studies {
 namespace {
 
 constexpr double kEnd = 0.5;
@@ -18,40 +18,42 @@ constexpr Quantity kQuantities[] = {{"stationary problem, L2", 2}, {"stationary 
                                     {"full system, c in L2", 2},   {"full system, c in H1", 1},
                                     {"full system, mu in L2", 2},  {"full system, mu in H1", 1}};
 
-std::array<double, 6> errors(const Bench& bench, const std::string& surface, int cells) {
-  const SpacePtr space = bench.space(surface, cells);
-  const ErrorNorms stationary = stationary_error(*space, surface_function(surface));
-  const ManufacturedCahnHilliard manufactured(bench, space, surface, 0.3);
-  const CahnHilliard& problem = *manufactured.problem;
-  const IntegratorPtr integrator = bench.default_integrator(problem, kTolerance);
-  advance_to(*integrator, manufactured.initial_state(), kEnd);
+std::array<double, 6> errors(const bench::Bench& bench, const std::string& surface, int cells) {
+  const bench::SpacePtr space = bench.space(surface, cells);
+  const bench::ErrorNorms stationary =
+      analytic::stationary_error(*space, analytic::surface_function(surface));
+  const analytic::ManufacturedCahnHilliard manufactured(bench, space, surface, 0.3);
+  const problem::CahnHilliard& problem = *manufactured.problem;
+  const time::IntegratorPtr integrator = bench.default_integrator(problem, kTolerance);
+  bench::advance_to(*integrator, manufactured.initial_state(), kEnd);
   const Vec& y = integrator->state();
-  const ErrorNorms c = error_norms(*space, problem.c_of(y), manufactured.c(kEnd));
-  const ErrorNorms mu = error_norms(*space, problem.mu_of(y), manufactured.mu(kEnd));
+  const bench::ErrorNorms c = bench::error_norms(*space, problem.c_of(y), manufactured.c(kEnd));
+  const bench::ErrorNorms mu = bench::error_norms(*space, problem.mu_of(y), manufactured.mu(kEnd));
   return {stationary.l2, stationary.h1, c.l2, c.h1, mu.l2, mu.h1};
 }
 
-StudyReport run(const Bench& bench) {
+StudyReport run(const bench::Bench& bench) {
   StudyReport report;
   report.notes = {
       "The stationary problem is -Laplace(u) + u = f with the solution u = xyz. The full system "
       "has the solution c = 1/2 + cos(t) xyz/4, to t = 0.5, and degenerate mobility. The order is "
       "that between the two finest meshes. Its uncertainty is the change from the pair of meshes "
       "before."};
-  Table table{"errors", {"surface", "cells", "h"}, {}};
+  bench::Table table{"errors", {"surface", "cells", "h"}, {}};
   for (const char* column : {"L2", "H1", "c_L2", "c_H1", "mu_L2", "mu_H1"})
     table.columns.push_back(column);
-  Chart chart{"Errors of c and mu against the mesh size", "h", "error in L2", true, true, {}};
+  bench::Chart chart{
+      "Errors of c and mu against the mesh size", "h", "error in L2", true, true, {}};
   const std::vector<std::pair<std::string, int>> surfaces = {
       {"sphere", 8}, {"ellipsoid", 16}, {"torus", 16}};
   const int finest = bench.quick() ? 32 : 128;
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     const auto& [surface, coarsest] = surfaces[s];
-    std::array<Points, 6> levels;
+    std::array<statistics::Points, 6> levels;
     for (int cells = coarsest; cells <= finest; cells *= 2) {
       const double h = 10.0 / 3 / cells;
       const std::array<double, 6> e = errors(bench, surface, cells);
-      std::vector<Cell> row = {surface, static_cast<double>(cells), h};
+      std::vector<bench::Cell> row = {surface, static_cast<double>(cells), h};
       for (std::size_t q = 0; q < e.size(); ++q) {
         row.push_back(e[q]);
         levels[q].emplace_back(h, e[q]);
@@ -78,4 +80,4 @@ StudyEntry mesh_convergence_study() {
           run};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::studies

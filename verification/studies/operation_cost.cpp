@@ -8,7 +8,7 @@
 #include "verification/statistics/sample.hpp"
 #include "verification/studies/studies.hpp"
 
-namespace traceraft {
+namespace traceraft::studies {
 namespace {
 
 // Median seconds of an action over some repetitions.
@@ -20,29 +20,31 @@ double median_seconds(int repetitions, const Action& action) {
     action();
     times.push_back(watch.seconds());
   }
-  return quantile(times, 0.5);
+  return statistics::quantile(times, 0.5);
 }
 
-StudyReport run(const Bench& bench) {
-  Table table{"cost",
-              {"cells", "tets", "nodes", "setup_ms", "peak_MB", "product_ms", "assemble_ms",
-               "products", "residual_ms"},
-              {}};
+StudyReport run(const bench::Bench& bench) {
+  bench::Table table{"cost",
+                     {"cells", "tets", "nodes", "setup_ms", "peak_MB", "product_ms", "assemble_ms",
+                      "products", "residual_ms"},
+                     {}};
   std::vector<std::array<double, 3>> levels;  // nodes, set-up, assembly in products
   for (int cells = 64; cells <= (bench.quick() ? 128 : 512); cells *= 2) {
     const Stopwatch watch;
-    const SpacePtr space = bench.space(*make_surface("sphere"), cells, 1);
-    const double setup = watch.seconds(), peak = peak_memory_mb();
-    const ProblemPtr problem = bench.problem(space, bench_model("degenerate", 2 * space->h()));
+    const bench::SpacePtr space = bench.space(*geometry::make_surface("sphere"), cells, 1);
+    const double setup = watch.seconds(), peak = posix::peak_memory_mb();
+    const bench::ProblemPtr problem =
+        bench.problem(space, bench::bench_model("degenerate", 2 * space->h()));
     const int n = problem->block_size();
     Vec y = Vec::Zero(problem->size()), ydot = y, r(problem->size()), product(n);
-    y.head(n) = make_initial_field("noise", *space, {});
-    CsrMatrix matrix(space->pattern);
+    y.head(n) = problem::make_initial_field("noise", *space, {});
+    fem::CsrMatrix matrix(space->pattern);
     const double one_product =
         median_seconds(21, [&] { space->mass.multiply(y.head(n), product, *space->team); });
     const double assembly = median_seconds(21, [&] {
-      const Mobility& mobility = *problem->model().mobility;
-      assemble_mobility_stiffness(*space, mobility_integrals(*space, mobility, y.head(n)), matrix);
+      const physics::Mobility& mobility = *problem->model().mobility;
+      fem::assemble_mobility_stiffness(*space, fem::mobility_integrals(*space, mobility, y.head(n)),
+                                       matrix);
     });
     const double residual = median_seconds(11, [&] { (void)problem->residual(0, y, ydot, r); });
     table.rows.push_back({static_cast<double>(cells), static_cast<double>(space->elements.size()),
@@ -72,4 +74,4 @@ StudyEntry operation_cost_study() {
   return {"cost", "time and memory of set-up, products and assembly over the mesh size", run, true};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::studies

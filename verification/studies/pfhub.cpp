@@ -15,7 +15,7 @@
 #include "verification/statistics/sample.hpp"
 #include "verification/studies/studies.hpp"
 
-namespace traceraft {
+namespace traceraft::studies {
 namespace {
 
 constexpr double kRadius = 100, kMobility = 5, kKappa = 2;
@@ -54,10 +54,10 @@ double initial_concentration(const Point& x) {
                        std::cos(2.5 * theta - 1.5 * phi) * std::cos(7 * theta - 2 * phi));
 }
 
-Vec projected(const SurfaceSpace& space) {
-  InitialRequest request;
+Vec projected(const fem::SurfaceSpace& space) {
+  problem::InitialRequest request;
   request.formula = initial_concentration;
-  return make_initial_field("formula", space, request);
+  return problem::make_initial_field("formula", space, request);
 }
 
 struct AtTime {
@@ -71,26 +71,28 @@ struct Simulation {
   std::vector<AtTime> samples = {};  // at the times of the reference, up to t_end
 };
 
-Simulation simulate(const Bench& bench, int cells, double t_end, double tolerance) {
+Simulation simulate(const bench::Bench& bench, int cells, double t_end, double tolerance) {
   const Stopwatch watch;
-  CahnHilliardModel model = bench_model("constant:value=1", std::sqrt(kKappa) / kRadius);
+  problem::CahnHilliardModel model =
+      bench::bench_model("constant:value=1", std::sqrt(kKappa) / kRadius);
   model.well = {5, 0.3, 0.7};
-  const SpacePtr space = bench.space("sphere", cells);
-  const ProblemPtr problem = bench.problem(space, model);
-  const IntegratorPtr integrator = bench.default_integrator(*problem, tolerance);
+  const bench::SpacePtr space = bench.space("sphere", cells);
+  const bench::ProblemPtr problem = bench.problem(space, model);
+  const time::IntegratorPtr integrator = bench.default_integrator(*problem, tolerance);
   Simulation run{cells, problem->size(), space->team->size(), tolerance};
   Vec y(problem->size());
-  advance_to(*integrator, consistent_state(*problem, projected(*space)), t_end / kTimeUnit, [&] {
-    ++run.steps;
-    while (run.samples.size() < std::size(kSpectral)) {
-      const double t = kSpectral[run.samples.size()].t;
-      if (t > t_end || t / kTimeUnit > integrator->time()) break;
-      require(integrator->interpolate(t / kTimeUnit, y));
-      const double unit = kRadius * kRadius;
-      run.samples.push_back({t, problem->energy(y) * unit});
-    }
-    bench.progress(std::log10(1 + integrator->time() * kTimeUnit) / std::log10(1 + t_end));
-  });
+  bench::advance_to(
+      *integrator, bench::consistent_state(*problem, projected(*space)), t_end / kTimeUnit, [&] {
+        ++run.steps;
+        while (run.samples.size() < std::size(kSpectral)) {
+          const double t = kSpectral[run.samples.size()].t;
+          if (t > t_end || t / kTimeUnit > integrator->time()) break;
+          bench::require(integrator->interpolate(t / kTimeUnit, y));
+          const double unit = kRadius * kRadius;
+          run.samples.push_back({t, problem->energy(y) * unit});
+        }
+        bench.progress(std::log10(1 + integrator->time() * kTimeUnit) / std::log10(1 + t_end));
+      });
   run.wall_s = watch.seconds();
   return run;
 }
@@ -104,14 +106,14 @@ double largest_difference(const Simulation& run, double from, double to) {
   double largest = 0;
   for (std::size_t k = 0; k < run.samples.size(); ++k)
     if (run.samples[k].t >= from && run.samples[k].t <= to)
-      largest = larger(largest, std::fabs(relative(run.samples[k].energy, k)));
+      largest = statistics::larger(largest, std::fabs(relative(run.samples[k].energy, k)));
   if (!(largest > 0)) throw std::runtime_error("no energy was sampled in this interval");
   return largest;
 }
 
 void add_energies(const Simulation& run, StudyReport& report) {
-  Table table{"energy", {"t", "energy", "spectral", "difference, %"}, {}};
-  Points measured, spectral;
+  bench::Table table{"energy", {"t", "energy", "spectral", "difference, %"}, {}};
+  statistics::Points measured, spectral;
   for (std::size_t k = 0; k < run.samples.size(); ++k) {
     const AtTime& at = run.samples[k];
     table.rows.push_back({at.t, at.energy, kSpectral[k].energy, 100 * relative(at.energy, k)});
@@ -125,7 +127,7 @@ void add_energies(const Simulation& run, StudyReport& report) {
                            true,
                            true,
                            {{"traceraft, " + std::to_string(run.cells) + " cells", measured},
-                            {"spherical harmonics", spectral, Mark::line}}});
+                            {"spherical harmonics", spectral, bench::Mark::line}}});
   report.notes.push_back(
       formatted("The run has %d cells (h/epsilon = %.2f), %d unknowns, tolerance %.3g and %.0f "
                 "steps. Its initial state uses the atan2 branch of the angle; some of the "
@@ -135,11 +137,11 @@ void add_energies(const Simulation& run, StudyReport& report) {
 }
 
 void add_cost(const Simulation& run, StudyReport& report) {
-  Table cost{"cost", {"run", "cores", "wall_s", "core_s", "memory_GB"}, {}};
+  bench::Table cost{"cost", {"run", "cores", "wall_s", "core_s", "memory_GB"}, {}};
   const auto add = [&](const std::string& name, double cores, double wall_s, double memory_gb) {
     cost.rows.push_back({name, cores, wall_s, cores * wall_s, memory_gb});
   };
-  add("traceraft", run.threads, run.wall_s, peak_memory_mb() / 1000);
+  add("traceraft", run.threads, run.wall_s, posix::peak_memory_mb() / 1000);
   for (const Upload& upload : kUploads)
     add(upload.name, upload.cores, upload.wall_s, upload.memory_gb);
   report.tables.push_back(cost);
@@ -151,13 +153,13 @@ void add_cost(const Simulation& run, StudyReport& report) {
 // Up to t = 100 all meshes have the same rafts, and errors fall at least with h²: faster while
 // terms of higher order count. Steps at tolerance 1e-3 alone change the energy by 0.3 %, so that
 // these runs take smaller ones.
-void measure_convergence(const Bench& bench, int finest, StudyReport& report) {
+void measure_convergence(const bench::Bench& bench, int finest, StudyReport& report) {
   constexpr double kUntil = 100, kTolerance = 1e-4;
   std::vector<Simulation> runs;
   for (const int cells : {finest / 2, finest * 2 / 3, finest})
     runs.push_back(simulate(bench, cells, kUntil, kTolerance));
-  Table table{"convergence", {"cells", "largest difference to t = 100"}, {}};
-  Points levels;
+  bench::Table table{"convergence", {"cells", "largest difference to t = 100"}, {}};
+  statistics::Points levels;
   for (const Simulation& run : runs) {
     levels.emplace_back(1.0 / run.cells, largest_difference(run, 0, kUntil));
     table.rows.push_back({static_cast<double>(run.cells), levels.back().second});
@@ -168,9 +170,9 @@ void measure_convergence(const Bench& bench, int finest, StudyReport& report) {
   double extrapolated = 0;
   for (std::size_t k = 0; k < coarse.samples.size(); ++k) {
     const double energy = (fine.samples[k].energy - ratio * coarse.samples[k].energy) / (1 - ratio);
-    extrapolated = larger(extrapolated, std::fabs(relative(energy, k)));
+    extrapolated = statistics::larger(extrapolated, std::fabs(relative(energy, k)));
   }
-  const ObservedOrder order = observed_order(levels);
+  const statistics::ObservedOrder order = statistics::observed_order(levels);
   report.claims.push_back(claim_at_least("t = 0.1 to 100, tolerance 1e-4: order of the energy in h",
                                          order.order, 1.6, order.change));
   report.claims.push_back(claim_at_most("t = 0.1 to 100, finest mesh: largest relative difference",
@@ -180,7 +182,7 @@ void measure_convergence(const Bench& bench, int finest, StudyReport& report) {
                     extrapolated, 0.002));
 }
 
-StudyReport measure_quickly(const Bench& bench) {
+StudyReport measure_quickly(const bench::Bench& bench) {
   StudyReport report;
   const Simulation run = simulate(bench, 128, 100, 1e-3);
   add_energies(run, report);
@@ -189,7 +191,7 @@ StudyReport measure_quickly(const Bench& bench) {
   return report;
 }
 
-StudyReport measure(const Bench& bench) {
+StudyReport measure(const bench::Bench& bench) {
   if (bench.quick()) return measure_quickly(bench);
   StudyReport report;
   const Simulation run = simulate(bench, 208, 1e6, 1e-3);
@@ -209,7 +211,7 @@ StudyReport measure(const Bench& bench) {
 }
 
 // What a mesh takes that meets half a percent.
-StudyReport measure_finely(const Bench& bench) {
+StudyReport measure_finely(const bench::Bench& bench) {
   StudyReport report;
   const Simulation run =
       bench.quick() ? simulate(bench, 320, 1e3, 3e-4) : simulate(bench, 320, 1e6, 3e-4);
@@ -239,4 +241,4 @@ StudyEntry fine_pfhub_study() {
           measure_finely, true};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::studies

@@ -7,7 +7,7 @@
 #include "verification/bench/bench.hpp"
 #include "verification/studies/studies.hpp"
 
-namespace traceraft {
+namespace traceraft::studies {
 namespace {
 
 double epsilon_on(int cells) {
@@ -17,35 +17,35 @@ double epsilon_on(int cells) {
 // One run that is advanced step by step, beside others.
 struct TimedRun {
   std::string solver;
-  SpacePtr space;
-  ProblemPtr problem;
-  IntegratorPtr integrator;
+  bench::SpacePtr space;
+  bench::ProblemPtr problem;
+  time::IntegratorPtr integrator;
   std::vector<double> steps;
 
-  TimedRun(const Bench& bench, int cells, int threads, std::string solver_)
+  TimedRun(const bench::Bench& bench, int cells, int threads, std::string solver_)
       : solver(std::move(solver_)),
-        space(bench.space(*make_surface("sphere"), cells, threads)),
-        problem(bench.problem(space, bench_model("degenerate", epsilon_on(cells)))),
+        space(bench.space(*geometry::make_surface("sphere"), cells, threads)),
+        problem(bench.problem(space, bench::bench_model("degenerate", epsilon_on(cells)))),
         integrator(bench.make_integrator(*problem, *space, "euler", solver, {})) {
-    InitialRequest request;
+    problem::InitialRequest request;
     request.raft_fraction = 0.16;
     request.noise_cells = cells / 4;
-    const StartState start = initial_state(*problem, "noise", request);
-    require(integrator->start(0, start.y, start.ydot, 1e6));
+    const bench::StartState start = bench::initial_state(*problem, "noise", request);
+    bench::require(integrator->start(0, start.y, start.ydot, 1e6));
   }
   void advance() {
     const Stopwatch watch;
-    require(integrator->advance());
+    bench::require(integrator->advance());
     steps.push_back(watch.seconds());
   }
   double mean() const {
     return std::accumulate(steps.begin(), steps.end(), 0.0) / static_cast<double>(steps.size());
   }
   // Milliseconds per step.
-  std::vector<Cell> row() {
+  std::vector<bench::Cell> row() {
     std::nth_element(steps.begin(), steps.begin() + steps.size() / 2, steps.end());
     const double count = static_cast<double>(steps.size());
-    const LinearStatistics linear = integrator->linear_statistics();
+    const linear::LinearStatistics linear = integrator->linear_statistics();
     const double assembly = integrator->statistics().assembly_seconds;
     return {solver,
             static_cast<double>(space->team->size()),
@@ -59,7 +59,7 @@ struct TimedRun {
   }
 };
 
-StudyReport run(const Bench& bench) {
+StudyReport run(const bench::Bench& bench) {
   const int cells = bench.quick() ? 48 : 128, steps = bench.quick() ? 20 : 120;
   // Taken in turn, so that all see the same machine.
   TimedRun one(bench, cells, 1, "block"), two(bench, cells, 2, "block");
@@ -98,4 +98,4 @@ StudyEntry step_cost_study() {
   return {"step-cost", "time of an euler step: one core, two cores, block and direct", run, true};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::studies

@@ -1,6 +1,6 @@
 #include "verification/studies/studies.hpp"
 
-namespace traceraft {
+namespace traceraft::studies {
 
 const NamedList<StudyEntry>& studies() {
   static const std::vector<StudyEntry> entries = {
@@ -27,4 +27,4 @@ const NamedList<StudyEntry>& studies() {
   return list;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::studies

@@ -4,7 +4,7 @@
 #include "kernel/core/named_list.hpp"
 #include "verification/studies/study.hpp"
 
-namespace traceraft {
+namespace traceraft::studies {
 
 StudyEntry mass_balance_study();
 StudyEntry energy_decay_study();
@@ -27,4 +27,4 @@ StudyEntry step_cost_study();
 
 const NamedList<StudyEntry>& studies();
 
-}  // namespace traceraft
+}  // namespace traceraft::studies

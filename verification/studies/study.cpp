@@ -2,7 +2,7 @@
 
 #include <limits>
 
-namespace traceraft {
+namespace traceraft::studies {
 
 Claim claim_near(std::string what, double measured, double expected, double tolerance,
                  double uncertainty) {
@@ -10,9 +10,9 @@ Claim claim_near(std::string what, double measured, double expected, double tole
           expected + tolerance, uncertainty};
 }
 
-Claim claim_order(std::string what, const Points& size_and_error, double expected,
+Claim claim_order(std::string what, const statistics::Points& size_and_error, double expected,
                   double tolerance) {
-  const ObservedOrder found = observed_order(size_and_error);
+  const statistics::ObservedOrder found = statistics::observed_order(size_and_error);
   return claim_near(std::move(what), found.order, expected, tolerance, found.change);
 }
 
@@ -29,4 +29,4 @@ Claim claim_between(std::string what, double measured, double low, double high) 
   return {std::move(what), measured, {}, low, high};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::studies

@@ -9,9 +9,11 @@
 
 #include "verification/bench/figures.hpp"
 
-namespace traceraft {
-
+namespace traceraft::bench {
 class Bench;
+}
+
+namespace traceraft::studies {
 
 // One measured claim: `measured` must lie in [low, high].
 struct Claim {
@@ -27,16 +29,16 @@ struct Claim {
 Claim claim_near(std::string what, double measured, double expected, double tolerance,
                  double uncertainty = 0);
 // The observed order (fit.hpp) of errors e ~ h^p, its uncertainty the change from coarser levels.
-Claim claim_order(std::string what, const Points& size_and_error, double expected,
+Claim claim_order(std::string what, const statistics::Points& size_and_error, double expected,
                   double tolerance);
 Claim claim_at_most(std::string what, double measured, double bound);
 Claim claim_at_least(std::string what, double measured, double bound, double uncertainty = 0);
 Claim claim_between(std::string what, double measured, double low, double high);
 
 struct StudyReport {
-  std::vector<Table> tables;
+  std::vector<bench::Table> tables;
   std::vector<Claim> claims;
-  std::vector<Chart> charts;
+  std::vector<bench::Chart> charts;
   std::vector<std::string> notes;  // what a reader has to know, a sentence each
   std::string skipped = {};        // why this build cannot measure it
 };
@@ -47,11 +49,11 @@ struct StudyReport {
 struct StudyEntry {
   std::string name;
   std::string summary;
-  std::function<StudyReport(const Bench&)> run;
+  std::function<StudyReport(const bench::Bench&)> run;
   // Not part of "all", nor of the tests: takes very long, or makes claims about speed.
   bool by_name_only = false;
   // Never beside another study: starts ranks, which wait for each other by spinning.
   bool starts_ranks = false;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::studies

@@ -11,7 +11,7 @@
 #include "verification/statistics/sample.hpp"
 #include "verification/studies/studies.hpp"
 
-namespace traceraft {
+namespace traceraft::studies {
 namespace {
 
 struct Body {
@@ -31,7 +31,7 @@ double ellipsoid_area(double a, double b, double c) {
 
 // Gauss–Bonnet: the angles that are missing to 2π around the points of a closed surface of
 // triangles add up to 2πχ.
-double angle_defects(const CutSurface& surface) {
+double angle_defects(const mesh::CutSurface& surface) {
   std::vector<double> missing(surface.points.size(), 2 * kPi);
   for (const auto& corner : surface.triangles)
     for (int v = 0; v < 3; ++v) {
@@ -45,27 +45,27 @@ double angle_defects(const CutSurface& surface) {
   return sum;
 }
 
-void measure_bodies(const Bench& bench, StudyReport& report) {
+void measure_bodies(const bench::Bench& bench, StudyReport& report) {
   const std::vector<Body> bodies = {{"sphere", 4 * kPi, 4 * kPi},
                                     {"ellipsoid", ellipsoid_area(1.2, 1, 0.8), 4 * kPi},
                                     {"torus", 4 * kPi * kPi * 0.4, 0}};
-  Table table{"area", {"surface", "cells", "area", "error", "total curvature"}, {}};
-  Chart chart{"Error of the area", "h", "relative error", true, true, {}};
+  bench::Table table{"area", {"surface", "cells", "area", "error", "total curvature"}, {}};
+  bench::Chart chart{"Error of the area", "h", "relative error", true, true, {}};
   for (const Body& body : bodies) {
-    Points levels;
+    statistics::Points levels;
     double worst = 0;
     for (int cells = 16; cells <= (bench.quick() ? 64 : 128); cells *= 2) {
-      const SpacePtr space = bench.space(body.surface, cells);
+      const bench::SpacePtr space = bench.space(body.surface, cells);
       const double error = std::fabs(space->area / body.area - 1);
       const double curvature = angle_defects(space->surface);
       levels.emplace_back(space->h(), error);
-      worst = larger(worst, std::fabs(curvature - body.curvature));
+      worst = statistics::larger(worst, std::fabs(curvature - body.curvature));
       table.rows.push_back(
           {body.surface, static_cast<double>(cells), space->area, error, curvature});
     }
     // Integrals are over the surface; what is left is a quadrature of its curved parts.
     report.claims.push_back(claim_between(std::string(body.surface) + ": order of the area",
-                                          observed_order(levels).order, 3.5, 5));
+                                          statistics::observed_order(levels).order, 3.5, 5));
     report.claims.push_back(claim_at_most(
         std::string(body.surface) + ": total curvature against 2 pi chi", worst, 1e-6));
     chart.series.push_back({body.surface, levels});
@@ -74,9 +74,10 @@ void measure_bodies(const Bench& bench, StudyReport& report) {
   report.charts.push_back(chart);
 }
 
-SurfaceFunction moved(const SurfaceFunction& base, const Motion& motion) {
+analytic::SurfaceFunction moved(const analytic::SurfaceFunction& base,
+                                const bench::Motion& motion) {
   return [=](const Point& x) {
-    SurfacePoint p = base(motion.home(x));
+    analytic::SurfacePoint p = base(motion.home(x));
     p.gradient = motion.turn.transpose() * p.gradient;
     return p;
   };
@@ -84,8 +85,8 @@ SurfaceFunction moved(const SurfaceFunction& base, const Motion& motion) {
 
 // Largest over smallest eigenvalue of D^-½ A D^-½ with the diagonal D of A; infinite if A is not
 // positive definite.
-double scaled_condition(const SurfaceSpace& space, const CsrMatrix& A) {
-  Eigen::MatrixXd dense = as_eigen(space, A);
+double scaled_condition(const fem::SurfaceSpace& space, const fem::CsrMatrix& A) {
+  Eigen::MatrixXd dense = fem::as_eigen(space, A);
   const Vec scale = dense.diagonal().cwiseSqrt().cwiseInverse();
   dense = scale.asDiagonal() * dense * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(dense, Eigen::EigenvaluesOnly);
@@ -97,36 +98,39 @@ struct Cut {
   double area, l2, h1, mass_condition, helmholtz_condition;
 };
 
-Cut measure_cut(const Bench& bench, std::uint64_t number) {
+Cut measure_cut(const bench::Bench& bench, std::uint64_t number) {
   constexpr int kCells = 20, kCoarse = 10;
-  const LevelSetPtr ellipsoid = make_surface("ellipsoid");
-  const Motion motion(number, 0.5 * 10 / 3 / kCells);
-  const SpacePtr space = bench.space(moved(ellipsoid, motion), kCells, 1);
-  const ErrorNorms errors = stationary_error(*space, moved(surface_function("ellipsoid"), motion));
-  const SpacePtr coarse = bench.space(moved(ellipsoid, motion), kCoarse, 1);
-  const CsrMatrix stiffness = combine(1, coarse->stiffness, coarse->h(), coarse->normal_stiffness);
+  const geometry::LevelSetPtr ellipsoid = geometry::make_surface("ellipsoid");
+  const bench::Motion motion(number, 0.5 * 10 / 3 / kCells);
+  const bench::SpacePtr space = bench.space(bench::moved(ellipsoid, motion), kCells, 1);
+  const bench::ErrorNorms errors =
+      analytic::stationary_error(*space, moved(analytic::surface_function("ellipsoid"), motion));
+  const bench::SpacePtr coarse = bench.space(bench::moved(ellipsoid, motion), kCoarse, 1);
+  const fem::CsrMatrix stiffness =
+      fem::combine(1, coarse->stiffness, coarse->h(), coarse->normal_stiffness);
   return {space->area, errors.l2, errors.h1, scaled_condition(*coarse, coarse->stabilised_mass),
-          scaled_condition(*coarse, combine(1, stiffness, 1, coarse->mass))};
+          scaled_condition(*coarse, fem::combine(1, stiffness, 1, coarse->mass))};
 }
 
-void measure_cuts(const Bench& bench, StudyReport& report) {
+void measure_cuts(const bench::Bench& bench, StudyReport& report) {
   const int count = bench.quick() ? 25 : 100;
   std::vector<Cut> cuts(static_cast<std::size_t>(count));
   bench.in_parallel(
       count, [&](int k) { cuts[k] = measure_cut(bench, static_cast<std::uint64_t>(k) + 1); });
-  Table table{"cuts", {"quantity", "mean", "deviation", "smallest", "largest"}, {}};
+  bench::Table table{"cuts", {"quantity", "mean", "deviation", "smallest", "largest"}, {}};
   const auto row = [&](const std::string& what, double Cut::*value) {
     std::vector<double> values;
     for (const Cut& cut : cuts) values.push_back(cut.*value);
-    const Sample m = sample_of(values);
+    const statistics::Sample m = statistics::sample_of(values);
     table.rows.push_back({what, m.mean, m.deviation, m.min, m.max});
     return m;
   };
-  const Sample area = row("area", &Cut::area);
-  const Sample l2 = row("error of the stationary problem in L2", &Cut::l2);
-  const Sample h1 = row("error of the stationary problem in H1", &Cut::h1);
-  const Sample mass = row("condition of M + 0.3 h S, scaled", &Cut::mass_condition);
-  const Sample helmholtz = row("condition of K + M + h S, scaled", &Cut::helmholtz_condition);
+  const statistics::Sample area = row("area", &Cut::area);
+  const statistics::Sample l2 = row("error of the stationary problem in L2", &Cut::l2);
+  const statistics::Sample h1 = row("error of the stationary problem in H1", &Cut::h1);
+  const statistics::Sample mass = row("condition of M + 0.3 h S, scaled", &Cut::mass_condition);
+  const statistics::Sample helmholtz =
+      row("condition of K + M + h S, scaled", &Cut::helmholtz_condition);
   report.tables.push_back(table);
   const double exact = ellipsoid_area(1.2, 1, 0.8);
   const std::string of = std::to_string(count) + " cuts: ";
@@ -143,7 +147,7 @@ void measure_cuts(const Bench& bench, StudyReport& report) {
                                         helmholtz.max / helmholtz.mean, 2));
 }
 
-StudyReport run(const Bench& bench) {
+StudyReport run(const bench::Bench& bench) {
   StudyReport report;
   report.notes = {
       "A cut is an ellipsoid at a random rotation and shift against the mesh. Errors are those on "
@@ -162,4 +166,4 @@ StudyEntry surface_geometry_study() {
           run};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::studies

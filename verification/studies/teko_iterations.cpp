@@ -10,7 +10,7 @@
 #include "verification/statistics/random_streams.hpp"
 #include "verification/studies/studies.hpp"
 
-namespace traceraft {
+namespace traceraft::studies {
 namespace {
 
 constexpr double kTolerance = 1e-8;
@@ -27,35 +27,37 @@ constexpr Variant kVariants[] = {{"two-solve", "muelu-ilu"},
 
 // 0: thirty rafts, 1: a large and a small one. Equilibrium profiles, so that no mesh needs a run
 // before it.
-std::vector<CapRaft> rafts(int state) {
+std::vector<problem::CapRaft> rafts(int state) {
   if (state == 1) return {{Point(0, 0, 1), 0.9}, {Point(1, 2, -3).normalized(), 0.4}};
-  std::vector<CapRaft> caps;
+  std::vector<problem::CapRaft> caps;
   for (std::uint64_t k = 0; k < 30; ++k) {
     const auto draw = [&](std::uint64_t which) {
-      return uniform_random(fixed_seed::test_vectors, 50 + which, k);
+      return uniform_random(statistics::fixed_seed::test_vectors, 50 + which, k);
     };
     caps.push_back({uniform_direction(draw(0), draw(1)), 0.1 + 0.15 * draw(2)});
   }
   return caps;
 }
 
-Vec state_of(const CahnHilliard& problem, int state) {
-  InitialRequest request;
+Vec state_of(const problem::CahnHilliard& problem, int state) {
+  problem::InitialRequest request;
   request.caps = rafts(state);
-  return initial_state(problem, "caps", request).y;
+  return bench::initial_state(problem, "caps", request).y;
 }
 
 // −1: more than 200.
-double iterations(const CahnHilliard& problem, const Vec& y, double shift, const Variant& variant) {
-  const LinearSolverPtr solver = linear_solvers().find("teko").make(
+double iterations(const problem::CahnHilliard& problem, const Vec& y, double shift,
+                  const Variant& variant) {
+  const linear::LinearSolverPtr solver = backends::linear_solvers().find("teko").make(
       problem.space(),
       {{"preconditioner", variant.preconditioner}, {"inverse", variant.inverse}})(1);
-  BlockJacobian J = problem.make_jacobian();
+  linear::BlockJacobian J = problem.make_jacobian();
   Vec b(problem.size()), x = Vec::Zero(problem.size());
-  require(problem.residual(0, y, Vec::Zero(y.size()), b));
-  require(problem.jacobian(0, y, Vec::Zero(y.size()), shift, Tangent::stabilised, J));
+  bench::require(problem.residual(0, y, Vec::Zero(y.size()), b));
+  bench::require(
+      problem.jacobian(0, y, Vec::Zero(y.size()), shift, linear::Tangent::stabilised, J));
   if (!solver->setup(J).ok()) return -1;
-  const SolveReport report = solver->solve(J, -b, x, kTolerance);
+  const linear::SolveReport report = solver->solve(J, -b, x, kTolerance);
   return report.status.ok() ? report.iterations : -1;
 }
 
@@ -63,16 +65,17 @@ struct Most {
   double iterations = 0, failures = 0;
 };
 
-void measure(const Bench& bench, const SpacePtr& space, const Variant& variant, Table& table,
-             Most& most) {
+void measure(const bench::Bench& bench, const bench::SpacePtr& space, const Variant& variant,
+             bench::Table& table, Most& most) {
   for (const double epsilon : {0.01, 0.02, 0.05})
     for (int state = 0; state < 2; ++state) {
-      const ProblemPtr problem = bench.problem(space, bench_model("degenerate", epsilon));
+      const bench::ProblemPtr problem =
+          bench.problem(space, bench::bench_model("degenerate", epsilon));
       const Vec y = state_of(*problem, state);
-      std::vector<Cell> row = {std::string(variant.preconditioner) + ", " + variant.inverse,
-                               static_cast<double>(space->mesh.cube.cells), epsilon,
-                               state == 1 ? "two rafts" : "thirty rafts"};
-      for (const double shift : shift_range()) {
+      std::vector<bench::Cell> row = {std::string(variant.preconditioner) + ", " + variant.inverse,
+                                      static_cast<double>(space->mesh.cube.cells), epsilon,
+                                      state == 1 ? "two rafts" : "thirty rafts"};
+      for (const double shift : bench::shift_range()) {
         const double count = iterations(*problem, y, shift, variant);
         row.push_back(count);
         if (count < 0) ++most.failures;
@@ -88,18 +91,19 @@ struct Mesh {
   std::vector<int> variants;
 };
 
-StudyReport measure_meshes(const Bench& bench, const std::vector<Mesh>& meshes) {
+StudyReport measure_meshes(const bench::Bench& bench, const std::vector<Mesh>& meshes) {
   StudyReport report;
-  if (!linear_solvers().find("teko").built) {
+  if (!backends::linear_solvers().find("teko").built) {
     report.skipped = "this build has no Trilinos";
     return report;
   }
-  Table table{"iterations", {"preconditioner, inverse", "cells", "epsilon", "state"}, {}};
-  for (const double shift : shift_range()) table.columns.push_back(shift_label(shift));
+  bench::Table table{"iterations", {"preconditioner, inverse", "cells", "epsilon", "state"}, {}};
+  for (const double shift : bench::shift_range())
+    table.columns.push_back(bench::shift_label(shift));
   Most most[std::size(kVariants)];
   const double finest = meshes.back().cells;
   for (const auto& [cells, variants] : meshes) {
-    const SpacePtr space = bench.space(*make_surface("sphere"), cells, 1);
+    const bench::SpacePtr space = bench.space(*geometry::make_surface("sphere"), cells, 1);
     for (const int variant : variants)
       measure(bench, space, kVariants[variant], table, most[variant]);
     bench.progress(cells * cells / (finest * finest));
@@ -120,13 +124,13 @@ StudyReport measure_meshes(const Bench& bench, const std::vector<Mesh>& meshes) 
   return report;
 }
 
-StudyReport measure_daily(const Bench& bench) {
+StudyReport measure_daily(const bench::Bench& bench) {
   if (bench.quick()) return measure_meshes(bench, {{32, {kOwn, kDefault}}});
   // The stock ones take long and do not get better.
   return measure_meshes(bench, {{64, {kOwn, kDefault, kGaussSeidel, kBlockLu}}, {128, {kOwn}}});
 }
 
-StudyReport measure_large(const Bench& bench) {
+StudyReport measure_large(const bench::Bench& bench) {
   std::vector<Mesh> meshes = {{128, {kDefault}}, {256, {kOwn}}};
   if (!bench.quick()) meshes.push_back({512, {kOwn}});
   return measure_meshes(bench, meshes);
@@ -144,4 +148,4 @@ StudyEntry large_teko_iterations_study() {
           measure_large, true};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::studies

@@ -7,7 +7,7 @@
 #include "verification/statistics/sample.hpp"
 #include "verification/studies/studies.hpp"
 
-namespace traceraft {
+namespace traceraft::studies {
 namespace {
 
 constexpr double kEnd = 1.0;
@@ -25,11 +25,11 @@ constexpr Method kMethods[] = {{"stabilised Euler", "euler", "first", 1, 0.15},
 
 class Runs {
  public:
-  explicit Runs(const Bench& bench)
+  explicit Runs(const bench::Bench& bench)
       : bench_(bench), manufactured_(bench, bench.space("sphere", 16), "sphere", 0.3) {}
 
   Vec with_steps(const Method& method, int steps) const {
-    IntegratorSettings settings;
+    time::IntegratorSettings settings;
     settings.tolerance = 0.5;  // all steps of the size asked for
     settings.initial_step = settings.max_step = kEnd / steps;
     settings.linear_tolerance = 1e-12;
@@ -38,7 +38,7 @@ class Runs {
     return solve(method.integrator, settings);
   }
   Vec with_tolerance(const std::string& integrator, double tolerance) const {
-    IntegratorSettings settings;
+    time::IntegratorSettings settings;
     settings.tolerance = tolerance;
     return solve(integrator, settings);
   }
@@ -47,29 +47,30 @@ class Runs {
   }
 
  private:
-  Vec solve(const std::string& name, const IntegratorSettings& settings) const {
-    const IntegratorPtr integrator = bench_.make_integrator(
+  Vec solve(const std::string& name, const time::IntegratorSettings& settings) const {
+    const time::IntegratorPtr integrator = bench_.make_integrator(
         *manufactured_.problem, manufactured_.space(), name, bench_.linear_solver(), settings);
-    advance_to(*integrator, manufactured_.initial_state(), kEnd);
+    bench::advance_to(*integrator, manufactured_.initial_state(), kEnd);
     return integrator->state();
   }
 
-  const Bench& bench_;
-  ManufacturedCahnHilliard manufactured_;
+  const bench::Bench& bench_;
+  analytic::ManufacturedCahnHilliard manufactured_;
 };
 
-bool chosen(const Bench& bench, const Method& method) {
+bool chosen(const bench::Bench& bench, const Method& method) {
   return bench.request.integrator.empty() || bench.request.integrator == method.integrator;
 }
 
-void measure_orders(const Bench& bench, const Runs& runs, const Vec& reference,
+void measure_orders(const bench::Bench& bench, const Runs& runs, const Vec& reference,
                     StudyReport& report) {
   const int finest = bench.quick() ? 160 : 320;
-  Table table{"steps", {"method", "steps", "error"}, {}};
-  Chart chart{"Error against the size of the step", "step", "error of c in L2", true, true, {}};
+  bench::Table table{"steps", {"method", "steps", "error"}, {}};
+  bench::Chart chart{
+      "Error against the size of the step", "step", "error of c in L2", true, true, {}};
   for (const Method& method : kMethods) {
     if (!chosen(bench, method)) continue;
-    Points levels;
+    statistics::Points levels;
     // The smallest errors of order 3, near 1e-10, are at the accuracy of the solves.
     const int most = method.order < 3 ? finest : finest / 4;
     for (int steps = most / (method.order < 3 ? 8 : 4); steps <= most; steps *= 2) {
@@ -84,17 +85,18 @@ void measure_orders(const Bench& bench, const Runs& runs, const Vec& reference,
   report.charts.push_back(chart);
 }
 
-void measure_tolerances(const Bench& bench, const Runs& runs, const Vec& reference,
+void measure_tolerances(const bench::Bench& bench, const Runs& runs, const Vec& reference,
                         StudyReport& report) {
-  Table table{"tolerances", {"integrator", "tolerance", "error"}, {}};
-  Chart chart{"Error against the tolerance", "tolerance", "error of c in L2", true, true, {}};
+  bench::Table table{"tolerances", {"integrator", "tolerance", "error"}, {}};
+  bench::Chart chart{
+      "Error against the tolerance", "tolerance", "error of c in L2", true, true, {}};
   for (const std::string& integrator : bench.integrators()) {
-    Points levels;
+    statistics::Points levels;
     double largest_ratio = 0;
     for (double tolerance = 1e-2; tolerance > 0.9e-5; tolerance /= 10) {
       const double error = runs.error(runs.with_tolerance(integrator, tolerance), reference);
       levels.emplace_back(tolerance, error);
-      largest_ratio = larger(largest_ratio, error / tolerance);
+      largest_ratio = statistics::larger(largest_ratio, error / tolerance);
       table.rows.push_back({integrator, tolerance, error});
     }
     report.claims.push_back(
@@ -105,7 +107,7 @@ void measure_tolerances(const Bench& bench, const Runs& runs, const Vec& referen
   report.charts.push_back(chart);
 }
 
-StudyReport run(const Bench& bench) {
+StudyReport run(const bench::Bench& bench) {
   const Runs runs(bench);
   StudyReport report;
   report.notes = {
@@ -126,4 +128,4 @@ StudyEntry time_order_study() {
           run};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::studies

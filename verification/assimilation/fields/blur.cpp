@@ -4,7 +4,7 @@
 
 #include "verification/assimilation/fields/stiffness_along_normals.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 // Implicit steps that a Gaussian is made of.
@@ -14,15 +14,15 @@ constexpr int kSteps = 4;
 
 // ċ = Δ_Γ c for the time width²/2, in steps.
 struct Blur::Step {
-  EigenMatrix mass;
-  Eigen::SimplicialLLT<EigenMatrix> implicit;
+  fem::EigenMatrix mass;
+  Eigen::SimplicialLLT<fem::EigenMatrix> implicit;
 };
 
-Blur::Blur(const SurfaceSpace& space, double width) {
+Blur::Blur(const fem::SurfaceSpace& space, double width) {
   auto step = std::make_unique<Step>();
-  step->mass = as_eigen(space, space.stabilised_mass);
+  step->mass = fem::as_eigen(space, space.stabilised_mass);
   step->implicit.compute(
-      EigenMatrix(step->mass + width * width / (2 * kSteps) * stiffness_along_normals(space)));
+      fem::EigenMatrix(step->mass + width * width / (2 * kSteps) * stiffness_along_normals(space)));
   if (step->implicit.info() != Eigen::Success)
     throw std::runtime_error("a field cannot be blurred that much");
   step_ = std::move(step);
@@ -36,4 +36,4 @@ Vec Blur::blurred(const Vec& c) const {
   return result;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

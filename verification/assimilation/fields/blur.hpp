@@ -6,14 +6,14 @@
 
 #include "kernel/fem/surface_space.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 class Blur {
  public:
   // `width`: standard deviation of the point spread function, in the unit of the space; short
   // against the radii of curvature. Serial spaces. Throws std::runtime_error if the width is no
   // number.
-  Blur(const SurfaceSpace& space, double width);
+  Blur(const fem::SurfaceSpace& space, double width);
   ~Blur();
 
   Vec blurred(const Vec& c) const;
@@ -23,4 +23,4 @@ class Blur {
   std::unique_ptr<const Step> step_;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

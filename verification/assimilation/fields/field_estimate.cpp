@@ -10,18 +10,19 @@
 #include "verification/assimilation/fields/gaussian_field.hpp"
 #include "verification/statistics/random_streams.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 // −2 ln of the marginal likelihood as a function of the prior; everything scaled by the noise.
 class FieldRegression {
  public:
-  FieldRegression(const SurfaceSpace& space, const NoisyValues& measured)
+  FieldRegression(const fem::SurfaceSpace& space, const NoisyValues& measured)
       : matrices_(space), count_(measured.values.size()) {
     const Vec weight = measured.deviation.cwiseAbs2().cwiseInverse();
     mean_ = measured.values.dot(weight) / weight.sum();
     const Vec centred = measured.values.array() - mean_;
-    information_ = EigenMatrix(measured.trace.transpose() * weight.asDiagonal() * measured.trace);
+    information_ =
+        fem::EigenMatrix(measured.trace.transpose() * weight.asDiagonal() * measured.trace);
     load_ = measured.trace.transpose() * weight.cwiseProduct(centred);
     squares_ = centred.dot(weight.cwiseProduct(centred));
     log_weights_ = weight.array().log().sum();
@@ -31,8 +32,8 @@ class FieldRegression {
 
   // Factors of the precision of the field given the values.
   void compute(const FieldPrior& prior) {
-    const EigenMatrix B = operator_of(prior);
-    factors_.factorise(prior.smoothing * EigenMatrix(B * inverse_diagonal_.asDiagonal() * B) +
+    const fem::EigenMatrix B = operator_of(prior);
+    factors_.factorise(prior.smoothing * fem::EigenMatrix(B * inverse_diagonal_.asDiagonal() * B) +
                        information_);
     field_ = factors_.solve(load_);
   }
@@ -64,21 +65,22 @@ class FieldRegression {
   Eigen::MatrixXd draws(int count, std::uint64_t stream) const {
     Eigen::MatrixXd z(field_.size(), count);
     for (Eigen::Index i = 0; i < z.size(); ++i)
-      z.data()[i] = normal_random(fixed_seed::field_errors, stream, static_cast<std::uint64_t>(i));
+      z.data()[i] = normal_random(statistics::fixed_seed::field_errors, stream,
+                                  static_cast<std::uint64_t>(i));
     return factors_.correlated(z);
   }
 
  private:
-  EigenMatrix operator_of(const FieldPrior& prior) const {
+  fem::EigenMatrix operator_of(const FieldPrior& prior) const {
     return matrices_.mass / (prior.length * prior.length) + matrices_.stiffness;
   }
 
   FieldMatrices matrices_;
-  EigenMatrix information_;
+  fem::EigenMatrix information_;
   Eigen::Index count_;
   double mean_, squares_, log_weights_;
   Vec load_, inverse_diagonal_, field_;
-  SparseCholesky mass_factors_, prior_factors_, factors_;
+  suitesparse::SparseCholesky mass_factors_, prior_factors_, factors_;
 };
 
 FieldEstimate result_of(FieldRegression& regression, const FieldPrior& prior,
@@ -96,11 +98,11 @@ FieldEstimate result_of(FieldRegression& regression, const FieldPrior& prior,
 
 }  // namespace
 
-FieldEstimate estimate_field(const SurfaceSpace& space, const NoisyValues& measured,
+FieldEstimate estimate_field(const fem::SurfaceSpace& space, const NoisyValues& measured,
                              const ErrorRequest& wanted) {
   FieldRegression regression(space, measured);
   const double density = static_cast<double>(measured.values.size()) / space.area;
-  MinimiseRequest request;
+  nlopt::MinimiseRequest request;
   // Logarithms of the length and of the smoothing.
   request.function = [&](const std::vector<double>& x) {
     return regression.deviance({std::exp(x[0]), std::exp(x[1])});
@@ -113,25 +115,26 @@ FieldEstimate estimate_field(const SurfaceSpace& space, const NoisyValues& measu
   request.step = {0.7, 2};
   request.tolerance = 5e-3;
   request.most_evaluations = 60;
-  const Minimum best = minimise(request);
+  const nlopt::Minimum best = nlopt::minimise(request);
   return result_of(regression, {std::exp(best.x[0]), std::exp(best.x[1])}, wanted);
 }
 
-FieldEstimate estimate_field(const SurfaceSpace& space, const NoisyValues& measured,
+FieldEstimate estimate_field(const fem::SurfaceSpace& space, const NoisyValues& measured,
                              const FieldPrior& prior, const ErrorRequest& wanted) {
   FieldRegression regression(space, measured);
   return result_of(regression, prior, wanted);
 }
 
 void compress(const Eigen::SparseMatrix<double>& A, Eigen::MatrixXd& X, int most) {
-  const SymmetricEigen eigen = symmetric_eigen(transposed_product(X, A * X));
+  const openblas::SymmetricEigen eigen =
+      openblas::symmetric_eigen(openblas::transposed_product(X, A * X));
   const Eigen::Index columns = X.cols();
   const double largest = columns ? eigen.values[columns - 1] : 0;
   Eigen::Index kept = 0;
   while (kept < std::min<Eigen::Index>(most, columns) &&
          eigen.values[columns - 1 - kept] > 1e-10 * largest)
     ++kept;
-  X = product(X, eigen.vectors.rightCols(kept));
+  X = openblas::product(X, eigen.vectors.rightCols(kept));
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

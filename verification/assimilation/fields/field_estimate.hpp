@@ -6,7 +6,7 @@
 
 #include "verification/assimilation/fields/point_trace.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 struct NoisyValues {
   PointTrace trace;  // where they were measured
@@ -40,10 +40,10 @@ struct FieldEstimate {
 
 // The prior and the noise maximise the marginal likelihood of the values; nobody has to know them.
 // Serial spaces. Throws std::runtime_error if the field cannot be estimated.
-FieldEstimate estimate_field(const SurfaceSpace& space, const NoisyValues& measured,
+FieldEstimate estimate_field(const fem::SurfaceSpace& space, const NoisyValues& measured,
                              const ErrorRequest& wanted);
 // The same with a prior that is known.
-FieldEstimate estimate_field(const SurfaceSpace& space, const NoisyValues& measured,
+FieldEstimate estimate_field(const fem::SurfaceSpace& space, const NoisyValues& measured,
                              const FieldPrior& prior, const ErrorRequest& wanted);
 
 // Orthonormalises the columns of X in the inner product xᵀ A y, by the eigenvectors of their Gram
@@ -51,4 +51,4 @@ FieldEstimate estimate_field(const SurfaceSpace& space, const NoisyValues& measu
 // X is left with the scaled eigenvectors: X_new X_newᵀ ≈ X Xᵀ.
 void compress(const Eigen::SparseMatrix<double>& A, Eigen::MatrixXd& X, int most);
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -6,7 +6,7 @@
 
 #include "kernel/core/types.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 // Times in units of R²/D of the model, places in units of R.
 
@@ -29,4 +29,4 @@ struct FieldSeries {
   std::vector<FieldSnapshot> snapshots;  // in the order of time, at least two
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

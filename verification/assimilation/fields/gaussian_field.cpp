@@ -5,18 +5,19 @@
 #include "kernel/core/random.hpp"
 #include "verification/statistics/random_streams.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
-FieldMatrices::FieldMatrices(const SurfaceSpace& space)
-    : mass(as_eigen(space, space.stabilised_mass)),
-      trace_mass(as_eigen(space, space.mass)),
+FieldMatrices::FieldMatrices(const fem::SurfaceSpace& space)
+    : mass(fem::as_eigen(space, space.stabilised_mass)),
+      trace_mass(fem::as_eigen(space, space.mass)),
       stiffness(stiffness_along_normals(space)) {}
 
-GaussianField::GaussianField(const SurfaceSpace& space, const FieldPrior& prior)
+GaussianField::GaussianField(const fem::SurfaceSpace& space, const FieldPrior& prior)
     : matrices_(space),
       root_((matrices_.mass.diagonal() / prior.smoothing).cwiseSqrt()),
       mass_factors_(matrices_.mass),
-      factors_(EigenMatrix(matrices_.mass / (prior.length * prior.length) + matrices_.stiffness)) {}
+      factors_(
+          fem::EigenMatrix(matrices_.mass / (prior.length * prior.length) + matrices_.stiffness)) {}
 
 Eigen::MatrixXd GaussianField::covariance_times(const Eigen::MatrixXd& X) const {
   return factors_.solve(root_.cwiseAbs2().asDiagonal() * factors_.solve(X));
@@ -29,7 +30,8 @@ Eigen::MatrixXd GaussianField::root_at(const PointTrace& trace) const {
 Eigen::MatrixXd GaussianField::draws(int count, std::uint64_t stream) const {
   Eigen::MatrixXd z(root_.size(), count);
   for (Eigen::Index i = 0; i < z.size(); ++i)
-    z.data()[i] = normal_random(fixed_seed::field_draws, stream, static_cast<std::uint64_t>(i));
+    z.data()[i] =
+        normal_random(statistics::fixed_seed::field_draws, stream, static_cast<std::uint64_t>(i));
   return factors_.solve(root_.asDiagonal() * z);
 }
 
@@ -40,8 +42,8 @@ Eigen::MatrixXd GaussianField::projected(const Eigen::MatrixXd& X) const {
 Eigen::MatrixXd important_directions(const FieldMatrices& matrices,
                                      const CovarianceTimes& covariance, double length, int rank) {
   constexpr int kIterations = 4, kExtra = 16;
-  const EigenMatrix smoother = matrices.mass + length * length * matrices.stiffness;
-  const SparseCholesky smoothing(smoother);
+  const fem::EigenMatrix smoother = matrices.mass + length * length * matrices.stiffness;
+  const suitesparse::SparseCholesky smoothing(smoother);
   const auto weighted = [&](const Eigen::MatrixXd& X) -> Eigen::MatrixXd {
     return matrices.mass *
            smoothing.solve(matrices.trace_mass * smoothing.solve(matrices.mass * X));
@@ -49,7 +51,9 @@ Eigen::MatrixXd important_directions(const FieldMatrices& matrices,
   const Eigen::Index n = matrices.mass.rows();
   Eigen::MatrixXd X(n, std::min<Eigen::Index>(rank + kExtra, n));
   for (Eigen::Index i = 0; i < X.size(); ++i)
-    X.data()[i] = uniform_random(fixed_seed::test_vectors, 0, static_cast<std::uint64_t>(i)) - 0.5;
+    X.data()[i] =
+        uniform_random(statistics::fixed_seed::test_vectors, 0, static_cast<std::uint64_t>(i)) -
+        0.5;
   for (int k = 0; k < kIterations; ++k) {
     X = covariance(weighted(X)).eval();
     const Eigen::LLT<Eigen::MatrixXd> gram(X.transpose() * weighted(X));
@@ -62,4 +66,4 @@ Eigen::MatrixXd important_directions(const FieldMatrices& matrices,
          ritz.eigenvalues().tail(kept).cwiseMax(0).cwiseSqrt().asDiagonal();
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

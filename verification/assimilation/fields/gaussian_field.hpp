@@ -7,11 +7,11 @@
 #include "verification/assimilation/fields/field_estimate.hpp"
 #include "verification/assimilation/fields/stiffness_along_normals.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 struct FieldMatrices {
-  EigenMatrix mass, trace_mass, stiffness;  // M̃, M and A
-  explicit FieldMatrices(const SurfaceSpace& space);
+  fem::EigenMatrix mass, trace_mass, stiffness;  // M̃, M and A
+  explicit FieldMatrices(const fem::SurfaceSpace& space);
 };
 
 // Σ = B⁻¹ D B⁻¹ / smoothing with B = M̃/length² + A and D the diagonal of M̃: mean 0, columns are
@@ -19,7 +19,7 @@ struct FieldMatrices {
 class GaussianField {
  public:
   // Throws std::runtime_error for a prior that is none.
-  GaussianField(const SurfaceSpace& space, const FieldPrior& prior);
+  GaussianField(const fem::SurfaceSpace& space, const FieldPrior& prior);
 
   Eigen::MatrixXd covariance_times(const Eigen::MatrixXd& X) const;
   // R with Rᵀ R = T Σ Tᵀ.
@@ -33,7 +33,7 @@ class GaussianField {
  private:
   FieldMatrices matrices_;
   Vec root_;  // of D over the smoothing
-  SparseCholesky mass_factors_, factors_;
+  suitesparse::SparseCholesky mass_factors_, factors_;
 };
 
 using CovarianceTimes = std::function<Eigen::MatrixXd(const Eigen::MatrixXd& X)>;
@@ -45,4 +45,4 @@ using CovarianceTimes = std::function<Eigen::MatrixXd(const Eigen::MatrixXd& X)>
 Eigen::MatrixXd important_directions(const FieldMatrices& matrices,
                                      const CovarianceTimes& covariance, double length, int rank);
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -11,7 +11,7 @@
 #include "verification/assimilation/fields/gaussian_field.hpp"
 #include "verification/statistics/random_streams.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 // Values that the prior is found by: it need not be known well.
@@ -26,7 +26,8 @@ std::vector<Eigen::Index> some_rows(Eigen::Index all, Eigen::Index wanted, std::
   std::vector<Eigen::Index> rows;
   const double share = static_cast<double>(wanted) / static_cast<double>(all);
   for (Eigen::Index i = 0; i < all; ++i)
-    if (uniform_random(fixed_seed::kriging_rows, stream, static_cast<std::uint64_t>(i)) < share)
+    if (uniform_random(statistics::fixed_seed::kriging_rows, stream,
+                       static_cast<std::uint64_t>(i)) < share)
       rows.push_back(i);
   return rows;
 }
@@ -52,7 +53,7 @@ std::vector<Point> points_of(const std::vector<Point>& points,
 
 // In units of the noise's level; K = T Σ Tᵀ + N is the covariance of the values.
 struct Kriging::Data {
-  const SurfaceSpace& space;
+  const fem::SurfaceSpace& space;
   std::vector<Eigen::Index> rows;  // that are kriged
   PointTrace trace;
   double level, mean;
@@ -62,7 +63,7 @@ struct Kriging::Data {
   std::unique_ptr<GaussianField> field;
   Eigen::MatrixXd factors;  // of K
 
-  Data(const SurfaceSpace& own, const NoisyValues& measured, const std::vector<Point>& points,
+  Data(const fem::SurfaceSpace& own, const NoisyValues& measured, const std::vector<Point>& points,
        const CorrelatedNoise& stated, std::vector<Eigen::Index> chosen)
       : space(own),
         rows(std::move(chosen)),
@@ -85,13 +86,13 @@ struct Kriging::Data {
     return deviation.cwiseProduct(noise.correlations() * deviation.cwiseProduct(x));
   }
   // E of the values alone.
-  Vec weights() const { return divided_by_factors(factors, centred).col(0); }
+  Vec weights() const { return openblas::divided_by_factors(factors, centred).col(0); }
 };
 
 namespace {
 
 // The prior that makes the values most probable: length by length, each with its smoothing.
-FieldPrior most_probable_prior(const SurfaceSpace& space, const PointTrace& trace,
+FieldPrior most_probable_prior(const fem::SurfaceSpace& space, const PointTrace& trace,
                                const Eigen::MatrixXd& noise, const Vec& values,
                                const FieldPrior& near) {
   FieldPrior best = near;
@@ -99,12 +100,12 @@ FieldPrior most_probable_prior(const SurfaceSpace& space, const PointTrace& trac
   for (const double factor : kLengths) {
     const double length = factor * near.length;
     const Eigen::MatrixXd root = GaussianField(space, {length, 1}).root_at(trace);
-    const Eigen::MatrixXd unit = gram(root);
-    MinimiseRequest request;  // of the logarithm of the smoothing
+    const Eigen::MatrixXd unit = openblas::gram(root);
+    nlopt::MinimiseRequest request;  // of the logarithm of the smoothing
     request.function = [&](const std::vector<double>& x) {
-      const Eigen::MatrixXd L = cholesky_factor(std::exp(-x[0]) * unit + noise);
+      const Eigen::MatrixXd L = openblas::cholesky_factor(std::exp(-x[0]) * unit + noise);
       return 2 * L.diagonal().array().log().sum() +
-             values.dot(divided_by_factors(L, values).col(0));
+             values.dot(openblas::divided_by_factors(L, values).col(0));
     };
     const double start = std::log(near.smoothing);
     request.start = {start};
@@ -113,7 +114,7 @@ FieldPrior most_probable_prior(const SurfaceSpace& space, const PointTrace& trac
     request.step = {2};
     request.tolerance = 2e-2;
     request.most_evaluations = 25;
-    const Minimum minimum = minimise(request);
+    const nlopt::Minimum minimum = nlopt::minimise(request);
     if (minimum.value >= least) continue;
     least = minimum.value;
     best = {length, std::exp(minimum.x[0])};
@@ -125,7 +126,7 @@ FieldPrior most_probable_prior(const SurfaceSpace& space, const PointTrace& trac
 
 Kriging::~Kriging() = default;
 
-Kriging::Kriging(const SurfaceSpace& space, const NoisyValues& measured,
+Kriging::Kriging(const fem::SurfaceSpace& space, const NoisyValues& measured,
                  const std::vector<Point>& points, const CorrelatedNoise& noise,
                  const FieldPrior& near) {
   const Eigen::Index all = measured.values.size();
@@ -137,7 +138,8 @@ Kriging::Kriging(const SurfaceSpace& space, const NoisyValues& measured,
   data->prior = most_probable_prior(space, rows_of(data->trace, few), covariance(few, few),
                                     data->centred(few), near);
   data->field = std::make_unique<GaussianField>(space, data->prior);
-  data->factors = cholesky_factor(gram(data->field->root_at(data->trace)) + covariance);
+  data->factors =
+      openblas::cholesky_factor(openblas::gram(data->field->root_at(data->trace)) + covariance);
   data_ = std::move(data);
 }
 
@@ -146,7 +148,7 @@ FieldEstimate Kriging::estimate(const ErrorRequest& wanted) const {
   const GaussianField& field = *d.field;
   const auto across = [&](const Eigen::MatrixXd& values) {  // Σ Tᵀ K⁻¹
     return field.covariance_times(
-        Eigen::MatrixXd(d.trace.transpose() * divided_by_factors(d.factors, values)));
+        Eigen::MatrixXd(d.trace.transpose() * openblas::divided_by_factors(d.factors, values)));
   };
   const Vec mean = d.level * across(d.centred).col(0);
   FieldEstimate result{field.projected(Vec(mean.array() + d.mean)), d.prior, d.level, {}, {}};
@@ -162,8 +164,8 @@ FieldEstimate Kriging::estimate(const ErrorRequest& wanted) const {
     const Eigen::MatrixXd before = field.draws(wanted.draws, wanted.stream);
     Eigen::MatrixXd noise(d.centred.size(), wanted.draws);
     for (Eigen::Index i = 0; i < noise.size(); ++i)
-      noise.data()[i] =
-          normal_random(fixed_seed::kriging_noise, wanted.stream, static_cast<std::uint64_t>(i));
+      noise.data()[i] = normal_random(statistics::fixed_seed::kriging_noise, wanted.stream,
+                                      static_cast<std::uint64_t>(i));
     const Eigen::MatrixXd values =
         d.trace * before + d.deviation.asDiagonal() * d.noise.coloured(noise);
     result.draws = field.projected(d.level * (before - across(values)));
@@ -172,7 +174,7 @@ FieldEstimate Kriging::estimate(const ErrorRequest& wanted) const {
 }
 
 // Conjugate gradients for K⁻¹ y with the K of that mesh; the own one is nearly its inverse.
-Vec Kriging::field_on(const SurfaceSpace& other, const PointTrace& all) const {
+Vec Kriging::field_on(const fem::SurfaceSpace& other, const PointTrace& all) const {
   const Data& d = *data_;
   const GaussianField field(other, d.prior);
   const PointTrace trace = rows_of(all, d.rows);
@@ -188,7 +190,7 @@ Vec Kriging::field_on(const SurfaceSpace& other, const PointTrace& all) const {
     const double step = size / direction.dot(image);
     x += step * direction;
     residual -= step * image;
-    z = divided_by_factors(d.factors, residual).col(0);
+    z = openblas::divided_by_factors(d.factors, residual).col(0);
     const double next = residual.dot(z);
     direction = z + next / size * direction;
     size = next;
@@ -196,4 +198,4 @@ Vec Kriging::field_on(const SurfaceSpace& other, const PointTrace& all) const {
   return field.projected(Vec((d.level * load(x)).array() + d.mean)).col(0);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

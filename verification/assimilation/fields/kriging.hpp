@@ -5,7 +5,7 @@
 #include "verification/assimilation/fields/field_estimate.hpp"
 #include "verification/assimilation/fields/noise_correlation.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 struct CorrelatedNoise {
   double level;  // standard deviation, in units of the values' `deviation`
@@ -18,13 +18,13 @@ class Kriging {
   // maximises the likelihood of some of the values, begun at `near`. Of more values than
   // kMostKriged some are left out. Serial spaces, which must outlive this object. Throws
   // std::runtime_error if the field cannot be estimated.
-  Kriging(const SurfaceSpace& space, const NoisyValues& measured, const std::vector<Point>& points,
-          const CorrelatedNoise& noise, const FieldPrior& near);
+  Kriging(const fem::SurfaceSpace& space, const NoisyValues& measured,
+          const std::vector<Point>& points, const CorrelatedNoise& noise, const FieldPrior& near);
   ~Kriging();
 
   FieldEstimate estimate(const ErrorRequest& wanted) const;
   // The field on another mesh of the surface, `trace` being that of all values there.
-  Vec field_on(const SurfaceSpace& other, const PointTrace& trace) const;
+  Vec field_on(const fem::SurfaceSpace& other, const PointTrace& trace) const;
 
  private:
   struct Data;
@@ -33,4 +33,4 @@ class Kriging {
 
 inline constexpr Eigen::Index kMostKriged = 6000;
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

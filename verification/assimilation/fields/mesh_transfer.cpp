@@ -2,19 +2,20 @@
 
 #include "kernel/fem/density_load.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
-MeshTransfer::MeshTransfer(const SurfaceSpace& from, SpacePtr to, const Eigen::Matrix3d& rotation)
+MeshTransfer::MeshTransfer(const fem::SurfaceSpace& from, bench::SpacePtr to,
+                           const Eigen::Matrix3d& rotation)
     : to_(std::move(to)) {
-  const CutSurface& surface = to_->surface;
+  const mesh::CutSurface& surface = to_->surface;
   std::vector<Point> points;
   std::vector<SurfacePlace> places;
-  Vec weights(static_cast<Eigen::Index>(surface.triangles.size() * kDegreeFourRule.size()));
+  Vec weights(static_cast<Eigen::Index>(surface.triangles.size() * fem::kDegreeFourRule.size()));
   for (std::size_t t = 0; t < surface.triangles.size(); ++t)
-    for (std::size_t p = 0; p < kDegreeFourRule.size(); ++p) {
-      const auto& [at, weight] = kDegreeFourRule[p];
+    for (std::size_t p = 0; p < fem::kDegreeFourRule.size(); ++p) {
+      const auto& [at, weight] = fem::kDegreeFourRule[p];
       weights[static_cast<Eigen::Index>(points.size())] = weight * surface.triangle_area[t];
-      points.push_back(rotation.transpose() * quadrature_point(surface, t, p).x);
+      points.push_back(rotation.transpose() * fem::quadrature_point(surface, t, p).x);
       places.push_back({static_cast<int>(t), at});
     }
   load_ = trace_at(*to_, places).transpose() * weights.asDiagonal() *
@@ -23,7 +24,7 @@ MeshTransfer::MeshTransfer(const SurfaceSpace& from, SpacePtr to, const Eigen::M
 
 Vec MeshTransfer::operator()(VecView c) const {
   Vec projected(to_->nodes());
-  require(to_->solve_mass(load_ * c, projected));
+  bench::require(to_->solve_mass(load_ * c, projected));
   return projected;
 }
 
@@ -33,4 +34,4 @@ Eigen::MatrixXd MeshTransfer::columns(const Eigen::MatrixXd& X) const {
   return result;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -7,7 +7,7 @@
 
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 using GridCell = std::array<int, 3>;
@@ -120,4 +120,4 @@ WhiteningPtr whitening(const std::vector<Point>& points, const NoiseCorrelation&
   return std::make_shared<const NoiseWhitening>(points, correlation);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

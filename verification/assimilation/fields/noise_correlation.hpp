@@ -11,7 +11,7 @@
 #include "backends/suitesparse/sparse_cholesky.hpp"
 #include "kernel/core/types.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 // Wendland's (1995) function (1 − r)⁸ (32 r³ + 25 r² + 8 r + 1) up to r = 1, then 0: a correlation
 // in R³, close to a Gaussian whose standard deviation is kWendlandLength.
@@ -58,7 +58,7 @@ class NoiseWhitening {
 
  private:
   Eigen::SparseMatrix<double> R_;
-  SparseCholesky factors_;
+  suitesparse::SparseCholesky factors_;
   mutable std::mutex one_at_a_time_;
 };
 
@@ -66,4 +66,4 @@ class NoiseWhitening {
 using WhiteningPtr = std::shared_ptr<const NoiseWhitening>;
 WhiteningPtr whitening(const std::vector<Point>& points, const NoiseCorrelation& correlation);
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 // In robust standard deviations: of a million normally distributed values none is further away.
@@ -39,4 +39,4 @@ std::size_t drop_outliers(const Vec& field, double least, FieldSnapshot& snapsho
   return dropped;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

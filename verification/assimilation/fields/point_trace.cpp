@@ -9,7 +9,7 @@
 #include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 using Barycentric = std::array<double, 3>;
@@ -49,8 +49,8 @@ Barycentric nearest_in_triangle(const std::array<Point, 3>& corner, const Point&
 // The triangles of Γ_h by the cell of the background mesh that they lie in.
 class TriangleFinder {
  public:
-  explicit TriangleFinder(const SurfaceSpace& space) : space_(space) {
-    const CutSurface& surface = space.surface;
+  explicit TriangleFinder(const fem::SurfaceSpace& space) : space_(space) {
+    const mesh::CutSurface& surface = space.surface;
     for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
       const auto corner = corners(static_cast<int>(t));
       const Point middle = (corner[0] + corner[1] + corner[2]) / 3;
@@ -69,12 +69,12 @@ class TriangleFinder {
 
   // Looks through growing shells of cells until no nearer triangle can be in the next one.
   Nearest find(const Point& x, double reach) const {
-    const Lattice centre = cell_of(x);
+    const mesh::Lattice centre = cell_of(x);
     const double h = space_.h();
     const auto shells = static_cast<int>(std::ceil(reach / h)) + 1;
     Nearest nearest;
     for (int shell = 0; shell <= shells && nearest.distance > (shell - 1) * h; ++shell)
-      for_shell(centre, shell, [&](const Lattice& cell) {
+      for_shell(centre, shell, [&](const mesh::Lattice& cell) {
         if (distance_to(cell, x) <= nearest.distance)
           look(space_.mesh.cube.cell_id(cell), x, nearest);
       });
@@ -88,23 +88,23 @@ class TriangleFinder {
             space_.surface.position[triangle[2]]};
   }
 
-  Lattice cell_of(const Point& x) const {
-    Lattice cell;
+  mesh::Lattice cell_of(const Point& x) const {
+    mesh::Lattice cell;
     for (int d = 0; d < 3; ++d)
       cell[d] = std::clamp<std::int64_t>(
-          static_cast<std::int64_t>(std::floor((x[d] + kBoxHalfWidth) / space_.h())), 0,
+          static_cast<std::int64_t>(std::floor((x[d] + mesh::kBoxHalfWidth) / space_.h())), 0,
           space_.mesh.cube.cells - 1);
     return cell;
   }
 
   template <class Action>
-  void for_shell(const Lattice& centre, int shell, const Action& action) const {
+  void for_shell(const mesh::Lattice& centre, int shell, const Action& action) const {
     const std::int64_t cells = space_.mesh.cube.cells;
     for (int i = -shell; i <= shell; ++i)
       for (int j = -shell; j <= shell; ++j)
         for (int k = -shell; k <= shell; ++k) {
           if (std::max({std::abs(i), std::abs(j), std::abs(k)}) != shell) continue;
-          const Lattice cell{centre[0] + i, centre[1] + j, centre[2] + k};
+          const mesh::Lattice cell{centre[0] + i, centre[1] + j, centre[2] + k};
           if (std::all_of(cell.begin(), cell.end(),
                           [cells](std::int64_t c) { return c >= 0 && c < cells; }))
             action(cell);
@@ -112,11 +112,11 @@ class TriangleFinder {
   }
 
   // Triangles lie in their cells, but for roundoff: nothing in one is nearer than that.
-  double distance_to(const Lattice& cell, const Point& x) const {
+  double distance_to(const mesh::Lattice& cell, const Point& x) const {
     constexpr double kRoundoff = 1e-12;
     double squares = 0;
     for (int d = 0; d < 3; ++d) {
-      const double low = -kBoxHalfWidth + static_cast<double>(cell[d]) * space_.h();
+      const double low = -mesh::kBoxHalfWidth + static_cast<double>(cell[d]) * space_.h();
       const double beside = std::max({low - x[d], x[d] - low - space_.h(), 0.0});
       squares += beside * beside;
     }
@@ -137,7 +137,7 @@ class TriangleFinder {
     }
   }
 
-  const SurfaceSpace& space_;
+  const fem::SurfaceSpace& space_;
   // Within a ball, most of which are too far away to be looked at.
   struct Bounded {
     int triangle;
@@ -153,14 +153,14 @@ std::string text_of(const Point& x) {
 
 }  // namespace
 
-PointTrace trace_at(const SurfaceSpace& space, const std::vector<SurfacePlace>& places) {
-  const CutSurface& surface = space.surface;
+PointTrace trace_at(const fem::SurfaceSpace& space, const std::vector<SurfacePlace>& places) {
+  const mesh::CutSurface& surface = space.surface;
   std::vector<Eigen::Triplet<double>> entries;
   entries.reserve(6 * places.size());
   for (std::size_t row = 0; row < places.size(); ++row)
     for (int k = 0; k < 3; ++k) {
       const auto& [triangle, at] = places[row];
-      const CutPoint& cut = surface.points[surface.triangles[triangle][k]];
+      const mesh::CutPoint& cut = surface.points[surface.triangles[triangle][k]];
       entries.emplace_back(static_cast<int>(row), cut.low, at[k] * (1 - cut.s));
       entries.emplace_back(static_cast<int>(row), cut.high, at[k] * cut.s);
     }
@@ -169,7 +169,8 @@ PointTrace trace_at(const SurfaceSpace& space, const std::vector<SurfacePlace>& 
   return trace;
 }
 
-PointTrace point_trace(const SurfaceSpace& space, const std::vector<Point>& points, double reach) {
+PointTrace point_trace(const fem::SurfaceSpace& space, const std::vector<Point>& points,
+                       double reach) {
   const TriangleFinder finder(space);
   std::vector<SurfacePlace> places;
   places.reserve(points.size());
@@ -185,4 +186,4 @@ PointTrace point_trace(const SurfaceSpace& space, const std::vector<Point>& poin
   return trace_at(space, places);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

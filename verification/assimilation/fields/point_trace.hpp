@@ -7,7 +7,7 @@
 
 #include "kernel/fem/surface_space.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 // A row per point, a column per node: values = trace · nodal. Serial spaces only.
 using PointTrace = Eigen::SparseMatrix<double, Eigen::RowMajor>;
@@ -17,10 +17,11 @@ struct SurfacePlace {
   int triangle;
   std::array<double, 3> at;
 };
-PointTrace trace_at(const SurfaceSpace& space, const std::vector<SurfacePlace>& places);
+PointTrace trace_at(const fem::SurfaceSpace& space, const std::vector<SurfacePlace>& places);
 
 // A field at a point is c_h at the point of Γ_h nearest to it. Throws InputError naming the first
 // point that is further than `reach` away.
-PointTrace point_trace(const SurfaceSpace& space, const std::vector<Point>& points, double reach);
+PointTrace point_trace(const fem::SurfaceSpace& space, const std::vector<Point>& points,
+                       double reach);
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

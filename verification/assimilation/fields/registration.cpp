@@ -10,7 +10,7 @@
 #include "verification/assimilation/fields/point_trace.hpp"
 #include "verification/statistics/random_streams.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 // Rotations that are tried, about 0.35 rad apart, by so many values each; and the best of them.
@@ -33,7 +33,7 @@ Point cube_direction(int face, double u, double v) {
 // Uniform over all rotations (Shoemake 1992).
 Eigen::Matrix3d random_rotation(std::uint64_t index) {
   const auto uniform = [&](std::uint64_t i) {
-    return uniform_random(fixed_seed::registration, 0, 3 * index + i);
+    return uniform_random(statistics::fixed_seed::registration, 0, 3 * index + i);
   };
   const double u = uniform(0), a = 2 * kPi * uniform(1), b = 2 * kPi * uniform(2);
   const double s = std::sqrt(1 - u), t = std::sqrt(u);
@@ -88,7 +88,7 @@ class Alignment {
   }
 
   Eigen::Matrix3d refined(const Eigen::Matrix3d& near) const {
-    MinimiseRequest request;
+    nlopt::MinimiseRequest request;
     request.function = [&](const std::vector<double>& w) {
       const Eigen::Matrix3d Q = rotation_by({w[0], w[1], w[2]}) * near;
       return misfit((*this)(Q, stride_for(kFineValues)), Q);
@@ -99,7 +99,7 @@ class Alignment {
     request.step.assign(3, 0.1);
     request.tolerance = 1e-3;
     request.most_evaluations = 120;
-    const std::vector<double> w = minimise(request).x;
+    const std::vector<double> w = nlopt::minimise(request).x;
     return rotation_by({w[0], w[1], w[2]}) * near;
   }
 
@@ -123,12 +123,13 @@ std::vector<Eigen::Matrix3d> most_alike(const Alignment& alignment) {
 
 }  // namespace
 
-bool is_sphere(const LevelSet& surface) {
+bool is_sphere(const geometry::LevelSet& surface) {
   constexpr std::uint64_t kDirections = 50;
   constexpr double kRound = 1e-9;
   for (std::uint64_t k = 0; k < kDirections; ++k) {
-    const Point x = uniform_direction(uniform_random(fixed_seed::registration, 1, 2 * k),
-                                      uniform_random(fixed_seed::registration, 1, 2 * k + 1));
+    const Point x =
+        uniform_direction(uniform_random(statistics::fixed_seed::registration, 1, 2 * k),
+                          uniform_random(statistics::fixed_seed::registration, 1, 2 * k + 1));
     if (std::fabs(surface.value(x)) > kRound) return false;
   }
   return true;
@@ -138,7 +139,7 @@ double angle_of(const Eigen::Matrix3d& rotation) {
   return Eigen::AngleAxisd(rotation).angle();
 }
 
-SphereMap::SphereMap(const SurfaceSpace& space, const Vec& field) {
+SphereMap::SphereMap(const fem::SurfaceSpace& space, const Vec& field) {
   std::vector<Point> directions;
   for (int face = 0; face < 6; ++face)
     for (int i = 0; i < kSide; ++i)
@@ -192,4 +193,4 @@ Registration register_values(const SphereMap& field, const std::vector<Point>& p
   return {Q, true, with};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

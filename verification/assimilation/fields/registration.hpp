@@ -7,13 +7,13 @@
 #include "kernel/fem/surface_space.hpp"
 #include "kernel/geometry/level_set.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 // A field on the unit sphere for fast looks at any direction: bilinear on the faces of a cube.
 class SphereMap {
  public:
   // Throws InputError if the space is that of another surface.
-  SphereMap(const SurfaceSpace& space, const Vec& field);
+  SphereMap(const fem::SurfaceSpace& space, const Vec& field);
   double at(const Point& x) const;
 
  private:
@@ -38,8 +38,8 @@ Registration register_values(const SphereMap& field, const std::vector<Point>& p
                              const Vec& values);
 
 // Is it the unit sphere around the origin?
-bool is_sphere(const LevelSet& surface);
+bool is_sphere(const geometry::LevelSet& surface);
 
 double angle_of(const Eigen::Matrix3d& rotation);
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

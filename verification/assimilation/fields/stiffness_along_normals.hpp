@@ -3,12 +3,13 @@
 
 #include "kernel/fem/sparse_view.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 // Of fields that are constant along normals, since nothing is known off the surface: with the
 // largest weight of S that keeps the order.
-inline EigenMatrix stiffness_along_normals(const SurfaceSpace& space) {
-  return as_eigen(space, combine(1, space.stiffness, 1 / space.h(), space.normal_stiffness));
+inline fem::EigenMatrix stiffness_along_normals(const fem::SurfaceSpace& space) {
+  return fem::as_eigen(space,
+                       fem::combine(1, space.stiffness, 1 / space.h(), space.normal_stiffness));
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

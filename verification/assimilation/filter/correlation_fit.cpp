@@ -5,7 +5,7 @@
 
 #include "verification/assimilation/filter/variance_components.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 // Supports are in this ratio, and the shortest is so many spacings long.
@@ -110,4 +110,4 @@ double fit_variance(const std::vector<NoiseBlock>& blocks, const NoiseCorrelatio
   return model.fit(Vec::Ones(1), {true}).variances[0];
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

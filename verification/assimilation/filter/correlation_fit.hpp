@@ -7,7 +7,7 @@
 #include "verification/assimilation/fields/noise_correlation.hpp"
 #include "verification/assimilation/filter/noise_blocks.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 struct CorrelationFit {
   NoiseCorrelation correlation;  // white, unless it is significantly more probable than that
@@ -29,4 +29,4 @@ CorrelationFit fit_correlation(const std::vector<NoiseBlock>& blocks, double spa
 double fit_variance(const std::vector<NoiseBlock>& blocks, const NoiseCorrelation& correlation,
                     const ThreadTeam& team);
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

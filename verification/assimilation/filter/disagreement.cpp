@@ -4,14 +4,14 @@
 #include <array>
 #include <cmath>
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 constexpr int kFewestValues = 10;
 constexpr std::array<const char*, 3> kStates = {"outside rafts", "boundary", "inside rafts"};
 
 // The middle half of the way from one well to the other counts as the boundary.
-std::size_t state_of(double forecast, const DoubleWell& well) {
+std::size_t state_of(double forecast, const physics::DoubleWell& well) {
   const double share = (forecast - well.a) / (well.b - well.a);
   return share < 0.25 ? 0 : share > 0.75 ? 2 : 1;
 }
@@ -40,7 +40,7 @@ std::size_t nearest_patch(const std::vector<Point>& middles, const Point& x) {
 }
 
 std::vector<Disagreement> disagreements(const FilterProblems& data, const FilterResult& result,
-                                        const DoubleWell& well) {
+                                        const physics::DoubleWell& well) {
   const std::vector<Point> corners = patch_middles();
   std::vector<Disagreement> all;
   for (const Innovation& in : result.innovations) {
@@ -78,4 +78,4 @@ std::size_t significant(const std::vector<Disagreement>& sorted, double level) {
   return count;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

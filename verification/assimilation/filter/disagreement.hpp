@@ -8,7 +8,7 @@
 #include "kernel/physics/double_well.hpp"
 #include "verification/assimilation/filter/field_filter.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 // Of twelve patches of a closed surface: the corners of an icosahedron, as unit vectors.
 std::vector<Point> patch_middles();
@@ -27,10 +27,10 @@ struct Disagreement {
 // that hold at least 10 values, the most significant first.
 // `data`: what the result is of.
 std::vector<Disagreement> disagreements(const FilterProblems& data, const FilterResult& result,
-                                        const DoubleWell& well);
+                                        const physics::DoubleWell& well);
 
 // How many of them are significant if a share of `level` of those may be false (Benjamini and
 // Hochberg 1995).
 std::size_t significant(const std::vector<Disagreement>& sorted, double level);
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 constexpr double kReach = 3;  // of the weights, in lengths
@@ -54,4 +54,4 @@ DisagreementMaps disagreement_maps(const FilterProblems& data, const FilterResul
   return maps;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -5,7 +5,7 @@
 
 #include "verification/assimilation/filter/field_filter.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 struct DisagreementMap {
   std::size_t vesicle;
@@ -23,4 +23,4 @@ struct DisagreementMaps {
 DisagreementMaps disagreement_maps(const FilterProblems& data, const FilterResult& result,
                                    const std::vector<Point>& places, double length);
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -7,23 +7,23 @@
 #include "kernel/effects/effects.hpp"
 #include "verification/statistics/random_streams.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 // −(ω × x)·∇_Γ c for turns about the three axes.
-Columns turns(const CahnHilliard& problem, const Vec& c) {
-  const EffectEntry& rotation = effects().find("rotation");
-  const SurfaceSpace& space = problem.space();
+Columns turns(const problem::CahnHilliard& problem, const Vec& c) {
+  const effects::EffectEntry& rotation = effects::effects().find("rotation");
+  const fem::SurfaceSpace& space = problem.space();
   Columns result(c.size(), 3);
   for (int axis = 0; axis < 3; ++axis) {
-    CahnHilliardModel model = problem.model();
+    problem::CahnHilliardModel model = problem.model();
     std::vector<double> values{1, 0, 0, 0};
     values[1 + axis] = 1;
     model.effects.clear();
     rotation.add(Parameters(rotation.parameters, values), model);
     Vec first = Vec::Zero(c.size()), second = Vec::Zero(c.size()), rate(c.size());
     model.effects.front()->add_residual(space, 0, c, Vec::Zero(c.size()), first, second);
-    require(space.solve_mass(-first, rate));
+    bench::require(space.solve_mass(-first, rate));
     result.col(axis) = rate;
   }
   return result;
@@ -35,17 +35,17 @@ void add_noise(std::size_t vesicle, std::size_t snapshot, double error, Columns&
   const std::uint64_t stream = 10000 * (1000 * vesicle + snapshot);
   for (Eigen::Index j = 0; j < values.cols(); ++j) {
     const auto column = static_cast<std::uint64_t>(j);
-    const double size =
-        std::exp(0.5 * error * normal_random(fixed_seed::replicate_noise_size, column, 0));
+    const double size = std::exp(
+        0.5 * error * normal_random(statistics::fixed_seed::replicate_noise_size, column, 0));
     for (Eigen::Index i = 0; i < values.rows(); ++i)
-      values(i, j) += size * normal_random(fixed_seed::replicate_values, stream + column,
-                                           static_cast<std::uint64_t>(i));
+      values(i, j) += size * normal_random(statistics::fixed_seed::replicate_values,
+                                           stream + column, static_cast<std::uint64_t>(i));
   }
 }
 
 }  // namespace
 
-FieldComparison compare_field(const FilterProblem& data, const CahnHilliard& problem,
+FieldComparison compare_field(const FilterProblem& data, const problem::CahnHilliard& problem,
                               const FilterSettings& settings, const Belief& forecast,
                               std::size_t snapshot, const ResolvedForecast::End& mesh) {
   const NoisyValues& measured = data.snapshots[snapshot];
@@ -56,7 +56,7 @@ FieldComparison compare_field(const FilterProblem& data, const CahnHilliard& pro
     return whitening ? whitening->whitened(scaled) : scaled;
   };
   const auto seen = [&](const Columns& X) { return weighted(measured.trace * X); };
-  const DoubleWell& well = problem.model().well;
+  const physics::DoubleWell& well = problem.model().well;
   const double distance = well.b - well.a;
   const Columns patterns = distance * data.patterns->at(well, forecast.c);
   const Columns turned = settings.turn * turns(problem, forecast.c);
@@ -79,7 +79,7 @@ FieldComparison compare_field(const FilterProblem& data, const CahnHilliard& pro
   const Columns state = side_by_side(error_values, frame);
   in.directions = side_by_side(state, seen(patterns));
   in.state_directions = state.cols();
-  in.gram = gram(in.directions);
+  in.gram = openblas::gram(in.directions);
   in.parameters = seen(forecast.parameters);
   in.parameters.col(kMeshError) += weighted(mesh.values_doubt - measured.trace * mesh.doubt).col(0);
   in.replicates = seen(forecast.replicates);
@@ -98,4 +98,4 @@ FieldComparison compare_field(const FilterProblem& data, const CahnHilliard& pro
   return comparison;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

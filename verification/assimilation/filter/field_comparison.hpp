@@ -4,7 +4,7 @@
 #include "verification/assimilation/filter/filter_problem.hpp"
 #include "verification/assimilation/filter/innovation.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 // What is known of c, and how it depends on what is not.
 struct Belief {
@@ -22,8 +22,8 @@ struct FieldComparison {
 
 // `forecast`: of that snapshot, at least the second one; `mesh`: what its own mesh lacks. The
 // innovation is as it is before its amplitudes are known: without frame, gap and weighted squares.
-FieldComparison compare_field(const FilterProblem& data, const CahnHilliard& problem,
+FieldComparison compare_field(const FilterProblem& data, const problem::CahnHilliard& problem,
                               const FilterSettings& settings, const Belief& forecast,
                               std::size_t snapshot, const ResolvedForecast::End& mesh);
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -9,7 +9,7 @@
 #include "verification/assimilation/filter/field_comparison.hpp"
 #include "verification/statistics/random_streams.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 // In forecasts that lack something, of the distance of the phases: what a gap is looked for as.
@@ -20,10 +20,10 @@ class Filter {
   Filter(const FilterProblem& data, const FilterModel& model, const FilterSettings& settings,
          ErrorMaps& maps)
       : data_(data),
-        pace_(model.pace),
+        diffusion_ratio_(model.diffusion_ratio),
         settings_(settings),
         maps_(maps),
-        problem_(data.space, with_effects(model.base, model.hypothesis.terms())),
+        problem_(data.space, effects::with_effects(model.base, model.hypothesis.terms())),
         flow_(problem_, data.tangent_solver,
               maps.intervals() == 0 ? std::make_shared<const ThreadTeam>(1) : data.team),
         forcing_(problem_, model.base, model.hypothesis, model.screened) {
@@ -51,7 +51,8 @@ class Filter {
 
  private:
   void advance(std::size_t k) {
-    const double begin = pace_ * data_.time(k), end = pace_ * data_.time(k + 1);
+    const double begin = diffusion_ratio_ * data_.time(k),
+                 end = diffusion_ratio_ * data_.time(k + 1);
     const SnapshotTurn* turn = data_.turns[k + 1].get();
     // The finer meshes on one processor, everything else on the other.
     std::future<ResolvedForecast::End> resolved;
@@ -59,18 +60,18 @@ class Filter {
       resolved = std::async(
           data_.team->size() > 1 ? std::launch::async : std::launch::deferred,
           [=] { return resolved_->advance(k + 1, begin, end, turn ? &turn->finest : nullptr); });
-    const auto on_its_mesh = [this](const DaeProblem& p) {
+    const auto on_its_mesh = [this](const problem::DaeProblem& p) {
       return data_.make_integrator(p, *data_.space);
     };
     const Forecast way = forecast(problem_, on_its_mesh, belief_.c, begin, end,
                                   {settings_.tangent_steps, settings_.error_steps});
     if (resolved_) map_errors(way, turn);
-    belief_.errors =
-        product(maps_.image[k], transposed_product(maps_.basis[k], data_.mass * belief_.errors));
+    belief_.errors = openblas::product(
+        maps_.image[k], openblas::transposed_product(maps_.basis[k], data_.mass * belief_.errors));
     belief_.replicates = maps_.replicates[k].leftCols(settings_.replicates);
     flow_.advance(way.paths[0], belief_.parameters,
                   [&](double t, VecView y) { return forcing(begin, end, t, y); });
-    belief_.parameters.col(kPace) += (end - begin) * way.end_rate;
+    belief_.parameters.col(kDiffusionRatio) += (end - begin) * way.end_rate;
     if (turn) belief_.parameters = turn->own.columns(belief_.parameters);
     const Vec there = turn ? turn->own(way.end) : way.end;
     if (resolved_) map_mesh(k, resolved.get(), there);
@@ -78,17 +79,17 @@ class Filter {
     belief_.c = there + maps_.mesh_error[k].field;
   }
 
-  // ∂F/∂θ of all parameters. With F = F(pace t, …) the derivative S of c by ln pace has two parts:
-  // (t − begin) ċ, which is added at the end, and what an F that changes in time does at another
-  // time of the vesicle, begin ∂F/∂t.
+  // ∂F/∂θ of all parameters. With F = F(diffusion ratio t, …) the derivative S of c by ln diffusion
+  // ratio has two parts: (t − begin) ċ, which is added at the end, and what an F that changes in
+  // time does at another time of the vesicle, begin ∂F/∂t.
   Columns forcing(double begin, double end, double t, VecView y) const {
     const double step = 1e-4 * (end - begin);
     const Vec no_rate = Vec::Zero(problem_.size());
     Vec before(problem_.size()), after(problem_.size());
-    require(problem_.residual(t - step, y, no_rate, before));
-    require(problem_.residual(t + step, y, no_rate, after));
+    bench::require(problem_.residual(t - step, y, no_rate, before));
+    bench::require(problem_.residual(t + step, y, no_rate, after));
     Columns all = Columns::Zero(problem_.size(), belief_.parameters.cols());
-    all.col(kPace) = begin / (2 * step) * (after - before);
+    all.col(kDiffusionRatio) = begin / (2 * step) * (after - before);
     all.rightCols(all.cols() - kFirstParameter) = forcing_(t, y);
     return all;
   }
@@ -152,8 +153,9 @@ class Filter {
     const std::uint64_t stream = 1000 * data_.vesicle + in.snapshot;
     Columns sizes(patterns, in.replicates.cols());
     for (Eigen::Index i = 0; i < sizes.size(); ++i)
-      sizes.data()[i] = in.model_error * normal_random(fixed_seed::replicate_model_errors, stream,
-                                                       static_cast<std::uint64_t>(i));
+      sizes.data()[i] =
+          in.model_error * normal_random(statistics::fixed_seed::replicate_model_errors, stream,
+                                         static_cast<std::uint64_t>(i));
     return Columns(weighted.transpose() * in.directions.rightCols(patterns)) * sizes;
   }
 
@@ -164,17 +166,17 @@ class Filter {
     const Vec increment = directions * found;
     belief_.c += increment;
     if (resolved_) resolved_->correct(increment);
-    belief_.parameters -= product(directions, weight.amplitudes(in.parameters));
-    belief_.replicates -= product(directions, weight.amplitudes(in.replicates));
+    belief_.parameters -= openblas::product(directions, weight.amplitudes(in.parameters));
+    belief_.replicates -= openblas::product(directions, weight.amplitudes(in.replicates));
     belief_.errors = weight.posterior_root(directions);
     compress(data_.mass, belief_.errors, settings_.rank);
   }
 
   const FilterProblem& data_;
-  const double pace_;
+  const double diffusion_ratio_;
   const FilterSettings& settings_;
   ErrorMaps& maps_;
-  CahnHilliard problem_;
+  problem::CahnHilliard problem_;
   std::optional<ResolvedForecast> resolved_;  // where the maps are to be filled
   TangentFlow flow_;
   CoefficientForcing forcing_;
@@ -194,13 +196,15 @@ void add(FilterResult& all, FilterResult&& one) {
 }
 
 // What is known of D from elsewhere is one measurement more, and one of each replicate.
-void add_known_pace(double ln_pace, double doubt, FilterResult& all) {
-  all.information(kPace, kPace) += 1 / (doubt * doubt);
-  all.score[kPace] -= ln_pace / (doubt * doubt);
-  all.deviance += ln_pace * ln_pace / (doubt * doubt);
+void add_known_diffusion_ratio(double ln_diffusion_ratio, double doubt, FilterResult& all) {
+  all.information(kDiffusionRatio, kDiffusionRatio) += 1 / (doubt * doubt);
+  all.score[kDiffusionRatio] -= ln_diffusion_ratio / (doubt * doubt);
+  all.deviance += ln_diffusion_ratio * ln_diffusion_ratio / (doubt * doubt);
   for (Eigen::Index r = 0; r < all.null_scores.cols(); ++r)
-    all.null_scores(kPace, r) +=
-        normal_random(fixed_seed::replicate_diffusion, static_cast<std::uint64_t>(r), 0) / doubt;
+    all.null_scores(kDiffusionRatio, r) +=
+        normal_random(statistics::fixed_seed::replicate_diffusion, static_cast<std::uint64_t>(r),
+                      0) /
+        doubt;
 }
 
 }  // namespace
@@ -212,8 +216,8 @@ FilterResult filter_fields(const FilterProblems& data, const FilterModel& model,
   for (std::size_t v = 1; v < data.size(); ++v)
     add(all, Filter(data[v], model, settings, maps[v]).run());
   all.information(kMeshError, kMeshError) += 1 / (kMeshDoubt * kMeshDoubt);
-  add_known_pace(std::log(model.pace), settings.pace_doubt, all);
+  add_known_diffusion_ratio(std::log(model.diffusion_ratio), settings.diffusion_ratio_doubt, all);
   return all;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -14,7 +14,7 @@
 #include "verification/assimilation/filter/innovation.hpp"
 #include "verification/assimilation/forecast/candidates.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 // Linear maps of errors along one series of forecasts: found once, used again for all that stay
 // close to it.
@@ -28,8 +28,8 @@ struct ErrorMaps {
 
 // Of ln D: further away errors of states grow and fade in another way, and maps are found anew.
 inline constexpr double kMapsReach = 0.5;
-inline bool maps_reach(double pace, double pace_of_maps) {
-  return std::fabs(std::log(pace / pace_of_maps)) < kMapsReach;
+inline bool maps_reach(double diffusion_ratio, double diffusion_ratio_of_maps) {
+  return std::fabs(std::log(diffusion_ratio / diffusion_ratio_of_maps)) < kMapsReach;
 }
 
 struct FilterResult {
@@ -45,8 +45,8 @@ struct FilterResult {
 
 // What is held against the measurements.
 struct FilterModel {
-  CahnHilliardModel base;
-  double pace = 1;                  // D over that of the base model
+  problem::CahnHilliardModel base;
+  double diffusion_ratio = 1;       // D over that of the base model
   Hypothesis hypothesis;            // effects that the model has
   std::vector<Candidate> screened;  // effects it might have: derivatives at 0
 };
@@ -61,4 +61,4 @@ inline constexpr double kMeshDoubt = 0.5;
 FilterResult filter_fields(const FilterProblems& data, const FilterModel& model,
                            const FilterSettings& settings, std::vector<ErrorMaps>& maps);
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -6,7 +6,7 @@
 
 #include "verification/assimilation/filter/correlation_fit.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 constexpr std::size_t kPatch = 110, kFewestInPatch = 40;
@@ -111,4 +111,4 @@ std::optional<FieldNoise> noise_of_fields(const std::vector<FieldSeries>& series
   return FieldNoise{unit * std::sqrt(fit.variance * squares / count), fit.correlation};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

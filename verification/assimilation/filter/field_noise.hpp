@@ -6,7 +6,7 @@
 #include "verification/assimilation/fields/field_series.hpp"
 #include "verification/assimilation/fields/noise_correlation.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 struct FieldNoise {
   double level;  // standard deviation in c, root mean square over all values
@@ -17,4 +17,4 @@ struct FieldNoise {
 // from phase boundaries a field is no rougher than that. Nothing if the points are too few.
 std::optional<FieldNoise> noise_of_fields(const std::vector<FieldSeries>& series, int threads);
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -10,7 +10,7 @@
 #include "verification/assimilation/fields/registration.hpp"
 #include "verification/statistics/random_streams.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 // Of the tolerance that integrators have unless asked: far below the noise of a measurement.
@@ -48,25 +48,26 @@ std::vector<NoisyValues> noisy_values(const FilterProblem& data) {
 }
 
 // What is common to all vesicles.
-FilterProblem on_meshes(const LevelSet& surface, const CahnHilliardModel& base, int cells,
-                        int threads, const FilterSettings& settings) {
+FilterProblem on_meshes(const geometry::LevelSet& surface, const problem::CahnHilliardModel& base,
+                        int cells, int threads, const FilterSettings& settings) {
   FilterProblem data;
   // On meshes of some thousand nodes threads are better used for different columns and models.
   data.team = std::make_shared<ThreadTeam>(threads);
   data.space = serial_space(surface, cells, base.mass_stabilisation);
   data.sphere = is_sphere(surface);
   data.finer = std::make_shared<const FinerMeshes>(finer_meshes(surface, data.space, cells));
-  data.mass = as_eigen(*data.space, data.space->stabilised_mass);
+  data.mass = fem::as_eigen(*data.space, data.space->stabilised_mass);
   data.patterns = std::make_shared<const GapPatterns>(*data.space, settings.gap_degree);
   if (settings.blur > 0) data.blur = std::make_shared<const Blur>(*data.space, settings.blur);
-  data.tangent_solver = choose_linear_solver("direct", *data.space).primary;
-  data.make_integrator = [name = settings.integrator](const DaeProblem& problem,
-                                                      const SurfaceSpace& space) {
-    const IntegratorEntry& entry = integrators().find(name);
-    IntegratorSettings integrator;
+  data.tangent_solver = backends::choose_linear_solver("direct", *data.space).primary;
+  data.make_integrator = [name = settings.integrator](const problem::DaeProblem& problem,
+                                                      const fem::SurfaceSpace& space) {
+    const backends::IntegratorEntry& entry = backends::integrators().find(name);
+    time::IntegratorSettings integrator;
     integrator.tolerance = kForecastTolerance * entry.tolerance;
     integrator.method_options["epslin"] = kForecastLinearTolerance;
-    return entry.make(problem, choose_linear_solver("block", space), space.team, integrator);
+    return entry.make(problem, backends::choose_linear_solver("block", space), space.team,
+                      integrator);
   };
   return data;
 }
@@ -82,7 +83,7 @@ void refuse_outliers(const FilterProblem& data) {
 }
 
 // The prior of the first field, the noise of those that count, and what is left without outliers.
-FieldPrior clean(const FieldSeries& series, const DoubleWell& well, FilterProblem& data) {
+FieldPrior clean(const FieldSeries& series, const physics::DoubleWell& well, FilterProblem& data) {
   data.series = series;
   FieldPrior prior{};
   std::size_t dropped = 1;
@@ -116,7 +117,7 @@ void add_frame(const FilterSettings& settings, double distance, std::size_t vesi
   first.errors = std::move(errors);
   for (Eigen::Index j = 0; j < first.draws.cols(); ++j) {
     const auto amplitude = [&](std::uint64_t of) {
-      return normal_random(fixed_seed::replicate_frames, vesicle,
+      return normal_random(statistics::fixed_seed::replicate_frames, vesicle,
                            kFirstFrame * static_cast<std::uint64_t>(j) + of);
     };
     first.draws.col(j) += frame * Eigen::Vector2d(amplitude(0), amplitude(1));
@@ -124,11 +125,11 @@ void add_frame(const FilterSettings& settings, double distance, std::size_t vesi
 }
 
 // The first field, on the model's mesh and on the finest one.
-void estimate_first(const CahnHilliardModel& base, const FilterSettings& settings,
+void estimate_first(const problem::CahnHilliardModel& base, const FilterSettings& settings,
                     FilterProblem& data) {
   const ErrorRequest wanted{2 * base.epsilon, settings.rank, settings.replicates, data.vesicle};
   const NoisyValues& measured = data.snapshots.front();
-  const SurfaceSpace& finest = *data.finer->spaces[1];
+  const fem::SurfaceSpace& finest = *data.finer->spaces[1];
   NoisyValues resolved = measured;
   resolved.trace = data.finer_traces[1].front();
   data.first_noise = data.noise.front();
@@ -146,7 +147,7 @@ void estimate_first(const CahnHilliardModel& base, const FilterSettings& setting
 
 // What a snapshot may look like before it is turned: the field of the one before, and what the
 // base model makes of it by then. The latter only if the model can be advanced so far.
-std::vector<Vec> expected_fields(const FilterProblem& data, const CahnHilliard& base,
+std::vector<Vec> expected_fields(const FilterProblem& data, const problem::CahnHilliard& base,
                                  std::size_t snapshot) {
   const NoisyValues& before = data.snapshots[snapshot - 1];
   std::vector<Vec> fields{estimate_field(*data.space, before, data.prior, {}).field};
@@ -159,11 +160,11 @@ std::vector<Vec> expected_fields(const FilterProblem& data, const CahnHilliard& 
 }
 
 // Each snapshot against what the one before lets expect, whichever is more like it.
-void register_snapshots(const CahnHilliardModel& base, FilterProblem& data) {
+void register_snapshots(const problem::CahnHilliardModel& base, FilterProblem& data) {
   data.turns.assign(data.snapshots.size(), nullptr);
   if (!data.sphere) return;
-  const CahnHilliard problem(data.space, base);
-  const SpacePtr& finest = data.finer->spaces[1];
+  const problem::CahnHilliard problem(data.space, base);
+  const bench::SpacePtr& finest = data.finer->spaces[1];
   for (std::size_t k = 1; k < data.snapshots.size(); ++k) {
     const FieldSnapshot& snapshot = data.series.snapshots[k];
     Registration best{Eigen::Matrix3d::Identity(), false, -1};
@@ -179,7 +180,7 @@ void register_snapshots(const CahnHilliardModel& base, FilterProblem& data) {
   }
 }
 
-void add_series(const FieldSeries& series, const CahnHilliardModel& base,
+void add_series(const FieldSeries& series, const problem::CahnHilliardModel& base,
                 const FilterSettings& settings, FilterProblem& data) {
   data.prior = clean(series, base.well, data);
   data.finer_traces = finer_traces(*data.finer, data.series);
@@ -189,9 +190,11 @@ void add_series(const FieldSeries& series, const CahnHilliardModel& base,
 
 }  // namespace
 
-Vec advanced(const FilterProblem& data, const CahnHilliard& problem, VecView field, double begin,
-             double end) {
-  const auto make = [&](const DaeProblem& p) { return data.make_integrator(p, *data.space); };
+Vec advanced(const FilterProblem& data, const problem::CahnHilliard& problem, VecView field,
+             double begin, double end) {
+  const auto make = [&](const problem::DaeProblem& p) {
+    return data.make_integrator(p, *data.space);
+  };
   return forecast(problem, make, field, begin, end).end;
 }
 
@@ -203,7 +206,7 @@ double count_values(const FilterProblems& data) {
   return count;
 }
 
-void set_correlation(const NoiseCorrelation& correlation, const CahnHilliardModel& base,
+void set_correlation(const NoiseCorrelation& correlation, const problem::CahnHilliardModel& base,
                      const FilterSettings& settings, FilterProblem& data) {
   data.correlation = correlation;
   data.whitening.assign(data.snapshots.size(), nullptr);
@@ -215,8 +218,9 @@ void set_correlation(const NoiseCorrelation& correlation, const CahnHilliardMode
   estimate_first(base, settings, data);
 }
 
-FilterProblems make_filter_problems(const std::vector<FieldSeries>& series, const LevelSet& surface,
-                                    const CahnHilliardModel& base, int cells, int threads,
+FilterProblems make_filter_problems(const std::vector<FieldSeries>& series,
+                                    const geometry::LevelSet& surface,
+                                    const problem::CahnHilliardModel& base, int cells, int threads,
                                     bool hold_out, const FilterSettings& settings) {
   FilterProblems problems(series.size(), on_meshes(surface, base, cells, threads, settings));
   for (std::size_t v = 0; v < series.size(); ++v) {
@@ -228,4 +232,4 @@ FilterProblems make_filter_problems(const std::vector<FieldSeries>& series, cons
   return problems;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

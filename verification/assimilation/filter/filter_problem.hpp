@@ -12,7 +12,7 @@
 #include "verification/assimilation/forecast/gap_patterns.hpp"
 #include "verification/assimilation/forecast/resolved_forecast.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 struct FilterSettings {
   int rank = 240;         // directions in which the state is uncertain
@@ -27,7 +27,7 @@ struct FilterSettings {
   double turn = 0.05;  // of the angle by which a vesicle may have turned between two snapshots
   int gap_degree = 6;  // of the polynomials that gaps are sought as
   // Standard deviation of ln D of the base model, as far as D is known from elsewhere.
-  double pace_doubt = std::numeric_limits<double>::infinity();
+  double diffusion_ratio_doubt = std::numeric_limits<double>::infinity();
   std::string integrator = "ida";  // of forecasts
 };
 
@@ -46,10 +46,10 @@ struct FilterProblem {
   FieldSeries series;   // without outliers
   std::size_t outliers = 0;
   std::shared_ptr<const ThreadTeam> team;
-  SpacePtr space;       // of one thread
-  bool sphere = false;  // is that what the surface is?
+  bench::SpacePtr space;  // of one thread
+  bool sphere = false;    // is that what the surface is?
   std::shared_ptr<const FinerMeshes> finer;
-  EigenMatrix mass;                    // stabilised, on `space`
+  fem::EigenMatrix mass;               // stabilised, on `space`
   std::vector<NoisyValues> snapshots;  // of the series, on `space`
   FinerTraces finer_traces;
   std::size_t train = 0;         // snapshots that count
@@ -64,7 +64,7 @@ struct FilterProblem {
   std::vector<std::shared_ptr<const SnapshotTurn>> turns;
   std::shared_ptr<const GapPatterns> patterns;
   std::shared_ptr<const Blur> blur;  // if the images have one
-  LinearSolverFactory tangent_solver;
+  linear::LinearSolverFactory tangent_solver;
   MakeForecaster make_integrator;
 
   double time(std::size_t snapshot) const { return series.snapshots[snapshot].time; }
@@ -74,22 +74,23 @@ using FilterProblems = std::vector<FilterProblem>;
 
 // A field on `space` at the time `end`, from that at `begin`. Throws std::runtime_error if the
 // problem cannot be advanced.
-Vec advanced(const FilterProblem& data, const CahnHilliard& problem, VecView field, double begin,
-             double end);
+Vec advanced(const FilterProblem& data, const problem::CahnHilliard& problem, VecView field,
+             double begin, double end);
 
 // That were measured and count, first snapshots aside.
 double count_values(const FilterProblems& data);
 
 // From now on the noise of its snapshots, whose levels are known, has that correlation; the first
 // field is estimated anew. Throws std::runtime_error if it cannot be.
-void set_correlation(const NoiseCorrelation& correlation, const CahnHilliardModel& base,
+void set_correlation(const NoiseCorrelation& correlation, const problem::CahnHilliardModel& base,
                      const FilterSettings& settings, FilterProblem& data);
 
 // Of all vesicles, on the same meshes. `hold_out`: the last of four snapshots or more is forecast,
 // but counts for nothing. Throws InputError for places that are off the surface, and where more
 // than a twentieth of the values are outliers.
-FilterProblems make_filter_problems(const std::vector<FieldSeries>& series, const LevelSet& surface,
-                                    const CahnHilliardModel& base, int cells, int threads,
+FilterProblems make_filter_problems(const std::vector<FieldSeries>& series,
+                                    const geometry::LevelSet& surface,
+                                    const problem::CahnHilliardModel& base, int cells, int threads,
                                     bool hold_out, const FilterSettings& settings);
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 double square(double x) {
@@ -52,4 +52,4 @@ std::vector<SnapshotGap> snapshot_gaps(const FilterResult& pass) {
   return gaps;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -7,7 +7,7 @@
 
 #include "verification/assimilation/filter/field_filter.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 // Root mean squares in c: of the snapshots that count, and of those that are held out (0: none is).
 struct Gaps {
@@ -33,4 +33,4 @@ Gaps expected_gaps(const FilterResult& pass);  // if nothing is missing
 
 std::vector<SnapshotGap> snapshot_gaps(const FilterResult& pass);
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

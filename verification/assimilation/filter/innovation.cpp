@@ -6,7 +6,7 @@
 
 #include "backends/openblas/dense_algebra.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 namespace {
 
@@ -35,7 +35,7 @@ InnovationCovariance::InnovationCovariance(const Innovation& innovation, double 
       factors_(factors_of(innovation, scale_)) {}
 
 Columns InnovationCovariance::solve(const Columns& X) const {
-  return X - product(G_, amplitudes(X));
+  return X - openblas::product(G_, amplitudes(X));
 }
 
 double InnovationCovariance::log_determinant() const {
@@ -43,12 +43,12 @@ double InnovationCovariance::log_determinant() const {
 }
 
 Columns InnovationCovariance::amplitudes(const Columns& X) const {
-  const Columns load = scale_.asDiagonal() * transposed_product(G_, X);
+  const Columns load = scale_.asDiagonal() * openblas::transposed_product(G_, X);
   return scale_.asDiagonal() * factors_.solve(load);
 }
 
 Columns InnovationCovariance::posterior_root(const Columns& L) const {
-  return divided_by_upper(L * scale_.asDiagonal(), factors_.matrixU());
+  return openblas::divided_by_upper(L * scale_.asDiagonal(), factors_.matrixU());
 }
 
 Columns at_points(const Innovation& in, const Columns& X) {
@@ -88,7 +88,7 @@ Columns explained_parts(const Innovation& innovation, double size, const Columns
   const Columns weighted = InnovationCovariance(innovation, 0).solve(patterns);
   const Factors factors(Eigen::MatrixXd::Identity(patterns.cols(), patterns.cols()) +
                         patterns.transpose() * weighted);
-  return factors.matrixL().solve(transposed_product(weighted, values));
+  return factors.matrixL().solve(openblas::transposed_product(weighted, values));
 }
 
 double root_mean_square(const std::vector<Innovation>& innovations, bool held_out,
@@ -108,4 +108,4 @@ Columns side_by_side(const Columns& a, const Columns& b) {
   return both;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -7,11 +7,11 @@
 #include "verification/assimilation/fields/noise_correlation.hpp"
 #include "verification/assimilation/forecast/tangent_flow.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 // Parameters: ln D first, second what extrapolation to finer meshes gets wrong of its last part,
 // then the coefficients of the hypothesis and those of the screened candidates.
-inline constexpr int kPace = 0, kMeshError = 1, kFirstParameter = 2;
+inline constexpr int kDiffusionRatio = 0, kMeshError = 1, kFirstParameter = 2;
 
 struct Innovation {
   std::size_t vesicle, snapshot;  // of the data
@@ -81,4 +81,4 @@ double root_mean_square(const std::vector<Innovation>& innovations, bool held_ou
 
 Columns side_by_side(const Columns& a, const Columns& b);
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 int widest_axis(const std::vector<Point>& points, const BlockRows& rows) {
@@ -51,4 +51,4 @@ Eigen::MatrixXd distances(const std::vector<Point>& points, const BlockRows& row
   return result;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

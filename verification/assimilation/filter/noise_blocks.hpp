@@ -6,7 +6,7 @@
 
 #include "kernel/core/types.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 using BlockRows = std::vector<Eigen::Index>;
 
@@ -24,4 +24,4 @@ struct NoiseBlock {
 
 Eigen::MatrixXd distances(const std::vector<Point>& points, const BlockRows& rows);
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

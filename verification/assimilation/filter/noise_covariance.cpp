@@ -4,7 +4,7 @@
 #include "verification/assimilation/filter/correlation_fit.hpp"
 #include "verification/assimilation/filter/noise_levels.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 // Larger blocks tell more of long correlations, and take longer.
@@ -70,7 +70,7 @@ NoiseModel noise_model(const FilterProblems& data) {
   return noise;
 }
 
-void set_noise_model(const NoiseModel& noise, const CahnHilliardModel& base,
+void set_noise_model(const NoiseModel& noise, const problem::CahnHilliardModel& base,
                      const FilterSettings& settings, FilterProblems& data) {
   for (FilterProblem& vesicle : data) {
     const double first = noise.first[vesicle.vesicle];
@@ -85,7 +85,7 @@ void set_noise_model(const NoiseModel& noise, const CahnHilliardModel& base,
 }
 
 bool fit_noise_covariance(FilterProblems& data, const FilterResult& pass,
-                          const CahnHilliardModel& base, const FilterSettings& settings) {
+                          const problem::CahnHilliardModel& base, const FilterSettings& settings) {
   const ThreadTeam& team = *data.front().team;
   std::vector<NoiseBlock> counting;
   std::vector<std::vector<NoiseBlock>> all;
@@ -118,4 +118,4 @@ bool fit_noise_covariance(FilterProblems& data, const FilterResult& pass,
   return !same;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 // Deviations that snapshots state are believed, relative to each other, as far as that factor.
@@ -67,4 +67,4 @@ void set_noise(FilterProblems& data, const std::vector<std::vector<double>>& own
   for (FilterProblem& vesicle : data) vesicle.noise = believed(own[vesicle.vesicle], vesicle.train);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

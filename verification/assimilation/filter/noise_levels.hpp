@@ -3,7 +3,7 @@
 
 #include "verification/assimilation/filter/field_filter.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 // Standard deviation of the values that count, in c: their root mean square. Without the first
 // snapshots, of whose own noise nothing is known.
@@ -31,7 +31,7 @@ struct NoiseModel {
 
 NoiseModel noise_model(const FilterProblems& data);
 // Throws std::runtime_error if the first fields cannot be estimated with it.
-void set_noise_model(const NoiseModel& noise, const CahnHilliardModel& base,
+void set_noise_model(const NoiseModel& noise, const problem::CahnHilliardModel& base,
                      const FilterSettings& settings, FilterProblems& data);
 
 // The same with what neighbours share of the noise, which is common to all snapshots: as the
@@ -39,6 +39,6 @@ void set_noise_model(const NoiseModel& noise, const CahnHilliardModel& base,
 // correlation is another one now, so that forecasts and their errors have to be found anew; the
 // first fields are. Throws std::runtime_error if they cannot be.
 bool fit_noise_covariance(FilterProblems& data, const FilterResult& pass,
-                          const CahnHilliardModel& base, const FilterSettings& settings);
+                          const problem::CahnHilliardModel& base, const FilterSettings& settings);
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -6,7 +6,7 @@
 
 #include "verification/assimilation/fields/registration.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 // Root mean square of changes beyond noise that are none, in units of the distance of the phases:
@@ -36,7 +36,7 @@ Vec fitted(const FilterProblem& data, const Vec& field, std::size_t snapshot) {
 
 class Interval {
  public:
-  Interval(const FilterProblem& data, const CahnHilliardModel& base, std::size_t snapshot)
+  Interval(const FilterProblem& data, const problem::CahnHilliardModel& base, std::size_t snapshot)
       : data_(data), base_(base), snapshot_(snapshot) {
     ErrorRequest wanted;
     wanted.draws = kDraws;
@@ -65,9 +65,10 @@ class Interval {
   }
 
   // The model's forecast as the microscope would see it.
-  Vec expected(double pace) const {
-    const CahnHilliard problem(data_.space, base_);
-    const double start = data_.time(snapshot_ - 1), time = pace * (data_.time(snapshot_) - start);
+  Vec expected(double diffusion_ratio) const {
+    const problem::CahnHilliard problem(data_.space, base_);
+    const double start = data_.time(snapshot_ - 1),
+                 time = diffusion_ratio * (data_.time(snapshot_) - start);
     const Vec end = advanced(data_, problem, before_.field, start, start + time);
     return fitted(data_, data_.blur ? data_.blur->blurred(end) : end, snapshot_);
   }
@@ -76,8 +77,8 @@ class Interval {
     const Vec usual = expected(1);
     if (!is_still(usual)) return false;
     const double width = base_.well.b - base_.well.a;
-    for (const double pace : {kMuchSlower, kMuchFaster}) {
-      const Vec other = expected(pace);
+    for (const double diffusion_ratio : {kMuchSlower, kMuchFaster}) {
+      const Vec other = expected(diffusion_ratio);
       const double change = (other - usual).norm() / std::sqrt(static_cast<double>(usual.size()));
       if (change > kStill * width) return false;
     }
@@ -86,14 +87,14 @@ class Interval {
 
  private:
   const FilterProblem& data_;
-  const CahnHilliardModel& base_;
+  const problem::CahnHilliardModel& base_;
   std::size_t snapshot_;
   FieldEstimate before_;
 };
 
 }  // namespace
 
-bool are_at_rest(const FilterProblems& data, const CahnHilliardModel& base) {
+bool are_at_rest(const FilterProblems& data, const problem::CahnHilliardModel& base) {
   const auto all_intervals = [&](const auto& holds) {
     for (const FilterProblem& vesicle : data)
       for (std::size_t k = 1; k < vesicle.snapshots.size(); ++k)
@@ -108,4 +109,4 @@ bool are_at_rest(const FilterProblems& data, const CahnHilliardModel& base) {
   }
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -4,7 +4,7 @@
 
 #include "backends/openblas/dense_algebra.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 // In the weights, of the sum of all variances.
@@ -79,15 +79,15 @@ VarianceComponents::Moments VarianceComponents::moments(const NoiseBlock& block,
   for (std::size_t k = 0; k < components_.size(); ++k)
     if (const double variance = variances[static_cast<Eigen::Index>(k)]; variance > 0)
       V += variance * component(block, k);
-  const Eigen::MatrixXd L = cholesky_factor(V);
-  const Vec weighted = divided_by_factors(L, block.values).col(0);
-  const Eigen::MatrixXd known = divided_by_factors(L, block.known);
+  const Eigen::MatrixXd L = openblas::cholesky_factor(V);
+  const Vec weighted = openblas::divided_by_factors(L, block.values).col(0);
+  const Eigen::MatrixXd known = openblas::divided_by_factors(L, block.known);
   const auto n = static_cast<Eigen::Index>(free.size());
   std::vector<Eigen::MatrixXd> solved;
   Moments result{Vec(n), Vec(n), Eigen::MatrixXd(n, n)};
   for (Eigen::Index j = 0; j < n; ++j) {
     const Eigen::MatrixXd A = component(block, static_cast<std::size_t>(free[j]));
-    solved.push_back(divided_by_factors(L, A));
+    solved.push_back(openblas::divided_by_factors(L, A));
     result.measured[j] = weighted.dot(A * weighted);
     result.known[j] = solved.back().cwiseProduct(known.transpose()).sum();
     for (Eigen::Index k = 0; k <= j; ++k)
@@ -151,4 +151,4 @@ double VarianceComponents::score_gain(const Vec& at, const std::vector<bool>& fr
   return 0.5 * (square(now) - square(best));
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

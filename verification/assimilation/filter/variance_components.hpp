@@ -13,7 +13,7 @@
 #include "kernel/core/thread_team.hpp"
 #include "verification/assimilation/filter/noise_blocks.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 // Correlation of two different values as a function of their distance.
 using CorrelationFunction = std::function<double(double distance)>;
@@ -56,4 +56,4 @@ class VarianceComponents {
   const std::vector<CorrelationFunction> components_;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

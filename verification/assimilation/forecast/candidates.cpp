@@ -9,7 +9,7 @@
 #include "verification/assimilation/forecast/curvature_contrast.hpp"
 #include "verification/bench/bench.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 // Of parameters that are lengths and are not looked for: R.
@@ -18,16 +18,17 @@ constexpr double kLength = 1;
 constexpr double kCurved = 0.05;
 
 // The strength is the only coefficient; the other parameters keep their values.
-std::function<EffectTerm(const std::vector<double>&)> strength_of(EffectTerm term) {
+std::function<effects::EffectTerm(const std::vector<double>&)> strength_of(
+    effects::EffectTerm term) {
   return [term = std::move(term)](const std::vector<double>& a) {
-    EffectTerm result = term;
+    effects::EffectTerm result = term;
     result.values.front() = a[0];
     return result;
   };
 }
 
-EffectTerm by_default(const EffectEntry& entry) {
-  EffectTerm term{entry.name, {}};
+effects::EffectTerm by_default(const effects::EffectEntry& entry) {
+  effects::EffectTerm term{entry.name, {}};
   for (const ParameterSpec& spec : entry.parameters)
     term.values.push_back(spec.unit == "um" ? kLength : spec.default_value);
   return term;
@@ -35,15 +36,15 @@ EffectTerm by_default(const EffectEntry& entry) {
 
 Candidate by_strength(const std::string& effect, double step, bool two_sided) {
   // Ranges of rates are there to catch slips of the pen, and have another unit.
-  const ParameterSpec& strength = effects().find(effect).parameters.front();
+  const ParameterSpec& strength = effects::effects().find(effect).parameters.front();
   const bool pure = strength.unit.empty();
   const double any = std::numeric_limits<double>::infinity();
   const double least = pure ? strength.min : two_sided ? -any : 0, most = pure ? strength.max : any;
   return {effect,
           1,
-          strength_of(by_default(effects().find(effect))),
+          strength_of(by_default(effects::effects().find(effect))),
           step,
-          is_rate(strength.unit),
+          effects::is_rate(strength.unit),
           two_sided,
           least,
           most};
@@ -51,7 +52,7 @@ Candidate by_strength(const std::string& effect, double step, bool two_sided) {
 
 Candidate of_mobility(const std::string& effect, double step, bool two_sided) {
   Candidate candidate = by_strength(effect, step, two_sided);
-  candidate.like_pace = true;
+  candidate.like_diffusion_ratio = true;
   return candidate;
 }
 
@@ -65,7 +66,7 @@ Candidate exchange() {
           2,
           [](const std::vector<double>& a) {
             const double rate = a[0] + a[1];
-            return EffectTerm{"exchange", {rate, rate != 0 ? a[1] / rate : 0}};
+            return effects::EffectTerm{"exchange", {rate, rate != 0 ? a[1] / rate : 0}};
           },
           1e-3,
           true,
@@ -104,7 +105,8 @@ std::optional<Candidate> find_candidate(const std::string& effect) {
   return {};
 }
 
-std::vector<Candidate> candidates_for(const CahnHilliardModel& base, const LevelSet& surface,
+std::vector<Candidate> candidates_for(const problem::CahnHilliardModel& base,
+                                      const geometry::LevelSet& surface,
                                       const std::vector<Point>& places,
                                       const std::vector<std::string>& without) {
   const bool curved = curvature_contrast(surface, places) > kCurved;
@@ -112,14 +114,15 @@ std::vector<Candidate> candidates_for(const CahnHilliardModel& base, const Level
   for (const Candidate& candidate : candidates()) {
     const bool left_out =
         std::find(without.begin(), without.end(), candidate.effect) != without.end();
-    const bool fits = has_unit_wells(base) || !effects().find(candidate.effect).unit_wells;
+    const bool fits =
+        effects::has_unit_wells(base) || !effects::effects().find(candidate.effect).unit_wells;
     if (!left_out && fits && (curved || candidate.effect != "curvature"))
       result.push_back(candidate);
   }
   return result;
 }
 
-Hypothesis::Part part_of(const EffectTerm& term) {
+Hypothesis::Part part_of(const effects::EffectTerm& term) {
   const std::optional<Candidate> found = find_candidate(term.effect);
   if (!found)
     throw InputError("effect " + term.effect + ": its strength cannot be fitted (possible: " +
@@ -132,9 +135,9 @@ Hypothesis::Part part_of(const EffectTerm& term) {
   return part;
 }
 
-Hypothesis of_model(const std::vector<EffectTerm>& own) {
+Hypothesis of_model(const std::vector<effects::EffectTerm>& own) {
   Hypothesis result;
-  for (const EffectTerm& term : own) result.parts.push_back(part_of(term));
+  for (const effects::EffectTerm& term : own) result.parts.push_back(part_of(term));
   result.known = result.parts.size();
   return result;
 }
@@ -153,8 +156,8 @@ std::vector<Candidate> candidates_beside(const Hypothesis& own, std::vector<Cand
   return all;
 }
 
-std::vector<EffectTerm> Hypothesis::terms() const {
-  std::vector<EffectTerm> result;
+std::vector<effects::EffectTerm> Hypothesis::terms() const {
+  std::vector<effects::EffectTerm> result;
   for (const Part& part : parts) result.push_back(part.candidate.term(part.coefficients));
   return result;
 }
@@ -185,13 +188,15 @@ bool Hypothesis::contains(const Hypothesis& other) const {
                     });
 }
 
-CoefficientForcing::CoefficientForcing(const CahnHilliard& problem, const CahnHilliardModel& model,
+CoefficientForcing::CoefficientForcing(const problem::CahnHilliard& problem,
+                                       const problem::CahnHilliardModel& model,
                                        const Hypothesis& hypothesis,
                                        const std::vector<Candidate>& more)
     : problem_(problem) {
-  const auto space = std::shared_ptr<const SurfaceSpace>(&problem.space(), [](auto*) {});
+  const auto space = std::shared_ptr<const fem::SurfaceSpace>(&problem.space(), [](auto*) {});
   const auto changed = [&](const Hypothesis& h) {
-    return std::make_shared<const CahnHilliard>(space, with_effects(model, h.terms()));
+    return std::make_shared<const problem::CahnHilliard>(space,
+                                                         effects::with_effects(model, h.terms()));
   };
   Hypothesis extended = hypothesis;
   const auto add_pairs = [&](std::size_t part) {
@@ -224,14 +229,14 @@ Columns CoefficientForcing::operator()(double t, VecView y) const {
   const Vec no_rate = Vec::Zero(problem_.size());
   Columns forcing(problem_.size(), static_cast<Eigen::Index>(pairs_.size()));
   Vec here(problem_.size()), minus(problem_.size()), plus(problem_.size());
-  require(problem_.residual(t, y, no_rate, here));
+  bench::require(problem_.residual(t, y, no_rate, here));
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
-    require(pairs_[k].plus->residual(t, y, no_rate, plus));
-    if (pairs_[k].minus) require(pairs_[k].minus->residual(t, y, no_rate, minus));
+    bench::require(pairs_[k].plus->residual(t, y, no_rate, plus));
+    if (pairs_[k].minus) bench::require(pairs_[k].minus->residual(t, y, no_rate, minus));
     forcing.col(static_cast<Eigen::Index>(k)) =
         (plus - (pairs_[k].minus ? minus : here)) / pairs_[k].distance;
   }
   return forcing;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

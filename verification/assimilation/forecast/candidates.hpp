@@ -8,14 +8,14 @@
 #include "kernel/effects/effects.hpp"
 #include "verification/assimilation/forecast/tangent_flow.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 // A candidate has one coefficient per direction. Its terms are linear in the coefficients near 0:
 // the effect at coefficients a is term(a).
 struct Candidate {
   std::string effect;
   int directions;
-  std::function<EffectTerm(const std::vector<double>& coefficients)> term;
+  std::function<effects::EffectTerm(const std::vector<double>& coefficients)> term;
   // Coefficients that are small: for the derivative at 0.
   double step;
   bool rate;           // are the coefficients rates? They go with 1/time.
@@ -23,7 +23,7 @@ struct Candidate {
   double least, most;  // that each of them may be
   // Does it make the mobility as a whole larger or smaller? Another D takes its place near 0, so
   // there is next to nothing to gain there, however much there is further on.
-  bool like_pace = false;
+  bool like_diffusion_ratio = false;
   std::string special_case = {};  // an effect that it is at the limit of its coefficients
 
   double within_range(double coefficient) const;
@@ -37,7 +37,8 @@ std::optional<Candidate> find_candidate(const std::string& effect);
 // Those that a model on a surface may lack, near `places`, but for effects that are not to be
 // looked for. On a mesh even a sphere is curved differently from place to place, in a pattern that
 // resembles nothing but is not noise: where curvature hardly varies it is none of them.
-std::vector<Candidate> candidates_for(const CahnHilliardModel& base, const LevelSet& surface,
+std::vector<Candidate> candidates_for(const problem::CahnHilliardModel& base,
+                                      const geometry::LevelSet& surface,
                                       const std::vector<Point>& places,
                                       const std::vector<std::string>& without);
 
@@ -51,7 +52,7 @@ struct Hypothesis {
   std::size_t known = 0;  // so many of them, the first, are the model's own
 
   std::size_t added() const { return parts.size() - known; }
-  std::vector<EffectTerm> terms() const;
+  std::vector<effects::EffectTerm> terms() const;
   Eigen::Index coefficients() const;
   std::string name() const;  // of the effects that it adds
   bool has(const std::string& effect) const;
@@ -66,25 +67,25 @@ std::vector<Candidate> candidates_beside(const Hypothesis& own, std::vector<Cand
 
 // One of a model's own: its strength is a coefficient, other parameters stay as they are. Throws
 // InputError for an effect that is none of the candidates.
-Hypothesis::Part part_of(const EffectTerm& term);
-Hypothesis of_model(const std::vector<EffectTerm>& own);  // all of them known
+Hypothesis::Part part_of(const effects::EffectTerm& term);
+Hypothesis of_model(const std::vector<effects::EffectTerm>& own);  // all of them known
 
 // ∂F/∂coefficient: for all coefficients of a hypothesis, then for those of more candidates at 0.
 // By differences, which are exact where F is linear in a coefficient.
 class CoefficientForcing {
  public:
   // `problem` has the model with the hypothesis' effects, and must outlive this object.
-  CoefficientForcing(const CahnHilliard& problem, const CahnHilliardModel& model,
+  CoefficientForcing(const problem::CahnHilliard& problem, const problem::CahnHilliardModel& model,
                      const Hypothesis& hypothesis, const std::vector<Candidate>& more);
   Columns operator()(double t, VecView y) const;
 
  private:
   struct Pair {
-    std::shared_ptr<const CahnHilliard> plus, minus;  // no minus: the problem itself
+    std::shared_ptr<const problem::CahnHilliard> plus, minus;  // no minus: the problem itself
     double distance;
   };
-  const CahnHilliard& problem_;
+  const problem::CahnHilliard& problem_;
   std::vector<Pair> pairs_;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -4,14 +4,14 @@
 #include <cmath>
 #include <limits>
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 // Of differences, in R: roundoff and their own error are equal at about that.
 constexpr double kStep = 1e-3;
 
 // 2 H = div (∇φ/|∇φ|) = (tr B − nᵀ B n)/|∇φ| with B = ∇²φ and n = ∇φ/|∇φ|.
-double mean_curvature(const LevelSet& surface, const Point& x) {
+double mean_curvature(const geometry::LevelSet& surface, const Point& x) {
   const auto phi = [&](const Point& offset) { return surface.value(x + kStep * offset); };
   const double centre = phi(Point::Zero());
   Point gradient;
@@ -32,7 +32,7 @@ double mean_curvature(const LevelSet& surface, const Point& x) {
 
 }  // namespace
 
-double curvature_contrast(const LevelSet& surface, const std::vector<Point>& places) {
+double curvature_contrast(const geometry::LevelSet& surface, const std::vector<Point>& places) {
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (const Point& x : places) {
     const double H = mean_curvature(surface, x);
@@ -42,4 +42,4 @@ double curvature_contrast(const LevelSet& surface, const std::vector<Point>& pla
   return (most - least) / std::max(std::fabs(least), std::fabs(most));
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

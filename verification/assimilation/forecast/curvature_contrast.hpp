@@ -5,10 +5,10 @@
 
 #include "kernel/geometry/level_set.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 // The difference of its largest and its least value over the largest absolute one, at places near
 // the surface; 0 for a sphere. Level sets have to be twice differentiable there.
-double curvature_contrast(const LevelSet& surface, const std::vector<Point>& places);
+double curvature_contrast(const geometry::LevelSet& surface, const std::vector<Point>& places);
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

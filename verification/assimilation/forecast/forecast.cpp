@@ -6,7 +6,7 @@
 #include "verification/assimilation/forecast/tangent_flow.hpp"
 #include "verification/bench/bench.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 TangentGrid TangentGrid::graded(double begin, double end, int steps) {
   TangentGrid grid;
@@ -23,32 +23,33 @@ TangentGrid TangentGrid::graded(double begin, double end, int steps) {
   return grid;
 }
 
-Forecast forecast(const CahnHilliard& problem, const MakeIntegrator& make_integrator, VecView c,
-                  double begin, double end, const std::vector<int>& tangent_steps, int most_steps) {
+Forecast forecast(const problem::CahnHilliard& problem, const MakeIntegrator& make_integrator,
+                  VecView c, double begin, double end, const std::vector<int>& tangent_steps,
+                  int most_steps) {
   Vec y = Vec::Zero(problem.size()), ydot = Vec::Zero(problem.size());
   y.head(problem.block_size()) = c;
-  require(problem.consistent_initial_state(begin, y, ydot));
-  const IntegratorPtr integrator = make_integrator(problem);
-  require(integrator->start(begin, y, ydot, end));
+  bench::require(problem.consistent_initial_state(begin, y, ydot));
+  const time::IntegratorPtr integrator = make_integrator(problem);
+  bench::require(integrator->start(begin, y, ydot, end));
   Forecast result;
   for (const int steps : tangent_steps)
     result.paths.push_back({TangentGrid::graded(begin, end, steps), {}});
   for (int step = 0; integrator->time() < end; ++step) {
     if (step == most_steps) throw std::runtime_error("a forecast takes too many steps");
-    require(integrator->advance());
+    bench::require(integrator->advance());
     for (TangentPath& path : result.paths) {
       const auto& times = path.grid.stage_times;
       while (path.stages.size() < times.size() && times[path.stages.size()] <= integrator->time()) {
-        require(integrator->interpolate(times[path.stages.size()], y));
+        bench::require(integrator->interpolate(times[path.stages.size()], y));
         path.stages.push_back(y);
       }
     }
   }
   y = integrator->state();
-  require(problem.consistent_initial_state(end, y, ydot));
+  bench::require(problem.consistent_initial_state(end, y, ydot));
   result.end = problem.c_of(y);
   result.end_rate = problem.c_of(ydot);
   return result;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

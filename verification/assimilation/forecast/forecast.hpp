@@ -8,7 +8,7 @@
 #include "kernel/problem/cahn_hilliard.hpp"
 #include "kernel/time/integrator.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 // Times at which a linear perturbation is advanced: fine at first, where a state that was put
 // together from measurements relaxes, and coarser later. Two-stage SDIRK method of Alexander
@@ -31,7 +31,7 @@ struct Forecast {
   Vec end, end_rate;  // c and ċ at the end
 };
 
-using MakeIntegrator = std::function<IntegratorPtr(const DaeProblem&)>;
+using MakeIntegrator = std::function<time::IntegratorPtr(const problem::DaeProblem&)>;
 
 // From one snapshot to the next some hundred steps are usual. Models that need so many are trials
 // with an effect far too strong.
@@ -39,8 +39,8 @@ inline constexpr int kMostTrialSteps = 1000;
 
 // Advances the nodal field c from `begin` to `end`, with a path for each number of tangent steps.
 // Throws std::runtime_error if that fails, or takes more steps.
-Forecast forecast(const CahnHilliard& problem, const MakeIntegrator& make_integrator, VecView c,
-                  double begin, double end, const std::vector<int>& tangent_steps = {},
+Forecast forecast(const problem::CahnHilliard& problem, const MakeIntegrator& make_integrator,
+                  VecView c, double begin, double end, const std::vector<int>& tangent_steps = {},
                   int most_steps = kMostTrialSteps);
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

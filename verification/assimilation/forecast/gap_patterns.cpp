@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 // Of the smooth patterns that are not bound to boundaries; so many of them, half as large.
 constexpr Eigen::Index kEverywhere = 16;
 
-Columns monomials(const SurfaceSpace& space, int degree) {
+Columns monomials(const fem::SurfaceSpace& space, int degree) {
   std::vector<Vec> all;
   for (int total = 0; total <= degree; ++total)
     for (int i = 0; i <= total; ++i)
@@ -29,8 +29,8 @@ Columns monomials(const SurfaceSpace& space, int degree) {
 
 }  // namespace
 
-GapPatterns::GapPatterns(const SurfaceSpace& space, int degree)
-    : area_(space.area), mass_(as_eigen(space, space.mass)) {
+GapPatterns::GapPatterns(const fem::SurfaceSpace& space, int degree)
+    : area_(space.area), mass_(fem::as_eigen(space, space.mass)) {
   const Columns X = monomials(space, degree);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> gram(X.transpose() * (mass_ * X));
   // On a sphere the squares add up to 1, so polynomials repeat themselves.
@@ -40,7 +40,7 @@ GapPatterns::GapPatterns(const SurfaceSpace& space, int degree)
             (area_ * gram.eigenvalues().tail(kept).cwiseInverse()).cwiseSqrt().asDiagonal();
 }
 
-Columns GapPatterns::at(const DoubleWell& well, const Vec& c) const {
+Columns GapPatterns::at(const physics::DoubleWell& well, const Vec& c) const {
   const double half = 0.5 * (well.b - well.a);
   const Vec boundary =
       ((c.array() - well.a) * (well.b - c.array()) / (half * half)).cwiseMax(0).cwiseMin(1);
@@ -52,4 +52,4 @@ Columns GapPatterns::at(const DoubleWell& well, const Vec& c) const {
   return patterns / std::sqrt(squares);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -6,21 +6,21 @@
 #include "kernel/physics/double_well.hpp"
 #include "verification/assimilation/forecast/tangent_flow.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 // Patterns of c that an error of the model may have: smooth shifts of the phase boundaries, and
 // some smooth fields.
 class GapPatterns {
  public:
   // Smooth: polynomials in x, y, z up to a degree, restricted to Γ. Serial spaces.
-  GapPatterns(const SurfaceSpace& space, int degree);
+  GapPatterns(const fem::SurfaceSpace& space, int degree);
   // Nodal, at a state c. Their sum of squares has a mean of 1.
-  Columns at(const DoubleWell& well, const Vec& c) const;
+  Columns at(const physics::DoubleWell& well, const Vec& c) const;
 
  private:
   double area_;
-  EigenMatrix mass_;
+  fem::EigenMatrix mass_;
   Columns smooth_;  // orthogonal, with a mean square of 1
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -4,7 +4,7 @@
 
 #include "verification/assimilation/forecast/forecast.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 // Cells of the finer meshes over those of the model's. On the model's own errors may not yet fall
@@ -13,13 +13,14 @@ constexpr std::array<double, 2> kFiner{1.5, 2.25};
 
 }  // namespace
 
-SpacePtr serial_space(const LevelSet& surface, int cells, double mass_stabilisation) {
-  return std::make_shared<const SurfaceSpace>(surface, cells, std::make_shared<ThreadTeam>(1),
-                                              std::make_shared<SerialCommunicator>(),
-                                              mass_stabilisation);
+bench::SpacePtr serial_space(const geometry::LevelSet& surface, int cells,
+                             double mass_stabilisation) {
+  return std::make_shared<const fem::SurfaceSpace>(surface, cells, std::make_shared<ThreadTeam>(1),
+                                                   std::make_shared<SerialCommunicator>(),
+                                                   mass_stabilisation);
 }
 
-FinerMeshes finer_meshes(const LevelSet& surface, const SpacePtr& own, int cells) {
+FinerMeshes finer_meshes(const geometry::LevelSet& surface, const bench::SpacePtr& own, int cells) {
   FinerMeshes meshes;
   for (std::size_t m = 0; m < kFiner.size(); ++m)
     meshes.spaces[m] = serial_space(surface, static_cast<int>(std::lround(kFiner[m] * cells)),
@@ -40,11 +41,12 @@ FinerTraces finer_traces(const FinerMeshes& meshes, const FieldSeries& series) {
 }
 
 ResolvedForecast::ResolvedForecast(const FinerMeshes& meshes, const FinerTraces& traces,
-                                   const CahnHilliardModel& model, Vec c,
+                                   const problem::CahnHilliardModel& model, Vec c,
                                    const MakeForecaster& make_integrator)
     : meshes_(meshes),
       traces_(traces),
-      problems_{CahnHilliard(meshes.spaces[0], model), CahnHilliard(meshes.spaces[1], model)},
+      problems_{problem::CahnHilliard(meshes.spaces[0], model),
+                problem::CahnHilliard(meshes.spaces[1], model)},
       make_integrator_(make_integrator),
       c_(std::move(c)) {}
 
@@ -53,8 +55,8 @@ ResolvedForecast::End ResolvedForecast::advance(std::size_t k, double begin, dou
   const std::array<Vec, 2> starts{meshes_.down(c_), c_};
   std::array<Vec, 2> ends;
   for (std::size_t m = 0; m < 2; ++m) {
-    const SpacePtr& space = meshes_.spaces[m];
-    const auto on_it = [&](const DaeProblem& p) { return make_integrator_(p, *space); };
+    const bench::SpacePtr& space = meshes_.spaces[m];
+    const auto on_it = [&](const problem::DaeProblem& p) { return make_integrator_(p, *space); };
     ends[m] = forecast(problems_[m], on_it, starts[m], begin, end).end;
   }
   const double ratio = meshes_.spaces[1]->h() / meshes_.spaces[0]->h();
@@ -72,4 +74,4 @@ ResolvedForecast::End ResolvedForecast::advance(std::size_t k, double begin, dou
           turn ? Vec(traces_[1][k] * up) : Vec(traces_[0][k] * last)};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

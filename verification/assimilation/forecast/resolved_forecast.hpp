@@ -9,22 +9,23 @@
 #include "verification/assimilation/fields/field_series.hpp"
 #include "verification/assimilation/fields/mesh_transfer.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 // The integrator of all forecasts.
-using MakeForecaster = std::function<IntegratorPtr(const DaeProblem&, const SurfaceSpace&)>;
+using MakeForecaster =
+    std::function<time::IntegratorPtr(const problem::DaeProblem&, const fem::SurfaceSpace&)>;
 
 // Of one thread, which its matrices and solvers use.
-SpacePtr serial_space(const LevelSet& surface, int cells,
-                      double mass_stabilisation = kMassStabilisation);
+bench::SpacePtr serial_space(const geometry::LevelSet& surface, int cells,
+                             double mass_stabilisation = fem::kMassStabilisation);
 
 // What does not depend on the model.
 struct FinerMeshes {
-  std::array<SpacePtr, 2> spaces;       // the finest last
-  MeshTransfer to_finest, from_finest;  // from and to the model's mesh
-  MeshTransfer up, down;                // between the two
+  std::array<bench::SpacePtr, 2> spaces;  // the finest last
+  MeshTransfer to_finest, from_finest;    // from and to the model's mesh
+  MeshTransfer up, down;                  // between the two
 };
-FinerMeshes finer_meshes(const LevelSet& surface, const SpacePtr& own, int cells);
+FinerMeshes finer_meshes(const geometry::LevelSet& surface, const bench::SpacePtr& own, int cells);
 
 // On each of them, where the snapshots were measured.
 using FinerTraces = std::array<std::vector<PointTrace>, 2>;
@@ -35,7 +36,8 @@ FinerTraces finer_traces(const FinerMeshes& meshes, const FieldSeries& series);
 class ResolvedForecast {
  public:
   ResolvedForecast(const FinerMeshes& meshes, const FinerTraces& traces,
-                   const CahnHilliardModel& model, Vec c, const MakeForecaster& make_integrator);
+                   const problem::CahnHilliardModel& model, Vec c,
+                   const MakeForecaster& make_integrator);
 
   // Errors of order h² are extrapolated (Richardson); `doubt`: by how much.
   struct End {
@@ -50,9 +52,9 @@ class ResolvedForecast {
  private:
   const FinerMeshes& meshes_;
   const FinerTraces& traces_;
-  std::array<CahnHilliard, 2> problems_;
+  std::array<problem::CahnHilliard, 2> problems_;
   MakeForecaster make_integrator_;
   Vec c_;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -5,7 +5,7 @@
 
 #include "verification/bench/bench.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 namespace {
 
 // Factors of the exact tangent solve to roundoff; more than this says that they are no factors.
@@ -13,14 +13,16 @@ constexpr double kSolveTolerance = 1e-7;
 constexpr double kRefined = 1e-5;
 constexpr int kMostRefinements = 30;
 
-bool is_assembled(const CahnHilliardModel& model) {
-  return std::all_of(model.effects.begin(), model.effects.end(),
-                     [](const EffectPtr& effect) { return effect->tangent_is_assembled(); });
+bool is_assembled(const problem::CahnHilliardModel& model) {
+  return std::all_of(
+      model.effects.begin(), model.effects.end(),
+      [](const problem::EffectPtr& effect) { return effect->tangent_is_assembled(); });
 }
 
 }  // namespace
 
-TangentFlow::TangentFlow(const CahnHilliard& problem, const LinearSolverFactory& make_solver,
+TangentFlow::TangentFlow(const problem::CahnHilliard& problem,
+                         const linear::LinearSolverFactory& make_solver,
                          std::shared_ptr<const ThreadTeam> team)
     : problem_(problem),
       team_(std::move(team)),
@@ -44,7 +46,7 @@ Columns TangentFlow::solve_stage(double t, VecView y, double shift, const Column
                                  const Forcing& forcing) {
   const int n = problem_.block_size();
   const Vec no_rate = Vec::Zero(problem_.size());
-  require(problem_.jacobian(t, y, no_rate, shift, Tangent::exact, jacobian_));
+  bench::require(problem_.jacobian(t, y, no_rate, shift, linear::Tangent::exact, jacobian_));
   const Columns forced = forcing ? forcing(t, y) : Columns();
   const Eigen::Index free = G.cols() - forced.cols();
   Columns right = Columns::Zero(2 * n, G.cols());
@@ -56,7 +58,7 @@ Columns TangentFlow::solve_stage(double t, VecView y, double shift, const Column
       right.col(k).head(n) = shift * mass_column;
       if (k >= free) right.col(k) -= forced.col(k - free);
     }
-    if (lane < G.cols()) require(solver_->setup(jacobian_, lane));
+    if (lane < G.cols()) bench::require(solver_->setup(jacobian_, lane));
   });
   Columns X = solve(right);
   if (!is_assembled_) refine(t, y, shift, right, X);
@@ -70,7 +72,7 @@ Columns TangentFlow::solve(const Columns& right) {
       Vec x = Vec::Zero(right.rows());
       const Vec column = right.col(k);
       if (!column.isZero(0))
-        require(solver_->solve(jacobian_, column, x, kSolveTolerance, lane).status);
+        bench::require(solver_->solve(jacobian_, column, x, kSolveTolerance, lane).status);
       X.col(k) = x;
     }
   });
@@ -84,7 +86,8 @@ void TangentFlow::refine(double t, VecView y, double shift, const Columns& right
     Vec product(right.rows());
     bool done = true;
     for (Eigen::Index j = 0; j < right.cols(); ++j) {
-      require(problem_.jacobian_product(t, y, no_rate, shift, Tangent::exact, X.col(j), product));
+      bench::require(problem_.jacobian_product(t, y, no_rate, shift, linear::Tangent::exact,
+                                               X.col(j), product));
       left.col(j) = right.col(j) - product;
       done = done && left.col(j).norm() <= kRefined * right.col(j).norm();
     }
@@ -94,4 +97,4 @@ void TangentFlow::refine(double t, VecView y, double shift, const Columns& right
   throw std::runtime_error("perturbations do not converge where distant points are coupled");
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -7,7 +7,7 @@
 #include "kernel/linear/linear_solver.hpp"
 #include "verification/assimilation/forecast/forecast.hpp"
 
-namespace traceraft {
+namespace traceraft::assimilation {
 
 inline constexpr double kTangentGamma = 0.2928932188134524756;  // 1 − 1/√2
 
@@ -24,7 +24,7 @@ using Forcing = std::function<Columns(double t, VecView y)>;
 class TangentFlow {
  public:
   // Columns are shared out over the team. The problem must outlive this object.
-  TangentFlow(const CahnHilliard& problem, const LinearSolverFactory& make_solver,
+  TangentFlow(const problem::CahnHilliard& problem, const linear::LinearSolverFactory& make_solver,
               std::shared_ptr<const ThreadTeam> team);
   void advance(const TangentPath& along, Columns& S, const Forcing& forcing = {});
 
@@ -36,11 +36,11 @@ class TangentFlow {
   // Iterative refinement: what effects that couple distant points leave out of these.
   void refine(double t, VecView y, double shift, const Columns& right, Columns& X);
 
-  const CahnHilliard& problem_;
+  const problem::CahnHilliard& problem_;
   std::shared_ptr<const ThreadTeam> team_;
-  LinearSolverPtr solver_;
-  BlockJacobian jacobian_;
+  linear::LinearSolverPtr solver_;
+  linear::BlockJacobian jacobian_;
   bool is_assembled_;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::assimilation

@@ -11,7 +11,7 @@
 #include "verification/selection/blind/effect_size.hpp"
 #include "verification/statistics/random_streams.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
 // One vesicle on a mesh of its own.
@@ -20,11 +20,11 @@ class Vesicle {
   explicit Vesicle(const BlindRequest& request)
       : request_(request),
         looks_(request),
-        space_(std::make_shared<const SurfaceSpace>(
+        space_(std::make_shared<const fem::SurfaceSpace>(
             looks_.surface, request.cells, std::make_shared<ThreadTeam>(request.threads),
             std::make_shared<SerialCommunicator>(), request.base.mass_stabilisation)) {}
 
-  std::vector<Vec> states(const std::vector<EffectTerm>& effects) const {
+  std::vector<Vec> states(const std::vector<effects::EffectTerm>& effects) const {
     const BlindMethod method{space_, request_.integrator, request_.tolerance};
     return BlindSimulation(request_, method, effects).run(looks_.times);
   }
@@ -36,13 +36,14 @@ class Vesicle {
   }
 
   void refuse_without_rafts(const std::vector<Vec>& states) const {
-    for (const Vec& c : states) traceraft::refuse_without_rafts(spread(*space_, c));
+    for (const Vec& c : states) selection::refuse_without_rafts(spread(*space_, c));
   }
 
-  std::vector<FieldSnapshot> measure(const std::vector<Vec>& states, double noise) const {
-    std::optional<Blur> blur;
+  std::vector<assimilation::FieldSnapshot> measure(const std::vector<Vec>& states,
+                                                   double noise) const {
+    std::optional<assimilation::Blur> blur;
     if (request_.blur > 0) blur.emplace(*space_, request_.blur);
-    std::vector<FieldSnapshot> snapshots;
+    std::vector<assimilation::FieldSnapshot> snapshots;
     for (std::size_t k = 0; k < states.size(); ++k)
       snapshots.push_back(
           measure(blur ? blur->blurred(states[k]) : states[k], static_cast<int>(k), noise));
@@ -50,11 +51,12 @@ class Vesicle {
   }
 
  private:
-  FieldSnapshot measure(const Vec& c, int number, double noise) const {
-    FieldSnapshot snapshot{looks_.labels[number], BlindLooks::directions(request_, number), {}, {}};
+  assimilation::FieldSnapshot measure(const Vec& c, int number, double noise) const {
+    assimilation::FieldSnapshot snapshot{
+        looks_.labels[number], BlindLooks::directions(request_, number), {}, {}};
     std::vector<Point> places;
     for (const Point& x : snapshot.points) places.push_back(looks_.placement.in_mesh(x));
-    snapshot.values = point_trace(*space_, places, space_->h()) * c;
+    snapshot.values = assimilation::point_trace(*space_, places, space_->h()) * c;
     const double stated = number % 2 == 1 ? request_.stated : 1;
     snapshot.deviation =
         Vec::Constant(snapshot.values.size(), request_.stated > 0 ? stated * noise : 1);
@@ -65,18 +67,18 @@ class Vesicle {
   Vec unit_noise(const std::vector<Point>& points, std::uint64_t number) const {
     Vec result(static_cast<Eigen::Index>(points.size()));
     for (Eigen::Index i = 0; i < result.size(); ++i)
-      result[i] =
-          normal_random(request_.seed, stream::noise + number, static_cast<std::uint64_t>(i));
+      result[i] = normal_random(request_.seed, statistics::stream::noise + number,
+                                static_cast<std::uint64_t>(i));
     if (request_.noise_share <= 0) return result;
     return std::sqrt(1 - request_.noise_share) * result +
            std::sqrt(request_.noise_share) * noise_waves(points, request_.noise_correlation,
                                                          request_.noise_shape, request_.seed,
-                                                         stream::shared_noise + number);
+                                                         statistics::stream::shared_noise + number);
   }
 
   const BlindRequest& request_;
   const BlindLooks looks_;
-  const SpacePtr space_;
+  const bench::SpacePtr space_;
 };
 
 // Between the seeds of vesicles.
@@ -99,4 +101,4 @@ BlindCase draw_blind_case(const BlindRequest& request) {
   return result;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

@@ -6,15 +6,15 @@
 #include "verification/assimilation/fields/field_series.hpp"
 #include "verification/selection/blind/blind_request.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 
 struct BlindCase {
-  std::vector<FieldSeries> vesicles;
-  std::vector<EffectTerm> truth;  // in units of R and R²/D of the truth
-  double noise;                   // standard deviation of the values
+  std::vector<assimilation::FieldSeries> vesicles;
+  std::vector<effects::EffectTerm> truth;  // in units of R and R²/D of the truth
+  double noise;                            // standard deviation of the values
 };
 
 // Throws std::runtime_error if a simulation fails, InputError for an effect that cannot be hidden.
 BlindCase draw_blind_case(const BlindRequest& request);
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

@@ -4,7 +4,7 @@
 #include "kernel/geometry/level_set.hpp"
 #include "verification/selection/blind/blind_request.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 
 // How a vesicle lies in the mesh: turned about the z axis, which effects may know, and moved, by
 // half of the mesh size h at most in each direction.
@@ -18,7 +18,7 @@ struct Placement {
 
 struct BlindLooks {
   Placement placement;
-  ShiftedLevelSet surface;
+  geometry::ShiftedLevelSet surface;
   // Of the snapshots, in units of R²/D of the model and of the truth.
   std::vector<double> labels, times;
 
@@ -27,4 +27,4 @@ struct BlindLooks {
   static std::vector<Point> directions(const BlindRequest& request, int snapshot);
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

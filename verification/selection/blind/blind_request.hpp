@@ -8,17 +8,17 @@
 #include "kernel/problem/cahn_hilliard.hpp"
 #include "verification/selection/blind/noise_waves.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 
 // Streams of random numbers: what is drawn for one purpose does not depend on how much is drawn for
 // another. Those of points (two) and of noise count up by snapshots.
 struct BlindRequest {
-  CahnHilliardModel base;            // on the unit sphere
+  problem::CahnHilliardModel base;   // on the unit sphere
   std::vector<std::string> effects;  // hidden; signs and mixtures are drawn
   double gap = 0.06;  // root mean square change of c that each makes from one snapshot to the next,
                       // in units of the standard deviation of c, in the first vesicle
-  double pace = 1;    // D of the truth over that of the model
-  double noise = 0.1;  // standard deviation, in units of that of c
+  double diffusion_ratio = 1;  // D of the truth over that of the model
+  double noise = 0.1;          // standard deviation, in units of that of c
   // Of the variance of the noise, which neighbours share; over which length, in R; and how.
   double noise_share = 0, noise_correlation = 0;
   NoiseShape noise_shape = NoiseShape::gaussian;
@@ -45,4 +45,4 @@ struct BlindRequest {
   int threads = 2;
 };
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

@@ -6,11 +6,11 @@
 #include "verification/bench/bench.hpp"
 #include "verification/selection/blind/blind_request.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 
 // How a truth is advanced.
 struct BlindMethod {
-  SpacePtr space;
+  bench::SpacePtr space;
   std::string integrator;
   double tolerance;
 };
@@ -19,7 +19,7 @@ class BlindSimulation {
  public:
   // The request must outlive it. Throws std::runtime_error where it cannot be advanced.
   BlindSimulation(const BlindRequest& request, const BlindMethod& method,
-                  const std::vector<EffectTerm>& effects);
+                  const std::vector<effects::EffectTerm>& effects);
 
   // c at the times, which begin after 0.
   std::vector<Vec> run(const std::vector<double>& times) const;
@@ -27,11 +27,11 @@ class BlindSimulation {
 
  private:
   const BlindRequest& request_;
-  CahnHilliard problem_;
-  MakeIntegrator make_integrator_;
+  problem::CahnHilliard problem_;
+  assimilation::MakeIntegrator make_integrator_;
 };
 
 // Standard deviation of c over the surface.
-double spread(const SurfaceSpace& space, VecView c);
+double spread(const fem::SurfaceSpace& space, VecView c);
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

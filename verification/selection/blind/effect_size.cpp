@@ -9,7 +9,7 @@
 #include "verification/assimilation/forecast/resolved_forecast.hpp"
 #include "verification/statistics/random_streams.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
 // Standard deviation of c below which there is nothing to see.
@@ -27,8 +27,8 @@ EffectSizing::EffectSizing(const BlindRequest& request)
   constexpr double kCoarser = 0.7, kTolerance = 1e-3;
   const int cells =
       request.sizing_cells > 0 ? request.sizing_cells : static_cast<int>(kCoarser * request.cells);
-  method_ = {serial_space(looks_.surface, cells, request.base.mass_stabilisation), "ida",
-             kTolerance};
+  method_ = {assimilation::serial_space(looks_.surface, cells, request.base.mass_stabilisation),
+             "ida", kTolerance};
   const BlindSimulation base(request_, method_, {});
   snapshots_ = base.run(looks_.times);
   for (std::size_t k = 0; k + 1 < snapshots_.size(); ++k)
@@ -37,13 +37,14 @@ EffectSizing::EffectSizing(const BlindRequest& request)
     refuse_without_rafts(spread(*method_.space, snapshots_[k]));
 }
 
-EffectTerm EffectSizing::term(const std::string& effect, std::uint64_t number) const {
+effects::EffectTerm EffectSizing::term(const std::string& effect, std::uint64_t number) const {
   return term(effect, random_coefficients(candidate_to_hide(effect), number));
 }
 
 // A small one, then in proportion, twice.
-EffectTerm EffectSizing::term(const std::string& effect, std::vector<double> coefficients) const {
-  const Candidate candidate = candidate_to_hide(effect);
+effects::EffectTerm EffectSizing::term(const std::string& effect,
+                                       std::vector<double> coefficients) const {
+  const assimilation::Candidate candidate = candidate_to_hide(effect);
   for (int k = 0; k < 2; ++k) {
     const double ratio = request_.gap / gap_of(candidate.term(coefficients));
     for (double& a : coefficients) a = candidate.within_range(ratio * a);
@@ -51,20 +52,21 @@ EffectTerm EffectSizing::term(const std::string& effect, std::vector<double> coe
   return candidate.term(coefficients);
 }
 
-std::vector<double> EffectSizing::random_coefficients(const Candidate& candidate,
+std::vector<double> EffectSizing::random_coefficients(const assimilation::Candidate& candidate,
                                                       std::uint64_t number) const {
   std::vector<double> coefficients;
   for (int d = 0; d < candidate.directions; ++d) {
-    const double u = uniform_random(request_.seed, stream::hidden_strength, 10 * number + d);
+    const double u =
+        uniform_random(request_.seed, statistics::stream::hidden_strength, 10 * number + d);
     const double sign = candidate.two_sided && u < 0.5 ? -1 : 1;
     coefficients.push_back(sign * candidate.step * (candidate.directions > 1 ? 0.2 + u : 1));
   }
   return coefficients;
 }
 
-double EffectSizing::gap_of(const EffectTerm& term) const {
+double EffectSizing::gap_of(const effects::EffectTerm& term) const {
   const BlindSimulation changed(request_, method_, {term});
-  const SurfaceSpace& space = *method_.space;
+  const fem::SurfaceSpace& space = *method_.space;
   double squares = 0;
   for (std::size_t k = 0; k < next_.size(); ++k) {
     const Vec difference =
@@ -75,19 +77,19 @@ double EffectSizing::gap_of(const EffectTerm& term) const {
   return std::sqrt(squares / static_cast<double>(next_.size()));
 }
 
-Candidate candidate_to_hide(const std::string& effect) {
-  const auto valid = effects_to_hide(), known = effects().names();
+assimilation::Candidate candidate_to_hide(const std::string& effect) {
+  const auto valid = effects_to_hide(), known = effects::effects().names();
   if (std::find(valid.begin(), valid.end(), effect) == valid.end())
     throw InputError(std::find(known.begin(), known.end(), effect) != known.end()
                          ? "the effect " + effect +
                                " is not one that explain searches for on a sphere"
                          : unknown_name_message("effect to hide", effect, valid));
-  return *find_candidate(effect);
+  return *assimilation::find_candidate(effect);
 }
 
 std::vector<std::string> effects_to_hide() {
   std::vector<std::string> names;
-  for (const Candidate& candidate : candidates())
+  for (const assimilation::Candidate& candidate : assimilation::candidates())
     if (candidate.effect != "curvature") names.push_back(candidate.effect);
   return names;
 }
@@ -99,8 +101,8 @@ void refuse_without_rafts(double contrast) {
       "below 0.21 dissolves) or other times");
 }
 
-std::vector<EffectTerm> size_effects(const BlindRequest& request) {
-  std::vector<EffectTerm> terms;
+std::vector<effects::EffectTerm> size_effects(const BlindRequest& request) {
+  std::vector<effects::EffectTerm> terms;
   if (request.effects.empty()) return terms;
   const EffectSizing sizing(request);
   for (std::size_t k = 0; k < request.effects.size(); ++k)
@@ -108,4 +110,4 @@ std::vector<EffectTerm> size_effects(const BlindRequest& request) {
   return terms;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

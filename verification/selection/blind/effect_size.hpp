@@ -8,14 +8,16 @@
 #include "verification/selection/blind/blind_looks.hpp"
 #include "verification/selection/blind/blind_simulation.hpp"
 
-namespace traceraft {
-
+namespace traceraft::assimilation {
 struct Candidate;
+}
+
+namespace traceraft::selection {
 
 // Effects that can be hidden: those that a sphere shows.
 std::vector<std::string> effects_to_hide();
 // Throws InputError for another one.
-Candidate candidate_to_hide(const std::string& effect);
+assimilation::Candidate candidate_to_hide(const std::string& effect);
 
 // Found on a mesh that is coarser than the truth's: strengths need not be exact.
 class EffectSizing {
@@ -26,15 +28,16 @@ class EffectSizing {
   // The effect with the strength at which it makes the request's gap, or the largest one that it
   // may have. `number`: of the random numbers that decide upon signs and mixtures. Throws
   // std::runtime_error if a simulation fails, InputError for an effect that cannot be hidden.
-  EffectTerm term(const std::string& effect, std::uint64_t number) const;
+  effects::EffectTerm term(const std::string& effect, std::uint64_t number) const;
   // Its coefficients in these proportions.
-  EffectTerm term(const std::string& effect, std::vector<double> coefficients) const;
+  effects::EffectTerm term(const std::string& effect, std::vector<double> coefficients) const;
 
  private:
   // Coefficients in a random direction that the effect allows.
-  std::vector<double> random_coefficients(const Candidate& candidate, std::uint64_t number) const;
+  std::vector<double> random_coefficients(const assimilation::Candidate& candidate,
+                                          std::uint64_t number) const;
   // What the effect makes of the base's snapshots until the next one.
-  double gap_of(const EffectTerm& term) const;
+  double gap_of(const effects::EffectTerm& term) const;
 
   BlindRequest request_;
   BlindLooks looks_;
@@ -46,6 +49,6 @@ class EffectSizing {
 void refuse_without_rafts(double contrast);
 
 // The request's effects.
-std::vector<EffectTerm> size_effects(const BlindRequest& request);
+std::vector<effects::EffectTerm> size_effects(const BlindRequest& request);
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

@@ -4,7 +4,7 @@
 
 #include "kernel/core/random.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 
 // E cos k·d over wave vectors k is the correlation (Bochner): they are normally distributed for a
 // Gaussian, and have a Cauchy distribution, a normal one over the size of another, for exp(−d/ℓ).
@@ -25,4 +25,4 @@ Vec noise_waves(const std::vector<Point>& points, double length, NoiseShape shap
   return std::sqrt(2.0 / kWaves) * result;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

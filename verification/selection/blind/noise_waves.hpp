@@ -8,7 +8,7 @@
 
 #include "kernel/core/types.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 
 // Shapes of the correlation of two values at a distance d.
 enum class NoiseShape {
@@ -20,4 +20,4 @@ enum class NoiseShape {
 Vec noise_waves(const std::vector<Point>& points, double length, NoiseShape shape,
                 std::uint64_t seed, std::uint64_t stream);
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

@@ -3,17 +3,17 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
-bool leaves_range(const Candidate& candidate, double coefficient, double step) {
+bool leaves_range(const assimilation::Candidate& candidate, double coefficient, double step) {
   return (coefficient <= candidate.least && step < 0) ||
          (coefficient >= candidate.most && step > 0);
 }
 
 }  // namespace
 
-Vec newton_step(const FilterResult& pass, const std::vector<Eigen::Index>& free) {
+Vec newton_step(const assimilation::FilterResult& pass, const std::vector<Eigen::Index>& free) {
   const Eigen::MatrixXd F = pass.information.selfadjointView<Eigen::Lower>();
   return F(free, free).ldlt().solve(Vec(pass.score(free)));
 }
@@ -29,23 +29,25 @@ Eigen::MatrixXd covariance_beside_held(const Eigen::MatrixXd& information,
   return result;
 }
 
-std::vector<Eigen::Index> free_parameters(const FilterResult& pass, const Hypothesis& hypothesis) {
-  std::vector<Eigen::Index> free{kPace, kMeshError};
+std::vector<Eigen::Index> free_parameters(const assimilation::FilterResult& pass,
+                                          const assimilation::Hypothesis& hypothesis) {
+  std::vector<Eigen::Index> free{assimilation::kDiffusionRatio, assimilation::kMeshError};
   struct Bounded {
-    const Candidate* candidate;
+    const assimilation::Candidate* candidate;
     double value;
   };
   std::vector<Bounded> coefficients;
   for (const auto& part : hypothesis.parts)
     for (const double a : part.coefficients) {
-      free.push_back(kFirstParameter + static_cast<Eigen::Index>(coefficients.size()));
+      free.push_back(assimilation::kFirstParameter +
+                     static_cast<Eigen::Index>(coefficients.size()));
       coefficients.push_back({&part.candidate, a});
     }
   for (bool changed = true; changed;) {
     const Vec step = newton_step(pass, free);
     changed = false;
     for (std::size_t k = 2; k < free.size() && !changed; ++k) {
-      const auto& [candidate, value] = coefficients[free[k] - kFirstParameter];
+      const auto& [candidate, value] = coefficients[free[k] - assimilation::kFirstParameter];
       changed = leaves_range(*candidate, value, step[static_cast<Eigen::Index>(k)]);
       if (changed) free.erase(free.begin() + static_cast<std::ptrdiff_t>(k));
     }
@@ -53,4 +55,4 @@ std::vector<Eigen::Index> free_parameters(const FilterResult& pass, const Hypoth
   return free;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

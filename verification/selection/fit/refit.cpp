@@ -10,38 +10,41 @@
 #include "verification/selection/fit/free_parameters.hpp"
 #include "verification/selection/fit/refit_unknowns.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
 constexpr double kSmallStep = 0.1;  // in standard deviations
 constexpr int kMostNewtonSteps = 8, kMostHalvings = 3;
 // D is known to that factor at least.
-constexpr double kLargestPaceStep = 0.5;
+constexpr double kLargestDiffusionRatioStep = 0.5;
 
 // Of a refit, from that of its unknowns.
 void set_covariance(const Eigen::MatrixXd& unknown, Refit& fit) {
   const Eigen::Index n = fit.hypothesis.coefficients();
-  const Vec inverse = unknown_factors(fit.hypothesis, fit.pace).tail(n).cwiseInverse();
-  fit.pace_deviation = std::sqrt(std::max(0.0, unknown(0, 0)));
+  const Vec inverse = unknown_factors(fit.hypothesis, fit.diffusion_ratio).tail(n).cwiseInverse();
+  fit.diffusion_ratio_deviation = std::sqrt(std::max(0.0, unknown(0, 0)));
   fit.covariance = inverse.asDiagonal() * unknown.bottomRightCorner(n, n) * inverse.asDiagonal();
 }
 
 // Of a model as it is.
 struct Evaluation {
   Refit fit;
-  Vec step;                    // to the maximum in range, if the likelihood were Gaussian
-  double pace_step = 0;        // of the first unknown, likewise, if the others stay
-  Eigen::MatrixXd covariance;  // of the unknowns
+  Vec step;                         // to the maximum in range, if the likelihood were Gaussian
+  double diffusion_ratio_step = 0;  // of the first unknown, likewise, if the others stay
+  Eigen::MatrixXd covariance;       // of the unknowns
 };
 
-Evaluation evaluate(const FilterProblems& data, const FilterModel& model,
-                    const FilterSettings& settings, std::vector<ErrorMaps>& maps) {
+Evaluation evaluate(const assimilation::FilterProblems& data,
+                    const assimilation::FilterModel& model,
+                    const assimilation::FilterSettings& settings,
+                    std::vector<assimilation::ErrorMaps>& maps) {
   Evaluation result;
   Refit& fit = result.fit;
   fit.hypothesis = model.hypothesis;
-  fit.pace = model.pace;
+  fit.diffusion_ratio = model.diffusion_ratio;
   try {
-    const FilterResult pass = filter_fields(data, model, settings, maps);
+    const assimilation::FilterResult pass =
+        assimilation::filter_fields(data, model, settings, maps);
     const std::vector<Eigen::Index> free = free_parameters(pass, model.hypothesis);
     const Eigen::MatrixXd inverse = covariance_beside_held(pass.information, free);
     Vec all = Vec::Zero(pass.score.size());
@@ -50,14 +53,16 @@ Evaluation evaluate(const FilterProblems& data, const FilterModel& model,
     const Eigen::MatrixXd J = unknown_derivatives(model);
     result.step = J * all(own);
     result.covariance = J * inverse(own, own) * J.transpose();
-    result.pace_step = newton_step(pass, {kPace, kMeshError})[0];
+    result.diffusion_ratio_step =
+        newton_step(pass, {assimilation::kDiffusionRatio, assimilation::kMeshError})[0];
     // At the most probable error of the mesh, which the step takes to be free as well.
-    fit.deviance = pass.deviance -
-                   std::pow(pass.score[kMeshError], 2) / pass.information(kMeshError, kMeshError);
+    fit.deviance =
+        pass.deviance - std::pow(pass.score[assimilation::kMeshError], 2) /
+                            pass.information(assimilation::kMeshError, assimilation::kMeshError);
     if (!std::isfinite(fit.deviance)) throw std::runtime_error("its likelihood is not a number");
-    fit.gap = gaps_of_pass(pass);
-    fit.expected = expected_gaps(pass);
-    fit.snapshots = snapshot_gaps(pass);
+    fit.gap = assimilation::gaps_of_pass(pass);
+    fit.expected = assimilation::expected_gaps(pass);
+    fit.snapshots = assimilation::snapshot_gaps(pass);
     set_covariance(result.covariance, fit);
   } catch (const std::runtime_error& error) {
     fit.deviance = std::numeric_limits<double>::infinity();
@@ -88,17 +93,18 @@ Vec deviations(const Evaluation& here) {
 }
 
 // Steps this short change nothing that is reported.
-bool settled(const Evaluation& here, const FilterModel& model) {
+bool settled(const Evaluation& here, const assimilation::FilterModel& model) {
   const Vec x = unknowns(model);
-  FilterModel moved = model;
+  assimilation::FilterModel moved = model;
   set_unknowns(moved, x + here.step);
   return ((unknowns(moved) - x).array().abs() <= kSmallStep * deviations(here).array()).all();
 }
 
 class NewtonSearch {
  public:
-  NewtonSearch(const FilterProblems& data, const FilterModel& start, const FilterSettings& settings,
-               const std::vector<ErrorMaps>& maps)
+  NewtonSearch(const assimilation::FilterProblems& data, const assimilation::FilterModel& start,
+               const assimilation::FilterSettings& settings,
+               const std::vector<assimilation::ErrorMaps>& maps)
       : data_(data), settings_(settings), maps_(maps), model_(start) {
     settings_.replicates = 0;
     model_.screened.clear();
@@ -118,7 +124,7 @@ class NewtonSearch {
   }
 
  private:
-  Evaluation evaluated(const FilterModel& model) {
+  Evaluation evaluated(const assimilation::FilterModel& model) {
     return evaluate(data_, model, settings_, maps_);
   }
 
@@ -133,46 +139,49 @@ class NewtonSearch {
   }
 
   // So many times the step, or half of that, ...: false if none is better than here. Where D makes
-  // up for an effect the way is a curved valley: beside its bottom, the pace leads back to it.
+  // up for an effect the way is a curved valley: beside its bottom, the diffusion ratio leads back
+  // to it.
   bool step(double factor) {
     Vec step = factor * here_.step;
-    step[0] = std::clamp(step[0], -kLargestPaceStep, kLargestPaceStep);
+    step[0] = std::clamp(step[0], -kLargestDiffusionRatioStep, kLargestDiffusionRatioStep);
     const Vec x = unknowns(model_);
     const double before = here_.fit.deviance;
     const int halvings = kMostHalvings + std::ilogb(factor);
     for (int half = 0; half <= halvings; ++half, step *= 0.5) {
       Vec to = x + step;
-      const double pace_step = go_if_better(to);
-      to[0] += std::clamp(pace_step, -kLargestPaceStep, kLargestPaceStep);
-      if (pace_step != 0) go_if_better(to);
+      const double diffusion_ratio_step = go_if_better(to);
+      to[0] +=
+          std::clamp(diffusion_ratio_step, -kLargestDiffusionRatioStep, kLargestDiffusionRatioStep);
+      if (diffusion_ratio_step != 0) go_if_better(to);
       if (here_.fit.deviance < before) return true;
     }
     return false;
   }
 
-  // Returns by what the pace would have to change there if it is no better; 0 if it cannot be
-  // evaluated.
+  // Returns by what the diffusion ratio would have to change there if it is no better; 0 if it
+  // cannot be evaluated.
   double go_if_better(const Vec& x) {
-    FilterModel trial = model_;
+    assimilation::FilterModel trial = model_;
     set_unknowns(trial, x);
     Evaluation there = evaluated(trial);
-    if (!(there.fit.deviance < here_.fit.deviance)) return there.pace_step;
+    if (!(there.fit.deviance < here_.fit.deviance)) return there.diffusion_ratio_step;
     model_ = std::move(trial);
     here_ = std::move(there);
     return 0;
   }
 
-  const FilterProblems& data_;
-  FilterSettings settings_;
-  std::vector<ErrorMaps> maps_;
-  FilterModel model_;
+  const assimilation::FilterProblems& data_;
+  assimilation::FilterSettings settings_;
+  std::vector<assimilation::ErrorMaps> maps_;
+  assimilation::FilterModel model_;
   Evaluation here_;
 };
 
 }  // namespace
 
-Refit refit(const FilterProblems& data, const FilterModel& start, const FilterSettings& settings,
-            const std::vector<ErrorMaps>& maps) {
+Refit refit(const assimilation::FilterProblems& data, const assimilation::FilterModel& start,
+            const assimilation::FilterSettings& settings,
+            const std::vector<assimilation::ErrorMaps>& maps) {
   return NewtonSearch(data, start, settings, maps).run();
 }
 
@@ -197,8 +206,10 @@ Refit no_worse(const Refit& fit, const Refit& without) {
   return result;
 }
 
-std::vector<Refit> refit_each(const FilterProblems& data, const std::vector<FilterModel>& starts,
-                              const FilterSettings& settings, const std::vector<ErrorMaps>& maps,
+std::vector<Refit> refit_each(const assimilation::FilterProblems& data,
+                              const std::vector<assimilation::FilterModel>& starts,
+                              const assimilation::FilterSettings& settings,
+                              const std::vector<assimilation::ErrorMaps>& maps,
                               const std::function<void(std::size_t, const Refit&)>& done) {
   std::vector<Refit> refits(starts.size());
   std::mutex one_at_a_time;
@@ -218,14 +229,15 @@ std::vector<Refit> refit_each(const FilterProblems& data, const std::vector<Filt
   return refits;
 }
 
-void bootstrap(const FilterResult& pass, const FilterModel& model, Refit& fit) {
-  const Eigen::Index known = kFirstParameter + model.hypothesis.coefficients();
+void bootstrap(const assimilation::FilterResult& pass, const assimilation::FilterModel& model,
+               Refit& fit) {
+  const Eigen::Index known = assimilation::kFirstParameter + model.hypothesis.coefficients();
   if (pass.null_scores.cols() == 0) return;
   const Eigen::MatrixXd inverse = covariance_beside_held(
       pass.information.topLeftCorner(known, known), free_parameters(pass, model.hypothesis));
   const Eigen::MatrixXd estimates = inverse * pass.null_scores.topRows(known);
   // The replicates have no error of the mesh; one of its size moves the other estimates by that.
-  const Vec by_mesh = inverse.col(kMeshError) / kMeshDoubt;
+  const Vec by_mesh = inverse.col(assimilation::kMeshError) / assimilation::kMeshDoubt;
   const Eigen::MatrixXd covariance =
       estimates * estimates.transpose() / static_cast<double>(estimates.cols()) +
       by_mesh * by_mesh.transpose();
@@ -234,4 +246,4 @@ void bootstrap(const FilterResult& pass, const FilterModel& model, Refit& fit) {
   set_covariance(J * covariance(own, own) * J.transpose(), fit);
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

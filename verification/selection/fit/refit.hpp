@@ -6,22 +6,23 @@
 
 #include "verification/assimilation/filter/gaps.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 
 struct Refit {
-  Hypothesis hypothesis;
-  double pace = 1;
-  double deviance = 0;  // −2 ln of the likelihood, at its least, pace and mesh being free
-  // Of the coefficients, pace and mesh being free; of rates in units of time that do not change
-  // with the pace.
+  assimilation::Hypothesis hypothesis;
+  double diffusion_ratio = 1;
+  double deviance =
+      0;  // −2 ln of the likelihood, at its least, diffusion ratio and mesh being free
+  // Of the coefficients, diffusion ratio and mesh being free; of rates in units of time that do not
+  // change with the diffusion ratio.
   Eigen::MatrixXd covariance;
-  double pace_deviation = 0;  // of ln pace
+  double diffusion_ratio_deviation = 0;  // of ln diffusion ratio
   // Measured minus forecast, and what is to be expected of it if nothing is missing: the noise, and
   // what it leaves unknown of the state.
-  Gaps gap, expected;
-  std::vector<SnapshotGap> snapshots;  // the same, one by one
-  bool settled = true;                 // was the search for the coefficients over?
-  std::string failure;                 // why a forecast failed, if it did: no refit then
+  assimilation::Gaps gap, expected;
+  std::vector<assimilation::SnapshotGap> snapshots;  // the same, one by one
+  bool settled = true;                               // was the search for the coefficients over?
+  std::string failure;  // why a forecast failed, if it did: no refit then
 };
 
 // (coefficients)ᵀ C⁻¹ (coefficients) of one of its effects, with their covariance C: what its
@@ -32,21 +33,25 @@ double certainty(const Refit& fit, std::size_t effect);
 // hypothesis, too: with an effect of strength 0.
 Refit no_worse(const Refit& fit, const Refit& without);
 
-// Gauss and Newton's method with halved steps, from the coefficients and the pace of `start`, until
-// what is left to go is a small part of the standard deviation. Unstable trial models count as
-// improbable; where even `start` is, its coefficients are halved until it is none. Coefficients
-// stay within the range that their effect has.
-Refit refit(const FilterProblems& data, const FilterModel& start, const FilterSettings& settings,
-            const std::vector<ErrorMaps>& maps);
+// Gauss and Newton's method with halved steps, from the coefficients and the diffusion ratio of
+// `start`, until what is left to go is a small part of the standard deviation. Unstable trial
+// models count as improbable; where even `start` is, its coefficients are halved until it is none.
+// Coefficients stay within the range that their effect has.
+Refit refit(const assimilation::FilterProblems& data, const assimilation::FilterModel& start,
+            const assimilation::FilterSettings& settings,
+            const std::vector<assimilation::ErrorMaps>& maps);
 
 // Of many, on all processors, in their order. `done` is called after each, with its place among
 // them, one at a time.
-std::vector<Refit> refit_each(const FilterProblems& data, const std::vector<FilterModel>& starts,
-                              const FilterSettings& settings, const std::vector<ErrorMaps>& maps,
+std::vector<Refit> refit_each(const assimilation::FilterProblems& data,
+                              const std::vector<assimilation::FilterModel>& starts,
+                              const assimilation::FilterSettings& settings,
+                              const std::vector<assimilation::ErrorMaps>& maps,
                               const std::function<void(std::size_t, const Refit&)>& done);
 
 // The covariance that the replicates of a pass with the (refitted) model have, to first order: a
 // parametric bootstrap.
-void bootstrap(const FilterResult& pass, const FilterModel& model, Refit& fit);
+void bootstrap(const assimilation::FilterResult& pass, const assimilation::FilterModel& model,
+               Refit& fit);
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

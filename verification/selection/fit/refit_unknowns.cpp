@@ -2,30 +2,30 @@
 
 #include <cmath>
 
-namespace traceraft {
+namespace traceraft::selection {
 
-Vec unknown_factors(const Hypothesis& hypothesis, double pace) {
+Vec unknown_factors(const assimilation::Hypothesis& hypothesis, double diffusion_ratio) {
   Vec result(1 + hypothesis.coefficients());
   result[0] = 1;
   Eigen::Index next = 1;
   for (const auto& part : hypothesis.parts)
     for (int d = 0; d < part.candidate.directions; ++d)
-      result[next++] = part.candidate.rate ? pace : 1;
+      result[next++] = part.candidate.rate ? diffusion_ratio : 1;
   return result;
 }
 
-Vec unknowns(const FilterModel& model) {
-  Vec x = unknown_factors(model.hypothesis, model.pace);
-  x[0] = std::log(model.pace);
+Vec unknowns(const assimilation::FilterModel& model) {
+  Vec x = unknown_factors(model.hypothesis, model.diffusion_ratio);
+  x[0] = std::log(model.diffusion_ratio);
   Eigen::Index next = 1;
   for (const auto& part : model.hypothesis.parts)
     for (const double a : part.coefficients) x[next++] *= a;
   return x;
 }
 
-void set_unknowns(FilterModel& model, const Vec& x) {
-  model.pace = std::exp(x[0]);
-  const Vec factor = unknown_factors(model.hypothesis, model.pace);
+void set_unknowns(assimilation::FilterModel& model, const Vec& x) {
+  model.diffusion_ratio = std::exp(x[0]);
+  const Vec factor = unknown_factors(model.hypothesis, model.diffusion_ratio);
   Eigen::Index next = 1;
   for (auto& part : model.hypothesis.parts)
     for (double& a : part.coefficients) {
@@ -34,22 +34,24 @@ void set_unknowns(FilterModel& model, const Vec& x) {
     }
 }
 
-FilterModel at_pace(FilterModel model, double pace) {
+assimilation::FilterModel at_diffusion_ratio(assimilation::FilterModel model,
+                                             double diffusion_ratio) {
   for (auto& part : model.hypothesis.parts)
-    for (double& a : part.coefficients) a *= part.candidate.rate ? model.pace / pace : 1;
-  model.pace = pace;
+    for (double& a : part.coefficients)
+      a *= part.candidate.rate ? model.diffusion_ratio / diffusion_ratio : 1;
+  model.diffusion_ratio = diffusion_ratio;
   return model;
 }
 
-FilterModel with_strengths(double factor, FilterModel model) {
+assimilation::FilterModel with_strengths(double factor, assimilation::FilterModel model) {
   for (auto& part : model.hypothesis.parts)
     for (double& a : part.coefficients) a *= factor;
   return model;
 }
 
-Eigen::MatrixXd unknown_derivatives(const FilterModel& model) {
+Eigen::MatrixXd unknown_derivatives(const assimilation::FilterModel& model) {
   const Vec x = unknowns(model);
-  Eigen::MatrixXd J = unknown_factors(model.hypothesis, model.pace).asDiagonal();
+  Eigen::MatrixXd J = unknown_factors(model.hypothesis, model.diffusion_ratio).asDiagonal();
   Eigen::Index next = 1;
   for (const auto& part : model.hypothesis.parts)
     for (int d = 0; d < part.candidate.directions; ++d, ++next)
@@ -57,10 +59,11 @@ Eigen::MatrixXd unknown_derivatives(const FilterModel& model) {
   return J;
 }
 
-std::vector<Eigen::Index> own_parameters(const Hypothesis& hypothesis) {
-  std::vector<Eigen::Index> own{kPace};
-  for (Eigen::Index k = 0; k < hypothesis.coefficients(); ++k) own.push_back(kFirstParameter + k);
+std::vector<Eigen::Index> own_parameters(const assimilation::Hypothesis& hypothesis) {
+  std::vector<Eigen::Index> own{assimilation::kDiffusionRatio};
+  for (Eigen::Index k = 0; k < hypothesis.coefficients(); ++k)
+    own.push_back(assimilation::kFirstParameter + k);
   return own;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

@@ -1,26 +1,28 @@
-// What a refit solves for: ln pace, then all coefficients; rates in units of time of the base
-// model, as what data tell of a rate then hardly depends on the pace.
+// What a refit solves for: ln diffusion ratio, then all coefficients; rates in units of time of the
+// base model, as what data tell of a rate then hardly depends on the diffusion ratio.
 #pragma once
 
 #include "verification/assimilation/filter/field_filter.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 
-// Factors from the coefficients to the unknowns; the first, of the pace, is 1.
-Vec unknown_factors(const Hypothesis& hypothesis, double pace);
+// Factors from the coefficients to the unknowns; the first, of the diffusion ratio, is 1.
+Vec unknown_factors(const assimilation::Hypothesis& hypothesis, double diffusion_ratio);
 
-Vec unknowns(const FilterModel& model);
-void set_unknowns(FilterModel& model, const Vec& x);  // coefficients within their ranges
+Vec unknowns(const assimilation::FilterModel& model);
+void set_unknowns(assimilation::FilterModel& model,
+                  const Vec& x);  // coefficients within their ranges
 
-// With another pace, and rates as they are in units of time that do not change.
-FilterModel at_pace(FilterModel model, double pace);
+// With another diffusion ratio, and rates as they are in units of time that do not change.
+assimilation::FilterModel at_diffusion_ratio(assimilation::FilterModel model,
+                                             double diffusion_ratio);
 // With its effects so many times as strong.
-FilterModel with_strengths(double factor, FilterModel model);
+assimilation::FilterModel with_strengths(double factor, assimilation::FilterModel model);
 
-// Derivatives of the unknowns by ln pace and the coefficients.
-Eigen::MatrixXd unknown_derivatives(const FilterModel& model);
+// Derivatives of the unknowns by ln diffusion ratio and the coefficients.
+Eigen::MatrixXd unknown_derivatives(const assimilation::FilterModel& model);
 
-// Where the pace and the coefficients are among the parameters of a pass.
-std::vector<Eigen::Index> own_parameters(const Hypothesis& hypothesis);
+// Where the diffusion ratio and the coefficients are among the parameters of a pass.
+std::vector<Eigen::Index> own_parameters(const assimilation::Hypothesis& hypothesis);
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

@@ -8,7 +8,7 @@
 
 #include "verification/selection/fit/free_parameters.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 
 double share_of_noise(const Vec& replicates, double value) {
   const auto beyond = (replicates.array() >= value).count();
@@ -105,15 +105,17 @@ struct GapSquares {
   Vec null;
 };
 
-GapSquares gap_squares(const FilterResult& result, const std::vector<Columns>& gap_parts,
+GapSquares gap_squares(const assimilation::FilterResult& result,
+                       const std::vector<assimilation::Columns>& gap_parts,
                        const Indices& nuisances) {
   const auto factors = Eigen::MatrixXd(result.information(nuisances, nuisances)).ldlt();
   const Vec best = factors.solve(Vec(result.score(nuisances)));
-  const Columns null_best = factors.solve(Columns(result.null_scores(nuisances, Eigen::all)));
+  const assimilation::Columns null_best =
+      factors.solve(assimilation::Columns(result.null_scores(nuisances, Eigen::all)));
   const Eigen::Index parameters = result.score.size(), replicates = null_best.cols();
   GapSquares squares{0, Vec::Zero(replicates)};
-  for (const Columns& parts : gap_parts) {
-    const Columns known = parts.middleCols(1, parameters)(Eigen::all, nuisances);
+  for (const assimilation::Columns& parts : gap_parts) {
+    const assimilation::Columns known = parts.middleCols(1, parameters)(Eigen::all, nuisances);
     squares.measured += (parts.col(0) - known * best).squaredNorm();
     squares.null +=
         (parts.rightCols(replicates) - known * null_best).colwise().squaredNorm().transpose();
@@ -124,7 +126,8 @@ GapSquares gap_squares(const FilterResult& result, const std::vector<Columns>& g
 // p of a gap of any shape: in the snapshots that count, in those that are held out, and in both,
 // whose logarithms add up (Fisher 1932). That the two are not quite independent, as they share the
 // nuisances' estimates, is in the replicates.
-void set_gap_p(const FilterResult& result, const Indices& nuisances, Screening& screening) {
+void set_gap_p(const assimilation::FilterResult& result, const Indices& nuisances,
+               Screening& screening) {
   const GapSquares train = gap_squares(result, result.gap_parts, nuisances);
   screening.gap_p = screening.train_gap_p = gamma_tail(train.null, train.measured);
   if (result.heldout_gap_parts.empty()) return;
@@ -141,12 +144,13 @@ void set_gap_p(const FilterResult& result, const Indices& nuisances, Screening& 
 // The scores of all candidates, for what was measured and for noise.
 class Scores {
  public:
-  Scores(const FilterResult& result, const std::vector<Candidate>& screened,
-         const Hypothesis& known, const Indices& nuisances)
+  Scores(const assimilation::FilterResult& result,
+         const std::vector<assimilation::Candidate>& screened,
+         const assimilation::Hypothesis& known, const Indices& nuisances)
       : result_(result), screened_(screened), nuisances_(nuisances) {
     const Eigen::MatrixXd& F = result.information;
-    Eigen::Index next = kFirstParameter + known.coefficients();
-    for (const Candidate& candidate : screened) {
+    Eigen::Index next = assimilation::kFirstParameter + known.coefficients();
+    for (const assimilation::Candidate& candidate : screened) {
       Indices indices;
       for (int d = 0; d < candidate.directions; ++d) indices.push_back(next++);
       own_.push_back({indices, Profile(F, nuisances, indices), seen_ones(F, nuisances, indices)});
@@ -187,13 +191,14 @@ class Scores {
     return most_gain(own.profile.information, u, own.seen, screened_[k].two_sided);
   }
   double response(std::size_t k, const Vec& coefficients) const {
-    return root_mean_square(result_.innovations, false, [&](const Innovation& in) {
-      return (in.parameters(Eigen::all, own_[k].indices) * coefficients).squaredNorm();
-    });
+    return assimilation::root_mean_square(
+        result_.innovations, false, [&](const assimilation::Innovation& in) {
+          return (in.parameters(Eigen::all, own_[k].indices) * coefficients).squaredNorm();
+        });
   }
 
-  const FilterResult& result_;
-  const std::vector<Candidate>& screened_;
+  const assimilation::FilterResult& result_;
+  const std::vector<assimilation::Candidate>& screened_;
   const Indices& nuisances_;
   std::vector<Own> own_;
   Vec null_mean_;  // of each candidate
@@ -201,16 +206,18 @@ class Scores {
 };
 
 // `first`: the place of each screened candidate's first coefficient among the parameters.
-std::vector<ConfoundedWithPace> confounded_with_pace(const Eigen::MatrixXd& information,
-                                                     const std::vector<Candidate>& screened,
-                                                     Indices others, Eigen::Index first) {
+std::vector<ConfoundedWithDiffusionRatio> confounded_with_diffusion_ratio(
+    const Eigen::MatrixXd& information, const std::vector<assimilation::Candidate>& screened,
+    Indices others, Eigen::Index first) {
   const Eigen::MatrixXd F = information.selfadjointView<Eigen::Lower>();
-  others.erase(std::find(others.begin(), others.end(), Eigen::Index{kPace}));
-  std::vector<ConfoundedWithPace> result;
-  for (const Candidate& candidate : screened) {
-    const Eigen::MatrixXd I = Profile(F, others, {kPace, first}).information;
+  others.erase(
+      std::find(others.begin(), others.end(), Eigen::Index{assimilation::kDiffusionRatio}));
+  std::vector<ConfoundedWithDiffusionRatio> result;
+  for (const assimilation::Candidate& candidate : screened) {
+    const Eigen::MatrixXd I =
+        Profile(F, others, {assimilation::kDiffusionRatio, first}).information;
     const double correlation = I(0, 1) / std::sqrt(I(0, 0) * I(1, 1));
-    if (candidate.like_pace && !candidate.two_sided && correlation > kConfounded)
+    if (candidate.like_diffusion_ratio && !candidate.two_sided && correlation > kConfounded)
       result.push_back({candidate.effect, I(0, 1) / I(0, 0), correlation});
     first += candidate.directions;
   }
@@ -219,8 +226,9 @@ std::vector<ConfoundedWithPace> confounded_with_pace(const Eigen::MatrixXd& info
 
 }  // namespace
 
-Screening screen(const FilterResult& result, const std::vector<Candidate>& screened,
-                 const Hypothesis& known) {
+Screening screen(const assimilation::FilterResult& result,
+                 const std::vector<assimilation::Candidate>& screened,
+                 const assimilation::Hypothesis& known) {
   const Indices nuisances = free_parameters(result, known);
   const Scores scores(result, screened, known, nuisances);
   Screening screening;
@@ -231,15 +239,19 @@ Screening screen(const FilterResult& result, const std::vector<Candidate>& scree
   std::sort(screening.scores.begin(), screening.scores.end(),
             [](const auto& a, const auto& b) { return a.score > b.score; });
   if (result.null_scores.cols() > 1) set_gap_p(result, nuisances, screening);
-  screening.mesh_error = root_mean_square(result.innovations, false, [](const Innovation& in) {
-    return in.parameters.col(kMeshError).squaredNorm();
-  });
+  screening.mesh_error = assimilation::root_mean_square(
+      result.innovations, false, [](const assimilation::Innovation& in) {
+        return in.parameters.col(assimilation::kMeshError).squaredNorm();
+      });
   const Eigen::MatrixXd inverse = result.information(nuisances, nuisances).inverse();
-  screening.confounded = confounded_with_pace(result.information, screened, nuisances,
-                                              kFirstParameter + known.coefficients());
-  screening.pace_change = (inverse * result.score(nuisances))[kPace];
-  screening.pace_deviation = std::sqrt(inverse(kPace, kPace));
+  screening.confounded =
+      confounded_with_diffusion_ratio(result.information, screened, nuisances,
+                                      assimilation::kFirstParameter + known.coefficients());
+  screening.diffusion_ratio_change =
+      (inverse * result.score(nuisances))[assimilation::kDiffusionRatio];
+  screening.diffusion_ratio_deviation =
+      std::sqrt(inverse(assimilation::kDiffusionRatio, assimilation::kDiffusionRatio));
   return screening;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

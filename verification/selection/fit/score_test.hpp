@@ -4,7 +4,7 @@
 
 #include "verification/assimilation/filter/field_filter.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 
 // p = (1 + the number of replicates that reach it) / (1 + their number).
 double share_of_noise(const Vec& replicates, double value);
@@ -16,7 +16,8 @@ double gamma_tail(const Vec& replicates, double value);
 struct CandidateScore {
   std::string effect;
   std::vector<double> coefficients;  // most probable ones, to first order, within their signs
-  double score;      // 2 ln of the likelihood gained, to first order; pace and mesh error are free
+  double score;  // 2 ln of the likelihood gained, to first order; diffusion ratio and mesh error
+                 // are free
   double null_mean;  // the same of noise alone, on average over the replicates
   double p;          // share of replicates in which any candidate gains more, in units of its own
                      // average
@@ -29,7 +30,7 @@ struct CandidateScore {
 
 // An effect that only makes the mobility larger, so that D makes up for nearly all of it: data know
 // D (1 + slope · strength), to first order, and little of the two by themselves.
-struct ConfoundedWithPace {
+struct ConfoundedWithDiffusionRatio {
   std::string effect;
   double slope;        // ∂ ln D/∂ strength along which next to nothing that is measured changes
   double correlation;  // of the two responses, all else being at its best
@@ -42,13 +43,14 @@ struct Screening {
   // That there is a gap of any shape is noise, nuisances being at their best: in the snapshots that
   // count, in those that are held out (1 if none is), and in both.
   double train_gap_p = 1, heldout_gap_p = 1, gap_p = 1;
-  double pace_change, pace_deviation;  // of ln D, if nothing else is missing
-  double mesh_error;                   // root mean square of what a finer mesh changes, in noise
-  std::vector<ConfoundedWithPace> confounded = {};  // correlated by more than kConfounded
+  double diffusion_ratio_change, diffusion_ratio_deviation;  // of ln D, if nothing else is missing
+  double mesh_error;  // root mean square of what a finer mesh changes, in noise
+  std::vector<ConfoundedWithDiffusionRatio> confounded = {};  // correlated by more than kConfounded
 };
 
 // `known`: the hypothesis of the model whose pass the result is.
-Screening screen(const FilterResult& result, const std::vector<Candidate>& screened,
-                 const Hypothesis& known);
+Screening screen(const assimilation::FilterResult& result,
+                 const std::vector<assimilation::Candidate>& screened,
+                 const assimilation::Hypothesis& known);
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

@@ -5,14 +5,14 @@
 
 #include "verification/statistics/sample.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
 // 95 % of normally distributed values are below.
 constexpr double kOneSided = 1.645;
 
 // Derivatives of the first parameter by the coefficients.
-Vec slopes(const Candidate& candidate) {
+Vec slopes(const assimilation::Candidate& candidate) {
   Vec slope(candidate.directions);
   for (int d = 0; d < candidate.directions; ++d) {
     std::vector<double> a(static_cast<std::size_t>(candidate.directions), 0.0);
@@ -22,7 +22,7 @@ Vec slopes(const Candidate& candidate) {
   return slope;
 }
 
-Bound bound_of(const CandidateScore& score, const Candidate& candidate) {
+Bound bound_of(const CandidateScore& score, const assimilation::Candidate& candidate) {
   const Vec slope = slopes(candidate);
   const double value = slope.dot(
       Eigen::Map<const Vec>(score.coefficients.data(), static_cast<Eigen::Index>(slope.size())));
@@ -39,16 +39,17 @@ Bound bound_of(const CandidateScore& score, const Candidate& candidate) {
 double bound_width(double deviation, int directions, bool two_sided, double null_mean) {
   // What noise gains on average: 1 per coefficient, half of it if one sign is excluded.
   const double expected = directions * (two_sided ? 1.0 : 0.5);
-  return (two_sided ? kNormal95 : kOneSided) * deviation *
+  return (two_sided ? statistics::kNormal95 : kOneSided) * deviation *
          std::sqrt(std::max(1.0, null_mean / expected));
 }
 
-std::vector<Bound> bounds_of(const Screening& screening, const std::vector<Candidate>& screened) {
+std::vector<Bound> bounds_of(const Screening& screening,
+                             const std::vector<assimilation::Candidate>& screened) {
   std::vector<Bound> bounds;
-  for (const Candidate& candidate : screened)
+  for (const assimilation::Candidate& candidate : screened)
     for (const CandidateScore& score : screening.scores)
       if (score.effect == candidate.effect) bounds.push_back(bound_of(score, candidate));
   return bounds;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

@@ -6,7 +6,7 @@
 
 #include "verification/selection/fit/score_test.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 
 // Of the first parameter of an effect, in units of R and R²/D, with 95 % confidence.
 struct Bound {
@@ -20,6 +20,7 @@ struct Bound {
 double bound_width(double deviation, int directions, bool two_sided, double null_mean);
 
 // To first order.
-std::vector<Bound> bounds_of(const Screening& screening, const std::vector<Candidate>& screened);
+std::vector<Bound> bounds_of(const Screening& screening,
+                             const std::vector<assimilation::Candidate>& screened);
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

@@ -6,11 +6,11 @@
 #include "kernel/core/text.hpp"
 #include "verification/assimilation/fields/registration.hpp"
 #include "verification/assimilation/filter/rest.hpp"
-#include "verification/selection/fit/first_pace.hpp"
+#include "verification/selection/fit/first_diffusion_ratio.hpp"
 #include "verification/selection/fit/refit_unknowns.hpp"
 #include "verification/selection/search/steps.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
 // A refit that ends beyond kMapsReach is none of the noise and the errors that it began with.
@@ -23,22 +23,24 @@ constexpr int kMostWeakenings = 3;
 // A calibration that is not over.
 struct Pass {
   Search& search;
-  FilterProblems& data;
-  FilterModel model;
+  assimilation::FilterProblems& data;
+  assimilation::FilterModel model;
   Forecasts forecasts = {};
 
-  const FilterSettings& settings() const { return search.request().filter; }
-  ForecastPoint here() const { return {noise_model(data), model.pace, model.hypothesis}; }
+  const assimilation::FilterSettings& settings() const { return search.request().filter; }
+  ForecastPoint here() const {
+    return {assimilation::noise_model(data), model.diffusion_ratio, model.hypothesis};
+  }
 };
 
-FilterResult forecast(Pass& pass) {
+assimilation::FilterResult forecast(Pass& pass) {
   pass.forecasts.maps_at = pass.here();
   pass.forecasts.maps = {};
-  return filter_fields(pass.data, pass.model, pass.settings(), pass.forecasts.maps);
+  return assimilation::filter_fields(pass.data, pass.model, pass.settings(), pass.forecasts.maps);
 }
 
 // Weakens effects that the model has until it can be advanced.
-FilterResult forecast_weakened(Pass& pass) {
+assimilation::FilterResult forecast_weakened(Pass& pass) {
   for (int half = 0;; ++half) {
     try {
       return forecast(pass);
@@ -53,12 +55,13 @@ FilterResult forecast_weakened(Pass& pass) {
 
 // The noise is that of the model, which begins with these forecasts; where neighbours share another
 // part of it, forecasts are repeated with that.
-void settle_noise(Pass& pass, FilterResult forecasts) {
-  const std::vector<Candidate> screened = std::exchange(pass.model.screened, {});
-  for (int k = 0; k <= kMostCorrelationPasses &&
-                  fit_noise_covariance(pass.data, forecasts, pass.model.base, pass.settings());
+void settle_noise(Pass& pass, assimilation::FilterResult forecasts) {
+  const std::vector<assimilation::Candidate> screened = std::exchange(pass.model.screened, {});
+  for (int k = 0;
+       k <= kMostCorrelationPasses &&
+       assimilation::fit_noise_covariance(pass.data, forecasts, pass.model.base, pass.settings());
        ++k) {
-    pass.search.tell("  noise: " + text_of(pass.data.front().correlation));
+    pass.search.tell("  noise: " + assimilation::text_of(pass.data.front().correlation));
     forecasts = forecast(pass);
   }
   pass.model.screened = screened;
@@ -69,16 +72,16 @@ void screen_forecasts(Pass& pass) {
   pass.search.tell(formatted("  responses to %zu effects", pass.model.screened.size()));
   pass.forecasts.fields_at = pass.here();
   pass.forecasts.fields =
-      filter_fields(pass.data, pass.model, pass.settings(), pass.forecasts.maps);
+      assimilation::filter_fields(pass.data, pass.model, pass.settings(), pass.forecasts.maps);
 }
 
 // Returns whether the forecasts' errors are those of the fit, too.
 bool refit_model(Pass& pass, SearchState& state, const char* what) {
   pass.search.tell(what);
-  const double before = pass.model.pace;
+  const double before = pass.model.diffusion_ratio;
   set_found(refit(pass.data, pass.model, pass.settings(), pass.forecasts.maps), state);
   pass.model = pass.search.model(state);
-  return maps_reach(pass.model.pace, before);
+  return assimilation::maps_reach(pass.model.diffusion_ratio, before);
 }
 
 void calibrate_to_end(Pass& pass, SearchState& state) {
@@ -101,24 +104,25 @@ void calibrate_base(Pass& pass, SearchState& state) {
     settle_noise(pass, forecast_weakened(pass));
     if (!own) screen_forecasts(pass);
     settled = refit_model(pass, state, own ? "  fit D and the effects" : "  fit D");
-    if (!settled) pass.search.tell(formatted("  D is %.2g times the model's", pass.model.pace));
+    if (!settled)
+      pass.search.tell(formatted("  D is %.2g times the model's", pass.model.diffusion_ratio));
   }
   if (own)
     calibrate_to_end(pass, state);
   else
     bootstrap(pass.forecasts.fields, pass.model, state.so_far.found);
   Explanation& result = state.so_far;
-  result.disagreements =
-      disagreements(pass.data, pass.forecasts.fields, pass.search.request().base.well);
+  result.disagreements = assimilation::disagreements(pass.data, pass.forecasts.fields,
+                                                     pass.search.request().base.well);
   result.disagreements.resize(
-      significant(result.disagreements, pass.search.request().false_alarms));
+      assimilation::significant(result.disagreements, pass.search.request().false_alarms));
   result.base = result.found;
 }
 
 // The state knows what the forecasts are of.
 SearchState calibrated(Pass& pass, SearchState state) {
-  state.so_far.noise_model = noise_model(pass.data);
-  state.so_far.noise = noise_of(pass.data);
+  state.so_far.noise_model = assimilation::noise_model(pass.data);
+  state.so_far.noise = assimilation::noise_of(pass.data);
   state.maps_at = pass.forecasts.maps_at;
   state.fields_at = pass.forecasts.fields_at;
   pass.search.keep(std::move(pass.forecasts));
@@ -140,15 +144,16 @@ SearchState stopped(SearchState state, const std::string& why) {
 
 // Nothing is fitted: any D and any effect that leaves the rafts at rest would do. The round has
 // looked for nothing.
-SearchState at_rest(const Search& search, const FilterProblems& data, SearchState state) {
+SearchState at_rest(const Search& search, const assimilation::FilterProblems& data,
+                    SearchState state) {
   search.tell("the rafts are at rest, and the model agrees: nothing tells how fast they change");
   const ExplainRequest& request = search.request();
   Explanation& result = state.so_far;
   result.at_rest = true;
   result.finding = result.without_gap = Finding::not_identifiable;
-  result.noise = noise_of(data);
+  result.noise = assimilation::noise_of(data);
   result.found.hypothesis = request.own;
-  result.found.pace_deviation = std::numeric_limits<double>::infinity();
+  result.found.diffusion_ratio_deviation = std::numeric_limits<double>::infinity();
   result.found.settled = true;
   result.base = result.found;
   result.rounds.push_back({{request.base, 1, request.own, {}}, {}, result.found, {}, {}, {}});
@@ -156,13 +161,14 @@ SearchState at_rest(const Search& search, const FilterProblems& data, SearchStat
   return state;
 }
 
-void describe_data(const Search& search, const FilterProblems& data, Explanation& result) {
+void describe_data(const Search& search, const assimilation::FilterProblems& data,
+                   Explanation& result) {
   const ExplainRequest& request = search.request();
-  result.noise_model = noise_model(data);
+  result.noise_model = assimilation::noise_model(data);
   result.h_over_epsilon = search.h_over_epsilon();
   result.false_alarms = request.false_alarms;
-  result.pace_doubt = request.filter.pace_doubt;
-  for (const FilterProblem& vesicle : data) result.outliers += vesicle.outliers;
+  result.diffusion_ratio_doubt = request.filter.diffusion_ratio_doubt;
+  for (const assimilation::FilterProblem& vesicle : data) result.outliers += vesicle.outliers;
 }
 
 }  // namespace
@@ -170,22 +176,23 @@ void describe_data(const Search& search, const FilterProblems& data, Explanation
 SearchState start(Search& search, SearchState state) {
   const ExplainRequest& request = search.request();
   Explanation& result = state.so_far;
-  const FilterProblems& data = search.data_at_start();
+  const assimilation::FilterProblems& data = search.data_at_start();
   describe_data(search, data, result);
-  if (are_at_rest(data, with_effects(request.base, request.own.terms())))
+  if (assimilation::are_at_rest(data, effects::with_effects(request.base, request.own.terms())))
     return at_rest(search, data, std::move(state));
   search.tell("fit D of the base model");
-  const FilterModel model =
-      with_first_pace(data, {request.base, 1, request.own, {}}, request.filter);
-  result.found.pace = model.pace;
+  const assimilation::FilterModel model =
+      with_first_diffusion_ratio(data, {request.base, 1, request.own, {}}, request.filter);
+  result.found.diffusion_ratio = model.diffusion_ratio;
   result.found.hypothesis = model.hypothesis;
-  const bool far = std::fabs(std::log(model.pace)) > std::log(kFarPace);
-  search.tell(formatted("  D is about %.2g times the model's%s", model.pace,
+  const bool far = std::fabs(std::log(model.diffusion_ratio)) > std::log(kFarDiffusionRatio);
+  search.tell(formatted("  D is about %.2g times the model's%s", model.diffusion_ratio,
                         far ? "; are time_unit and the model's --diffusion right?" : ""));
-  for (const FilterProblem& vesicle : data)
+  for (const assimilation::FilterProblem& vesicle : data)
     for (std::size_t k = 1; k < vesicle.turns.size(); ++k)
       if (vesicle.turns[k])
-        result.registered.push_back({vesicle.vesicle, k, angle_of(vesicle.turns[k]->rotation)});
+        result.registered.push_back(
+            {vesicle.vesicle, k, assimilation::angle_of(vesicle.turns[k]->rotation)});
   state.next = SearchStep::calibrate;
   return state;
 }
@@ -197,7 +204,7 @@ SearchState calibrate_found(Search& search, SearchState state) {
 }
 
 SearchState calibrate(Search& search, SearchState state) {
-  const Hypothesis& found = state.so_far.found.hypothesis;
+  const assimilation::Hypothesis& found = state.so_far.found.hypothesis;
   if (state.so_far.rounds.empty()) {
     search.tell("search for what is missing from the base model");
     Pass pass{search, search.data(state), search.model(state)};
@@ -217,4 +224,4 @@ SearchState calibrate(Search& search, SearchState state) {
   }
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

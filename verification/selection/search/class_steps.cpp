@@ -8,17 +8,17 @@
 #include "kernel/core/error.hpp"
 #include "verification/selection/search/steps.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
-bool holds_out(const FilterProblems& data) {
-  return std::any_of(data.begin(), data.end(), [](const FilterProblem& vesicle) {
+bool holds_out(const assimilation::FilterProblems& data) {
+  return std::any_of(data.begin(), data.end(), [](const assimilation::FilterProblem& vesicle) {
     return vesicle.train < vesicle.snapshots.size();
   });
 }
 
-FilterProblems holding_nothing_out(FilterProblems data) {
-  for (FilterProblem& vesicle : data) vesicle.train = vesicle.snapshots.size();
+assimilation::FilterProblems holding_nothing_out(assimilation::FilterProblems data) {
+  for (assimilation::FilterProblem& vesicle : data) vesicle.train = vesicle.snapshots.size();
   return data;
 }
 
@@ -79,8 +79,8 @@ std::vector<Refit> shadows(const Search& search, const SearchState& state, const
   return result;
 }
 
-void fit_all(const std::vector<Refit>& fits, const FilterProblems& all, const Search& search,
-             std::vector<Member>& members) {
+void fit_all(const std::vector<Refit>& fits, const assimilation::FilterProblems& all,
+             const Search& search, std::vector<Member>& members) {
   const ExplainRequest& request = search.request();
   for (const Refit& fit : fits) {
     search.tell("  " + fit.hypothesis.name() + ", fitted to all snapshots");
@@ -89,14 +89,14 @@ void fit_all(const std::vector<Refit>& fits, const FilterProblems& all, const Se
 }
 
 // The found one first. None if that cannot be refitted.
-std::vector<Member> members_of(const FilterProblems& all, const Search& search,
+std::vector<Member> members_of(const assimilation::FilterProblems& all, const Search& search,
                                const SearchState& state) {
   std::vector<Refit> fits{state.so_far.found};
   fits.insert(fits.end(), state.so_far.rivals.begin(), state.so_far.rivals.end());
   std::vector<Member> members;
   fit_all(fits, all, search, members);
   if (!members.front().all.failure.empty()) return {};
-  if (const std::size_t best = best_of(members, count_values(all), state); best != 0)
+  if (const std::size_t best = best_of(members, assimilation::count_values(all), state); best != 0)
     fit_all(shadows(search, state, members[best].fit), all, search, members);
   return members;
 }
@@ -150,13 +150,13 @@ std::optional<Beside> beside(Search& search, SearchState state, const Refit& fit
 
 }  // namespace
 
-Refit refit_of(const FilterProblems& data, const CahnHilliardModel& base, const Refit& member,
-               FilterSettings settings) {
+Refit refit_of(const assimilation::FilterProblems& data, const problem::CahnHilliardModel& base,
+               const Refit& member, assimilation::FilterSettings settings) {
   settings.replicates = 0;
-  const FilterModel model{base, member.pace, member.hypothesis, {}};
+  const assimilation::FilterModel model{base, member.diffusion_ratio, member.hypothesis, {}};
   try {
-    std::vector<ErrorMaps> maps;
-    (void)filter_fields(data, model, settings, maps);
+    std::vector<assimilation::ErrorMaps> maps;
+    (void)assimilation::filter_fields(data, model, settings, maps);
     return refit(data, model, settings, maps);
   } catch (const std::runtime_error& error) {
     Refit failed;
@@ -168,10 +168,10 @@ Refit refit_of(const FilterProblems& data, const CahnHilliardModel& base, const 
 bool is_as_probable(Search& search, const SearchState& state, const Refit& one,
                     const Refit& other) {
   const ExplainRequest& request = search.request();
-  const FilterProblems all = holding_nothing_out(search.data(state));
+  const assimilation::FilterProblems all = holding_nothing_out(search.data(state));
   const Refit first = refit_of(all, request.base, one, request.filter);
   const Refit second = refit_of(all, request.base, other, request.filter);
-  const double values = count_values(all);
+  const double values = assimilation::count_values(all);
   return first.failure.empty() && second.failure.empty() &&
          criterion(first, values) <= criterion(second, values);
 }
@@ -206,10 +206,10 @@ SearchState weigh(Search& search, SearchState state) {
   state.next = SearchStep::confirm;
   if (asked || !is_open(result) || !holds_out(search.data(state))) return state;
   search.tell("compare the members of the class on the held-out snapshots");
-  const FilterProblems all = holding_nothing_out(search.data(state));
+  const assimilation::FilterProblems all = holding_nothing_out(search.data(state));
   const std::vector<Member> members = members_of(all, search, state);
   if (members.empty()) return state;
-  const double values = count_values(all);
+  const double values = assimilation::count_values(all);
   const std::size_t best = best_of(members, values, state);
   judge_members(search, members, best, values, result);
   if (best == 0) return state;
@@ -220,4 +220,4 @@ SearchState weigh(Search& search, SearchState state) {
   return state;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

@@ -6,13 +6,13 @@
 #include "verification/selection/search/neighbours.hpp"
 #include "verification/selection/search/steps.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
 // Effects that are replaced at once.
 constexpr int kMostReplacements = 3;
 
-Hypothesis without(Hypothesis hypothesis, const std::string& effect) {
+assimilation::Hypothesis without(assimilation::Hypothesis hypothesis, const std::string& effect) {
   auto& parts = hypothesis.parts;
   parts.erase(std::remove_if(parts.begin(), parts.end(),
                              [&](const auto& part) { return part.candidate.effect == effect; }),
@@ -41,14 +41,15 @@ std::optional<std::size_t> best_without(const std::vector<Refit>& fits, const Re
   return best;
 }
 
-std::vector<FilterModel> rivals_without_dropped(const Search& search, const SearchState& state) {
+std::vector<assimilation::FilterModel> rivals_without_dropped(const Search& search,
+                                                              const SearchState& state) {
   const Explanation& result = state.so_far;
-  std::vector<FilterModel> trials;
+  std::vector<assimilation::FilterModel> trials;
   std::vector<std::string> tried{result.found.hypothesis.name()};
   for (const Refit& rival : result.rivals) {
-    FilterModel trial = search.model(state);
+    assimilation::FilterModel trial = search.model(state);
     trial.hypothesis = rival.hypothesis;
-    trial.pace = rival.pace;
+    trial.diffusion_ratio = rival.diffusion_ratio;
     for (const ModelChange& change : result.changes)
       if (change.reason == ModelChange::is_none)
         trial.hypothesis = without(trial.hypothesis, change.from);
@@ -80,13 +81,14 @@ void add_rivals(const std::vector<Refit>& fits, double values, double limit, Exp
       result.rivals.push_back(fit);
 }
 
-std::vector<FilterModel> trials_near(const Search& search, const SearchState& state) {
-  std::vector<Candidate> open;
-  const std::vector<Candidate>& all = search.candidates();
-  std::copy_if(all.begin(), all.end(), std::back_inserter(open),
-               [&](const Candidate& c) { return !was_dropped(state.so_far, c.effect); });
-  std::vector<FilterModel> trials;
-  for (Hypothesis& near :
+std::vector<assimilation::FilterModel> trials_near(const Search& search, const SearchState& state) {
+  std::vector<assimilation::Candidate> open;
+  const std::vector<assimilation::Candidate>& all = search.candidates();
+  std::copy_if(
+      all.begin(), all.end(), std::back_inserter(open),
+      [&](const assimilation::Candidate& c) { return !was_dropped(state.so_far, c.effect); });
+  std::vector<assimilation::FilterModel> trials;
+  for (assimilation::Hypothesis& near :
        neighbours(state.so_far.found, state.so_far.rounds, search.values(), open)) {
     trials.push_back(search.model(state));
     trials.back().hypothesis = std::move(near);
@@ -101,7 +103,7 @@ SearchState eliminate(Search& search, SearchState state) {
   const double values = search.values(),
                error = screen(search.forecasts(state).fields, {}, found.hypothesis).mesh_error;
   const std::vector<std::string> doubtful = unresolved(found, values, error);
-  std::vector<FilterModel> trials(doubtful.size(), search.model(state));
+  std::vector<assimilation::FilterModel> trials(doubtful.size(), search.model(state));
   for (std::size_t k = 0; k < trials.size(); ++k)
     trials[k].hypothesis = without(found.hypothesis, doubtful[k]);
   if (!trials.empty()) search.tell("without " + joined(doubtful, ", or without "));
@@ -162,4 +164,4 @@ SearchState replace(Search& search, SearchState state) {
   return state;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

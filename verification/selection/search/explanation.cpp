@@ -7,18 +7,18 @@
 #include "verification/selection/search/rerun.hpp"
 #include "verification/selection/search/steps.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
 // Is it the hypothesis, or that with something more?
-bool has_found(const Hypothesis& hypothesis, const Hypothesis& found) {
+bool has_found(const assimilation::Hypothesis& hypothesis, const assimilation::Hypothesis& found) {
   return std::all_of(found.parts.begin(), found.parts.end(),
                      [&](const auto& part) { return hypothesis.has(part.candidate.effect); });
 }
 
 }  // namespace
 
-std::optional<Gaps> runner_up(const Explanation& result) {
+std::optional<assimilation::Gaps> runner_up(const Explanation& result) {
   const Refit* best = nullptr;
   const auto consider = [&](const std::vector<Refit>& fits) {
     for (const Refit& fit : fits)
@@ -45,8 +45,9 @@ std::vector<Bound> bounds_of(const Explanation& found) {
 
 std::optional<double> closed_by_last_round(const Explanation& found) {
   if (found.rounds.empty()) return {};
-  const Gaps& before = found.rounds.back().without.gap;
-  return share_closed(before.train, found.found.gap.train, found.found.expected.train);
+  const assimilation::Gaps& before = found.rounds.back().without.gap;
+  return assimilation::share_closed(before.train, found.found.gap.train,
+                                    found.found.expected.train);
 }
 
 bool is_named(const Explanation& found) {
@@ -106,8 +107,8 @@ SearchState next_state(Search& search, SearchState state) {
   return next;
 }
 
-Explanation explain_fields(const std::vector<FieldSeries>& series, const ExplainRequest& request,
-                           SearchState from) {
+Explanation explain_fields(const std::vector<assimilation::FieldSeries>& series,
+                           const ExplainRequest& request, SearchState from) {
   Search search(series, request);
   const bool coarse = search.h_over_epsilon() > kCoarse;
   search.tell(formatted("%d cells, h/epsilon = %.2f%s", request.cells, search.h_over_epsilon(),
@@ -118,9 +119,9 @@ Explanation explain_fields(const std::vector<FieldSeries>& series, const Explain
     state = next_state(search, std::move(state));
     search.save(state);
   }
-  const CutSurface& surface = search.data(state).front().space->surface;
+  const mesh::CutSurface& surface = search.data(state).front().space->surface;
   state.so_far.map_mesh = {surface.position, surface.triangles};
   return state.so_far;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

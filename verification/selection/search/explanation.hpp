@@ -15,17 +15,18 @@
 #include "verification/selection/search/bounds.hpp"
 #include "verification/selection/search/judgement.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 
 struct SearchState;
 
 struct ExplainRequest {
-  CahnHilliardModel base;
-  Hypothesis own = {};  // effects that the model has: fitted as D is, and none that is missing
-  LevelSetPtr surface;
+  problem::CahnHilliardModel base;
+  assimilation::Hypothesis own =
+      {};  // effects that the model has: fitted as D is, and none that is missing
+  geometry::LevelSetPtr surface;
   int cells = 32;
   int threads = 2;
-  FilterSettings filter;
+  assimilation::FilterSettings filter;
   int most_effects = 3;
   std::vector<std::string> without;  // effects that are not looked for
   std::size_t shortlist = 5;
@@ -57,8 +58,8 @@ struct RegisteredRotation {
 struct Rerun {
   int cells = 0;
   std::string integrator;
-  Gaps base, found, floor;  // in units of c
-  std::string failure;      // why there is none, if it failed
+  assimilation::Gaps base, found, floor;  // in units of c
+  std::string failure;                    // why there is none, if it failed
   // Of what is held out, or, if nothing is, of what was fitted: 2 ln of the likelihood ratio of
   // found and base, with the covariance that innovations have if the found model is the truth; by
   // how many standard deviations it is smaller than it would be then; and how many of them errors
@@ -96,28 +97,28 @@ struct Explanation {
   Finding finding = Finding::none;
   Finding without_gap = Finding::none;  // if it is `unnamed`: what it is if that gap is none
   double false_alarms = 0;              // as requested
-  double pace_doubt = std::numeric_limits<double>::infinity();  // as requested
-  double h_over_epsilon = 0;                                    // of the model's mesh
-  std::size_t outliers = 0;                                     // values that were left out
-  bool at_rest = false;  // data and base model (rest.hpp), so that nothing was fitted
+  double diffusion_ratio_doubt = std::numeric_limits<double>::infinity();  // as requested
+  double h_over_epsilon = 0;                                               // of the model's mesh
+  std::size_t outliers = 0;  // values that were left out
+  bool at_rest = false;      // data and base model (rest.hpp), so that nothing was fitted
   std::vector<RegisteredRotation> registered;
   double noise = 0;  // standard deviation of the values that count
-  NoiseModel noise_model;
+  assimilation::NoiseModel noise_model;
   Refit base, found;          // with D refitted; found: the base if nothing was
   std::vector<Refit> rivals;  // other hypotheses that explain the data as well
   std::vector<Excluded> excluded;
   std::vector<ModelChange> changes;  // in their order
   std::vector<Round> rounds;
-  std::string stopped;                      // why the search could not go on, if it had to stop
-  std::vector<FrameChange> frames;          // of the found model
-  std::vector<Disagreement> disagreements;  // with the base, the significant ones
-  SurfaceMesh map_mesh;                     // Γ_h of the model's mesh; no part of a saved state
-  DisagreementMaps base_maps, found_maps;   // at its points
+  std::string stopped;              // why the search could not go on, if it had to stop
+  std::vector<FrameChange> frames;  // of the found model
+  std::vector<assimilation::Disagreement> disagreements;  // with the base, the significant ones
+  observables::SurfaceMesh map_mesh;  // Γ_h of the model's mesh; no part of a saved state
+  assimilation::DisagreementMaps base_maps, found_maps;  // at its points
   std::optional<Rerun> rerun;
 };
 
 // A D that is further from the model's than by this factor is most likely a wrong unit of time.
-inline constexpr double kFarPace = 10;
+inline constexpr double kFarDiffusionRatio = 10;
 
 // Beyond that h/epsilon verdicts become doubtful: at 1.7 one of eleven campaign cases with nothing
 // missing was `not-identifiable` (docs/explain.md).
@@ -134,11 +135,11 @@ inline constexpr double kLeastProgress = 0.1;
 // The gaps of the best rival, or of the best of the last round that had others than the found one
 // or that with something more: by their gaps, as deviances of different rounds are in units of
 // different noise.
-std::optional<Gaps> runner_up(const Explanation& found);
+std::optional<assimilation::Gaps> runner_up(const Explanation& found);
 // How strong effects beside those that were found may be; none where nothing was looked for.
 std::vector<Bound> bounds_of(const Explanation& found);
 // Names of the hypotheses that explain the data as well as each other, the found one first; none if
 // nothing is named.
 std::vector<std::string> class_of(const Explanation& found);
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
 // Would any effect of the usual size have been seen?
@@ -14,10 +14,10 @@ bool identifiable(const Screening& screening, double usual_change) {
 }
 
 // An effect of strength 0 is none: without it this is another hypothesis.
-bool has_nothing(const Hypothesis& hypothesis) {
+bool has_nothing(const assimilation::Hypothesis& hypothesis) {
   const auto known = static_cast<std::ptrdiff_t>(hypothesis.known);
   return std::any_of(hypothesis.parts.begin() + known, hypothesis.parts.end(),
-                     [](const Hypothesis::Part& part) {
+                     [](const assimilation::Hypothesis::Part& part) {
                        return std::all_of(part.coefficients.begin(), part.coefficients.end(),
                                           [](double coefficient) { return coefficient == 0; });
                      });
@@ -47,12 +47,12 @@ std::string word_for(Finding finding) {
   return "";
 }
 
-const std::string& last_effect(const Hypothesis& hypothesis) {
+const std::string& last_effect(const assimilation::Hypothesis& hypothesis) {
   return hypothesis.parts.back().candidate.effect;
 }
 
 double mesh_doubt(double values, double mesh_error) {
-  return kMeshDoubt * mesh_error * std::sqrt(values);
+  return assimilation::kMeshDoubt * mesh_error * std::sqrt(values);
 }
 
 double discrimination_limit(double values, double mesh_error) {
@@ -122,4 +122,4 @@ Judgement judge(const Round& round, double values, double false_alarms, double u
   return taken;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

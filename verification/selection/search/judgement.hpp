@@ -9,7 +9,7 @@
 #include "verification/selection/fit/refit.hpp"
 #include "verification/selection/fit/score_test.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 
 enum class Finding {
   none,              // no significant disagreement
@@ -38,7 +38,7 @@ inline Finding finding_beside(std::size_t rivals) {
 
 // The search for one more effect.
 struct Round {
-  FilterModel known;
+  assimilation::FilterModel known;
   Screening screening;
   Refit without;              // what was known before
   std::vector<Refit> refits;  // of the shortlist, most probable first; none if nothing is lacking
@@ -58,7 +58,7 @@ inline constexpr double kSeen = 4;
 // is known to a factor of 3 at best, in 95 of 100 cases. Rafts at rest are such data.
 inline constexpr double kKineticsUntested = 0.56;
 inline bool tests_kinetics(const Refit& base) {
-  return base.pace_deviation <= kKineticsUntested;
+  return base.diffusion_ratio_deviation <= kKineticsUntested;
 }
 
 // Schwarz' (1978): an effect with a second coefficient has to earn it, above all if one without is
@@ -86,7 +86,7 @@ double discrimination_limit(double values, double mesh_error);
 bool resolved(const Refit& fit, std::size_t effect, double values, double mesh_error);
 bool all_resolved(const Refit& fit, double values, double mesh_error);
 
-const std::string& last_effect(const Hypothesis& hypothesis);
+const std::string& last_effect(const assimilation::Hypothesis& hypothesis);
 
 // A gap of any shape has to be that much less probable than the best candidate, as it names
 // nothing, and as what is left of the errors of the mesh and of linear responses looks like one: of
@@ -113,4 +113,4 @@ struct Judgement {
 Judgement judge(const Round& round, double values, double false_alarms, double usual_change,
                 const std::function<bool(const Refit&)>& leaves_gap);
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
 // Of the deviance that an effect gained when it was taken, what one that came near it gained.
@@ -12,8 +12,9 @@ constexpr double kNear = 0.5;
 constexpr double kCertain = 2;
 
 // What was refitted in the round in which this effect was.
-std::vector<Hypothesis::Part> rivals(const std::string& effect, const std::vector<Round>& rounds) {
-  std::vector<Hypothesis::Part> result;
+std::vector<assimilation::Hypothesis::Part> rivals(const std::string& effect,
+                                                   const std::vector<Round>& rounds) {
+  std::vector<assimilation::Hypothesis::Part> result;
   for (const Round& round : rounds) {
     const auto is = [](const std::string& name) {
       return
@@ -31,22 +32,24 @@ std::vector<Hypothesis::Part> rivals(const std::string& effect, const std::vecto
 
 }  // namespace
 
-std::vector<Hypothesis> neighbours(const Refit& fit, const std::vector<Round>& rounds,
-                                   double values, const std::vector<Candidate>& allowed) {
-  std::vector<Hypothesis> result;
-  const Hypothesis& here = fit.hypothesis;
+std::vector<assimilation::Hypothesis> neighbours(
+    const Refit& fit, const std::vector<Round>& rounds, double values,
+    const std::vector<assimilation::Candidate>& allowed) {
+  std::vector<assimilation::Hypothesis> result;
+  const assimilation::Hypothesis& here = fit.hypothesis;
   const auto may_be_taken = [&](const std::string& effect) {
-    return !here.has(effect) && std::any_of(allowed.begin(), allowed.end(),
-                                            [&](const Candidate& c) { return c.effect == effect; });
+    return !here.has(effect) &&
+           std::any_of(allowed.begin(), allowed.end(),
+                       [&](const assimilation::Candidate& c) { return c.effect == effect; });
   };
   for (std::size_t k = here.known; k < here.parts.size(); ++k) {
-    const Candidate& own = here.parts[k].candidate;
+    const assimilation::Candidate& own = here.parts[k].candidate;
     if (here.added() > 1 && certainty(fit, k) < kCertain * own.directions * std::log(values)) {
       result.push_back(here);
       result.back().parts.erase(result.back().parts.begin() + static_cast<std::ptrdiff_t>(k));
     }
     std::vector<std::string> tried;
-    for (const Hypothesis::Part& rival : rivals(own.effect, rounds)) {
+    for (const assimilation::Hypothesis::Part& rival : rivals(own.effect, rounds)) {
       const std::string& effect = rival.candidate.effect;
       if (!may_be_taken(effect) || std::count(tried.begin(), tried.end(), effect) > 0) continue;
       tried.push_back(effect);
@@ -57,4 +60,4 @@ std::vector<Hypothesis> neighbours(const Refit& fit, const std::vector<Round>& r
   return result;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

@@ -6,13 +6,14 @@
 
 #include "verification/selection/search/judgement.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 
 // Of a model with `fit`'s hypothesis: without each effect that is not twice as certain as the
 // criterion asks (one that is may stay: a refit without it would be for nothing), and with each
 // effect replaced by those that came near it in its round. `values`: how many have been measured;
 // `allowed`: effects that may be taken.
-std::vector<Hypothesis> neighbours(const Refit& fit, const std::vector<Round>& rounds,
-                                   double values, const std::vector<Candidate>& allowed);
+std::vector<assimilation::Hypothesis> neighbours(
+    const Refit& fit, const std::vector<Round>& rounds, double values,
+    const std::vector<assimilation::Candidate>& allowed);
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

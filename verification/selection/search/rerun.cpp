@@ -7,7 +7,7 @@
 
 #include "verification/assimilation/filter/noise_levels.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
 constexpr double kOtherCells = 1.15;
@@ -16,37 +16,41 @@ constexpr char kOtherIntegrator[] = "rosenbrock";
 // Standard deviations, beyond which one in a hundred truths falls short.
 constexpr double kRefuted = 2.33;
 
-FilterProblems problems_with(const std::optional<NoiseModel>& noise,
-                             const std::vector<FieldSeries>& series,
-                             const ExplainRequest& request) {
-  FilterProblems data = problems_of(series, request);
-  if (noise) set_noise_model(*noise, request.base, request.filter, data);
+assimilation::FilterProblems problems_with(const std::optional<assimilation::NoiseModel>& noise,
+                                           const std::vector<assimilation::FieldSeries>& series,
+                                           const ExplainRequest& request) {
+  assimilation::FilterProblems data = problems_of(series, request);
+  if (noise) assimilation::set_noise_model(*noise, request.base, request.filter, data);
   return data;
 }
 
-FilterResult pass_of(const FilterProblems& data, const FilterModel& model,
-                     const FilterSettings& settings) {
-  std::vector<ErrorMaps> maps;
-  return filter_fields(data, model, settings, maps);
+assimilation::FilterResult pass_of(const assimilation::FilterProblems& data,
+                                   const assimilation::FilterModel& model,
+                                   const assimilation::FilterSettings& settings) {
+  std::vector<assimilation::ErrorMaps> maps;
+  return assimilation::filter_fields(data, model, settings, maps);
 }
 
-FilterResult pass_of_model(const FilterProblems& data, const ExplainRequest& request, double pace,
-                           const std::vector<EffectTerm>& effects) {
-  FilterSettings alone = request.filter;
+assimilation::FilterResult pass_of_model(const assimilation::FilterProblems& data,
+                                         const ExplainRequest& request, double diffusion_ratio,
+                                         const std::vector<effects::EffectTerm>& effects) {
+  assimilation::FilterSettings alone = request.filter;
   alone.replicates = 0;
-  return pass_of(data, {with_effects(request.base, effects), pace, {}, {}}, alone);
+  return pass_of(data, {effects::with_effects(request.base, effects), diffusion_ratio, {}, {}},
+                 alone);
 }
 
-FilterResult pass_of_model(const FilterProblems& data, const ExplainRequest& request,
-                           const Refit& fit) {
-  return pass_of_model(data, request, fit.pace, fit.hypothesis.terms());
+assimilation::FilterResult pass_of_model(const assimilation::FilterProblems& data,
+                                         const ExplainRequest& request, const Refit& fit) {
+  return pass_of_model(data, request, fit.diffusion_ratio, fit.hypothesis.terms());
 }
 
 // A pass per processor.
-Rerun compare_both(FilterProblems data, const ExplainRequest& other, const Explanation& found) {
+Rerun compare_both(assimilation::FilterProblems data, const ExplainRequest& other,
+                   const Explanation& found) {
   const int lanes = std::min(other.threads, 2);
-  for (FilterProblem& vesicle : data) vesicle.team = std::make_shared<ThreadTeam>(1);
-  std::array<FilterResult, 2> passes;
+  for (assimilation::FilterProblem& vesicle : data) vesicle.team = std::make_shared<ThreadTeam>(1);
+  std::array<assimilation::FilterResult, 2> passes;
   ThreadTeam(lanes).run([&](int lane) {
     for (int k = lane; k < 2; k += lanes)
       passes[k] = pass_of_model(data, other, k == 0 ? found.base : found.found);
@@ -56,13 +60,14 @@ Rerun compare_both(FilterProblems data, const ExplainRequest& other, const Expla
 
 // Is what nothing explains there on the other mesh, too? As the search asks it, of the model that
 // it ended with.
-void look_for_gap(const FilterProblems& data, const ExplainRequest& other, Explanation& found,
-                  Rerun& rerun) {
+void look_for_gap(const assimilation::FilterProblems& data, const ExplainRequest& other,
+                  Explanation& found, Rerun& rerun) {
   const Refit& end = found.found;
-  const FilterResult pass = pass_of(data, {other.base, end.pace, end.hypothesis, {}}, other.filter);
+  const assimilation::FilterResult pass =
+      pass_of(data, {other.base, end.diffusion_ratio, end.hypothesis, {}}, other.filter);
   if (end.hypothesis.added() == 0) {
-    rerun.base = rerun.found = gaps_of_pass(pass);
-    rerun.floor = expected_gaps(pass);
+    rerun.base = rerun.found = assimilation::gaps_of_pass(pass);
+    rerun.floor = assimilation::expected_gaps(pass);
   }
   const Screening left = screen(pass, {}, end.hypothesis);
   rerun.gap_p = left.gap_p;
@@ -85,22 +90,23 @@ bool Rerun::refutes() const {
   return failure.empty() && gain < 0 && shortfall > kRefuted + doubt;
 }
 
-Rerun compare_forecasts(const FilterResult& base, const FilterResult& found, double mesh_error) {
+Rerun compare_forecasts(const assimilation::FilterResult& base,
+                        const assimilation::FilterResult& found, double mesh_error) {
   Rerun result;
-  result.base = gaps_of_pass(base);
-  result.found = gaps_of_pass(found);
-  result.floor = expected_gaps(found);
+  result.base = assimilation::gaps_of_pass(base);
+  result.found = assimilation::gaps_of_pass(found);
+  result.floor = assimilation::expected_gaps(found);
   const bool held_out = result.heldout();
   // If the found model is the truth, its innovations ν have the covariance S; νᵀ S⁻¹ d has the
   // variance dᵀ S⁻¹ d then, d being the difference of the forecasts.
   double along = 0, difference = 0, count = 0;
   for (std::size_t k = 0; k < found.innovations.size(); ++k) {
-    const Innovation& f = found.innovations[k];
+    const assimilation::Innovation& f = found.innovations[k];
     if (f.held_out != held_out) continue;
     count += static_cast<double>(f.values.size());
-    Columns values(f.values.size(), 2);
+    assimilation::Columns values(f.values.size(), 2);
     values << f.values, base.innovations[k].values - f.values;
-    const Columns weighted = InnovationCovariance(f, 0).solve(values);
+    const assimilation::Columns weighted = assimilation::InnovationCovariance(f, 0).solve(values);
     const double one = values.col(1).dot(weighted.col(0)), two = values.col(1).dot(weighted.col(1));
     result.gain += 2 * one + two;
     along -= one;
@@ -115,7 +121,7 @@ bool is_to_run_again(const Explanation& found) {
   return found.found.hypothesis.added() > 0 || found.finding == Finding::unnamed;
 }
 
-void run_again(const std::vector<FieldSeries>& series, const ExplainRequest& request,
+void run_again(const std::vector<assimilation::FieldSeries>& series, const ExplainRequest& request,
                Explanation& found) {
   if (!is_to_run_again(found)) return;
   ExplainRequest other = request;
@@ -124,7 +130,7 @@ void run_again(const std::vector<FieldSeries>& series, const ExplainRequest& req
   const bool asks_for_gap = found.finding == Finding::unnamed;
   if (!asks_for_gap) other.filter.replicates = 0;
   Rerun result;
-  std::optional<FilterProblems> data;
+  std::optional<assimilation::FilterProblems> data;
   std::string no_data;
   attempt(no_data, [&] { data = problems_with(found.noise_model, series, other); });
   if (found.found.hypothesis.added() > 0) {
@@ -142,14 +148,15 @@ void run_again(const std::vector<FieldSeries>& series, const ExplainRequest& req
   found.rerun = result;
 }
 
-ModelGaps gaps_of_model(const std::vector<FieldSeries>& series, const ExplainRequest& request,
-                        double pace, const std::vector<EffectTerm>& effects,
-                        const std::optional<NoiseModel>& noise) {
+ModelGaps gaps_of_model(const std::vector<assimilation::FieldSeries>& series,
+                        const ExplainRequest& request, double diffusion_ratio,
+                        const std::vector<effects::EffectTerm>& effects,
+                        const std::optional<assimilation::NoiseModel>& noise) {
   ExplainRequest alone = request;
   alone.filter.replicates = 0;
-  const FilterResult pass =
-      pass_of_model(problems_with(noise, series, alone), alone, pace, effects);
-  return {gaps_of_pass(pass), expected_gaps(pass)};
+  const assimilation::FilterResult pass =
+      pass_of_model(problems_with(noise, series, alone), alone, diffusion_ratio, effects);
+  return {assimilation::gaps_of_pass(pass), assimilation::expected_gaps(pass)};
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

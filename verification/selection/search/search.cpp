@@ -4,16 +4,16 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
-bool same_hypothesis(const Hypothesis& a, const Hypothesis& b) {
+bool same_hypothesis(const assimilation::Hypothesis& a, const assimilation::Hypothesis& b) {
   return a.known == b.known &&
-         std::equal(a.parts.begin(), a.parts.end(), b.parts.begin(), b.parts.end(),
-                    [](const Hypothesis::Part& p, const Hypothesis::Part& q) {
-                      return p.candidate.effect == q.candidate.effect &&
-                             p.coefficients == q.coefficients;
-                    });
+         std::equal(
+             a.parts.begin(), a.parts.end(), b.parts.begin(), b.parts.end(),
+             [](const assimilation::Hypothesis::Part& p, const assimilation::Hypothesis::Part& q) {
+               return p.candidate.effect == q.candidate.effect && p.coefficients == q.coefficients;
+             });
 }
 
 std::string news_of(const Refit& fit, const Refit& found) {
@@ -36,21 +36,24 @@ std::string word_for(SearchStep step) {
 }
 
 bool operator==(const ForecastPoint& a, const ForecastPoint& b) {
-  return a.pace == b.pace && same_hypothesis(a.hypothesis, b.hypothesis) && a.noise == b.noise;
+  return a.diffusion_ratio == b.diffusion_ratio && same_hypothesis(a.hypothesis, b.hypothesis) &&
+         a.noise == b.noise;
 }
 
-FilterProblems problems_of(const std::vector<FieldSeries>& series, const ExplainRequest& request) {
-  return make_filter_problems(series, *request.surface, request.base, request.cells,
-                              request.threads, request.hold_out, request.filter);
+assimilation::FilterProblems problems_of(const std::vector<assimilation::FieldSeries>& series,
+                                         const ExplainRequest& request) {
+  return assimilation::make_filter_problems(series, *request.surface, request.base, request.cells,
+                                            request.threads, request.hold_out, request.filter);
 }
 
-Search::Search(const std::vector<FieldSeries>& series, const ExplainRequest& request)
+Search::Search(const std::vector<assimilation::FieldSeries>& series, const ExplainRequest& request)
     : series_(series),
       request_(request),
       data_(problems_of(series, request)),
-      candidates_(candidates_beside(
-          request.own, candidates_for(request.base, *request.surface,
-                                      data_.front().space->surface.position, request.without))) {}
+      candidates_(assimilation::candidates_beside(
+          request.own,
+          assimilation::candidates_for(request.base, *request.surface,
+                                       data_.front().space->surface.position, request.without))) {}
 
 void Search::tell(const std::string& news) const {
   if (request_.progress) request_.progress(news);
@@ -60,17 +63,17 @@ void Search::save(const SearchState& state) const {
   if (request_.save) request_.save(state);
 }
 
-FilterProblems& Search::data(const SearchState& state) {
-  if (!(noise_model(data_) == state.so_far.noise_model))
-    set_noise_model(state.so_far.noise_model, request_.base, request_.filter, data_);
+assimilation::FilterProblems& Search::data(const SearchState& state) {
+  if (!(assimilation::noise_model(data_) == state.so_far.noise_model))
+    assimilation::set_noise_model(state.so_far.noise_model, request_.base, request_.filter, data_);
   return data_;
 }
 
-FilterModel Search::model(const SearchState& state) const {
+assimilation::FilterModel Search::model(const SearchState& state) const {
   const Refit& found = state.so_far.found;
-  FilterModel model{request_.base, found.pace, found.hypothesis, {}};
+  assimilation::FilterModel model{request_.base, found.diffusion_ratio, found.hypothesis, {}};
   std::copy_if(candidates_.begin(), candidates_.end(), std::back_inserter(model.screened),
-               [&](const Candidate& c) { return !found.hypothesis.has(c.effect); });
+               [&](const assimilation::Candidate& c) { return !found.hypothesis.has(c.effect); });
   return model;
 }
 
@@ -80,22 +83,24 @@ const Forecasts& Search::forecasts(const SearchState& state) {
   tell(kForecastNews);
   forecasts_ = {};
   Forecasts again{state.maps_at, state.fields_at, {}, {}};
-  set_noise_model(again.maps_at.noise, request_.base, request_.filter, data_);
+  assimilation::set_noise_model(again.maps_at.noise, request_.base, request_.filter, data_);
   const ForecastPoint& maps_at = again.maps_at;
-  (void)filter_fields(data_, {request_.base, maps_at.pace, maps_at.hypothesis, {}}, request_.filter,
-                      again.maps);
-  set_noise_model(again.fields_at.noise, request_.base, request_.filter, data_);
-  FilterModel model = Search::model(state);
-  model.pace = again.fields_at.pace;
+  (void)assimilation::filter_fields(
+      data_, {request_.base, maps_at.diffusion_ratio, maps_at.hypothesis, {}}, request_.filter,
+      again.maps);
+  assimilation::set_noise_model(again.fields_at.noise, request_.base, request_.filter, data_);
+  assimilation::FilterModel model = Search::model(state);
+  model.diffusion_ratio = again.fields_at.diffusion_ratio;
   model.hypothesis = again.fields_at.hypothesis;
-  again.fields = filter_fields(data_, model, request_.filter, again.maps);
+  again.fields = assimilation::filter_fields(data_, model, request_.filter, again.maps);
   return forecasts_ = std::move(again);
 }
 
-std::vector<Refit> Search::refit_all(SearchState& state, const std::vector<FilterModel>& trials,
+std::vector<Refit> Search::refit_all(SearchState& state,
+                                     const std::vector<assimilation::FilterModel>& trials,
                                      std::size_t first) {
   std::vector<std::size_t> open;
-  std::vector<FilterModel> open_trials;
+  std::vector<assimilation::FilterModel> open_trials;
   for (std::size_t k = 0; k < trials.size(); ++k) {
     const auto known = state.refits.find(first + k);
     if (known != state.refits.end() &&
@@ -107,7 +112,7 @@ std::vector<Refit> Search::refit_all(SearchState& state, const std::vector<Filte
     open_trials.push_back(trials[k]);
   }
   if (!open.empty()) {
-    const std::vector<ErrorMaps>& maps = forecasts(state).maps;
+    const std::vector<assimilation::ErrorMaps>& maps = forecasts(state).maps;
     refit_each(data(state), open_trials, request_.filter, maps,
                [&](std::size_t which, const Refit& fit) {
                  tell(news_of(fit, state.so_far.found));
@@ -135,4 +140,4 @@ bool was_dropped(const Explanation& result, const std::string& effect) {
   });
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

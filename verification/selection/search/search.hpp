@@ -6,9 +6,10 @@
 
 #include "verification/selection/search/search_state.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 
-FilterProblems problems_of(const std::vector<FieldSeries>& series, const ExplainRequest& request);
+assimilation::FilterProblems problems_of(const std::vector<assimilation::FieldSeries>& series,
+                                         const ExplainRequest& request);
 
 // Told before they are made.
 inline constexpr char kForecastNews[] = "  forecasts, errors of states and of the mesh";
@@ -16,20 +17,20 @@ inline constexpr char kForecastNews[] = "  forecasts, errors of states and of th
 // Forecasts of the last calibration.
 struct Forecasts {
   ForecastPoint maps_at, fields_at;
-  std::vector<ErrorMaps> maps;
-  FilterResult fields;
+  std::vector<assimilation::ErrorMaps> maps;
+  assimilation::FilterResult fields;
 };
 
 // Its methods return the same for the same state, whatever was asked before.
 class Search {
  public:
   // The request has to outlive the search.
-  Search(const std::vector<FieldSeries>& series, const ExplainRequest& request);
+  Search(const std::vector<assimilation::FieldSeries>& series, const ExplainRequest& request);
 
   const ExplainRequest& request() const { return request_; }
-  const std::vector<FieldSeries>& series() const { return series_; }
-  const std::vector<Candidate>& candidates() const { return candidates_; }
-  double values() const { return count_values(data_); }
+  const std::vector<assimilation::FieldSeries>& series() const { return series_; }
+  const std::vector<assimilation::Candidate>& candidates() const { return candidates_; }
+  double values() const { return assimilation::count_values(data_); }
   double h_over_epsilon() const { return data_.front().space->h() / request_.base.epsilon; }
 
   void tell(const std::string& news) const;
@@ -37,11 +38,11 @@ class Search {
 
   // The data with the noise of a state; at its start, with that of single fields. Throws
   // std::runtime_error if the first fields cannot be estimated with it.
-  FilterProblems& data(const SearchState& state);
-  FilterProblems& data_at_start() { return data_; }
+  assimilation::FilterProblems& data(const SearchState& state);
+  assimilation::FilterProblems& data_at_start() { return data_; }
 
   // The found model; the candidates that it has not are screened.
-  FilterModel model(const SearchState& state) const;
+  assimilation::FilterModel model(const SearchState& state) const;
 
   // A calibration hands over its forecasts. A search that was interrupted finds them again.
   void keep(Forecasts forecasts) { forecasts_ = std::move(forecasts); }
@@ -50,14 +51,15 @@ class Search {
   // The trials fitted, in their order, with news of each. Those that state.refits has are not
   // fitted again; the others are added to it and saved. `first`: the number of the first one
   // among the refits of the step.
-  std::vector<Refit> refit_all(SearchState& state, const std::vector<FilterModel>& trials,
+  std::vector<Refit> refit_all(SearchState& state,
+                               const std::vector<assimilation::FilterModel>& trials,
                                std::size_t first = 0);
 
  private:
-  const std::vector<FieldSeries>& series_;
+  const std::vector<assimilation::FieldSeries>& series_;
   const ExplainRequest& request_;
-  FilterProblems data_;
-  std::vector<Candidate> candidates_;
+  assimilation::FilterProblems data_;
+  std::vector<assimilation::Candidate> candidates_;
   Forecasts forecasts_;
 };
 
@@ -74,4 +76,4 @@ bool is_among(const std::vector<std::string>& hypotheses, const Refit& fit);
 
 bool was_dropped(const Explanation& result, const std::string& effect);
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

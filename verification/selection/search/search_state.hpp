@@ -6,7 +6,7 @@
 
 #include "verification/selection/search/explanation.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 
 // The steps, and what follows each.
 enum class SearchStep {
@@ -37,9 +37,9 @@ std::string word_for(SearchStep step);
 
 // Forecasts are of a model and a noise.
 struct ForecastPoint {
-  NoiseModel noise;
-  double pace = 1;
-  Hypothesis hypothesis;
+  assimilation::NoiseModel noise;
+  double diffusion_ratio = 1;
+  assimilation::Hypothesis hypothesis;
 
   friend bool operator==(const ForecastPoint& a, const ForecastPoint& b);
 };
@@ -59,7 +59,7 @@ struct SearchState {
 
 // Searches, from a state of the same data and request, until it is done. The vesicles are of one
 // radius and one membrane. Throws std::runtime_error if the base model cannot be advanced.
-Explanation explain_fields(const std::vector<FieldSeries>& series, const ExplainRequest& request,
-                           SearchState from = {});
+Explanation explain_fields(const std::vector<assimilation::FieldSeries>& series,
+                           const ExplainRequest& request, SearchState from = {});
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

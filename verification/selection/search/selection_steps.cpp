@@ -6,7 +6,7 @@
 #include "verification/selection/search/shortlist.hpp"
 #include "verification/selection/search/steps.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
 // From one snapshot to the next, in units of the standard deviation of c: what effects are hardly
@@ -19,11 +19,12 @@ constexpr double kMapWidth = 2;
 // Beyond that many standard deviations a snapshot is said to be rotated or scaled.
 constexpr double kChanged = 3;
 
-std::vector<FrameChange> frame_changes(const FilterResult& fields, const ExplainRequest& request) {
-  const FilterSettings& known = request.filter;
+std::vector<FrameChange> frame_changes(const assimilation::FilterResult& fields,
+                                       const ExplainRequest& request) {
+  const assimilation::FilterSettings& known = request.filter;
   const double offset = known.offset * (request.base.well.b - request.base.well.a);
   std::vector<FrameChange> changes;
-  for (const Innovation& in : fields.innovations) {
+  for (const assimilation::Innovation& in : fields.innovations) {
     const auto changed = [&](Eigen::Index k) { return std::fabs(in.frame[k]) >= kChanged; };
     const bool rotated = changed(0) || changed(1) || changed(2);
     if (!rotated && !changed(3) && !changed(4)) continue;
@@ -37,8 +38,9 @@ std::vector<FrameChange> frame_changes(const FilterResult& fields, const Explain
 // Says what is left. Is it worth while to look for more?
 bool progresses(const Search& search, const Explanation& result) {
   if (result.rounds.empty()) return true;
-  const Gaps &base = result.base.gap, &now = result.found.gap;
-  if (const auto closed = share_closed(base.train, now.train, result.found.expected.train))
+  const assimilation::Gaps &base = result.base.gap, &now = result.found.gap;
+  if (const auto closed =
+          assimilation::share_closed(base.train, now.train, result.found.expected.train))
     search.tell(formatted("  %.0f %% of the gap is left", 100 * (1 - *closed)));
   const std::optional<double> last = closed_by_last_round(result);
   if (!last || *last >= kLeastProgress) return true;
@@ -51,9 +53,9 @@ bool progresses(const Search& search, const Explanation& result) {
 // does not lead back: where such refits end worse than without the effect, they begin once more
 // with nothing of it.
 std::vector<Refit> refit_from_nothing(Search& search, SearchState& state,
-                                      const std::vector<FilterModel>& trials,
+                                      const std::vector<assimilation::FilterModel>& trials,
                                       std::vector<Refit> fits) {
-  std::vector<FilterModel> again;
+  std::vector<assimilation::FilterModel> again;
   std::vector<std::size_t> which;
   for (std::size_t k = 0; k < fits.size(); ++k) {
     if (fits[k].failure.empty() && fits[k].deviance <= state.so_far.found.deviance) continue;
@@ -71,16 +73,16 @@ std::vector<Refit> refit_from_nothing(Search& search, SearchState& state,
 }
 
 // Without what was dropped before.
-std::vector<FilterModel> trials_of(const Search& search, const SearchState& state) {
+std::vector<assimilation::FilterModel> trials_of(const Search& search, const SearchState& state) {
   Screening open = state.so_far.rounds.back().screening;
   const auto dropped = [&](const CandidateScore& score) {
     return was_dropped(state.so_far, score.effect);
   };
   open.scores.erase(std::remove_if(open.scores.begin(), open.scores.end(), dropped),
                     open.scores.end());
-  std::vector<FilterModel> trials;
+  std::vector<assimilation::FilterModel> trials;
   const double limit = discrimination_limit(search.values(), open.mesh_error);
-  for (Hypothesis::Part& part : shortlist(open, search.request().shortlist, limit)) {
+  for (assimilation::Hypothesis::Part& part : shortlist(open, search.request().shortlist, limit)) {
     trials.push_back(search.model(state));
     trials.back().hypothesis.parts.push_back(std::move(part));
   }
@@ -104,14 +106,14 @@ SearchState taken(const Judgement& judgement, SearchState state) {
 
 SearchState screen_candidates(Search& search, SearchState state) {
   const ExplainRequest& request = search.request();
-  const FilterResult& fields = search.forecasts(state).fields;
-  const FilterProblems& data = search.data(state);
+  const assimilation::FilterResult& fields = search.forecasts(state).fields;
+  const assimilation::FilterProblems& data = search.data(state);
   Explanation& result = state.so_far;
   result.frames = frame_changes(fields, request);
-  result.found_maps = disagreement_maps(data, fields, data.front().space->surface.position,
-                                        kMapWidth * request.base.epsilon);
+  result.found_maps = assimilation::disagreement_maps(
+      data, fields, data.front().space->surface.position, kMapWidth * request.base.epsilon);
   if (result.rounds.empty()) result.base_maps = result.found_maps;
-  const FilterModel model = search.model(state);
+  const assimilation::FilterModel model = search.model(state);
   Round round{model, screen(fields, model.screened, model.hypothesis), result.found, {}, {}, {}};
   const auto most = static_cast<std::size_t>(request.most_effects);
   const bool more = progresses(search, result) && model.hypothesis.added() < most &&
@@ -124,7 +126,7 @@ SearchState screen_candidates(Search& search, SearchState state) {
 }
 
 SearchState refit_shortlist(Search& search, SearchState state) {
-  const std::vector<FilterModel> trials = trials_of(search, state);
+  const std::vector<assimilation::FilterModel> trials = trials_of(search, state);
   search.tell(formatted("%zu refits (gains are 2 ln of the likelihood ratio)", trials.size()));
   const std::vector<Refit> fits =
       refit_from_nothing(search, state, trials, search.refit_all(state, trials));
@@ -144,8 +146,9 @@ SearchState refit_shortlist(Search& search, SearchState state) {
 
 SearchState choose(Search& search, SearchState state) {
   Explanation& result = state.so_far;
-  const FilterProblems& data = search.data(state);
-  const double usual_change = kUsualChange * contrast_of(data) / noise_of(data);
+  const assimilation::FilterProblems& data = search.data(state);
+  const double usual_change =
+      kUsualChange * assimilation::contrast_of(data) / assimilation::noise_of(data);
   const Judgement judgement =
       judge(result.rounds.back(), search.values(), search.request().false_alarms, usual_change,
             [&](const Refit& fit) { return leaves_gap(search, state, fit); });
@@ -160,4 +163,4 @@ SearchState choose(Search& search, SearchState state) {
   return state;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

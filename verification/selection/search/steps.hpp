@@ -3,7 +3,7 @@
 
 #include "verification/selection/search/search.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 
 // The step that is next, whichever it is.
 SearchState next_state(Search& search, SearchState state);
@@ -48,10 +48,10 @@ SearchState weigh(Search& search, SearchState state);
 // included? False where a refit fails.
 bool is_as_probable(Search& search, const SearchState& state, const Refit& one, const Refit& other);
 // A hypothesis, refitted to the snapshots that count, with the noise of `data`.
-Refit refit_of(const FilterProblems& data, const CahnHilliardModel& base, const Refit& member,
-               FilterSettings settings);
+Refit refit_of(const assimilation::FilterProblems& data, const problem::CahnHilliardModel& base,
+               const Refit& member, assimilation::FilterSettings settings);
 
 // Repeats the comparison on another mesh and by another integrator (rerun.hpp).
 SearchState confirm(Search& search, SearchState state);
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

@@ -11,7 +11,7 @@
 #include "verification/selection/series/series_responses.hpp"
 #include "verification/statistics/bootstrap.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
 // Of the range of ln of the unit, and at most that much; of its deviation, over what it was before.
@@ -19,7 +19,8 @@ constexpr double kAtEnd = 0.05, kMostAtEnd = 0.1, kTold = 0.7;
 // Deviations from an end at which it does not matter.
 constexpr double kFree = 2;
 
-void refuse(const MeasuredVesicles& data, const std::vector<History>& base,
+void refuse(const observations::MeasuredVesicles& data,
+            const std::vector<observations::History>& base,
             const std::vector<SeriesCandidate>& candidates) {
   refuse_vesicles(data);
   if (candidates.empty()) throw InputError("series: no effect is left to search for");
@@ -30,15 +31,16 @@ void refuse(const MeasuredVesicles& data, const std::vector<History>& base,
 }
 
 // With a larger D the last looks would lie beyond the runs.
-double shortest_unit(const MeasuredVesicles& data, const std::vector<History>& base,
+double shortest_unit(const observations::MeasuredVesicles& data,
+                     const std::vector<observations::History>& base,
                      const std::vector<SeriesCandidate>& candidates) {
   double end = std::numeric_limits<double>::infinity(), last = 0;
-  const auto shorten = [&](const std::vector<History>& runs) {
-    for (const History& run : runs) end = std::min(end, run.time.back());
+  const auto shorten = [&](const std::vector<observations::History>& runs) {
+    for (const observations::History& run : runs) end = std::min(end, run.time.back());
   };
   shorten(base);
   for (const SeriesCandidate& candidate : candidates) shorten(candidate.runs);
-  for (const Measurement& m : data.measurements) last = std::max(last, m.time);
+  for (const observations::Measurement& m : data.measurements) last = std::max(last, m.time);
   return last / end;
 }
 
@@ -51,15 +53,16 @@ struct Squares {
 
 class SeriesSearch {
  public:
-  SeriesSearch(const MeasuredVesicles& data, const std::vector<History>& base,
+  SeriesSearch(const observations::MeasuredVesicles& data,
+               const std::vector<observations::History>& base,
                const std::vector<SeriesCandidate>& candidates, const SeriesRequest& request)
       : data_(data),
         candidates_(candidates),
         request_(request),
-        blocks_(observed_series(data)),
+        blocks_(likelihood::observed_series(data)),
         curves_(base, candidates),
         gains_(gains_of(blocks_, curves_, candidates, request.unit,
-                        fit_ensemble(blocks_, {&curves_.base}, request.unit))),
+                        likelihood::fit_ensemble(blocks_, {&curves_.base}, request.unit))),
         responses_(blocks_, curves_, gains_.base, request.unit),
         classes_(classes_of(responses_, candidates.size())),
         null_(null_of(data, base, candidates, gains_.base, request.unit, request.replicates)),
@@ -109,11 +112,11 @@ class SeriesSearch {
                            ? both
                            : std::sqrt(std::max(away.mean(), back.mean()));
     const int runs = static_cast<int>(candidates_.front().runs.size());
-    return std::min(student_factor(runs) * own, known);
+    return std::min(statistics::student_factor(runs) * own, known);
   }
 
   SeriesScore score_of(std::size_t k) {
-    const EnsembleFit& fit = gains_.fits[k];
+    const likelihood::EnsembleFit& fit = gains_.fits[k];
     const SeriesCandidate& candidate = candidates_[k];
     const double gain = gains_.values[static_cast<Eigen::Index>(k)];
     const double noise = null_.mean[static_cast<Eigen::Index>(k)];
@@ -131,7 +134,7 @@ class SeriesSearch {
             fit.deviation * std::fabs(candidate.strength),
             std::min(least * candidate.strength, most * candidate.strength),
             std::max(least * candidate.strength, most * candidate.strength),
-            most <= kLargestAmplitude && least >= -kLargestAmplitude,
+            most <= likelihood::kLargestAmplitude && least >= -likelihood::kLargestAmplitude,
             needed(responses_.of(k), k),
             responses_.telling(responses_.of(k))};
   }
@@ -170,7 +173,7 @@ class SeriesSearch {
             result_.scores.begin(), result_.scores.end(),
             [this](const SeriesScore& a, const SeriesScore& b) { return more_telling(a, b); }) -
         result_.scores.begin());
-    const EnsembleModel model{&curves_.base, &curves_.changed[best]};
+    const likelihood::EnsembleModel model{&curves_.base, &curves_.changed[best]};
     result_.trend_p = share_of_noise(
         null_.trend, lacking ? trend_left(blocks_, model, gains_.fits[best]) : gains_.trend);
     if (result_.trend_p <= kTrendLevel * request_.false_alarms) {
@@ -209,10 +212,10 @@ class SeriesSearch {
     }
   }
 
-  const MeasuredVesicles& data_;
+  const observations::MeasuredVesicles& data_;
   const std::vector<SeriesCandidate>& candidates_;
   const SeriesRequest& request_;
-  const std::vector<ObservedSeries> blocks_;
+  const std::vector<likelihood::ObservedSeries> blocks_;
   const SeriesCurves curves_;
   const SeriesGains gains_;
   const SeriesResponses responses_;
@@ -224,12 +227,13 @@ class SeriesSearch {
 
 }  // namespace
 
-void refuse_vesicles(const MeasuredVesicles& data) {
+void refuse_vesicles(const observations::MeasuredVesicles& data) {
   if (data.vesicles().size() < 3)
     throw InputError("series need three vesicles at least, to know how they scatter");
 }
 
-SeriesExplanation explain_series(const MeasuredVesicles& data, const std::vector<History>& base,
+SeriesExplanation explain_series(const observations::MeasuredVesicles& data,
+                                 const std::vector<observations::History>& base,
                                  const std::vector<SeriesCandidate>& candidates,
                                  const SeriesRequest& request) {
   refuse(data, base, candidates);
@@ -241,4 +245,4 @@ SeriesExplanation explain_series(const MeasuredVesicles& data, const std::vector
   return SeriesSearch(data, base, candidates, covered).run();
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

@@ -9,10 +9,10 @@
 #include "verification/selection/search/judgement.hpp"
 #include "verification/selection/series/series_gains.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 
 struct SeriesRequest {
-  UnitPrior unit;              // R²/D of the model, and the factor within which D is known
+  likelihood::UnitPrior unit;  // R²/D of the model, and the factor within which D is known
   int replicates = 199;        // of data that the base model would give
   double false_alarms = 0.05;  // with nothing missing, that something seems to be named
 };
@@ -31,14 +31,14 @@ struct SeriesScore {
   double low, high;     // its 95 % bounds
   bool bounded;         // they are within what has been simulated
   double vesicles;      // so many as these show it at the ensemble's strength; see times_needed
-  Quantity telling;     // what shows it best
+  observations::Quantity telling;  // what shows it best
 };
 
 // Two classes that the data do not tell apart.
 struct SeriesTie {
   std::string effect, other;
-  double vesicles;   // so many would
-  Quantity telling;  // above all by that
+  double vesicles;                 // so many would
+  observations::Quantity telling;  // above all by that
 };
 
 struct SeriesExplanation {
@@ -46,7 +46,7 @@ struct SeriesExplanation {
   int vesicles, looks;
   double p;                                       // that the best score is noise
   double trend_p;                                 // that what is left of the best model is
-  EnsembleFit base;                               // without any effect
+  likelihood::EnsembleFit base;                   // without any effect
   double unit_deviation;                          // of its ln_unit, from data of the base model
   bool unit_at_end;                               // it would be further away if the fit let it
   bool unit_told;                                 // is it known much better than before?
@@ -58,11 +58,12 @@ struct SeriesExplanation {
 };
 
 // Throws InputError if there are fewer than three, before anything is simulated for them.
-void refuse_vesicles(const MeasuredVesicles& data);
+void refuse_vesicles(const observations::MeasuredVesicles& data);
 
 // Throws InputError if there are fewer than three vesicles, or runs.
-SeriesExplanation explain_series(const MeasuredVesicles& data, const std::vector<History>& base,
+SeriesExplanation explain_series(const observations::MeasuredVesicles& data,
+                                 const std::vector<observations::History>& base,
                                  const std::vector<SeriesCandidate>& candidates,
                                  const SeriesRequest& request);
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

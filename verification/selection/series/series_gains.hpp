@@ -10,38 +10,39 @@
 #include "verification/likelihood/ensemble_fit.hpp"
 #include "verification/selection/series/series_misfit.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 
 // Simulated vesicles that differ in their seeds, the same seeds in all ensembles.
 struct SeriesCandidate {
   std::string effect;
   double strength;  // of its first parameter, with its sign
   bool two_sided;
-  std::vector<History> runs;  // in units of R²/D
+  std::vector<observations::History> runs;  // in units of R²/D
 };
 
 // The curves of each ensemble.
 struct SeriesCurves {
-  RunCurves base;
-  std::vector<RunCurves> changed;  // with each candidate
+  likelihood::RunCurves base;
+  std::vector<likelihood::RunCurves> changed;  // with each candidate
 
-  SeriesCurves(const std::vector<History>& runs, const std::vector<SeriesCandidate>& candidates);
+  SeriesCurves(const std::vector<observations::History>& runs,
+               const std::vector<SeriesCandidate>& candidates);
   // By other runs, with the same weights in all ensembles.
-  SeriesCurves(const std::vector<History>& runs, const std::vector<SeriesCandidate>& candidates,
-               const Eigen::MatrixXd& weights);
+  SeriesCurves(const std::vector<observations::History>& runs,
+               const std::vector<SeriesCandidate>& candidates, const Eigen::MatrixXd& weights);
 };
 
 struct SeriesGains {
-  EnsembleFit base;
-  std::vector<EnsembleFit> fits;      // with each candidate
-  Vec values;                         // 2 ln of the likelihood ratios
-  double trend;                       // left of the base
-  std::vector<SeriesOffset> offsets;  // of the data beside the base
+  likelihood::EnsembleFit base;
+  std::vector<likelihood::EnsembleFit> fits;  // with each candidate
+  Vec values;                                 // 2 ln of the likelihood ratios
+  double trend;                               // left of the base
+  std::vector<SeriesOffset> offsets;          // of the data beside the base
 };
 // `base`: the fit of the model without any effect.
-SeriesGains gains_of(const std::vector<ObservedSeries>& blocks, const SeriesCurves& curves,
-                     const std::vector<SeriesCandidate>& candidates, const UnitPrior& unit,
-                     const EnsembleFit& base);
+SeriesGains gains_of(const std::vector<likelihood::ObservedSeries>& blocks,
+                     const SeriesCurves& curves, const std::vector<SeriesCandidate>& candidates,
+                     const likelihood::UnitPrior& unit, const likelihood::EnsembleFit& base);
 
 // The same of data that the base model would give.
 struct SeriesNull {
@@ -51,11 +52,13 @@ struct SeriesNull {
   Vec ln_unit;  // of each replicate: that of the base
   // Of each quantity: root mean squares of the deviations of its level and its slope, more than 1,
   // as the model's mean is that of a few runs.
-  std::array<double, kQuantities.size()> levels{}, slopes{};
+  std::array<double, observations::kQuantities.size()> levels{}, slopes{};
 };
 // `fit`: of the base model to the data.
-SeriesNull null_of(const MeasuredVesicles& data, const std::vector<History>& runs,
-                   const std::vector<SeriesCandidate>& candidates, const EnsembleFit& fit,
-                   const UnitPrior& unit, int replicates);
+SeriesNull null_of(const observations::MeasuredVesicles& data,
+                   const std::vector<observations::History>& runs,
+                   const std::vector<SeriesCandidate>& candidates,
+                   const likelihood::EnsembleFit& fit, const likelihood::UnitPrior& unit,
+                   int replicates);
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

@@ -3,48 +3,50 @@
 #include <algorithm>
 #include <cmath>
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
 constexpr int kTrendDegree = 3;
 
 // (ln t)^power of one quantity, around the middle of all looks.
-Vec power_of_time(const std::vector<ObservedSeries>& blocks, Quantity quantity, int power) {
+Vec power_of_time(const std::vector<likelihood::ObservedSeries>& blocks,
+                  observations::Quantity quantity, int power) {
   double sum = 0, count = 0;
-  for (const ObservedSeries& block : blocks) {
+  for (const likelihood::ObservedSeries& block : blocks) {
     sum += block.ln_t.sum();
     count += static_cast<double>(block.ln_t.size());
   }
-  return per_look(blocks, [&](const ObservedSeries& block, Eigen::Index i) {
+  return likelihood::per_look(blocks, [&](const likelihood::ObservedSeries& block, Eigen::Index i) {
     return block.quantity == quantity ? std::pow(block.ln_t[i] - sum / count, power) : 0.0;
   });
 }
 
 }  // namespace
 
-double trend_left(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
-                  const EnsembleFit& fit) {
-  const ObservationMetric metric = metric_of(blocks, model, fit);
+double trend_left(const std::vector<likelihood::ObservedSeries>& blocks,
+                  const likelihood::EnsembleModel& model, const likelihood::EnsembleFit& fit) {
+  const likelihood::ObservationMetric metric = likelihood::metric_of(blocks, model, fit);
   std::vector<Vec> trends;
-  for (const Quantity quantity : kQuantities)
+  for (const observations::Quantity quantity : observations::kQuantities)
     for (int power = 0; power <= kTrendDegree; ++power) {
       Vec trend = power_of_time(blocks, quantity, power);
       for (const Vec& before : trends) trend -= metric.product(before, trend) * before;
       const double norm = std::sqrt(metric.product(trend, trend));
       if (norm > 1e-6) trends.push_back(trend / norm);
     }
-  const Vec r = residual(blocks, model, fit);
+  const Vec r = likelihood::residual(blocks, model, fit);
   double squares = 0;
   for (const Vec& trend : trends) squares += std::pow(metric.product(trend, r), 2);
   return squares;
 }
 
-std::vector<SeriesOffset> offsets(const std::vector<ObservedSeries>& blocks,
-                                  const EnsembleModel& model, const EnsembleFit& fit) {
-  const ObservationMetric metric = metric_of(blocks, model, fit);
-  const Vec r = residual(blocks, model, fit);
+std::vector<SeriesOffset> offsets(const std::vector<likelihood::ObservedSeries>& blocks,
+                                  const likelihood::EnsembleModel& model,
+                                  const likelihood::EnsembleFit& fit) {
+  const likelihood::ObservationMetric metric = likelihood::metric_of(blocks, model, fit);
+  const Vec r = likelihood::residual(blocks, model, fit);
   std::vector<SeriesOffset> all;
-  for (const Quantity quantity : kQuantities) {
+  for (const observations::Quantity quantity : observations::kQuantities) {
     const Vec level = power_of_time(blocks, quantity, 0);
     Vec slope = power_of_time(blocks, quantity, 1);
     const double levels = metric.product(level, level);
@@ -58,4 +60,4 @@ std::vector<SeriesOffset> offsets(const std::vector<ObservedSeries>& blocks,
   return all;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

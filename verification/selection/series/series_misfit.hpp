@@ -5,21 +5,22 @@
 
 #include "verification/likelihood/ensemble_fit.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 
 // What is left of a fit that polynomials of ln t explain, a cubic for each quantity, in squares of
 // standard deviations.
-double trend_left(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
-                  const EnsembleFit& fit);
+double trend_left(const std::vector<likelihood::ObservedSeries>& blocks,
+                  const likelihood::EnsembleModel& model, const likelihood::EnsembleFit& fit);
 
 // How the logarithms of measurements of a quantity lie beside a fit: on average, and per e-fold of
 // time; and in standard deviations.
 struct SeriesOffset {
-  Quantity quantity;
+  observations::Quantity quantity;
   double level, level_deviations, slope, slope_deviations;
 };
 // Of those that were measured.
-std::vector<SeriesOffset> offsets(const std::vector<ObservedSeries>& blocks,
-                                  const EnsembleModel& model, const EnsembleFit& fit);
+std::vector<SeriesOffset> offsets(const std::vector<likelihood::ObservedSeries>& blocks,
+                                  const likelihood::EnsembleModel& model,
+                                  const likelihood::EnsembleFit& fit);
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

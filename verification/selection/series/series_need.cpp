@@ -6,17 +6,17 @@
 
 #include "verification/selection/search/judgement.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
 constexpr int kLeastReplicates = 32;           // of sets with more vesicles: means are asked for
 constexpr double kLeast = 1e-4, kStep = 0.01;  // of f, and of its logarithm
 
-MeasuredVesicles repeated(const MeasuredVesicles& data, int times) {
-  MeasuredVesicles more = data;
+observations::MeasuredVesicles repeated(const observations::MeasuredVesicles& data, int times) {
+  observations::MeasuredVesicles more = data;
   more.measurements.clear();
   for (int k = 0; k < times; ++k)
-    for (Measurement m : data.measurements) {
+    for (observations::Measurement m : data.measurements) {
       m.vesicle = std::to_string(k) + "/" + m.vesicle;
       more.measurements.push_back(m);
     }
@@ -39,11 +39,11 @@ double square(const SeriesProducts& p, double f) {
 
 }  // namespace
 
-std::vector<SeriesNoise> noise_of_more(const MeasuredVesicles& data,
-                                       const std::vector<History>& runs,
+std::vector<SeriesNoise> noise_of_more(const observations::MeasuredVesicles& data,
+                                       const std::vector<observations::History>& runs,
                                        const std::vector<SeriesCandidate>& candidates,
-                                       const EnsembleFit& fit, const UnitPrior& unit,
-                                       const SeriesNull& null) {
+                                       const likelihood::EnsembleFit& fit,
+                                       const likelihood::UnitPrior& unit, const SeriesNull& null) {
   const Vec most =
       null_of(repeated(data, kMostTimes), runs, candidates, fit, unit,
               std::max(kLeastReplicates, static_cast<int>(null.ln_unit.size()) / kMostTimes))
@@ -61,4 +61,4 @@ double times_needed(const SeriesProducts& products, const SeriesNoise& noise) {
   return std::numeric_limits<double>::infinity();
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

@@ -3,7 +3,7 @@
 
 #include "verification/selection/series/series_gains.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 
 // Beyond so many times as many vesicles nothing is said.
 inline constexpr int kMostTimes = 8;
@@ -16,11 +16,11 @@ struct SeriesNoise {
 
 // Per candidate, from data of the base model with as many looks each. `null`: what is known of the
 // vesicles that there are.
-std::vector<SeriesNoise> noise_of_more(const MeasuredVesicles& data,
-                                       const std::vector<History>& runs,
+std::vector<SeriesNoise> noise_of_more(const observations::MeasuredVesicles& data,
+                                       const std::vector<observations::History>& runs,
                                        const std::vector<SeriesCandidate>& candidates,
-                                       const EnsembleFit& fit, const UnitPrior& unit,
-                                       const SeriesNull& null);
+                                       const likelihood::EnsembleFit& fit,
+                                       const likelihood::UnitPrior& unit, const SeriesNull& null);
 
 // Inner products over the looks that there are, of what an effect does, e, and what another D does,
 // u.
@@ -34,4 +34,4 @@ struct SeriesProducts {
 // none.
 double times_needed(const SeriesProducts& products, const SeriesNoise& noise);
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

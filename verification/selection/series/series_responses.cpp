@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace traceraft {
+namespace traceraft::selection {
 namespace {
 
 // Responses that correlate more are one class.
@@ -19,14 +19,14 @@ SeriesResponse operator*(double factor, const SeriesResponse& response) {
   return {factor * response.looks, factor * response.unit};
 }
 
-SeriesResponses::SeriesResponses(const std::vector<ObservedSeries>& blocks,
-                                 const SeriesCurves& curves, const EnsembleFit& fit,
-                                 const UnitPrior& unit)
-    : metric_(metric_of(blocks, {&curves.base}, fit)),
-      by_unit_{unit_response(blocks, curves.base, fit.ln_unit), 1 / unit.deviation} {
+SeriesResponses::SeriesResponses(const std::vector<likelihood::ObservedSeries>& blocks,
+                                 const SeriesCurves& curves, const likelihood::EnsembleFit& fit,
+                                 const likelihood::UnitPrior& unit)
+    : metric_(likelihood::metric_of(blocks, {&curves.base}, fit)),
+      by_unit_{likelihood::unit_response(blocks, curves.base, fit.ln_unit), 1 / unit.deviation} {
   const double squares = product(by_unit_, by_unit_);
-  for (const RunCurves& changed : curves.changed) {
-    const SeriesResponse e{response(blocks, curves.base, changed, fit.ln_unit)};
+  for (const likelihood::RunCurves& changed : curves.changed) {
+    const SeriesResponse e{likelihood::response(blocks, curves.base, changed, fit.ln_unit)};
     own_.push_back(minus(e, product(by_unit_, e) / squares * by_unit_));
   }
 }
@@ -52,10 +52,12 @@ SeriesProducts SeriesResponses::products(const SeriesResponse& own) const {
           by_unit_.unit * by_unit_.unit};
 }
 
-Quantity SeriesResponses::telling(const SeriesResponse& e) const {
-  return *std::max_element(kQuantities.begin(), kQuantities.end(), [&](Quantity a, Quantity b) {
-    return metric_.product(e.looks, e.looks, a) < metric_.product(e.looks, e.looks, b);
-  });
+observations::Quantity SeriesResponses::telling(const SeriesResponse& e) const {
+  return *std::max_element(observations::kQuantities.begin(), observations::kQuantities.end(),
+                           [&](observations::Quantity a, observations::Quantity b) {
+                             return metric_.product(e.looks, e.looks, a) <
+                                    metric_.product(e.looks, e.looks, b);
+                           });
 }
 
 SeriesClasses classes_of(const SeriesResponses& responses, std::size_t effects) {
@@ -75,4 +77,4 @@ SeriesClasses classes_of(const SeriesResponses& responses, std::size_t effects) 
   return classes;
 }
 
-}  // namespace traceraft
+}  // namespace traceraft::selection

@@ -6,7 +6,7 @@
 #include "verification/selection/series/series_gains.hpp"
 #include "verification/selection/series/series_need.hpp"
 
-namespace traceraft {
+namespace traceraft::selection {
 
 // To every look, and to what was known of D before: one look more, in its standard deviations.
 struct SeriesResponse {
@@ -18,8 +18,8 @@ SeriesResponse operator*(double factor, const SeriesResponse& response);
 // `fit`: of the base model; `unit`: what was known of D before.
 class SeriesResponses {
  public:
-  SeriesResponses(const std::vector<ObservedSeries>& blocks, const SeriesCurves& curves,
-                  const EnsembleFit& fit, const UnitPrior& unit);
+  SeriesResponses(const std::vector<likelihood::ObservedSeries>& blocks, const SeriesCurves& curves,
+                  const likelihood::EnsembleFit& fit, const likelihood::UnitPrior& unit);
 
   const SeriesResponse& of(std::size_t k) const { return own_[k]; }
   // What effect k does of which no amount of effect j is capable.
@@ -28,12 +28,12 @@ class SeriesResponses {
   // Without what was known of D before.
   SeriesProducts products(const SeriesResponse& e) const;
   // The quantity that shows most of it.
-  Quantity telling(const SeriesResponse& e) const;
+  observations::Quantity telling(const SeriesResponse& e) const;
 
  private:
   double product(const SeriesResponse& a, const SeriesResponse& b) const;
 
-  ObservationMetric metric_;
+  likelihood::ObservationMetric metric_;
   SeriesResponse by_unit_;  // what another D does
   std::vector<SeriesResponse> own_;
 };
@@ -42,4 +42,4 @@ class SeriesResponses {
 using SeriesClasses = std::vector<std::vector<std::size_t>>;
 SeriesClasses classes_of(const SeriesResponses& responses, std::size_t effects);
 
-}  // namespace traceraft
+}  // namespace traceraft::selection
