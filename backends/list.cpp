@@ -20,7 +20,7 @@ namespace {
 void require_one_rank(const char* name, const fem::SurfaceSpace& space) {
   if (space.communicator->size() > 1)
     throw InputError(std::string(name) +
-                     " works on one rank only; on several ranks, choose --linear-solver teko");
+                     " works on one rank only; on several ranks, choose the linear solver teko");
 }
 
 linear::LinearSolverFactory block(const fem::SurfaceSpace& space, const WordOptions&) {
@@ -48,7 +48,7 @@ linear::LinearSolverFactory klu(const fem::SurfaceSpace& space, const WordOption
   if (unknowns > kMost)
     throw InputError("klu is for small systems, at most " + std::to_string(kMost) +
                      " unknowns, and this mesh has " + std::to_string(unknowns) +
-                     "; choose block (the fastest), direct, or fewer --cells");
+                     "; choose block (the fastest), direct, or a coarser mesh");
   return [pattern = space.pattern](int lanes) {
     return suitesparse::make_direct_solver("klu", suitesparse::make_klu_lu, pattern, lanes);
   };
@@ -62,7 +62,7 @@ linear::LinearSolverFactory teko(const fem::SurfaceSpace& space, const WordOptio
 }
 #else
 constexpr bool kWithTrilinos = false;
-LinearSolverFactory teko(const SurfaceSpace&, const WordOptions&) {
+linear::LinearSolverFactory teko(const fem::SurfaceSpace&, const WordOptions&) {
   throw InputError(
       "teko was not built in: it needs MPI and Trilinos; install the Debian packages "
       "trilinos-all-dev, libopenmpi-dev and openmpi-bin, and build again");
@@ -81,15 +81,18 @@ const NamedList<LinearSolverEntry>& linear_solvers() {
        "Trilinos: Belos with block preconditioners of Teko, on any number of ranks",
        "",
        teko,
-       {{"preconditioner", "two-solve",
-         "block preconditioner: two-solve, gauss-seidel, block-lu, or a name from the file"},
-        {"inverse", "muelu",
-         "inverse of a block: muelu, muelu-ilu (stronger and more expensive), ifpack2, direct (one "
-         "rank), or a name from the file"},
-        {"method", "fgmres", "Krylov method: fgmres, gmres, gcrodr or bicgstab"},
-        {"renewal", "worn",
-         "when a new preconditioner is computed: worn (when iterations grow) or always"},
-        {"parameters", "", "Teuchos XML file with sublists Inverse Library and Belos", true}},
+       {text_parameter(
+            "preconditioner", "two-solve",
+            "block preconditioner: two-solve, gauss-seidel, block-lu, or a name from the file"),
+        text_parameter("inverse", "muelu",
+                       "inverse of a block: muelu, muelu-ilu (stronger and more expensive), "
+                       "ifpack2, direct (one rank), or a name from the file"),
+        text_parameter("method", "fgmres", "Krylov method: fgmres, gmres, gcrodr or bicgstab"),
+        text_parameter(
+            "renewal", "worn",
+            "when a new preconditioner is computed: worn (when iterations grow) or always"),
+        text_parameter("parameters", "", "Teuchos XML file with sublists Inverse Library and Belos",
+                       ParameterKind::file)},
        kWithTrilinos,
        true},
   };

@@ -13,12 +13,8 @@
 
 namespace traceraft::backends {
 
-// An option of one linear solver: --<name>-<option>, a word or the path of a file.
-struct WordOption {
-  std::string name, default_word, meaning;
-  bool file = false;
-};
-using WordOptions = std::map<std::string, std::string>;  // those that are given, by name
+// Options of a linear solver that are given, by name.
+using WordOptions = std::map<std::string, std::string>;
 
 struct LinearSolverEntry {
   std::string name;
@@ -26,9 +22,9 @@ struct LinearSolverEntry {
   std::string fallback;  // name of the solver to fall back on, or ""
   // Throws InputError for a space that it cannot serve and OptionError for options.
   std::function<linear::LinearSolverFactory(const fem::SurfaceSpace&, const WordOptions&)> make;
-  std::vector<WordOption> options = {};
-  bool built = true;         // if not, `make` says how to get it
-  bool distributed = false;  // does it work on several ranks?
+  std::vector<ParameterSpec> parameters = {};  // words and files: --<name>-<parameter>
+  bool built = true;                           // if not, `make` says how to get it
+  bool distributed = false;                    // does it work on several ranks?
 };
 
 struct IntegratorEntry {

@@ -65,6 +65,20 @@ void refuse_control_characters(int argc, char** argv) {
                        " contains a control character, such as a line break: " + argv[k]);
 }
 
+// "--out=" as the two words --out "": the parser would take the next argument for the value.
+std::vector<std::string> words_of(int argc, char** argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  const auto end = std::find(words.begin(), words.end(), "--");
+  std::vector<std::string> all;
+  for (auto word = words.begin(); word != words.end(); ++word) {
+    const bool empty =
+        word < end && word->compare(0, 2, "--") == 0 && word->find('=') == word->size() - 1;
+    all.push_back(empty ? word->substr(0, word->size() - 1) : *word);
+    if (empty) all.emplace_back();
+  }
+  return all;
+}
+
 int dispatch(int argc, char** argv) {
   refuse_control_characters(argc, argv);
   CLI::App app{
@@ -84,7 +98,9 @@ int dispatch(int argc, char** argv) {
   }
 
   try {
-    app.parse(argc, argv);
+    std::vector<std::string> words = words_of(argc, argv);
+    std::reverse(words.begin(), words.end());  // as the parser wants them
+    app.parse(std::move(words));
   } catch (const CLI::Success& asked) {
     std::ostringstream text;  // --help, --version
     const int code = app.exit(asked, text);

@@ -24,8 +24,9 @@ namespace traceraft::euler {
 // With large Δt the stabilisation holds both solutions back alike, which their difference does not
 // show: at loose tolerances coarsening comes out late (docs/decisions/0006-keep-second.md).
 //
-// The two solves of a step do not depend on each other: each has factors of its own, and with two
-// threads they run at the same time. The result does not depend on the number of threads.
+// The two solves of a step do not depend on each other: with two threads they run at the same time,
+// each on factors of its own or on those of both (LinearSolver::shares_factors). The result does
+// not depend on the number of threads.
 time::IntegratorPtr make_euler(const problem::DaeProblem& problem,
                                const linear::LinearSolverChoice& solvers,
                                std::shared_ptr<const ThreadTeam> team,

@@ -23,7 +23,8 @@ class Descriptor {
   // `meant`: what messages name, where that is another file.
   Descriptor(const std::filesystem::path& path, int flags, std::filesystem::path meant = {})
       : path_(meant.empty() ? path : std::move(meant)) {
-    fd_ = ::open(path.c_str(), flags | O_CLOEXEC, 0644);
+    // A pipe of that name is opened at once, and refused, instead of waiting for its other end.
+    fd_ = ::open(path.c_str(), flags | O_CLOEXEC | O_NONBLOCK, 0644);
     if (fd_ < 0) fail("cannot open", path_);
   }
   ~Descriptor() {

@@ -32,8 +32,8 @@ void analyse_by_cholmod(const fem::SparsityPattern& pattern, Analysis& analysis)
   if (common->status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
   if (common->status == CHOLMOD_TOO_LARGE)
     throw InputError(
-        "linear solver block: its factors have more than 2^31 entries on this mesh; use fewer "
-        "--cells, or --linear-solver teko");
+        "linear solver block: its factors have more than 2^31 entries on this mesh; use a "
+        "coarser mesh, or the linear solver teko");
   throw std::runtime_error("CHOLMOD: symbolic analysis failed");
 }
 

@@ -15,14 +15,16 @@ constexpr double kLaterFactor = 10;
 
 std::vector<ParameterSpec> ida_parameters() {
   return {
-      {"rtol", "", 0, 0, 0.5, "relative tolerance in the L2 norm on the surface; 0: --tolerance"},
+      {"rtol", "", 0, 0, 0.5,
+       "relative tolerance in the L2 norm on the surface; 0: that of all integrators"},
       {"atol", "", 0, 0, 1e3, "absolute tolerance of c; 0: 1e-10"},
-      {"maxord", "", 5, 1, 5, "maximum order of the BDF", true},
-      {"initstep", "s", 0, 0, 1e300, "first step; 0: --initial-step"},
-      {"maxstep", "s", 0, 0, 1e300, "largest step; 0: --max-step"},
+      {"maxord", "", 5, 1, 5, "maximum order of the BDF", ParameterKind::integer},
+      {"initstep", "s", 0, 0, 1e300, "first step; 0: that of all integrators"},
+      {"maxstep", "s", 0, 0, 1e300, "largest step; 0: that of all integrators"},
       {"suppressalg", "", 1, 0, 1,
        "1: leave algebraic variables out of the error test; 0: include them", true},
-      {"epslin", "", 0, 0, 0.5, "relative residual of Newton corrections; 0: --linear-tolerance"},
+      {"epslin", "", 0, 0, 0.5,
+       "relative residual of Newton corrections; 0: that of all integrators"},
       {"nonlinconvcoef", "", 0.66, 1e-6, 1, "factor in the convergence test of Newton's method"},
   };
 }

@@ -106,8 +106,9 @@ void check_names(const std::string& method, const ParameterList& own) {
   for (auto entry = own.begin(); entry != own.end(); ++entry) {
     const std::string& name = own.name(entry);
     if (name == kTolerance)
-      throw InputError("Belos: \"" + name +
-                       "\" is what the integrator asks for; choose --linear-tolerance");
+      throw InputError(
+          "Belos: \"" + name +
+          "\" is what the integrator asks for; choose the tolerance of linear solves there");
     if (!known->isParameter(name))
       throw InputError("Belos: " + unknown_name_message("parameter", name, names));
   }

@@ -135,7 +135,7 @@ class TekoSolver final : public linear::LinearSolver {
     std::size_t checksum = 0;
     read_binary(in, checksum);
     if (checksum != setting_->chosen.checksum)
-      throw IoError("the file of --teko-parameters is not the one that the run was started with");
+      throw IoError("the file of Teuchos parameters is not the one that the run was started with");
     shared_.load(in);
   }
 

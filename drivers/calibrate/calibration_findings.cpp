@@ -145,7 +145,7 @@ std::string calibration_json(const std::vector<CalibrationFinding>& parameters,
       row.push_back(result.correlation(i, j) * ((i == 0) != (j == 0) ? -1 : 1));
     json["correlation"].push_back(row);
   }
-  return json.dump(2) + "\n";
+  return input::checked_text(json);
 }
 
 CalibrationFindings findings_of(const observations::MeasuredVesicles& data,

@@ -47,7 +47,7 @@ input::Json plan_json(const CampaignPlan& plan) {
 }  // namespace
 
 void CampaignFolder::save(const CampaignPlan& plan) const {
-  posix::write_durably(plan_file(), plan_json(plan).dump(2) + "\n");
+  posix::write_durably(plan_file(), input::checked_text(plan_json(plan)));
 }
 
 CampaignPlan CampaignFolder::load() const {

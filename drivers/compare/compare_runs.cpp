@@ -107,7 +107,7 @@ Reference reference_of(const ComparePlan& plan, const ComparisonFolder& folder,
     reference.options[option] = {config::run_option(option).default_text, ""};
   const backends::IntegratorEntry& ida = backends::integrators().find("ida");
   for (const ParameterSpec& parameter : ida.parameters)
-    reference.options[config::integrator_option(ida, parameter)] = {
+    reference.options[config::method_option(ida.name, parameter)] = {
         format_number(parameter.default_value), ""};
   reference.options["integrator"] = {"ida", ""};
   reference.options["linear-solver"] = {"block", ""};

@@ -128,4 +128,11 @@ std::string numerical_identity(const Configuration& configuration) {
   return identity;
 }
 
+std::vector<std::string> differing_options(const Configuration& a, const Configuration& b) {
+  std::vector<std::string> names;
+  for (const OptionSpec& spec : run_options())
+    if (spec.numerical && toml_value(spec, a) != toml_value(spec, b)) names.push_back(spec.name);
+  return names;
+}
+
 }  // namespace traceraft::config

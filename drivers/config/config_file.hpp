@@ -27,4 +27,7 @@ std::string flags_text(const Configuration& configuration);
 // The options that decide the numbers of a run, in a normal form: equal text, equal run.
 std::string numerical_identity(const Configuration& configuration);
 
+// Names of those in which two runs differ.
+std::vector<std::string> differing_options(const Configuration& a, const Configuration& b);
+
 }  // namespace traceraft::config

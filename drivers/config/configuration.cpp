@@ -75,6 +75,7 @@ std::vector<std::string> split_list(const std::string& text) {
     const std::size_t begin = item.find_first_not_of(' '), end = item.find_last_not_of(' ');
     items.push_back(begin == std::string::npos ? "" : item.substr(begin, end - begin + 1));
   }
+  if (!text.empty() && text.back() == ',') items.emplace_back();
   return items;
 }
 
@@ -102,11 +103,12 @@ Configuration::Configuration(const GivenValues& file, const GivenValues& flags) 
   physics::Units physical = scaled_units;
   physical.scaled = false;
   for (const OptionSpec& spec : run_options()) {
-    if (const GivenValue* value = find_given(file, flags, spec.name)) {
-      set(spec, *value);
-      given_.insert(spec.name);
-      continue;
-    }
+    for (const GivenValues* values : {&file, &flags})  // a flag is taken, and the file checked
+      if (const auto value = values->find(spec.name); value != values->end()) {
+        set(spec, value->second);
+        given_.insert(spec.name);
+      }
+    if (given_.count(spec.name) > 0) continue;
     std::string text = defaults[spec.name];
     if (scaled_units.scaled && spec.dimension != Dimension::none && !text.empty()) {
       const double unit = spec.dimension == Dimension::length ? physical.length() : physical.time();

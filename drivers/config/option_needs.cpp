@@ -26,10 +26,10 @@ std::vector<OptionNeed> all_needs() {
   };
   for (const backends::IntegratorEntry& integrator : backends::integrators())
     for (const ParameterSpec& parameter : integrator.parameters)
-      needs.push_back({integrator_option(integrator, parameter), "integrator", {integrator.name}});
+      needs.push_back({method_option(integrator.name, parameter), "integrator", {integrator.name}});
   for (const backends::LinearSolverEntry& solver : backends::linear_solvers())
-    for (const backends::WordOption& option : solver.options)
-      needs.push_back({linear_solver_option(solver, option), "linear-solver", {solver.name}});
+    for (const ParameterSpec& parameter : solver.parameters)
+      needs.push_back({method_option(solver.name, parameter), "linear-solver", {solver.name}});
   return needs;
 }
 

@@ -19,12 +19,26 @@ OptionKind kind_of(const OptionMember& member) {
   return kinds[member.index()];
 }
 
-OptionSpec spec_of(const backends::IntegratorEntry& integrator, const ParameterSpec& p) {
+OptionKind kind_of(ParameterKind kind) {
+  switch (kind) {
+    case ParameterKind::number:
+      return OptionKind::number;
+    case ParameterKind::integer:
+      return OptionKind::integer;
+    case ParameterKind::file:
+      return OptionKind::path;
+    default:
+      return OptionKind::text;
+  }
+}
+
+// `group`: "Integrator ida".
+OptionSpec spec_of(const std::string& method, const std::string& group, const ParameterSpec& p) {
   OptionSpec spec;
-  spec.name = integrator_option(integrator, p);
-  spec.kind = p.integer ? OptionKind::integer : OptionKind::number;
-  spec.default_text = format_number(p.default_value);
-  spec.group = "Integrator " + integrator.name;
+  spec.name = method_option(method, p);
+  spec.kind = kind_of(p.kind);
+  spec.default_text = p.is_number() ? format_number(p.default_value) : p.default_text;
+  spec.group = group;
   const bool time = p.unit == "s";
   spec.help = p.meaning + (time ? " (s)" : "");
   spec.min = p.min;
@@ -33,37 +47,16 @@ OptionSpec spec_of(const backends::IntegratorEntry& integrator, const ParameterS
   return spec;
 }
 
-OptionSpec spec_of(const backends::LinearSolverEntry& solver, const backends::WordOption& o) {
-  OptionSpec spec;
-  spec.name = linear_solver_option(solver, o);
-  spec.kind = o.file ? OptionKind::path : OptionKind::text;
-  spec.default_text = o.default_word;
-  spec.group = "Linear solver " + solver.name;
-  spec.help = o.meaning;
+// A name of a list (drivers/manual/value_lists.hpp), such as CASE.
+OptionSpec listed(const char* list, OptionSpec spec) {
+  spec.placeholder = list;
   return spec;
 }
 
-// Texts that are looked up: in a list (drivers/manual/value_lists.hpp) or among a few words.
-struct LookedUp {
-  OptionMember option;
-  std::string list;
-  std::vector<std::string> words = {};
-};
-
-const std::vector<LookedUp>& looked_up() {
-  using R = RunOptions;
-  static const std::vector<LookedUp> options = {
-      {&R::case_name, "CASE"},
-      {&R::surface, "SURFACE"},
-      {&R::mobility, "MOBILITY"},
-      {&R::effect, "EFFECT"},
-      {&R::initial, "INITIAL"},
-      {&R::integrator, "INTEGRATOR"},
-      {&R::linear_solver, "SOLVER"},
-      {&R::potential, "", {"averaged", "consistent", "nodal"}},
-      {&R::keep, "", {"second", "first", "decaying"}},
-      {&R::energy_guard, "", {"warn", "reject", "off"}}};
-  return options;
+OptionSpec one_of(std::vector<std::string> words, OptionSpec spec) {
+  spec.placeholder = joined(words, "|");
+  spec.words = std::move(words);
+  return spec;
 }
 
 std::string placeholder_of(OptionKind kind) {
@@ -82,50 +75,40 @@ std::string placeholder_of(OptionKind kind) {
   }
 }
 
-void set_placeholder(OptionSpec& spec) {
-  spec.placeholder = placeholder_of(spec.kind);
-  if (spec.member.index() == 0) return;
-  for (const LookedUp& option : looked_up())
-    if (option.option == spec.member) {
-      spec.words = option.words;
-      spec.placeholder = option.words.empty() ? option.list : joined(option.words, "|");
-    }
-}
-
 // After the general options, those that only one integrator or linear solver has.
 std::vector<OptionSpec> with_own_options(std::vector<OptionSpec> table) {
   for (OptionSpec& spec : table) spec.kind = kind_of(spec.member);
-  for (const backends::IntegratorEntry& integrator : backends::integrators())
-    for (const ParameterSpec& p : integrator.parameters) table.push_back(spec_of(integrator, p));
-  for (const backends::LinearSolverEntry& solver : backends::linear_solvers())
-    for (const backends::WordOption& o : solver.options) table.push_back(spec_of(solver, o));
-  for (OptionSpec& spec : table) set_placeholder(spec);
+  for (const backends::IntegratorEntry& method : backends::integrators())
+    for (const ParameterSpec& p : method.parameters)
+      table.push_back(spec_of(method.name, "Integrator " + method.name, p));
+  for (const backends::LinearSolverEntry& method : backends::linear_solvers())
+    for (const ParameterSpec& p : method.parameters)
+      table.push_back(spec_of(method.name, "Linear solver " + method.name, p));
+  for (OptionSpec& spec : table)
+    if (spec.placeholder.empty()) spec.placeholder = placeholder_of(spec.kind);
   return table;
 }
 
 }  // namespace
 
-std::string integrator_option(const backends::IntegratorEntry& integrator,
-                              const ParameterSpec& parameter) {
-  return integrator.name + "-" + parameter.name;
-}
-
-std::string linear_solver_option(const backends::LinearSolverEntry& solver,
-                                 const backends::WordOption& option) {
-  return solver.name + "-" + option.name;
+std::string method_option(const std::string& method, const ParameterSpec& parameter) {
+  return method + "-" + parameter.name;
 }
 
 const std::vector<OptionSpec>& run_options() {
   using R = RunOptions;
   using D = Dimension;
   static const std::vector<OptionSpec> table = with_own_options({
-      {"case", &R::case_name, "guv-2to1", "Case",
-       "named set of settings (see: traceraft list); the help shows the values of guv-2to1"},
+      listed(
+          "CASE",
+          {"case", &R::case_name, "guv-2to1", "Case",
+           "named set of settings (see: traceraft list); the help shows the values of guv-2to1"}),
       {"scaled", &R::scaled, "false", "Case",
        "use R and R^2/D as units of all inputs and outputs, instead of um and s"},
 
-      {"surface", &R::surface, "sphere", "Surface",
-       "surface, with parameters in units of R as in torus:major=1,minor=0.4, or formula"},
+      listed("SURFACE",
+             {"surface", &R::surface, "sphere", "Surface",
+              "surface, with parameters in units of R as in torus:major=1,minor=0.4, or formula"}),
       {"surface-formula", &R::surface_formula, "", "Surface",
        "level set phi(x,y,z) for --surface formula, negative inside; coordinates in units of R"},
       {"radius", &R::radius, "5", "Surface",
@@ -136,24 +119,29 @@ const std::vector<OptionSpec>& run_options() {
       {"epsilon", &R::epsilon, "0.05", "Physics",
        "width parameter epsilon of the phase boundary (um)", 1e-9, 1e9, D::length},
       {"diffusion", &R::diffusion, "1e-5", "Physics", "mobility prefactor D (cm^2/s)", 1e-30, 1e30},
-      {"mobility", &R::mobility, "degenerate", "Physics",
-       "mobility law in units of D: degenerate, degenerate:outside=-1, constant:value=0.25"},
+      listed(
+          "MOBILITY",
+          {"mobility", &R::mobility, "degenerate", "Physics",
+           "mobility law in units of D: degenerate, degenerate:outside=-1, constant:value=0.25"}),
       {"well", &R::well, "rho=0.25,a=0,b=1", "Physics",
        "parameters of the free energy rho (c-a)^2 (b-c)^2 of a homogeneous mixture"},
-      {"effect", &R::effect, "", "Physics",
-       "effect added to the model, as in exchange:rate=1e-3,target=0.2; separate several by "
-       "semicolons, or repeat the flag (see: traceraft list)",
-       0, 0, D::none, true, true},
-      {"potential", &R::potential, "averaged", "Physics",
-       "free energy of an element: averaged (from the mean of its square root: exact line "
-       "tension), consistent (by quadrature) or nodal (as in the paper's code)"},
+      listed("EFFECT",
+             {"effect", &R::effect, "", "Physics",
+              "effect added to the model, as in exchange:rate=1e-3,target=0.2; separate several by "
+              "semicolons, or repeat the flag (see: traceraft list)",
+              0, 0, D::none, true, true}),
+      one_of({"averaged", "consistent", "nodal"},
+             {"potential", &R::potential, "averaged", "Physics",
+              "free energy of an element: averaged (from the mean of its square root: exact line "
+              "tension), consistent (by quadrature) or nodal (as in the paper's code)"}),
       {"stabilisation", &R::stabilisation, "1", "Physics",
        "coefficient of the normal-gradient stabilisation, in units of the mesh size", 1e-6, 1e6},
       {"mass-stabilisation", &R::mass_stabilisation, "0.3", "Physics",
        "the same in the mass matrix, where it slows short waves; 1 in the paper's code", 1e-3, 1e3},
 
-      {"initial", &R::initial, "noise", "Initial state",
-       "noise, band-limited:wavelength=0.3,amplitude=0.05, caps, formula or restart:DIR"},
+      listed("INITIAL",
+             {"initial", &R::initial, "noise", "Initial state",
+              "noise, band-limited:wavelength=0.3,amplitude=0.05, caps, formula or restart:DIR"}),
       {"initial-formula", &R::initial_formula, "", "Initial state",
        "c(x,y,z) for --initial formula; coordinates in units of R"},
       {"initial-caps", &R::initial_caps, "", "Initial state",
@@ -171,7 +159,8 @@ const std::vector<OptionSpec>& run_options() {
        "output times of fields and observables.csv (s), comma-separated; default: 0 and 16 times "
        "up to the end, evenly spaced in log t",
        0, 1e300, D::time},
-      {"integrator", &R::integrator, "ida", "Time", "time integrator (see: traceraft list)"},
+      listed("INTEGRATOR", {"integrator", &R::integrator, "ida", "Time",
+                            "time integrator (see: traceraft list)"}),
       {"tolerance", &R::tolerance, "1e-3", "Time",
        "relative error of a step, in the L2 norm on the surface; default with euler: 5e-3", 1e-12,
        0.5},
@@ -180,16 +169,19 @@ const std::vector<OptionSpec>& run_options() {
       {"min-step", &R::min_step, "0", "Time",
        "smallest step (s); 0: 1e-14 of the length of the run", 0, 1e300, D::time},
       {"max-step", &R::max_step, "0", "Time", "largest step (s); 0: unbounded", 0, 1e300, D::time},
-      {"keep", &R::keep, "second", "Time",
-       "solution of the euler pair that starts the next step: second order (second, as in the "
-       "paper), first order (first), or second order unless the energy grows (decaying)"},
+      one_of(
+          {"second", "first", "decaying"},
+          {"keep", &R::keep, "second", "Time",
+           "solution of the euler pair that starts the next step: second order (second, as in the "
+           "paper), first order (first), or second order unless the energy grows (decaying)"}),
 
-      {"energy-guard", &R::energy_guard, "warn", "Time",
-       "treatment of steps that gain energy although the model can only lose it: warn, reject or "
-       "off"},
+      one_of({"warn", "reject", "off"}, {"energy-guard", &R::energy_guard, "warn", "Time",
+                                         "treatment of steps that gain energy although the model "
+                                         "can only lose it: warn, reject or "
+                                         "off"}),
 
-      {"linear-solver", &R::linear_solver, "block", "Linear algebra",
-       "linear solver (see: traceraft list)"},
+      listed("SOLVER", {"linear-solver", &R::linear_solver, "block", "Linear algebra",
+                        "linear solver (see: traceraft list)"}),
       {"linear-tolerance", &R::linear_tolerance, "0", "Linear algebra",
        "tolerated relative residual of each linear solve; 0: the integrator's choice (euler 1e-4, "
        "ida 5e-2, rosenbrock up to 1e-3)",

@@ -10,12 +10,6 @@
 namespace traceraft {
 struct ParameterSpec;
 }
-namespace traceraft::backends {
-struct IntegratorEntry;
-struct LinearSolverEntry;
-struct WordOption;
-}  // namespace traceraft::backends
-
 namespace traceraft::config {
 
 enum class OptionKind { text, path, number, integer, flag, numbers /* comma-separated */ };
@@ -82,12 +76,8 @@ struct OptionSpec {
   std::vector<std::string> words = {};  // the only texts it takes, if they are a few
 };
 
-// "ida-maxord": the name of an option that one integrator has.
-std::string integrator_option(const backends::IntegratorEntry& integrator,
-                              const ParameterSpec& parameter);
-// "teko-inverse": the name of an option that one linear solver has.
-std::string linear_solver_option(const backends::LinearSolverEntry& solver,
-                                 const backends::WordOption& option);
+// "ida-maxord": the name of an option that one integrator or linear solver has.
+std::string method_option(const std::string& method, const ParameterSpec& parameter);
 
 const std::vector<OptionSpec>& run_options();
 const OptionSpec& run_option(const std::string& name);  // throws InputError

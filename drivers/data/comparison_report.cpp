@@ -56,10 +56,8 @@ class ComparisonReport {
     fs::create_directories(request_.out);
     posix::write_durably(
         request_.out / "comparison.json",
-        input::Json{
-            {"runs", runs_.size()}, {"missing_runs", ensemble_.missing}, {"data", data_.name}}
-                .dump(2, ' ', false, input::Json::error_handler_t::replace) +
-            "\n");
+        input::checked_text(
+            {{"runs", runs_.size()}, {"missing_runs", ensemble_.missing}, {"data", data_.name}}));
     posix::write_durably(request_.out / "comparison.csv",
                          output::csv_text(agreement_table(agreements_)));
     posix::write_durably(request_.out / "comparison.html", page().html());

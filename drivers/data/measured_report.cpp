@@ -152,8 +152,7 @@ EnsembleRuns runs_of(const fs::path& path) {
   const ensemble::EnsembleFolder folder(path);
   const fs::path kept = path / ensemble::kHistoriesFile;
   if (folder.started()) {
-    ensemble::FinishedMembers finished =
-        ensemble::finished_members(folder, model.units().length(), model.options().t_end);
+    ensemble::FinishedMembers finished = ensemble::finished_members(folder, model);
     if (!finished.histories.empty()) {
       const std::string missing = missing_of(folder, finished);
       return {std::move(finished.histories), missing};

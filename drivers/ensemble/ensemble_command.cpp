@@ -117,7 +117,7 @@ int carry_out(const EnsembleRequest& request, const EnsembleFolder& folder,
               jobs.at_a_time, jobs.threads, jobs.threads == 1 ? "" : "s", folder.path());
   const double t_end = configuration.options().t_end;
   EnsembleEnd end = run_members(plan, folder, jobs, t_end, request.quiet);
-  const FinishedMembers finished = finished_members(folder, units.length(), t_end);
+  const FinishedMembers finished = finished_members(folder, configuration);
   end.failures.insert(end.failures.end(), finished.damaged.begin(), finished.damaged.end());
   for (const MemberFailure& failure : end.failures)
     text::say_error("the run of seed " + std::to_string(failure.seed) + " failed: " + failure.why);

@@ -5,12 +5,14 @@
 #include <fstream>
 #include <numeric>
 
+#include "drivers/config/config_file.hpp"
 #include "drivers/config/options.hpp"
 #include "drivers/input/csv_table.hpp"
 #include "drivers/input/json_members.hpp"
 #include "drivers/run/finished_run.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
+#include "kernel/core/text.hpp"
 
 namespace traceraft::ensemble {
 namespace {
@@ -18,6 +20,19 @@ namespace {
 // What may only be unreadable for the moment is not to be deleted.
 std::string with_advice(const std::string& why, const std::filesystem::path& run) {
   return "delete " + run.string() + " to repeat the run: " + why;
+}
+
+// Throws DamagedFile unless a run has the options of the ensemble, and its own seed.
+void require_options(const EnsembleFolder& folder, std::uint64_t seed) {
+  const auto read = [](const std::filesystem::path& file, const config::GivenValues& flags) {
+    return config::Configuration(config::read_config_file(file), flags);
+  };
+  const std::vector<std::string> names =
+      config::differing_options(read(folder.config(), {{"seed", {std::to_string(seed), "--seed"}}}),
+                                read(folder.run_of(seed) / "config.toml", {}));
+  if (!names.empty())
+    throw DamagedFile("its config.toml differs from that of the ensemble in " +
+                      joined(names, " and "));
 }
 
 }  // namespace
@@ -35,7 +50,7 @@ void describe(Members& members, EnsemblePlan& plan) {
 }
 
 void EnsembleFolder::save(const EnsemblePlan& plan) const {
-  posix::write_durably(plan_file(), input::object_of(plan).dump(2) + "\n");
+  posix::write_durably(plan_file(), input::checked_text(input::object_of(plan)));
 }
 
 void EnsembleFolder::refuse_other_plan() const {
@@ -101,7 +116,7 @@ double EnsembleFolder::reached(std::uint64_t seed) const {
 }
 
 observations::History EnsembleFolder::history(std::uint64_t seed, double radius) const {
-  run::require_whole_table(run_of(seed), "series.csv");
+  run::require_whole_tables(run_of(seed));
   const input::CsvTable series = input::CsvTable::read(run_of(seed) / "series.csv");
   observations::History history;
   history.time = series.numbers("t");
@@ -112,8 +127,10 @@ observations::History EnsembleFolder::history(std::uint64_t seed, double radius)
   return history;
 }
 
-FinishedMembers finished_members(const EnsembleFolder& folder, double radius, double t_end) {
+FinishedMembers finished_members(const EnsembleFolder& folder,
+                                 const config::Configuration& configuration) {
   constexpr double kRoundoff = 1e-9;
+  const double t_end = configuration.options().t_end, radius = configuration.units().length();
   FinishedMembers result;
   const auto damaged = [&](std::uint64_t seed, const std::string& why) {
     result.damaged.push_back({seed, with_advice(why, folder.run_of(seed))});
@@ -121,6 +138,7 @@ FinishedMembers finished_members(const EnsembleFolder& folder, double radius, do
   for (const std::uint64_t seed : folder.load().seeds()) {
     if (folder.member(seed).end != MemberEnd::finished) continue;
     try {
+      require_options(folder, seed);
       observations::History history = folder.history(seed, radius);
       const double last = history.time.empty() ? 0 : history.time.back();
       if (last < (1 - kRoundoff) * t_end) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "drivers/config/configuration.hpp"
 #include "verification/observations/history.hpp"
 
 namespace traceraft::ensemble {
@@ -77,7 +78,8 @@ struct FinishedMembers {
   std::vector<observations::History> histories;  // theirs
   std::vector<MemberFailure> damaged;
 };
-// `radius`, `t_end`: of the runs, in the units of their files.
-FinishedMembers finished_members(const EnsembleFolder& folder, double radius, double t_end);
+// `configuration`: of the ensemble. A run with other options than these is damaged, too.
+FinishedMembers finished_members(const EnsembleFolder& folder,
+                                 const config::Configuration& configuration);
 
 }  // namespace traceraft::ensemble

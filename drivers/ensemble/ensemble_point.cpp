@@ -63,7 +63,7 @@ PointEnd run_point(const std::filesystem::path& path, const config::Configuratio
           folder.run_of(failure.seed).string() +
           " is in use by another process; wait until it ends, then give the same command");
   const physics::Units units = configuration.units();
-  FinishedMembers finished = finished_members(folder, units.length(), t_end);
+  FinishedMembers finished = finished_members(folder, configuration);
   PointEnd result{end.stopped, end.failures, std::move(finished.histories),
                   std::move(finished.seeds)};
   result.failures.insert(result.failures.end(), finished.damaged.begin(), finished.damaged.end());

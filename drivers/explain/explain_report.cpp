@@ -54,7 +54,7 @@ void write_explanation(const std::filesystem::path& folder, const selection::Exp
                  ? ", with D refitted together with it"
                  : ", with D and the model's own effects refitted together with it"));
   posix::write_durably(folder / "verdict.json",
-                       verdict_json(verdict_of(found, setup)).dump(2) + "\n");
+                       input::checked_text(verdict_json(verdict_of(found, setup))));
 }
 
 std::string command_for_found(const std::filesystem::path& folder,

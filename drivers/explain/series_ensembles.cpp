@@ -133,7 +133,7 @@ std::vector<effects::EffectTerm> sizes(const fs::path& folder, const config::Con
       tell(request, "sizing the strength of " + effect);
       if (!sizing) sizing.emplace(asked);
       strengths[effect] = sized_term(*sizing, effect, k, asked.raft_fraction).values;
-      posix::write_durably(file, saved.dump(2) + "\n");
+      posix::write_durably(file, input::checked_text(saved));
     }
     terms.push_back(saved_term(file, effect, strengths.at(effect), model.units()));
   }

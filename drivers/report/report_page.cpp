@@ -112,6 +112,7 @@ void add_summary(output::Page& page, const fs::path& run, bool scaled) {
 
 void fill_run(output::Page& page, const fs::path& folder, const PageRequest& request,
               output::Missing& missing) {
+  run::require_whole_tables(folder);
   const config::Configuration configuration(config::read_config_file(folder / "config.toml"), {});
   const bool scaled = configuration.units().scaled;
   page.paragraph("A run of the case " + configuration.options().case_name + ", seed " +
@@ -119,7 +120,6 @@ void fill_run(output::Page& page, const fs::path& folder, const PageRequest& req
   add_surface(page, folder, request, missing);
   page.heading("In time");
   if (request.data) page.paragraph("Measured perimeters are scaled to the radius of this vesicle.");
-  run::require_whole_table(folder, "series.csv");
   const input::CsvTable series = input::CsvTable::read(folder / "series.csv");
   for (const Curve& curve : curves()) {
     bench::Chart chart = series_chart(series, curve, scaled);
@@ -186,8 +186,7 @@ void fill_ensemble(output::Page& page, const fs::path& path, const PageRequest& 
   const ensemble::EnsembleFolder folder(path);
   const config::Configuration configuration(config::read_config_file(folder.config()), {});
   const physics::Units units = configuration.units();
-  const ensemble::FinishedMembers finished =
-      ensemble::finished_members(folder, units.length(), configuration.options().t_end);
+  const ensemble::FinishedMembers finished = ensemble::finished_members(folder, configuration);
   const std::vector<observations::History>& runs = finished.histories;
   if (runs.empty()) throw InputError(path.string() + ": no run of this ensemble has finished");
   const fs::path shown = folder.run_of(finished.seeds.front());

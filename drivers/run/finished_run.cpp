@@ -1,7 +1,6 @@
 #include "drivers/run/finished_run.hpp"
 
 #include <charconv>
-#include <optional>
 
 #include "drivers/input/json_file.hpp"
 #include "drivers/run/checkpoint_store.hpp"
@@ -17,8 +16,7 @@ bool run_finished(const std::filesystem::path& run_folder) {
 
 namespace {
 
-TableExtent extent_in(const input::Json& tables, const std::string& name) {
-  const input::Json& table = tables.at(name);
+TableExtent extent_in(const input::Json& table) {
   const std::string digits = table.at("crc32");
   std::uint32_t checksum = 0;
   const auto parsed = std::from_chars(digits.data(), digits.data() + digits.size(), checksum, 16);
@@ -29,14 +27,17 @@ TableExtent extent_in(const input::Json& tables, const std::string& name) {
 
 }  // namespace
 
-void require_whole_table(const std::filesystem::path& run_folder, const std::string& name) {
-  if (!run_finished(run_folder)) return;
-  const auto extent = input::from_json(run_folder / "summary.json",
-                                       [&](const input::Json& json) -> std::optional<TableExtent> {
-                                         if (!json.contains("tables")) return std::nullopt;
-                                         return extent_in(json["tables"], name);
-                                       });
-  if (extent) require_extent(run_folder / name, *extent);
+void require_whole_tables(const std::filesystem::path& run_folder) {
+  const std::filesystem::path summary = run_folder / "summary.json";
+  if (!std::filesystem::exists(summary)) return;
+  const TableExtents extents = input::from_json(summary, [](const input::Json& json) {
+    TableExtents extents;
+    if (json.at("end") == "finished" && json.contains("tables"))
+      for (const auto& [name, table] : json["tables"].items()) extents[name] = extent_in(table);
+    return extents;
+  });
+  for (const auto& [name, extent] : extents)
+    if (std::filesystem::exists(run_folder / name)) require_extent(run_folder / name, extent);
 }
 
 double summary_number(const std::filesystem::path& run_folder, const char* name) {

@@ -11,9 +11,9 @@ namespace traceraft::run {
 // Has a run reached its end in this folder? Throws IoError if its summary is damaged.
 bool run_finished(const std::filesystem::path& run_folder);
 
-// Throws DamagedFile if a table of a run that has reached its end is not what its summary says that
-// was written, IoError if one of them cannot be read. Runs of earlier versions say nothing.
-void require_whole_table(const std::filesystem::path& run_folder, const std::string& name);
+// Throws DamagedFile if a file of a run that has reached its end is not what its summary says that
+// was written, IoError if one of them cannot be read. A file that somebody deleted is not missed.
+void require_whole_tables(const std::filesystem::path& run_folder);
 
 // A number of its summary. Throws IoError if it is not there.
 double summary_number(const std::filesystem::path& run_folder, const char* name);

@@ -24,7 +24,7 @@ std::vector<problem::CapRaft> parse_caps(const config::Configuration& configurat
     if (numbers.size() != 4)
       throw InputError(where + ": '" + item + "' must have four numbers, x y z angle");
     const Point direction(numbers[0], numbers[1], numbers[2]);
-    if (direction.norm() == 0) throw InputError(where + ": a direction is zero in '" + item + "'");
+    if (direction.isZero(0)) throw InputError(where + ": a direction is zero in '" + item + "'");
     if (!(numbers[3] > 0 && numbers[3] < 180))
       throw InputError(where + ": an angle must lie between 0 and 180 degrees in '" + item + "'");
     caps.push_back({direction, numbers[3] * kPi / 180});

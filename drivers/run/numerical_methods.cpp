@@ -11,7 +11,7 @@ time::IntegratorSettings integrator_settings(const config::Configuration& config
   for (const ParameterSpec& parameter : integrator.parameters)
     settings.method_options[parameter.name] =
         configuration.options().method_numbers.at(
-            config::integrator_option(integrator, parameter)) /
+            config::method_option(integrator.name, parameter)) /
         (parameter.unit == "s" ? units.time() : 1);
   settings.tolerance = configuration.options().tolerance;
   settings.initial_step = configuration.options().initial_step / units.time();
@@ -34,9 +34,9 @@ linear::LinearSolverChoice linear_solver(const config::Configuration& configurat
   const backends::LinearSolverEntry& solver =
       backends::linear_solvers().find(configuration.options().linear_solver);
   backends::WordOptions options;
-  for (const backends::WordOption& option : solver.options)
-    options[option.name] =
-        configuration.options().method_words.at(config::linear_solver_option(solver, option));
+  for (const ParameterSpec& parameter : solver.parameters)
+    options[parameter.name] =
+        configuration.options().method_words.at(config::method_option(solver.name, parameter));
   try {
     return backends::choose_linear_solver(solver.name, space, options);
   } catch (const OptionError& error) {

@@ -79,9 +79,14 @@ int execute_run(const config::Configuration& configuration, RunSetup& run, const
   if (run.integrator->statistics().steps > 0) checkpoints.write(state);
   const RunCost cost = checkpoints.cost();
   const double memory = run.ranks->sum(posix::peak_memory_mb());
-  if (root)
-    posix::write_durably(folder.summary(), summary_json(configuration, run, state, result, cost,
-                                                        memory, tables->extents()));
+  if (root) {
+    TableExtents extents = tables->extents();
+    if (const std::filesystem::path list = folder.path / "fields.pvd";
+        std::filesystem::exists(list))
+      extents["fields.pvd"] = extent_of_file(list);
+    posix::write_durably(folder.summary(),
+                         summary_json(configuration, run, state, result, cost, memory, extents));
+  }
   if (!quiet) print_summary(configuration, run, state, result, cost, memory, folder);
   if (result.end == simulation::RunEnd::stopped && !quiet)
     text::say("  continue with          traceraft resume %s\n",

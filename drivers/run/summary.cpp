@@ -5,6 +5,7 @@
 #include "backends/posix/process.hpp"
 #include "backends/suitesparse/blas.hpp"
 #include "drivers/config/config_file.hpp"
+#include "drivers/input/json_file.hpp"
 #include "drivers/output/program.hpp"
 #include "drivers/run/progress.hpp"
 #include "drivers/run/run_numbers.hpp"
@@ -90,7 +91,7 @@ std::string summary_json(const config::Configuration& configuration, const RunSe
   json["blas"] = suitesparse::blas_description();
   for (const auto& [name, extent] : tables)
     json["tables"][name] = {{"bytes", extent.bytes}, {"crc32", formatted("%08x", extent.checksum)}};
-  return json.dump(2) + "\n";
+  return input::checked_text(json);
 }
 
 // Of a sphere nothing separates where f0'' + ε² l(l + 1)/R² > 0 even for c halfway and l = 1. Other

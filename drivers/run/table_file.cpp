@@ -30,6 +30,11 @@ void require_extent(const std::filesystem::path& path, const TableExtent& extent
         " is damaged: its rows have changed; restore it, or start again in another folder");
 }
 
+TableExtent extent_of_file(const std::filesystem::path& path) {
+  const std::string text = posix::read_file(path, kLargestTable);
+  return {text.size(), zlib::crc32_of(text)};
+}
+
 TableFile::TableFile(const std::filesystem::path& path, const TableExtent& extent)
     : file_(path, checked_size(path, extent)), checksum_(extent.checksum) {}
 

@@ -35,6 +35,8 @@ class TableFile {
   std::uint32_t checksum_;
 };
 
+TableExtent extent_of_file(const std::filesystem::path& path);  // throws IoError
+
 // Throws DamagedFile unless the file begins with these bytes, IoError if it cannot be read.
 void require_extent(const std::filesystem::path& path, const TableExtent& extent);
 

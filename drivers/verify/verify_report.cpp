@@ -130,7 +130,7 @@ void write_study(const fs::path& folder, const StudyResult& result, const std::s
     posix::write_durably(folder / (result.study.name + "-" + table.name + ".csv"),
                          output::csv_text(table));
   posix::write_durably(folder / (result.study.name + ".json"),
-                       to_json(result, with).dump(2) + "\n");
+                       input::checked_text(to_json(result, with)));
 }
 
 std::string write_verification(const fs::path& folder, const VerificationContext& context,
@@ -143,8 +143,7 @@ std::string write_verification(const fs::path& folder, const VerificationContext
     studies.push_back(to_json(result, context.measured_with));
   all["studies"] = studies;
   // Folders may have names that are not UTF-8.
-  posix::write_durably(folder / "verify.json",
-                       all.dump(2, ' ', false, input::Json::error_handler_t::replace) + "\n");
+  posix::write_durably(folder / "verify.json", input::checked_text(all));
 
   output::Page page("Verification");
   page.paragraph(context.conditions + " This command repeats it: " + context.command);

@@ -75,7 +75,7 @@ Parameters parse_parameters(std::string_view context, std::string_view arguments
       throw InputError(where + ": " + key + "=" + format_number(values[i]) +
                        " is out of range (allowed: " + format_number(specs[i].min) + " to " +
                        format_number(specs[i].max) + ")");
-    if (specs[i].integer && values[i] != std::floor(values[i]))
+    if (specs[i].kind == ParameterKind::integer && values[i] != std::floor(values[i]))
       throw InputError(where + ": " + key + "=" + format_number(values[i]) +
                        " is not a whole number");
   }

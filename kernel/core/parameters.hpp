@@ -1,5 +1,5 @@
-// Named numbers with units and ranges, as they appear in "name:key=value,key=value" arguments
-// (surfaces, mobility laws, initial data, effects).
+// Named options of surfaces, mobility laws, initial states, effects, integrators and linear
+// solvers. Numbers have units and ranges, and appear in "name:key=value,key=value" arguments, too.
 #pragma once
 
 #include <string>
@@ -8,6 +8,8 @@
 
 namespace traceraft {
 
+enum class ParameterKind { number, integer, word, file };
+
 struct ParameterSpec {
   std::string name;
   std::string unit;  // "" for a pure number
@@ -15,8 +17,17 @@ struct ParameterSpec {
   double min;
   double max;  // closed range [min, max]
   std::string meaning;
-  bool integer = false;
+  ParameterKind kind = ParameterKind::number;
+  std::string default_text = {};  // of a word or the path of a file
+
+  bool is_number() const { return kind == ParameterKind::number || kind == ParameterKind::integer; }
 };
+
+// An option that is a word or the path of a file.
+inline ParameterSpec text_parameter(std::string name, std::string default_text, std::string meaning,
+                                    ParameterKind kind = ParameterKind::word) {
+  return {std::move(name), "", 0, 0, 0, std::move(meaning), kind, std::move(default_text)};
+}
 
 // Values for a list of specs, in the order of the specs.
 class Parameters {

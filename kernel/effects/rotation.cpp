@@ -52,8 +52,8 @@ EffectEntry rotation_effect() {
           {},
           [](const Parameters& p, problem::CahnHilliardModel& model) {
             const Point axis(p["x"], p["y"], p["z"]);
-            if (axis.norm() == 0) throw InputError("effect rotation: the axis x, y, z is zero");
-            const Point unit = axis.normalized(), omega = p["rate"] * unit;
+            if (axis.isZero(0)) throw InputError("effect rotation: the axis x, y, z is zero");
+            const Point unit = axis.stableNormalized(), omega = p["rate"] * unit;
             model.effects.push_back(advection(
                 "rotation", [omega](const Point& x, double) -> Point { return omega.cross(x); },
                 [unit](const fem::SurfaceSpace& space) { require_revolution(unit, space); }));

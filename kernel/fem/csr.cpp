@@ -56,7 +56,7 @@ void CsrMatrix::multiply(VecView x, VecRef y, const ThreadTeam& team) const {
   multiply_add(1.0, x, y, team);
 }
 
-double CsrMatrix::quadratic(VecView x, VecView y, const ThreadTeam& team) const {
+double CsrMatrix::bilinear(VecView x, VecView y, const ThreadTeam& team) const {
   Vec product = Vec::Zero(pattern->rows());
   multiply_add(1.0, y, product, team);
   return dot(x.head(pattern->rows()), product);

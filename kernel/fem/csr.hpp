@@ -40,7 +40,7 @@ struct CsrMatrix {
   // y = A x
   void multiply(VecView x, VecRef y, const ThreadTeam& team) const;
   // xᵀ A y on the owned rows
-  double quadratic(VecView x, VecView y, const ThreadTeam& team) const;
+  double bilinear(VecView x, VecView y, const ThreadTeam& team) const;
 };
 
 // a·A + b·B on the common pattern

@@ -158,7 +158,7 @@ SurfaceSpace::SurfaceSpace(Geometry geometry, std::shared_ptr<const ThreadTeam> 
 
 double SurfaceSpace::bilinear(const CsrMatrix& A, VecView u, VecView v) const {
   Vec buffer;
-  return communicator->sum(A.quadratic(u, with_ghosts(v, buffer), *team));
+  return communicator->sum(A.bilinear(u, with_ghosts(v, buffer), *team));
 }
 
 Status SurfaceSpace::solve_spd(const CsrMatrix& A, VecView b, VecRef x, double tolerance) const {

@@ -105,7 +105,7 @@ InitialEntry cap_rafts() {
             return [request](const Point& x) {
               double outside = 1e300;  // arc length to the nearest raft, negative inside
               for (const CapRaft& cap : request.caps) {
-                const Point axis = cap.direction.normalized();
+                const Point axis = cap.direction.stableNormalized();
                 const double angle = std::atan2(axis.cross(x).norm(), axis.dot(x));
                 outside = std::min(outside, angle - cap.angle);
               }

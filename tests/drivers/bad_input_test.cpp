@@ -29,7 +29,8 @@ TEST_P(BadInput, IsAnsweredInOneLineBeforeAnyFolderIsMade) {
   const testing::ProgramEnd run = testing::shell(
       "cd " + folder.path.string() +
       " && printf 'cells = 16\\ncells = 8\\n' > "
-      "twice.toml && printf 'cells = \"x\"\\n' > type.toml && head -c 3000000 "
+      "twice.toml && printf 'epsilon = nan\\n' > nan.toml && printf 'cells = \"x\"\\n' > type.toml "
+      "&& head -c 3000000 "
       "/dev/zero > huge.toml && (yes a. | head -87000 | tr -d '\\n' && echo 'b = 1') > deep.toml "
       "&& head -c 3000 /dev/urandom > binary.toml && " +
       TRACERAFT_PROGRAM + " " + arguments);
@@ -57,6 +58,9 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"run --case guv", "'guv-2to1'"}, Refusal{"run --cells 8 --surface biconcave", "16"},
         Refusal{"run --config missing.toml", "--config: "},
         Refusal{"run --config twice.toml", "twice.toml:2"},
+        Refusal{"run --config nan.toml --epsilon 1", "nan.toml:1"},
+        Refusal{"run --out= --quiet", "--out: it is empty"},
+        Refusal{"run --output-times 0.01,", "--output-times: a number is missing"},
         Refusal{"run --config type.toml", "type.toml:1: cells"},
         Refusal{"run --config huge.toml", "huge.toml"},
         Refusal{"run --config binary.toml", "binary.toml"}, Refusal{"run --config .", "--config"},

@@ -16,6 +16,7 @@ namespace traceraft {
 namespace {
 
 using testing::content;
+using testing::json_of;
 using testing::lines_of;
 using testing::names;
 using testing::ProgramEnd;
@@ -240,7 +241,7 @@ TEST_F(CompareTest, DoesNotMixBuildsOfTheProgram) {
   ASSERT_EQ(compare(runs + "--integrators ida --tolerances 1e-2 --repeat 1").code, 0);
   ASSERT_EQ(compare("").code, 0);
   const fs::path file = folder.path / "c/plan.json";
-  nlohmann::json plan = nlohmann::json::parse(content(file));
+  nlohmann::json plan = json_of(file);
   plan["program"] = "00000000";
   posix::write_durably(file, plan.dump());
   EXPECT_TRUE(testing::refuses(compare("--repeat 2"), "build"));

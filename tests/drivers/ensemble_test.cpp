@@ -203,6 +203,27 @@ TEST_F(EnsembleTest, GathersTheOthersOfADamagedRun) {
   EXPECT_NEAR(input::CsvTable::read(csv("a")).numbers("t").back(), 100, 10);
 }
 
+// Runs that differ in more than their seed would be taken for one sample.
+TEST_F(EnsembleTest, RefusesRunsOfAnother) {
+  ASSERT_EQ(traceraft("ensemble --quiet " + runs + "--runs 2 --out " + out("a")).code, 0);
+  fs::rename(folder.path / "a/runs/seed-2", folder.path / "second");
+  fs::copy(folder.path / "a/runs/seed-1", folder.path / "a/runs/seed-2",
+           fs::copy_options::recursive);
+  ProgramEnd made = traceraft("ensemble --out " + out("a"));
+  EXPECT_EQ(made.code, 3) << made.output;
+  EXPECT_TRUE(names(made.output, "seed 2 failed")) << made.output;
+  EXPECT_TRUE(names(made.output, "in seed")) << made.output;
+  fs::remove_all(folder.path / "a/runs/seed-2");
+  fs::rename(folder.path / "second", folder.path / "a/runs/seed-2");
+  EXPECT_EQ(traceraft("ensemble --out " + out("a")).code, 0);
+  std::string config = content(folder.path / "a/config.toml");
+  config.replace(config.find("epsilon = 0.5"), 13, "epsilon = 0.4");
+  std::ofstream(folder.path / "a/config.toml") << config;
+  made = traceraft("ensemble --out " + out("a"));
+  EXPECT_EQ(made.code, 3) << made.output;
+  EXPECT_TRUE(names(made.output, "in epsilon")) << made.output;
+}
+
 TEST_F(EnsembleTest, IsAnArrayJobToo) {
   ASSERT_EQ(
       traceraft("ensemble --quiet " + runs + "--runs 2 --first-seed 7 --out " + out("here")).code,

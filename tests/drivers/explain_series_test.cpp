@@ -117,7 +117,7 @@ TEST_F(ExplainSeriesTest, TakesNoSimulationsThatAreOthers) {
   EXPECT_TRUE(refuses(traceraft(of_others("third", in("others"))), "--ensembles: "));
   const fs::path file = simulations() / "strengths.json";
   const std::string kept = content(file);
-  nlohmann::json foreign = nlohmann::json::parse(kept);
+  nlohmann::json foreign = json_of(file);
   foreign["identity"] = "another";
   // As earlier versions of the program wrote it, and of another model.
   const nlohmann::json older{{"identity", json_of(file)["identity"]},

@@ -135,6 +135,24 @@ TEST_F(ReportTest, SaysWhatItCannotShow) {
   EXPECT_EQ(traceraft("report --quiet " + out("b")).code, 0);
 }
 
+TEST_F(ReportTest, NoticesWhatHasChangedSinceTheRun) {
+  run("a");
+  for (const char* name : {"series.csv", "observables.csv", "rafts.csv", "fields.pvd"}) {
+    const fs::path file = folder.path / "a" / name;
+    const std::string whole = content(file);
+    std::string changed = whole;
+    const std::size_t digit = changed.find_first_of("0123456789", changed.size() / 2);
+    ASSERT_NE(digit, std::string::npos) << name;
+    changed[digit] = changed[digit] == '7' ? '8' : '7';
+    std::ofstream(file) << changed;
+    const ProgramEnd end = traceraft("report --quiet " + out("a"));
+    EXPECT_EQ(end.code, 4) << name;
+    EXPECT_TRUE(names(end.output, name)) << end.output;
+    std::ofstream(file) << whole;
+  }
+  EXPECT_EQ(traceraft("report --quiet " + out("a")).code, 0);
+}
+
 // A browser that a program steers, by the WebDriver protocol.
 class Browser {
  public:

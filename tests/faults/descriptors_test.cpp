@@ -1,6 +1,7 @@
 // What surrounds a process: descriptors, limits, environment and signals.
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/program.hpp"
@@ -37,6 +38,26 @@ TEST_F(SurroundingsTest, ClosedDescriptorsPutNoTextIntoFiles) {
   const ProgramEnd quiet = shell("(exec " + std::string(TRACERAFT_PROGRAM) + " " + run + out +
                                  "-quiet --quiet <&- >&-)");
   EXPECT_EQ(quiet.code, 0) << quiet.output;
+}
+
+// Opening the reading end of a pipe waits for a writer, and there is none.
+TEST_F(SurroundingsTest, PipesInThePlaceOfFilesAreNotWaitedFor) {
+  ASSERT_EQ(traceraft(run + out + " --quiet").code, 0);
+  for (const char* name : {"series.csv", "config.toml", "summary.json"})
+    for (const char* command : {"resume", "report"}) {
+      const fs::path file = fs::path(out) / name;
+      const std::string whole = content(file);
+      fs::remove(file);
+      const ProgramEnd end =
+          shell("mkfifo " + file.string() + " && timeout 20 " TRACERAFT_PROGRAM " " + command +
+                " " + out + " --quiet");
+      // resume writes a new summary in its place.
+      const bool replaced = std::string(name) == "summary.json" && std::string(command) == "resume";
+      EXPECT_TRUE(end.code == (replaced ? 0 : 4) || end.code == (replaced ? 0 : 2))
+          << command << " " << name << ": " << end.code;
+      fs::remove(file);
+      std::ofstream(file) << whole;
+    }
 }
 
 TEST_F(SurroundingsTest, OutputThatCannotBeWrittenIsAnError) {

@@ -20,6 +20,7 @@ namespace {
 
 using testing::content;
 using testing::hostile_texts;
+using testing::json_of;
 using testing::ProgramEnd;
 using testing::shell;
 using testing::TemporaryFolder;
@@ -115,16 +116,13 @@ class TamperedFilesTest : public ::testing::Test {
  protected:
   TemporaryFolder folder;
   std::string at(const char* name) const { return (folder.path / name).string(); }
-  static nlohmann::ordered_json json_of(const std::string& path) {
-    return nlohmann::ordered_json::parse(content(path));
-  }
 };
 
 TEST_F(TamperedFilesTest, ResultsOfStudiesExecuteNothing) {
   const std::string out = " --quick --quiet --out " + at("v");
   ASSERT_EQ(traceraft("verify geometry" + out).code, 0);
-  const nlohmann::ordered_json good = json_of(at("v/geometry.json"));
-  nlohmann::ordered_json bad = good;
+  const nlohmann::json good = json_of(at("v/geometry.json"));
+  nlohmann::json bad = good;
   ASSERT_FALSE(bad.at("charts").empty());
   bad["charts"][0]["title"] = "x\nsystem \"touch " + at("hit") + "\"\n<script>alert(1)</script>";
   bad["notes"] = {"<script>alert(1)</script>\n# heading"};
@@ -147,9 +145,9 @@ TEST_F(TamperedFilesTest, PlansDeleteNothing) {
             0);
   fs::create_directories(at("victim"));
   posix::write_durably(at("victim/mine"), "of somebody");
-  const nlohmann::ordered_json good = json_of(at("c/plan.json"));
+  const nlohmann::json good = json_of(at("c/plan.json"));
   const auto complaint = [&](const char* member, const nlohmann::ordered_json& value, int code) {
-    nlohmann::ordered_json bad = good;
+    nlohmann::json bad = good;
     bad[member] = value;
     posix::write_durably(at("c/plan.json"), bad.dump());
     const ProgramEnd end = traceraft(compare);

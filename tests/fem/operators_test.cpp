@@ -49,9 +49,9 @@ class OperatorTest : public ::testing::TestWithParam<std::string> {
 TEST_P(OperatorTest, MatricesAreTheIntegralsTheyStandFor) {
   const auto integral = [&](const auto& f) { return integrate(*space, lifted, c, f); };
   EXPECT_NEAR(
-      space->mass.quadratic(c, c, *space->team) / integral([](double v, double) { return v * v; }),
+      space->mass.bilinear(c, c, *space->team) / integral([](double v, double) { return v * v; }),
       1, 1e-12);
-  EXPECT_NEAR(space->stiffness.quadratic(c, c, *space->team) /
+  EXPECT_NEAR(space->stiffness.bilinear(c, c, *space->team) /
                   integral([](double, double squared_slope) { return squared_slope; }),
               1, 1e-12);
   EXPECT_NEAR(space->integral(c), integral([](double v, double) { return v; }), 1e-12);

@@ -22,6 +22,7 @@ struct Whole {
   std::vector<std::string> words;
   std::vector<Part> parts;
   std::map<std::string, std::string> texts;
+  double share = 0;
 };
 template <class Members>
 void describe(Members& members, Whole& whole) {
@@ -31,6 +32,7 @@ void describe(Members& members, Whole& whole) {
   members("words", whole.words, OneOf{"word", {"alpha", "beta"}});
   members("parts", whole.parts, AsDescribed{});
   members("texts", whole.texts, AnyText{});
+  members("share", whole.share, WithinRange{0, 1});
 }
 
 class JsonMembersTest : public ::testing::Test {
@@ -82,6 +84,7 @@ TEST_F(JsonMembersTest, AreChecked) {
                                                            {"runs", 1.5},
                                                            {"runs", Json()},
                                                            {"runs", {3}},
+                                                           {"share", Json()},
                                                            {"quick", 1},
                                                            {"words", "beta"},
                                                            {"words", {1}},
@@ -104,6 +107,35 @@ TEST_F(JsonMembersTest, AreAllNeeded) {
   for (const char* text : {"[1]", "{", "", "3", "null"}) {
     posix::write_durably(file, text);
     EXPECT_THROW((void)read_object<Whole>(file), DamagedFile) << text;
+  }
+}
+
+// One changed byte at any place, in names and values alike.
+TEST_F(JsonMembersTest, AreSealedByAChecksum) {
+  const std::string text = checked_text(object_of(whole));
+  posix::write_durably(file, text);
+  EXPECT_EQ(read_object<Whole>(file).words, whole.words);
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (text[at] == ' ' || text[at] == '\n') continue;  // between members
+    std::string changed = text;
+    changed[at] = static_cast<char>(changed[at] ^ 1);
+    posix::write_durably(file, changed);
+    EXPECT_THROW((void)read_object<Whole>(file), DamagedFile) << changed;
+  }
+  Json by_hand = Json::parse(text);
+  by_hand.erase("checksum");
+  by_hand["runs"] = 4;
+  posix::write_durably(file, by_hand.dump());
+  EXPECT_EQ(read_object<Whole>(file).runs, 4);
+}
+
+TEST_F(JsonMembersTest, StandThereOnce) {
+  posix::write_durably(file, R"({"runs": 3, "runs": 4})");
+  try {
+    (void)read_object<Whole>(file);
+    FAIL();
+  } catch (const DamagedFile& error) {
+    EXPECT_NE(std::string(error.what()).find("'runs' stands there twice"), std::string::npos);
   }
 }
 

@@ -9,24 +9,25 @@ using namespace traceraft;
 
 int main() {
   const auto team = std::make_shared<ThreadTeam>(2);
-  const auto space = std::make_shared<SurfaceSpace>(*make_surface("torus"), 24, team,
-                                                    std::make_shared<SerialCommunicator>());
-  CahnHilliardModel model;
-  model.mobility = make_mobility("degenerate");
+  const auto space = std::make_shared<fem::SurfaceSpace>(*geometry::make_surface("torus"), 24, team,
+                                                         std::make_shared<SerialCommunicator>());
+  problem::CahnHilliardModel model;
+  model.mobility = physics::make_mobility("degenerate");
   model.epsilon = 0.2;
-  const CahnHilliard problem(space, model);
+  const problem::CahnHilliard equation(space, model);
 
-  Vec y = Vec::Zero(problem.size()), ydot(problem.size());
-  y.head(problem.block_size()) = make_initial_field("noise", *space, {});
-  if (!problem.consistent_initial_state(0, y, ydot).ok()) return 1;
+  Vec y = Vec::Zero(equation.size()), ydot(equation.size());
+  y.head(equation.block_size()) = problem::make_initial_field("noise", *space, {});
+  if (!equation.consistent_initial_state(0, y, ydot).ok()) return 1;
 
-  const IntegratorPtr integrator =
-      integrators().find("euler").make(problem, choose_linear_solver("block", *space), team, {});
+  const time::IntegratorPtr integrator = backends::integrators().find("euler").make(
+      equation, backends::choose_linear_solver("block", *space), team, {});
   if (!integrator->start(0, y, ydot, 1.0).ok()) return 1;
   while (integrator->time() < 1.0)
     if (!integrator->advance().ok()) return 1;
-  const Observables row =
-      Observer(problem, space, model.well.interface_energy()).measure(1.0, integrator->state());
+  const observables::Observables row =
+      observables::Observer(equation, space, model.well.interface_energy())
+          .measure(1.0, integrator->state());
   std::printf("rafts %d, mass %.12g\n", row.rafts, row.mass);
   return row.rafts > 0 ? 0 : 1;
 }

@@ -99,6 +99,9 @@ TEST(Caps, ArePlacedWhereTheyWereAskedFor) {
     EXPECT_LT((report.rafts[k].centre - (1 - depth(angles[k])) * axes[k]).norm(), 0.01);
     EXPECT_NEAR(report.rafts[k].distance, depth(angles[k]), 0.02);
   }
+  // The length of a direction means nothing, even if its square is no number.
+  request.caps = {{{0, 0, 1e308}, 0.8}, {{2e-310, 0, -1e-310}, 0.5}};
+  EXPECT_LT((make_initial_field("caps", *space, request) - c).lpNorm<Eigen::Infinity>(), 1e-12);
 }
 
 TEST(Formula, IsProjected) {

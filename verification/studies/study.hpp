@@ -28,7 +28,8 @@ struct Claim {
 
 Claim claim_near(std::string what, double measured, double expected, double tolerance,
                  double uncertainty = 0);
-// The observed order (fit.hpp) of errors e ~ h^p, its uncertainty the change from coarser levels.
+// The observed order (statistics/power_law.hpp) of errors e ~ h^p, its uncertainty the change from
+// coarser levels.
 Claim claim_order(std::string what, const statistics::Points& size_and_error, double expected,
                   double tolerance);
 Claim claim_at_most(std::string what, double measured, double bound);
