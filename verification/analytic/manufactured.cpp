@@ -47,7 +47,8 @@ double source(const physics::DoubleWell& well, double epsilon, double a, double 
 problem::EffectPtr manufactured_source(const fem::SurfaceSpace& space, const std::string& surface,
                                        const physics::DoubleWell& well, double epsilon) {
   const auto function = surface_function(surface);
-  // What does not change in time is computed once, at every point of the quadrature.
+  // u = xyz and its derivatives do not change in time. They are computed once, at every point of
+  // the quadrature.
   const auto points = std::make_shared<std::vector<SurfacePoint>>(space.surface.triangles.size() *
                                                                   fem::kDegreeFourRule.size());
   space.team->for_range(space.surface.triangles.size(), [&](std::size_t begin, std::size_t end) {

@@ -10,8 +10,8 @@
 
 namespace traceraft::analytic {
 
-// What manufactured problems need of u = xyz at a point of the surface. On the unit sphere u is a
-// spherical harmonic of degree 3: Δ_Γ u = −12 u.
+// The derivatives of u = xyz at a point of the surface that manufactured problems need. On the unit
+// sphere u is a spherical harmonic of degree 3: Δ_Γ u = −12 u.
 struct SurfacePoint {
   double u, laplacian, bilaplacian;    // u, L = Δ_Γ u, Δ_Γ L
   Point gradient, laplacian_gradient;  // ∇_Γ u, ∇_Γ L

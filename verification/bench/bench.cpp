@@ -73,7 +73,7 @@ time::IntegratorPtr Bench::default_integrator(const problem::CahnHilliard& probl
 }
 
 void Bench::in_parallel(int count, const std::function<void(int)>& job, Part of) const {
-  // What works on ranks keeps the state of its library for the whole process.
+  // Solvers that work on ranks keep the state of their library for the whole process.
   const bool alone = backends::linear_solvers().find(linear_solver()).distributed;
   const ThreadTeam team(alone ? 1 : request.threads);
   std::atomic<int> next{0}, done{0};

@@ -25,7 +25,7 @@ struct ProgramRun {
 using RunProgram =
     std::function<ProgramRun(const std::vector<std::string>& options, int ranks, int nodes)>;
 
-// What a part of a study takes of the whole, for the display of progress.
+// The share of the whole that a part of a study takes, for the display of progress.
 struct Part {
   double from = 0, to = 1;
 };
@@ -56,7 +56,7 @@ class Bench {
   std::vector<std::string> linear_solvers() const;
   // Those that work on ranks; none if the program cannot be run on them.
   std::vector<std::string> linear_solvers_on_ranks() const;
-  // That of a study which needs one.
+  // The integrator and the solver of a study that needs one.
   std::string integrator() const;
   std::string linear_solver() const;
 

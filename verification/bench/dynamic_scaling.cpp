@@ -23,7 +23,7 @@ double value_at(const Cumulative& curve, double x) {
 
 using AreasOfMembers = std::vector<std::vector<double>>;
 
-// Of the radii of all members together, squared.
+// The areas, in units of the square of the mean √area of all members together.
 AreasOfMembers in_units_of_their_mean(AreasOfMembers areas) {
   double sum = 0, count = 0;
   for (const std::vector<double>& own : areas)

@@ -1,4 +1,4 @@
-// What a solution costs and how accurate it is: many methods on one problem, and which to take.
+// The cost of a solution and its accuracy: many methods on one problem, and which to take.
 #pragma once
 
 #include <map>

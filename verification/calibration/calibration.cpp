@@ -81,7 +81,7 @@ int count_at_bound(const std::vector<likelihood::EnsembleFit>& fits,
       }));
 }
 
-// What was found beside it goes with the unit of time, and that was not found.
+// Marks all parameters: the others go with the unit of time, and that was not found.
 void mark_undetermined(Calibration& calibration) {
   for (CalibratedParameter& parameter : calibration.parameters) parameter.determined = false;
 }

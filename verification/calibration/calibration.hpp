@@ -12,7 +12,7 @@
 
 namespace traceraft::calibration {
 
-// What is looked for besides the unit of time, and what it may be.
+// A parameter that is looked for besides the unit of time, and the values that it may have.
 struct SoughtParameter {
   std::string name;
   statistics::Interval allowed;
@@ -45,7 +45,7 @@ struct Calibration {
   bool converged = true;  // do the last simulations surround what was found?
 };
 
-// Of an estimate that the simulations do not surround nothing is determined.
+// Marks an estimate that the simulations do not surround: nothing of it is determined.
 void mark_unconverged(Calibration& calibration);
 
 // ln of the most probable parameters but the unit of time: near what calibrate finds, without

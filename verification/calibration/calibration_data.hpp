@@ -1,4 +1,4 @@
-// What of the measurements a calibration can use.
+// The part of the measurements that a calibration can use.
 #pragma once
 
 #include <vector>

@@ -40,8 +40,8 @@ std::vector<JointFit> fit_points(const Evidence& evidence,
   return fits;
 }
 
-// As many as parabolas need in any case, and two more for each parameter, to go through their
-// middle.
+// The points that the data do not exclude. As many as parabolas need are kept in any case, and two
+// more for each parameter, so that parabolas go through the middle of them.
 std::vector<CalibrationPoint> not_excluded(const std::vector<CalibrationPoint>& points,
                                            const std::vector<JointFit>& fits) {
   constexpr double kExcluded = 30;  // over the best deviance

@@ -12,7 +12,7 @@ namespace traceraft::calibration {
 Box explored(const std::vector<CalibrationPoint>& points,
              const std::vector<SoughtParameter>& sought, double overshoot);
 
-// Of ln R²/D and the parameters.
+// The estimates of ln R²/D and of ln of the parameters.
 std::vector<double> estimates(const JointFit& fit);
 
 class CalibrationFit {

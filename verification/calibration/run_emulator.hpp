@@ -19,7 +19,7 @@ struct CalibrationPoint {
 // mean over the points: the runs of one point alone know it badly.
 class RunEmulator {
  public:
-  // As many points as regression_weights wants, all with as many runs.
+  // There have to be as many points as regression_weights wants, all with the same number of runs.
   explicit RunEmulator(const std::vector<CalibrationPoint>& points);
   // An emulator with other runs at each point, by the same weights, so that what seeds have in
   // common cancels in the comparison of points.

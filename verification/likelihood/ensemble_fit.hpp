@@ -82,7 +82,7 @@ statistics::Interval as_probable(const std::vector<ObservedSeries>& blocks,
 // The model, an entry per look.
 Vec expected(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
              const EnsembleFit& fit);
-// In which looks scatter around it.
+// The metric in which looks scatter around the model.
 ObservationMetric metric_of(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
                             const EnsembleFit& fit);
 // Measured minus what the model and errors like the stated ones make of it on average, an entry per

@@ -25,7 +25,7 @@ struct RunScatter {
 // times and between quantities. The `index`-th of such runs.
 Vec weights_of_another_run(std::size_t runs, std::uint64_t seed, std::uint64_t stream,
                            std::uint64_t index);
-// As many others, a column for each.
+// The weights of `runs` other runs, a column for each.
 Eigen::MatrixXd weights_of_other_runs(std::size_t runs, std::uint64_t seed, std::uint64_t stream);
 
 // Logarithms of runs at times that are evenly spaced in ln t.

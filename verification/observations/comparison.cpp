@@ -27,7 +27,7 @@ struct Deviation {
   double z() const { return off / std::max(size, 1e-6); }
 };
 
-// Of one measurement, of logarithms where scatter is relative.
+// The deviation of one measurement, of logarithms where scatter is relative.
 Deviation deviation_of(const Measurement& m, Quantity quantity,
                        const std::vector<const History*>& runs, const StatedErrors& errors) {
   const double y = *m.of(quantity);

@@ -18,8 +18,9 @@ struct Agreement {
   double bias = 0;        // mean of (measured − mean of the runs) / deviation
   double misfit = 0;      // root of the mean square of the same
   double scatter = 0;     // root mean square of the deviation, relative to what is measured
-  // Of the deviations that bias is the mean of, per e-fold of time, and its standard error: of the
-  // vesicles, looks at one of which are alike, and of the runs. 0 and 0 if there are too few.
+  // `trend`: of the deviations that bias is the mean of, per e-fold of time. `trend_error`: its
+  // standard error, of the vesicles, looks at one of which are alike, and of the runs. Both are 0
+  // if there are too few vesicles or runs.
   double trend = 0, trend_error = 0;
 
   double trend_deviations() const;  // the trend in standard errors; 0 if it is roundoff
@@ -32,10 +33,10 @@ struct Agreement {
 std::vector<Agreement> compare_with_runs(const MeasuredVesicles& data,
                                          const std::vector<History>& runs);
 
-// Of vesicles of the same kind as n runs, without errors of measuring: the share that lies within
-// the range of the runs, and the misfit, which n runs, knowing their variance badly, make larger
-// than 1 (Student's distribution; infinite for three).
+// The agreement of vesicles of the same kind as n runs, without errors of measuring.
 struct SameKind {
+  // `within`: the share that lies within the range of the runs. `misfit`: larger than 1, as n runs
+  // know their variance badly (Student's distribution; infinite for three).
   double within, misfit;
 };
 SameKind same_kind(std::size_t runs);

@@ -14,8 +14,8 @@ struct SimulatedVesicle {
   double raft_fraction;  // of the area, as it is measured
 };
 
-// With the mean raft fraction at the times at which that of vesicles was measured; times of the
-// runs are those of the data.
+// The simulated vesicle, with the mean raft fraction at the times at which that of vesicles was
+// measured. Times of the runs are those of the data.
 SimulatedVesicle simulated_vesicle(double radius, const std::vector<History>& runs,
                                    const MeasuredVesicles& data);
 

@@ -1,4 +1,4 @@
-// What microscopes and simulations both tell of a vesicle, as functions of time.
+// The quantities that microscopes and simulations both tell of a vesicle, as functions of time.
 #pragma once
 
 #include <array>
@@ -35,8 +35,8 @@ struct History {
   double at(Quantity quantity, double t) const;
 };
 
-// What is compared of quantities that scatter in proportion. There may be no raft for a moment;
-// half a one, or one of a perimeter of R/2, is the least that is told from that.
+// The logarithm by which quantities that scatter in proportion are compared. There may be no raft
+// for a moment; half a one, or one of a perimeter of R/2, is the least that is told from that.
 double logarithm_of(Quantity quantity, double value);
 
 // Times per decade at which curves are known.

@@ -32,7 +32,7 @@ double at_share(double share) {
   return kMostShare * share / (1 - kMostShare * share);
 }
 
-// Of 1 + s z by the midpoint rule, 1 + s z = u², as ln has a pole at 0.
+// The mean of ln (1 + s z), by the midpoint rule in u with 1 + s z = u², as ln has a pole at 0.
 double integrated_mean(double s) {
   constexpr int kPoints = 1000;
   const double end = std::sqrt(1 + kTail * s);
@@ -46,7 +46,7 @@ double integrated_mean(double s) {
   return mean / weights;
 }
 
-// Of n + n s z beside ln(1 + s), which it goes with where s is large.
+// The means of ln (1 + s z) beside ln(1 + s), which they go with where s is large.
 std::vector<double> table_of_means() {
   std::vector<double> table{0};
   for (int k = 1; k <= kSteps; ++k) {
@@ -93,7 +93,8 @@ double summed_count_mean(int n, double s, double power) {
   return mean - std::log(n);
 }
 
-// Of each power and of n = 1, 2, ...: what counts have beside other numbers, by 1 + s.
+// The excess of the mean of counts over that of other numbers, divided by 1 + s; for each power and
+// for n = 1, 2, ..., kMany.
 using CountTable = std::array<std::vector<std::vector<double>>, kPowers + 1>;
 
 CountTable table_of_counts() {
@@ -116,7 +117,7 @@ double between(double share, double from, double to) {
   return from + share * (to - from);
 }
 
-// Of n from 1 to kMany.
+// The entry of the table for n from 1 to kMany.
 double from_table(double n, double share, double power) {
   static const CountTable table = table_of_counts();
   const auto row = std::min(static_cast<std::size_t>(n), static_cast<std::size_t>(kMany) - 1) - 1;
@@ -152,7 +153,7 @@ double mean_of_count_logarithm(double n, double s, double power) {
   const double within = std::min(s, kLargest), most = kMany;
   const double beside =
       (1 + within) * from_table(std::clamp(n, 1.0, most), kCountSteps * share_of(within), power);
-  // What is whole and what is 1 at least matters the less the more there are.
+  // Rounding, and the limit of 1, matter the less the larger the count is.
   return mean_of_logarithm(s, power) + beside * std::min(most / n, 1.0);
 }
 

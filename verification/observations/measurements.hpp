@@ -1,4 +1,4 @@
-// What was measured of vesicles, in the units of the comparison: s, and lengths over the radius.
+// Measurements of vesicles, in the units of the comparison: s, and lengths over the radius.
 #pragma once
 
 #include <array>
@@ -35,8 +35,8 @@ struct MeasuredVesicles {
   std::optional<double> celsius;
   // Those of one vesicle together, at ascending times.
   std::vector<Measurement> measurements;
-  // Of their file: the unit of its times in s, and what it adds to them, in that unit.
-  double time_unit = 1, time_offset = 0;
+  double time_unit = 1,  // the unit of the times in their file, in s
+      time_offset = 0;   // what their file adds to its times, in that unit
 
   // First and last index + 1 of each vesicle's measurements.
   std::vector<std::pair<std::size_t, std::size_t>> vesicles() const;
@@ -51,7 +51,7 @@ struct FractionOfVesicle {
   double mean;
   std::vector<double> times;
 };
-// Of each vesicle; nothing if its fraction was not measured.
+// The raft fraction of each vesicle; nothing if it was not measured.
 std::vector<std::optional<FractionOfVesicle>> fractions_of_vesicles(const MeasuredVesicles& data);
 
 // A raft as a spherical cap.

@@ -35,7 +35,7 @@ MeasuredVesicles described(const PublishedFacts& facts) {
   return data;
 }
 
-// As evenly as whole numbers go.
+// The number of looks at one vesicle. Looks are shared out as evenly as whole numbers go.
 int looks_at(std::int64_t vesicle, std::int64_t vesicles, std::int64_t measurements) {
   return static_cast<int>(measurements * (vesicle + 1) / vesicles -
                           measurements * vesicle / vesicles);
@@ -71,7 +71,8 @@ MeasuredVesicles draw_measurements(const PublishedFacts& facts, std::uint64_t se
     const double own_perimeter = draw.normal(), own_fraction = draw.normal();
     for (const double t :
          draw_times(draw, looks_at(k, facts.vesicles, facts.measurements), facts.window)) {
-      // What the vesicle has, and what measuring adds to it; rafts are counted without error.
+      // The vesicle's own values come first; measuring adds to them. Rafts are counted without
+      // error.
       double perimeter =
           facts.perimeter.at(t) * std::exp(facts.perimeter.scatter * kShare * own_perimeter);
       double fraction = std::max(0.01, facts.fraction + facts.fraction_sd * kShare * own_fraction);

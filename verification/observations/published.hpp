@@ -1,4 +1,5 @@
-// What a paper prints of its measurements, where the measurements themselves are not public.
+// The facts that a paper prints of its measurements, where the measurements themselves are not
+// public.
 #pragma once
 
 #include <cstdint>

@@ -15,7 +15,8 @@ namespace {
 constexpr double kFarthest = 5;       // °C beyond the published temperatures
 constexpr double kOffTieLine = 0.03;  // mole fraction that reading a diagram may be off
 
-// What is published of a membrane: a tie line, and one more raft fraction whose tie line is not.
+// The published data of a membrane: a tie line, and one more raft fraction whose tie line is not
+// published.
 struct PublishedMembrane {
   const char* name;
   double celsius;
@@ -57,7 +58,7 @@ const PublishedMembrane& published(const LipidMixture& membrane) {
       "; give the phases of another membrane to traceraft fraction by --ordered and --disordered");
 }
 
-// Of the lipids of one phase, per lipid of the membrane.
+// The area of the lipids of one phase, per lipid of the membrane.
 double area(const LipidMixture& phase, double lipids, double celsius) {
   const double x = phase.cholesterol;
   return lipids * (area_of_dopc(x, celsius) * phase.dopc + area_of_dppc(x, celsius) * phase.dppc) /
@@ -99,7 +100,7 @@ double area_of_dopc(double x, double celsius) {
   return 72 - 47.5 * x - 0.14 * (30 - celsius);
 }
 
-// That on DPPC is known as a curve that is not published in numbers (Kheyfets, Mukhin,
+// The area of DPPC is known as a curve that is not published in numbers (Kheyfets, Mukhin,
 // arXiv:1501.02727). This line is FITTED to the raft fractions of the two published tie lines, 10.8
 // and 13.6 %. Lines from 42 - 4 x to 48 - 19.5 x do as well; without cholesterol they come up to
 // the area in the gel, 47.9 at 20 C (Nagle, Tristram-Nagle 2000).

@@ -11,8 +11,9 @@ namespace {
 
 constexpr double kDiffraction = 0.2;  // µm
 
-// Of the rafts of a look if they are equal discs, by their boundaries (or of what is between them,
-// of which a strip would be half as wide) or by their number; infinite where nothing tells.
+// The diameter in µm of the rafts of a look if they are equal discs, by their boundaries (or of
+// what is between them, of which a strip would be half as wide) or by their number. It is infinite
+// where nothing tells.
 double diameter_of(const Measurement& m) {
   const double fraction = m.of(Quantity::fraction).value_or(0.5);
   double diameter = HUGE_VAL;
@@ -23,8 +24,8 @@ double diameter_of(const Measurement& m) {
   return diameter * m.radius;
 }
 
-// Of the perimeter, over the shortest that a raft fraction can have, that of a cap; infinite where
-// nothing tells. As far as errors of measuring allow.
+// The length of the perimeter over the shortest that a raft fraction can have, that of a cap. It is
+// the largest that errors of measuring allow, and infinite where nothing tells.
 double length_of(const Measurement& m) {
   const auto perimeter = m.of(Quantity::perimeter), fraction = m.of(Quantity::fraction);
   if (!perimeter || !fraction) return HUGE_VAL;

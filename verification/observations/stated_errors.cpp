@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kRoundingVariance = 1 / 12.0;  // of whole numbers
 constexpr double kLeastSpread = 1e-6;           // of ln of the values
-// What noise makes of ln of a value: that many standard deviations, and at most a factor of two.
+// The change of ln of a value that noise may make: that many standard deviations, and at most a
+// factor of two.
 constexpr double kByNoise = 2, kMostByNoise = 0.7;
 
 }  // namespace

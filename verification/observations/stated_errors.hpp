@@ -10,7 +10,7 @@
 
 namespace traceraft::observations {
 
-// Of one value: σ goes with the power of what is expected.
+// The stated error of one value: σ goes with the power of what is expected.
 struct StatedError {
   double ln_sigma;  // where 1 is expected; −inf if nothing is stated
   double power;
@@ -27,15 +27,16 @@ struct StatedError {
   double drawn(double ln_value, const std::function<double(std::uint64_t)>& normal) const;
 };
 
-// Of each quantity, the law σ = s value^b that fits what the looks after time zero state: absolute
-// errors or relative ones, 0 <= b <= 1. A look that states another error has that, unless noise in
-// its value may be the reason.
+// The laws of errors, one per quantity: σ = s value^b fits what the looks after time zero state,
+// absolute errors or relative ones, 0 <= b <= 1. A look that states another error has that, unless
+// noise in its value may be the reason.
 class StatedErrors {
  public:
   explicit StatedErrors(const MeasuredVesicles& data);
 
   double power(Quantity quantity) const { return law(quantity).power; }
-  // Of a value that is not positive, which the law does not know: as it is stated.
+  // The error of a measurement. That of a value which is not positive, and which the law does not
+  // know, is as it is stated.
   StatedError of(const Measurement& m, Quantity quantity) const;
 
  private:

@@ -25,9 +25,9 @@ Interval bootstrap(int count, int replicates, double confidence, std::uint64_t s
 std::vector<Interval> bootstrap_all(
     int count, int replicates, double confidence, std::uint64_t seed,
     const std::function<std::vector<double>(const std::vector<int>&)>& statistics);
-// Of few, the percentiles' interval is too narrow: for a mean of n its variance is (n − 1)/n of
-// what it has to be, and the quantile is the normal one instead of Student's. By that factor about
-// `centre`, the statistic of all, it is widened.
+// The percentiles' interval of few is too narrow. For a mean of n its variance is (n − 1)/n of what
+// it has to be, and the quantile is the normal one instead of Student's. The interval is widened by
+// that factor about `centre`, the statistic of all.
 Interval widened_for_few(const Interval& interval, double centre, int count);
 double factor_for_few(int count);
 // Student's quantile over the normal one alone: for estimates of which the variance is right on

@@ -46,7 +46,7 @@ bench::ChartSeries law_line(const std::string& name, const statistics::Points& p
 bench::Chart coarsening_chart(const std::string& title, const std::string& y_label,
                               std::vector<bench::ChartSeries> series);
 
-// What the studies of coarsening have in common.
+// The constants that the studies of coarsening have in common.
 inline constexpr const char* kConstant = "constant:value=0.25";  // the mobility
 // Widths of a boundary, in |Γ|/perimeter over ε, from which on boundaries are thin.
 inline constexpr double kWidthsLate = 25;
@@ -74,7 +74,8 @@ struct Findings {
 // Runs it, and adds a row with its size and what it cost.
 Ensemble measured_ensemble(const bench::Bench& bench, const std::string& name,
                            const bench::EnsembleRequest& request, Findings& findings);
-// With the tables, a note on the intervals and `windows`, which says where laws are looked for.
+// The report with the tables, a note on the intervals and `windows`, which says where laws are
+// looked for.
 StudyReport finished_report(Findings findings, const std::string& windows);
 
 std::string at_time(double t);

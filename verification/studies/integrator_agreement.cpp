@@ -102,7 +102,8 @@ void compare_integrators(const bench::Bench& bench, const Agreement& runs, Study
   report.charts.push_back(chart);
 }
 
-// What computations of one thing differ by; nothing is claimed of none.
+// Claims that computations of one thing differ by at most kSame. Nothing is claimed if there is
+// none.
 void claim_sameness(const std::string& what, double apart, const std::string& if_none,
                     const bench::Table& table, StudyReport& report) {
   if (table.rows.empty()) {
@@ -113,7 +114,7 @@ void claim_sameness(const std::string& what, double apart, const std::string& if
   report.tables.push_back(table);
 }
 
-// With one integrator and one tolerance solvers differ by what their solves leave over.
+// Solvers with one integrator and one tolerance differ by what their solves leave over.
 void compare_solvers(const bench::Bench& bench, const Agreement& runs, StudyReport& report) {
   bench::Table table{"solvers", {"integrator", "solver", "distance from direct"}, {}};
   const double tolerance = runs.solver_tolerance();

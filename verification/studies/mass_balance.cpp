@@ -27,8 +27,9 @@ struct Combination {
   int ranks = 1;
 };
 
-// Of every factor all levels, the other factors at their first one; without --quick the full
-// product of integrators, solvers, surfaces and mobilities.
+// All combinations of integrators, solvers, surfaces and mobilities. With --quick surfaces and
+// mobilities change with the first solver alone; other solvers have the first of both. Seeds change
+// alone, and solvers on ranks have the first surface and mobility.
 std::vector<Combination> combinations(const bench::Bench& bench) {
   const std::vector<std::string> on = {"sphere", "ellipsoid", "torus",
                                        "biconcave:middle=0.4,rim=0.7", "dziuk"};

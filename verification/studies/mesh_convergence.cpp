@@ -7,7 +7,8 @@ namespace traceraft::studies {
 namespace {
 
 constexpr double kEnd = 0.5;
-// Of the integration in time, beside which errors of the mesh are a hundred times as large.
+// The tolerance of the integration in time. Errors of the mesh are a hundred times as large as its
+// errors.
 constexpr double kTolerance = 1e-6;
 
 struct Quantity {

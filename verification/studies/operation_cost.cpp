@@ -1,4 +1,4 @@
-// What the pieces cost, and how that grows with the mesh.
+// The cost of the pieces, and how it grows with the mesh.
 #include <algorithm>
 
 #include "backends/posix/process.hpp"

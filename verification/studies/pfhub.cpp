@@ -210,7 +210,7 @@ StudyReport measure(const bench::Bench& bench) {
   return report;
 }
 
-// What a mesh takes that meets half a percent.
+// The cost of a mesh that meets half a percent.
 StudyReport measure_finely(const bench::Bench& bench) {
   StudyReport report;
   const Simulation run =

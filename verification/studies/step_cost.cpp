@@ -1,4 +1,4 @@
-// What a step of the euler integrator costs on one core and on two.
+// The cost of a step of the euler integrator on one core and on two.
 #include <algorithm>
 #include <numeric>
 

@@ -1,5 +1,5 @@
-// What a microscope's blur makes of a field: heat that flows along the surface until its kernel is
-// as wide.
+// The effect of a microscope's blur on a field: heat that flows along the surface until its kernel
+// is as wide.
 #pragma once
 
 #include <memory>

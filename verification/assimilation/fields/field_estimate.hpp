@@ -14,11 +14,11 @@ struct NoisyValues {
   Vec deviation;  // relative to each other; the size of the noise is estimated
 };
 
-// What fields look like before one is measured: a mean plus a Gaussian random field with
-// correlations over `length`, the solution of (1/length² − Δ) c = white noise (Lindgren, Rue,
-// Lindström 2011). `smoothing`: its precision in units of that of one measurement.
+// The distribution of fields before one is measured: a mean plus a Gaussian random field, the
+// solution of (1/length² − Δ) c = white noise (Lindgren, Rue, Lindström 2011).
 struct FieldPrior {
-  double length, smoothing;
+  double length,  // of the field's correlations
+      smoothing;  // precision of the field, in units of that of one measurement
 };
 
 // How the error of an estimate is wanted: its directions by importance for what is smooth over

@@ -62,7 +62,7 @@ class NoiseWhitening {
   mutable std::mutex one_at_a_time_;
 };
 
-// As above; nothing where noise is white.
+// The whitening of values at these points; nothing where noise is white.
 using WhiteningPtr = std::shared_ptr<const NoiseWhitening>;
 WhiteningPtr whitening(const std::vector<Point>& points, const NoiseCorrelation& correlation);
 

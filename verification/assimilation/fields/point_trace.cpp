@@ -14,14 +14,14 @@ namespace {
 
 using Barycentric = std::array<double, 3>;
 
-// Of the point of the segment a b that is nearest to x.
+// The place of the point of the segment a b that is nearest to x: 0 at a, 1 at b.
 double along(const Point& a, const Point& b, const Point& x) {
   const Point edge = b - a;
   const double length2 = edge.squaredNorm();
   return length2 > 0 ? std::clamp((x - a).dot(edge) / length2, 0.0, 1.0) : 0.0;
 }
 
-// Of the point of a triangle that is nearest to x: inside it, or on the nearest of its edges.
+// The point of a triangle that is nearest to x: inside it, or on the nearest of its edges.
 Barycentric nearest_in_triangle(const std::array<Point, 3>& corner, const Point& x) {
   const Point u = corner[1] - corner[0], v = corner[2] - corner[0], w = x - corner[0];
   const double uu = u.dot(u), uv = u.dot(v), vv = v.dot(v);

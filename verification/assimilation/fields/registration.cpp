@@ -16,8 +16,8 @@ namespace {
 // Rotations that are tried, about 0.35 rad apart, by so many values each; and the best of them.
 constexpr int kTried = 8000, kTriedValues = 300, kMostRefined = 8;
 constexpr Eigen::Index kFineValues = 2000;
-// What is registered: correlations with the field before, the share of the variance that is left
-// over that without a rotation, and its angle.
+// Limits of a rotation that is registered: the least correlation with the field before; the largest
+// variance that is left, over that without a rotation; and the least angle, in rad.
 constexpr double kAlike = 0.7, kClearly = 0.8, kLeastAngle = 0.05;
 
 // Directions of the samples: cell by cell, face by face.
@@ -47,14 +47,14 @@ Eigen::Matrix3d rotation_by(const Point& vector) {
   return Eigen::AngleAxisd(angle, vector / angle).toRotationMatrix();
 }
 
-// What is left of the variance.
+// The share of the variance that is left.
 double left_by(double correlation) {
   return 1 - correlation * std::max(correlation, 0.0);
 }
 
-// What decides between rotations. A field that looks the same after some of them, such as a single
-// cap turned about its axis, leaves open which one it was; the least one counts then. Elsewhere the
-// preference is weaker than noise.
+// The measure by which rotations are chosen: the smaller, the better. A field that looks the same
+// after some of them, such as a single cap turned about its axis, leaves open which one it was. The
+// one with the least angle counts then. Elsewhere the preference is weaker than noise.
 double misfit(double correlation, const Eigen::Matrix3d& rotation) {
   constexpr double kPreference = 0.02;
   const double angle = angle_of(rotation);

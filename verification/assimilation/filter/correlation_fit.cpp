@@ -31,7 +31,7 @@ std::vector<CorrelationFunction> functions(const std::vector<double>& supports) 
   return all;
 }
 
-// Without the components that are not seen, the least certain one first.
+// The fit without the components that are not seen. The least certain one is left out first.
 VarianceFit without_unseen(const VarianceComponents& model, VarianceFit fit,
                            std::vector<bool> free) {
   for (;;) {

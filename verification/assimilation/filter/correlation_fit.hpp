@@ -15,7 +15,7 @@ struct CorrelationFit {
   double variance = 1;           // of the noise, in units of the blocks' deviations
 };
 
-// What noise has to gain by correlations to have them.
+// The least gain by which noise counts as correlated.
 inline constexpr double kCorrelated = 30;
 
 // Blocks count as independent of each other. The covariance of noise is a sum of Wendland functions

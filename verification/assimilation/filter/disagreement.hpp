@@ -10,7 +10,8 @@
 
 namespace traceraft::assimilation {
 
-// Of twelve patches of a closed surface: the corners of an icosahedron, as unit vectors.
+// The middles of twelve patches of a closed surface: the corners of an icosahedron, as unit
+// vectors.
 std::vector<Point> patch_middles();
 std::size_t nearest_patch(const std::vector<Point>& middles, const Point& x);
 
@@ -23,9 +24,8 @@ struct Disagreement {
   double p;           // of a |z| like that by noise, from the spread over the replicates
 };
 
-// All of 12 patches × 3 states × snapshots, held out or not,
-// that hold at least 10 values, the most significant first.
-// `data`: what the result is of.
+// All of 12 patches × 3 states × snapshots, held out or not, that hold at least 10 values, the most
+// significant first. `data`: what the result is of.
 std::vector<Disagreement> disagreements(const FilterProblems& data, const FilterResult& result,
                                         const physics::DoubleWell& well);
 

@@ -27,7 +27,7 @@ PointTrace weights(const std::vector<Point>& places, const std::vector<Point>& p
   return W;
 }
 
-// That nineteen of twenty values do not surpass.
+// The limit that nineteen of twenty values do not surpass.
 double common_limit(Vec values) {
   const auto at = values.begin() + 19 * values.size() / 20;
   std::nth_element(values.begin(), at, values.end());

@@ -66,7 +66,8 @@ FieldComparison compare_field(const FilterProblem& data, const problem::CahnHill
   in.vesicle = data.vesicle;
   in.snapshot = snapshot;
   in.held_out = snapshot >= data.train;
-  // What the traces of the forecast on this mesh lack, beyond what its nodes do.
+  // Traces of the forecast on this mesh lack more than its nodes do: `mesh.values` replaces the
+  // trace of `mesh.field`.
   in.forecast = measured.trace * (forecast.c - mesh.field) + mesh.values;
   in.whitening = whitening;
   in.values = weighted(measured.values - in.forecast);
@@ -86,7 +87,8 @@ FieldComparison compare_field(const FilterProblem& data, const problem::CahnHill
   add_noise(data.vesicle, snapshot, data.correlation.error, in.replicates);
   in.model_error = most_probable_error(in);
   in.noise = noise;
-  // What the first snapshot's scale and zero make of the forecast is taken out as that of others.
+  // The first snapshot's scale and zero change the forecast. Their effect is taken out as that of
+  // the others' is.
   in.first_frame = snapshot == 1 ? kFirstFrame : 0;
   comparison.known = forecast.errors.cols();
   comparison.frames = turned.cols() + frame.cols();

@@ -6,18 +6,20 @@
 
 namespace traceraft::assimilation {
 
-// What is known of c, and how it depends on what is not.
+// Knowledge of c at the nodes, and how it depends on what is not known.
 struct Belief {
-  Vec c;
-  Columns errors;      // L: covariance L Lᵀ
-  Columns parameters;  // ∂c/∂θ
-  Columns replicates;  // errors of the replicates
+  Vec c;               // the most probable one
+  Columns errors;      // L, nodes × directions: covariance L Lᵀ
+  Columns parameters;  // ∂c/∂θ, nodes × parameters
+  Columns replicates;  // errors of the replicates, nodes × replicates
 };
 
 struct FieldComparison {
   Innovation in{};
-  Columns fields;              // what moves along the directions; by a scale or a zero nothing does
-  Eigen::Index known, frames;  // of the directions: errors of the forecast, then of the frame
+  // Nodes × directions: the change of the state along each of them; 0 for a scale or a zero.
+  Columns fields;
+  Eigen::Index known,  // number of the first directions, those of the errors of the forecast
+      frames;          // number of the next ones, those of the frame
 };
 
 // `forecast`: of that snapshot, at least the second one; `mesh`: what its own mesh lacks. The

@@ -12,7 +12,8 @@
 namespace traceraft::assimilation {
 namespace {
 
-// In forecasts that lack something, of the distance of the phases: what a gap is looked for as.
+// The size as which a gap is looked for in forecasts that lack something, in units of the distance
+// of the phases.
 constexpr double kUsualGap = 0.02;
 
 class Filter {
@@ -147,7 +148,8 @@ class Filter {
       result_.null_scores += weighted.transpose() * in.replicates + model_errors(in, weighted);
   }
 
-  // What errors of the model, as large as they seem to be, do to the scores of the replicates.
+  // The effect of errors of the model, as large as they seem to be, on the scores of the
+  // replicates: parameters × replicates.
   Columns model_errors(const Innovation& in, const Columns& weighted) const {
     const Eigen::Index patterns = in.directions.cols() - in.state_directions;
     const std::uint64_t stream = 1000 * data_.vesicle + in.snapshot;
@@ -195,7 +197,7 @@ void add(FilterResult& all, FilterResult&& one) {
             std::back_inserter(all.heldout_gap_parts));
 }
 
-// What is known of D from elsewhere is one measurement more, and one of each replicate.
+// Knowledge of D from elsewhere is one measurement more, and one of each replicate.
 void add_known_diffusion_ratio(double ln_diffusion_ratio, double doubt, FilterResult& all) {
   all.information(kDiffusionRatio, kDiffusionRatio) += 1 / (doubt * doubt);
   all.score[kDiffusionRatio] -= ln_diffusion_ratio / (doubt * doubt);

@@ -19,14 +19,16 @@ namespace traceraft::assimilation {
 // Linear maps of errors along one series of forecasts: found once, used again for all that stay
 // close to it.
 struct ErrorMaps {
-  std::vector<Columns> basis, image;  // per interval; the basis is orthonormal in M̃
-  std::vector<Columns> replicates;    // errors of the forecast at its end, a column for each
-  std::vector<ResolvedForecast::End> mesh_error;  // what the forecast's own mesh does of it lacks
+  std::vector<Columns> basis,       // per interval, nodes × directions, orthonormal in M̃
+      image;                        // per interval, of the same shape: the basis at its end
+  std::vector<Columns> replicates;  // errors of the forecast at its end, nodes × replicates
+  std::vector<ResolvedForecast::End> mesh_error;  // what the forecast lacks on its own mesh
 
   std::size_t intervals() const { return basis.size(); }
 };
 
-// Of ln D: further away errors of states grow and fade in another way, and maps are found anew.
+// The change of ln D up to which maps are used again. Further away errors of states grow and fade
+// in another way, and maps are found anew.
 inline constexpr double kMapsReach = 0.5;
 inline bool maps_reach(double diffusion_ratio, double diffusion_ratio_of_maps) {
   return std::fabs(std::log(diffusion_ratio / diffusion_ratio_of_maps)) < kMapsReach;
@@ -34,16 +36,17 @@ inline bool maps_reach(double diffusion_ratio, double diffusion_ratio_of_maps) {
 
 struct FilterResult {
   std::vector<Innovation> innovations;
-  Eigen::MatrixXd information;  // Σ Xᵀ S⁻¹ X
-  Vec score;                    // Σ Xᵀ S⁻¹ ν
-  Eigen::MatrixXd null_scores;  // the same of the replicates, a column for each
+  Eigen::MatrixXd information;  // Σ Xᵀ S⁻¹ X, parameters × parameters
+  Vec score;                    // Σ Xᵀ S⁻¹ ν, one per parameter
+  Eigen::MatrixXd null_scores;  // parameters × replicates: the score of each replicate
   double deviance = 0;          // Σ νᵀ S⁻¹ ν + ln |S|
-  // Of every snapshot, explained_parts of its values, its parameters and its replicates: of those
-  // that count, and of those that are held out.
-  std::vector<Columns> gap_parts, heldout_gap_parts;
+  // explained_parts of each snapshot that counts, patterns × (1 + parameters + replicates): of its
+  // values, its parameters and its replicates. Empty if there are no replicates.
+  std::vector<Columns> gap_parts,
+      heldout_gap_parts;  // the same of each snapshot that is held out
 };
 
-// What is held against the measurements.
+// The model that is held against the measurements.
 struct FilterModel {
   problem::CahnHilliardModel base;
   double diffusion_ratio = 1;       // D over that of the base model
@@ -55,8 +58,8 @@ struct FilterModel {
 inline constexpr double kMeshDoubt = 0.5;
 
 // Vesicles have a state each and share the parameters. Model errors are sized by the innovations
-// themselves, snapshot by snapshot. `maps`, one per vesicle, are filled if there are none.
-// Replicates, and what is counted of them, only where the settings want some. Throws
+// themselves, snapshot by snapshot. `maps`, one per vesicle, are filled if there are none. There
+// are replicates, and what is counted of them, only where the settings want some. Throws
 // std::runtime_error if a forecast fails.
 FilterResult filter_fields(const FilterProblems& data, const FilterModel& model,
                            const FilterSettings& settings, std::vector<ErrorMaps>& maps);

@@ -82,7 +82,7 @@ double in_units_of_noise(std::vector<NoiseBlock>& blocks) {
   return unit;
 }
 
-// Of the points of a snapshot, on average.
+// The spacing of the points of a snapshot, on average.
 double spacing_of(const std::vector<FieldSeries>& series) {
   double squares = 0, count = 0, snapshots = 0;
   for (const FieldSeries& vesicle : series)

@@ -13,18 +13,20 @@
 namespace traceraft::assimilation {
 namespace {
 
-// Of the tolerance that integrators have unless asked: far below the noise of a measurement.
+// The tolerance of forecasts, over the one that integrators have unless asked. It is far below the
+// noise of a measurement.
 constexpr double kForecastTolerance = 0.3;
 // ida solves corrections of forecasts to this, as the deviance of thousands of values sees what
 // they leave. With the default, 5e-2, it is 3 too large in a small case, with 1e-2 0.4.
 constexpr double kForecastLinearTolerance = 1e-2;
-// Outliers are that far from what is around them, in units of the distance of the wells; more than
-// that share of the values is refused, and they are looked for that often.
+// The least distance of an outlier from what is around it, in units of the distance of the wells;
+// and the share of outliers among the values, beyond which data are refused.
 constexpr double kOutlying = 0.2, kMostOutliers = 0.05;
+// Passes over the snapshots in which outliers are looked for, at most.
 constexpr int kMostNoisePasses = 6;
 
-// What data state as their deviations is taken as relative to each other; 1: what the values would
-// have if all told as much as they do together.
+// The deviation that all values would have if all told as much as they do together. It is the unit
+// of the stated deviations, which are taken as relative to each other.
 double typical_deviation(const FieldSeries& series) {
   double weights = 0, count = 0;
   for (const FieldSnapshot& snapshot : series.snapshots) {
@@ -47,7 +49,7 @@ std::vector<NoisyValues> noisy_values(const FilterProblem& data) {
   return result;
 }
 
-// What is common to all vesicles.
+// The parts of a problem that are common to all vesicles.
 FilterProblem on_meshes(const geometry::LevelSet& surface, const problem::CahnHilliardModel& base,
                         int cells, int threads, const FilterSettings& settings) {
   FilterProblem data;
@@ -145,8 +147,9 @@ void estimate_first(const problem::CahnHilliardModel& base, const FilterSettings
   add_frame(settings, base.well.b - base.well.a, data.vesicle, data.first);
 }
 
-// What a snapshot may look like before it is turned: the field of the one before, and what the
-// base model makes of it by then. The latter only if the model can be advanced so far.
+// Fields that a snapshot may look like before it is turned: the field of the one before, and what
+// the base model makes of it by then. The latter is left out if the model cannot be advanced so
+// far.
 std::vector<Vec> expected_fields(const FilterProblem& data, const problem::CahnHilliard& base,
                                  std::size_t snapshot) {
   const NoisyValues& before = data.snapshots[snapshot - 1];

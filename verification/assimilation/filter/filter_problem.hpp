@@ -1,4 +1,4 @@
-// What a model is held against: a series of measured fields, on the mesh of the model.
+// The data that a model is held against: a series of measured fields, on the mesh of the model.
 #pragma once
 
 #include <limits>
@@ -19,25 +19,30 @@ struct FilterSettings {
   int replicates = 199;   // of the noise, through everything that is linear
   int tangent_steps = 3;  // between two snapshots, for derivatives by parameters
   int error_steps = 2;    // the same for errors of the state
-  double gain = 0.1;      // standard deviations of the scale and of the zero of each snapshot's
-  double offset = 0.1;  // values, as far as they are unknown; the latter of the distance of phases
-  double first_gain = 0.1, first_offset = 0.1;  // of the first snapshot, which forecasts begin with
-  double blur = 0;  // of the point spread function of the images, in R: they have it, or none
+  double gain = 0.1;      // standard deviation of the unknown scale of each snapshot's values
+  double offset = 0.1;    // the same of their unknown zero, in units of the distance of the phases
+  double first_gain = 0.1,  // `gain` of the first snapshot, which forecasts begin with
+      first_offset = 0.1;   // `offset` of the first snapshot
+  // Standard deviation of the point spread function of the images, in R: they have it, or none.
+  double blur = 0;
   NoiseCorrelation correlation = {};  // of the noise, that its estimate begins with
-  double turn = 0.05;  // of the angle by which a vesicle may have turned between two snapshots
+  // Standard deviation of the angle (rad) by which a vesicle may turn between two snapshots.
+  double turn = 0.05;
   int gap_degree = 6;  // of the polynomials that gaps are sought as
   // Standard deviation of ln D of the base model, as far as D is known from elsewhere.
   double diffusion_ratio_doubt = std::numeric_limits<double>::infinity();
   std::string integrator = "ida";  // of forecasts
 };
 
-// Directions of errors of the first snapshot's state that are of its scale and its zero.
+// Number of the directions of errors of the first snapshot's state that are of its scale and its
+// zero.
 inline constexpr Eigen::Index kFirstFrame = 2;
 
-// By which a vesicle has turned since the snapshot before, on the model's mesh and on the finest.
+// The rotation by which a vesicle has turned since the snapshot before.
 struct SnapshotTurn {
   Eigen::Matrix3d rotation;
-  MeshTransfer own, finest;
+  MeshTransfer own,  // turns fields on the model's mesh
+      finest;        // turns fields on the finest mesh
 };
 
 // Everything about the series of one vesicle that does not depend on parameters.
@@ -60,7 +65,7 @@ struct FilterProblem {
   double first_noise = 0;        // that of the first one as `first` was estimated with
   NoiseCorrelation correlation;  // of that noise, between values of one snapshot
   std::vector<WhiteningPtr> whitening;  // by that, of each snapshot
-  // Before each snapshot; nothing where it has turned by no more than the settings' `turn` or so.
+  // The turn before each snapshot; nothing where it is no more than the settings' `turn` or so.
   std::vector<std::shared_ptr<const SnapshotTurn>> turns;
   std::shared_ptr<const GapPatterns> patterns;
   std::shared_ptr<const Blur> blur;  // if the images have one
@@ -77,17 +82,17 @@ using FilterProblems = std::vector<FilterProblem>;
 Vec advanced(const FilterProblem& data, const problem::CahnHilliard& problem, VecView field,
              double begin, double end);
 
-// That were measured and count, first snapshots aside.
+// The number of values that were measured and count. First snapshots are left out.
 double count_values(const FilterProblems& data);
 
-// From now on the noise of its snapshots, whose levels are known, has that correlation; the first
-// field is estimated anew. Throws std::runtime_error if it cannot be.
+// The noise of the snapshots of `data`, whose levels are known, has that correlation from now on.
+// The first field is estimated anew. Throws std::runtime_error if it cannot be.
 void set_correlation(const NoiseCorrelation& correlation, const problem::CahnHilliardModel& base,
                      const FilterSettings& settings, FilterProblem& data);
 
-// Of all vesicles, on the same meshes. `hold_out`: the last of four snapshots or more is forecast,
-// but counts for nothing. Throws InputError for places that are off the surface, and where more
-// than a twentieth of the values are outliers.
+// The problems of all vesicles, one for each series; they share their meshes. `hold_out`: the last
+// of four snapshots or more is forecast, but counts for nothing. Throws InputError for places that
+// are off the surface, and where more than a twentieth of the values are outliers.
 FilterProblems make_filter_problems(const std::vector<FieldSeries>& series,
                                     const geometry::LevelSet& surface,
                                     const problem::CahnHilliardModel& base, int cells, int threads,

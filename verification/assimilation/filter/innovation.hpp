@@ -1,4 +1,4 @@
-// What one snapshot says of the forecast of it, and how probable that is.
+// The innovation of one snapshot: how it differs from its forecast, and how probable that is.
 #pragma once
 
 #include <functional>
@@ -9,36 +9,39 @@
 
 namespace traceraft::assimilation {
 
-// Parameters: ln D first, second what extrapolation to finer meshes gets wrong of its last part,
-// then the coefficients of the hypothesis and those of the screened candidates.
+// Places of the parameters: ln D first, second what extrapolation to finer meshes gets wrong of its
+// last part, then the coefficients of the hypothesis and those of the screened candidates.
 inline constexpr int kDiffusionRatio = 0, kMeshError = 1, kFirstParameter = 2;
 
 struct Innovation {
   std::size_t vesicle, snapshot;  // of the data
   bool held_out;                  // it counts for nothing, but between members of a class
-  Vec forecast;                   // c where it was measured
+  Vec forecast;                   // c at the points of the values
   Vec noise;                      // standard deviation of each value, in c
-  // What values, directions, parameters and replicates are divided by beside that, so that noise is
-  // white in all of them; nothing where it is anyway.
+  // The factor of the noise's correlations. Values, directions, parameters and replicates are
+  // divided by it after `noise`, so that noise is white in them. Nothing where it is white anyway.
   WhiteningPtr whitening;
-  Vec values;  // measured minus forecast, in units of the noise
-  // G: what uncertain directions do to the values: those of the state, with their standard
-  // deviations, then patterns that a gap could have (GapPatterns), of size 1.
+  Vec values;  // ν: measured minus forecast, in units of the noise
+  // G, values × directions: what uncertain directions do to the values. Those of the state come
+  // first, with their standard deviations. Patterns that a gap could have follow (GapPatterns), of
+  // size 1.
   Columns directions;
-  Eigen::Index state_directions;
-  // The first of them are what the first snapshot's scale and zero make of the forecast.
+  Eigen::Index state_directions;  // number of the directions of the state
+  // Number of the first directions that are what the first snapshot's scale and zero make of the
+  // forecast.
   Eigen::Index first_frame = 0;
-  Eigen::MatrixXd gram;         // Gᵀ G, its lower half
-  Columns parameters;           // X: derivatives of the forecast by the parameters
-  Columns replicates;           // values of noise alone
+  Eigen::MatrixXd gram;         // Gᵀ G, directions × directions, its lower half
+  Columns parameters;           // X, values × parameters: derivatives of the forecast
+  Columns replicates;           // values × replicates: values of noise alone
   double weighted_squares = 0;  // νᵀ S⁻¹ ν, one per value on average
   double expected_squares = 0;  // of the gap in c, by noise and what it leaves unknown of c
-  // Most probable turns about the three axes, scale and zero of the values, and their blur if
-  // images have one, in their standard deviations; `gap`: the values without what these, and the
-  // first snapshot's, make of them, each at its point.
+  // `frame`: most probable turns about the three axes, scale and zero of the values, and their blur
+  // if images have one, each in its standard deviations. `gap`: the values without what `frame`,
+  // and the first snapshot's scale and zero, make of them, each at its point, in units of its
+  // noise.
   Vec frame, gap;
-  double model_error;  // size of the state's error that is no noise, per step, of the distance of
-                       // the phases
+  // Size of the state's error that is no noise, per step, in units of the distance of the phases.
+  double model_error;
 };
 
 // S = 1 + G D² Gᵀ by Woodbury's formula, D being 1 for the state and `gap_size` for gaps. The
@@ -46,12 +49,14 @@ struct Innovation {
 class InnovationCovariance {
  public:
   InnovationCovariance(const Innovation& innovation, double gap_size);
-  // S⁻¹ X.
+  // S⁻¹ X, for X of values × columns.
   Columns solve(const Columns& X) const;
   double log_determinant() const;
-  // D times the mean of the directions' amplitudes, whose prior is standard normal, given X.
+  // Directions × columns: D times the mean of the directions' amplitudes, whose prior is standard
+  // normal, given X.
   Columns amplitudes(const Columns& X) const;
-  // Makes of L, which has a column per direction, a root of the covariance that is left.
+  // A root of the covariance that is left of a state which the directions change by the columns of
+  // L.
   Columns posterior_root(const Columns& L) const;
 
  private:
@@ -60,7 +65,8 @@ class InnovationCovariance {
   Eigen::LLT<Eigen::MatrixXd> factors_;  // of 1 + D Gᵀ G D
 };
 
-// From units of white noise to those of the noise of each value at its point, and back.
+// at_points: X, values × columns, from units of white noise to those of the noise of each value at
+// its point. whitened: the way back.
 Columns at_points(const Innovation& innovation, const Columns& X);
 Columns whitened(const Innovation& innovation, const Columns& X);
 
@@ -70,12 +76,13 @@ Columns gaps_of_replicates(const Innovation& innovation);
 // The size of the model's error that makes an innovation most probable.
 double most_probable_error(const Innovation& innovation);
 
-// What gaps of the given size explain of each column, the model's error not being allowed for: one
-// row per pattern, whose sum of squares has the distribution of χ² if the column is noise and gaps
-// are larger than what noise leaves unknown of them.
+// The parts of each column of `values` that gaps of the given size explain, patterns × columns. The
+// model's error is not allowed for. The sum of squares of a column has the distribution of χ² if
+// the column is noise and gaps are larger than what noise leaves unknown of them.
 Columns explained_parts(const Innovation& innovation, double size, const Columns& values);
 
-// Over all values of those innovations that are held out, or not; `squares`: their sum in one.
+// The root mean square over all values of those innovations that are held out, or of the others.
+// `squares`: the sum of the squares in one of them.
 double root_mean_square(const std::vector<Innovation>& innovations, bool held_out,
                         const std::function<double(const Innovation&)>& squares);
 

@@ -16,12 +16,13 @@ std::vector<BlockRows> compact_blocks(const std::vector<Point>& points, std::siz
 
 struct NoiseBlock {
   Vec values;  // with mean 0
-  // Their covariance: `known`, and noise of these standard deviations, times a level.
+  // The known part of their covariance, values × values. The noise adds the other part.
   Eigen::MatrixXd known;
-  Vec deviation;
-  Eigen::MatrixXd distance;  // between the points
+  Vec deviation;             // standard deviation of the noise of each value, up to a common level
+  Eigen::MatrixXd distance;  // between the points, values × values
 };
 
+// The distances between the points of these rows, rows × rows.
 Eigen::MatrixXd distances(const std::vector<Point>& points, const BlockRows& rows);
 
 }  // namespace traceraft::assimilation

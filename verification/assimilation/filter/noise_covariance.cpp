@@ -9,7 +9,7 @@ namespace {
 
 // Larger blocks tell more of long correlations, and take longer.
 constexpr std::size_t kLargestBlock = 160;
-// Of all blocks so many values at most, every other block or so then.
+// The most values that all blocks may have together. Of more, every other block or so is used.
 constexpr double kMostValues = 40000;
 // Correlations are as they were if what they add to the noise of smooth patterns is, to that share.
 constexpr double kUnchanged = 0.02;
@@ -19,7 +19,7 @@ Columns in_c(const Innovation& in, const Columns& X) {
   return in.noise.asDiagonal() * at_points(in, X);
 }
 
-// Of one snapshot. What is unknown of the state and of the model is as large as it seems to be.
+// The blocks of one snapshot. Errors of the state and of the model are as large as they seem to be.
 std::vector<NoiseBlock> blocks_of(const Innovation& in, const std::vector<Point>& points) {
   Columns directions = in_c(in, in.directions);
   directions.rightCols(directions.cols() - in.state_directions) *= in.model_error;

@@ -9,7 +9,8 @@ namespace {
 // Deviations that snapshots state are believed, relative to each other, as far as that factor.
 constexpr double kBelieved = 1.25;
 
-// From the noise of each snapshot but the first, whose own nobody knows; `train` of all count.
+// The noise of all snapshots. `own`: that of each but the first, whose own nobody knows; `train` of
+// all count.
 std::vector<double> believed(const std::vector<double>& own, std::size_t train) {
   const std::vector<double> counting(own.begin(),
                                      own.begin() + static_cast<std::ptrdiff_t>(train) - 1);

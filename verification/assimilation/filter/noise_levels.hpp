@@ -5,8 +5,8 @@
 
 namespace traceraft::assimilation {
 
-// Standard deviation of the values that count, in c: their root mean square. Without the first
-// snapshots, of whose own noise nothing is known.
+// Standard deviation of the values that count, in c: their root mean square. First snapshots are
+// left out, as nothing is known of their own noise.
 double noise_of(const FilterProblems& data);
 
 // Standard deviation of c over all measured values, without the noise.
@@ -17,14 +17,17 @@ double contrast_of(const FilterProblems& data);
 // wrongly.
 void fit_noise(FilterProblems& data, const FilterResult& pass);
 
-// The same from the noise of each vesicle's snapshots but the first, in units of their deviations.
+// The same as fit_noise, from the noise of each vesicle's snapshots but the first, in units of
+// their deviations.
 void set_noise(FilterProblems& data, const std::vector<std::vector<double>>& own);
 
 // All that is estimated of the noise, a vesicle after the other.
 struct NoiseModel {
-  std::vector<std::vector<double>> levels;  // of each snapshot, in units of its deviations
-  std::vector<double> first;                // of the first one, as its field was estimated with
-  NoiseCorrelation correlation;
+  // The noise of each snapshot of each vesicle, in units of its deviations.
+  std::vector<std::vector<double>> levels;
+  // The noise of each vesicle's first snapshot that its field was estimated with, likewise.
+  std::vector<double> first;
+  NoiseCorrelation correlation;  // of the noise, the same for all vesicles
 
   friend bool operator==(const NoiseModel& a, const NoiseModel& b);
 };
@@ -34,9 +37,9 @@ NoiseModel noise_model(const FilterProblems& data);
 void set_noise_model(const NoiseModel& noise, const problem::CahnHilliardModel& base,
                      const FilterSettings& settings, FilterProblems& data);
 
-// The same with what neighbours share of the noise, which is common to all snapshots: as the
-// innovations have it beside what they leave unknown of the states and of the model. True if its
-// correlation is another one now, so that forecasts and their errors have to be found anew; the
+// The same as fit_noise, with what neighbours share of the noise, which is common to all snapshots:
+// as the innovations have it beside what they leave unknown of the states and of the model. True if
+// its correlation is another one now, so that forecasts and their errors have to be found anew; the
 // first fields are. Throws std::runtime_error if they cannot be.
 bool fit_noise_covariance(FilterProblems& data, const FilterResult& pass,
                           const problem::CahnHilliardModel& base, const FilterSettings& settings);

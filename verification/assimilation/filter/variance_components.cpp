@@ -7,7 +7,7 @@
 namespace traceraft::assimilation {
 namespace {
 
-// In the weights, of the sum of all variances.
+// The extra nugget in the weights, over the sum of all variances.
 constexpr double kExtraNugget = 0.25;
 constexpr int kMostWeightings = 12;
 // Variances that change by less than that share of their sum are settled.

@@ -31,19 +31,20 @@ class VarianceComponents {
                      std::vector<CorrelationFunction> components)
       : blocks_(blocks), team_(team), components_(std::move(components)) {}
 
-  // Those that are `free`, the others being 0, weights beginning with those of `start`. None is
-  // negative.
+  // The variances of the components that are `free`, the others being 0. Weights begin with those
+  // of `start`. None of the variances is negative.
   VarianceFit fit(const Vec& start, const std::vector<bool>& free) const;
 
-  // By how much −2 ln of the likelihood would fall, to second order, from the most probable
-  // variances of some components, if those that are `free` came to it (Rao's score test).
+  // The fall of −2 ln of the likelihood, to second order, from the most probable variances of some
+  // components, if those that are `free` came to it (Rao's score test).
   double score_gain(const Vec& at, const std::vector<bool>& free) const;
 
  private:
-  // Of vᵀ A v and of its expectation, with weights W and v = W y: tr W A W K, and tr W A W A.
+  // Moments of the values y, with weights W, for the matrices A (and B) of the free components.
   struct Moments {
-    Vec measured, known;
-    Eigen::MatrixXd matrix;
+    Vec measured,            // vᵀ A v with v = W y, one per free component
+        known;               // its expectation by what is known, K: tr W A W K
+    Eigen::MatrixXd matrix;  // tr W A W B, free components × free components
   };
   Eigen::MatrixXd component(const NoiseBlock& block, std::size_t k) const;
   Moments moments(const Vec& variances, double extra_nugget,

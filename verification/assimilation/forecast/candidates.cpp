@@ -12,7 +12,7 @@
 namespace traceraft::assimilation {
 namespace {
 
-// Of parameters that are lengths and are not looked for: R.
+// The value of parameters that are lengths and are not looked for, in R.
 constexpr double kLength = 1;
 // Contrast of the curvature, below which it sorts nothing.
 constexpr double kCurved = 0.05;

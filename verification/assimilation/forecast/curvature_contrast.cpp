@@ -7,7 +7,7 @@
 namespace traceraft::assimilation {
 namespace {
 
-// Of differences, in R: roundoff and their own error are equal at about that.
+// The step of differences, in R: roundoff and their own error are equal at about that.
 constexpr double kStep = 1e-3;
 
 // 2 H = div (∇φ/|∇φ|) = (tr B − nᵀ B n)/|∇φ| with B = ∇²φ and n = ∇φ/|∇φ|.

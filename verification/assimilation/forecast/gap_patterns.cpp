@@ -7,7 +7,7 @@
 namespace traceraft::assimilation {
 namespace {
 
-// Of the smooth patterns that are not bound to boundaries; so many of them, half as large.
+// The number of smooth patterns that are not bound to boundaries, at most. They are half as large.
 constexpr Eigen::Index kEverywhere = 16;
 
 Columns monomials(const fem::SurfaceSpace& space, int degree) {

@@ -1,4 +1,4 @@
-// What a gap between a forecast and the measurements is sought as.
+// The patterns as which a gap between a forecast and the measurements is sought.
 #pragma once
 
 #include "kernel/fem/sparse_view.hpp"
@@ -14,13 +14,13 @@ class GapPatterns {
  public:
   // Smooth: polynomials in x, y, z up to a degree, restricted to Γ. Serial spaces.
   GapPatterns(const fem::SurfaceSpace& space, int degree);
-  // Nodal, at a state c. Their sum of squares has a mean of 1.
+  // The patterns at a state c, nodes × patterns. Their sum of squares has a mean of 1.
   Columns at(const physics::DoubleWell& well, const Vec& c) const;
 
  private:
   double area_;
   fem::EigenMatrix mass_;
-  Columns smooth_;  // orthogonal, with a mean square of 1
+  Columns smooth_;  // nodes × patterns, orthogonal, with a mean square of 1
 };
 
 }  // namespace traceraft::assimilation

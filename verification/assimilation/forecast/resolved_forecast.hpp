@@ -15,19 +15,21 @@ namespace traceraft::assimilation {
 using MakeForecaster =
     std::function<time::IntegratorPtr(const problem::DaeProblem&, const fem::SurfaceSpace&)>;
 
-// Of one thread, which its matrices and solvers use.
+// A space of one thread, which its matrices and solvers use.
 bench::SpacePtr serial_space(const geometry::LevelSet& surface, int cells,
                              double mass_stabilisation = fem::kMassStabilisation);
 
-// What does not depend on the model.
+// The two finer meshes. They do not depend on the model.
 struct FinerMeshes {
   std::array<bench::SpacePtr, 2> spaces;  // the finest last
-  MeshTransfer to_finest, from_finest;    // from and to the model's mesh
-  MeshTransfer up, down;                  // between the two
+  MeshTransfer to_finest,                 // from the model's mesh to the finest
+      from_finest;                        // from the finest to the model's mesh
+  MeshTransfer up,                        // from the first of the two to the finest
+      down;                               // from the finest to the first of the two
 };
 FinerMeshes finer_meshes(const geometry::LevelSet& surface, const bench::SpacePtr& own, int cells);
 
-// On each of them, where the snapshots were measured.
+// The traces on each of the two meshes, one per snapshot: where it was measured.
 using FinerTraces = std::array<std::vector<PointTrace>, 2>;
 FinerTraces finer_traces(const FinerMeshes& meshes, const FieldSeries& series);
 
@@ -39,10 +41,12 @@ class ResolvedForecast {
                    const problem::CahnHilliardModel& model, Vec c,
                    const MakeForecaster& make_integrator);
 
-  // Errors of order h² are extrapolated (Richardson); `doubt`: by how much.
+  // The forecast at its end. Errors of order h² are extrapolated (Richardson).
   struct End {
-    Vec field, doubt;          // at the nodes of the model's mesh
-    Vec values, values_doubt;  // where snapshot k was measured
+    Vec field,         // c at the nodes of the model's mesh
+        doubt;         // by how much it was extrapolated
+    Vec values,        // c where snapshot k was measured
+        values_doubt;  // by how much it was extrapolated
   };
   // `turn`: by which the vesicle turns at the end, on the finest mesh; may be null. Throws
   // std::runtime_error if the flow cannot be advanced.

@@ -19,8 +19,8 @@ struct Placement {
 struct BlindLooks {
   Placement placement;
   geometry::ShiftedLevelSet surface;
-  // Of the snapshots, in units of R²/D of the model and of the truth.
-  std::vector<double> labels, times;
+  std::vector<double> labels,  // times of the snapshots, in units of R²/D of the model
+      times;                   // the same in units of R²/D of the truth
 
   explicit BlindLooks(const BlindRequest& request);
   // Unit vectors, uniform over the sphere.

@@ -1,4 +1,5 @@
-// What is to be hidden in synthetic measurements, and how it is to be measured.
+// The request for a blind case: effects to be hidden in synthetic measurements, and how these are
+// to be made.
 #pragma once
 
 #include <cstdint>
@@ -19,9 +20,9 @@ struct BlindRequest {
                       // in units of the standard deviation of c, in the first vesicle
   double diffusion_ratio = 1;  // D of the truth over that of the model
   double noise = 0.1;          // standard deviation, in units of that of c
-  // Of the variance of the noise, which neighbours share; over which length, in R; and how.
-  double noise_share = 0, noise_correlation = 0;
-  NoiseShape noise_shape = NoiseShape::gaussian;
+  double noise_share = 0,      // share of the noise's variance that neighbours share
+      noise_correlation = 0;   // the length over which they share it, in R
+  NoiseShape noise_shape = NoiseShape::gaussian;  // how they share it
   double blur = 0;  // standard deviation of the microscope's point spread function, in R
   int vesicles = 1;
   int snapshots = 8;             // of each
@@ -32,10 +33,10 @@ struct BlindRequest {
   // which they state for the others; 0: they state none.
   double stated = 0;
   double raft_fraction = 0.5;
-  // What a vesicle starts from, as in --initial; "": band-limited noise, six widths of a boundary
-  // long, which makes no rafts of raft fractions below 0.21.
+  // The state that a vesicle starts from, as in --initial; "": band-limited noise, six widths of a
+  // boundary long, which makes no rafts of raft fractions below 0.21.
   std::string initial;
-  // Of the mesh that other noise is drawn on; 0: a quarter of `cells`.
+  // Cells of the mesh that other noise is drawn on; 0: a quarter of `cells`.
   std::int64_t noise_cells = 0;
   int cells = 34;
   int sizing_cells = 0;  // of the mesh on which strengths are found, to a few percent; 0: 0.7 cells

@@ -36,7 +36,8 @@ class EffectSizing {
   // Coefficients in a random direction that the effect allows.
   std::vector<double> random_coefficients(const assimilation::Candidate& candidate,
                                           std::uint64_t number) const;
-  // What the effect makes of the base's snapshots until the next one.
+  // Root mean square change of c that the effect makes from each of the base's snapshots to the
+  // next, in units of the standard deviation of c.
   double gap_of(const effects::EffectTerm& term) const;
 
   BlindRequest request_;

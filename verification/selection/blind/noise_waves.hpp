@@ -16,7 +16,8 @@ enum class NoiseShape {
   exponential  // exp(−d/ℓ), rough over short distances and long in its tail
 };
 
-// Of variance 1 and of the length ℓ; as good as normally distributed.
+// Noise at the points, of variance 1 and with correlations over the length ℓ. It is as good as
+// normally distributed.
 Vec noise_waves(const std::vector<Point>& points, double length, NoiseShape shape,
                 std::uint64_t seed, std::uint64_t stream);
 

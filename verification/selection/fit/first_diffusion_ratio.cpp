@@ -14,7 +14,8 @@ namespace traceraft::selection {
 namespace {
 
 constexpr int kRank = 80, kTangentSteps = 2, kMostSteps = 40;
-// Of ln D: at most in one pass, and what is left to other searches.
+// Steps of ln D: the largest one of a pass, and the one below which the rest is left to other
+// searches.
 constexpr double kLargestStep = 0.7, kGoodEnough = 0.02;
 // A forecast of far too slow a membrane is about what was measured before, and its derivatives tell
 // the way to the right diffusion ratio. Of far too fast a one everything has come to rest, and they
@@ -69,7 +70,7 @@ class DiffusionRatioSearch {
     return true;
   }
 
-  // That of the model, or the most probable of some if it is far off.
+  // The pass of the model, or the most probable of some if it is far off.
   Pass first_pass() const {
     std::optional<Pass> best;
     std::string failure;

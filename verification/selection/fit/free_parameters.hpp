@@ -1,4 +1,4 @@
-// Which parameters of a found model the data may still move.
+// The parameters of a found model that the data may still move.
 #pragma once
 
 #include <vector>

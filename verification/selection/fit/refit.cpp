@@ -18,7 +18,7 @@ constexpr int kMostNewtonSteps = 8, kMostHalvings = 3;
 // D is known to that factor at least.
 constexpr double kLargestDiffusionRatioStep = 0.5;
 
-// Of a refit, from that of its unknowns.
+// Sets the covariance of a refit from that of its unknowns.
 void set_covariance(const Eigen::MatrixXd& unknown, Refit& fit) {
   const Eigen::Index n = fit.hypothesis.coefficients();
   const Vec inverse = unknown_factors(fit.hypothesis, fit.diffusion_ratio).tail(n).cwiseInverse();
@@ -26,7 +26,7 @@ void set_covariance(const Eigen::MatrixXd& unknown, Refit& fit) {
   fit.covariance = inverse.asDiagonal() * unknown.bottomRightCorner(n, n) * inverse.asDiagonal();
 }
 
-// Of a model as it is.
+// The evaluation of a model as it is.
 struct Evaluation {
   Refit fit;
   Vec step;                         // to the maximum in range, if the likelihood were Gaussian
@@ -55,7 +55,8 @@ Evaluation evaluate(const assimilation::FilterProblems& data,
     result.covariance = J * inverse(own, own) * J.transpose();
     result.diffusion_ratio_step =
         newton_step(pass, {assimilation::kDiffusionRatio, assimilation::kMeshError})[0];
-    // At the most probable error of the mesh, which the step takes to be free as well.
+    // The deviance is that at the most probable error of the mesh, which the step takes to be free
+    // as well.
     fit.deviance =
         pass.deviance - std::pow(pass.score[assimilation::kMeshError], 2) /
                             pass.information(assimilation::kMeshError, assimilation::kMeshError);
@@ -74,7 +75,7 @@ Evaluation evaluate(const assimilation::FilterProblems& data,
 // A curved valley is walked along in many steps of one direction, which may then be longer.
 class StepLength {
  public:
-  // For the next of the steps, in standard deviations.
+  // The length of the next one of the steps, as a factor; `step`: in standard deviations.
   double next(const Vec& step) {
     const bool ahead = last_.size() > 0 && step.dot(last_) > kAhead * step.norm() * last_.norm();
     length_ = ahead ? std::min(2 * length_, kLongest) : 1;

@@ -10,15 +10,15 @@ namespace traceraft::selection {
 
 struct Refit {
   assimilation::Hypothesis hypothesis;
-  double diffusion_ratio = 1;
-  double deviance =
-      0;  // −2 ln of the likelihood, at its least, diffusion ratio and mesh being free
-  // Of the coefficients, diffusion ratio and mesh being free; of rates in units of time that do not
-  // change with the diffusion ratio.
+  double diffusion_ratio = 1;  // D over that of the base model
+  // −2 ln of the likelihood, at its least, diffusion ratio and mesh being free.
+  double deviance = 0;
+  // Covariance of the coefficients, coefficients × coefficients, diffusion ratio and mesh being
+  // free. That of rates is in units of time that do not change with the diffusion ratio.
   Eigen::MatrixXd covariance;
-  double diffusion_ratio_deviation = 0;  // of ln diffusion ratio
-  // Measured minus forecast, and what is to be expected of it if nothing is missing: the noise, and
-  // what it leaves unknown of the state.
+  double diffusion_ratio_deviation = 0;  // standard deviation of ln diffusion ratio
+  // `gap`: measured minus forecast. `expected`: the gap that is to be expected if nothing is
+  // missing, by the noise and by what it leaves unknown of the state.
   assimilation::Gaps gap, expected;
   std::vector<assimilation::SnapshotGap> snapshots;  // the same, one by one
   bool settled = true;                               // was the search for the coefficients over?
@@ -41,8 +41,8 @@ Refit refit(const assimilation::FilterProblems& data, const assimilation::Filter
             const assimilation::FilterSettings& settings,
             const std::vector<assimilation::ErrorMaps>& maps);
 
-// Of many, on all processors, in their order. `done` is called after each, with its place among
-// them, one at a time.
+// The refits of many models, on all processors, in the order of `starts`. `done` is called after
+// each, with its place among them, one at a time.
 std::vector<Refit> refit_each(const assimilation::FilterProblems& data,
                               const std::vector<assimilation::FilterModel>& starts,
                               const assimilation::FilterSettings& settings,

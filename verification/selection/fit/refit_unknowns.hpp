@@ -1,5 +1,6 @@
-// What a refit solves for: ln diffusion ratio, then all coefficients; rates in units of time of the
-// base model, as what data tell of a rate then hardly depends on the diffusion ratio.
+// The unknowns that a refit solves for: ln diffusion ratio, then all coefficients. Rates are in
+// units of time of the base model, as what data tell of a rate then hardly depends on the diffusion
+// ratio.
 #pragma once
 
 #include "verification/assimilation/filter/field_filter.hpp"
@@ -13,10 +14,11 @@ Vec unknowns(const assimilation::FilterModel& model);
 void set_unknowns(assimilation::FilterModel& model,
                   const Vec& x);  // coefficients within their ranges
 
-// With another diffusion ratio, and rates as they are in units of time that do not change.
+// The model with another diffusion ratio, and rates as they are in units of time that do not
+// change.
 assimilation::FilterModel at_diffusion_ratio(assimilation::FilterModel model,
                                              double diffusion_ratio);
-// With its effects so many times as strong.
+// The model with its effects `factor` times as strong.
 assimilation::FilterModel with_strengths(double factor, assimilation::FilterModel model);
 
 // Derivatives of the unknowns by ln diffusion ratio and the coefficients.

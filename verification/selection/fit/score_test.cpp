@@ -205,7 +205,7 @@ class Scores {
   Vec highest_;    // of each replicate: the largest score over its candidate's mean
 };
 
-// `first`: the place of each screened candidate's first coefficient among the parameters.
+// `first`: the place of the first screened candidate's first coefficient among the parameters.
 std::vector<ConfoundedWithDiffusionRatio> confounded_with_diffusion_ratio(
     const Eigen::MatrixXd& information, const std::vector<assimilation::Candidate>& screened,
     Indices others, Eigen::Index first) {

@@ -9,21 +9,21 @@ namespace traceraft::selection {
 // p = (1 + the number of replicates that reach it) / (1 + their number).
 double share_of_noise(const Vec& replicates, double value);
 
-// The same beyond what so few replicates can count, for sums of many squares: p of the gamma
+// p beyond what so few replicates can count, for sums of many squares: that of the gamma
 // distribution with their mean and variance (Satterthwaite 1946).
 double gamma_tail(const Vec& replicates, double value);
 
 struct CandidateScore {
   std::string effect;
   std::vector<double> coefficients;  // most probable ones, to first order, within their signs
-  double score;  // 2 ln of the likelihood gained, to first order; diffusion ratio and mesh error
-                 // are free
-  double null_mean;  // the same of noise alone, on average over the replicates
-  double p;          // share of replicates in which any candidate gains more, in units of its own
-                     // average
-  double response;   // root mean square change of c that it makes, in units of the noise
-  // Of the coefficients, nuisances being free; 0 for those on which nothing that was measured
-  // depends in a way of its own.
+  // 2 ln of the likelihood gained, to first order. Diffusion ratio and mesh error are free.
+  double score;
+  double null_mean;  // `score` of noise alone, on average over the replicates, half a unit at least
+  // Share of replicates in which any candidate gains as much, in units of its own average.
+  double p;
+  double response;  // root mean square change of c that it makes, in units of the noise
+  // Covariance of the coefficients, coefficients × coefficients, nuisances being free. It is 0 for
+  // those on which nothing that was measured depends in a way of its own.
   Eigen::MatrixXd covariance;
   double resolution;  // response to one standard deviation of the coefficient that is known best
 };
@@ -40,11 +40,13 @@ inline constexpr double kConfounded = 0.9;
 struct Screening {
   std::vector<CandidateScore> scores;  // most probable first
   double p = 1;                        // that the most telling of them is noise
-  // That there is a gap of any shape is noise, nuisances being at their best: in the snapshots that
-  // count, in those that are held out (1 if none is), and in both.
-  double train_gap_p = 1, heldout_gap_p = 1, gap_p = 1;
-  double diffusion_ratio_change, diffusion_ratio_deviation;  // of ln D, if nothing else is missing
-  double mesh_error;  // root mean square of what a finer mesh changes, in noise
+  // Probabilities of a gap of any shape by noise alone, nuisances being at their best.
+  double train_gap_p = 1,         // in the snapshots that count
+      heldout_gap_p = 1,          // in those that are held out; 1 if none is
+      gap_p = 1;                  // in both
+  double diffusion_ratio_change,  // the change of ln D, if nothing else is missing
+      diffusion_ratio_deviation;  // its standard deviation
+  double mesh_error;              // root mean square of what a finer mesh changes, in noise
   std::vector<ConfoundedWithDiffusionRatio> confounded = {};  // correlated by more than kConfounded
 };
 

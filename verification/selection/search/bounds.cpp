@@ -37,7 +37,7 @@ Bound bound_of(const CandidateScore& score, const assimilation::Candidate& candi
 }  // namespace
 
 double bound_width(double deviation, int directions, bool two_sided, double null_mean) {
-  // What noise gains on average: 1 per coefficient, half of it if one sign is excluded.
+  // Noise gains 1 per coefficient on average, half of it if one sign is excluded.
   const double expected = directions * (two_sided ? 1.0 : 0.5);
   return (two_sided ? statistics::kNormal95 : kOneSided) * deviation *
          std::sqrt(std::max(1.0, null_mean / expected));

@@ -54,16 +54,16 @@ struct RegisteredRotation {
   double angle;  // since the snapshot before
 };
 
-// What was found, held against the data once more, on another mesh and by another integrator.
+// The found model, held against the data once more, on another mesh and by another integrator.
 struct Rerun {
   int cells = 0;
   std::string integrator;
   assimilation::Gaps base, found, floor;  // in units of c
   std::string failure;                    // why there is none, if it failed
-  // Of what is held out, or, if nothing is, of what was fitted: 2 ln of the likelihood ratio of
-  // found and base, with the covariance that innovations have if the found model is the truth; by
-  // how many standard deviations it is smaller than it would be then; and how many of them errors
-  // of the mesh may be.
+  // All three are of what is held out or, if nothing is, of what was fitted. `gain`: 2 ln of the
+  // likelihood ratio of found and base, with the covariance that innovations have if the found
+  // model is the truth. `shortfall`: standard deviations by which the gain is smaller than it would
+  // be then. `doubt`: standard deviations that errors of the mesh may be.
   double gain = 0, shortfall = 0, doubt = 0;
   // p of a gap which nothing explains, if the search left one; and why it is not known, if so.
   std::optional<double> gap_p = {};

@@ -92,7 +92,7 @@ Judgement judge(const Round& round, double values, double false_alarms, double u
                 const std::function<bool(const Refit&)>& leaves_gap) {
   const bool first = round.known.hypothesis.added() == 0;
   const bool quiet = round.screening.p > false_alarms;
-  // What follows if nothing is added.
+  // The finding if nothing is added and there is no gap of any shape.
   const Finding no_gap =
       !first ? Finding::named
       : quiet && identifiable(round.screening, usual_change) && tests_kinetics(round.without)

@@ -1,4 +1,4 @@
-// What the search for one more effect has found, and what follows from it.
+// Judgement of a search for one more effect: what it has found, and what follows from it.
 #pragma once
 
 #include <array>
@@ -72,9 +72,9 @@ bool is_no_other(const Refit& fit, const Refit& best);
 // Does it explain the data as well as the best fit? `limit`: what tells the two apart.
 bool explains_as_well(const Refit& fit, const Refit& best, double values, double limit);
 
-// What extrapolation to finer meshes may be wrong by, in standard deviations of everything measured
-// together: kMeshDoubt of its last part, whose root mean square is `mesh_error` in units of the
-// noise.
+// The error that extrapolation to finer meshes may have, in standard deviations of everything
+// measured together: kMeshDoubt of its last part, whose root mean square is `mesh_error` in units
+// of the noise.
 double mesh_doubt(double values, double mesh_error);
 
 // Deviances further apart tell two hypotheses apart: by noise, and even if that error had the very
@@ -97,7 +97,7 @@ inline constexpr double kGapLevel = 0.1;
 // Is there a gap of any shape?
 bool has_gap(const Screening& screening, double false_alarms);
 
-// Of something that is missing and has no name.
+// The finding of something that is missing and has no name.
 Finding without_name(const Screening& screening, double false_alarms);
 
 struct Judgement {

@@ -6,12 +6,14 @@
 namespace traceraft::selection {
 namespace {
 
-// Of the deviance that an effect gained when it was taken, what one that came near it gained.
+// An effect came near another one if it gained at least this share of the deviance that the other
+// one gained when it was taken.
 constexpr double kNear = 0.5;
-// Over what the criterion asks. Certainties are of the linearised model, and it is not linear.
+// The certainty of an effect that may stay, over what the criterion asks. Certainties are of the
+// linearised model, and the model is not linear.
 constexpr double kCertain = 2;
 
-// What was refitted in the round in which this effect was.
+// The effects that came near this one in the rounds in which it was refitted.
 std::vector<assimilation::Hypothesis::Part> rivals(const std::string& effect,
                                                    const std::vector<Round>& rounds) {
   std::vector<assimilation::Hypothesis::Part> result;

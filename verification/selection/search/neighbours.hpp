@@ -8,7 +8,7 @@
 
 namespace traceraft::selection {
 
-// Of a model with `fit`'s hypothesis: without each effect that is not twice as certain as the
+// The neighbours of `fit`'s hypothesis: without each effect that is not twice as certain as the
 // criterion asks (one that is may stay: a refit without it would be for nothing), and with each
 // effect replaced by those that came near it in its round. `values`: how many have been measured;
 // `allowed`: effects that may be taken.

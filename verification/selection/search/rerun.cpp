@@ -74,7 +74,7 @@ void look_for_gap(const assimilation::FilterProblems& data, const ExplainRequest
   if (!has_gap(left, other.false_alarms)) found.finding = found.without_gap;
 }
 
-// What fails says why.
+// An action that fails says why.
 template <class Action>
 void attempt(std::string& why, const Action& action) {
   try {

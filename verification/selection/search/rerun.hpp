@@ -1,4 +1,4 @@
-// What was found, held against the data once more: on another mesh and by another integrator.
+// The found model, held against the data once more: on another mesh and by another integrator.
 #pragma once
 
 #include "verification/selection/search/search.hpp"

@@ -17,7 +17,8 @@ std::vector<assimilation::Hypothesis::Part> shortlist(const Screening& screening
                                                       double limit) {
   std::vector<assimilation::Hypothesis::Part> result;
   const double most = screening.scores.empty() ? 0 : screening.scores.front().score;
-  // What might explain the data as well, and more, as first orders underestimate.
+  // The score from which on candidates are refitted: those that might explain the data as well, and
+  // more, as first orders underestimate.
   const double least = std::min(std::max(kTelling, kWorthRefitting * most), most - limit);
   std::size_t gaining = 0;
   for (const CandidateScore& score : screening.scores) {

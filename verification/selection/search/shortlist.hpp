@@ -1,4 +1,4 @@
-// Which candidates are worth a forecast with the model that has them.
+// The candidates that are worth a forecast with the model that has them.
 #pragma once
 
 #include "verification/selection/fit/score_test.hpp"

@@ -14,7 +14,9 @@
 namespace traceraft::selection {
 namespace {
 
-// Of the range of ln of the unit, and at most that much; of its deviation, over what it was before.
+// kAtEnd: the distance from an end of the range of ln of the unit within which a fit lies at that
+// end, as a share of the range; kMostAtEnd: its largest value. kTold: the deviation of ln of the
+// unit below which data tell the unit, over its deviation before.
 constexpr double kAtEnd = 0.05, kMostAtEnd = 0.1, kTold = 0.7;
 // Deviations from an end at which it does not matter.
 constexpr double kFree = 2;
@@ -30,7 +32,8 @@ void refuse(const observations::MeasuredVesicles& data,
       throw InputError("the ensemble with " + candidate.effect + " has other runs than the base");
 }
 
-// With a larger D the last looks would lie beyond the runs.
+// The unit of time at which the last look lies at the end of the runs. With a larger D the last
+// looks would lie beyond it.
 double shortest_unit(const observations::MeasuredVesicles& data,
                      const std::vector<observations::History>& base,
                      const std::vector<SeriesCandidate>& candidates) {
@@ -152,8 +155,8 @@ class SeriesSearch {
 
   bool significant(double p) const { return p <= request_.false_alarms; }
 
-  // Of those that noise hardly explains the most probable one: how much noise gains in units of its
-  // own says which they are, not which of them it is.
+  // The more telling one is the more probable one of two that noise hardly explains. The gain in
+  // units of what noise gains says which those are, not which of them it is.
   bool more_telling(const SeriesScore& a, const SeriesScore& b) const {
     if (significant(a.p) != significant(b.p)) return significant(a.p);
     return significant(a.p) ? a.gain > b.gain : a.gain / a.null_mean > b.gain / b.null_mean;

@@ -17,20 +17,21 @@ struct SeriesRequest {
   double false_alarms = 0.05;  // with nothing missing, that something seems to be named
 };
 
-// Of the false alarms, what trends that no effect explains may make: such a one has to be that much
-// less probable.
+// The share of the false alarms that trends which no effect explains may make: such a trend has to
+// be that much less probable.
 inline constexpr double kTrendLevel = 0.4;
 
 struct SeriesScore {
   std::string effect;
-  double gain;          // 2 ln of the likelihood ratio, the effect's strength being free
-  double null_mean;     // the same of data of the base model, on average
-  double p;             // share of these in which any effect gains as much, over its own average
-  double ln_unit;       // of R²/D in seconds, with the effect
-  double value, sigma;  // of the strength, in units of the parameter of the ensemble
-  double low, high;     // its 95 % bounds
-  bool bounded;         // they are within what has been simulated
-  double vesicles;      // so many as these show it at the ensemble's strength; see times_needed
+  double gain;       // 2 ln of the likelihood ratio, the effect's strength being free
+  double null_mean;  // the same of data of the base model, on average
+  double p;          // share of these in which any effect gains as much, over its own average
+  double ln_unit;    // of R²/D in seconds, with the effect
+  double value,      // the strength, in units of the parameter of the ensemble
+      sigma;         // its standard deviation
+  double low, high;  // its 95 % bounds
+  bool bounded;      // they are within what has been simulated
+  double vesicles;   // so many as these show it at the ensemble's strength; see times_needed
   observations::Quantity telling;  // what shows it best
 };
 

@@ -27,7 +27,7 @@ struct SeriesCurves {
 
   SeriesCurves(const std::vector<observations::History>& runs,
                const std::vector<SeriesCandidate>& candidates);
-  // By other runs, with the same weights in all ensembles.
+  // The curves of other runs, with the same weights in all ensembles.
   SeriesCurves(const std::vector<observations::History>& runs,
                const std::vector<SeriesCandidate>& candidates, const Eigen::MatrixXd& weights);
 };
@@ -35,7 +35,7 @@ struct SeriesCurves {
 struct SeriesGains {
   likelihood::EnsembleFit base;
   std::vector<likelihood::EnsembleFit> fits;  // with each candidate
-  Vec values;                                 // 2 ln of the likelihood ratios
+  Vec values;                                 // 2 ln of the likelihood ratios, one per candidate
   double trend;                               // left of the base
   std::vector<SeriesOffset> offsets;          // of the data beside the base
 };
@@ -44,15 +44,17 @@ SeriesGains gains_of(const std::vector<likelihood::ObservedSeries>& blocks,
                      const SeriesCurves& curves, const std::vector<SeriesCandidate>& candidates,
                      const likelihood::UnitPrior& unit, const likelihood::EnsembleFit& base);
 
-// The same of data that the base model would give.
+// The gains of data that the base model would give.
 struct SeriesNull {
   Vec mean;     // of each candidate's gain, half a unit at least
   Vec highest;  // of each replicate: the largest gain over its mean
   Vec trend;    // of each replicate: what is left of the base
   Vec ln_unit;  // of each replicate: that of the base
-  // Of each quantity: root mean squares of the deviations of its level and its slope, more than 1,
-  // as the model's mean is that of a few runs.
-  std::array<double, observations::kQuantities.size()> levels{}, slopes{};
+  // Root mean squares over the replicates, one per quantity. They are more than 1, as the model's
+  // mean is that of a few runs.
+  std::array<double, observations::kQuantities.size()>
+      levels{},  // of SeriesOffset's level_deviations
+      slopes{};  // of its slope_deviations
 };
 // `fit`: of the base model to the data.
 SeriesNull null_of(const observations::MeasuredVesicles& data,

@@ -1,4 +1,4 @@
-// What a fit of series leaves unexplained.
+// The misfit of series: what a fit of them leaves unexplained.
 #pragma once
 
 #include <vector>
@@ -7,18 +7,20 @@
 
 namespace traceraft::selection {
 
-// What is left of a fit that polynomials of ln t explain, a cubic for each quantity, in squares of
-// standard deviations.
+// The part of a fit's residual that polynomials of ln t explain, a cubic for each quantity, in
+// squares of standard deviations.
 double trend_left(const std::vector<likelihood::ObservedSeries>& blocks,
                   const likelihood::EnsembleModel& model, const likelihood::EnsembleFit& fit);
 
-// How the logarithms of measurements of a quantity lie beside a fit: on average, and per e-fold of
-// time; and in standard deviations.
+// The offset of the logarithms of measurements of a quantity from a fit.
 struct SeriesOffset {
   observations::Quantity quantity;
-  double level, level_deviations, slope, slope_deviations;
+  double level,          // on average
+      level_deviations,  // the same in standard deviations
+      slope,             // per e-fold of time
+      slope_deviations;  // the same in standard deviations
 };
-// Of those that were measured.
+// The offsets of the quantities that were measured.
 std::vector<SeriesOffset> offsets(const std::vector<likelihood::ObservedSeries>& blocks,
                                   const likelihood::EnsembleModel& model,
                                   const likelihood::EnsembleFit& fit);

@@ -29,9 +29,9 @@ double noise_at(const SeriesNoise& noise, double f) {
   return std::max(1.0, noise.now + share * (noise.most - noise.now));
 }
 
-// Of f times as many vesicles the looks' products are f times as large. What is left of e beyond u
-// has the square f ee − f² ue²/(f uu + w), w being what is known of D before; here without
-// cancellation.
+// The square of what is left of e beyond u, for f times as many vesicles. The looks' products are f
+// times as large then, and it is f ee − f² ue²/(f uu + w), w being what is known of D before; here
+// without cancellation.
 double square(const SeriesProducts& p, double f) {
   const double alike = p.uu > 0 ? p.ue * p.ue / p.uu : 0;
   return f * std::max(p.ee - alike, 0.0) + f * alike * p.known / (f * p.uu + p.known);

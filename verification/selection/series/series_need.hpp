@@ -8,25 +8,25 @@ namespace traceraft::selection {
 // Beyond so many times as many vesicles nothing is said.
 inline constexpr int kMostTimes = 8;
 
-// What noise gains by an effect. It grows with the number of vesicles, as what all of them have in
-// common is seen better, too: the model's mean is that of a few runs.
+// The mean gain of noise by an effect. It grows with the number of vesicles, as what all of them
+// have in common is seen better, too: the model's mean is that of a few runs.
 struct SeriesNoise {
-  double now, most;  // of as many vesicles as there are, and of kMostTimes as many
+  double now,  // for as many vesicles as there are
+      most;    // for kMostTimes as many
 };
 
-// Per candidate, from data of the base model with as many looks each. `null`: what is known of the
-// vesicles that there are.
+// The gains of noise, one per candidate, from data of the base model with as many looks each.
+// `null`: what is known of the vesicles that there are.
 std::vector<SeriesNoise> noise_of_more(const observations::MeasuredVesicles& data,
                                        const std::vector<observations::History>& runs,
                                        const std::vector<SeriesCandidate>& candidates,
                                        const likelihood::EnsembleFit& fit,
                                        const likelihood::UnitPrior& unit, const SeriesNull& null);
 
-// Inner products over the looks that there are, of what an effect does, e, and what another D does,
-// u.
+// Inner products over the looks that there are; e: what an effect does, u: what another D does.
 struct SeriesProducts {
   double ee, ue, uu;
-  double known;  // of D before: the inverse of the variance of ln D
+  double known;  // what is known of D before: the inverse of the variance of ln D
 };
 
 // How many times as many vesicles make the square of the effect kSeen² times what noise gains, and

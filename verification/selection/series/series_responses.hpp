@@ -1,4 +1,4 @@
-// What effects do to series, as far as another D does not do the same.
+// The responses of series to effects, as far as another D does not do the same.
 #pragma once
 
 #include <vector>
@@ -8,10 +8,10 @@
 
 namespace traceraft::selection {
 
-// To every look, and to what was known of D before: one look more, in its standard deviations.
+// The response of a series to an effect.
 struct SeriesResponse {
-  Vec looks;
-  double unit = 0;
+  Vec looks;        // an entry per look
+  double unit = 0;  // of what was known of D before: one look more, in its standard deviations
 };
 SeriesResponse operator*(double factor, const SeriesResponse& response);
 
@@ -22,10 +22,10 @@ class SeriesResponses {
                   const likelihood::EnsembleFit& fit, const likelihood::UnitPrior& unit);
 
   const SeriesResponse& of(std::size_t k) const { return own_[k]; }
-  // What effect k does of which no amount of effect j is capable.
+  // The part of effect k's response of which no amount of effect j is capable.
   SeriesResponse beyond(std::size_t k, std::size_t j) const;
   double correlation(std::size_t j, std::size_t k) const;
-  // Without what was known of D before.
+  // The products of e over the looks alone, without what was known of D before.
   SeriesProducts products(const SeriesResponse& e) const;
   // The quantity that shows most of it.
   observations::Quantity telling(const SeriesResponse& e) const;
