@@ -14,7 +14,7 @@ namespace {
 
 using testing::ForwardingProblem;
 
-// What an integrator is given in place of the model.
+// The problem that an integrator is given in place of the model.
 class BrokenProblem : public ForwardingProblem {
  public:
   using ForwardingProblem::ForwardingProblem;

@@ -28,7 +28,7 @@ void put_loop(GifFileType* file) {
   check(EGifPutExtensionTrailer(file));
 }
 
-// With the 256 colours that suit it best.
+// Writes an image with the 256 colours that suit it best.
 void put_image(GifFileType* file, const observables::Image& image, int centiseconds) {
   const std::size_t pixels = static_cast<std::size_t>(image.width) * image.height;
   std::vector<GifByteType> red(pixels), green(pixels), blue(pixels), index(pixels);

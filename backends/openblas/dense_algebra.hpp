@@ -26,8 +26,8 @@ struct SymmetricEigen {
   Eigen::VectorXd values;   // ascending
   Eigen::MatrixXd vectors;  // orthonormal
 };
-// Of a symmetric matrix given by its lower half. Throws std::runtime_error if there is no
-// convergence, as for a matrix that is not finite.
+// The eigenvalues and eigenvectors of a symmetric matrix given by its lower half. Throws
+// std::runtime_error if there is no convergence, as for a matrix that is not finite.
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& lower);
 
 }  // namespace traceraft::openblas

@@ -39,8 +39,8 @@ constexpr useconds_t kPause = 50000;  // microseconds between looks
   _exit(told == sizeof error ? 127 : 126);
 }
 
-// What this process was started with, "name=value" each. MPI, once initialised, has set variables
-// that make an mpirun among the children fail.
+// The environment that this process was started with, "name=value" each. MPI, once initialised, has
+// set variables that make an mpirun among the children fail.
 std::vector<std::string> first_environment() {
   std::ifstream file("/proc/self/environ");
   if (!file) throw IoError("cannot read /proc/self/environ");

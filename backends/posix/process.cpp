@@ -45,7 +45,7 @@ std::atomic<bool> stop_flag = false;
 std::atomic<std::int64_t> asked_at = 0;
 constexpr std::int64_t kOneRequest = 2;
 
-// What ends the process at once. Never freed: a signal may come at any time.
+// The exit code and the line of an end at once. Never freed: a signal may come at any time.
 struct End {
   int code;
   std::string line;

@@ -1,4 +1,4 @@
-// What the system knows about this process.
+// This process as the system knows it.
 #pragma once
 
 #include <csignal>
@@ -15,7 +15,7 @@ bool is_superuser();
 bool stdout_is_terminal();
 int terminal_columns();  // 80 if unknown
 
-// What a child gets when the process that started it dies (child.hpp), perhaps several times.
+// The signal to a child whose starter dies (child.hpp), perhaps sent several times.
 inline constexpr int kParentDied = SIGUSR1;
 
 // From now on SIGINT, SIGTERM, kParentDied and, unless it is ignored, SIGHUP only set a flag;

@@ -7,7 +7,7 @@
 
 namespace traceraft::suitesparse {
 
-// With A = cm, B = −mc and μ = √σ ν:
+// The system, with A = cm, B = −mc and μ = √σ ν:
 //   [ B     −√σ M̃ ] [δc]   [ −b₂    ]
 //   [ √σ M̃   A    ] [δν] = [ b₁/√σ  ]
 // which is quasi-definite for the stabilised tangent: any symmetric pivot order is stable, so a

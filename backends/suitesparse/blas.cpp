@@ -7,7 +7,7 @@ void openblas_set_num_threads(int);
 char* openblas_get_config();
 char* openblas_get_corename();
 int blas_thread_shutdown_() __attribute__((weak));  // unless OpenBLAS is built without threads
-// Of OpenMP, which is there if CHOLMOD was built with it.
+// A function of OpenMP, which is there if CHOLMOD was built with it.
 void omp_set_max_active_levels(int) __attribute__((weak));
 }
 

@@ -19,10 +19,10 @@ void use_one_openmp_thread();
 // E.g. "OpenBLAS 0.3.21 (SkylakeX)".
 std::string blas_description();
 
-// What the environment should hold before OpenBLAS is loaded: OPENBLAS_CORETYPE. It picks its
-// kernels by processor model and falls back to those of the 1990s (Prescott) on models newer than
-// itself, which makes factorisations about twice as slow. Set to what the processor can do in that
-// case only: loading all libraries once more takes 0.13 s.
+// The variable that the environment should hold before OpenBLAS is loaded: OPENBLAS_CORETYPE.
+// OpenBLAS picks its kernels by processor model and falls back to those of the 1990s (Prescott) on
+// models newer than itself, which makes factorisations about twice as slow. The variable is set to
+// what the processor can do in that case only: loading all libraries once more takes 0.13 s.
 std::vector<std::pair<std::string, std::string>> preferred_environment();
 
 }  // namespace traceraft::suitesparse

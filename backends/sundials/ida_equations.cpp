@@ -130,7 +130,7 @@ bool IdaEquations::permits(N_Vector total) {
   return refused == 0;
 }
 
-// What IDA is told of a status. A listed code: 6.4 takes any other for success.
+// The code that tells IDA of a status. It is a listed one: 6.4 takes any other for success.
 int IdaEquations::code(const Status& status, int retry, int fatal) {
   why_ = status.why;
   if (status.ok()) return 0;

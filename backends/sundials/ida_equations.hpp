@@ -1,5 +1,5 @@
-// What IDA asks while it takes a step: the residual, the solution of Newton's linear systems, the
-// weights of its norm and whether Newton's method has converged.
+// The equations as IDA asks for them while it takes a step: the residual, the solution of Newton's
+// linear systems, the weights of its norm and whether Newton's method has converged.
 #pragma once
 
 #include <exception>
@@ -33,13 +33,13 @@ class IdaEquations {
   // Before a step of IDA and after it: what a callback threw is thrown again.
   void forget_complaints();
   void throw_again();
-  // What made a callback fail, or IDA's own complaint, "" if there is none.
+  // The reason why a callback failed, or IDA's own complaint, "" if there is none.
   std::string complaint() const {
     return why_.empty() && !message_.empty() ? message_ + " (its times are in R^2/D)" : why_;
   }
   const std::string& message() const { return message_; }
 
-  // Of the energy guard: y begins the run; the state judged last is accepted.
+  // The energy guard: y begins the run; the state judged last is accepted.
   void start(VecView y) { guard_.start(y); }
   void accept() { guard_.accept(); }
 
@@ -47,10 +47,10 @@ class IdaEquations {
   time::IntegratorStatistics added_to(time::IntegratorStatistics statistics) const;
   linear::LinearStatistics linear_statistics() const { return solver_.linear_statistics(); }
 
-  // What the next step depends on, for a memory that this is attached to.
+  // Everything that the next step depends on, for a memory that this is attached to.
   void save(CheckpointOut out) const;
   void load(CheckpointIn in);
-  // What was spent on residuals: checkpoints have it before the memory.
+  // The number of residuals and the time spent on them: checkpoints have both before the memory.
   void save_residuals(CheckpointOut out) const;
   void load_residuals(CheckpointIn in);
 

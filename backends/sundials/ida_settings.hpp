@@ -1,4 +1,4 @@
-// What a user can ask of IDA: its own options, and the general ones where those are not set.
+// The settings of IDA: its own options, and the general ones where those are not set.
 #pragma once
 
 #include <vector>
@@ -21,8 +21,8 @@ class IdaSettings {
   double option(const char* name) const { return settings_.method_options.at(name); }
   double rtol() const { return either("rtol", settings_.tolerance); }
   double atol() const { return either("atol", 1e-10); }
-  // Of the first correction of a step, and of those after it, which are smaller and need not be as
-  // accurate.
+  // The tolerance of the first correction of a step, 0, and of those after it, which are smaller
+  // and need not be as accurate.
   double linear_tolerance(int correction) const;
   // Infinite if none is set; the problem may want a shorter one.
   double max_step() const;

@@ -22,7 +22,7 @@ NewtonTest::Verdict NewtonTest::judge(int iteration, double norm, double bound) 
   if (!std::isfinite(norm)) return Verdict::diverges;
   if (iteration == 0) {
     first_ = norm;
-    // Of a correction below the bound itself far less than the bound is left.
+    // If the correction itself is below the bound, far less than the bound is left.
     if (norm <= bound) return Verdict::converged;
     if (!trusted_for(norm, bound)) return Verdict::go_on;
     ++experience_.steps;

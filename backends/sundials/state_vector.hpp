@@ -10,7 +10,7 @@
 
 namespace traceraft::sundials {
 
-// What norms and sums of SUNDIALS are made of.
+// The parts that norms and sums of SUNDIALS are made of.
 struct StateSpace {
   // The norm of one half, over all ranks and independent of the mesh. SUNDIALS' own mean over all
   // entries counts a node whose basis function hardly touches the surface like any other.

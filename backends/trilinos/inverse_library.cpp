@@ -14,8 +14,8 @@ namespace {
 
 using Teuchos::ParameterList;
 
-// What both V-cycles share but the degree of the coarse solver: MueLu's own choice, KLU2 of
-// Amesos2, is wrong on more than one rank in Trilinos 13.2.
+// The part that both V-cycles share. Their coarse solver is Chebyshev's: MueLu's own choice, KLU2
+// of Amesos2, is wrong on more than one rank in Trilinos 13.2.
 ParameterList& add_cycle(ParameterList& library, const char* name, int degree, double ratio) {
   ParameterList& list = library.sublist(name);
   list.set("Type", "MueLu");

@@ -21,7 +21,7 @@ inline const std::vector<std::string> kTekoInverses = {"muelu", "muelu-ilu", "if
 Teuchos::RCP<Teko::InverseLibrary> make_inverse_library(const std::string& inverse,
                                                         const Teuchos::ParameterList& own);
 
-// What Teko has said since the last call, which is where it tells what went wrong.
+// The text that Teko has written since the last call, which is where it tells what went wrong.
 std::string teko_complaints();
 
 }  // namespace traceraft::trilinos

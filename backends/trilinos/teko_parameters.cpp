@@ -24,7 +24,7 @@ std::string option(const TekoOptions& options, const char* name, const char* oth
   return found == options.end() ? otherwise : found->second;
 }
 
-// What is wrong with one of the options.
+// Throws OptionError, which says what is wrong with one of the options.
 [[noreturn]] void refuse(const char* option, const std::string& why) {
   throw OptionError(option, why);
 }

@@ -1,4 +1,4 @@
-// What the options of --linear-solver teko say, and the user's file of Teuchos parameter lists.
+// The choices of --linear-solver teko: its options, and the user's file of Teuchos parameter lists.
 #pragma once
 
 #include <Teuchos_ParameterList.hpp>

@@ -37,8 +37,8 @@ struct Setting {
   RCP<Teko::InverseLibrary> library;
 };
 
-// With the exact tangent B + sM must be positive definite, which no approximate inverse notices.
-// The constant function tells where f0'' is negative on the whole.
+// B + sM must be positive definite with the exact tangent. No approximate inverse notices if it is
+// not. The constant function tells where f0'' is negative on the whole.
 linear::TwoSolveShifts shifts_of(const linear::BlockJacobian& J, double area) {
   double sum = 0;
   for (const double value : J.mc.values) sum -= value;
@@ -128,7 +128,7 @@ class TekoSolver final : public linear::LinearSolver {
   void save(CheckpointOut out) const override {
     write_binary(out, setting_->chosen.checksum);
     shared_.save(out);
-    // What a method has recycled is not saved: the run goes on like one that is resumed here.
+    // Recycled vectors are not saved: the run goes on like one that is resumed here.
     for (const Lane& lane : lanes_) lane.method->forget();
   }
   void load(CheckpointIn in) override {

@@ -7,7 +7,7 @@
 
 namespace traceraft::trilinos {
 
-// What the factory cannot see in the operator: the shifts of the two solves
+// The numbers that the factory cannot see in the operator: the shifts of the two solves
 // (kernel/linear/two_solve_preconditioner.hpp), and by what the first block row has been divided.
 struct TwoSolveRequest {
   double p = 0, q = 0, row_scale = 1;

@@ -10,7 +10,7 @@ std::string base64(const std::string& data);
 
 // `bytes` bytes from `data` on: a header with block counts and sizes, then the blocks.
 std::string encoded_array(const void* data, std::size_t bytes);
-// What was encoded. Throws IoError if it is damaged.
+// The bytes that were encoded. Throws IoError if the text is damaged.
 std::string decoded_array(const std::string& text);
 
 // One zlib stream, as browsers decompress it.

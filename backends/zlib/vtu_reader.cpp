@@ -10,7 +10,7 @@
 namespace traceraft::zlib {
 namespace {
 
-// What stands between two texts from `begin` on, which moves behind it. Throws IoError.
+// The text between two others from `begin` on, which moves behind them. Throws IoError.
 std::string between(const std::string& text, const std::string& before, const std::string& after,
                     std::size_t& begin) {
   const std::size_t at = text.find(before, begin);

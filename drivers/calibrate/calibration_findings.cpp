@@ -140,7 +140,7 @@ std::string calibration_json(const std::vector<CalibrationFinding>& parameters,
   json["converged"] = result.converged;
   for (Eigen::Index i = 0; i < result.correlation.rows(); ++i) {
     input::Json row = input::Json::array();
-    // Of ln D, not of ln R²/D.
+    // The correlations are those of ln D, not of ln R²/D.
     for (Eigen::Index j = 0; j < result.correlation.cols(); ++j)
       row.push_back(result.correlation(i, j) * ((i == 0) != (j == 0) ? -1 : 1));
     json["correlation"].push_back(row);

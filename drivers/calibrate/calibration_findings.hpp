@@ -1,5 +1,5 @@
-// What a calibration found: D and the other parameters, whether the data determine them, and the
-// runs that fit best.
+// The findings of a calibration: D and the other parameters, whether the data determine them, and
+// the runs that fit best.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace traceraft::calibrate {
 
-// What was simulated, and how.
+// The simulations of a calibration, and how they were made.
 struct CalibrationRuns {
   const config::Configuration& model;
   std::vector<std::string> names;  // of the parameters of the points
@@ -36,7 +36,7 @@ struct CalibrationFindings {
   std::vector<observations::Agreement> agreements;  // of the measurements with these
 };
 
-// Of D nothing is determined by vesicles of another size, or that coarsen otherwise.
+// Vesicles of another size, or that coarsen otherwise, determine nothing about D.
 CalibrationFindings findings_of(const observations::MeasuredVesicles& data,
                                 const CalibrationRuns& runs,
                                 const calibration::Calibration& result);

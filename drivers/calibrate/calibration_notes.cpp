@@ -58,7 +58,7 @@ void add_unused(const observations::MeasuredVesicles& data, const CalibrationRun
                   choices, runs.points.size()));
 }
 
-// What parameters cannot be, or were not asked to be.
+// Notes on the limit of ε, and on a noise length that was not to be fitted.
 void add_limits(const CalibrationRuns& runs, const calibration::Calibration& result, Notes& notes) {
   for (const calibration::CalibratedParameter& p : result.parameters) {
     if (p.name != "epsilon") continue;

@@ -1,11 +1,11 @@
-// What is to be known beside the numbers of a calibration, in sentences.
+// Notes on a calibration: sentences to be known beside its numbers.
 #pragma once
 
 #include "drivers/calibrate/calibration_findings.hpp"
 
 namespace traceraft::calibrate {
 
-// What limits or spoils the result first, then what was found beyond the table of parameters.
+// Notes on what limits or spoils the result, then on findings beyond the table of parameters.
 std::vector<std::string> notes_on(const observations::MeasuredVesicles& data,
                                   const CalibrationRuns& runs, const CalibrationFindings& found,
                                   const calibration::Calibration& result);

@@ -13,7 +13,7 @@ constexpr double kFewestNoiseCells = 4;
 constexpr double kRounding = 5e-4;  // of values that are written with four digits
 constexpr statistics::Interval kFractions = {0.02, 0.9};
 
-// As many cells that the mesh is no coarser against ε than the model's, a multiple of 4.
+// Cells, a multiple of 4, with which the mesh is no coarser against ε than the model's.
 int cells_for(const config::Configuration& model, double epsilon) {
   const double cells = static_cast<double>(model.options().cells);
   const double needed = cells * std::max(1.0, model.options().epsilon / epsilon);

@@ -12,7 +12,7 @@
 
 namespace traceraft::calibrate {
 
-// What can be calibrated besides D, which costs no simulation.
+// An option that can be calibrated besides D, which costs no simulation.
 struct CalibratedOption {
   std::string name;    // on the command line
   std::string option;  // of a run
@@ -27,8 +27,9 @@ config::Configuration configuration_at(const config::Configuration& model,
                                        const std::vector<std::string>& parameters,
                                        const std::vector<double>& values, double t_end);
 
-// What a parameter may be in simulations of the model: rafts and something between them, noise that
-// its meshes can hold, ε that so many cells resolve as well as the model's do. Both ends are > 0.
+// The range of a parameter in simulations of the model: rafts and something between them, noise
+// that its meshes can hold, ε that so many cells resolve as well as the model's do. Both ends are
+// positive.
 statistics::Interval range_of(const config::Configuration& model, const std::string& parameter,
                               int most_cells);
 

@@ -1,4 +1,4 @@
-// What a calibration found: a table, calibration.json, calibration.csv, calibrated.toml and a page.
+// A calibration reported: a table, calibration.json, calibration.csv, calibrated.toml and a page.
 #pragma once
 
 #include <filesystem>

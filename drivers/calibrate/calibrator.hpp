@@ -12,7 +12,7 @@ namespace traceraft::calibrate {
 // costs nothing.
 inline constexpr double kFastest = 4, kSlowest = 100;
 
-// Of the simulations: up to the latest measurement if D were as large as it may be (s).
+// The end of the simulations (s): the latest measurement if D were as large as it may be.
 double end_of_runs(const observations::MeasuredVesicles& data);
 
 // Cells that a mesh may need with which the first choices around the model can be run, 128 at

@@ -62,7 +62,7 @@ void draw(const fs::path& folder, const CampaignPlan& plan, const CaseSettings& 
   hide(folder, given, request);
 }
 
-// Of the model that knows the truth; none if it cannot be advanced on the model's mesh.
+// The gaps of the model that knows the truth; none if it cannot be advanced on the model's mesh.
 assimilation::Gaps floor_of(const explain::ExplainSetup& setup, const HiddenTruth& truth) {
   try {
     return selection::gaps_of_model(setup.series, setup.request, truth.diffusion_ratio,
@@ -74,7 +74,7 @@ assimilation::Gaps floor_of(const explain::ExplainSetup& setup, const HiddenTrut
   }
 }
 
-// What the search took, in all processes that carried it on.
+// The time (s) that the search took, in all processes that carried it on.
 double seconds_of(const fs::path& explained) {
   const fs::path file = explained / "time.json";
   if (!fs::exists(file)) return 0;

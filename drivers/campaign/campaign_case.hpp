@@ -10,7 +10,7 @@ struct CaseScore {
   CaseId id;
   std::string hidden, verdict, effect;  // names joined by " + "; "" for none
   CaseOutcome outcome;
-  // Of the strength of an effect that was named rightly: relative error, and error in standard
+  // Errors of the strength of an effect that was named rightly: relative, and in standard
   // deviations. NaN where there is none.
   double error, deviations;
   double p;                            // of the most telling candidate, first round

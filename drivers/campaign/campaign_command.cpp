@@ -45,8 +45,7 @@ CampaignPlan new_plan(const CampaignRequest& request) {
   return plan;
 }
 
-// What it began with, more cases aside.
-// `flag`: that names the folder.
+// The plan that the campaign began with, perhaps with more cases. `flag`: that names the folder.
 CampaignPlan grown_plan(const CampaignRequest& request, const CampaignFolder& folder,
                         const std::string& flag) {
   CampaignPlan plan = folder.load();
@@ -69,8 +68,8 @@ CampaignFolder begun_elsewhere(const std::string& path) {
   return folder;
 }
 
-// Of campaigns with the same plan that were carried out elsewhere; a case that several of them have
-// counts once, as in the first.
+// The scores of campaigns with the same plan that were carried out elsewhere. A case that several
+// of them have counts once, as in the first.
 std::vector<CaseScore> scores_of(const std::vector<std::string>& folders,
                                  const CampaignPlan& plan) {
   std::vector<CaseScore> scores;

@@ -18,7 +18,7 @@ void describe(Members& members, SharedNoise& noise) {
 
 namespace {
 
-// As it stands in the file, with the texts of the model's options.
+// The plan as it stands in the file, with the texts of the model's options.
 struct StoredPlan {
   CampaignPlan plan;
   std::map<std::string, std::string> model;

@@ -1,4 +1,4 @@
-// What a campaign asks of `explain`: groups of blind cases that differ in one respect.
+// The cases that a campaign puts to `explain`: groups of blind cases that differ in one respect.
 #pragma once
 
 #include <string>
@@ -18,7 +18,7 @@ struct CaseSettings {
   double coarser = 1;               // cells of the model's mesh, over what its interface needs
 };
 
-// What the verdict of a case has to be.
+// The verdict that a case has to have.
 enum class Aim { name, nothing, unnamed };
 
 struct CampaignGroup {

@@ -33,7 +33,7 @@ bench::Cell cell(double value) {
   return std::isfinite(value) ? bench::Cell(value) : bench::Cell("");
 }
 
-// Of 95 % intervals, the share that holds the truth.
+// The share of 95 % intervals that hold the truth.
 bench::Cell coverage(const Scores& scores) {
   double known = 0, within = 0;
   for (const CaseScore& score : scores) {
@@ -49,7 +49,7 @@ std::map<std::string, Scores> by_group(const Scores& scores) {
   return groups;
 }
 
-// Of what the truth would close of the held-out gap, how much was closed?
+// The share that was closed of what the truth would close of the held-out gap.
 double closed(const CaseScore& score) {
   return assimilation::share_closed(score.base, score.named, score.floor)
       .value_or(std::numeric_limits<double>::quiet_NaN());

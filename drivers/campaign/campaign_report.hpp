@@ -1,4 +1,4 @@
-// What the cases of a campaign add up to.
+// The report of a campaign: what its cases add up to.
 #pragma once
 
 #include <filesystem>
@@ -25,7 +25,7 @@ bench::Table confusion_of(const std::vector<CaseScore>& scores);
 void write_campaign(const CampaignFolder& folder, const std::vector<CaseScore>& scores,
                     const std::vector<CaseFailure>& failures = {});
 
-// Of cases.csv. Throws InputError naming the line of what cannot be read.
+// The scores in cases.csv. Throws InputError naming the line of what cannot be read.
 std::vector<CaseScore> read_cases(const std::filesystem::path& csv);
 
 }  // namespace traceraft::campaign

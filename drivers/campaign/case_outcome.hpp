@@ -28,8 +28,9 @@ std::string in_order(const std::string& names);
 // `hidden`: names_of the truth.
 CaseOutcome outcome_of(Aim aim, const std::string& hidden, const explain::Verdict& verdict);
 
-// Of the first hidden effect's strength, if the verdict has it and it is not at the end of its
-// range; relative, and in the standard deviations that the verdict says. `units`: of the model.
+// The error of the first hidden effect's strength, if the verdict has it and it is not at the end
+// of its range; relative, and in the standard deviations that the verdict says. `units`: of the
+// model.
 struct StrengthError {
   double relative, deviations;
 };

@@ -49,7 +49,7 @@ input::Json truth_json(const selection::BlindCase& drawn, const selection::Blind
           {"tolerance", request.tolerance}};
 }
 
-// Of an attempt that was killed: it may have had more.
+// Removes the snapshots of an attempt that was killed: it may have had more.
 void forget_snapshots(const fs::path& data) {
   const std::vector<fs::directory_entry> files(fs::directory_iterator(data), {});
   for (const fs::path& file : files)

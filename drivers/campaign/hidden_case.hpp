@@ -8,17 +8,17 @@
 
 namespace traceraft::campaign {
 
-// What was hidden, in the units of the model's file and in those of the model.
+// The hidden truth, in the units of the model's file and in those of the model.
 struct HiddenTruth {
   std::vector<effects::EffectTerm> effects;  // in units of R and R²/(diffusion ratio D)
   double diffusion_ratio, noise;
 };
 
-// What a model is that is not said to be another: a vesicle of 5 µm with wide phase boundaries,
+// Completes a model that is not said to be another: a vesicle of 5 µm with wide phase boundaries,
 // which explain takes a minute or two for. Values that are given stay. `source`: of the others.
 void add_small_vesicle(config::GivenValues& model, const std::string& source);
 
-// Of a truth for this model, unless asked for others.
+// The cells of a truth for this model, unless others are asked for.
 int truth_cells(const config::GivenValues& model);
 
 // Throws InputError for a model that nothing can be hidden in, and for a truth that is no finer.

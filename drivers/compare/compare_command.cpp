@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What the comparison itself decides for its runs.
+// Refuses options that the comparison itself decides for its runs.
 void refuse_varied(const config::GivenValues& values) {
   for (const auto& [name, flags] :
        {std::pair("integrator", "--integrators"), std::pair("linear-solver", "--linear-solvers"),
@@ -50,7 +50,7 @@ config::Configuration new_configuration(const config::GivenValues& file, config:
   return {file, flags};
 }
 
-// Of a comparison that goes on: nothing that would make its runs incomparable may change.
+// The configuration of a comparison that goes on. Its runs must stay comparable.
 config::Configuration known_configuration(const ComparisonFolder& folder,
                                           const config::GivenValues& file,
                                           const config::GivenValues& flags) {

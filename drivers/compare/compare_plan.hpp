@@ -1,4 +1,4 @@
-// What a comparison is to run, from what the user asks for and what its folder holds already.
+// The plan of a comparison, from what the user asks for and what its folder holds already.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace traceraft::compare {
 
-// What the command line says.
+// The request on the command line.
 struct CompareRequest {
   config::GivenValues flags;
   std::string config_file;

@@ -1,4 +1,4 @@
-// What a comparison shows: a table, compare.csv and compare.html.
+// The report of a comparison: a table, compare.csv and compare.html.
 #pragma once
 
 #include <string>

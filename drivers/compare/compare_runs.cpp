@@ -76,8 +76,8 @@ bool is_result(const jobs::ProcessEnd& end) {
 jobs::ProcessEnd compute(const CompareJob& job, const ComparisonFolder& folder, double time_limit) {
   const fs::path run = folder.run_of(job);
   if (fs::exists(run)) {
-    // What an interruption left: its times mean nothing. Unless a run that outlived its comparison
-    // is still at it.
+    // An interruption left this run, and its times mean nothing. The lock is for a run that
+    // outlived its comparison and is still at it.
     const posix::FolderLock lock(run);
     posix::remove_own_folder(run, run::files_of_a_run());
   }

@@ -12,7 +12,7 @@
 namespace traceraft::compare {
 namespace {
 
-// What the table takes from the summary of a run.
+// The counts that the table takes from the summary of a run.
 constexpr const char* kCounts[] = {"steps",         "rejected",
                                    "failures",      "residuals",
                                    "jacobians",     "newton_iterations",
@@ -93,7 +93,7 @@ bool ComparisonFolder::done(const CompareJob& job, const ComparePlan& plan) cons
     return !record.failure.empty() && !may_take_longer;
   };
   if (const auto own = recorded(job)) return own->failure.empty() || settled(*own);
-  // What failed is not repeated for its time.
+  // A job that failed is not repeated for its time.
   CompareJob first = job;
   first.repetition = 1;
   const auto record = recorded(first);

@@ -25,8 +25,8 @@ class ComparisonFolder {
   std::filesystem::path run_of(const CompareJob& job) const;
   std::filesystem::path log_of(const CompareJob& job) const;
 
-  // What is known of a job: "" for a result, or why there is none and, if it was stopped for
-  // taking too long, after how many seconds.
+  // The outcome of a job. `failure`: "" for a result, or why there is none. `time_limit`: after how
+  // many seconds it was stopped, if it was stopped for taking too long.
   struct Record {
     std::string failure;
     double time_limit = 0;
@@ -35,7 +35,7 @@ class ComparisonFolder {
   // Is nothing left to do? What failed once is not repeated, unless it may take longer now.
   bool done(const CompareJob& job, const ComparePlan& plan) const;
 
-  // What the recorded jobs gave: a point per combination, in the order of the plan. Errors are
+  // The points of the recorded jobs: one per combination, in the order of the plan. Errors are
   // against the concentration of the reference.
   std::vector<bench::WorkPoint> points(const ComparePlan& plan, const problem::DaeProblem& problem,
                                        VecView reference) const;

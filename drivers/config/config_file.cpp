@@ -97,7 +97,7 @@ std::string config_lines(const Configuration& configuration,
 }
 
 std::string flags_text(const Configuration& configuration) {
-  // What other defaults depend on: first those of units, then the rest.
+  // The options that other defaults depend on: first those that the units depend on, then all.
   GivenValues first;
   for (const char* name : {"case", "scaled", "integrator"})
     first[name] = {configuration.text(name), ""};

@@ -1,4 +1,4 @@
-// What is said of numbers on the command line that are none, or out of range.
+// Messages on numbers on the command line that are none, or out of range.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -15,8 +15,8 @@ using Compared = std::map<std::string, std::vector<std::string>>;
 // Does the option nothing?
 bool is_idle(const Configuration& configuration, const std::string& option);
 
-// What does nothing is a mistake, not something to ignore; files may hold it beside another choice.
-// Throws InputError.
+// Refuses an option that does nothing: it is a mistake, not something to ignore. Files may hold it
+// beside another choice. Throws InputError.
 void refuse_idle_options(const Configuration& configuration, const Compared& compared = {});
 
 }  // namespace traceraft::config

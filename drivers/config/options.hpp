@@ -14,7 +14,7 @@ namespace traceraft::config {
 
 enum class OptionKind { text, path, number, integer, flag, numbers /* comma-separated */ };
 
-// What an option measures: under --scaled, lengths are in R and times in R²/D.
+// The dimension of an option: under --scaled, lengths are in R and times in R²/D.
 enum class Dimension { none, length, time };
 
 // Whole numbers up to it are exact in files that other programs read (2^53).

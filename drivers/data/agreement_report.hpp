@@ -10,7 +10,7 @@
 
 namespace traceraft::data {
 
-// What the numbers are, and what they would be if nothing were wrong.
+// An explanation of the numbers, and of what they would be if nothing were wrong.
 std::string about_agreement(std::size_t runs);
 
 // A row per quantity.

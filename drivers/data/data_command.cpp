@@ -108,7 +108,7 @@ const NamedList<DataAction>& actions() {
   return list;
 }
 
-// What would do nothing was meant to do something.
+// Refuses options that would do nothing: they were meant to do something.
 void refuse_unused(const CLI::App& app, const DataAction& action) {
   for (const char* option : {"--ensemble", "--facts", "--out", "--seed", "--window"})
     if (app.count(option) > 0 &&

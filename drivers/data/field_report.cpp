@@ -14,7 +14,7 @@
 namespace traceraft::data {
 namespace {
 
-// What is stated of the noise; nothing where every value counts alike.
+// The median of the stated noise; "not stated" where every value counts alike.
 bench::Cell usual_deviation(const Vec& deviation) {
   if ((deviation.array() == 1).all()) return "not stated";
   return statistics::quantile({deviation.begin(), deviation.end()}, 0.5);
@@ -45,7 +45,7 @@ std::vector<bench::Cell> row_of(const assimilation::FieldSeries& vesicle,
           usual_deviation(snapshot.deviation)};
 }
 
-// What `explain` would refuse, with a sphere and the usual wells: of each kind the first.
+// Notes on what `explain` would refuse, with a sphere and the usual wells: the first of each kind.
 std::vector<std::string> notes_on(const std::filesystem::path& folder,
                                   const input::FieldDataset& data) {
   std::string off_sphere, off_scale;

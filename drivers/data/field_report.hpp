@@ -1,4 +1,4 @@
-// What measured fields hold, as a table.
+// A table of what measured fields hold.
 #pragma once
 
 #include "drivers/input/field_dataset.hpp"

@@ -1,4 +1,4 @@
-// What measurements say, and the ensembles they are held against.
+// Reports on measurements, and the ensembles they are held against.
 #pragma once
 
 #include <filesystem>

@@ -12,7 +12,7 @@ namespace traceraft::ensemble {
 
 ArrayTask array_task(const config::Configuration& configuration, const EnsemblePlan& plan,
                      const ArrayLimits& limits) {
-  // Of guv-2to1, 128 cells, on one processor: docs/results.md.
+  // The memory and time of a run of guv-2to1, 128 cells, on one processor: docs/results.md.
   constexpr double kGigabytes = 0.45, kHours = 0.25, kSpare = 4;
   const auto shares = [](int all, int each) { return (all + each - 1) / each; };
   const int runs = shares(plan.runs, limits.most_tasks);

@@ -14,8 +14,8 @@ struct ArrayLimits {
   int at_a_time = 0;  // 0: as many as the cluster likes
 };
 
-// What a task asks for: four times what the runs of the paper's cases took, and more for finer
-// meshes; what else makes a run long, such as --t-end, is not known here.
+// A task asks for four times what the runs of the paper's cases took, and for more with finer
+// meshes. Anything else that makes a run long, such as --t-end, is not known here.
 struct ArrayTask {
   int gigabytes, hours;  // hours of all its runs
   int tasks, runs;       // how many there are; runs of each, one after the other

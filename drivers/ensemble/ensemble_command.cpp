@@ -48,7 +48,7 @@ config::Configuration new_configuration(const EnsembleRequest& request, config::
       ": the runs of an ensemble differ in their initial noise; choose noise or band-limited");
 }
 
-// Of an ensemble that goes on: its runs have to stay comparable.
+// The configuration of an ensemble that goes on: its runs have to stay comparable.
 config::Configuration known_configuration(const EnsembleFolder& folder,
                                           const EnsembleRequest& request,
                                           const config::GivenValues& file) {

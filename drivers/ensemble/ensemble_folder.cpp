@@ -17,7 +17,7 @@
 namespace traceraft::ensemble {
 namespace {
 
-// What may only be unreadable for the moment is not to be deleted.
+// Advice for damaged runs. One that may only be unreadable for the moment is not to be deleted.
 std::string with_advice(const std::string& why, const std::filesystem::path& run) {
   return "delete " + run.string() + " to repeat the run: " + why;
 }

@@ -45,7 +45,7 @@ class EnsembleFolder {
   std::filesystem::path run_of(std::uint64_t seed) const;
   std::filesystem::path log_of(std::uint64_t seed) const;
 
-  // What is there of a member, and why it failed; one whose summary is damaged has failed.
+  // The state of a member, and why it failed; one whose summary is damaged has failed.
   struct Member {
     MemberEnd end;
     std::string why;
@@ -55,8 +55,8 @@ class EnsembleFolder {
   // The last time in its series, in the units of its files; 0 if there is none.
   double reached(std::uint64_t seed) const;
 
-  // Of a member that has begun; perimeters are divided by `radius`, given in the units of the
-  // files. Throws InputError or IoError if its series is damaged.
+  // The history of a member that has begun; perimeters are divided by `radius`, given in the units
+  // of the files. Throws InputError or IoError if its series is damaged.
   observations::History history(std::uint64_t seed, double radius) const;
 
  private:

@@ -1,4 +1,4 @@
-// What an ensemble shows: ensemble.csv and ensemble.html.
+// The report of an ensemble: ensemble.csv and ensemble.html.
 #pragma once
 
 #include <vector>

@@ -10,7 +10,7 @@
 namespace traceraft::ensemble {
 namespace {
 
-// What runs write about t and after it; progress is counted in ln t, over which work is spread.
+// The share of t_end after which progress is counted: in ln t, over which work is spread.
 constexpr double kFirstShare = 1e-6;
 
 double share_done(double reached, double t_end) {

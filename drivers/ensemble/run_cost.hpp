@@ -1,4 +1,4 @@
-// What a run costs beside another one that differs in its mesh.
+// The cost of a run beside another one that differs in its mesh.
 #pragma once
 
 #include "drivers/config/configuration.hpp"

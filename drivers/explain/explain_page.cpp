@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of the list of disagreements; the file has all.
+// The most rows of the list of disagreements; the file has all.
 constexpr std::size_t kMostRows = 12;
 
 // Standard deviations at the ends of the colours.

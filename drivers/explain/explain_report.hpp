@@ -1,4 +1,4 @@
-// What `explain` has found, as files and words.
+// The findings of `explain`, as files and words.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,7 @@ void write_explanation(const std::filesystem::path& folder, const selection::Exp
 
 void print_explanation(const selection::Explanation& found, const ExplainSetup& setup);
 
-// What runs the model with what was found, over the time that was measured; "" if there is none.
+// The command that runs the model with what was found, over the measured time; "" for none.
 std::string command_for_found(const std::filesystem::path& folder,
                               const selection::Explanation& found, const ExplainSetup& setup);
 

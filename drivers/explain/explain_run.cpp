@@ -26,7 +26,7 @@ config::GivenValues with_radius(config::GivenValues model, double radius_um) {
   return model;
 }
 
-// Of a model that says another radius than the data, and of data that are not where they say.
+// Notes on a model that says another radius than the data, and on data that are not where they say.
 std::vector<std::string> notes_on(const config::GivenValues& model,
                                   const input::FieldDataset& data) {
   std::vector<std::string> notes;
@@ -131,7 +131,8 @@ void refuse_exchanged_phases(const config::Configuration& model,
       formatted("write 1 - c; otherwise give --raft-fraction %.2f", measured));
 }
 
-// What data could not tell from the rest of the model is not fitted beside it.
+// The effects of the model itself. One whose strength no data determine, or that is excluded by
+// --without, is refused.
 assimilation::Hypothesis own_effects(const config::Configuration& model,
                                      const std::vector<assimilation::Candidate>& asked,
                                      const std::vector<std::string>& without) {

@@ -38,7 +38,7 @@ struct ExplainSetup {
 // "my vesicle (SYNTHETIC): 1 vesicle, 8 snapshots, R = 5 um, blurred by 0.1 um"
 std::string data_text(const ExplainSetup& setup);
 
-// What the flags and the model's file say; the flags count where both do.
+// The values in the flags and the model's file; the flags count where both have one.
 config::GivenValues model_said(const ExplainJob& job);
 
 // Fields have a radius of their own. Throws InputError for data and models that cannot be used.

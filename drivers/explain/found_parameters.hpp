@@ -1,4 +1,4 @@
-// What a search has found, in the units of its user.
+// The parameters that a search has found, in the units of its user.
 #pragma once
 
 #include <optional>
@@ -27,8 +27,8 @@ const selection::Refit& fit_shown(const selection::Explanation& found);
 std::vector<FoundParameter> found_parameters(const selection::Refit& fit,
                                              const physics::Units& base);
 
-// As a verdict tells them. Where something is missing that has no name D has no error: it makes up
-// for what is missing, and nobody knows by how much.
+// The parameters as a verdict tells them. Where something is missing that has no name D has no
+// error: it makes up for what is missing, and nobody knows by how much.
 std::vector<FoundParameter> told_parameters(const selection::Explanation& found,
                                             const selection::Refit& fit,
                                             const physics::Units& base);
@@ -44,7 +44,7 @@ struct DiffusionRange {
 std::optional<DiffusionRange> diffusion_range(const selection::Explanation& found,
                                               const physics::Units& base);
 
-// Of the first parameter of an effect that was not found, with 95 % confidence.
+// The bounds of the first parameter of an effect that was not found, with 95 % confidence.
 struct FoundBound {
   std::string effect, name, unit;
   double low, high;

@@ -49,7 +49,7 @@ void add_failures(const selection::Explanation& found, std::vector<std::string>&
                   found.stopped);
 }
 
-// Of what was found, parameters that were not looked for.
+// Remarks on the parameters of found effects that were not looked for.
 void add_assumptions(const selection::Explanation& found, const physics::Units& base,
                      std::vector<std::string>& all) {
   std::map<std::string, std::vector<std::string>> assumed;  // of each effect
@@ -104,7 +104,7 @@ void add_diffusion_ratio(const selection::Explanation& found, const physics::Uni
                          std::vector<std::string>& all) {
   const double log_diffusion_ratio = std::fabs(std::log(found.found.diffusion_ratio));
   const double D = base.diffusion_cm2_s * found.found.diffusion_ratio;
-  // What was found is between the two, and the difference from what is known varies as much less.
+  // The D found is between the two, and its difference from the known D varies as much less.
   const double square =
       found.diffusion_ratio_doubt * found.diffusion_ratio_doubt -
       found.found.diffusion_ratio_deviation * found.found.diffusion_ratio_deviation;
@@ -161,7 +161,7 @@ std::string text_of(const selection::ModelChange& change) {
   return "";
 }
 
-// What the search thought of before.
+// The story of the search: what it thought of before.
 void add_story(const selection::Explanation& found, std::vector<std::string>& all) {
   for (const selection::ModelChange& change : found.changes) {
     const auto is_from = [&](const selection::Excluded& t) { return t.effect == change.from; };

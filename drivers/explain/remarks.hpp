@@ -1,4 +1,4 @@
-// What a reader of a verdict should know before believing it.
+// Remarks that a reader of a verdict should know before believing it.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// What a search has found so far, in a file: one that was interrupted goes on from there.
+// The file of what a search has found so far: one that was interrupted goes on from there.
 #pragma once
 
 #include <filesystem>

@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of D over that of the model: runs last as long as if it were that.
+// The fastest D over that of the model: runs last as long as if it were that.
 constexpr double kFastestDiffusionRatio = 4;
 
 void tell(const SeriesEnsemblesRequest& request, const std::string& step) {
@@ -70,7 +70,7 @@ effects::EffectTerm sized_term(const selection::EffectSizing& sizing, const std:
 
 constexpr char kStrengths[] = "strengths.json";
 
-// Which simulations they are for.
+// The model and the looks that simulations are for.
 input::Json header_of(const config::Configuration& model, const statistics::Window& looks) {
   return {{"identity", config::numerical_identity(ensemble_model(model, "", looks.end))},
           {"looks", {looks.begin, looks.end}}};
@@ -80,7 +80,7 @@ bool is_for(const input::Json& json, const input::Json& header, const char* key)
   return json.value(key, input::Json()) == header[key];
 }
 
-// What was found before; empty if that is nothing.
+// The strengths that were found before; empty if there are none.
 input::Json saved_strengths(const fs::path& file, const input::Json& header) {
   if (!fs::exists(file)) return input::Json::object();
   return input::from_json(file, [&](const input::Json& json) {

@@ -27,15 +27,15 @@ struct SeriesEnsembles {
   std::vector<std::string> notes;          // effects whose runs failed
 };
 
-// What the simulations of an earlier explanation are, for other data: the looks that they are for,
-// and how many runs. Throws InputError if there are none, or of another model.
+// Takes over the simulations of an earlier explanation, for other data: the looks that they are
+// for, and how many runs. Throws InputError if there are none, or of another model.
 void take_over_ensembles(const std::filesystem::path& folder, const config::Configuration& model,
                          SeriesEnsemblesRequest& request);
 
 // If data are looked at when those effects had no time to act, or too much: a sentence, else "".
 std::string note_on_looks(const statistics::Window& simulated, const statistics::Window& measured);
 
-// As strong as the effect may be, if it would have to be stronger.
+// The term, but only as strong as the effect may be if it would have to be stronger.
 effects::EffectTerm within_range(effects::EffectTerm term, const physics::Units& units);
 
 // Throws InputError for data and models that cannot be used.

@@ -54,7 +54,7 @@ std::string share(double p) {
   return formatted(p < 1e-3 ? "%.2f %%" : "%.1f %%", 100 * p);
 }
 
-// What the verdict rests on.
+// The basis of the verdict.
 std::string ground(const selection::SeriesExplanation& found, const SeriesEnsembles& ensembles,
                    const selection::SeriesRequest& request) {
   return "Basis: " + std::to_string(ensembles.base.size()) +
@@ -128,7 +128,7 @@ SeriesEnsembles in_seconds(SeriesEnsembles ensembles, const selection::SeriesExp
   return ensembles;
 }
 
-// Of the perimeter, over the times that were looked at.
+// The exponents of the perimeter, over the times that were looked at.
 std::vector<PerimeterExponent> exponents(const observations::MeasuredVesicles& data,
                                          const SeriesEnsembles& ensembles) {
   const statistics::Window window = observations::looks(data);

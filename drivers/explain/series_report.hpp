@@ -1,4 +1,4 @@
-// What series of vesicles say of missing effects: series.json, series.html and words.
+// The report of what series of vesicles say of missing effects: series.json, series.html and words.
 #pragma once
 
 #include <filesystem>

@@ -15,7 +15,7 @@ physics::Units units_of(const config::Configuration& model, double ln_unit) {
   return model.units().with_seconds_per_unit(std::exp(ln_unit));
 }
 
-// As it was simulated; null if it was not.
+// The effect as it was simulated; null if it was not.
 const effects::EffectTerm* term_of(const SeriesEnsembles& ensembles, const std::string& effect) {
   for (const effects::EffectTerm& term : ensembles.terms)
     if (term.effect == effect) return &term;
@@ -67,7 +67,7 @@ input::Json offsets_json(const selection::SeriesExplanation& found) {
   return offsets;
 }
 
-// Of the effect that explains most, if something was named, and D.
+// The parameters of the effect that explains most, if something was named, and D.
 std::vector<FoundParameter> series_parameters(const config::Configuration& model,
                                               const SeriesEnsembles& ensembles,
                                               const selection::SeriesExplanation& found) {

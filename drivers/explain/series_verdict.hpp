@@ -1,4 +1,4 @@
-// What series say in the units of their user: series.json, verdict.json and model.toml.
+// The verdict of series in the units of their user: series.json, verdict.json and model.toml.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 
 namespace traceraft::explain {
 
-// With the D that the series say if nothing is missing.
+// The units with the D that the series say if nothing is missing.
 physics::Units found_units(const config::Configuration& model,
                            const selection::SeriesExplanation& found);
 
@@ -25,11 +25,11 @@ struct StrengthScale {
 };
 StrengthScale scale_of(const selection::SeriesScore& score, const config::Configuration& model);
 
-// Of an effect, the parameters that were not looked for, as they were simulated.
+// The parameters of an effect that were not looked for, as they were simulated.
 std::vector<FoundParameter> assumed_parameters(const effects::EffectTerm& term,
                                                const physics::Units& units);
 
-// Of the perimeter: measured, or simulated with this model.
+// The exponent of the perimeter: measured, or simulated with this model.
 struct PerimeterExponent {
   std::string model;
   observations::FittedLaw law;

@@ -20,7 +20,7 @@ input::Json parameters_json(const std::vector<FoundParameter>& found) {
   return parameters;
 }
 
-// Of each other member of the class, as it fits best.
+// The effect and the parameters of each other member of the class, as it fits best.
 input::Json rivals_json(const selection::Explanation& found, const physics::Units& base) {
   input::Json rivals = input::Json::array();
   if (!selection::is_named(found)) return rivals;

@@ -53,7 +53,7 @@ bool closes_something(const selection::Explanation& found, const selection::Refi
   return closed.heldout.value_or(closed.train.value_or(0)) >= kLeast;
 }
 
-// Of single effects, refitted if any was.
+// The likeliest of single effects, refitted if any was.
 std::string likeliest(const selection::Explanation& found) {
   const selection::Round& first = found.rounds.front();
   return first.refits.empty() ? first.screening.scores.front().effect

@@ -1,4 +1,4 @@
-// What a search has found, for people.
+// The findings of a search, for people.
 #pragma once
 
 #include <string>

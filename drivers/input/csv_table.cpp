@@ -70,7 +70,7 @@ void refuse_row_as_remark(const std::filesystem::path& path, const Rows& rows,
                      "row to leave out must be deleted");
 }
 
-// As spreadsheets of many countries write tables, with commas within numbers.
+// Refuses tables as spreadsheets of many countries write them, with commas within numbers.
 void refuse_other_separators(const std::string& where, const std::vector<std::string>& columns) {
   if (columns.size() != 1) return;
   for (const auto& [separator, name] : {std::pair{';', "semicolons"}, std::pair{'\t', "tabs"}})

@@ -56,7 +56,7 @@ assimilation::FieldSnapshot read_snapshot(const CsvTable& table, double time, do
     if (!(snapshot.deviation[i] > 0))
       throw InputError(table.where(row, "sigma") + ": a standard deviation must be positive");
   }
-  // What is a million times as certain as the rest decides alone.
+  // A value that is a million times as certain as the rest decides alone.
   if (snapshot.deviation.maxCoeff() > kMostUnlike * snapshot.deviation.minCoeff())
     throw InputError(table.path().string() +
                      ", column sigma: the largest is more than a million times the smallest, " +

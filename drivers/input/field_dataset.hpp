@@ -10,7 +10,7 @@
 
 namespace traceraft::input {
 
-// Of the radius: images that are blurred more show nothing.
+// The widest blur, over the radius: images that are blurred more show nothing.
 inline constexpr double kWidestBlur = 0.2;
 // In distances of the wells: values that are further from both are none of a membrane.
 inline constexpr double kFarFromWells = 5;

@@ -16,7 +16,7 @@ std::string text_of(const Json& json, int indent = -1) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
-// Of what a reader gets: the same file read and written again has the same.
+// The checksum of what a reader gets: the same file read and written again has the same.
 std::string checksum_of(const Json& json) {
   return formatted("%08x", zlib::crc32_of(text_of(json)));
 }

@@ -72,7 +72,7 @@ class JsonWriter {
     for (const auto& [value, text] : words)
       if (value == member) json_[name] = text;
   }
-  // As another type, which has members that a file can hold.
+  // A member that is stored as another type, which has members that a file can hold.
   template <class T, class ToStored, class FromStored>
   void stored(const char* name, T& member, const ToStored& to_stored, const FromStored&) {
     auto copy = to_stored(member);

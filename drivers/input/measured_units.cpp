@@ -36,7 +36,7 @@ bool is_synthetic(const config::TomlTable& toml) {
 
 double length_factor(const config::TomlTable& toml, const std::string& key) {
   static const NamedList<FileUnit> units("unit of length", {{"um", 1},
-                                                            // with the micro sign, and with a mu
+                                                            // first the micro sign, then a mu
                                                             {"\u00b5m", 1},
                                                             {"\u03bcm", 1},
                                                             {"nm", 1e-3},

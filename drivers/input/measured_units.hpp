@@ -11,13 +11,14 @@ namespace traceraft::input {
 
 // The factor to µm or s of the unit that stands under a key. Throws InputError.
 double length_factor(const config::TomlTable& toml, const std::string& key);
-// Of the key `kind`: "measured" or "synthetic". Throws InputError for other words.
+// Does the key `kind` say "synthetic", not "measured"? Throws InputError for other words.
 bool is_synthetic(const config::TomlTable& toml);
 double time_factor(const config::TomlTable& toml, const std::string& key);
-// What has to be added to all times, in the unit of the data. Throws InputError.
+// The time to be added to all times, in the unit of the data. Throws InputError.
 double time_offset(const config::TomlTable& toml);
 
-// What it says of the membrane, "" and nothing if it says nothing. Throw InputError.
+// The composition and temperature (°C) of the membrane, "" and nothing if they are not said. Throw
+// InputError.
 std::string composition_of(const config::TomlTable& toml);
 std::optional<double> celsius_of(const config::TomlTable& toml);
 

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kLargestPerimeter = 1000;  // over the radius
 constexpr double kMostRafts = 1e6;
-// Of one vesicle between looks; and by how much a perimeter may be shorter than the shortest one
-// of its area: both are read off images.
+// The largest ratio of the radii of one vesicle between looks, and the smallest of a perimeter to
+// the shortest one of its area. Both are read off images.
 constexpr double kSameRadius = 1.2, kTooShort = 0.5;
 
 double in_range(const CsvTable& table, std::size_t row, const char* column, double low,
@@ -37,7 +37,8 @@ double radius_of(const TableUnits& units, const CsvTable& table, std::size_t row
   return checked_radius(table.number(row, "radius") * units.length, table.where(row, "radius"));
 }
 
-// Of vesicle, time and radius; the order of rows is checked against what is there already.
+// A measurement with vesicle, time and radius. The order of rows is checked against what is there
+// already.
 observations::Measurement begin_measurement(const TableUnits& units, const CsvTable& table,
                                             std::size_t row,
                                             const std::vector<observations::Measurement>& before,
@@ -146,7 +147,7 @@ std::vector<observations::Measurement> read_totals(const TableUnits& units, cons
   return looks;
 }
 
-// Of one raft. Nothing: the look has shown none.
+// The cap of one raft. Nothing: the look has shown none.
 std::optional<observations::Cap> cap_of(const TableUnits& units, const CsvTable& table,
                                         std::size_t row, double radius) {
   if (table.empty(row, "cap_radius")) return std::nullopt;

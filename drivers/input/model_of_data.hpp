@@ -1,4 +1,4 @@
-// Which model measurements are to be held against.
+// The model that measurements are to be held against.
 #pragma once
 
 #include <string>

@@ -39,7 +39,7 @@ void remove_scratch(const std::filesystem::path& scratch) {
 
 }  // namespace
 
-// As shells tell it; 0 if it ended by itself.
+// The signal as shells tell it; 0 if the process ended by itself.
 int ProcessEnd::signal() const {
   constexpr int kMostSignals = 64;  // mpirun has exit codes of its own beyond
   return exit_code > 128 && exit_code <= 128 + kMostSignals ? exit_code - 128 : 0;

@@ -56,8 +56,8 @@ struct Extent {
   }
 };
 
-// Of what is drawn, and along x of all there is: what has fallen to 0 leaves a logarithmic chart
-// empty.
+// The extents of what is drawn, and along x of all there is: what has fallen to 0 leaves a
+// logarithmic chart empty.
 struct Extents {
   Extent x, y, all_x;
 };
@@ -156,7 +156,7 @@ std::string script(const bench::Chart& chart, const std::string& svg) {
     text += "set xrange [" + format_number(all_x.least) + ":" + format_number(all_x.most) + "]\n";
   double lowest = -HUGE_VAL;
   if (chart.log_y) {
-    // What is 1 all the time does not lie on the axis then.
+    // A curve that is 1 all the time does not lie on the axis then.
     constexpr double kMargin = 1.18;
     const Extent shown{y.least / kMargin, y.most * kMargin};
     lowest = shown.least;

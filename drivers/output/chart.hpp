@@ -17,7 +17,7 @@ inline constexpr const char* kNoGnuplot = "gnuplot is not installed (Debian pack
 // consists of letters, digits, - and _; std::logic_error for others.
 std::string draw_chart(const bench::Chart& chart, const std::filesystem::path& stem);
 
-// What a page lacks, collected.
+// The things that a page lacks, collected.
 class Missing {
  public:
   void add(const std::string& what) {

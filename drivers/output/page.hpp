@@ -6,7 +6,7 @@
 
 namespace traceraft::output {
 
-// What html() below has made, without its head and title.
+// The page that html() below has made, without its head and title.
 std::string page_body(const std::string& html);
 
 class Page {

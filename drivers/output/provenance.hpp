@@ -1,4 +1,4 @@
-// What a page says about where its numbers come from.
+// The words of a page about where its numbers come from.
 #pragma once
 
 #include <filesystem>

@@ -6,8 +6,8 @@
 namespace traceraft::output {
 namespace {
 
-// Of ln t per step. Faster than that grow the first steps, for as long as an integrator feels its
-// way.
+// The most that ln t grows per settled step. The first steps grow faster, for as long as an
+// integrator feels its way.
 constexpr double kSettled = 0.1;
 // While rafts coarsen the time a run has taken grows with a power of the time it has come to, in
 // bursts: each raft that vanishes takes short steps. Measured in six runs of the paper's cases.

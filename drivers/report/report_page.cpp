@@ -135,7 +135,7 @@ void fill_run(output::Page& page, const fs::path& folder, const PageRequest& req
   output::add_provenance(page, folder, output::command_for("traceraft run", configuration));
 }
 
-// What `data compare` has left, as it is, and whether it is of the same runs.
+// The comparison that `data compare` has left, as it is, and whether it is of the same runs.
 void add_comparison(output::Page& page, const fs::path& folder, std::size_t runs) {
   if (!fs::exists(folder / "comparison.html") || !fs::exists(folder / "comparison.json")) return;
   page.heading("Compared with measurements");
@@ -164,7 +164,7 @@ void add_all_runs(output::Page& page, const std::vector<observations::History>& 
   page.table(ensemble::ensemble_rows(summary, physical));
 }
 
-// What is kept of an ensemble has no fields to show.
+// The page of a kept ensemble, which has no fields to show.
 void fill_kept(output::Page& page, const fs::path& path, const PageRequest& request,
                output::Missing& missing) {
   const config::Configuration configuration = data::model_of(path);

@@ -13,12 +13,12 @@
 
 namespace traceraft::run {
 
-// What a run has cost so far, in all processes that worked on it, set-up included.
+// The cost of a run so far, in all processes that worked on it, set-up included.
 struct RunCost {
   double wall_seconds = 0, cpu_seconds = 0;
 };
 
-// What one checkpoint file holds, besides magic, version and checksum.
+// The content of one checkpoint file, besides magic, version and checksum.
 struct Checkpoint {
   std::string configuration;          // resolved, to recognise a changed run
   TableExtents tables;                // when it was written

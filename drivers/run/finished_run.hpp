@@ -1,4 +1,4 @@
-// What a run folder says of a run that has reached its end.
+// A run that has reached its end, as its folder tells it.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// What options say of the concentration that a run begins with.
+// The concentration that a run begins with, as options say it.
 #pragma once
 
 #include "drivers/config/configuration.hpp"

@@ -1,4 +1,4 @@
-// What options say of the integrator and the linear solver.
+// The integrator and the linear solver, as options say them.
 #pragma once
 
 #include "backends/list.hpp"

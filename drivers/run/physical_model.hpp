@@ -1,4 +1,4 @@
-// What options say of the physics: free energy, mobility, effects, and the surface it happens on.
+// The physics as options say it: free energy, mobility, effects, and the surface it happens on.
 #pragma once
 
 #include "drivers/config/configuration.hpp"

@@ -19,7 +19,7 @@ void create_sub_folders(const RunFolder& folder) {
   fs::create_directories(folder.checkpoints());
 }
 
-// Of an ensemble, say, or another set of runs with folders of their own.
+// Is it the folder of an ensemble, say, or another set of runs with folders of their own?
 bool holds_runs(const fs::path& path) {
   return fs::exists(path / "runs") || fs::exists(path / "plan.json");
 }
@@ -96,7 +96,7 @@ void refuse_foreign_folder(const fs::path& path, const std::vector<std::string>&
 }
 
 RunFolder shared_folder(const Communicator& ranks, const std::function<RunFolder()>& open) {
-  // What comes of it on the first rank, a path or what is wrong, after a letter for its kind.
+  // The outcome on the first rank, a path or what is wrong, after a letter for its kind.
   RunFolder folder;
   Lists<char> message;
   if (ranks.root()) {

@@ -32,7 +32,7 @@ std::string numbered(const char* stem, std::size_t index, const char* extension)
   return name;
 }
 
-// What ParaView opens at an output time.
+// The file that ParaView opens at an output time.
 std::string field_name(std::size_t index, const Communicator& ranks) {
   return numbered("field", index, ranks.size() == 1 ? "vtu" : "pvtu");
 }
@@ -115,7 +115,7 @@ void FieldWriter::on_output(const observables::Observables& row,
     posix::write_durably(folder_.fields() / field_name(index, ranks),
                          zlib::pvtu_text(pieces, {"c", "mu"}, {"raft"}));
   }
-  // What this run wrote at that time before it went on with more or fewer ranks.
+  // Files are removed that this run wrote at that time before it went on with more or fewer ranks.
   std::filesystem::remove(folder_.fields() / numbered("field", index, alone ? "pvtu" : "vtu"));
   for (int rank = alone ? 0 : ranks.size();; ++rank)
     if (!std::filesystem::remove(folder_.fields() / piece_name(index, rank))) break;

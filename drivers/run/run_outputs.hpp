@@ -1,4 +1,4 @@
-// What a run writes: tables, fields and checkpoints, each a listener of the run loop.
+// The outputs of a run: tables, fields and checkpoints, each a listener of the run loop.
 #pragma once
 
 #include <memory>
@@ -14,8 +14,8 @@
 
 namespace traceraft::run {
 
-// Of the first rank. series.csv: a row per accepted step. observables.csv: the same columns at the
-// output times. rafts.csv: every raft at the output times.
+// The tables, on the first rank. series.csv: a row per accepted step. observables.csv: the same
+// columns at the output times. rafts.csv: every raft at the output times.
 class TableWriter final : public simulation::RunListener {
  public:
   // `extents`: as a checkpoint recorded them; empty for a new run. Throws IoError.

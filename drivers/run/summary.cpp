@@ -94,7 +94,7 @@ std::string summary_json(const config::Configuration& configuration, const RunSe
   return input::checked_text(json);
 }
 
-// Of a sphere nothing separates where f0'' + ε² l(l + 1)/R² > 0 even for c halfway and l = 1. Other
+// Nothing separates on a sphere where f0'' + ε² l(l + 1)/R² > 0 even for c halfway and l = 1. Other
 // surfaces are longer than wide: l(l + 1)/R² is taken as half of that.
 bool is_as_wide_as(const std::string& surface, const problem::CahnHilliardModel& model) {
   const double stiffness = (surface == "sphere" ? 2 : 1) * model.epsilon * model.epsilon;

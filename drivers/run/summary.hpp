@@ -1,5 +1,5 @@
-// What a run ends with: summary.json for programs, a table for people. For the first rank: nothing
-// here is collective. Cost and memory are those of all ranks.
+// The end of a run: summary.json for programs, a table for people. For the first rank: nothing here
+// is collective. Cost and memory are those of all ranks.
 #pragma once
 
 #include <string>

@@ -13,7 +13,7 @@ struct StripView {
   std::string label;                  // "t = 12 s"
 };
 
-// What the length of the scale bar and the ends of the colours are.
+// The meaning of the scale bar's length and of the ends of the colours.
 struct StripLegend {
   double half_width;        // of each view, in the unit of lengths
   std::string length_unit;  // "um"
@@ -23,7 +23,7 @@ struct StripLegend {
 // All views of one size, which is an even number of pixels; each is shown at half of that.
 observables::Image compose_strip(const std::vector<StripView>& views, const StripLegend& legend);
 
-// Which of `count` pictures a strip shows: at most `most`, evenly spread, the first and the last
+// The pictures of `count` that a strip shows: at most `most`, evenly spread, the first and the last
 // among them. Ascending.
 std::vector<std::size_t> strip_choice(std::size_t count, std::size_t most = 6);
 

@@ -83,7 +83,7 @@ std::string or_default(const std::string& name) {
   return name.empty() ? "of the study" : name;
 }
 
-// What a study is measured with.
+// The flags that a study is measured with.
 std::vector<std::string> flags_of(const VerifyRequest& request, int threads) {
   std::vector<std::string> flags;
   const auto add = [&](const char* flag, const std::string& value) {

@@ -1,4 +1,4 @@
-// What a verification leaves behind: text for the terminal, CSV, JSON, a page, and a document.
+// The report of a verification: text for the terminal, CSV, JSON, a page, and a document.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,7 @@ std::vector<std::vector<std::string>> claim_rows(const std::vector<studies::Clai
 
 void print_result(const StudyResult& result);
 
-// What the numbers were measured with.
+// The conditions that the numbers were measured in.
 struct VerificationContext {
   std::string command;     // that repeats it
   std::string conditions;  // threads, integrator, solver, version

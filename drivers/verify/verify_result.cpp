@@ -169,7 +169,7 @@ std::optional<StudyResult> measured_before(const std::filesystem::path& folder,
   const std::filesystem::path file = folder / (study.name + ".json");
   if (!std::filesystem::exists(file)) return std::nullopt;
   return input::from_json(file, [&](const input::Json& json) -> std::optional<StudyResult> {
-    // What could not be carried out is tried again.
+    // A study that could not be carried out is tried again.
     if (json.at("measured_with") != measured_with || json.at("failure") != "") return std::nullopt;
     return result_of(study, json);
   });

@@ -1,4 +1,4 @@
-// What one study of a verification came to, and how a file keeps it.
+// The result of one study of a verification, and how a file keeps it.
 #pragma once
 
 #include <filesystem>
@@ -26,8 +26,8 @@ struct StudyResult {
 // `measured_with`: whatever decides the numbers, in any words.
 input::Json to_json(const StudyResult& result, const std::string& measured_with);
 
-// What `folder` has of this study, if it was carried out there with the same. Throws IoError for a
-// file that is damaged.
+// The result that `folder` has of this study, if it was carried out there with the same. Throws
+// IoError for a file that is damaged.
 std::optional<StudyResult> measured_before(const std::filesystem::path& folder,
                                            const studies::StudyEntry& study,
                                            const std::string& measured_with);

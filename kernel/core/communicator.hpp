@@ -11,8 +11,8 @@
 
 namespace traceraft {
 
-// Which entries of a local field travel where. Local fields hold the owned entries first, then
-// the ghosts grouped by neighbour in the order of `neighbours`.
+// The entries of a local field that travel, and where to. Local fields hold the owned entries
+// first, then the ghosts grouped by neighbour in the order of `neighbours`.
 struct HaloPlan {
   struct Neighbour {
     int rank;
@@ -89,7 +89,7 @@ Lists<T> exchange_lists(const Communicator& ranks, const Lists<T>& to) {
   return received;
 }
 
-// What every rank has, on the first one; empty on the others.
+// The values of every rank, on the first one; empty on the others.
 template <class T>
 Lists<T> gather(const Communicator& ranks, const std::vector<T>& values) {
   Lists<T> to(static_cast<std::size_t>(ranks.size()));
@@ -98,7 +98,7 @@ Lists<T> gather(const Communicator& ranks, const std::vector<T>& values) {
   return ranks.root() ? all : Lists<T>{};
 }
 
-// What every rank has, everywhere.
+// The values of every rank, everywhere.
 template <class T>
 Lists<T> gather_everywhere(const Communicator& ranks, const std::vector<T>& values) {
   return exchange_lists(ranks, Lists<T>(static_cast<std::size_t>(ranks.size()), values));

@@ -1,4 +1,4 @@
-// What went wrong outside the numerics. Each class has one exit code (docs/exit-codes.md).
+// Errors outside the numerics. Each class has one exit code (docs/exit-codes.md).
 #pragma once
 
 #include <stdexcept>

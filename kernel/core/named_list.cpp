@@ -38,7 +38,7 @@ std::string unknown_name_message(std::string_view kind, std::string_view name,
   // A name can come from a file: keep the message readable.
   const std::string shown(name.substr(0, 60));
   std::string message = "unknown " + std::string(kind) + " '" + shown + "'";
-  // What shares little with a name is no slip of the pen; the dashes of flags are no letters.
+  // A word unlike every name is no slip of the pen; the dashes of flags are no letters.
   const std::size_t letters = shown.size() - std::min(shown.size(), shown.find_first_not_of('-'));
   const std::string nearest = nearest_name(shown, valid);
   const bool begun = !shown.empty() && nearest.compare(0, shown.size(), shown) == 0;

@@ -60,8 +60,8 @@ class ThreadTeam {
   void stop_all();
   void guarded(const std::function<void(int)>& task, int part) const noexcept;
 
-  // What changes `round_`, `stop_` or `pending_` to 0 holds the mutex, so that nobody who falls
-  // asleep misses it.
+  // Code that changes `round_`, `stop_` or `pending_` to 0 holds the mutex, so that nobody who
+  // falls asleep misses it.
   mutable std::mutex mutex_;
   mutable std::condition_variable start_, done_;
   mutable const std::function<void(int)>* task_ = nullptr;

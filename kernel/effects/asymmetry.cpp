@@ -21,7 +21,7 @@ EffectEntry asymmetry_effect() {
         const double a = p["strength"];
         model.effects.push_back(local_density(
             {"asymmetry", problem::Slot::potential, true, true, [a](const DensityPoint& at) {
-               // With s = c (1 − c), s' = 1 − 2c =: d: g = −s² d.
+               // The energy is a g with g = −s² d, s = c (1 − c), s' = 1 − 2c =: d.
                const double c = at.c, s = c * (1 - c), d = 1 - 2 * c;
                if (s >= 0)
                  return DensityValue{a * (-2 * s * d * d + 2 * s * s),

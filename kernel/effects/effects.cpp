@@ -12,7 +12,7 @@ std::string trimmed(const std::string& text) {
                                     : text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-// With defaults, which are in µm and s, in the units that values are given in.
+// The parameters with defaults, which are in µm and s, in the units that values are given in.
 std::vector<ParameterSpec> specs_in(const EffectEntry& entry, const physics::Units& units) {
   physics::Units physical = units;
   physical.scaled = false;

@@ -1,4 +1,4 @@
-// What a model may be missing: effects by name. One file per effect, one line in effects.cpp;
+// The effects that a model may be missing, by name. One file per effect, one line in effects.cpp;
 // docs/effects.md shows how to add one.
 #pragma once
 

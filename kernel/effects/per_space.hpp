@@ -1,4 +1,4 @@
-// What an effect computes once for each space that its model is used on.
+// A value that an effect computes once for each space that its model is used on.
 #pragma once
 
 #include <functional>

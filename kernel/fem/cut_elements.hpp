@@ -45,8 +45,8 @@ std::vector<TraceMoments> build_trace_moments(const mesh::CutSurface& surface,
 // The traces at the polygon's corners (rows) of the element's four basis functions (columns).
 Eigen::Matrix4d trace_matrix(const mesh::CutSurface& surface, const CutElement& element);
 
-// Which elements contain an edge, and how strongly they couple its ends: with an integral I_T for
-// each element, ∫ weight ∇_Γφ_low·∇_Γφ_high = Σ_T coupling · I_T.
+// The elements that contain an edge, and how strongly they couple its ends: with an integral I_T
+// for each element, ∫ weight ∇_Γφ_low·∇_Γφ_high = Σ_T coupling · I_T.
 struct EdgeCouplings {
   std::vector<int> begin;  // per edge, and the end
   std::vector<int> element;

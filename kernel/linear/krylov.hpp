@@ -1,4 +1,4 @@
-// What the kernel's block solver needs from a library: an iterative method and a factorisation.
+// The needs of the kernel's block solver from a library: an iterative method and a factorisation.
 #pragma once
 
 #include <functional>
@@ -29,7 +29,7 @@ class SpdSolver {
  public:
   virtual ~SpdSolver() = default;
   virtual Status factorise(const fem::CsrMatrix& A) = 0;  // retry: not positive definite
-  // With the threads of the team, if it is not inside a task of it already.
+  // Uses the threads of the team, if it is not inside a task of it already.
   virtual void solve(VecView b, VecRef x, const ThreadTeam& team, int lane) = 0;
 };
 

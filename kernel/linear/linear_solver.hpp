@@ -1,4 +1,4 @@
-// What a time integrator asks of a linear solver.
+// The interface between a time integrator and a linear solver.
 #pragma once
 
 #include <functional>

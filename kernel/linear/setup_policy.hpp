@@ -1,5 +1,5 @@
-// What solvers whose lanes share one approximate inverse keep about it: when it has become dearer
-// than a new one, and what has been done with it.
+// The records of solvers whose lanes share one approximate inverse: when it has become dearer than
+// a new one, and what has been done with it.
 #pragma once
 
 #include <algorithm>

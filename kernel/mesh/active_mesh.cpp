@@ -197,7 +197,8 @@ ActiveMesh build_active_mesh(const geometry::LevelSet& surface, std::int64_t cel
 }
 
 Eigen::Matrix<double, 4, 3> scaled_gradients(int kuhn) {
-  // With the axes in the order p of the permutation: λ0 = 1 − ξ_p0, λ1 = ξ_p0 − ξ_p1, …, λ3 = ξ_p2.
+  // The barycentric coordinates, with the axes in the order p of the permutation: λ0 = 1 − ξ_p0, λ1
+  // = ξ_p0 − ξ_p1, …, λ3 = ξ_p2.
   const auto& axis = kKuhnPermutations[static_cast<std::size_t>(kuhn)];
   Eigen::Matrix<double, 4, 3> gradients = Eigen::Matrix<double, 4, 3>::Zero();
   for (int i = 0; i < 3; ++i) {

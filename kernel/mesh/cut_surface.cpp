@@ -101,7 +101,7 @@ Resolution surface_resolution(const ActiveMesh& mesh, const CutSurface& surface,
       total[node] += area;
     }
   }
-  // Of this rank's nodes, as ghosts do not have all their tetrahedra here.
+  // Only this rank's nodes count, as ghosts do not have all their tetrahedra here.
   std::vector<double> worst = {1, 0, 0, 0};
   for (int node = 0; node < mesh.owned_nodes; ++node) {
     const double ratio = turned[node].norm() / total[node];

@@ -1,4 +1,4 @@
-// Which rank owns which part of the background mesh.
+// The parts of the background mesh that the ranks own.
 #pragma once
 
 #include <cstdint>

@@ -56,7 +56,7 @@ Piece piece_above(const std::array<Point, 3>& x, const std::array<double, 3>& va
   return piece;
 }
 
-// What a rank or the whole surface knows of a raft while it is put together.
+// The sums of a raft that a rank or the whole surface has while the raft is put together.
 struct Sums {
   double area = 0, perimeter = 0;
   double moment[3] = {0, 0, 0};  // area times centre of area

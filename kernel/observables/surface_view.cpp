@@ -81,7 +81,7 @@ class View {
     }
   }
 
-  // What is in front on any of the ranks.
+  // Keeps what is in front on any of the ranks.
   void combine(const Communicator& ranks) {
     if (ranks.size() == 1) return;
     const auto samples = static_cast<Eigen::Index>(depth_.size());

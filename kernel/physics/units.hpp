@@ -10,7 +10,7 @@ struct Units {
 
   static constexpr double kUm2PerCm2 = 1e8;
   double seconds_per_unit() const { return radius_um * radius_um / (diffusion_cm2_s * kUm2PerCm2); }
-  // With the D (cm²/s) for which R²/D is so many seconds.
+  // The units with the D (cm²/s) for which R²/D is so many seconds.
   Units with_seconds_per_unit(double seconds) const {
     return {radius_um, radius_um * radius_um / (seconds * kUm2PerCm2), scaled};
   }

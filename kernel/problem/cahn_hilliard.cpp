@@ -192,7 +192,7 @@ double CahnHilliard::energy_scale() const {
 }
 
 bool CahnHilliard::dissipates_energy() const {
-  // With the nodal rule F2 is not the gradient of the energy.
+  // F2 is not the gradient of the energy with the nodal rule.
   return model_.rule != fem::PotentialRule::nodal &&
          std::all_of(model_.effects.begin(), model_.effects.end(),
                      [](const EffectPtr& effect) { return effect->dissipates_energy(); });

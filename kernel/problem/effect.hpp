@@ -35,11 +35,11 @@ class Effect {
   // Does the energy fall in steps with the stabilised tangent, too, which treat the effect
   // explicitly? A potential does as the wells do, while |f0''| ≤ 2β with it.
   virtual bool dissipates_explicitly() const { return dissipates_energy(); }
-  // As of DaeProblem.
+  // The longest step, as of DaeProblem.
   virtual double longest_step() const { return std::numeric_limits<double>::infinity(); }
   // Throws InputError if the effect is not made for this surface.
   virtual void require_surface(const fem::SurfaceSpace&) const {}
-  // What the effect adds to the energy, over all ranks; F2 is the gradient of the sum.
+  // The energy that the effect adds, over all ranks; F2 is the gradient of the sum.
   virtual double energy(const fem::SurfaceSpace&, VecView /*c*/) const { return 0; }
 
   virtual void add_residual(const fem::SurfaceSpace& space, double t, VecView c, VecView mu,

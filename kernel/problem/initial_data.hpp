@@ -19,7 +19,7 @@ struct CapRaft {
   double angle;     // half opening angle in radians
 };
 
-// What an initial state may be made of; each kind uses its part.
+// The request of an initial state; each kind uses its part.
 struct InitialRequest {
   double raft_fraction = 0.5;    // mean of (c − a)/(b − a)
   std::int64_t noise_cells = 0;  // cells per edge of the mesh on which noise is drawn; 0: the mesh

@@ -11,8 +11,8 @@ namespace traceraft::simulation {
 
 class RunMonitor {
  public:
-  // What a drift of the mass and a rise of the energy are relative to where these themselves are
-  // nearly zero; energy_scale: DaeProblem's.
+  // Begins a run. A drift of the mass and a rise of the energy are relative to these scales where
+  // mass and energy themselves are nearly zero. `energy_scale`: DaeProblem's.
   void start(const observables::Observables& row, double mass_scale, double energy_scale) {
     initial_mass_ = row.mass;
     mass_scale_ = std::fabs(row.mass) > 1e-3 * mass_scale ? std::fabs(row.mass) : mass_scale;

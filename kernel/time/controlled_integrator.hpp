@@ -1,4 +1,4 @@
-// What methods share whose steps are controlled by an estimate of the error: all but the step.
+// The common part, all but the step, of methods that control steps by an estimate of the error.
 #pragma once
 
 #include <memory>
@@ -42,7 +42,7 @@ class ControlledIntegrator : public Integrator {
   virtual Status attempt(double dt, double& error) = 0;
   // The result of the last attempt, called once if its error is accepted.
   virtual Vec result() = 0;
-  // That result is the next state. Called before it is.
+  // Called before the result becomes the next state.
   virtual void accepted() = 0;
 
   const problem::DaeProblem& problem_;

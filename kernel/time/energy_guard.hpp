@@ -14,7 +14,7 @@ namespace traceraft::time {
 // ask for it.
 class EnergyGuard {
  public:
-  // What does not count as growth: 1e-10 of the first energy, and roundoff.
+  // The rise that does not count as growth: 1e-10 of the first energy, and roundoff.
   static double allowed_rise(double first_energy, double energy_scale) {
     return 1e-10 * std::fabs(first_energy) + 1e-13 * energy_scale;
   }

@@ -1,4 +1,4 @@
-// What every time integrator does, whatever library it comes from.
+// The interface of every time integrator, whatever library it comes from.
 #pragma once
 
 #include <functional>

@@ -60,7 +60,7 @@ void JacobianSolver::solve_with_factors(std::vector<NewtonSystem>& systems, doub
   });
 }
 
-// What failed at the same time as others is repeated alone.
+// A system that failed at the same time as others is repeated alone.
 void JacobianSolver::repair(NewtonSystem& system, const Vec& guess, int lane, double tolerance,
                             bool fresh) {
   if (!fresh) {

@@ -1,4 +1,4 @@
-// Which disagreements are significant.
+// The disagreements that are significant.
 #include "verification/assimilation/filter/disagreement.hpp"
 
 #include <gtest/gtest.h>

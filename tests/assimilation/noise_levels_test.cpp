@@ -1,4 +1,4 @@
-// What innovations say of the noise of measurements.
+// The noise of measurements, as innovations tell it.
 #include "verification/assimilation/filter/noise_levels.hpp"
 
 #include <gtest/gtest.h>

@@ -40,7 +40,7 @@ TEST(Outliers, AreNotWhatNoiseExplains) {
   EXPECT_EQ(drop_outliers(Vec::Zero(kPoints), 0, measured), 0u);
 }
 
-// What lacks half of the distance of the furthest may be its doing.
+// A value at less than half of the distance of the furthest may be the furthest's doing.
 TEST(Outliers, AreTheFurthestFirst) {
   FieldSnapshot measured = snapshot();
   measured.values[7] = 2;

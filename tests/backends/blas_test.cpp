@@ -17,7 +17,7 @@ std::ptrdiff_t threads() {
   return std::distance(begin(tasks), end(tasks));
 }
 
-// Of matrices that OpenBLAS would share out; in a process of its own, as MPI has threads.
+// The matrices are large enough to be shared out. In a process of its own, as MPI has threads.
 TEST(BlasDeathTest, HasNoThreadsOfItsOwn) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   const auto check = [] {

@@ -29,7 +29,7 @@ class TekoOptionsTest : public ::testing::Test {
     posix::write_durably(path, "<ParameterList>" + content + "</ParameterList>");
     return path.string();
   }
-  // What is wrong, after the option it is said of.
+  // The complaint: what is wrong, after the option it is said of.
   std::string complaint(const backends::WordOptions& options) const {
     try {
       (void)make(options);

@@ -82,7 +82,7 @@ TEST_F(CalibrateTest, GoesFromFilesToFiles) {
   const std::string before = content(folder.path / "c/calibration.json");
   EXPECT_EQ(traceraft(command + " --quiet").code, 0);
   EXPECT_EQ(content(folder.path / "c/calibration.json"), before);
-  // As the page says it is repeated.
+  // The calibration is repeated as the page says.
   const std::string repeat = "calibrate --data " + out("data") + " --model " +
                              out("c/calibration-model.toml") +
                              " --parameters mobility,epsilon --runs 2 --most-cells 128";
@@ -120,7 +120,7 @@ TEST_F(CalibrateTest, FindsTheMobilityOfAnEnsemble) {
   EXPECT_EQ(json["parameters"].size(), 1u);
   EXPECT_LT(mobility["interval_95"][0], mobility["value"]);
   EXPECT_GT(mobility["interval_95"][1], mobility["value"]);
-  // What fits best is shown with the measurements in it.
+  // The best fit is shown with the measurements in it.
   EXPECT_TRUE(names(content(folder.path / "c/calibration.html"), "<svg"));
   EXPECT_TRUE(fs::exists(folder.path / "c/fit-perimeter.svg"));
   // The data are drawn from a law that was fitted to what simulations with 2.5e-5 cm²/s agree with.
@@ -166,7 +166,7 @@ TEST_F(CalibrateTest, DoesNotTakeOneVesicleForAnother) {
   EXPECT_TRUE(names(compared.output, "ANOTHER MEMBRANE"));
 }
 
-// What the measurements show after the end of the runs they may have shown before, if D is smaller.
+// The runs may have shown before their end what the measurements show after it, if D is smaller.
 TEST_F(CalibrateTest, LooksForTheMobilityWithinItsRuns) {
   const std::string kept = TRACERAFT_ROOT "/verification/data/";
   fs::create_directories(folder.path / "short");

@@ -1,4 +1,4 @@
-// What a calibration says of what it found.
+// The words of a calibration about what it found.
 #include "drivers/calibrate/calibration_findings.hpp"
 
 #include <gtest/gtest.h>

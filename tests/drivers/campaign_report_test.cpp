@@ -1,4 +1,4 @@
-// What cases add up to, on scores that are written down by hand.
+// The report of a campaign, on scores that are written down by hand.
 #include "drivers/campaign/campaign_report.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 campaign::CaseScore score(int number, const std::string& hidden, const std::string& found,
                           campaign::CaseOutcome outcome, double deviations) {
-  // Of 5² − 3² the named model closes 5² − 4², the placebo nothing.
+  // The named model closes 5² − 4² of 5² − 3², the placebo nothing.
   return {{"naming", number}, hidden, "named", found, outcome, 0.01 * number,
           deviations,         0.005,  5,       4,     5,       3,
           10.0 * number};

@@ -52,7 +52,7 @@ TEST_F(HideTest, WritesMeasurementsAndSealsTheirTruth) {
 }
 
 TEST_F(HideTest, SeesAChangedTruth) {
-  // Of an attempt that was killed while it wrote more snapshots.
+  // Files of an attempt that was killed while it wrote more snapshots.
   fs::create_directories(folder.path / "riddle" / "data");
   posix::write_durably(folder.path / "riddle" / "truth.json", "{}\n");
   posix::write_durably(folder.path / "riddle" / "data" / "snapshot_004.csv", "x,y,z,c\n");

@@ -1,4 +1,4 @@
-// What counts as right in a campaign, on verdicts that are written down by hand.
+// The outcomes of a campaign that count as right, on verdicts that are written down by hand.
 #include "drivers/campaign/case_outcome.hpp"
 
 #include <gtest/gtest.h>

@@ -28,7 +28,7 @@ TEST(Chart, HasAFewLabelsOnALogarithmicAxisOfAnyLength) {
   EXPECT_NE(tics_of({3, 300}).find("10, 20, '' 30 1, '' 40 1, 50, "), std::string::npos);
 }
 
-// What falls to 0 goes down to the edge of a logarithmic chart, whose times are those there are.
+// A curve that falls to 0 goes down to the edge of a logarithmic chart, with all times there are.
 TEST(Chart, EndsBandsAtTheAxis) {
   const testing::TemporaryFolder folder;
   const bench::Chart chart{

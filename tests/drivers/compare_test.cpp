@@ -113,7 +113,7 @@ TEST_F(CompareTest, ErrorsTimesAndCountsAreThoseOfTheRuns) {
                                        "--repeat 2 --target-error 3e-3");
   ASSERT_EQ(outcome.code, 0) << outcome.output;
   EXPECT_TRUE(names(outcome.output, "3.0e-03"));
-  // That no method reached what was asked for is an answer; so is that nothing is asked for again.
+  // No method reaches what is asked for: that is an answer. So is that nothing is asked for again.
   const ProgramEnd none = traceraft("compare " + out() + references() + "--target-error 1e-15");
   EXPECT_EQ(none.code, 0);
   EXPECT_TRUE(names(none.output, "1.0e-15"));

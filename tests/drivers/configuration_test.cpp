@@ -58,7 +58,7 @@ TEST(Configuration, KnowsTheFlagsThatRepeatIt) {
   EXPECT_EQ(config::flags_text(given),
             "--case guv-3to1 --cells 48 --initial formula --initial-formula 'sin(3*x)^2' "
             "--integrator euler");
-  // What does nothing is not repeated: it would be refused.
+  // An option that does nothing is not repeated: it would be refused.
   const config::Configuration idle({}, flags({{"case", "spinodal"},
                                               {"cells", "8"},
                                               {"initial", "caps"},

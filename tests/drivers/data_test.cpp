@@ -137,7 +137,7 @@ TEST(DataTest, ChecksMeasuredFields) {
   }
   const ProgramEnd check = traceraft("data check " + folder.path.string());
   ASSERT_EQ(check.code, 0) << check.output;
-  // Of the icosahedron's corners eight have z >= 0.
+  // Eight of the icosahedron's corners have z >= 0.
   for (const char* fact : {"half", "R = 4 um", "120", "200", " 8 "})
     EXPECT_TRUE(names(check.output, fact));
   std::ofstream(folder.path / "snapshot_002.csv") << "x,y,z,c\n1,2,3,0.5\n";

@@ -190,7 +190,7 @@ TEST_F(EnsembleTest, GathersTheOthersOfADamagedRun) {
                            "a/runs/seed-2 ", "a/runs/seed-3 "})
     EXPECT_TRUE(names(made.output, fact));
   EXPECT_TRUE(names(content(folder.path / "a/ensemble.html"), "1 of 4 runs"));
-  // What is there but cannot be read is not to be deleted.
+  // A run that is there but cannot be read is not to be deleted.
   fs::remove(folder.path / "a/runs/seed-3/summary.json");
   fs::create_directory(folder.path / "a/runs/seed-3/summary.json");
   const ProgramEnd unread = traceraft("ensemble --out " + out("a"));
@@ -294,7 +294,7 @@ TEST_F(EnsembleTest, BeginsAgainWhereNothingHadBegun) {
   EXPECT_EQ(traceraft("ensemble --quiet " + runs + "--runs 1 --out " + out("a")).code, 0);
 }
 
-// What the program writes is a configuration; of a campaign it keeps its hands off.
+// The program takes configurations that it wrote, and keeps its hands off a campaign.
 TEST_F(EnsembleTest, TakesAnyConfigurationAndNoOtherPlan) {
   ASSERT_EQ(traceraft("ensemble --quiet " + runs + "--runs 1 --out " + out("a")).code, 0);
   ASSERT_EQ(

@@ -119,7 +119,7 @@ TEST_F(ExplainSeriesTest, TakesNoSimulationsThatAreOthers) {
   const std::string kept = content(file);
   nlohmann::json foreign = json_of(file);
   foreign["identity"] = "another";
-  // As earlier versions of the program wrote it, and of another model.
+  // The file as earlier versions of the program wrote it, and of another model.
   const nlohmann::json older{{"identity", json_of(file)["identity"]},
                              {"strengths", json_of(file)["strengths"]}};
   for (const nlohmann::json& strengths : {older, foreign}) {

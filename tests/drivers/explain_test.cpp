@@ -19,7 +19,7 @@ using testing::refuses;
 
 class ExplainTest : public ::testing::Test {
  protected:
-  // What a vesicle of 5 µm with ε = 0.75 µm and D = 1e-5 cm²/s would show.
+  // A request for what a vesicle of 5 µm with ε = 0.75 µm and D = 1e-5 cm²/s would show.
   selection::BlindRequest request() const {
     selection::BlindRequest request;
     request.base = bench::bench_model("degenerate", 0.15);
@@ -89,7 +89,7 @@ TEST_F(ExplainTest, NamesWhatWasHidden) {
   EXPECT_NEAR(rate["value"], truth, 4 * rate["sigma"].get<double>());
   EXPECT_LT(rate["sigma"], 0.2 * truth);
   EXPECT_NEAR(verdict["noise"]["level"], drawn.noise, 0.05 * drawn.noise);
-  // What is left is what is to be expected of noise.
+  // The gap that is left is to be expected of noise.
   const auto gap = [&](const char* which) { return verdict["gap"][which]["train"].get<double>(); };
   EXPECT_NEAR(gap("named"), gap("floor"), 0.03 * gap("floor"));
   EXPECT_GT(gap("base"), 1.05 * gap("floor"));
@@ -276,7 +276,7 @@ TEST_F(ExplainRefusalTest, LeavesFoldersOfOthersAlone) {
   EXPECT_TRUE(refuses(testing::traceraft(explain + " --epsilon 0.75 --cells 13 --out " +
                                          (folder.path / "mine").string()),
                       "notes.txt"));
-  // What was found would take the place of the model that it was given.
+  // The model that was found would take the place of the one that was given.
   fs::create_directories(folder.path / "out");
   const fs::path own = folder.path / "out" / "model.toml";
   posix::write_durably(own, "epsilon = 0.75\ncells = 13\n");

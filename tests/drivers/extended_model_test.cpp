@@ -12,7 +12,7 @@ namespace {
 
 class ExtendedModelTest : public ::testing::Test {
  protected:
-  // What is written for the original, with D and gravity found.
+  // The file that is written for the original, with D and gravity found.
   std::string extended(const std::string& original) {
     config::GivenValues wanted;
     if (!original.empty()) {

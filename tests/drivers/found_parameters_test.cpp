@@ -1,4 +1,4 @@
-// What refits say in the units of their user.
+// The words of refits, in the units of their user.
 #include "drivers/explain/found_parameters.hpp"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ TEST(FoundParameters, ErrorsAreThoseOfWhatTheyAreMadeOf) {
   EXPECT_NEAR(found[1].sigma.value(), std::hypot(0.01 * 0.03, 0.03 * 0.001) / 0.0016, 1e-3);
 }
 
-// With one coefficient held at zero, the exchange is an uptake, and as certain.
+// An exchange with one coefficient held at zero is an uptake, and as certain.
 TEST(FoundParameters, WhatIsHeldDoesNotBlurTheRate) {
   const auto found = explain::found_parameters(exchange(0, 0.01), kCell);
   EXPECT_NEAR(found[0].sigma.value(), 1e-3 / 0.025, 1e-4);
@@ -127,7 +127,7 @@ TEST(Remarks, DoubtADThatMeasurementsContradict) {
   const std::string expected =
       "D, 1e-05 cm^2/s, which is said to be known to 5 %. The value from both is 1.3e-05";
   EXPECT_NE(text.find(expected), std::string::npos) << text;
-  // As sure as D was known before, the measurements have told nothing.
+  // The measurements have told nothing if D is as sure as it was known before.
   found.found.diffusion_ratio_deviation = 0.05;
   EXPECT_TRUE(explain::remarks(found, kCell).empty());
 }
@@ -170,7 +170,7 @@ selection::Refit of_strength(const std::string& effect, double strength) {
   return fit;
 }
 
-// What the model states is held against what these data say; what is none is not written.
+// An effect that the model states is held against these data; one that is none is not written.
 TEST(OwnEffects, AreHeldAgainstTheData) {
   explain::ExplainSetup setup;
   const effects::EffectTerm gravity{"gravity", {0.3}};

@@ -20,7 +20,7 @@ using testing::shell;
 using testing::TemporaryFolder;
 using testing::traceraft;
 
-// As it is shown, or what groff has against it. Needs the Debian package groff-base.
+// The page as it is shown, or what groff has against it. Needs the Debian package groff-base.
 ProgramEnd typeset(const std::string& page, const std::string& options) {
   const TemporaryFolder folder;
   posix::write_durably(folder.path / "page.1", page);

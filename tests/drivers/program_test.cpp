@@ -193,7 +193,7 @@ TEST_F(ProgramTest, ContinuesBitwiseWithOtherMethods) {
 
 TEST_F(ProgramTest, StartsAgainWhenKilledBeforeTheFirstCheckpoint) {
   ASSERT_EQ(traceraft("run --quiet " + quick + "--out " + out("whole")).code, 0);
-  // As a kill right after the configuration was written leaves it.
+  // The folder as a kill right after the configuration was written leaves it.
   fs::create_directory(folder.path / "early");
   posix::write_durably(folder.path / "early/config.toml",
                        content(folder.path / "whole/config.toml"));
@@ -317,7 +317,7 @@ TEST_F(ProgramTest, AFullDiskIsAnInputOutputErrorAndKeepsTheOldCheckpoint) {
                                out("a"));
   ASSERT_EQ(run.code, 4) << run.output;
   EXPECT_TRUE(names(run.output, "series.csv"));
-  // With room again it goes on, as if nothing had happened.
+  // The run goes on when there is room again, as if nothing had happened.
   const ProgramEnd resumed = traceraft("resume --quiet " + out("a"));
   EXPECT_EQ(resumed.code, 0) << resumed.output;
   ASSERT_EQ(traceraft("run --quiet --no-fields --case two-rafts --cells 8 --epsilon 1.5 "

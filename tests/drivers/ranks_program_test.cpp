@@ -134,8 +134,8 @@ TEST_F(RanksTest, StopWhereOneOfThemIsAskedTo) {
   EXPECT_EQ(on(2, "resume --quiet " + at("run")).code, 0);
 }
 
-// What a run wrote after its last checkpoint is written again, by as many ranks as there are then;
-// a run that had two threads goes on with ranks.
+// Fields that a run wrote after its last checkpoint are written again, by as many ranks as there
+// are then; a run that had two threads goes on with ranks.
 TEST_F(RanksTest, FieldsAreThoseOfTheLastWriter) {
   const pid_t child = testing::start_traceraft(
       "run --quiet --threads 2 --output-times 0,0.001,1 --checkpoint-interval 1000 " + runs +
@@ -232,7 +232,7 @@ TEST_F(RanksTest, EveryTimeIsCollectedOnce) {
   }
 }
 
-// What ends before it computes may share the processors with other tests.
+// Runs that end before they compute may share the processors with other tests.
 using RanksEndTest = RanksTest;
 
 TEST_F(RanksEndTest, TheFirstRankSpeaksForAll) {
@@ -300,7 +300,7 @@ TEST_F(RanksTest, OneThatFailsEndsAll) {
   EXPECT_EQ(outcome.code, 4) << outcome.output;
   EXPECT_TRUE(testing::names(outcome.output, "rank 1"));
   EXPECT_TRUE(testing::names(outcome.output, "field-0016-0001.vtu"));
-  // What was there is still there.
+  // Everything that was there is still there.
   fs::remove(at("run") + "/fields/field-0016-0001.vtu");
   EXPECT_EQ(on(2, "resume --quiet " + at("run")).code, 0);
 }

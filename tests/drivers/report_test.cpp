@@ -49,7 +49,7 @@ TEST_F(ReportTest, MakesAPagePicturesAndAnAnimation) {
         content(folder.path / "pictures" / ("frame-000" + std::to_string(k) + ".png")).substr(1, 3),
         "PNG");
   EXPECT_FALSE(fs::exists(folder.path / "pictures/frame-0005.png"));
-  // With the time in it, and without.
+  // Pictures with the time in them, and without.
   ASSERT_EQ(traceraft("report --quiet " + out("a") + " --frames 5 --pixels 64 --bare --snapshots " +
                       out("bare"))
                 .code,
@@ -90,7 +90,7 @@ TEST_F(ReportTest, ShowsEnsemblesAndCopiesFinishedPages) {
   ASSERT_EQ(traceraft("report --quiet " + out("e")).code, 0);
   const std::string page = content(folder.path / "e/report.html");
   for (const char* fact : {"seed-1", "id=\"viewer\"", "<svg"}) EXPECT_TRUE(names(page, fact));
-  // Of what is kept of one, all but the surface.
+  // A report of a kept ensemble shows all but the surface.
   const std::string kept = TRACERAFT_ROOT "/verification/data/ensembles/guv-2to1";
   ASSERT_EQ(traceraft("report --quiet " + kept + " --out " + out("kept.html")).code, 0);
   const std::string of_kept = content(folder.path / "kept.html");

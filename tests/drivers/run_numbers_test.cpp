@@ -51,7 +51,7 @@ TEST(RunNumbers, AUnitThatIsNotTheProgramsIsPartOfAName) {
   EXPECT_TRUE(table.has("perimeter"));
 }
 
-// What stands between a mark of this name and the end of it.
+// The text between a mark of this name and the end of it.
 std::string marked(const std::string& text, const std::string& name) {
   const std::string begin = "<!-- " + name + " -->\n";
   const std::size_t at = text.find(begin);

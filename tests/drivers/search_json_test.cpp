@@ -63,7 +63,7 @@ TEST(SearchJson, KeepsWhatARoundThatIsNotOverHas) {
   EXPECT_EQ(read.refits.at(2).failure, "a step fails");
 }
 
-// With the parameters that the model has of it, which are not those that are looked for.
+// Effects have the model's own parameters, which are not those that are looked for.
 TEST(SearchJson, KeepsEffectsOfTheModel) {
   const effects::EffectTerm own{"ohta-kawasaki", {12.5, 0.3}};
   selection::SearchState state;

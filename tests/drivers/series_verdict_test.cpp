@@ -1,4 +1,4 @@
-// What series say, in files that other programs read.
+// The verdict of series, in files that other programs read.
 #include "drivers/explain/series_verdict.hpp"
 
 #include <gtest/gtest.h>
@@ -73,7 +73,7 @@ TEST_F(SeriesVerdictTest, NamesWhatExplainsMostInPhysicalUnits) {
   EXPECT_NEAR(std::stod(effect.substr(name.size())), 0.06, 1e-6);
 }
 
-// What is fitted may lie beyond what is possible.
+// A fitted strength may lie beyond what is possible.
 TEST_F(SeriesVerdictTest, WritesAModelThatCanBeRun) {
   ensembles.terms = {assimilation::find_candidate("asymmetry")->term({0.5})};
   found.scores.front().effect = "asymmetry";
@@ -97,7 +97,7 @@ TEST_F(SeriesVerdictTest, ATrendNamesNothing) {
   EXPECT_FALSE(std::filesystem::exists(folder.path / "model.toml"));
 }
 
-// What was not looked for is said.
+// Parameters that were not looked for are said.
 TEST_F(SeriesVerdictTest, SaysWhatWasAssumed) {
   ensembles.terms = {assimilation::find_candidate("exchange")->term({3e-3, 1e-3})};
   found.scores.front().effect = "exchange";

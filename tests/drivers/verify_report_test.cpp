@@ -1,4 +1,4 @@
-// What a verification leaves behind, and when it fails.
+// The files that a verification leaves behind, and when it fails.
 #include "drivers/verify/verify_report.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What every effect promises (kernel/problem/effect.hpp, kernel/effects/effects.hpp).
+// The promises of every effect (kernel/problem/effect.hpp, kernel/effects/effects.hpp).
 #include <gtest/gtest.h>
 
 #include "kernel/effects/effects.hpp"
@@ -39,7 +39,7 @@ TEST_P(EffectContract, IsSeenInTheResidual) {
   EXPECT_GT((with - without).norm(), 1e-4 * without.norm());
 }
 
-// What may be negative has words for that.
+// Strengths that may be negative have words for that.
 TEST_P(EffectContract, SaysWhatANegativeStrengthMeans) {
   EXPECT_EQ(entry().parameters.front().min < 0, !entry().reversed.empty());
   std::vector<double> values(entry().parameters.size());
@@ -234,7 +234,7 @@ TEST(Effects, TakeTheirParametersInPhysicalUnits) {
   EXPECT_LT((r - s).norm(), 1e-12 * s.norm());
 }
 
-// What is not given is in µm and s, whatever the units of what is.
+// Values that are not given are in µm and s, whatever the units of those that are.
 TEST(Effects, HaveTheSameDefaultsInAnyUnits) {
   const auto space = make_space(10);
   const auto residual = [&](const std::string& effect, bool scaled) {

@@ -1,4 +1,4 @@
-// What effects do, against exact answers.
+// The physics of effects, against exact answers.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -153,8 +153,8 @@ TEST_F(EffectPhysics, OhtaKawasakiKnowsOnWhichMeshItIs) {
 }
 
 TEST_F(EffectPhysics, CurvatureIsThatOfTheSurface) {
-  // Of an ellipsoid of revolution with half axes 1 and c: H = (1 + c²)/(2 c) · … = at the poles
-  // c (both principal curvatures are c/1), at the equator (1 + 1/c²)/2.
+  // The mean curvature H of an ellipsoid of revolution with half axes 1 and c: at the poles c (both
+  // principal curvatures are c/1), at the equator (1 + 1/c²)/2.
   const double c = 0.7;
   const auto ellipsoid = make_space(64, "ellipsoid:a=1,b=1,c=0.7");
   const int nodes = ellipsoid->nodes();

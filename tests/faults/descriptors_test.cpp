@@ -1,4 +1,4 @@
-// What surrounds a process: descriptors, limits, environment and signals.
+// The surroundings of a process: descriptors, limits, environment and signals.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -136,7 +136,7 @@ TEST_F(SurroundingsTest, AHangUpThatIsIgnoredStaysIgnored) {
   EXPECT_EQ(WEXITSTATUS(status), 5);
 }
 
-// As in `traceraft run | head`.
+// The case is that of `traceraft run | head`.
 TEST_F(SurroundingsTest, AnOutputThatNobodyReadsIsARequestToStop) {
   const std::string code = out + ".code";
   (void)shell("(" + std::string(TRACERAFT_PROGRAM) + " run --scaled --cells 16 --epsilon 0.3 " +

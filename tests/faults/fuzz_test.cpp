@@ -50,7 +50,7 @@ using testing::Mutations;
 
 constexpr int kInputsOfEach = 1300;
 
-// Of all kinds of files.
+// Tokens of all kinds of files.
 std::vector<std::string> tokens() {
   std::vector<std::string> list = {"nan",
                                    "inf",

@@ -1,4 +1,4 @@
-// What every built-in surface promises (kernel/geometry/level_set.hpp).
+// The promises of every built-in surface (kernel/geometry/level_set.hpp).
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -87,7 +87,7 @@ TEST_F(DatasetTest, ComputesSigmasFromThoseOfCaps) {
   EXPECT_NEAR(two.sigma_of(observations::Quantity::fraction),
               std::hypot(0.75 * 5, 4.0 / 3 * 12) / (2 * 5000), 1e-6);
   EXPECT_FALSE(two.sigma[static_cast<std::size_t>(observations::Quantity::rafts)]);
-  // Of half of the sphere only less can be meant: cos θ = 0.34 for 300 less.
+  // A cap that is half of the sphere can only be meant to be smaller: cos θ = 0.34 for 300 less.
   EXPECT_NEAR(data.measurements[1].sigma_of(observations::Quantity::fraction),
               std::sqrt(1 - 0.94 * 0.94) / 2, 1e-12);
   EXPECT_FALSE(data.measurements[2].sigma[0]);

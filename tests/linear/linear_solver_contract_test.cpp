@@ -1,4 +1,4 @@
-// What every linear solver promises (kernel/linear/linear_solver.hpp).
+// The promises of every linear solver (kernel/linear/linear_solver.hpp).
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>

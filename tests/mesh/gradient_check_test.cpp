@@ -9,7 +9,7 @@
 namespace traceraft::mesh {
 namespace {
 
-// What is said of the sphere as the zero of f(|x|² − 1), "" if nothing.
+// The complaint about the sphere as the zero of f(|x|² − 1), "" if there is none.
 template <class F>
 std::string complaint(const F& f, int cells = 32) {
   try {

@@ -28,7 +28,7 @@ TEST(Calibration, SaysWhereItsSearchEnds) {
   EXPECT_FALSE(found.parameters[0].determined);
 }
 
-// Of late looks at a number of rafts that no longer changes any D is as good as a larger one.
+// Any D is as good as a larger one for late looks at a number of rafts that no longer changes.
 TEST(Calibration, KnowsNoUnitWhereCurvesAreFlat) {
   std::vector<History> runs = simulate(kEpsilon, true, 20, 77);
   for (History& run : runs)
@@ -68,7 +68,7 @@ TEST(Calibration, DeterminesNothingBesideAUnitAtItsEnd) {
   EXPECT_FALSE(epsilon.determined);
 }
 
-// What is allowed of a parameter is all that an estimate may be.
+// An estimate stays within what is allowed of a parameter.
 TEST(Calibration, StaysWithinWhatIsAllowed) {
   std::vector<calibration::CalibrationPoint> points;
   for (const auto& ln : calibration::design_around({std::log(kEpsilon)}, 0.25))

@@ -48,7 +48,7 @@ TEST(Published, DrawsWhatWasPublished) {
   EXPECT_NEAR(fraction.deviation, 0.011, 0.0005);
   EXPECT_NEAR(residual.mean, 0, 0.01);
   EXPECT_NEAR(residual.deviation, 0.15, 0.005);
-  // What a comparison with runs has to allow for.
+  // The errors that a comparison with runs has to allow for.
   for (const Measurement& m : data.measurements) {
     EXPECT_NEAR(m.sigma_of(Quantity::perimeter) / *m.of(Quantity::perimeter), 0.15 * std::sqrt(0.5),
                 1e-12);
@@ -312,7 +312,7 @@ TEST(Comparison, SeesRunsWithoutRafts) {
   EXPECT_FALSE(fit_runs({without, with, without}, times, {100, 500}));
 }
 
-// Which roundoff may have put before the last look.
+// The end of the runs, which roundoff may have put before the last look.
 TEST(Comparison, IncludesTheEndOfTheRuns) {
   MeasuredVesicles data;
   data.measurements = {{"v", 500, 5, {8.0, 4.0, 0.1}, {}}, {"v", 500.1, 5, {8.0, 4.0, 0.1}, {}}};

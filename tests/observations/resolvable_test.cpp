@@ -37,11 +37,11 @@ TEST(Resolvable, AsksAboutUnusualTimes) {
   }
 }
 
-// As much raft as possible, half of the surface, has the largest discs.
+// Half of the surface, as much raft as possible, has the largest discs.
 TEST(Resolvable, DoubtsNothingThatMayBe) {
   EXPECT_EQ(too_long_boundaries(look(620, std::nullopt)), "");
   EXPECT_NE(too_long_boundaries(look(640, std::nullopt)), "");
-  // What is not raft may be narrow as well.
+  // The phase that is not raft may be narrow as well.
   EXPECT_NE(too_long_boundaries(look(200, 0.95)), "");
   MeasuredVesicles nothing;
   nothing.measurements = {Measurement{"a", 30, 5, {}, {}}};

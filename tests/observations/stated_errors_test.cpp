@@ -68,7 +68,7 @@ TEST(StatedErrors, DoNotFollowTheNoiseOfValues) {
   EXPECT_NEAR(variance(errors, other, 4), 100 * usual, 60 * usual);
 }
 
-// What was measured before anything could happen says nothing of the others.
+// A measurement from before anything could happen says nothing of the others.
 TEST(StatedErrors, LeaveLooksOfTimeZeroOut) {
   MeasuredVesicles data = data_with(Quantity::perimeter, 0);
   Measurement first = data.measurements[0];
@@ -127,7 +127,7 @@ struct Errors {
   double mean, of_mean;
 };
 
-// What an error makes of ln of a value on average, beside ln of it.
+// The mean of ln of a value with an error, less ln of the value.
 Errors drawn_mean(const StatedError& error, double value, const std::function<double(double)>& f) {
   constexpr int kDrawn = 40000;
   double mean = 0, squares = 0;
@@ -151,7 +151,7 @@ TEST(StatedErrors, AreDrawnAsTheMeanOfTheLogarithmSays) {
     }
 }
 
-// What is counted is a whole number, and 1 at least.
+// A count is a whole number, and 1 at least.
 TEST(StatedErrors, OfCountsAreDrawnAsTheMeanOfTheLogarithmSays) {
   const auto counted = [](double ln_value) {
     return std::log(std::max(1.0, std::round(std::exp(ln_value))));

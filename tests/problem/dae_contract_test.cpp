@@ -1,4 +1,4 @@
-// What every DAE promises its integrators (kernel/problem/dae_problem.hpp).
+// The promises of every DAE to its integrators (kernel/problem/dae_problem.hpp).
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What must not depend on the number of ranks, and what may only to roundoff.
+// Results that must not depend on the number of ranks, and those that may only to roundoff.
 #include <gtest/gtest.h>
 
 #include <cmath>

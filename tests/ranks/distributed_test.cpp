@@ -89,8 +89,8 @@ TEST_F(OnRanks, ResidualAndJacobianAreBitwiseThose) {
   EXPECT_EQ(found, part_of(*whole, expected, *part));
 }
 
-// Of every method, and of every inverse in every preconditioner: the solution of a fixed right-hand
-// side is that of a direct solver on one rank, or there is none.
+// Every method, and every inverse in every preconditioner, finds the solution of a fixed right-hand
+// side that a direct solver finds on one rank, or none.
 TEST_F(OnRanks, TekoSolvesWhatADirectSolverSolvesAlone) {
   const testing::StartState start = noise_state(alone);
   const Vec b = testing::random_vector(alone.size(), 9);

@@ -53,7 +53,7 @@ class RivalsTest : public ::testing::Test {
     return known[effect] = refit(data, model, request_.filter, maps);
   }
 
-  // As if a first round had found the one, and that the others explain the data as well.
+  // The state as if a first round had found the one and that the others explain the data as well.
   SearchState state_of(const Refit& found, const std::vector<Refit>& rivals) const {
     SearchState state;
     state.next = SearchStep::calibrate;
@@ -179,7 +179,7 @@ TEST_F(RivalsTest, AreToldApartByAllThatWasMeasured) {
   EXPECT_EQ(class_of(turned), std::vector<std::string>{"uptake"});
   EXPECT_NEAR(turned.excluded.at(0).less, found.excluded[0].less, 2);
 
-  // As a search that holds out nothing has it, but for the noise, which is that of the found model.
+  // The criterion of a search that holds out nothing, but with the noise of the found model.
   request_.hold_out = false;
   const auto criterion_of = [&](const Refit& start) {
     const assimilation::FilterProblems data = problems_of(measured(), request_);

@@ -47,7 +47,7 @@ TEST(FreeParameters, StayBelowTheUpperEnd) {
   EXPECT_EQ(free_parameters(pass, at(asymmetry.least)), (Indices{0, 1}));
 }
 
-// What a coefficient that is held would explain is left to the others, and they may be free then.
+// The other coefficients explain what one that is held would explain, and they may be free then.
 TEST(FreeParameters, HaveTheirOptimumBesideThoseThatAreHeld) {
   assimilation::FilterResult pass = pass_with(Vec::Zero(5));
   pass.information(assimilation::kDiffusionRatio, 2) =

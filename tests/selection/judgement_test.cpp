@@ -163,7 +163,7 @@ TEST(Judgement, SeesAGapBesideWhatTheMeshCouldBe) {
   EXPECT_TRUE(judged(round, true).taken);
 }
 
-// What noise hides no finer mesh would show.
+// A finer mesh would not show what noise hides.
 TEST(Judgement, BlamesTheMeshForNothingThatIsNoise) {
   Round round = first_round();
   round.screening.mesh_error = 0;
@@ -185,7 +185,7 @@ TEST(Judgement, CountsNoEffectOfStrengthZero) {
   EXPECT_EQ(judged(round).equivalent, (std::vector<std::string>{"gravity", "bulk-mobility"}));
 }
 
-// What counts is how strong the effect is that was refitted, and how certain.
+// The strength and the certainty of the refitted effect are what counts.
 TEST(Judgement, HoldsRefittedStrengthsAgainstTheMesh) {
   Refit fit = refit_with({"exchange", "gravity"}, 900);
   EXPECT_TRUE(resolved(fit, 1, kMeasuredValues, 0.150));

@@ -1,4 +1,4 @@
-// What held-out measurements say of two models, on forecasts that are written down.
+// The judgement of held-out measurements on two models, on forecasts that are written down.
 #include "verification/selection/search/rerun.hpp"
 
 #include <gtest/gtest.h>

@@ -70,7 +70,7 @@ TEST(ScoreTest, KeepsSigns) {
   EXPECT_NEAR(exchange.null_mean, 1, 0.2);
 }
 
-// What a nuisance explains as well is no evidence.
+// A score that a nuisance explains as well is no evidence.
 TEST(ScoreTest, ProjectsNuisancesOut) {
   Eigen::MatrixXd information = Eigen::MatrixXd::Identity(kParameters, kParameters);
   information(assimilation::kDiffusionRatio, 2) = information(2, assimilation::kDiffusionRatio) =
@@ -107,7 +107,7 @@ TEST(ScoreTest, SeesNothingWhereNothingResponds) {
   EXPECT_EQ(score_of(screening, "gravity").covariance(0, 0), 0);
 }
 
-// With uptake found, one of the two coefficients of exchange is uptake once more.
+// One of the two coefficients of exchange is uptake once more when uptake is found.
 TEST(ScoreTest, LeavesOutCoefficientsThatAreKnownAlready) {
   const assimilation::Hypothesis known{{{assimilation::find_candidate("uptake").value(), {1}}}};
   const std::vector<assimilation::Candidate> left{assimilation::find_candidate("gravity").value(),
@@ -127,7 +127,7 @@ TEST(ScoreTest, LeavesOutCoefficientsThatAreKnownAlready) {
   EXPECT_EQ(exchange.coefficients[1], 0);
 }
 
-// Of two coefficients that do the same, one is left.
+// One of two coefficients that do the same is left.
 TEST(ScoreTest, LeavesOutCoefficientsThatAreAlike) {
   assimilation::FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
   pass.information(4, 5) = pass.information(5, 4) = 1 - 1e-15;
@@ -180,7 +180,7 @@ TEST(ScoreTest, KnowsTheTailsOfSumsOfSquares) {
   EXPECT_NEAR(gamma_tail(two, 3), std::exp(-3), 1e-12);
 }
 
-// What nuisances explain is no gap; the replicates are freed of it as well.
+// A gap that nuisances explain is none; the replicates are freed of it as well.
 TEST(ScoreTest, FreesGapsOfNuisances) {
   assimilation::FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
   assimilation::Columns row = assimilation::Columns::Zero(1, 1 + kParameters + kDraws);

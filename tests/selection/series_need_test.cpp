@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kSquare = kSeen * kSeen;
 
-// Of f times as many vesicles: what an effect does squared, beyond what another D does.
+// The square of what an effect does with f times as many vesicles, beyond what another D does.
 double square(const SeriesProducts& p, double f) {
   return f * p.ee - std::pow(f * p.ue, 2) / (f * p.uu + p.known);
 }
@@ -77,7 +77,7 @@ TEST(SeriesNeed, NoiseOfMoreVesiclesHasThatOfTheRuns) {
   EXPECT_GT(noise[0].most, 2 * noise[0].now);
 }
 
-// What another D does as well is not seen by any number, unless D is known.
+// A change that another D makes as well is not seen by any number, unless D is known.
 TEST(SeriesNeed, AnotherDMayDoTheSame) {
   EXPECT_TRUE(std::isinf(times_needed({20, 10, 5, 0.1}, {1, 1})));
   EXPECT_TRUE(std::isfinite(times_needed({20, 10, 5, 1000}, {1, 1})));

@@ -1,4 +1,4 @@
-// What every communicator promises (kernel/core/communicator.hpp), checked from inside its ranks.
+// The promises of every communicator (kernel/core/communicator.hpp), checked from inside its ranks.
 #pragma once
 
 #include <gtest/gtest.h>

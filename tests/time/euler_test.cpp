@@ -46,7 +46,7 @@ TEST(Euler, NeverGainsEnergyWhereItPromisesSo) {
   EXPECT_GT(gained_by_second, 0) << "the test is too gentle to tell the solutions apart";
 }
 
-// What it has of the step before may gain energy, also where the model cannot.
+// Sources that it has of the step before may gain energy, also where the model cannot.
 TEST(Euler, PromisesNothingOfSourcesThatItTreatsExplicitly) {
   const auto space = make_space(8);
   const auto promises = [&](const std::string& effect) {

@@ -18,7 +18,7 @@ enum class Site { residual, silent_residual, jacobian, setup, solve, silent_solv
 constexpr Site kSites[] = {Site::residual, Site::silent_residual, Site::jacobian,
                            Site::setup,    Site::solve,           Site::silent_solve};
 
-// Which calls of a site fail: those in [first, last].
+// The calls of a site that fail: those in [first, last].
 struct Fault {
   Site site;
   long first, last;

@@ -1,4 +1,4 @@
-// What IDA alone does.
+// The behaviour of IDA alone.
 #include <gtest/gtest.h>
 
 #include <algorithm>

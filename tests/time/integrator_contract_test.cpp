@@ -1,4 +1,4 @@
-// What every integrator promises (kernel/time/integrator.hpp), and what it does when things fail.
+// The promises of every integrator (kernel/time/integrator.hpp), and what it does when things fail.
 #include <gtest/gtest.h>
 
 #include <sstream>

@@ -44,7 +44,7 @@ TEST(StepControl, TakesTheSmallestStepIfThatWorks) {
   EXPECT_TRUE(take(control_of(1e-3, 1), 0.2, 0.1, attempts).ok());
 }
 
-// What is left of the run is longer than the smallest step, but not by enough for another.
+// The rest of the run is longer than the smallest step, but not by enough for another.
 TEST(StepControl, GivesUpNearTheEndToo) {
   const double left = 1.5e-14;
   Attempts attempts{0};

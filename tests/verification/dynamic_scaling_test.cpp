@@ -40,7 +40,7 @@ TEST(DynamicScaling, SpectraInUnitsOfTheirMedianDegreeAreOneDistribution) {
             0.01);
 }
 
-// Of one distribution two in 32 differ by more than what 6 members can be exchanged to.
+// Samples of one distribution differ in two of 32 cases by more than 6 members can be exchanged to.
 TEST(DynamicScaling, TheDifferenceOfChanceTellsDistributionsApart) {
   const auto members = [](std::uint64_t seed, int count, double least) {
     std::vector<std::vector<double>> all;

@@ -32,7 +32,7 @@ TEST(SurfaceCalculus, KnowsTheEigenvaluesOfTheSphere) {
   EXPECT_NEAR(twice(kPlace), 144 * u(kPlace), 1e-10);
 }
 
-// What a function does away from the surface changes nothing.
+// The values of a function away from the surface change nothing.
 TEST(SurfaceCalculus, DoesNotSeeTheExtension) {
   const auto u = [](const auto& x) { return x[0] * x[1] * x[2] + 3.0 * (kSphere(x) * x[0]); };
   EXPECT_NEAR(analytic::laplace_beltrami(kSphere, u)(kPlace), -12 * 0.48 * 0.6 * 0.64, 1e-12);
