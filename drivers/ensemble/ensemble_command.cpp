@@ -111,7 +111,6 @@ int some_members(const EnsembleRequest& request, const EnsembleFolder& folder,
 int carry_out(const EnsembleRequest& request, const EnsembleFolder& folder,
               const EnsemblePlan& plan, const config::Configuration& configuration) {
   const jobs::Jobs jobs = jobs::jobs_of(request.jobs, request.threads);
-  const physics::Units units = configuration.units();
   if (!request.quiet)
     text::say("%d runs, %d at a time with %d thread%s each\nfolder %s\n\n", plan.runs,
               jobs.at_a_time, jobs.threads, jobs.threads == 1 ? "" : "s", folder.path());

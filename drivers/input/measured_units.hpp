@@ -9,10 +9,10 @@
 
 namespace traceraft::input {
 
-// The factor to µm or s of the unit that stands under a key. Throws InputError.
-double length_factor(const config::TomlTable& toml, const std::string& key);
 // Does the key `kind` say "synthetic", not "measured"? Throws InputError for other words.
 bool is_synthetic(const config::TomlTable& toml);
+// The factor to µm or s of the unit that stands under a key. Throws InputError.
+double length_factor(const config::TomlTable& toml, const std::string& key);
 double time_factor(const config::TomlTable& toml, const std::string& key);
 // The time to be added to all times, in the unit of the data. Throws InputError.
 double time_offset(const config::TomlTable& toml);

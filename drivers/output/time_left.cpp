@@ -11,7 +11,7 @@ namespace {
 constexpr double kSettled = 0.1;
 // While rafts coarsen the time a run has taken grows with a power of the time it has come to, in
 // bursts: each raft that vanishes takes short steps. Measured in six runs of the paper's cases.
-constexpr double kDiffusionRatio = 0.28;
+constexpr double kCostExponent = 0.28;
 constexpr double kScatter = 2;  // of that law, and of the last steps
 
 }  // namespace
@@ -29,7 +29,7 @@ TimeLeft::Range TimeLeft::range() const {
   const double by_steps = seconds();
   if (!(by_steps > 0)) return {};
   const Mark& now = marks_.back();
-  const double by_law = now.seconds * (std::pow(end_ / now.t, kDiffusionRatio) - 1);
+  const double by_law = now.seconds * (std::pow(end_ / now.t, kCostExponent) - 1);
   return {std::min(by_steps, by_law) / kScatter, std::max(by_steps, by_law) * kScatter};
 }
 

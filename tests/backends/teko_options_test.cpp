@@ -107,7 +107,7 @@ TEST_F(TekoOptionsTest, FilesAreCheckedBeforeARunStarts) {
   refused(
       "<ParameterList name=\"Belos\"><Parameter name=\"Convergence Tolerance\" type=\"double\" "
       "value=\"0.1\"/></ParameterList>",
-      "--linear-tolerance");
+      "\"Convergence Tolerance\" is what the integrator asks for");
   refused("<ParameterList name=\"Inverse Library\"><ParameterList name=\"mine\"/></ParameterList>",
           "needs a sublist with the parameter Type");
 }

@@ -9,7 +9,7 @@ namespace {
 
 const std::vector<ParameterSpec> kSpecs = {{"major", "R", 1.0, 0.2, 1.5, ""},
                                            {"minor", "R", 0.4, 0.05, 0.8, ""},
-                                           {"seed", "", 1, 0, 9, "", true}};
+                                           {"seed", "", 1, 0, 9, "", ParameterKind::integer}};
 
 std::string complaint(const std::string& arguments) {
   try {

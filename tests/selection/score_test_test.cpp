@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kDraws = 400;
 
-// DiffusionRatio, mesh, then gravity (two-sided), uptake (two-sided), exchange (two, not negative).
+// D, mesh, then gravity (two-sided), uptake (two-sided), exchange (two, not negative).
 const std::vector<assimilation::Candidate>& screened() {
   static const std::vector<assimilation::Candidate> list{
       assimilation::find_candidate("gravity").value(),
@@ -112,7 +112,7 @@ TEST(ScoreTest, LeavesOutCoefficientsThatAreKnownAlready) {
   const assimilation::Hypothesis known{{{assimilation::find_candidate("uptake").value(), {1}}}};
   const std::vector<assimilation::Candidate> left{assimilation::find_candidate("gravity").value(),
                                                   assimilation::find_candidate("exchange").value()};
-  // DiffusionRatio, mesh, uptake, gravity, exchange: the last is uptake but for roundoff.
+  // D, mesh, uptake, gravity, exchange: the last is uptake but for roundoff.
   Eigen::MatrixXd information = Eigen::MatrixXd::Identity(kParameters, kParameters);
   information(2, 5) = information(5, 2) = 1 - 1e-15;
   assimilation::FilterResult pass = pass_with(Eigen::MatrixXd::Identity(kParameters, kParameters));
