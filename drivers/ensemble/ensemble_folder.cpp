@@ -23,13 +23,12 @@ std::string with_advice(const std::string& why, const std::filesystem::path& run
 }
 
 // Throws DamagedFile unless a run has the options of the ensemble, and its own seed.
-void require_options(const EnsembleFolder& folder, std::uint64_t seed) {
-  const auto read = [](const std::filesystem::path& file, const config::GivenValues& flags) {
-    return config::Configuration(config::read_config_file(file), flags);
-  };
-  const std::vector<std::string> names =
-      config::differing_options(read(folder.config(), {{"seed", {std::to_string(seed), "--seed"}}}),
-                                read(folder.run_of(seed) / "config.toml", {}));
+void require_options(const std::filesystem::path& run, const config::Configuration& ensemble,
+                     std::uint64_t seed) {
+  const config::Configuration own(config::read_config_file(run / "config.toml"), {});
+  std::vector<std::string> names = config::differing_options(ensemble, own);
+  names.erase(std::remove(names.begin(), names.end(), "seed"), names.end());
+  if (own.options().seed != static_cast<std::int64_t>(seed)) names.emplace_back("seed");
   if (!names.empty())
     throw DamagedFile("its config.toml differs from that of the ensemble in " +
                       joined(names, " and "));
@@ -138,7 +137,7 @@ FinishedMembers finished_members(const EnsembleFolder& folder,
   for (const std::uint64_t seed : folder.load().seeds()) {
     if (folder.member(seed).end != MemberEnd::finished) continue;
     try {
-      require_options(folder, seed);
+      require_options(folder.run_of(seed), configuration, seed);
       observations::History history = folder.history(seed, radius);
       const double last = history.time.empty() ? 0 : history.time.back();
       if (last < (1 - kRoundoff) * t_end) {

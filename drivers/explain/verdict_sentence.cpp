@@ -116,14 +116,11 @@ std::string verdict_sentence(const selection::Explanation& found) {
     case selection::Finding::ambiguous:
       return class_sentence(found);
     case selection::Finding::below_resolution:
-      return (found.disagreements.empty()
-                  ? "An effect would improve the forecasts, though no single region disagrees "
-                    "beyond "
-                    "noise. The error of the model's mesh could explain all of it. "
-                  : "There is a disagreement, but the error of the model's mesh could explain all "
-                    "of "
-                    "it. ") +
-             std::string("Repeat with more --cells.");
+      return std::string(found.disagreements.empty()
+                             ? "An effect would improve the forecasts, though no single region "
+                               "disagrees beyond noise. The"
+                             : "There is a disagreement, but the") +
+             " error of the model's mesh could explain all of it. Repeat with more --cells.";
     case selection::Finding::not_identifiable:
       return doubt_sentence(found);
     case selection::Finding::unnamed:

@@ -39,8 +39,7 @@ Json parsed_without_repetition(const std::string& text) {
 }  // namespace
 
 std::string checked_text(Json json, int indent) {
-  json.erase(kChecksum);
-  const std::string checksum = checksum_of(Json::parse(text_of(json)));
+  const std::string checksum = checksum_of(json);  // before the member is there
   json[kChecksum] = checksum;
   return text_of(json, indent) + "\n";
 }
