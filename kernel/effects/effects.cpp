@@ -66,9 +66,9 @@ double to_model_units(const std::string& unit, const physics::Units& units) {
 const NamedList<EffectEntry>& effects() {
   static const NamedList<EffectEntry> list(
       "effect", {allen_cahn_effect(), asymmetry_effect(), bulk_mobility_effect(), cooling_effect(),
-                 curvature_effect(), exchange_effect(), gravity_effect(), line_tension_effect(),
-                 mobility_contrast_effect(), mobility_exponent_effect(), ohta_kawasaki_effect(),
-                 rotation_effect(), thermal_effect(), uptake_effect()});
+                 curvature_effect(), exchange_effect(), flow_effect(), gravity_effect(),
+                 line_tension_effect(), mobility_contrast_effect(), mobility_exponent_effect(),
+                 ohta_kawasaki_effect(), rotation_effect(), thermal_effect(), uptake_effect()});
   return list;
 }
 

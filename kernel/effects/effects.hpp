@@ -41,6 +41,7 @@ EffectEntry bulk_mobility_effect();
 EffectEntry cooling_effect();
 EffectEntry curvature_effect();
 EffectEntry exchange_effect();
+EffectEntry flow_effect();
 EffectEntry gravity_effect();
 EffectEntry line_tension_effect();
 EffectEntry mobility_contrast_effect();

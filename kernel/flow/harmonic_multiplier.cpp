@@ -44,9 +44,11 @@ constexpr int kParts = 8;
 }  // namespace
 
 HarmonicMultiplier::HarmonicMultiplier(const std::vector<Point>& points, Vec gain,
-                                       std::shared_ptr<const ThreadTeam> team)
+                                       std::shared_ptr<const ThreadTeam> team,
+                                       std::shared_ptr<const Communicator> ranks)
     : gain_(std::move(gain)),
       team_(std::move(team)),
+      ranks_(std::move(ranks)),
       rings_(2 * (degree() + 1)),
       columns_(2 * rings_) {
   stencils_.reserve(points.size());
@@ -145,8 +147,18 @@ HarmonicMultiplier::Grid HarmonicMultiplier::multiplied(const Grid& grid) const 
   return series * waves_.transpose();
 }
 
+// In the order of the ranks.
+HarmonicMultiplier::Grid HarmonicMultiplier::summed_over_ranks(Grid grid) const {
+  if (ranks_->size() == 1) return grid;
+  const std::vector<double> own(grid.data(), grid.data() + grid.size());
+  grid.setZero();
+  for (const std::vector<double>& part : gather_everywhere(*ranks_, own))
+    grid += Eigen::Map<const Grid>(part.data(), grid.rows(), grid.cols());
+  return grid;
+}
+
 Vec HarmonicMultiplier::apply(VecView b) const {
-  const Grid grid = with_margin(multiplied(folded(spread(b))));
+  const Grid grid = with_margin(multiplied(summed_over_ranks(folded(spread(b)))));
   Vec u(b.size());
   team_->for_range(stencils_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "kernel/core/communicator.hpp"
 #include "kernel/core/thread_team.hpp"
 #include "kernel/core/types.hpp"
 
@@ -21,11 +22,13 @@ namespace traceraft::flow {
 class HarmonicMultiplier {
  public:
   // `points`: only their directions count, and none is 0. `gain[l]`: g_l of l = 0 … degree.
-  HarmonicMultiplier(const std::vector<Point>& points, Vec gain,
-                     std::shared_ptr<const ThreadTeam> team);
+  HarmonicMultiplier(
+      const std::vector<Point>& points, Vec gain, std::shared_ptr<const ThreadTeam> team,
+      std::shared_ptr<const Communicator> ranks = std::make_shared<SerialCommunicator>());
 
   int degree() const { return static_cast<int>(gain_.size()) - 1; }
-  // The same to the last bit on any number of threads.
+  // Values at the points of this rank. The same to the last bit on any number of threads;
+  // collective, with sums over the points of all ranks.
   Vec apply(VecView b) const;
 
  private:
@@ -49,9 +52,11 @@ class HarmonicMultiplier {
   Grid folded(const Grid& padded) const;  // adds a margin to the places it stands for
   Grid with_margin(const Grid& grid) const;
   Grid multiplied(const Grid& grid) const;
+  Grid summed_over_ranks(Grid grid) const;
 
   Vec gain_;
   std::shared_ptr<const ThreadTeam> team_;
+  std::shared_ptr<const Communicator> ranks_;
   int rings_, columns_;
   std::vector<Stencil> stencils_;          // one per point
   Eigen::MatrixXd waves_;                  // columns × (1, cos φ, sin φ, cos 2φ, …)

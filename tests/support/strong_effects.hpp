@@ -13,6 +13,7 @@ inline const std::map<std::string, std::string> kStrong = {
     {"cooling", "rate=3,out=0.2,in=0.1,activation=0.3"},
     {"curvature", "strength=0.8"},
     {"exchange", "rate=0.9,target=0.3"},
+    {"flow", "capillary=300,water=0.8"},
     {"gravity", "strength=0.6"},
     {"line-tension", "excess=0.7"},
     {"mobility-contrast", "strength=0.8"},
