@@ -35,8 +35,8 @@ TEST(SeriesExplanation, KnowsErrorsThatAreStated) {
     for (observations::Measurement& m : data.measurements)
       for (const observations::Quantity quantity : observations::kQuantities) {
         const auto q = observations::index_of(quantity);
-        m.sigma[q] = 0.2 * *m.values[q];
-        m.values[q] = *m.values[q] * std::exp(0.2 * normal_random(50 + set, 1, k++));
+        m.sigma[q] = 0.5 * *m.values[q];
+        m.values[q] = *m.values[q] * std::exp(0.5 * normal_random(50 + set, 1, k++));
       }
     alarms += looked_at(data).p <= 0.05;
   }
