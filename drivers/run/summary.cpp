@@ -146,6 +146,9 @@ void print_setup(const config::Configuration& configuration, const RunSetup& run
   line("mobility", formatted("%s, D = %g cm^2/s", configuration.options().mobility.c_str(),
                              units.diffusion_cm2_s));
   if (!configuration.options().effect.empty()) line("effects", configuration.options().effect);
+  for (const auto& [effect, text] :
+       effects::descriptions(effects_of(configuration), run.problem->model(), units))
+    line(effect.c_str(), text);
   if (const double longest = run.problem->longest_step(); longest < run.t_end)
     line("steps", formatted("at least %.0f: its effects limit a step to %g %s",
                             std::ceil(run.t_end / longest), longest * units.time(),

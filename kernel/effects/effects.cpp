@@ -12,6 +12,12 @@ std::string trimmed(const std::string& text) {
                                     : text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
+constexpr double kBoltzmann = 1.380649e-5;  // pN µm/K
+
+bool needs_forces(const std::string& unit) {
+  return unit == "pN" || unit == "nPa s m" || unit == "mPa s" || unit == "K";
+}
+
 // The parameters with defaults, which are in µm and s, in the units that values are given in.
 std::vector<ParameterSpec> specs_in(const EffectEntry& entry, const physics::Units& units) {
   physics::Units physical = units;
@@ -22,15 +28,31 @@ std::vector<ParameterSpec> specs_in(const EffectEntry& entry, const physics::Uni
   return specs;
 }
 
+void require_strength(const EffectEntry& entry, const Parameters& given) {
+  const auto last = entry.parameters.begin() + entry.strengths;
+  if (std::any_of(entry.parameters.begin(), last,
+                  [&](const ParameterSpec& spec) { return given[spec.name] != 0; }))
+    return;
+  const std::string& strength = entry.parameters.front().name;
+  throw InputError("effect " + entry.name + ": its strength is needed, as in " + entry.name + ":" +
+                   strength + "=...");
+}
+
+void refuse_forces(const EffectEntry& entry, const Parameters& given) {
+  for (const ParameterSpec& spec : entry.parameters)
+    if (needs_forces(spec.unit) && given[spec.name] != spec.default_value)
+      throw InputError("effect " + entry.name + ": " + spec.name + " is in " + spec.unit +
+                       ", and a scaled run has no such unit; give " +
+                       entry.parameters.front().name);
+}
+
 EffectTerm read_term(const std::string& one, const physics::Units& units) {
   const NamedArguments named = split_named_arguments(one);
   const EffectEntry& entry = effects().find(named.name);
   const Parameters given =
       parse_parameters("effect " + entry.name, named.arguments, specs_in(entry, units));
-  const ParameterSpec& strength = entry.parameters.front();
-  if (given[strength.name] == strength.default_value)
-    throw InputError("effect " + entry.name + ": its strength is needed, as in " + entry.name +
-                     ":" + strength.name + "=...");
+  require_strength(entry, given);
+  if (units.scaled) refuse_forces(entry, given);
   EffectTerm term{entry.name, {}};
   for (const ParameterSpec& spec : entry.parameters)
     term.values.push_back(given[spec.name] * to_model_units(spec.unit, units));
@@ -60,6 +82,10 @@ double to_model_units(const std::string& unit, const physics::Units& units) {
   if (is_rate(unit)) return units.time();
   if (unit == "s") return 1 / units.time();
   if (unit == "um") return 1 / units.length();
+  const double diffusion = units.diffusion_cm2_s * physics::Units::kUm2PerCm2;  // µm²/s
+  if (unit == "mPa s") return 1e-3 * diffusion;                                 // pN s/µm²
+  if (unit == "nPa s m") return 1e-3 * diffusion / units.radius_um;             // pN s/µm
+  if (unit == "K") return kBoltzmann / units.radius_um;
   return 1;
 }
 
@@ -103,6 +129,17 @@ std::vector<EffectTerm> read_effects(const std::string& specification,
         throw InputError("effect " + terms[k].effect + ": it is given twice");
   }
   return terms;
+}
+
+std::vector<std::pair<std::string, std::string>> descriptions(
+    const std::vector<EffectTerm>& terms, const problem::CahnHilliardModel& model,
+    const physics::Units& units) {
+  std::vector<std::pair<std::string, std::string>> result;
+  for (const EffectTerm& term : terms)
+    if (const EffectEntry& entry = effects().find(term.effect); entry.description)
+      result.emplace_back(
+          term.effect, entry.description(Parameters(entry.parameters, term.values), model, units));
+  return result;
 }
 
 void add_effects(const std::string& specification, const physics::Units& units,

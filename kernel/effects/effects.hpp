@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kernel/core/named_list.hpp"
@@ -21,7 +22,7 @@ struct EffectEntry {
   std::string summary;   // the physics
   std::string reversed;  // and with a negative strength; "" if it has none
   // The strength first, whose default, 0, is the base model. Units: "" for a pure number, "1/s",
-  // "s", "um".
+  // "s", "um"; "pN", "nPa s m", "mPa s" and "K", which scaled runs do not have.
   std::vector<ParameterSpec> parameters;
   MassClass mass;
   EnergyClass energy;
@@ -33,6 +34,11 @@ struct EffectEntry {
   // Effects that change the mobility, in space or in time, do so in this order, before those that
   // make something of it (which have 0).
   int mobility_stage = 0;
+  int strengths = 1;  // the first parameters, of which one is needed
+  // What follows from the parameters (in units of R and R²/D), for people; none: nothing to say.
+  std::function<std::string(const Parameters&, const problem::CahnHilliardModel&,
+                            const physics::Units&)>
+      description = {};
 };
 
 EffectEntry allen_cahn_effect();
@@ -72,13 +78,18 @@ problem::CahnHilliardModel with_effects(problem::CahnHilliardModel model,
 
 // A parameter per time?
 bool is_rate(const std::string& unit);
-// The factor from a parameter's unit to R and R²/D.
+// The factor from a parameter's unit to R and R²/D. Forces are in pN: a viscosity of a membrane in
+// pN R²/D/R, one of water in pN R²/D/R², and a temperature stands for k_B T in pN R.
 double to_model_units(const std::string& unit, const physics::Units& units);
 
 // "exchange:rate=1e-3,target=0.2; gravity:strength=0.1", with parameters in their own units. Throws
 // InputError for an unknown name or key, a value out of range, a strength that is not given, and an
 // effect that is given twice.
 std::vector<EffectTerm> read_effects(const std::string& specification, const physics::Units& units);
+// What follows from each term, where there is something to say: (name, text).
+std::vector<std::pair<std::string, std::string>> descriptions(
+    const std::vector<EffectTerm>& terms, const problem::CahnHilliardModel& model,
+    const physics::Units& units);
 // Added to the model, as by with_effects.
 void add_effects(const std::string& specification, const physics::Units& units,
                  problem::CahnHilliardModel& model);

@@ -1,13 +1,12 @@
-#include "kernel/flow/harmonic_multiplier.hpp"
+#include "kernel/flow/harmonic_transform.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace traceraft::flow {
 namespace {
 
-// Harmonics are real and orthonormal in L² of the unit sphere:
-//   Y_lm(θ, φ) = P̃_lm(cos θ) {1/√2π, cos mφ/√π, sin mφ/√π},   ∫_{-1}^{1} P̃_lm² = 1.
 // P̃_lm at x = cos θ for l = m … degree, by the recurrence in l, which is stable: entry l − m.
 Vec legendre(int degree, int m, double x) {
   const double sine = std::sqrt(std::fmax(0.0, (1 - x) * (1 + x)));
@@ -43,34 +42,34 @@ constexpr int kParts = 8;
 
 }  // namespace
 
-HarmonicMultiplier::HarmonicMultiplier(const std::vector<Point>& points, Vec gain,
-                                       std::shared_ptr<const ThreadTeam> team,
-                                       std::shared_ptr<const Communicator> ranks)
-    : gain_(std::move(gain)),
+HarmonicTransform::HarmonicTransform(const std::vector<Point>& points, int degree,
+                                     std::shared_ptr<const ThreadTeam> team,
+                                     std::shared_ptr<const Communicator> ranks)
+    : degree_(degree),
       team_(std::move(team)),
       ranks_(std::move(ranks)),
-      rings_(2 * (degree() + 1)),
+      rings_(2 * (degree + 1)),
       columns_(2 * rings_) {
   stencils_.reserve(points.size());
   for (const Point& point : points) stencils_.push_back(stencil_of(point));
-  waves_.resize(columns_, 2 * degree() + 1);
+  waves_.resize(columns_, 2 * degree_ + 1);
   for (int j = 0; j < columns_; ++j) {
     waves_(j, 0) = 1 / std::sqrt(2 * kPi);
-    for (int m = 1; m <= degree(); ++m) {
+    for (int m = 1; m <= degree_; ++m) {
       const double angle = 2 * kPi * ((static_cast<long long>(j) * m) % columns_) / columns_;
       waves_(j, 2 * m - 1) = std::cos(angle) / std::sqrt(kPi);
       waves_(j, 2 * m) = std::sin(angle) / std::sqrt(kPi);
     }
   }
-  for (int m = 0; m <= degree(); ++m) {
-    Eigen::MatrixXd values(rings_, degree() - m + 1);
+  for (int m = 0; m <= degree_; ++m) {
+    Eigen::MatrixXd values(rings_, degree_ - m + 1);
     for (int i = 0; i < rings_; ++i)
-      values.row(i) = legendre(degree(), m, std::cos((i + 0.5) * kPi / rings_)).transpose();
+      values.row(i) = legendre(degree_, m, std::cos((i + 0.5) * kPi / rings_)).transpose();
     legendre_.push_back(std::move(values));
   }
 }
 
-HarmonicMultiplier::Stencil HarmonicMultiplier::stencil_of(const Point& point) const {
+HarmonicTransform::Stencil HarmonicTransform::stencil_of(const Point& point) const {
   const double theta = std::atan2(std::hypot(point[0], point[1]), point[2]);
   double phi = std::atan2(point[1], point[0]);
   if (phi < 0) phi += 2 * kPi;
@@ -85,7 +84,7 @@ HarmonicMultiplier::Stencil HarmonicMultiplier::stencil_of(const Point& point) c
   return stencil;
 }
 
-HarmonicMultiplier::Grid HarmonicMultiplier::spread(VecView b) const {
+HarmonicTransform::Grid HarmonicTransform::spread(VecView values) const {
   std::vector<Grid> part(kParts);
   team_->for_range(kParts, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) {
@@ -94,7 +93,7 @@ HarmonicMultiplier::Grid HarmonicMultiplier::spread(VecView b) const {
       for (std::size_t k = stencils_.size() * p / kParts; k < last; ++k) {
         const Stencil& stencil = stencils_[k];
         const Eigen::Map<const Eigen::Matrix<double, 1, kPoints>> along(stencil.along.data());
-        const double value = b[static_cast<Eigen::Index>(k)];
+        const double value = values[static_cast<Eigen::Index>(k)];
         for (int i = 0; i < kPoints; ++i)
           part[p].row(stencil.ring + i).segment<kPoints>(stencil.column) +=
               (value * stencil.across[static_cast<std::size_t>(i)]) * along;
@@ -106,7 +105,7 @@ HarmonicMultiplier::Grid HarmonicMultiplier::spread(VecView b) const {
 }
 
 // The place of a margin: beyond a pole a meridian goes on, half way round.
-HarmonicMultiplier::Place HarmonicMultiplier::place_of(int row, int column) const {
+HarmonicTransform::Place HarmonicTransform::place_of(int row, int column) const {
   int ring = row - kMargin, along = column - kMargin;
   if (ring < 0 || ring >= rings_) {
     ring = ring < 0 ? -1 - ring : 2 * rings_ - 1 - ring;
@@ -115,7 +114,7 @@ HarmonicMultiplier::Place HarmonicMultiplier::place_of(int row, int column) cons
   return {ring, (along + columns_) % columns_};
 }
 
-HarmonicMultiplier::Grid HarmonicMultiplier::folded(const Grid& padded) const {
+HarmonicTransform::Grid HarmonicTransform::folded(const Grid& padded) const {
   Grid grid = Grid::Zero(rings_, columns_);
   for (int i = 0; i < padded.rows(); ++i)
     for (int j = 0; j < padded.cols(); ++j) {
@@ -125,7 +124,7 @@ HarmonicMultiplier::Grid HarmonicMultiplier::folded(const Grid& padded) const {
   return grid;
 }
 
-HarmonicMultiplier::Grid HarmonicMultiplier::with_margin(const Grid& grid) const {
+HarmonicTransform::Grid HarmonicTransform::with_margin(const Grid& grid) const {
   Grid padded(rings_ + 2 * kMargin, columns_ + 2 * kMargin);
   for (int i = 0; i < padded.rows(); ++i)
     for (int j = 0; j < padded.cols(); ++j) {
@@ -135,20 +134,8 @@ HarmonicMultiplier::Grid HarmonicMultiplier::with_margin(const Grid& grid) const
   return padded;
 }
 
-HarmonicMultiplier::Grid HarmonicMultiplier::multiplied(const Grid& grid) const {
-  Eigen::MatrixXd series = grid * waves_;
-  for (int m = 0; m <= degree(); ++m) {
-    const Eigen::MatrixXd& values = legendre_[static_cast<std::size_t>(m)];
-    auto orders = series.middleCols(m == 0 ? 0 : 2 * m - 1, m == 0 ? 1 : 2);
-    const Eigen::MatrixXd coefficients =
-        gain_.tail(degree() - m + 1).asDiagonal() * (values.transpose() * orders);
-    orders = values * coefficients;
-  }
-  return series * waves_.transpose();
-}
-
 // In the order of the ranks.
-HarmonicMultiplier::Grid HarmonicMultiplier::summed_over_ranks(Grid grid) const {
+HarmonicTransform::Grid HarmonicTransform::summed_over_ranks(Grid grid) const {
   if (ranks_->size() == 1) return grid;
   const std::vector<double> own(grid.data(), grid.data() + grid.size());
   grid.setZero();
@@ -157,9 +144,31 @@ HarmonicMultiplier::Grid HarmonicMultiplier::summed_over_ranks(Grid grid) const 
   return grid;
 }
 
-Vec HarmonicMultiplier::apply(VecView b) const {
-  const Grid grid = with_margin(multiplied(summed_over_ranks(folded(spread(b)))));
-  Vec u(b.size());
+Vec HarmonicTransform::analysis(VecView values) const {
+  const Eigen::MatrixXd series = summed_over_ranks(folded(spread(values))) * waves_;
+  Vec coefficients(size());
+  for (int m = -degree_; m <= degree_; ++m) {
+    const int order = std::abs(m);
+    const Vec of_degrees = legendre_[static_cast<std::size_t>(order)].transpose() *
+                           series.col(m > 0 ? 2 * m - 1 : -2 * m);
+    for (int l = order; l <= degree_; ++l)
+      coefficients[harmonic_index(l, m)] = of_degrees[l - order];
+  }
+  return coefficients;
+}
+
+Vec HarmonicTransform::synthesis(const Vec& coefficients) const {
+  Eigen::MatrixXd series(rings_, 2 * degree_ + 1);
+  for (int m = -degree_; m <= degree_; ++m) {
+    const int order = std::abs(m);
+    Vec of_degrees(degree_ - order + 1);
+    for (int l = order; l <= degree_; ++l)
+      of_degrees[l - order] = coefficients[harmonic_index(l, m)];
+    series.col(m > 0 ? 2 * m - 1 : -2 * m) =
+        legendre_[static_cast<std::size_t>(order)] * of_degrees;
+  }
+  const Grid grid = with_margin(series * waves_.transpose());
+  Vec values(static_cast<Eigen::Index>(stencils_.size()));
   team_->for_range(stencils_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const Stencil& stencil = stencils_[k];
@@ -168,10 +177,10 @@ Vec HarmonicMultiplier::apply(VecView b) const {
       for (int i = 0; i < kPoints; ++i)
         value += stencil.across[static_cast<std::size_t>(i)] *
                  along.dot(grid.row(stencil.ring + i).segment<kPoints>(stencil.column));
-      u[static_cast<Eigen::Index>(k)] = value;
+      values[static_cast<Eigen::Index>(k)] = value;
     }
   });
-  return u;
+  return values;
 }
 
 }  // namespace traceraft::flow

@@ -1,4 +1,4 @@
-// Operators on a sphere that multiply every spherical harmonic by a number of its degree.
+// Real spherical harmonics at scattered points: a fast transform and its transpose.
 #pragma once
 
 #include <array>
@@ -11,25 +11,35 @@
 
 namespace traceraft::flow {
 
-// u = Σ_lm g_l Y_lm (Y_lmᵀ b) for values b at scattered points, with Y_lm as the vector of its
-// values there: symmetric, and positive semidefinite for g_l ≥ 0, to roundoff. It costs a number of
-// operations per point, not one per point and harmonic:
+// Harmonics are real and orthonormal in L² of the unit sphere:
+//   Y_lm(θ, φ) = P̃_l|m|(cos θ) {1/√2π, cos mφ/√π, sin |m|φ/√π} for m = 0, m > 0, m < 0,
+//   ∫_{-1}^{1} P̃_lm² = 1.
+// Coefficients stand in the order of l² + l + m, so that a higher degree only adds to them.
+inline Eigen::Index harmonic_index(int l, int m) {
+  return static_cast<Eigen::Index>(l) * l + l + m;
+}
+
+// With Y as the matrix of the harmonics (columns) at points (rows), synthesis is Y a and analysis
+// is Yᵀ b. The one is the transpose of the other to roundoff. Either costs a number of operations
+// per point, not one per point and harmonic:
 //   points → grid of rings → Fourier series of a ring → harmonics, and back by the transposed
 //   steps.
 // The grid has four points for the shortest wave, and local polynomials of degree 7 lead to the
-// points. They reproduce a harmonic of the highest degree to 2e-2, one of half of it to 1e-4 and
-// one of a quarter to 4e-7.
-class HarmonicMultiplier {
+// points. They reproduce a harmonic of the highest degree to 1e-2, one of half of it to 1e-4 and
+// one of a quarter to 2e-7.
+class HarmonicTransform {
  public:
-  // `points`: only their directions count, and none is 0. `gain[l]`: g_l of l = 0 … degree.
-  HarmonicMultiplier(
-      const std::vector<Point>& points, Vec gain, std::shared_ptr<const ThreadTeam> team,
+  // `points`: only their directions count, and none is 0.
+  HarmonicTransform(
+      const std::vector<Point>& points, int degree, std::shared_ptr<const ThreadTeam> team,
       std::shared_ptr<const Communicator> ranks = std::make_shared<SerialCommunicator>());
 
-  int degree() const { return static_cast<int>(gain_.size()) - 1; }
-  // Values at the points of this rank. The same to the last bit on any number of threads;
-  // collective, with sums over the points of all ranks.
-  Vec apply(VecView b) const;
+  int degree() const { return degree_; }
+  Eigen::Index size() const { return static_cast<Eigen::Index>(degree_ + 1) * (degree_ + 1); }
+  // Both are the same to the last bit on any number of threads. Values are at the points of this
+  // rank. The analysis is collective and sums over the points of all ranks; it has size() entries.
+  Vec analysis(VecView values) const;
+  Vec synthesis(const Vec& coefficients) const;
 
  private:
   static constexpr int kPoints = 8;  // of a local polynomial, along each direction
@@ -48,13 +58,12 @@ class HarmonicMultiplier {
 
   Stencil stencil_of(const Point& point) const;
   Place place_of(int row, int column) const;
-  Grid spread(VecView b) const;           // the transpose of the interpolation, with the margin
+  Grid spread(VecView values) const;      // the transpose of the interpolation, with the margin
   Grid folded(const Grid& padded) const;  // adds a margin to the places it stands for
   Grid with_margin(const Grid& grid) const;
-  Grid multiplied(const Grid& grid) const;
   Grid summed_over_ranks(Grid grid) const;
 
-  Vec gain_;
+  int degree_;
   std::shared_ptr<const ThreadTeam> team_;
   std::shared_ptr<const Communicator> ranks_;
   int rings_, columns_;

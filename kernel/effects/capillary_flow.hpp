@@ -1,0 +1,44 @@
+// Flow of a spherical membrane that the line tension of rafts drives.
+#pragma once
+
+#include "kernel/effects/flow_space.hpp"
+#include "kernel/flow/fluid_membrane.hpp"
+#include "kernel/problem/effect.hpp"
+
+namespace traceraft::effects {
+
+// Boundaries pull the membrane, a fluid of two dimensions, and it carries them along:
+//   ∂c/∂t + u·∇c = …,   u = n × ∇ψ,   friction(ψ) = −A n·(∇μ × ∇c).
+// In weak form the transport is −T(c, ψ, v) in F1 and the force A T(c, μ, ·), with one trilinear
+// form T that is antisymmetric in its last two: dE/dt gains −friction(ψ, ψ)/A exactly.
+class CapillaryFlow final : public problem::Effect {
+ public:
+  CapillaryFlow(const flow::FluidMembrane& membrane, double epsilon);
+
+  std::string name() const override { return "flow"; }
+  bool conserves_mass() const override { return true; }
+  bool dissipates_energy() const override { return true; }
+  bool dissipates_explicitly() const override { return false; }
+  bool tangent_is_assembled() const override { return false; }
+  void require_surface(const fem::SurfaceSpace& space) const override { require_sphere(space); }
+
+  void add_residual(const fem::SurfaceSpace& space, double t, VecView c, VecView mu,
+                    VecRef residual_c, VecRef residual_mu) const override;
+  void add_tangent(const fem::SurfaceSpace& space, double t, VecView c, VecView mu,
+                   linear::BlockJacobian& J) const override;
+  void add_tangent_product(const fem::SurfaceSpace& space, double t, VecView c, VecView mu,
+                           VecView direction_c, VecView direction_mu, VecRef product_c,
+                           VecRef product_mu) const override;
+
+  // ψ at the nodes of this rank. Collective.
+  Vec stream(const fem::SurfaceSpace& space, VecView c, VecView mu) const;
+
+ private:
+  Vec moved_by(const FlowSpace& operators, VecView force) const;
+
+  double capillary_;
+  Vec mobility_;  // of each degree and order: from a force to the stream function
+  mutable PerSpace<FlowSpace> operators_;
+};
+
+}  // namespace traceraft::effects

@@ -1,0 +1,43 @@
+#include "kernel/flow/fluid_membrane.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernel/core/types.hpp"
+
+namespace traceraft::flow {
+namespace {
+
+constexpr int kHighestDegree = 64;
+
+int clamped_degree(double degree, int least) {
+  return std::clamp(static_cast<int>(std::min(std::ceil(degree), 1e6)), least, kHighestDegree);
+}
+
+}  // namespace
+
+// ⟨|u|²⟩ τ with ⟨ψ_lm²⟩ = 2Θ/(friction τ) and Σ_m |∇Y_lm|² = l (l + 1)(2l + 1)/(4π).
+double FluidMembrane::spreading_rate() const {
+  double sum = 0;
+  for (int l = 1; l <= kHighestDegree; ++l) sum += (2 * l + 1) * l * (l + 1) / friction(l);
+  return 2 * thermal * sum / (4 * kPi);
+}
+
+double capillary_number(double line_tension, double epsilon, double membrane_viscosity) {
+  return 6 * std::sqrt(2.0) * line_tension / (epsilon * membrane_viscosity);
+}
+
+int capillary_degree(double epsilon) {
+  return clamped_degree(1.6 / epsilon, 16);
+}
+
+int brownian_degree(double epsilon) {
+  return clamped_degree(0.5 / epsilon, 2);
+}
+
+double hold_of(const FluidMembrane& membrane, double epsilon) {
+  constexpr double kMoved = 0.25;  // of epsilon
+  return kMoved * kMoved * epsilon * epsilon / membrane.spreading_rate();
+}
+
+}  // namespace traceraft::flow

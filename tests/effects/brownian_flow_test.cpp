@@ -1,0 +1,128 @@
+#include "kernel/effects/brownian_flow.hpp"
+
+#include <gtest/gtest.h>
+
+#include "kernel/core/error.hpp"
+#include "kernel/effects/capillary_flow.hpp"
+#include "kernel/effects/effects.hpp"
+#include "tests/support/spaces.hpp"
+
+namespace traceraft::effects {
+namespace {
+
+using testing::make_model;
+using testing::make_space;
+using testing::random_vector;
+
+constexpr flow::FluidMembrane kMembrane{0, 0.8, 0.02};
+constexpr double kHold = 0.05;
+
+Vec residual_of(const problem::Effect& effect, const fem::SurfaceSpace& space, double t,
+                const Vec& c, const Vec& mu) {
+  Vec r = Vec::Zero(c.size()), other = r;
+  effect.add_residual(space, t, c, mu, r, other);
+  EXPECT_EQ(other.norm(), 0);
+  return r;
+}
+
+// 4,000 draws of 2l + 1 numbers: the mean square is known to √(2/(4000 (2l + 1))), 1.3 % at most.
+TEST(BrownianFlow, EveryModeHasTheVarianceThatFluctuationAndDissipationSay) {
+  const BrownianFlow flow(kMembrane, 0.05, kHold, 1);
+  constexpr int kDraws = 4000, kDegree = 10;
+  Vec squares = Vec::Zero(kDegree + 1);
+  for (int k = 0; k < kDraws; ++k) {
+    const Vec drawn = flow.draw(k);
+    ASSERT_EQ(drawn.size(), (kDegree + 1) * (kDegree + 1));
+    for (int l = 0; l <= kDegree; ++l)
+      squares[l] += drawn.segment(flow::harmonic_index(l, -l), 2 * l + 1).squaredNorm() / kDraws;
+  }
+  EXPECT_EQ(squares[0], 0);
+  for (int l = 1; l <= kDegree; ++l) {
+    const double friction = ((l - 1.0) * (l + 2) + 0.8 * (2 * l + 1)) * l * (l + 1);
+    EXPECT_NEAR(squares[l] * friction * kHold / (2 * 0.02 * (2 * l + 1)), 1, 0.06) << l;
+  }
+}
+
+TEST(BrownianFlow, DrawsDoNotDependOnTheHighestDegree) {
+  const Vec few = BrownianFlow(kMembrane, 0.1, kHold, 3).draw(17),
+            many = BrownianFlow(kMembrane, 0.02, kHold, 3).draw(17);
+  EXPECT_LT(few.size(), many.size());
+  EXPECT_EQ(many.head(few.size()), few);
+  EXPECT_NE(BrownianFlow(kMembrane, 0.1, kHold, 4).draw(17), few);
+  EXPECT_NE(BrownianFlow(kMembrane, 0.1, kHold, 3).draw(18), few);
+}
+
+TEST(BrownianFlow, MovesNoConstantAndKeepsTheMass) {
+  const auto space = make_space(12);
+  const BrownianFlow flow(kMembrane, 0.1, kHold, 1);
+  const Vec one = Vec::Ones(space->nodes()), c = random_vector(space->nodes(), 1);
+  const Vec moved = residual_of(flow, *space, 0.33, c, c);
+  EXPECT_GT(moved.norm(), 1e-3);
+  EXPECT_LT(std::fabs(moved.sum()), 1e-14 * moved.lpNorm<1>());
+  EXPECT_LT(residual_of(flow, *space, 0.33, one, c).norm(), 1e-13 * moved.norm());
+}
+
+// A run that goes on asks for the same times in another order.
+TEST(BrownianFlow, IsAFunctionOfTime) {
+  const auto space = make_space(12);
+  const BrownianFlow flow(kMembrane, 0.1, kHold, 1);
+  const Vec c = random_vector(space->nodes(), 1);
+  const Vec first = residual_of(flow, *space, 0.33, c, c);
+  const Vec at_draw = residual_of(flow, *space, 7 * kHold, c, c);
+  for (const double t : {0.1, 0.36, 0.31}) (void)residual_of(flow, *space, t, c, c);
+  EXPECT_EQ(residual_of(flow, *space, 0.33, c, c), first);
+  EXPECT_EQ(residual_of(BrownianFlow(kMembrane, 0.1, kHold, 1), *space, 0.33, c, c), first);
+  const Vec near = residual_of(flow, *space, 7 * kHold - 1e-9, c, c);
+  EXPECT_LT((near - at_draw).norm(), 1e-6 * at_draw.norm());
+}
+
+TEST(BrownianFlow, IsLinearInC) {
+  const auto space = make_space(12);
+  const BrownianFlow flow(kMembrane, 0.1, kHold, 1);
+  const Vec c = random_vector(space->nodes(), 1), v = random_vector(space->nodes(), 2);
+  Vec product = Vec::Zero(c.size()), other = product;
+  flow.add_tangent_product(*space, 0.33, c, c, v, c, product, other);
+  const Vec change =
+      residual_of(flow, *space, 0.33, c + v, c) - residual_of(flow, *space, 0.33, c, c);
+  EXPECT_LT((product - change).norm(), 1e-13 * change.norm());
+}
+
+// R = 5 µm and D = 1000 µm²/s; ε = 0.01 R; 4 nPa s m, 1 mPa s, 1 pN and 298 K.
+TEST(Flow, FollowsFromViscositiesLineTensionAndTemperature) {
+  const auto space = make_space(12);
+  constexpr physics::Units kPhysical{5, 1e-5, false}, kScaled{5, 1e-5, true};
+  const auto model_of = [&](const std::string& specification, const physics::Units& units) {
+    problem::CahnHilliardModel model = make_model();
+    model.epsilon = 0.01;
+    add_effects(specification, units, model);
+    return model;
+  };
+  const auto physical =
+      model_of("flow:membrane-viscosity=4,line-tension=1,temperature=298,hold=0.0005", kPhysical);
+  const auto scaled =
+      model_of("flow:capillary=1060.66017,water=1.25,thermal=1.028584e-3,hold=0.02", kScaled);
+  ASSERT_EQ(physical.effects.size(), 2u);
+  ASSERT_EQ(scaled.effects.size(), 2u);
+  const Vec c = random_vector(space->nodes(), 1), mu = random_vector(space->nodes(), 2);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Vec a = residual_of(*physical.effects[k], *space, 0.33, c, mu),
+              b = residual_of(*scaled.effects[k], *space, 0.33, c, mu);
+    EXPECT_LT((a - b).norm(), 1e-6 * b.norm()) << k;
+  }
+}
+
+TEST(Flow, RefusesWhatContradictsItself) {
+  problem::CahnHilliardModel model = make_model();
+  constexpr physics::Units kPhysical{5, 1e-5, false}, kScaled{5, 1e-5, true};
+  for (const char* bad :
+       {"flow:water=1", "flow:line-tension=1", "flow:membrane-viscosity=4",
+        "flow:membrane-viscosity=4,capillary=1", "flow:capillary=1,temperature=300"})
+    EXPECT_THROW(add_effects(bad, kPhysical, model), InputError) << bad;
+  EXPECT_THROW(add_effects("flow:membrane-viscosity=4,line-tension=1", kScaled, model), InputError);
+  EXPECT_NO_THROW(add_effects("flow:thermal=1e-3", kScaled, model));
+  const auto ellipsoid = make_space(12, "ellipsoid:a=1.2,b=1,c=0.9");
+  EXPECT_THROW(model.effects.front()->require_surface(*ellipsoid), InputError);
+}
+
+}  // namespace
+}  // namespace traceraft::effects
