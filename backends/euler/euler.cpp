@@ -113,6 +113,7 @@ class Euler final : public time::ControlledIntegrator {
     return std::move(kept_second_ ? second_ : first_);
   }
 
+  double longest_step() const override { return problem_.longest_stabilised_step(); }
   void accepted() override {
     energy_ = next_energy_;
     statistics_.first_order += !kept_second_;

@@ -59,6 +59,23 @@ void remove_own_folder(const fs::path& folder, const std::vector<std::string>& n
   fs::remove(folder);
 }
 
+void remove_file(const fs::path& path) {
+  std::error_code error;
+  if (fs::is_directory(fs::symlink_status(path, error)) || (fs::remove(path, error), error))
+    throw IoError("cannot replace " + path.string() +
+                  (error ? ": " + error.message() : ", which is a folder"));
+}
+
+void make_inner_folder(const fs::path& path) {
+  std::error_code error;
+  fs::create_directories(path.parent_path(), error);
+  const bool link = fs::is_symlink(fs::symlink_status(path));
+  if (!link && (fs::is_directory(path) || fs::create_directory(path, error))) return;
+  throw IoError(path.string() + (link    ? " is a link; the program writes through none"
+                                 : error ? ": " + error.message()
+                                         : " is no folder"));
+}
+
 bool is_temporary_file(const fs::path& path) {
   return matches(path.filename(), kTemporaryFiles) && fs::is_regular_file(fs::symlink_status(path));
 }

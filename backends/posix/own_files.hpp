@@ -17,6 +17,14 @@ std::filesystem::path first_foreign(const std::filesystem::path& folder,
 // is a link or holds anything else.
 void remove_own_folder(const std::filesystem::path& folder, const std::vector<std::string>& names);
 
+// Deletes a file or a link, not what a link leads to; nothing happens if there is none. Throws
+// IoError.
+void remove_file(const std::filesystem::path& path);
+
+// Makes a folder within one that the program works in, or finds it there. Throws IoError if it is a
+// link, through which files of others could be written over, or a file.
+void make_inner_folder(const std::filesystem::path& path);
+
 // Is it what a writer that was killed has left (durable_file.hpp)?
 bool is_temporary_file(const std::filesystem::path& path);
 

@@ -4,6 +4,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "backends/posix/own_files.hpp"
 #include "drivers/campaign/hidden_case.hpp"
 #include "drivers/explain/resumable_search.hpp"
 #include "drivers/explain/search_file.hpp"
@@ -161,7 +162,7 @@ void carry_out_case(const CampaignFolder& folder, const CampaignPlan& plan, cons
   if (group.aim == Aim::unnamed)
     job.without = effects_like(open_truth(path).effects.front().effect);
   explain::ExplainSetup setup = explain::read_explain_job(job);
-  fs::create_directories(path / "explain");
+  posix::make_inner_folder(path / "explain");
   const selection::Explanation found = search(path / "explain", setup);
   write_score(folder, group, id, found, setup);
 }

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "backends/posix/folder_lock.hpp"
+#include "backends/posix/own_files.hpp"
 #include "backends/posix/process.hpp"
 #include "drivers/campaign/campaign_report.hpp"
 #include "drivers/campaign/hidden_case.hpp"
@@ -108,7 +109,7 @@ jobs::JobsEnd run_cases(const CampaignFolder& folder, const std::vector<CaseId>&
   work.folder = folder.path();
   work.quiet = quiet;
   work.run = [&](std::size_t k) {
-    fs::create_directories(folder.of(left[k]));
+    posix::make_inner_folder(folder.of(left[k]));
     return jobs::run_program(
         {"campaign", "--out", folder.path().string(), "--case", left[k].name()},
         folder.log_of(left[k]));
@@ -155,7 +156,7 @@ int run_campaign(const CampaignRequest& request) {
           : grown_plan(request, begun_elsewhere(request.elsewhere[0]), "--elsewhere");
   std::vector<CaseScore> scores = scores_of(request.elsewhere, plan);
   if (!goes_on) run::refuse_foreign_folder(folder.path(), {});
-  fs::create_directories(folder.path() / "cases");
+  posix::make_inner_folder(folder.path() / "cases");
   const posix::FolderLock lock(folder.path());
   folder.save(plan);
   std::set<std::string> done;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "backends/posix/own_files.hpp"
 #include "backends/sodium/seal.hpp"
 #include "drivers/config/config_file.hpp"
 #include "drivers/input/field_dataset.hpp"
@@ -96,7 +97,7 @@ void hide(const fs::path& folder, const config::GivenValues& model,
   selection::BlindCase drawn =
       drivers::numerically([&] { return selection::draw_blind_case(request); });
 
-  fs::create_directories(folder / "data");
+  posix::make_inner_folder(folder / "data");
   const std::string truth = truth_json(drawn, request, units).dump(2) + "\n";
   posix::write_durably(folder / "truth.json", truth);
   posix::write_durably(folder / "data" / "seal.txt", sodium::sha256(truth) + "\n");

@@ -3,6 +3,7 @@
 
 #include "backends/posix/durable_file.hpp"
 #include "backends/posix/folder_lock.hpp"
+#include "backends/posix/own_files.hpp"
 #include "backends/posix/process.hpp"
 #include "backends/zlib/checksum.hpp"
 #include "drivers/commands.hpp"
@@ -166,7 +167,7 @@ int compare(const CompareRequest& request) {
     throw InputError("--out: " + folder.path().string() +
                      " holds a comparison with another initial state; choose another folder");
 
-  fs::create_directories(folder.path() / "runs");
+  posix::make_inner_folder(folder.path() / "runs");
   if (!lock) lock.emplace(folder.path());
   if (!goes_on && folder.started()) run::refuse_begun(folder.path());
   if (!goes_on) posix::write_durably(folder.config(), config::config_text(configuration));

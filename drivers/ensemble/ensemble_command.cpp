@@ -4,6 +4,7 @@
 
 #include "backends/posix/durable_file.hpp"
 #include "backends/posix/folder_lock.hpp"
+#include "backends/posix/own_files.hpp"
 #include "backends/posix/process.hpp"
 #include "drivers/commands.hpp"
 #include "drivers/config/config_file.hpp"
@@ -193,7 +194,7 @@ int run_ensemble(const EnsembleRequest& request) {
   const posix::FolderLock lock(folder.path());
   if (!goes_on && folder.started()) run::refuse_begun(folder.path());
   folder.save(plan);
-  fs::create_directories(folder.path() / "runs");
+  posix::make_inner_folder(folder.path() / "runs");
   if (run && !request.quiet)
     text::say("case %s, %s\n", configuration.options().case_name,
               run::resolution_text(configuration, *run));

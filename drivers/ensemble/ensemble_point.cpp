@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "backends/posix/durable_file.hpp"
+#include "backends/posix/own_files.hpp"
 #include "drivers/config/config_file.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
@@ -49,7 +50,7 @@ PointEnd run_point(const std::filesystem::path& path, const config::Configuratio
   const EnsembleFolder folder(path);
   EnsemblePlan plan;
   plan.runs = request.runs;
-  std::filesystem::create_directories(path / "runs");
+  posix::make_inner_folder(path / "runs");
   // Others may read what is there already.
   if (!holds(folder, plan)) folder.save(plan);
   if (!std::filesystem::exists(folder.config()))

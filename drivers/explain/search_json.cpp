@@ -10,6 +10,9 @@ namespace traceraft::input {
 
 namespace {
 
+// No search leads further than this from the D that it starts from.
+constexpr double kLeastRatio = 1e-12, kMostRatio = 1e12;
+
 struct StoredPart {
   std::string effect;
   std::vector<double> coefficients, values;  // values: of all parameters of the effect
@@ -118,7 +121,7 @@ void describe(Members& members, assimilation::SnapshotGap& gap) {
 template <class Members>
 void describe(Members& members, selection::Refit& fit) {
   members("hypothesis", fit.hypothesis);
-  members("diffusion_ratio", fit.diffusion_ratio);
+  members("diffusion_ratio", fit.diffusion_ratio, WithinRange{kLeastRatio, kMostRatio});
   members("deviance", fit.deviance);
   members("covariance", fit.covariance);
   members("diffusion_ratio_deviation", fit.diffusion_ratio_deviation);
@@ -173,7 +176,7 @@ void describe(Members& members, selection::Round::Failure& failure) {
 template <class Members>
 void describe(Members& members, selection::Round& round) {
   members("known", round.known.hypothesis);
-  members("diffusion_ratio", round.known.diffusion_ratio);
+  members("diffusion_ratio", round.known.diffusion_ratio, WithinRange{kLeastRatio, kMostRatio});
   members.stored("screened", round.known.screened, names_of, candidates_of);
   members("screening", round.screening);
   members("without", round.without);
@@ -252,7 +255,7 @@ void describe(Members& members, assimilation::NoiseModel& noise) {
 template <class Members>
 void describe(Members& members, selection::ForecastPoint& point) {
   members("noise", point.noise);
-  members("diffusion_ratio", point.diffusion_ratio);
+  members("diffusion_ratio", point.diffusion_ratio, WithinRange{kLeastRatio, kMostRatio});
   members("hypothesis", point.hypothesis);
 }
 

@@ -88,7 +88,9 @@ input::Json saved_strengths(const fs::path& file, const input::Json& header) {
       throw InputError(file.parent_path().string() +
                        " holds simulations of another model, of an earlier version or for other "
                        "observation times; choose another --out or --ensembles");
-    return json.at("strengths");
+    const input::Json strengths = json.at("strengths");
+    if (!strengths.is_object()) throw DamagedFile("its strengths are no object");
+    return strengths;
   });
 }
 
@@ -97,7 +99,8 @@ effects::EffectTerm saved_term(const fs::path& file, const std::string& effect,
                                const input::Json& json, const physics::Units& units) {
   const std::vector<ParameterSpec>& specs = effects::effects().find(effect).parameters;
   const std::string where = file.string() + ": strengths." + effect;
-  if (!json.is_array() || json.size() != specs.size())
+  if (!json.is_array() || json.size() != specs.size() ||
+      !std::all_of(json.begin(), json.end(), [](const input::Json& x) { return x.is_number(); }))
     throw DamagedFile(where + " is damaged: " + std::to_string(specs.size()) +
                       " numbers are needed");
   effects::EffectTerm term{effect, {}};

@@ -21,11 +21,16 @@ std::string checksum_of(const Json& json) {
   return formatted("%08x", zlib::crc32_of(text_of(json)));
 }
 
-// The parser would take the last of them.
-Json parsed_without_repetition(const std::string& text) {
+// The parser would take the last of two members with one name. It knows no depth, but what copies,
+// writes and frees a value goes down into it by recursion.
+Json parsed_strictly(const std::string& text) {
+  constexpr int kDeepest = 64;
   std::vector<std::set<std::string>> names;  // of each object around the place
   std::string repeated;
-  Json json = Json::parse(text, [&](int, Json::parse_event_t event, Json& value) {
+  Json json = Json::parse(text, [&](int depth, Json::parse_event_t event, Json& value) {
+    if (depth > kDeepest)
+      throw DamagedFile("lists and objects stand more than " + std::to_string(kDeepest) +
+                        " deep in each other");
     if (event == Json::parse_event_t::object_start) names.emplace_back();
     if (event == Json::parse_event_t::object_end) names.pop_back();
     if (event == Json::parse_event_t::key && !names.back().insert(value).second)
@@ -45,7 +50,7 @@ std::string checked_text(Json json, int indent) {
 }
 
 Json parse_checked(const std::string& text) {
-  Json json = parsed_without_repetition(text);
+  Json json = parsed_strictly(text);
   if (!json.is_object() || !json.contains(kChecksum)) return json;
   const Json stated = json[kChecksum];
   json.erase(kChecksum);

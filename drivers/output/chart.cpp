@@ -6,6 +6,7 @@
 
 #include "backends/posix/child.hpp"
 #include "backends/posix/durable_file.hpp"
+#include "backends/posix/own_files.hpp"
 #include "drivers/text/encoders.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
@@ -204,6 +205,7 @@ std::string draw_chart(const bench::Chart& chart, const std::filesystem::path& s
   const std::string name = plain_name(stem), input = script(chart, name + ".svg");
   refuse_commands(input);
   posix::write_durably(with(".gp"), input);
+  posix::remove_file(with(".svg"));  // gnuplot would write through a link
   posix::ChildRequest request{{"gnuplot", "--default-settings", name + ".gp"}, with(".log"), 60};
   request.folder = stem.parent_path();
   const posix::ChildResult result = posix::run_child(request);

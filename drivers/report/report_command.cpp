@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <cstdint>
 
 #include "backends/gif/gif_writer.hpp"
 #include "backends/gif/label.hpp"
@@ -27,6 +28,8 @@ struct ReportRequest {
   bool bare = false, quiet = false;
 };
 
+constexpr char kFrames[] = "frames.csv", kFramesHeader[] = "picture,t\n";
+
 std::string frame_name(std::size_t number) {
   return formatted("frame-%04zu.png", number);
 }
@@ -49,16 +52,28 @@ void write_pictures(const ReportRequest& request) {
   }
   if (request.snapshots.empty()) return;
   fs::create_directories(request.snapshots);
-  std::string times = "picture,t\n";
+  std::string times = kFramesHeader;
   for (std::size_t k = 0; k < images.size(); ++k) {
     posix::write_durably(fs::path(request.snapshots) / frame_name(k), png::png_bytes(images[k]));
     times += frame_name(k) + "," + format_number(frames.times[k]) + "\n";
   }
-  posix::write_durably(fs::path(request.snapshots) / "frames.csv", times);
+  posix::write_durably(fs::path(request.snapshots) / kFrames, times);
   if (request.quiet) return;
   text::say("%zu pictures in %s\n", images.size(), request.snapshots);
   if (fs::exists(fs::path(request.snapshots) / frame_name(images.size())))
     text::say("pictures with larger numbers in this folder are from an earlier command\n");
+}
+
+// Pictures of an earlier command are replaced, and no others.
+void refuse_other_pictures(const fs::path& folder) {
+  constexpr std::uint64_t kLargest = 1 << 24;
+  const fs::path list = folder / kFrames;
+  const bool own =
+      fs::exists(list) && posix::read_file(list, kLargest).rfind(kFramesHeader, 0) == 0;
+  for (const fs::path& other : {list, folder / frame_name(0)})
+    if (!own && fs::exists(other))
+      throw InputError("--snapshots: " + folder.string() + " holds another " +
+                       other.filename().string() + "; choose another folder");
 }
 
 // A slip of the pen must not write over a configuration or a table.
@@ -74,6 +89,7 @@ void refuse_other_files(const ReportRequest& request) {
 
 int report(const ReportRequest& request) {
   refuse_other_files(request);
+  if (!request.snapshots.empty()) refuse_other_pictures(request.snapshots);
   const fs::path out =
       request.out.empty() ? fs::path(request.folder) / "report.html" : fs::path(request.out);
   const std::string missing = write_report_page(

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "backends/posix/own_files.hpp"
 #include "drivers/config/config_file.hpp"
 #include "drivers/data/measured_report.hpp"
 #include "drivers/ensemble/ensemble_report.hpp"
@@ -114,6 +115,7 @@ void fill_run(output::Page& page, const fs::path& folder, const PageRequest& req
               output::Missing& missing) {
   run::require_whole_tables(folder);
   const config::Configuration configuration(config::read_config_file(folder / "config.toml"), {});
+  run::require_own_configuration(folder, configuration);
   const bool scaled = configuration.units().scaled;
   page.paragraph("A run of the case " + configuration.options().case_name + ", seed " +
                  std::to_string(configuration.options().seed) + ".");
@@ -262,7 +264,7 @@ std::string write_report_page(const fs::path& folder, const fs::path& out,
   output::Page page("traceraft: " + fs::absolute(folder).lexically_normal().filename().string());
   if (request.data) introduce(*request.data, folder, page);
   make_folder(out.parent_path());
-  make_folder(request.charts);
+  posix::make_inner_folder(request.charts);
   output::Missing missing;
   if (is_run(folder))
     fill_run(page, folder, request, missing);

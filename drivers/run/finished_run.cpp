@@ -4,6 +4,7 @@
 
 #include "drivers/input/json_file.hpp"
 #include "drivers/run/checkpoint_store.hpp"
+#include "drivers/run/summary.hpp"
 
 namespace traceraft::run {
 
@@ -36,8 +37,24 @@ void require_whole_tables(const std::filesystem::path& run_folder) {
       for (const auto& [name, table] : json["tables"].items()) extents[name] = extent_in(table);
     return extents;
   });
-  for (const auto& [name, extent] : extents)
-    if (std::filesystem::exists(run_folder / name)) require_extent(run_folder / name, extent);
+  for (const auto& [name, extent] : extents) {
+    const std::filesystem::path table = run_folder / name;
+    if (!std::filesystem::exists(table)) continue;
+    require_extent(table, extent);
+    if (std::filesystem::file_size(table) != extent.bytes)
+      throw DamagedFile(table.string() + " is damaged: it has more rows than the run wrote");
+  }
+}
+
+void require_own_configuration(const std::filesystem::path& run_folder,
+                               const config::Configuration& configuration) {
+  const std::filesystem::path summary = run_folder / "summary.json";
+  if (!std::filesystem::exists(summary)) return;
+  const auto stated = input::from_json(
+      summary, [](const input::Json& json) { return json.value(kConfiguration, std::string()); });
+  if (!stated.empty() && stated != configuration_checksum(configuration))
+    throw DamagedFile((run_folder / "config.toml").string() +
+                      " is not that of its run: options have changed; restore it");
 }
 
 double summary_number(const std::filesystem::path& run_folder, const char* name) {

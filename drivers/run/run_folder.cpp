@@ -15,8 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 
 void create_sub_folders(const RunFolder& folder) {
-  fs::create_directories(folder.fields());
-  fs::create_directories(folder.checkpoints());
+  posix::make_inner_folder(folder.fields());
+  posix::make_inner_folder(folder.checkpoints());
 }
 
 // Is it the folder of an ensemble, say, or another set of runs with folders of their own?

@@ -4,6 +4,7 @@
 
 #include "backends/posix/process.hpp"
 #include "backends/suitesparse/blas.hpp"
+#include "backends/zlib/checksum.hpp"
 #include "drivers/config/config_file.hpp"
 #include "drivers/input/json_file.hpp"
 #include "drivers/output/program.hpp"
@@ -64,6 +65,10 @@ void put(nlohmann::ordered_json& json, const char* name, text::Unit unit, double
 
 }  // namespace
 
+std::string configuration_checksum(const config::Configuration& configuration) {
+  return formatted("%08x", zlib::crc32_of(config::numerical_identity(configuration)));
+}
+
 std::string summary_json(const config::Configuration& configuration, const RunSetup& run,
                          const simulation::RunState& state, const simulation::RunResult& result,
                          const RunCost& cost, double memory_mb, const TableExtents& tables) {
@@ -75,6 +80,7 @@ std::string summary_json(const config::Configuration& configuration, const RunSe
   json["build"] = output::program_checksum();
   json["case"] = configuration.options().case_name;
   json["effects"] = configuration.options().effect;
+  json[kConfiguration] = configuration_checksum(configuration);
   json["seed"] = configuration.options().seed;
   json["integrator"] = configuration.options().integrator;
   json["linear_solver"] = configuration.options().linear_solver;

@@ -11,6 +11,11 @@
 
 namespace traceraft::run {
 
+// The member of summary.json that holds configuration_checksum.
+inline constexpr char kConfiguration[] = "configuration";
+// Of the options that change numbers.
+std::string configuration_checksum(const config::Configuration& configuration);
+
 std::string summary_json(const config::Configuration& configuration, const RunSetup& run,
                          const simulation::RunState& state, const simulation::RunResult& result,
                          const RunCost& cost, double memory_mb, const TableExtents& tables);

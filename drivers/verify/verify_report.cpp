@@ -4,6 +4,7 @@
 
 #include "backends/posix/durable_file.hpp"
 #include "backends/posix/folder_lock.hpp"
+#include "backends/posix/own_files.hpp"
 #include "drivers/output/chart.hpp"
 #include "drivers/output/page.hpp"
 #include "drivers/output/text_table.hpp"
@@ -168,7 +169,7 @@ void write_document(const fs::path& path, const fs::path& folder,
                     const VerificationContext& context, const std::vector<StudyResult>& results) {
   fs::path figures = path;
   figures.replace_extension();
-  fs::create_directories(figures);
+  posix::make_inner_folder(figures);
   std::string text = "# Verification\n\n" + text::in_markdown(context.conditions) +
                      "\nThis command writes this document and its figures:\n\n    " +
                      text::in_markdown_code(context.command) + "\n\n";

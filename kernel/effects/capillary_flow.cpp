@@ -39,21 +39,28 @@ CapillaryFlow::CapillaryFlow(const flow::FluidMembrane& membrane, double epsilon
       mobility_(mobility_of(membrane, flow::capillary_degree(epsilon))),
       operators_(flow_space(flow::capillary_degree(epsilon))) {}
 
-Vec CapillaryFlow::moved_by(const FlowSpace& operators, VecView force) const {
-  return operators.harmonics.synthesis(mobility_.cwiseProduct(operators.harmonics.analysis(force)));
+// The fastest waves on a boundary become round at a rate of about A/32 (m σ/(4 η_m a) for as many
+// waves as are as long as the boundary is wide).
+double CapillaryFlow::longest_stabilised_step() const {
+  constexpr double kFastest = 1 / 32.0, kShare = 0.25;
+  return kShare / (kFastest * capillary_);
 }
 
 Vec CapillaryFlow::stream(const fem::SurfaceSpace& space, VecView c, VecView mu) const {
   const auto operators = operators_.on(space);
   Vec force = Vec::Zero(space.nodes());
   flow::add_transport(space, operators->curls, capillary_, c, mu, force);
-  return moved_by(*operators, force);
+  return mobility_.cwiseProduct(operators->harmonics.analysis(force));
+}
+
+Vec CapillaryFlow::stream_at_nodes(const fem::SurfaceSpace& space, VecView c, VecView mu) const {
+  return operators_.on(space)->harmonics.synthesis(stream(space, c, mu));
 }
 
 void CapillaryFlow::add_residual(const fem::SurfaceSpace& space, double, VecView c, VecView mu,
                                  VecRef residual_c, VecRef) const {
   Vec buffer;
-  const Vec psi = stream(space, c, mu);
+  const Vec psi = stream_at_nodes(space, c, mu);
   flow::add_transport(space, operators_.on(space)->curls, -1, c, space.with_ghosts(psi, buffer),
                       residual_c);
 }
@@ -61,7 +68,7 @@ void CapillaryFlow::add_residual(const fem::SurfaceSpace& space, double, VecView
 void CapillaryFlow::add_tangent(const fem::SurfaceSpace& space, double, VecView c, VecView mu,
                                 linear::BlockJacobian& J) const {
   Vec buffer;
-  const Vec psi = stream(space, c, mu);
+  const Vec psi = stream_at_nodes(space, c, mu);
   flow::add_transport_matrix(space, operators_.on(space)->curls, -1, space.with_ghosts(psi, buffer),
                              J.cc);
 }
@@ -72,11 +79,12 @@ void CapillaryFlow::add_tangent_product(const fem::SurfaceSpace& space, double, 
   const auto operators = operators_.on(space);
   const auto& curls = operators->curls;
   Vec buffer, change = Vec::Zero(space.nodes());
-  const Vec psi = stream(space, c, mu);
+  const Vec psi = stream_at_nodes(space, c, mu);
   flow::add_transport(space, curls, -1, direction_c, space.with_ghosts(psi, buffer), product_c);
   flow::add_transport(space, curls, capillary_, direction_c, mu, change);
   flow::add_transport(space, curls, capillary_, c, direction_mu, change);
-  change = moved_by(*operators, change);
+  const flow::HarmonicTransform& harmonics = operators->harmonics;
+  change = harmonics.synthesis(mobility_.cwiseProduct(harmonics.analysis(change)));
   flow::add_transport(space, curls, -1, c, space.with_ghosts(change, buffer), product_c);
 }
 

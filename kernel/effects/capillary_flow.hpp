@@ -20,6 +20,7 @@ class CapillaryFlow final : public problem::Effect {
   bool dissipates_energy() const override { return true; }
   bool dissipates_explicitly() const override { return false; }
   bool tangent_is_assembled() const override { return false; }
+  double longest_stabilised_step() const override;
   void require_surface(const fem::SurfaceSpace& space) const override { require_sphere(space); }
 
   void add_residual(const fem::SurfaceSpace& space, double t, VecView c, VecView mu,
@@ -30,11 +31,11 @@ class CapillaryFlow final : public problem::Effect {
                            VecView direction_c, VecView direction_mu, VecRef product_c,
                            VecRef product_mu) const override;
 
-  // ψ at the nodes of this rank. Collective.
+  // The coefficients of ψ. Collective.
   Vec stream(const fem::SurfaceSpace& space, VecView c, VecView mu) const;
 
  private:
-  Vec moved_by(const FlowSpace& operators, VecView force) const;
+  Vec stream_at_nodes(const fem::SurfaceSpace& space, VecView c, VecView mu) const;
 
   double capillary_;
   Vec mobility_;  // of each degree and order: from a force to the stream function

@@ -34,8 +34,8 @@ void require_strength(const EffectEntry& entry, const Parameters& given) {
                   [&](const ParameterSpec& spec) { return given[spec.name] != 0; }))
     return;
   const std::string& strength = entry.parameters.front().name;
-  throw InputError("effect " + entry.name + ": its strength is needed, as in " + entry.name + ":" +
-                   strength + "=...");
+  throw InputError("effect " + entry.name + ": a strength other than 0 is needed, as in " +
+                   entry.name + ":" + strength + "=...");
 }
 
 void refuse_forces(const EffectEntry& entry, const Parameters& given) {

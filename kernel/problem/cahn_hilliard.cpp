@@ -204,6 +204,13 @@ bool CahnHilliard::dissipates_in_stabilised_steps() const {
                      [](const EffectPtr& effect) { return effect->dissipates_explicitly(); });
 }
 
+double CahnHilliard::longest_stabilised_step() const {
+  double longest = std::numeric_limits<double>::infinity();
+  for (const EffectPtr& effect : model_.effects)
+    longest = std::min(longest, effect->longest_stabilised_step());
+  return longest;
+}
+
 double CahnHilliard::longest_step() const {
   double longest = std::numeric_limits<double>::infinity();
   for (const EffectPtr& effect : model_.effects)

@@ -62,6 +62,7 @@ class CahnHilliard final : public DaeProblem {
   bool dissipates_energy() const override;
   bool dissipates_in_stabilised_steps() const override;
   double longest_step() const override;
+  double longest_stabilised_step() const override;
   double energy_scale() const override;  // of a surface halfway between the wells
   const Communicator& ranks() const override { return *space_->communicator; }
 

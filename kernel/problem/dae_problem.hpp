@@ -59,6 +59,8 @@ class DaeProblem {
   virtual bool dissipates_in_stabilised_steps() const { return dissipates_energy(); }
   // Integrators that take longer steps would not see what it does in time.
   virtual double longest_step() const { return std::numeric_limits<double>::infinity(); }
+  // That of integrators that use the stabilised tangent.
+  virtual double longest_stabilised_step() const { return longest_step(); }
   // The size of its terms, which cancel near equilibrium: its roundoff is relative to that.
   virtual double energy_scale() const = 0;
 

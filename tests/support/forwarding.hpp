@@ -36,6 +36,7 @@ class ForwardingProblem : public problem::DaeProblem {
     return inner_.dissipates_in_stabilised_steps();
   }
   double longest_step() const override { return inner_.longest_step(); }
+  double longest_stabilised_step() const override { return inner_.longest_stabilised_step(); }
   double energy_scale() const override { return inner_.energy_scale(); }
   const Communicator& ranks() const override { return inner_.ranks(); }
 

@@ -13,6 +13,7 @@ const NamedList<StudyEntry>& studies() {
       equilibria_study(),
       coarsening_study(),
       raft_coarsening_study(),
+      membrane_flow_study(),
       pfhub_study(),
       fine_pfhub_study(),
       integrator_agreement_study(),

@@ -16,6 +16,7 @@ StudyEntry equilibria_study();
 StudyEntry integrator_agreement_study();
 StudyEntry coarsening_study();
 StudyEntry raft_coarsening_study();
+StudyEntry membrane_flow_study();
 StudyEntry pfhub_study();
 StudyEntry fine_pfhub_study();
 StudyEntry solver_iterations_study();

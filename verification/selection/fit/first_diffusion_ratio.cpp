@@ -22,7 +22,7 @@ constexpr double kLargestStep = 0.7, kGoodEnough = 0.02;
 // tell nothing: such a search begins at one of these.
 constexpr double kSlower[] = {1.0 / 8, 1.0 / 64, 1.0 / 512};
 
-struct Pass {
+struct RoughPass {
   assimilation::FilterModel model;
   std::vector<assimilation::ErrorMaps> maps;
   assimilation::FilterResult result;
@@ -40,7 +40,7 @@ class DiffusionRatioSearch {
   }
 
   assimilation::FilterModel run() const {
-    Pass pass = first_pass();
+    RoughPass pass = first_pass();
     double diffusion_ratio_of_maps = pass.model.diffusion_ratio;
     for (int k = 0; k < kMostSteps; ++k) {
       const double change = diffusion_ratio_change(pass.result);
@@ -55,8 +55,8 @@ class DiffusionRatioSearch {
 
  private:
   // False, and no change, where the model cannot be advanced.
-  bool go_on(Pass& pass, double step, double& diffusion_ratio_of_maps) const {
-    Pass next{
+  bool go_on(RoughPass& pass, double step, double& diffusion_ratio_of_maps) const {
+    RoughPass next{
         at_diffusion_ratio(pass.model, pass.model.diffusion_ratio * std::exp(step)), pass.maps, {}};
     const bool far = !assimilation::maps_reach(next.model.diffusion_ratio, diffusion_ratio_of_maps);
     if (far) next.maps = {};
@@ -71,12 +71,12 @@ class DiffusionRatioSearch {
   }
 
   // The pass of the model, or the most probable of some if it is far off.
-  Pass first_pass() const {
-    std::optional<Pass> best;
+  RoughPass first_pass() const {
+    std::optional<RoughPass> best;
     std::string failure;
     const auto consider = [&](const assimilation::FilterModel& model) {
       try {
-        Pass pass = pass_of(model);
+        RoughPass pass = pass_of(model);
         if (!best || pass.result.deviance < best->result.deviance) best = std::move(pass);
       } catch (const std::runtime_error& error) {
         failure = error.what();
@@ -107,8 +107,8 @@ class DiffusionRatioSearch {
                kFarGap * assimilation::expected_gaps(pass).train;
   }
 
-  Pass pass_of(const assimilation::FilterModel& model) const {
-    Pass pass{model, {}, {}};
+  RoughPass pass_of(const assimilation::FilterModel& model) const {
+    RoughPass pass{model, {}, {}};
     pass.result = assimilation::filter_fields(data_, model, rough_, pass.maps);
     return pass;
   }
