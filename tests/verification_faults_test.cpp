@@ -64,6 +64,39 @@ class ScaledMobility final : public physics::Mobility {
   double factor_;
 };
 
+// An effect that is stronger by a factor than it says.
+class ScaledEffect final : public problem::Effect {
+ public:
+  ScaledEffect(problem::EffectPtr inner, double factor)
+      : inner_(std::move(inner)), factor_(factor) {}
+  std::string name() const override { return inner_->name(); }
+  bool conserves_mass() const override { return inner_->conserves_mass(); }
+  bool dissipates_energy() const override { return inner_->dissipates_energy(); }
+  bool tangent_is_assembled() const override { return false; }
+  double longest_step() const override { return inner_->longest_step(); }
+
+  void add_residual(const fem::SurfaceSpace& space, double t, VecView c, VecView mu, VecRef r_c,
+                    VecRef r_mu) const override {
+    Vec own_c = Vec::Zero(r_c.size()), own_mu = own_c;
+    inner_->add_residual(space, t, c, mu, own_c, own_mu);
+    r_c += factor_ * own_c;
+    r_mu += factor_ * own_mu;
+  }
+  void add_tangent(const fem::SurfaceSpace&, double, VecView, VecView,
+                   linear::BlockJacobian&) const override {}
+  void add_tangent_product(const fem::SurfaceSpace& space, double t, VecView c, VecView mu,
+                           VecView by_c, VecView by_mu, VecRef p_c, VecRef p_mu) const override {
+    Vec own_c = Vec::Zero(p_c.size()), own_mu = own_c;
+    inner_->add_tangent_product(space, t, c, mu, by_c, by_mu, own_c, own_mu);
+    p_c += factor_ * own_c;
+    p_mu += factor_ * own_mu;
+  }
+
+ private:
+  problem::EffectPtr inner_;
+  double factor_;
+};
+
 // Runs of the program that are not what they should be.
 bench::RunProgram broken_program(double drift, double shift) {
   return [=](const std::vector<std::string>&, int ranks, int nodes) {
@@ -231,6 +264,23 @@ const Fault kFaults[] = {
      "a mobility that vanishes in the phases",
      {"exponent in t + offset"},
      [](problem::CahnHilliardModel& m) { m.mobility = physics::make_mobility("degenerate"); }},
+    {"flow",
+     "flow 20 % faster than its force and its draws say, and a leak of 1e-9 per area",
+     {"dE/dt + dissipation", "centre of a raft", "largest relative drift of the mass"},
+     [](problem::CahnHilliardModel& m) {
+       for (problem::EffectPtr& effect : m.effects)
+         effect = std::make_shared<ScaledEffect>(effect, 1.2);
+     },
+     [](BrokenProblem& p) { p.leak = 1e-9; }},
+    {"flow",
+     "flow 10 % slower than its force says, and a mobility 5 % too small",
+     {"energies: largest", "mode 2 of a cap, rate of becoming round: relative",
+      "mode 3 of a cap, rate of becoming round: relative"},
+     [](problem::CahnHilliardModel& m) {
+       m.mobility = std::make_shared<ScaledMobility>(m.mobility, 0.95);
+       for (problem::EffectPtr& effect : m.effects)
+         effect = std::make_shared<ScaledEffect>(effect, 0.9);
+     }},
     {"pfhub",
      "a well 5 % too deep",
      {"t = 0.1 to 100: largest relative difference"},

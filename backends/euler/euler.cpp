@@ -19,6 +19,7 @@ class Euler final : public time::ControlledIntegrator {
   Euler(const problem::DaeProblem& problem, const linear::LinearSolverChoice& solvers,
         std::shared_ptr<const ThreadTeam> team, const time::IntegratorSettings& settings)
       : time::ControlledIntegrator(problem, solvers, 2, std::move(team), settings, 2, 0.1),
+        kept_(problem.may_be_extrapolated() ? settings.kept_solution : "first"),
         least_size_(1e-10 * problem.norm(Vec::Ones(problem.size()))) {}
 
   std::string name() const override { return "euler"; }
@@ -30,7 +31,7 @@ class Euler final : public time::ControlledIntegrator {
   }
 
   bool promises_energy_decay() const override {
-    return problem_.dissipates_in_stabilised_steps() && settings_.kept_solution != "second";
+    return problem_.dissipates_in_stabilised_steps() && kept_ != "second";
   }
 
   void save(CheckpointOut out) const override {
@@ -48,8 +49,7 @@ class Euler final : public time::ControlledIntegrator {
 
   // The second-order solution is the more accurate one; the first-order one never gains energy.
   bool keeps_second() {
-    if (settings_.kept_solution != "decaying" || !problem_.dissipates_energy())
-      return settings_.kept_solution != "first";
+    if (kept_ != "decaying" || !problem_.dissipates_energy()) return kept_ != "first";
     const double second_energy = problem_.energy(second_);
     const bool decays = second_energy <= energy_;
     next_energy_ = decays ? second_energy : problem_.energy(first_);
@@ -113,13 +113,13 @@ class Euler final : public time::ControlledIntegrator {
     return std::move(kept_second_ ? second_ : first_);
   }
 
-  double longest_step() const override { return problem_.longest_stabilised_step(); }
   void accepted() override {
     energy_ = next_energy_;
     statistics_.first_order += !kept_second_;
     statistics_.order = kept_second_ && started() ? 2 : 1;
   }
 
+  const std::string kept_;
   const double least_size_;                  // of c: errors are not relative to less
   double energy_ = 0, next_energy_ = 0;      // of y_n and y_{n+1}, where they decide which is kept
   Vec rate_;                                 // ẏ at the start

@@ -1,7 +1,6 @@
 #include <optional>
 #include <sstream>
 
-#include "backends/posix/own_files.hpp"
 #include "backends/posix/process.hpp"
 #include "backends/ranks.hpp"
 #include "drivers/commands.hpp"
@@ -63,7 +62,6 @@ int execute_run(const config::Configuration& configuration, RunSetup& run, const
   listeners.push_back(&checkpoints);
   if (root) listeners.push_back(&progress);
 
-  if (root) posix::remove_file(folder.summary());  // that of a shorter run, which now goes on
   simulation::RunResult result{simulation::RunEnd::finished, ""};
   if (run.ranks->any(checkpoint.has_value())) {
     std::istringstream saved(checkpoint ? checkpoint->state : "");

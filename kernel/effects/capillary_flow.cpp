@@ -39,13 +39,6 @@ CapillaryFlow::CapillaryFlow(const flow::FluidMembrane& membrane, double epsilon
       mobility_(mobility_of(membrane, flow::capillary_degree(epsilon))),
       operators_(flow_space(flow::capillary_degree(epsilon))) {}
 
-// The fastest waves on a boundary become round at a rate of about A/32 (m σ/(4 η_m a) for as many
-// waves as are as long as the boundary is wide).
-double CapillaryFlow::longest_stabilised_step() const {
-  constexpr double kFastest = 1 / 32.0, kShare = 0.25;
-  return kShare / (kFastest * capillary_);
-}
-
 Vec CapillaryFlow::stream(const fem::SurfaceSpace& space, VecView c, VecView mu) const {
   const auto operators = operators_.on(space);
   Vec force = Vec::Zero(space.nodes());
@@ -63,6 +56,14 @@ void CapillaryFlow::add_residual(const fem::SurfaceSpace& space, double, VecView
   const Vec psi = stream_at_nodes(space, c, mu);
   flow::add_transport(space, operators_.on(space)->curls, -1, c, space.with_ghosts(psi, buffer),
                       residual_c);
+}
+
+void CapillaryFlow::add_stabilised_product(const fem::SurfaceSpace& space, double, VecView c,
+                                           VecView direction_mu, VecRef product_c) const {
+  Vec buffer;
+  const Vec change = stream_at_nodes(space, c, direction_mu);
+  flow::add_transport(space, operators_.on(space)->curls, -1, c, space.with_ghosts(change, buffer),
+                      product_c);
 }
 
 void CapillaryFlow::add_tangent(const fem::SurfaceSpace& space, double, VecView c, VecView mu,

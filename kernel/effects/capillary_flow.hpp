@@ -18,13 +18,16 @@ class CapillaryFlow final : public problem::Effect {
   std::string name() const override { return "flow"; }
   bool conserves_mass() const override { return true; }
   bool dissipates_energy() const override { return true; }
-  bool dissipates_explicitly() const override { return false; }
+  // Short waves grow then, at a rate of about A.
+  bool may_be_extrapolated() const override { return false; }
   bool tangent_is_assembled() const override { return false; }
-  double longest_stabilised_step() const override;
   void require_surface(const fem::SurfaceSpace& space) const override { require_sphere(space); }
 
   void add_residual(const fem::SurfaceSpace& space, double t, VecView c, VecView mu,
                     VecRef residual_c, VecRef residual_mu) const override;
+  // With c held, flow is one more mobility, which couples distant points: ċ = −(K_M + T G Tᵀ) μ.
+  void add_stabilised_product(const fem::SurfaceSpace& space, double t, VecView c,
+                              VecView direction_mu, VecRef product_c) const override;
   void add_tangent(const fem::SurfaceSpace& space, double t, VecView c, VecView mu,
                    linear::BlockJacobian& J) const override;
   void add_tangent_product(const fem::SurfaceSpace& space, double t, VecView c, VecView mu,

@@ -204,11 +204,9 @@ bool CahnHilliard::dissipates_in_stabilised_steps() const {
                      [](const EffectPtr& effect) { return effect->dissipates_explicitly(); });
 }
 
-double CahnHilliard::longest_stabilised_step() const {
-  double longest = std::numeric_limits<double>::infinity();
-  for (const EffectPtr& effect : model_.effects)
-    longest = std::min(longest, effect->longest_stabilised_step());
-  return longest;
+bool CahnHilliard::may_be_extrapolated() const {
+  return std::all_of(model_.effects.begin(), model_.effects.end(),
+                     [](const EffectPtr& effect) { return effect->may_be_extrapolated(); });
 }
 
 double CahnHilliard::longest_step() const {

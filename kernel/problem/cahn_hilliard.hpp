@@ -61,8 +61,8 @@ class CahnHilliard final : public DaeProblem {
   double energy(VecView y) const override;
   bool dissipates_energy() const override;
   bool dissipates_in_stabilised_steps() const override;
+  bool may_be_extrapolated() const override;
   double longest_step() const override;
-  double longest_stabilised_step() const override;
   double energy_scale() const override;  // of a surface halfway between the wells
   const Communicator& ranks() const override { return *space_->communicator; }
 

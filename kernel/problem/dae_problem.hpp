@@ -57,10 +57,10 @@ class DaeProblem {
   virtual bool dissipates_energy() const = 0;
   // Whether steps of first order with the stabilised tangent let it fall, too.
   virtual bool dissipates_in_stabilised_steps() const { return dissipates_energy(); }
+  // Are steps stable whose stabilised tangent stands at an extrapolated state?
+  virtual bool may_be_extrapolated() const { return true; }
   // Integrators that take longer steps would not see what it does in time.
   virtual double longest_step() const { return std::numeric_limits<double>::infinity(); }
-  // That of integrators that use the stabilised tangent.
-  virtual double longest_stabilised_step() const { return longest_step(); }
   // The size of its terms, which cancel near equilibrium: its roundoff is relative to that.
   virtual double energy_scale() const = 0;
 

@@ -35,10 +35,10 @@ class Effect {
   // Does the energy fall in steps with the stabilised tangent, too, which treat the effect
   // explicitly? A potential does as the wells do, while |f0''| ≤ 2β with it.
   virtual bool dissipates_explicitly() const { return dissipates_energy(); }
+  // Are they stable, too, where c and μ are extrapolated?
+  virtual bool may_be_extrapolated() const { return true; }
   // The longest step, as of DaeProblem.
   virtual double longest_step() const { return std::numeric_limits<double>::infinity(); }
-  // That of steps with the stabilised tangent, which treat the effect explicitly.
-  virtual double longest_stabilised_step() const { return longest_step(); }
   // Throws InputError if the effect is not made for this surface.
   virtual void require_surface(const fem::SurfaceSpace&) const {}
   // The energy that the effect adds, over all ranks; F2 is the gradient of the sum.

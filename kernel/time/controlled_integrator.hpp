@@ -44,7 +44,6 @@ class ControlledIntegrator : public Integrator {
   virtual Vec result() = 0;
   // Called before the result becomes the next state.
   virtual void accepted() = 0;
-  virtual double longest_step() const { return problem_.longest_step(); }
 
   const problem::DaeProblem& problem_;
   const IntegratorSettings settings_;
@@ -54,7 +53,7 @@ class ControlledIntegrator : public Integrator {
   double step_ = 0;
 
  private:
-  void make_control() { control_ = StepControl(settings_, span_, power_, longest_step()); }
+  void make_control() { control_ = StepControl(settings_, span_, power_, problem_.longest_step()); }
   Status judged_attempt(double dt, double& error);
 
   int power_;

@@ -127,7 +127,14 @@ TEST_F(ExplainSeriesTest, TakesNoSimulationsThatAreOthers) {
     EXPECT_TRUE(refuses(traceraft(of_others("third", simulations())),
                         "--ensembles: " + simulations().string()));
   }
-  posix::write_durably(file, kept);
+  for (const char* strengths : {"[]", "5", "\"x\"", "{\"allen-cahn\": [\"a\"]}",
+                                "{\"allen-cahn\": [null]}", "{\"allen-cahn\": []}"}) {
+    nlohmann::json damaged = json_of(file);
+    damaged["strengths"] = nlohmann::json::parse(strengths);
+    posix::write_durably(file, damaged.dump());
+    EXPECT_EQ(traceraft(of_others("third", simulations())).code, 4) << strengths;
+    posix::write_durably(file, kept);
+  }
   EXPECT_FALSE(fs::exists(in("third")));
 }
 

@@ -150,7 +150,44 @@ TEST_F(ReportTest, NoticesWhatHasChangedSinceTheRun) {
     EXPECT_TRUE(names(end.output, name)) << end.output;
     std::ofstream(file) << whole;
   }
+  const std::string series = content(folder.path / "a/series.csv");
+  std::ofstream(folder.path / "a/series.csv")
+      << series << series.substr(series.rfind('\n', series.size() - 2) + 1);
+  EXPECT_EQ(traceraft("report --quiet " + out("a")).code, 4) << "a row too many";
+  std::ofstream(folder.path / "a/series.csv") << series;
+  const std::string config = content(folder.path / "a/config.toml");
+  std::string other = config;
+  other.replace(other.find("radius = 5"), 10, "radius = 6");
+  std::ofstream(folder.path / "a/config.toml") << other;
+  EXPECT_EQ(traceraft("report --quiet " + out("a")).code, 4) << "another vesicle";
+  std::ofstream(folder.path / "a/config.toml") << config;
   EXPECT_EQ(traceraft("report --quiet " + out("a")).code, 0);
+}
+
+TEST_F(ReportTest, WritesOverNoFileOfOthers) {
+  run("a");
+  const fs::path other = folder.path / "other", pictures = folder.path / "pictures";
+  fs::create_directories(other);
+  fs::create_directories(pictures);
+  fs::create_directories(folder.path / "a/report-charts");
+  std::ofstream(other / "dt.svg") << "precious";
+  fs::create_symlink(other / "dt.svg", folder.path / "a/report-charts/dt.svg");
+  ASSERT_EQ(traceraft("report --quiet " + out("a")).code, 0);
+  EXPECT_EQ(content(other / "dt.svg"), "precious") << "through a link";
+  EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(folder.path / "a/report-charts/dt.svg")));
+  fs::remove_all(folder.path / "a/report-charts");
+  fs::create_symlink(other, folder.path / "a/report-charts");
+  EXPECT_EQ(traceraft("report --quiet " + out("a")).code, 4) << "through a linked folder";
+  EXPECT_EQ(content(other / "dt.svg"), "precious");
+  EXPECT_FALSE(fs::exists(other / "dt.gp"));
+  fs::remove(folder.path / "a/report-charts");
+  std::ofstream(pictures / "frames.csv") << "precious";
+  const std::string draw = "report --quiet --frames 2 --pixels 64 --snapshots " + out("pictures");
+  EXPECT_EQ(traceraft(draw + " " + out("a")).code, 2);
+  EXPECT_EQ(content(pictures / "frames.csv"), "precious");
+  fs::remove(pictures / "frames.csv");
+  for (int time = 0; time < 2; ++time)
+    EXPECT_EQ(traceraft(draw + " " + out("a")).code, 0) << "its own may be drawn again";
 }
 
 // A browser that a program steers, by the WebDriver protocol.

@@ -63,6 +63,18 @@ TEST(SearchJson, KeepsWhatARoundThatIsNotOverHas) {
   EXPECT_EQ(read.refits.at(2).failure, "a step fails");
 }
 
+TEST(SearchJson, RefusesADiffusionRatioThatIsNone) {
+  selection::SearchState state;
+  state.so_far.found = fit_of("uptake", 100);
+  const input::Json json = explain::search_json(state);
+  for (const input::Json& ratio : {input::Json(), input::Json(0), input::Json(-1.5)}) {
+    input::Json changed = json;
+    changed["so_far"]["found"]["diffusion_ratio"] = ratio;
+    EXPECT_ANY_THROW((void)explain::search_from(changed, {})) << ratio;
+  }
+  EXPECT_NO_THROW((void)explain::search_from(json, {}));
+}
+
 // Effects have the model's own parameters, which are not those that are looked for.
 TEST(SearchJson, KeepsEffectsOfTheModel) {
   const effects::EffectTerm own{"ohta-kawasaki", {12.5, 0.3}};

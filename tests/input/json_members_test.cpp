@@ -110,6 +110,17 @@ TEST_F(JsonMembersTest, AreAllNeeded) {
   }
 }
 
+// Deep lists are refused before anything goes down into them.
+TEST_F(JsonMembersTest, MayNotBeDeep) {
+  constexpr int kDepth = 200000;
+  const std::string deep = std::string(kDepth, '[') + std::string(kDepth, ']');
+  for (const std::string& text :
+       {"{\"checksum\":\"00000000\",\"x\":" + deep + "}", "{\"checksum\":" + deep + "}", deep}) {
+    posix::write_durably(file, text);
+    EXPECT_THROW((void)read_object<Whole>(file), DamagedFile);
+  }
+}
+
 // One changed byte at any place, in names and values alike.
 TEST_F(JsonMembersTest, AreSealedByAChecksum) {
   const std::string text = checked_text(object_of(whole));

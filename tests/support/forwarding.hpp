@@ -35,8 +35,8 @@ class ForwardingProblem : public problem::DaeProblem {
   bool dissipates_in_stabilised_steps() const override {
     return inner_.dissipates_in_stabilised_steps();
   }
+  bool may_be_extrapolated() const override { return inner_.may_be_extrapolated(); }
   double longest_step() const override { return inner_.longest_step(); }
-  double longest_stabilised_step() const override { return inner_.longest_stabilised_step(); }
   double energy_scale() const override { return inner_.energy_scale(); }
   const Communicator& ranks() const override { return inner_.ranks(); }
 
