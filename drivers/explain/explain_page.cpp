@@ -201,7 +201,9 @@ class ExplainPage {
                       ". With noise alone, any candidate gains as much in at most " +
                       share(round.screening.p) +
                       " of data sets, and a gap of any shape is as large in at most " +
-                      share(round.screening.gap_p) + ".");
+                      share(round.screening.gap_p) + ". Significant is a candidate below " +
+                      share(found_.false_alarms) + ", and a gap below " +
+                      share(selection::kGapLevel * found_.false_alarms) + ".");
       page_.table(score_rows(round));
     }
   }

@@ -44,6 +44,7 @@ std::string unknown_name_message(std::string_view kind, std::string_view name,
   const bool begun = !shown.empty() && nearest.compare(0, shown.size(), shown) == 0;
   const bool near = begun || (!valid.empty() && 2 * edit_distance(shown, nearest) < letters);
   if (near) message += "; did you mean '" + nearest + "'?";
+  if (valid.empty()) return message + "; there are none";
   if (!near || valid.size() <= 12) {
     message += near ? " Valid:" : "; valid:";
     for (std::size_t i = 0; i < valid.size(); ++i) message += (i ? ", " : " ") + valid[i];

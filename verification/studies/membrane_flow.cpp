@@ -241,14 +241,15 @@ void measure_wandering(const bench::Bench& bench, StudyReport& report) {
   const Diffusion measured = diffusion_of(centres, kHold);
   const double theory =
       analytic::centre_diffusion(membrane, kEpsilon, kAngle, flow::brownian_degree(kEpsilon));
-  report.claims.push_back(claim_near("centre of a raft: diffusion / theory", measured.value / theory,
-                                     1, 3 * measured.deviation / theory,
+  report.claims.push_back(claim_near("centre of a raft: diffusion / theory",
+                                     measured.value / theory, 1, 3 * measured.deviation / theory,
                                      2 * measured.deviation / theory));
   report.claims.push_back(
       claim_at_most("Brownian flow: largest relative drift of the mass", drift, 1e-12));
-  report.notes.push_back(formatted("The raft that wanders is a cap of %g rad with epsilon = %g R, "
-                                   "followed over %d holds in %.0f steps.",
-                                   kAngle, kEpsilon, holds, steps));
+  report.notes.push_back(
+      formatted("The raft that wanders is a cap of %g rad with epsilon = %g R, "
+                "followed over %d holds in %.0f steps.",
+                kAngle, kEpsilon, holds, steps));
 }
 
 StudyReport run(const bench::Bench& bench) {
