@@ -127,15 +127,17 @@ TEST_F(ExplainSeriesTest, TakesNoSimulationsThatAreOthers) {
     EXPECT_TRUE(refuses(traceraft(of_others("third", simulations())),
                         "--ensembles: " + simulations().string()));
   }
-  for (const char* strengths : {"[]", "5", "\"x\"", "{\"allen-cahn\": [\"a\"]}",
-                                "{\"allen-cahn\": [null]}", "{\"allen-cahn\": []}"}) {
+  posix::write_durably(file, kept);
+  EXPECT_FALSE(fs::exists(in("third")));
+  for (const char* strengths :
+       {"5", "\"x\"", "{\"uptake\": [\"a\"]}", "{\"uptake\": [null]}", "{\"uptake\": []}"}) {
     nlohmann::json damaged = json_of(file);
     damaged["strengths"] = nlohmann::json::parse(strengths);
     posix::write_durably(file, damaged.dump());
-    EXPECT_EQ(traceraft(of_others("third", simulations())).code, 4) << strengths;
+    const ProgramEnd end = traceraft(of_others("fourth", simulations()));
+    EXPECT_EQ(end.code, 4) << strengths << end.output;
     posix::write_durably(file, kept);
   }
-  EXPECT_FALSE(fs::exists(in("third")));
 }
 
 TEST_F(ExplainSeriesTest, DoesNotMixModelsInAFolder) {
