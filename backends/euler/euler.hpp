@@ -18,9 +18,9 @@ namespace traceraft::euler {
 // the run instead of being accepted; Δt grows at most twofold, so that BDF2 stays zero-stable; the
 // first step has an error estimate (half the difference to explicit Euler).
 //
-// Which solution goes on (kept_solution, and the first where extrapolated states are unstable): the
-// second, as in the reference code; the first, whose energy never grows while |f0''| ≤ 2β; or
-// "decaying", the second unless it would gain energy.
+// kept_solution says which solution goes on: the second, as in the reference code; the first, whose
+// energy never grows while |f0''| ≤ 2β; or "decaying", the second unless it would gain energy. It
+// is the first where extrapolated states are unstable (DaeProblem::may_be_extrapolated).
 //
 // With large Δt the stabilisation holds both solutions back alike, which their difference does not
 // show: at loose tolerances coarsening comes out late (docs/decisions/0006-keep-second.md).

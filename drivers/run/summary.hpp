@@ -13,7 +13,7 @@ namespace traceraft::run {
 
 // The member of summary.json that holds configuration_checksum.
 inline constexpr char kConfiguration[] = "configuration";
-// Of the options that change numbers.
+// The checksum of the options that change numbers.
 std::string configuration_checksum(const config::Configuration& configuration);
 
 std::string summary_json(const config::Configuration& configuration, const RunSetup& run,

@@ -35,7 +35,7 @@ struct EffectEntry {
   // make something of it (which have 0).
   int mobility_stage = 0;
   int strengths = 1;  // the first parameters, of which one is needed
-  // What follows from the parameters (in units of R and R²/D), for people; none: nothing to say.
+  // Says to people what follows from the parameters (in units of R and R²/D); may be empty.
   std::function<std::string(const Parameters&, const problem::CahnHilliardModel&,
                             const physics::Units&)>
       description = {};
@@ -86,7 +86,7 @@ double to_model_units(const std::string& unit, const physics::Units& units);
 // InputError for an unknown name or key, a value out of range, a strength that is not given, and an
 // effect that is given twice.
 std::vector<EffectTerm> read_effects(const std::string& specification, const physics::Units& units);
-// What follows from each term, where there is something to say: (name, text).
+// The descriptions of those terms that have one: (name, text).
 std::vector<std::pair<std::string, std::string>> descriptions(
     const std::vector<EffectTerm>& terms, const problem::CahnHilliardModel& model,
     const physics::Units& units);
