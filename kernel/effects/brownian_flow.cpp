@@ -13,11 +13,9 @@ namespace {
 constexpr std::uint64_t kFirstStream = std::uint64_t{1} << 40;
 
 Vec deviation_of(const flow::FluidMembrane& membrane, int degree, double hold) {
-  Vec deviation = Vec::Zero(flow::harmonic_index(degree, degree) + 1);
-  for (int l = 1; l <= degree; ++l)
-    deviation.segment(flow::harmonic_index(l, -l), 2 * l + 1)
-        .setConstant(std::sqrt(2 * membrane.thermal / (membrane.friction(l) * hold)));
-  return deviation;
+  return flow::by_degree(degree, [&](int l) {
+    return l < 1 ? 0 : std::sqrt(2 * membrane.thermal / (membrane.friction(l) * hold));
+  });
 }
 
 }  // namespace
@@ -26,7 +24,7 @@ Vec deviation_of(const flow::FluidMembrane& membrane, int degree, double hold) {
 class BrownianFlow::Streams {
  public:
   Streams(const BrownianFlow& flow, const fem::SurfaceSpace& space)
-      : flow_(&flow), space_(flow_space(degree_of(flow))(space)) {}
+      : flow_(&flow), space_(flow_space(flow.degree_)(space)) {}
 
   const std::vector<flow::ElementCurl>& curls() const { return space_->curls; }
   Vec at(const fem::SurfaceSpace& space, double t) const {
@@ -41,10 +39,6 @@ class BrownianFlow::Streams {
     Vec psi;
   };
 
-  static int degree_of(const BrownianFlow& flow) {
-    return static_cast<int>(std::lround(std::sqrt(static_cast<double>(flow.deviation_.size())))) -
-           1;
-  }
   // Neighbours stand in different places.
   const Vec& at_hold(const fem::SurfaceSpace& space, double number) const {
     Known& known = known_[std::fmod(number, 2) == 0 ? 0 : 1];
@@ -64,7 +58,8 @@ class BrownianFlow::Streams {
 
 BrownianFlow::BrownianFlow(const flow::FluidMembrane& membrane, double epsilon, double hold,
                            std::uint64_t seed)
-    : deviation_(deviation_of(membrane, flow::brownian_degree(epsilon), hold)),
+    : degree_(flow::brownian_degree(epsilon)),
+      deviation_(deviation_of(membrane, degree_, hold)),
       hold_(hold),
       seed_(seed),
       streams_([this](const fem::SurfaceSpace& space) {

@@ -41,6 +41,7 @@ class BrownianFlow final : public problem::Effect {
  private:
   class Streams;  // on one space
 
+  int degree_;     // the highest
   Vec deviation_;  // of each degree and order
   double hold_;
   std::uint64_t seed_;

@@ -1,38 +1,14 @@
 #include "kernel/effects/capillary_flow.hpp"
 
-#include <algorithm>
-#include <cmath>
-
-#include "kernel/core/error.hpp"
-
 namespace traceraft::effects {
 namespace {
 
 // The capillary force turns no sphere as a whole: its torque, l = 1, is an error of the mesh.
 Vec mobility_of(const flow::FluidMembrane& membrane, int degree) {
-  Vec mobility = Vec::Zero(flow::harmonic_index(degree, degree) + 1);
-  for (int l = 2; l <= degree; ++l)
-    mobility.segment(flow::harmonic_index(l, -l), 2 * l + 1).setConstant(1 / membrane.friction(l));
-  return mobility;
+  return flow::by_degree(degree, [&](int l) { return l < 2 ? 0 : 1 / membrane.friction(l); });
 }
 
 }  // namespace
-
-PerSpace<FlowSpace>::Compute flow_space(int degree) {
-  return [degree](const fem::SurfaceSpace& space) {
-    std::vector<Point> nodes;
-    for (int i = 0; i < space.nodes(); ++i) nodes.push_back(space.mesh.position(i));
-    return std::make_shared<const FlowSpace>(
-        FlowSpace{flow::element_curls(space), {nodes, degree, space.team, space.communicator}});
-  };
-}
-
-void require_sphere(const fem::SurfaceSpace& space) {
-  double off = 0;
-  for (const Point& x : space.surface.position) off = std::max(off, std::fabs(x.norm() - 1));
-  if (space.communicator->max(off) > space.h() * space.h())
-    throw InputError("effect flow: it is made for the sphere, and this surface is another");
-}
 
 CapillaryFlow::CapillaryFlow(const flow::FluidMembrane& membrane, double epsilon)
     : capillary_(membrane.capillary),
@@ -50,19 +26,17 @@ Vec CapillaryFlow::stream_at_nodes(const fem::SurfaceSpace& space, VecView c, Ve
   return operators_.on(space)->harmonics.synthesis(stream(space, c, mu));
 }
 
-void CapillaryFlow::add_residual(const fem::SurfaceSpace& space, double, VecView c, VecView mu,
+// Flow is linear in μ.
+void CapillaryFlow::add_residual(const fem::SurfaceSpace& space, double t, VecView c, VecView mu,
                                  VecRef residual_c, VecRef) const {
-  Vec buffer;
-  const Vec psi = stream_at_nodes(space, c, mu);
-  flow::add_transport(space, operators_.on(space)->curls, -1, c, space.with_ghosts(psi, buffer),
-                      residual_c);
+  add_stabilised_product(space, t, c, mu, residual_c);
 }
 
 void CapillaryFlow::add_stabilised_product(const fem::SurfaceSpace& space, double, VecView c,
                                            VecView direction_mu, VecRef product_c) const {
   Vec buffer;
-  const Vec change = stream_at_nodes(space, c, direction_mu);
-  flow::add_transport(space, operators_.on(space)->curls, -1, c, space.with_ghosts(change, buffer),
+  const Vec psi = stream_at_nodes(space, c, direction_mu);
+  flow::add_transport(space, operators_.on(space)->curls, -1, c, space.with_ghosts(psi, buffer),
                       product_c);
 }
 
@@ -79,13 +53,13 @@ void CapillaryFlow::add_tangent_product(const fem::SurfaceSpace& space, double, 
                                         VecRef product_c, VecRef) const {
   const auto operators = operators_.on(space);
   const auto& curls = operators->curls;
-  Vec buffer, change = Vec::Zero(space.nodes());
+  Vec buffer, force = Vec::Zero(space.nodes());
   const Vec psi = stream_at_nodes(space, c, mu);
   flow::add_transport(space, curls, -1, direction_c, space.with_ghosts(psi, buffer), product_c);
-  flow::add_transport(space, curls, capillary_, direction_c, mu, change);
-  flow::add_transport(space, curls, capillary_, c, direction_mu, change);
+  flow::add_transport(space, curls, capillary_, direction_c, mu, force);
+  flow::add_transport(space, curls, capillary_, c, direction_mu, force);
   const flow::HarmonicTransform& harmonics = operators->harmonics;
-  change = harmonics.synthesis(mobility_.cwiseProduct(harmonics.analysis(change)));
+  const Vec change = harmonics.synthesis(mobility_.cwiseProduct(harmonics.analysis(force)));
   flow::add_transport(space, curls, -1, c, space.with_ghosts(change, buffer), product_c);
 }
 

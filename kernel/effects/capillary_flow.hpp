@@ -25,7 +25,7 @@ class CapillaryFlow final : public problem::Effect {
 
   void add_residual(const fem::SurfaceSpace& space, double t, VecView c, VecView mu,
                     VecRef residual_c, VecRef residual_mu) const override;
-  // With c held, flow is one more mobility, which couples distant points: ċ = −(K_M + T G Tᵀ) μ.
+  // Flow with c held is one more mobility, which couples distant points: ċ = −(K_M + T G Tᵀ) μ.
   void add_stabilised_product(const fem::SurfaceSpace& space, double t, VecView c,
                               VecView direction_mu, VecRef product_c) const override;
   void add_tangent(const fem::SurfaceSpace& space, double t, VecView c, VecView mu,

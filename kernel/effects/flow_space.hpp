@@ -1,4 +1,4 @@
-// What flow needs of a surface.
+// The transport of a surface and the harmonics at its nodes, for flow.
 #pragma once
 
 #include "kernel/effects/per_space.hpp"

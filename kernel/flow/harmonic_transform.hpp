@@ -19,14 +19,23 @@ inline Eigen::Index harmonic_index(int l, int m) {
   return static_cast<Eigen::Index>(l) * l + l + m;
 }
 
-// With Y as the matrix of the harmonics (columns) at points (rows), synthesis is Y a and analysis
-// is Yᵀ b. The one is the transpose of the other to roundoff. Either costs a number of operations
+// f(l) for every harmonic up to a degree.
+template <class OfDegree>
+Vec by_degree(int degree, const OfDegree& f) {
+  Vec values(harmonic_index(degree, degree) + 1);
+  for (int l = 0; l <= degree; ++l)
+    values.segment(harmonic_index(l, -l), 2 * l + 1).setConstant(f(l));
+  return values;
+}
+
+// Synthesis is Y a and analysis is Yᵀ b, with Y as the matrix of the harmonics (columns) at points
+// (rows). The one is the transpose of the other to roundoff. Either costs a number of operations
 // per point, not one per point and harmonic:
 //   points → grid of rings → Fourier series of a ring → harmonics, and back by the transposed
 //   steps.
 // The grid has four points for the shortest wave, and local polynomials of degree 7 lead to the
-// points. They reproduce a harmonic of the highest degree to 1e-2, one of half of it to 1e-4 and
-// one of a quarter to 2e-7.
+// points. Analysis and synthesis together reproduce a harmonic of the highest degree to 2e-2, one
+// of half of it to 1e-4 and one of a quarter to 4e-7.
 class HarmonicTransform {
  public:
   // `points`: only their directions count, and none is 0.

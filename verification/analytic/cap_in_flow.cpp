@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "kernel/core/types.hpp"
+#include "kernel/physics/double_well.hpp"
 
 namespace traceraft::analytic {
 namespace {
@@ -14,10 +15,6 @@ double legendre(int l, int m, double angle) {
 }
 
 }  // namespace
-
-double boundary_profile(double inside, double epsilon) {
-  return 0.5 * (1 + std::tanh(inside / (2 * std::sqrt(2.0) * epsilon)));
-}
 
 double relaxation_rate(const flow::FluidMembrane& membrane, double epsilon, double angle, int m) {
   constexpr int kDegrees = 2000;  // terms fall as l⁻⁴
@@ -41,7 +38,8 @@ double centre_diffusion(const flow::FluidMembrane& membrane, double epsilon, dou
   for (int l = 1; l <= degree; ++l) {
     double moved = 0, area = 0;
     for (int k = 0; k < kAngles; ++k) {
-      const double at = (k + 0.5) * kPi / kAngles, c = boundary_profile(angle - at, epsilon);
+      const double at = (k + 0.5) * kPi / kAngles,
+                   c = physics::DoubleWell().profile(at - angle, epsilon);
       const double weight = c * (1 - c);  // −c′ but for a factor
       moved += weight * std::sqrt(2.0) * kPi * std::sin(at) * legendre(l, 1, at);
       area += weight * kPi * std::sin(at) * std::sin(at);

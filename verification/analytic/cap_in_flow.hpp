@@ -6,9 +6,6 @@
 
 namespace traceraft::analytic {
 
-// ½ (1 + tanh(s/(2√2 ε))), the boundary of width ε at the distance s inside of its middle.
-double boundary_profile(double inside, double epsilon);
-
 // The rate at which a boundary at angle + δ cos mφ becomes round by line tension, m ≥ 2, in D/R²:
 //   γ_m = A (ε/6√2) (2π m²(m² − 1)/sin³α) Σ_{l ≥ m} P̃_lm(cos α)²/friction(l).
 // The boundary is sharp.

@@ -131,7 +131,7 @@ double measured_relaxation(const bench::Bench& bench, const FluidMembrane& membr
                     model_of(epsilon, std::make_shared<effects::CapillaryFlow>(membrane, epsilon)));
   const bench::StartState start = start_of(*problem, [&](const Point& x) {
     const double theta = std::atan2(std::hypot(x[0], x[1]), x[2]), phi = std::atan2(x[1], x[0]);
-    return analytic::boundary_profile(angle + 0.05 * std::cos(m * phi) - theta, epsilon);
+    return problem->model().well.profile(theta - angle - 0.05 * std::cos(m * phi), epsilon);
   });
   const double scale = 1 / analytic::relaxation_rate(membrane, epsilon, angle, m);
   const time::IntegratorPtr integrator = bench.default_integrator(*problem, 1e-4);
@@ -220,10 +220,9 @@ void measure_wandering(const bench::Bench& bench, StudyReport& report) {
     for (int d = 0; d < 3; ++d) centre[d] = space.inner(position.col(d), problem->c_of(y));
     return centre.normalized();
   };
-  const bench::StartState start = start_of(*problem, [&](const Point& x) {
-    return analytic::boundary_profile(kAngle - std::acos(std::clamp(x.normalized()[2], -1.0, 1.0)),
-                                      kEpsilon);
-  });
+  problem::InitialRequest request;
+  request.caps = {{Point(0, 0, 1), kAngle}};
+  const bench::StartState start = bench::initial_state(*problem, "caps", request);
   const time::IntegratorPtr integrator = bench.default_integrator(*problem, 1e-3);
   const double mass = problem->mass(start.y);
   std::vector<Point> centres{centre_of(start.y)};
