@@ -49,15 +49,17 @@ int execute_run(const config::Configuration& configuration, RunSetup& run, const
   const bool root = run.ranks->root();
   posix::catch_stop_signals();
   simulation::RunState state{*run.integrator, {}, 0, {}};
-  std::optional<TableWriter> tables;
+  std::optional<RunTables> tables;
   if (root) tables.emplace(folder, run, checkpoint ? checkpoint->tables : TableExtents{});
+  std::optional<TableWriter> rows;
+  if (root) rows.emplace(*tables, run);
   FieldWriter fields(folder, run);
   CheckpointWriter checkpoints(
       folder, run, root ? &*tables : nullptr, config::numerical_identity(configuration),
       configuration.options().checkpoint_interval, checkpoint ? checkpoint->cost : RunCost{});
   Progress progress(run, quiet);
   std::vector<simulation::RunListener*> listeners;
-  if (root) listeners.push_back(&*tables);
+  if (root) listeners.push_back(&*rows);
   if (configuration.options().fields) listeners.push_back(&fields);
   listeners.push_back(&checkpoints);
   if (root) listeners.push_back(&progress);

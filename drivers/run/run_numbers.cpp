@@ -4,12 +4,18 @@
 
 namespace traceraft::run {
 
-RunMoment::RunMoment(const RunSetup& run_, const observables::Observables& observables_, double t_)
-    : run(run_),
-      observables(observables_),
-      t(t_),
-      steps(run_.integrator->statistics()),
-      linear(run_.integrator->linear_statistics()) {}
+RunMoment moment_of(const RunSetup& run, const observables::Observables& observables, double t) {
+  return {run.units,
+          observables,
+          t,
+          run.integrator->step(),
+          run.integrator->statistics(),
+          run.integrator->linear_statistics()};
+}
+
+RunGround ground_of(const RunSetup& run) {
+  return {run.space->totals, run.space->area, run.space->h(), run.ranks->size(), run.team->size()};
+}
 
 namespace {
 
@@ -26,17 +32,17 @@ const std::vector<ReportedNumber<RunMoment>>& run_columns() {
       {"steps", U::count, "accepted steps so far", [](M m) { return number(m.steps.steps); }},
       {"t", U::time, "time", [](M m) { return m.t; }},
       {"dt", U::time, "the step that ends at t, or that t lies in",
-       [](M m) { return m.run.integrator->step() * m.units().time(); }},
+       [](M m) { return m.step * m.units.time(); }},
       {"mass", U::area, "∫ c over the surface",
-       [](M m) { return m.observables.mass * m.units().area(); }},
+       [](M m) { return m.observables.mass * m.units.area(); }},
       {"energy", U::area, "∫ f0(c) + ½ ε² |∇c|², in units of the energy density times area",
-       [](M m) { return m.observables.energy * m.units().area(); }},
+       [](M m) { return m.observables.energy * m.units.area(); }},
       {"perimeter", U::length,
        "the diffuse perimeter ∫ ε |∇c|² over the same integral per length of a straight "
        "boundary at rest on a mesh of this h/ε",
-       [](M m) { return m.observables.perimeter * m.units().length(); }},
+       [](M m) { return m.observables.perimeter * m.units.length(); }},
       {"perimeter_level", U::length, "length of the curve c = (a + b)/2",
-       [](M m) { return m.observables.perimeter_level * m.units().length(); }},
+       [](M m) { return m.observables.perimeter_level * m.units.length(); }},
       {"rafts", U::count, "connected components of c > (a + b)/2",
        [](M m) { return number(m.observables.rafts); }},
       {"domains", U::count,
@@ -46,7 +52,7 @@ const std::vector<ReportedNumber<RunMoment>>& run_columns() {
       {"raft_fraction", U::ratio, "area of all rafts over that of the surface",
        [](M m) { return m.observables.raft_fraction; }},
       {"largest_raft", U::area, "area of the largest raft",
-       [](M m) { return m.observables.largest_raft * m.units().area(); }},
+       [](M m) { return m.observables.largest_raft * m.units.area(); }},
       {"c_min", U::ratio, "smallest c on the surface", [](M m) { return m.observables.c_min; }},
       {"c_max", U::ratio, "largest c on the surface", [](M m) { return m.observables.c_max; }},
       {"rejected", U::count, "attempts so far whose error was too large",
@@ -69,19 +75,18 @@ const std::vector<ReportedNumber<RunTotals>>& run_totals() {
   using U = text::Unit;
   static const std::vector<ReportedNumber<RunTotals>> totals = {
       {"nodes", U::count, "nodes whose basis functions touch the surface",
-       [](T r) { return number(r.at.run.space->totals.nodes); }},
+       [](T r) { return number(r.ground.mesh.nodes); }},
       {"unknowns", U::count, "c and μ at the nodes",
-       [](T r) { return 2 * number(r.at.run.space->totals.nodes); }},
+       [](T r) { return 2 * number(r.ground.mesh.nodes); }},
       {"cut_tetrahedra", U::count, "tetrahedra that the surface cuts",
-       [](T r) { return number(r.at.run.space->totals.elements); }},
+       [](T r) { return number(r.ground.mesh.elements); }},
       {"euler_characteristic", U::count, "of the surface: 2 for a sphere",
-       [](T r) { return number(r.at.run.space->totals.euler_characteristic); }},
-      {"area", U::area, "of the surface",
-       [](T r) { return r.at.run.space->area * r.at.units().area(); }},
+       [](T r) { return number(r.ground.mesh.euler_characteristic); }},
+      {"area", U::area, "of the surface", [](T r) { return r.ground.area * r.at.units.area(); }},
       {"h", U::length, "edge of a cell of the mesh",
-       [](T r) { return r.at.run.space->h() * r.at.units().length(); }},
+       [](T r) { return r.ground.h * r.at.units.length(); }},
       {"mean_concentration", U::ratio, "mass over area",
-       [](T r) { return r.at.observables.mass / r.at.run.space->area; }},
+       [](T r) { return r.at.observables.mass / r.ground.area; }},
       {"mass_drift", U::ratio, "largest change of the mass, relative to it",
        [](T r) { return r.monitor.mass_drift(); }},
       {"energy_rises", U::count, "steps in which the energy grew",
@@ -115,8 +120,8 @@ const std::vector<ReportedNumber<RunTotals>>& run_totals() {
        [](T r) { return r.cost.cpu_seconds; }},
       {"peak_memory_mb", U::megabytes, "largest resident memory of the last process",
        [](T r) { return r.memory_mb; }},
-      {"ranks", U::count, "MPI ranks", [](T r) { return number(r.at.run.ranks->size()); }},
-      {"threads", U::count, "threads of a rank", [](T r) { return number(r.at.run.team->size()); }},
+      {"ranks", U::count, "MPI ranks", [](T r) { return number(r.ground.ranks); }},
+      {"threads", U::count, "threads of a rank", [](T r) { return number(r.ground.threads); }},
   };
   return totals;
 }

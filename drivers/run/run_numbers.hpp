@@ -18,20 +18,28 @@ namespace traceraft::run {
 
 // A step or an output time of a run.
 struct RunMoment {
-  const RunSetup& run;
+  const physics::Units& units;
   const observables::Observables& observables;
-  double t;  // in the units of the outputs; at an output time, as the user wrote it
+  double t;     // in the units of the outputs; at an output time, as the user wrote it
+  double step;  // the one that ends there, or that the time lies in; R²/D
   time::IntegratorStatistics steps;
   linear::LinearStatistics linear;
-
-  RunMoment(const RunSetup& run, const observables::Observables& observables, double t);
-  const physics::Units& units() const { return run.units; }
 };
+RunMoment moment_of(const RunSetup& run, const observables::Observables& observables, double t);
+
+// The surface that a run is on, and those who work on it.
+struct RunGround {
+  fem::SurfaceSpace::Totals mesh;  // zeros: there is none
+  double area, h;                  // R², R
+  int ranks, threads;
+};
+RunGround ground_of(const RunSetup& run);
 
 // The end of a run.
 struct RunTotals {
   const RunMoment& at;
   const simulation::RunMonitor& monitor;
+  RunGround ground;
   RunCost cost;
   double memory_mb;
 };

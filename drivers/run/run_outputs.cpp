@@ -6,7 +6,6 @@
 #include "backends/png/png_file.hpp"
 #include "backends/posix/process.hpp"
 #include "backends/zlib/vtu_writer.hpp"
-#include "drivers/run/run_numbers.hpp"
 #include "kernel/core/text.hpp"
 #include "kernel/fem/trace.hpp"
 
@@ -16,11 +15,6 @@ namespace {
 TableExtent extent_of(const TableExtents& extents, const std::string& name) {
   const auto found = extents.find(name);
   return found == extents.end() ? TableExtent{} : found->second;
-}
-
-std::size_t output_index(const RunSetup& run, double t) {
-  const auto& times = run.output_times;
-  return static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), t) - times.begin());
 }
 
 constexpr int kViewPixels = 480;
@@ -53,48 +47,57 @@ std::vector<int> largest_at_corners(const mesh::CutSurface& surface,
 
 }  // namespace
 
-TableWriter::TableWriter(const RunFolder& folder, const RunSetup& run, const TableExtents& extents)
-    : run_(run),
+RunTables::RunTables(const RunFolder& folder, const RunSchedule& schedule,
+                     const TableExtents& extents)
+    : schedule_(schedule),
       series_(folder.table("series.csv"), extent_of(extents, "series.csv")),
       observables_(folder.table("observables.csv"), extent_of(extents, "observables.csv")),
       rafts_(folder.table("rafts.csv"), extent_of(extents, "rafts.csv")) {
-  const std::string heading = csv_heading(run_columns(), run.units.scaled);
+  const bool scaled = schedule.units.scaled;
+  const std::string heading = csv_heading(run_columns(), scaled);
   if (series_.extent().bytes == 0) series_.append(heading);
   if (observables_.extent().bytes == 0) observables_.append(heading);
-  if (rafts_.extent().bytes == 0) rafts_.append(csv_heading(raft_columns(), run.units.scaled));
+  if (rafts_.extent().bytes == 0) rafts_.append(csv_heading(raft_columns(), scaled));
+}
+
+void RunTables::add_step(const RunMoment& moment) {
+  series_.append(csv_row(run_columns(), moment));
+}
+
+void RunTables::add_output(const RunMoment& moment, const observables::RaftReport& rafts) {
+  observables_.append(csv_row(run_columns(), moment));
+  std::string text;
+  int number = 0;
+  for (const observables::Raft& raft : rafts.rafts)
+    text += csv_row(raft_columns(), RaftMoment{raft, ++number, moment.t, schedule_.units});
+  rafts_.append(text);
+}
+
+void RunTables::sync() {
+  for (TableFile* table : {&series_, &observables_, &rafts_}) table->sync();
+}
+
+TableExtents RunTables::extents() const {
+  return {{"series.csv", series_.extent()},
+          {"observables.csv", observables_.extent()},
+          {"rafts.csv", rafts_.extent()}};
 }
 
 void TableWriter::on_step(const simulation::RunState& state) {
-  series_.append(csv_row(
-      run_columns(), RunMoment(run_, state.observables, state.observables.t * run_.units.time())));
+  const observables::Observables& row = state.observables;
+  tables_.add_step(moment_of(run_, row, row.t * run_.units.time()));
 }
 
 void TableWriter::on_output(const observables::Observables& row,
                             const observables::RaftReport& rafts, VecView) {
-  const double t = run_.output_labels[output_index(run_, row.t)];
-  observables_.append(csv_row(run_columns(), RunMoment(run_, row, t)));
-  std::string text;
-  int number = 0;
-  for (const observables::Raft& raft : rafts.rafts)
-    text += csv_row(raft_columns(), RaftMoment{raft, ++number, t, run_.units});
-  rafts_.append(text);
-}
-
-void TableWriter::sync() {
-  for (TableFile* table : {&series_, &observables_, &rafts_}) table->sync();
-}
-
-TableExtents TableWriter::extents() const {
-  return {{"series.csv", series_.extent()},
-          {"observables.csv", observables_.extent()},
-          {"rafts.csv", rafts_.extent()}};
+  tables_.add_output(moment_of(run_, row, run_.output_labels[run_.output_index(row.t)]), rafts);
 }
 
 void FieldWriter::on_output(const observables::Observables& row,
                             const observables::RaftReport& rafts, VecView y) {
   const Communicator& ranks = *run_.ranks;
   const fem::SurfaceSpace& space = *run_.space;
-  const std::size_t index = output_index(run_, row.t);
+  const std::size_t index = run_.output_index(row.t);
   Vec buffer;
   const Vec c = fem::trace(space, space.with_ghosts(run_.problem->c_of(y), buffer));
   const Vec mu = fem::trace(space, space.with_ghosts(run_.problem->mu_of(y), buffer));
@@ -152,8 +155,8 @@ void FieldWriter::collect(std::size_t newest) const {
   posix::write_durably(folder_.path / "fields.pvd", zlib::pvd_text(files));
 }
 
-CheckpointWriter::CheckpointWriter(const RunFolder& folder, const RunSetup& run,
-                                   TableWriter* tables, std::string configuration, double interval,
+CheckpointWriter::CheckpointWriter(const RunFolder& folder, const RunSetup& run, RunTables* tables,
+                                   std::string configuration, double interval,
                                    const RunCost& before)
     : store_(folder.checkpoints()),
       run_(run),

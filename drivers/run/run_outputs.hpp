@@ -7,6 +7,7 @@
 
 #include "drivers/run/checkpoint_store.hpp"
 #include "drivers/run/run_folder.hpp"
+#include "drivers/run/run_numbers.hpp"
 #include "drivers/run/run_setup.hpp"
 #include "drivers/run/view_strip.hpp"
 #include "kernel/core/stopwatch.hpp"
@@ -14,21 +15,33 @@
 
 namespace traceraft::run {
 
-// The tables, on the first rank. series.csv: a row per accepted step. observables.csv: the same
-// columns at the output times. rafts.csv: every raft at the output times.
-class TableWriter final : public simulation::RunListener {
+// The tables. series.csv: a row per accepted step. observables.csv: the same columns at the output
+// times. rafts.csv: every raft at the output times.
+class RunTables {
  public:
   // `extents`: as a checkpoint recorded them; empty for a new run. Throws IoError.
-  TableWriter(const RunFolder& folder, const RunSetup& run, const TableExtents& extents);
-  void on_step(const simulation::RunState& state) override;
-  void on_output(const observables::Observables& row, const observables::RaftReport& rafts,
-                 VecView y) override;
+  RunTables(const RunFolder& folder, const RunSchedule& schedule, const TableExtents& extents);
+  void add_step(const RunMoment& moment);
+  void add_output(const RunMoment& moment, const observables::RaftReport& rafts);
   void sync();
   TableExtents extents() const;
 
  private:
-  const RunSetup& run_;
+  const RunSchedule& schedule_;
   TableFile series_, observables_, rafts_;
+};
+
+// Fills them on the first rank.
+class TableWriter final : public simulation::RunListener {
+ public:
+  TableWriter(RunTables& tables, const RunSetup& run) : tables_(tables), run_(run) {}
+  void on_step(const simulation::RunState& state) override;
+  void on_output(const observables::Observables& row, const observables::RaftReport& rafts,
+                 VecView y) override;
+
+ private:
+  RunTables& tables_;
+  const RunSetup& run_;
 };
 
 // fields/field-NNNN.vtu with c and mu on Γ_h, collected in fields.pvd, and a picture of front and
@@ -52,7 +65,7 @@ class FieldWriter final : public simulation::RunListener {
 // first one, which has the tables, writes.
 class CheckpointWriter final : public simulation::RunListener {
  public:
-  CheckpointWriter(const RunFolder& folder, const RunSetup& run, TableWriter* tables,
+  CheckpointWriter(const RunFolder& folder, const RunSetup& run, RunTables* tables,
                    std::string configuration, double interval, const RunCost& before);
   void on_step(const simulation::RunState& state) override;
   void write(const simulation::RunState& state);
@@ -61,7 +74,7 @@ class CheckpointWriter final : public simulation::RunListener {
  private:
   CheckpointStore store_;
   const RunSetup& run_;
-  TableWriter* tables_;
+  RunTables* tables_;
   std::string configuration_;
   double interval_;
   RunCost before_;

@@ -1,7 +1,6 @@
 #include "drivers/run/run_setup.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <thread>
 
@@ -30,46 +29,12 @@ int thread_count(const config::Configuration& configuration, const Communicator&
   return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 2);
 }
 
-// In the user's units, ascending.
-std::vector<double> asked_times(const config::Configuration& configuration) {
-  constexpr int kDefaultTimes = 16;
-  const double end = configuration.options().t_end;
-  std::vector<double> times = configuration.options().output_times;
-  if (times.empty()) {
-    times.push_back(0);
-    for (int i = 1; i <= kDefaultTimes; ++i)  // four decades, the end last
-      times.push_back(end * std::pow(10.0, 4.0 * (i - kDefaultTimes) / kDefaultTimes));
-  }
-  std::sort(times.begin(), times.end());
-  if (times.back() > end)
-    throw InputError(configuration.where(&config::RunOptions::output_times) + ": " +
-                     format_number(times.back()) + " is after the end of the run, " +
-                     format_number(configuration.options().t_end));
-  return times;
-}
-
-void set_output_times(const config::Configuration& configuration, RunSetup& run) {
-  for (const double label : asked_times(configuration)) {
-    const double t = std::min(label / run.units.time(), run.t_end);
-    if (!run.output_times.empty() && t == run.output_times.back()) {
-      if (run.repeated_labels.empty() || run.repeated_labels.back() != label)
-        run.repeated_labels.push_back(label);
-      continue;
-    }
-    run.output_labels.push_back(label);
-    run.output_times.push_back(t);
-  }
-}
-
 }  // namespace
 
 RunSetup build_run(const config::Configuration& configuration, InitialState initial,
                    const config::Compared& compared) {
   RunSetup run;
-  refuse_times_out_of_range(configuration);
-  run.units = configuration.units();
-  run.t_end = configuration.options().t_end / run.units.time();
-  set_output_times(configuration, run);
+  static_cast<RunSchedule&>(run) = run_schedule(configuration);
   const problem::CahnHilliardModel physics = physical_model(configuration);
   const backends::IntegratorEntry& integrator = with_option_context(
       configuration, &config::RunOptions::integrator,

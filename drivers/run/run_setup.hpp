@@ -7,6 +7,7 @@
 
 #include "drivers/config/configuration.hpp"
 #include "drivers/config/option_needs.hpp"
+#include "drivers/run/run_schedule.hpp"
 #include "kernel/observables/observables.hpp"
 #include "kernel/observables/resolved_boundary.hpp"
 #include "kernel/problem/cahn_hilliard.hpp"
@@ -15,8 +16,7 @@
 namespace traceraft::run {
 
 // Built in the order of the members; each is handed to the next by const reference.
-struct RunSetup {
-  physics::Units units;
+struct RunSetup : RunSchedule {
   std::shared_ptr<const Communicator> ranks;
   std::shared_ptr<const ThreadTeam> team;
   std::shared_ptr<const fem::SurfaceSpace> space;
@@ -25,11 +25,7 @@ struct RunSetup {
   double initial_mean = 0;  // and its mean
   observables::ResolvedBoundary boundary;
   std::unique_ptr<observables::Observer> observer;
-  time::IntegratorPtr integrator;       // not started
-  double t_end;                         // units of R²/D, as below
-  std::vector<double> output_times;     // ascending, within [0, t_end]
-  std::vector<double> output_labels;    // the same as the user wrote them, in the user's units
-  std::vector<double> repeated_labels;  // those that were asked for more than once
+  time::IntegratorPtr integrator;  // not started
 };
 
 enum class InitialState { build, from_checkpoint /* leaves RunSetup::initial empty */ };

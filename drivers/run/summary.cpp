@@ -90,9 +90,9 @@ std::string summary_json(const config::Configuration& configuration, const RunSe
                    {"seconds_per_unit", units.seconds_per_unit()}};
   json["energy_guard"] = configuration.options().energy_guard;
   json["energy_decay_promised"] = decay_promised(run);
-  const RunMoment end(run, state.observables, state.observables.t * units.time());
+  const RunMoment end = moment_of(run, state.observables, state.observables.t * units.time());
   for (const auto& column : run_columns()) put(json, column.name, column.unit, column.value(end));
-  const RunTotals totals{end, state.monitor, cost, memory_mb};
+  const RunTotals totals{end, state.monitor, ground_of(run), cost, memory_mb};
   for (const auto& total : run_totals()) put(json, total.name, total.unit, total.value(totals));
   json["blas"] = suitesparse::blas_description();
   for (const auto& [name, extent] : tables)
