@@ -2,11 +2,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstring>
-#include <filesystem>
 #include <sstream>
 
 #include "backends/posix/address_space.hpp"
-#include "backends/posix/folder_lock.hpp"
 #include "backends/posix/process.hpp"
 #include "backends/ranks.hpp"
 #include "backends/suitesparse/blas.hpp"
@@ -14,7 +12,7 @@
 #include "drivers/config/number_checks.hpp"
 #include "drivers/config/text_checks.hpp"
 #include "drivers/exit_codes.hpp"
-#include "drivers/numerical_failure.hpp"
+#include "drivers/failure.hpp"
 #include "drivers/output/program.hpp"
 #include "drivers/text/say.hpp"
 #include "kernel/core/error.hpp"
@@ -145,22 +143,9 @@ int complain(const std::string& what, int code) {
 int guarded(int argc, char** argv) {
   try {
     return dispatch(argc, argv);
-  } catch (const InputError& error) {
-    return complain(error.what(), drivers::kBadInput);
-  } catch (const IoError& error) {
-    return complain(error.what(), drivers::kInputOutput);
-  } catch (const std::filesystem::filesystem_error& error) {
-    const bool too_long = error.code() == std::errc::filename_too_long;
-    return complain(error.path1().string() + ": " + error.code().message(),
-                    too_long ? drivers::kBadInput : drivers::kInputOutput);
-  } catch (const drivers::NumericalFailure& error) {
-    return complain(error.what(), drivers::kNumericalFailure);
-  } catch (const posix::LockedError& error) {
-    return complain(error.what(), drivers::kLocked);
-  } catch (const std::bad_alloc&) {
-    return complain("out of memory; use fewer --cells", drivers::kInternalError);
-  } catch (const std::exception& error) {
-    return complain(std::string("internal error: ") + error.what(), drivers::kInternalError);
+  } catch (...) {
+    const drivers::Failure failure = drivers::failure_of(std::current_exception());
+    return complain(failure.why, failure.code);
   }
 }
 

@@ -8,9 +8,10 @@
 
 namespace traceraft::posix {
 
-double wall_seconds();    // since this program was started, libraries still to be loaded
-double cpu_seconds();     // user and system time of all threads
-double peak_memory_mb();  // largest resident set so far
+double wall_seconds();        // since this program was started, libraries still to be loaded
+double cpu_seconds();         // user and system time of all threads
+double thread_cpu_seconds();  // of the calling thread
+double peak_memory_mb();      // largest resident set so far
 bool is_superuser();
 bool stdout_is_terminal();
 int terminal_columns();  // 80 if unknown

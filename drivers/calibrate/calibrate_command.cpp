@@ -165,8 +165,7 @@ int run_calibration(CalibrateRequest request) {
   (void)calibration::telling_vesicles(data);  // or refuses them
   if (!request.ensemble.empty()) return calibrate_ensemble(request, data);
   input::refuse_without_model(data.composition, request.model, request.flags);
-  const config::Configuration model(config::read_config_file(request.model, "--model"),
-                                    request.flags);
+  const config::Configuration model(config::read_model(request.model), request.flags);
   if (std::find(costly.begin(), costly.end(), "fraction") == costly.end())
     refuse_other_membrane(model.where(&config::RunOptions::case_name), data, model);
   input::refuse_scaled(model);
@@ -211,7 +210,8 @@ drivers::Action define_calibrate(CLI::App& app) {
   const auto request = std::make_shared<CalibrateRequest>();
   app.add_option("--data", request->data, "folder of the measurements (dataset.toml)")
       ->type_name("DIR");
-  app.add_option("--model", request->model, "TOML file of the model, with names of flags as keys")
+  app.add_option("--model", request->model,
+                 "TOML file of the model, with names of flags as keys; or discs, with the flags")
       ->type_name("FILE");
   CLI::Option* const ensemble = app.add_option("--ensemble", request->ensemble,
                                                "folder of an ensemble, or of its kept histories: "
@@ -244,7 +244,8 @@ drivers::Action define_calibrate(CLI::App& app) {
       ->type_name("DIR");
   app.add_flag("--quiet", request->quiet, "print errors only");
   config::add_options(app, request->flags, [](const config::OptionSpec& spec) {
-    return spec.numerical && spec.name != "seed" && spec.name != "output-times";
+    return spec.numerical && spec.name != "seed" && spec.name != "output-times" &&
+           spec.name != "model";
   });
   app.footer(
       "Example: traceraft calibrate --data my-vesicles --case guv-3to1 --parameters "

@@ -212,7 +212,7 @@ drivers::Action define_compare(CLI::App& app) {
       ->check(config::between(1e-12, 0.1));
   app.add_flag("--quiet", request->quiet, "print errors only");
   config::add_options(app, request->flags, [](const config::OptionSpec& spec) {
-    return spec.group != "Output" && spec.name != "output-times";
+    return spec.group != "Output" && spec.name != "output-times" && spec.name != "model";
   });
   app.footer(
       "Example: traceraft compare --case spinodal --integrators euler,ida --tolerances "

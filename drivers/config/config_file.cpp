@@ -1,5 +1,6 @@
 #include "drivers/config/config_file.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "drivers/config/option_needs.hpp"
@@ -77,6 +78,13 @@ GivenValues read_config_file(const std::filesystem::path& path, const std::strin
   for (const std::string& name : table.keys())
     values[name] = {value_text(run_option(name), table, table.where(name)), table.where(name)};
   return values;
+}
+
+GivenValues read_model(const std::string& file_or_word) {
+  const std::vector<std::string>& words = run_option(&RunOptions::model).words;
+  if (std::find(words.begin(), words.end(), file_or_word) == words.end())
+    return read_config_file(file_or_word, "--model");
+  return {{"model", {file_or_word, "--model"}}};
 }
 
 std::string config_text(const Configuration& configuration) {

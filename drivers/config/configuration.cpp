@@ -120,6 +120,8 @@ Configuration::Configuration(const GivenValues& file, const GivenValues& flags) 
     for (const backends::IntegratorEntry& integrator : backends::integrators())
       if (integrator.name == options_.integrator)
         set_text(run_option(&RunOptions::tolerance), format_number(integrator.tolerance));
+  if (options_.model == "discs" && options_.initial == "noise" && !given(&RunOptions::initial))
+    set_text(run_option(&RunOptions::initial), "discs");
   // A case's choice is for its own mesh.
   if (!given(&RunOptions::noise_cells) && options_.noise_cells > options_.cells)
     set_text(run_option(&RunOptions::noise_cells), std::to_string(options_.cells));

@@ -20,10 +20,14 @@ std::vector<OptionNeed> all_needs() {
   std::vector<OptionNeed> needs = {
       {"initial-formula", "initial", {"formula"}},
       {"initial-caps", "initial", {"caps"}},
-      {"raft-fraction", "initial", {"noise", "band-limited"}},
+      {"raft-fraction", "initial", {"noise", "band-limited", "discs"}},
       {"noise-cells", "initial", {"noise"}},
       {"keep", "integrator", {"euler"}},
   };
+  for (const char* option : {"surface-formula", "potential", "stabilisation", "mass-stabilisation",
+                             "noise-cells", "integrator", "initial-step", "min-step", "max-step",
+                             "keep", "energy-guard", "linear-solver", "linear-tolerance"})
+    needs.push_back({option, "model", {"field"}});
   for (const backends::IntegratorEntry& integrator : backends::integrators())
     for (const ParameterSpec& parameter : integrator.parameters)
       needs.push_back({method_option(integrator.name, parameter), "integrator", {integrator.name}});

@@ -106,6 +106,11 @@ const std::vector<OptionSpec>& run_options() {
       {"scaled", &R::scaled, "false", "Case",
        "use R and R^2/D as units of all inputs and outputs, instead of um and s"},
 
+      one_of({"field", "discs"},
+             {"model", &R::model, "field", "Case",
+              "field: the concentration on the whole surface; discs: rafts as discs of the same "
+              "physics, much faster"}),
+
       listed("SURFACE",
              {"surface", &R::surface, "sphere", "Surface",
               "surface, with parameters in units of R as in torus:major=1,minor=0.4, or formula"}),
@@ -139,16 +144,20 @@ const std::vector<OptionSpec>& run_options() {
       {"mass-stabilisation", &R::mass_stabilisation, "0.3", "Physics",
        "the same in the mass matrix, where it slows short waves; 1 in the paper's code", 1e-3, 1e3},
 
-      listed("INITIAL",
-             {"initial", &R::initial, "noise", "Initial state",
-              "noise, band-limited:wavelength=0.3,amplitude=0.05, caps, formula or restart:DIR"}),
+      listed(
+          "INITIAL",
+          {"initial", &R::initial, "noise", "Initial state",
+           "noise, band-limited:wavelength=0.3,amplitude=0.05, caps, discs:number=100, formula or "
+           "restart:DIR; default with --model discs: discs"}),
       {"initial-formula", &R::initial_formula, "", "Initial state",
        "c(x,y,z) for --initial formula; coordinates in units of R"},
       {"initial-caps", &R::initial_caps, "", "Initial state",
        "rafts for --initial caps: \"x y z angle; ...\", each with direction and half angle "
        "(degrees)"},
       {"raft-fraction", &R::raft_fraction, "0.16", "Initial state",
-       "mean of (c-a)/(b-a) for noise; the initial state has exactly this mean", 0.0, 1.0},
+       "mean of (c-a)/(b-a) for noise and discs; with noise the initial state has exactly this "
+       "mean",
+       0.0, 1.0},
       {"noise-cells", &R::noise_cells, "0", "Initial state",
        "cells per edge of the mesh of the noise, at most --cells; 0: a quarter of --cells", 0,
        4096},

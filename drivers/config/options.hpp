@@ -24,6 +24,7 @@ inline constexpr double kLargestSeed = 9007199254740992;
 struct RunOptions {
   std::string case_name;
   bool scaled = false;
+  std::string model;  // field or discs
 
   std::string surface, surface_formula;
   double radius = 0;  // µm

@@ -11,7 +11,7 @@ bool may_be_empty(const CLI::Option& option) {
   const std::vector<std::string>& names = option.get_lnames();
   const std::vector<OptionSpec>& all = run_options();
   return !names.empty() && std::any_of(all.begin(), all.end(), [&](const OptionSpec& spec) {
-    return spec.name == names.front() && spec.kind == OptionKind::text;
+    return spec.name == names.front() && spec.kind == OptionKind::text && spec.words.empty();
   });
 }
 

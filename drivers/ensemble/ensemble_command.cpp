@@ -1,6 +1,5 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <optional>
 
 #include "backends/posix/durable_file.hpp"
 #include "backends/posix/folder_lock.hpp"
@@ -11,9 +10,11 @@
 #include "drivers/config/number_checks.hpp"
 #include "drivers/config/option_flags.hpp"
 #include "drivers/ensemble/array_job.hpp"
+#include "drivers/ensemble/ensemble_point.hpp"
 #include "drivers/ensemble/ensemble_report.hpp"
 #include "drivers/ensemble/histories_file.hpp"
 #include "drivers/exit_codes.hpp"
+#include "drivers/run/disc_run.hpp"
 #include "drivers/run/run_folder.hpp"
 #include "drivers/run/run_setup.hpp"
 #include "drivers/run/summary.hpp"
@@ -42,11 +43,8 @@ struct EnsembleRequest {
 config::Configuration new_configuration(const EnsembleRequest& request, config::GivenValues file) {
   file.erase("seed");
   const config::Configuration configuration(file, request.flags);
-  if (configuration.options().initial == "noise") return configuration;
-  if (configuration.options().initial.compare(0, 12, "band-limited") == 0) return configuration;
-  throw InputError(
-      configuration.where(&config::RunOptions::initial) +
-      ": the runs of an ensemble differ in their initial noise; choose noise or band-limited");
+  refuse_without_noise(configuration);
+  return configuration;
 }
 
 // The configuration of an ensemble that goes on: its runs have to stay comparable.
@@ -165,6 +163,16 @@ void refuse_unwritable_path(const EnsembleFolder& folder) {
         path);
 }
 
+// Builds a first run, which may refuse the configuration.
+std::string resolution_of(const config::Configuration& configuration) {
+  if (configuration.options().model == "discs") {
+    (void)run::build_disc_run(configuration);
+    return "model of discs";
+  }
+  return run::resolution_text(configuration,
+                              run::build_run(configuration, run::InitialState::build));
+}
+
 int run_ensemble(const EnsembleRequest& request) {
   posix::catch_stop_signals();
   const config::GivenValues file = config::read_config_file(request.config_file);
@@ -188,16 +196,14 @@ int run_ensemble(const EnsembleRequest& request) {
                           : request.out);
   if (request.array_job) refuse_unwritable_path(folder);
   const EnsemblePlan plan = plan_of(request, folder);
-  std::optional<run::RunSetup> run;
-  if (!goes_on) run = run::build_run(configuration, run::InitialState::build);  // or refuses it
+  const std::string resolution = goes_on ? "" : resolution_of(configuration);  // or refuses it
   fs::create_directories(folder.path());
   const posix::FolderLock lock(folder.path());
   if (!goes_on && folder.started()) run::refuse_begun(folder.path());
   folder.save(plan);
   posix::make_inner_folder(folder.path() / "runs");
-  if (run && !request.quiet)
-    text::say("case %s, %s\n", configuration.options().case_name,
-              run::resolution_text(configuration, *run));
+  if (!resolution.empty() && !request.quiet)
+    text::say("case %s, %s\n", configuration.options().case_name, resolution);
   if (!goes_on) posix::write_durably(folder.config(), config::config_text(configuration));
   if (!request.array_job) return carry_out(request, folder, plan, configuration);
   write_array_job(request, folder, plan, configuration);

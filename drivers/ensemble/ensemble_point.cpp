@@ -25,9 +25,11 @@ config::GivenValues settings_until(const config::Configuration& model, double t_
 }
 
 void refuse_without_noise(const config::Configuration& model) {
-  if (model.options().initial.compare(0, 5, "noise") != 0)
+  const std::vector<std::string> random = {"noise", "band-limited", "discs"};
+  if (std::count(random.begin(), random.end(),
+                 split_named_arguments(model.options().initial).name) == 0)
     throw InputError(model.where(&config::RunOptions::initial) +
-                     ": it must be noise, in which simulated vesicles differ");
+                     ": runs differ in their initial state; choose noise, band-limited or discs");
 }
 
 namespace {

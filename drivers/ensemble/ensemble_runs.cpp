@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "drivers/config/config_file.hpp"
 #include "drivers/exit_codes.hpp"
+#include "drivers/failure.hpp"
 #include "drivers/output/status_line.hpp"
+#include "drivers/run/disc_run.hpp"
+#include "drivers/run/summary.hpp"
 #include "drivers/text/say.hpp"
 
 namespace traceraft::ensemble {
@@ -18,7 +22,25 @@ double share_done(double reached, double t_end) {
   return std::min(1.0, 1 - std::log(reached / t_end) / std::log(kFirstShare));
 }
 
+// Discs take less time than a process does to start.
+jobs::ProcessEnd run_here(const config::GivenValues& model, const EnsembleFolder& folder,
+                          std::uint64_t seed) {
+  try {
+    config::GivenValues given = model;
+    given["seed"] = {std::to_string(seed), "--seed"};
+    const simulation::RunResult result =
+        run::carry_out_disc_run(config::Configuration(given, {}), folder.run_of(seed));
+    return {run::exit_code(result), false, result.why};
+  } catch (...) {
+    const drivers::Failure failure = drivers::failure_of(std::current_exception());
+    return {failure.code, false, failure.why};
+  }
+}
+
 jobs::ProcessEnd run_or_resume(const EnsembleFolder& folder, std::uint64_t seed, int threads) {
+  if (const config::GivenValues model = config::read_config_file(folder.config());
+      config::Configuration(model, {}).options().model == "discs")
+    return run_here(model, folder, seed);
   const std::string run = folder.run_of(seed).string(), thread_text = std::to_string(threads);
   std::vector<std::string> arguments = {"resume", run, "--threads", thread_text, "--quiet"};
   if (folder.member(seed).end == MemberEnd::missing)

@@ -220,8 +220,10 @@ drivers::Action define_explain(CLI::App& app) {
   app.add_option("--jobs", command->jobs,
                  "for series: runs at a time; default: one for each processor")
       ->check(CLI::Range(1, 1024));
-  app.add_option("--model", command->job.model,
-                 "TOML file of the model, with names of flags as keys")
+  app.add_option(
+         "--model", command->job.model,
+         "TOML file of the model, with names of flags as keys; for series also discs, with the "
+         "flags")
       ->type_name("FILE");
   app.add_option("--out", command->out,
                  "folder for the verdict, new or of a search to continue; default: runs/explain-N")
@@ -246,7 +248,7 @@ drivers::Action define_explain(CLI::App& app) {
   config::add_options(app, command->job.flags, [](const config::OptionSpec& spec) {
     return (spec.group == "Physics" || spec.group == "Surface" || spec.group == "Case" ||
             spec.name == "raft-fraction") &&
-           spec.name != "scaled";
+           spec.name != "scaled" && spec.name != "model";
   });
   app.footer(
       "Needs --data, --series or both, and a model.\nExample: traceraft explain --data my-vesicle "

@@ -199,7 +199,7 @@ std::string data_text(const ExplainSetup& setup) {
 
 config::GivenValues model_said(const ExplainJob& job) {
   config::GivenValues said = job.flags;
-  said.merge(config::read_config_file(job.model, "--model"));
+  said.merge(config::read_model(job.model));
   return said;
 }
 

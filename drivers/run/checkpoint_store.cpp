@@ -190,6 +190,19 @@ std::string line_of(const std::string& identity, const std::string& option) {
 
 }  // namespace
 
+std::optional<Checkpoint> last_checkpoint(const std::filesystem::path& run_folder,
+                                          const std::string& identity) {
+  const CheckpointStore store(run_folder / "checkpoints");
+  if (store.empty()) return std::nullopt;
+  Checkpoint checkpoint = store.newest();
+  if (checkpoint.configuration != identity)
+    throw InputError((run_folder / "config.toml").string() +
+                     " has changed since the checkpoint was written; restore it, or start a new "
+                     "run with --initial restart:" +
+                     run_folder.string());
+  return checkpoint;
+}
+
 Vec final_concentration(const std::filesystem::path& run_folder, int nodes,
                         const std::string& identity) {
   std::error_code unreadable;

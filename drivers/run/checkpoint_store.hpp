@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <ostream>
 #include <streambuf>
 #include <string>
@@ -88,6 +89,11 @@ Checkpoint decode(const std::string& data);
 // c at the nodes. Throws IoError if the checkpoint, found in this run's folder, has another mesh.
 Vec concentration_of(const Checkpoint& checkpoint, const std::filesystem::path& run_folder,
                      int nodes);
+
+// The newest checkpoint of a run that goes on; none if there is none. Throws InputError if it is
+// that of another run than this numerical identity says.
+std::optional<Checkpoint> last_checkpoint(const std::filesystem::path& run_folder,
+                                          const std::string& identity);
 
 // c at the nodes in the newest checkpoint of another run's folder. Throws InputError if there is
 // none or it is on another mesh: surface and cells are compared with the numerical identity of this

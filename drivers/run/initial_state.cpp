@@ -32,24 +32,32 @@ std::vector<problem::CapRaft> parse_caps(const config::Configuration& configurat
   return caps;
 }
 
+// What needs no mesh.
+problem::InitialRequest basic_request(const config::Configuration& configuration,
+                                      const problem::CahnHilliardModel& model) {
+  problem::InitialRequest request;
+  request.raft_fraction = configuration.options().raft_fraction;
+  request.seed = static_cast<std::uint64_t>(configuration.options().seed);
+  request.caps = parse_caps(configuration);
+  request.epsilon = model.epsilon;
+  request.well = model.well;
+  return request;
+}
+
 problem::InitialRequest initial_request(const config::Configuration& configuration,
                                         const problem::CahnHilliardModel& model) {
   problem::InitialRequest request;
   const long long cells = configuration.options().cells;
-  request.raft_fraction = configuration.options().raft_fraction;
+  request = basic_request(configuration, model);
   request.noise_cells = configuration.noise_cells();
   if (request.noise_cells > cells)
     throw InputError(configuration.where(&config::RunOptions::noise_cells) + ": " +
                      std::to_string(request.noise_cells) + " is more than --cells " +
                      std::to_string(cells));
-  request.seed = static_cast<std::uint64_t>(configuration.options().seed);
-  request.caps = parse_caps(configuration);
   if (const std::string formula = configuration.options().initial_formula; !formula.empty())
     request.formula =
         muparser::parse_formula(configuration.where(&config::RunOptions::initial_formula), formula);
   request.surface = surface_of(configuration);
-  request.epsilon = model.epsilon;
-  request.well = model.well;
   return request;
 }
 
@@ -73,6 +81,25 @@ Vec initial_field(const config::Configuration& configuration,
     }
     (void)problem::initial_fields().find(name, {"restart:DIR"});
     return problem::make_initial_field(kind, space, request);
+  });
+}
+
+std::vector<discs::Disc> initial_discs(const config::Configuration& configuration,
+                                       const problem::CahnHilliardModel& model) {
+  const problem::InitialRequest request = basic_request(configuration, model);
+  return with_option_context(configuration, &config::RunOptions::initial, [&] {
+    const auto [name, arguments] = split_named_arguments(configuration.options().initial);
+    if (name == "caps") {
+      std::vector<discs::Disc> discs;
+      for (const problem::CapRaft& cap : request.caps)
+        discs.push_back({cap.direction.stableNormalized(), discs::area_of_half_angle(cap.angle)});
+      return discs;
+    }
+    if (name != "discs")
+      throw InputError("the model of discs begins with rafts; choose discs or caps");
+    const problem::InitialEntry& entry = problem::initial_fields().find(name);
+    return problem::random_discs(
+        request, parse_parameters("initial '" + name + "'", arguments, entry.parameters));
   });
 }
 

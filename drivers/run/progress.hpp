@@ -11,12 +11,14 @@ namespace traceraft::run {
 
 class Progress final : public simulation::RunListener {
  public:
-  Progress(const RunSetup& run, bool quiet) : run_(run), line_(quiet), left_(run.t_end) {}
+  Progress(const RunSchedule& run, bool quiet) : run_(run), line_(quiet), left_(run.t_end) {}
   void on_step(const simulation::RunState& state) override;
+  // Times in R²/D.
+  void show(double t, std::int64_t steps, double step, double mass_drift, int rafts);
   void finish() { line_.finish(); }
 
  private:
-  const RunSetup& run_;
+  const RunSchedule& run_;
   output::StatusLine line_;
   output::TimeLeft left_;
   Stopwatch watch_;

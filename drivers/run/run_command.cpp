@@ -7,6 +7,8 @@
 #include "drivers/config/config_file.hpp"
 #include "drivers/config/option_flags.hpp"
 #include "drivers/exit_codes.hpp"
+#include "drivers/run/checked_options.hpp"
+#include "drivers/run/disc_run.hpp"
 #include "drivers/run/memory_need.hpp"
 #include "drivers/run/physical_model.hpp"
 #include "drivers/run/progress.hpp"
@@ -18,6 +20,8 @@
 
 namespace traceraft::run {
 namespace {
+
+constexpr char kNothingRun[] = "all settings are valid; nothing was run\n";
 
 struct RunRequest {
   config::GivenValues flags;
@@ -31,15 +35,16 @@ struct ResumeRequest {
   config::GivenValues flags;  // options that do not change the numbers
   bool quiet = false;
 };
-int exit_code(const simulation::RunResult& result) {
-  switch (result.end) {
-    case simulation::RunEnd::finished:
-      return drivers::kSuccess;
-    case simulation::RunEnd::stopped:
-      return drivers::kInterrupted;
-    default:
-      return drivers::kNumericalFailure;
-  }
+void say_how_to_go_on(const RunFolder& folder) {
+  text::say("  continue with          traceraft resume %s\n", text::in_shell(folder.path.string()));
+}
+
+void say_resumed(const RunFolder& folder, const std::optional<Checkpoint>& checkpoint) {
+  if (checkpoint)
+    text::say("  %-22s %s from step %ld\n\n", "resumed", folder.path, checkpoint->step);
+  else
+    text::say("  %-22s %s, which has no checkpoint; the run starts again\n\n", "restarted",
+              folder.path);
 }
 
 // Runs or goes on with a run, from a checkpoint if there is one. On every rank; `quiet` on all but
@@ -86,32 +91,20 @@ int execute_run(const config::Configuration& configuration, RunSetup& run, const
     if (const std::filesystem::path list = folder.path / "fields.pvd";
         std::filesystem::exists(list))
       extents["fields.pvd"] = extent_of_file(list);
-    posix::write_durably(folder.summary(),
-                         summary_json(configuration, run, state, result, cost, memory, extents));
+    const observables::Observables& row = state.observables;
+    const RunMoment end = moment_of(run, row, row.t * run.units.time());
+    posix::write_durably(
+        folder.summary(),
+        summary_json(configuration, {end, state.monitor, ground_of(run), cost, memory}, result,
+                     run.integrator->promises_energy_decay(), extents));
   }
   if (!quiet) print_summary(configuration, run, state, result, cost, memory, folder);
-  if (result.end == simulation::RunEnd::stopped && !quiet)
-    text::say("  continue with          traceraft resume %s\n",
-              text::in_shell(folder.path.string()));
+  if (result.end == simulation::RunEnd::stopped && !quiet) say_how_to_go_on(folder);
   if (result.end == simulation::RunEnd::failed && root)
     text::say_error(
         formatted("numerical failure at t = %g: ", state.observables.t * run.units.time()) +
         result.why);
   return exit_code(result);
-}
-
-// The checkpoint to go on from, if there is one. Of the first rank.
-std::optional<Checkpoint> last_checkpoint(const RunFolder& folder,
-                                          const config::Configuration& configuration) {
-  const CheckpointStore store(folder.checkpoints());
-  if (store.empty()) return std::nullopt;
-  Checkpoint checkpoint = store.newest();
-  if (checkpoint.configuration != config::numerical_identity(configuration))
-    throw InputError(folder.config().string() +
-                     " has changed since the checkpoint was written; restore it, or start a new "
-                     "run with --initial restart:" +
-                     folder.path.string());
-  return checkpoint;
 }
 
 // A fine mesh takes its time before anything else is said.
@@ -132,17 +125,46 @@ void refuse_used_folder(const std::string& out) {
   });
 }
 
+bool is_of_discs(const config::Configuration& configuration) {
+  return one_of(configuration, &config::RunOptions::model, "model") == "discs";
+}
+
+// Goes on from the checkpoint, if there is one.
+int finish_disc_run(const config::Configuration& configuration, DiscSetup& run,
+                    const RunFolder& folder, const std::optional<Checkpoint>& checkpoint,
+                    bool quiet) {
+  posix::catch_stop_signals();
+  const simulation::RunResult result =
+      execute_disc_run(configuration, run, folder, checkpoint, quiet);
+  if (result.end == simulation::RunEnd::stopped && !quiet) say_how_to_go_on(folder);
+  if (result.end == simulation::RunEnd::failed) text::say_error("numerical failure: " + result.why);
+  return exit_code(result);
+}
+
+int run_discs(const RunRequest& request, const config::Configuration& configuration) {
+  DiscSetup run = build_disc_run(configuration);
+  if (!request.quiet) print_disc_setup(configuration, run);
+  if (request.validate) {
+    if (!request.quiet) text::say(kNothingRun);
+    return drivers::kSuccess;
+  }
+  const RunFolder folder = create_run_folder(request.out, configuration);
+  if (!request.quiet) text::say("  %-22s %s\n\n", "folder", folder.path);
+  return finish_disc_run(configuration, run, folder, std::nullopt, request.quiet);
+}
+
 int run(const RunRequest& request) {
   const config::GivenValues file = config::read_config_file(request.config_file);
   const config::Configuration configuration(file, request.flags);
   posix::end_on_stop_signals(drivers::kInterrupted, "");  // before there are threads
   refuse_used_folder(request.out);
+  if (is_of_discs(configuration)) return run_discs(request, configuration);
   if (!request.quiet) announce_fine_mesh(configuration);
   RunSetup run = build_run(configuration, InitialState::build);
   const bool quiet = request.quiet || !run.ranks->root();
   if (!quiet) print_setup(configuration, run);
   if (request.validate) {
-    if (!quiet) text::say("all settings are valid; nothing was run\n");
+    if (!quiet) text::say(kNothingRun);
     return drivers::kSuccess;
   }
   const RunFolder folder =
@@ -161,18 +183,23 @@ int resume(const ResumeRequest& request) {
   const config::Configuration configuration(config::read_config_file(folder.config()),
                                             request.flags);
   std::optional<Checkpoint> checkpoint;
-  if (ranks->root()) checkpoint = last_checkpoint(folder, configuration);
+  if (ranks->root())
+    checkpoint = last_checkpoint(folder.path, config::numerical_identity(configuration));
+  if (is_of_discs(configuration)) {
+    DiscSetup run = build_disc_run(configuration);
+    if (!request.quiet) {
+      print_disc_setup(configuration, run);
+      say_resumed(folder, checkpoint);
+    }
+    return finish_disc_run(configuration, run, folder, checkpoint, request.quiet);
+  }
   RunSetup run =
       build_run(configuration, ranks->any(checkpoint.has_value()) ? InitialState::from_checkpoint
                                                                   : InitialState::build);
   const bool quiet = request.quiet || !ranks->root();
   if (!quiet) {
     print_setup(configuration, run);
-    if (checkpoint)
-      text::say("  %-22s %s from step %ld\n\n", "resumed", folder.path, checkpoint->step);
-    else
-      text::say("  %-22s %s, which has no checkpoint; the run starts again\n\n", "restarted",
-                folder.path);
+    say_resumed(folder, checkpoint);
   }
   return execute_run(configuration, run, folder, checkpoint, quiet);
 }

@@ -5,7 +5,6 @@
 
 #include "backends/png/png_file.hpp"
 #include "backends/posix/process.hpp"
-#include "backends/zlib/vtu_writer.hpp"
 #include "kernel/core/text.hpp"
 #include "kernel/fem/trace.hpp"
 
@@ -95,63 +94,71 @@ void TableWriter::on_output(const observables::Observables& row,
 
 void FieldWriter::on_output(const observables::Observables& row,
                             const observables::RaftReport& rafts, VecView y) {
-  const Communicator& ranks = *run_.ranks;
   const fem::SurfaceSpace& space = *run_.space;
-  const std::size_t index = run_.output_index(row.t);
-  Vec buffer;
-  const Vec c = fem::trace(space, space.with_ghosts(run_.problem->c_of(y), buffer));
-  const Vec mu = fem::trace(space, space.with_ghosts(run_.problem->mu_of(y), buffer));
+  const auto traced = [&](VecView nodal) {
+    Vec buffer;
+    return Vec(fem::trace(space, space.with_ghosts(nodal, buffer)));
+  };
+  files_.write({row.t,
+                {{"c", traced(run_.problem->c_of(y))}, {"mu", traced(run_.problem->mu_of(y))}},
+                rafts.of_point});
+}
+
+void FieldFiles::write(const SurfaceFields& fields) const {
+  const Communicator& ranks = *space_.communicator;
+  const double length = schedule_.units.length();
+  const std::size_t index = schedule_.output_index(fields.t);
   const bool alone = ranks.size() == 1;
   posix::write_durably(
       folder_.fields() / (alone ? field_name(index, ranks) : piece_name(index, ranks.rank())),
-      zlib::vtu_text(space, run_.units.length(), {{"c", c}, {"mu", mu}},
-                     {{"raft", largest_at_corners(space.surface, rafts.of_point)}}));
-  const physics::DoubleWell& well = run_.problem->model().well;
-  const observables::Image image =
-      observables::draw_front_and_back(space, c, well.a, well.b, kViewPixels);
-  const double half_width = observables::view_half_width(space) * run_.units.length();
+      zlib::vtu_text(space_, length, fields.fields,
+                     {{"raft", largest_at_corners(space_.surface, fields.raft)}}));
+  const observables::Image image = observables::draw_front_and_back(
+      space_, fields.fields.front().values, well_.a, well_.b, kViewPixels);
+  const double half_width = observables::view_half_width(space_) * length;
   // Nothing is named before all of it is there.
   if (!ranks.all(true) || !ranks.root()) return;
   if (!alone) {
-    std::vector<std::string> pieces;
+    std::vector<std::string> pieces, names;
     for (int rank = 0; rank < ranks.size(); ++rank) pieces.push_back(piece_name(index, rank));
+    for (const zlib::PointField& field : fields.fields) names.push_back(field.name);
     posix::write_durably(folder_.fields() / field_name(index, ranks),
-                         zlib::pvtu_text(pieces, {"c", "mu"}, {"raft"}));
+                         zlib::pvtu_text(pieces, names, {"raft"}));
   }
   // Files are removed that this run wrote at that time before it went on with more or fewer ranks.
   std::filesystem::remove(folder_.fields() / numbered("field", index, alone ? "pvtu" : "vtu"));
   for (int rank = alone ? 0 : ranks.size();; ++rank)
     if (!std::filesystem::remove(folder_.fields() / piece_name(index, rank))) break;
   posix::write_durably(folder_.fields() / numbered("view", index, "png"), png::png_bytes(image));
-  write_strip(index,
-              {half_width, text::unit_name(text::Unit::length, run_.units.scaled), well.a, well.b});
+  write_strip(index, {half_width, text::unit_name(text::Unit::length, schedule_.units.scaled),
+                      well_.a, well_.b});
   collect(index);
 }
 
 // The strip shows pictures that are there, up to the newest: those of an earlier process may be
 // gone.
-void FieldWriter::write_strip(std::size_t newest, const StripLegend& legend) const {
+void FieldFiles::write_strip(std::size_t newest, const StripLegend& legend) const {
   std::vector<std::size_t> there;
   for (std::size_t i = 0; i <= newest; ++i)
     if (std::filesystem::exists(folder_.fields() / numbered("view", i, "png"))) there.push_back(i);
   std::vector<StripView> views;
-  const std::string unit = text::unit_name(text::Unit::time, run_.units.scaled);
+  const std::string unit = text::unit_name(text::Unit::time, schedule_.units.scaled);
   for (const std::size_t k : strip_choice(there.size())) {
     const std::filesystem::path file = folder_.fields() / numbered("view", there[k], "png");
     views.push_back({png::image_of_png(posix::read_file(file, kLargestPicture)),
-                     "t = " + formatted("%.3g ", run_.output_labels[there[k]]) + unit});
+                     "t = " + formatted("%.3g ", schedule_.output_labels[there[k]]) + unit});
   }
   posix::write_durably(folder_.path / "view.png", png::png_bytes(compose_strip(views, legend)));
 }
 
 // All output times up to the newest, on however many ranks they were written.
-void FieldWriter::collect(std::size_t newest) const {
+void FieldFiles::collect(std::size_t newest) const {
   std::vector<std::pair<double, std::string>> files;
   for (std::size_t i = 0; i <= newest; ++i)
     for (const char* extension : {"vtu", "pvtu"})
       if (const std::string name = numbered("field", i, extension);
           std::filesystem::exists(folder_.fields() / name))  // not if fields were off
-        files.emplace_back(run_.output_labels[i], "fields/" + name);
+        files.emplace_back(schedule_.output_labels[i], "fields/" + name);
   posix::write_durably(folder_.path / "fields.pvd", zlib::pvd_text(files));
 }
 

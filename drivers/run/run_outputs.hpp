@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "backends/zlib/vtu_writer.hpp"
 #include "drivers/run/checkpoint_store.hpp"
 #include "drivers/run/run_folder.hpp"
 #include "drivers/run/run_numbers.hpp"
@@ -44,20 +45,43 @@ class TableWriter final : public simulation::RunListener {
   const RunSetup& run_;
 };
 
-// fields/field-NNNN.vtu with c and mu on Γ_h, collected in fields.pvd, and a picture of front and
+// The fields at an output time on the points of Γ_h, and the raft at each (0: none).
+struct SurfaceFields {
+  double t;                              // R²/D
+  std::vector<zlib::PointField> fields;  // c first
+  std::vector<int> raft;
+};
+
+// fields/field-NNNN.vtu with fields on Γ_h, collected in fields.pvd, and a picture of front and
 // back as fields/view-NNNN.png; view.png shows up to six of them. Several ranks write a piece each,
 // field-NNNN-RRRR.vtu, joined by field-NNNN.pvtu.
-class FieldWriter final : public simulation::RunListener {
+class FieldFiles {
  public:
-  FieldWriter(const RunFolder& folder, const RunSetup& run) : folder_(folder), run_(run) {}
-  void on_output(const observables::Observables& row, const observables::RaftReport& rafts,
-                 VecView y) override;
+  FieldFiles(const RunFolder& folder, const RunSchedule& schedule, const fem::SurfaceSpace& space,
+             const physics::DoubleWell& well)
+      : folder_(folder), schedule_(schedule), space_(space), well_(well) {}
+  void write(const SurfaceFields& fields) const;  // collective
 
  private:
   void collect(std::size_t newest) const;
   void write_strip(std::size_t newest, const StripLegend& legend) const;
 
   const RunFolder& folder_;
+  const RunSchedule& schedule_;
+  const fem::SurfaceSpace& space_;
+  physics::DoubleWell well_;
+};
+
+// c and mu of a run, at the output times.
+class FieldWriter final : public simulation::RunListener {
+ public:
+  FieldWriter(const RunFolder& folder, const RunSetup& run)
+      : files_(folder, run, *run.space, run.problem->model().well), run_(run) {}
+  void on_output(const observables::Observables& row, const observables::RaftReport& rafts,
+                 VecView y) override;
+
+ private:
+  FieldFiles files_;
   const RunSetup& run_;
 };
 

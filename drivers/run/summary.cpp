@@ -6,8 +6,10 @@
 #include "backends/suitesparse/blas.hpp"
 #include "backends/zlib/checksum.hpp"
 #include "drivers/config/config_file.hpp"
+#include "drivers/exit_codes.hpp"
 #include "drivers/input/json_file.hpp"
 #include "drivers/output/program.hpp"
+#include "drivers/run/physical_model.hpp"
 #include "drivers/run/progress.hpp"
 #include "drivers/run/run_numbers.hpp"
 #include "drivers/text/say.hpp"
@@ -28,14 +30,6 @@ const char* end_name(simulation::RunEnd end) {
     default:
       return "failed";
   }
-}
-
-bool decay_promised(const RunSetup& run) {
-  return run.integrator->promises_energy_decay();
-}
-
-void line(const char* label, const std::string& value) {
-  text::say("  %-22s %s\n", label, value);
 }
 
 // The energy, and what became of steps that gained some.
@@ -65,19 +59,66 @@ void put(nlohmann::ordered_json& json, const char* name, text::Unit unit, double
 
 }  // namespace
 
+int exit_code(const simulation::RunResult& result) {
+  switch (result.end) {
+    case simulation::RunEnd::finished:
+      return drivers::kSuccess;
+    case simulation::RunEnd::stopped:
+      return drivers::kInterrupted;
+    default:
+      return drivers::kNumericalFailure;
+  }
+}
+
+void print_line(const char* label, const std::string& value) {
+  text::say("  %-22s %s\n", label, value);
+}
+
+void print_end(const RunTotals& totals, const simulation::RunResult& result) {
+  const observables::Observables& row = totals.at.observables;
+  const physics::Units& units = totals.at.units;
+  const std::string length = text::unit_name(text::Unit::length, units.scaled);
+  text::say("\n%s at t = %.6g%s\n", end_name(result.end), totals.at.t, units.scaled ? "" : " s");
+  if (!result.why.empty()) print_line("why", result.why);
+  print_line("rafts", formatted("%d", row.rafts) +
+                          (row.raft_fraction > 0.5
+                               ? formatted(", around %d domains of the other phase", row.domains)
+                               : ""));
+  print_line("raft fraction", formatted("%.4f of the area, mean concentration %.6f",
+                                        row.raft_fraction, row.mass / totals.ground.area));
+  print_line("perimeter",
+             formatted("%.5g %s (level curve %.5g %s)", row.perimeter * units.length(),
+                       length.c_str(), row.perimeter_level * units.length(), length.c_str()));
+}
+
+void print_cost(const RunTotals& totals, const RunFolder& folder) {
+  print_line("time",
+             formatted("%s wall, %s CPU, peak memory %.0f MB",
+                       output::clock_text(totals.cost.wall_seconds).c_str(),
+                       output::clock_text(totals.cost.cpu_seconds).c_str(), totals.memory_mb));
+  print_line("tables", folder.table("series.csv").string());
+  if (!std::filesystem::exists(folder.path / "view.png")) return;
+  print_line("open next", (folder.path / "view.png").string() +
+                              " (front and back at the latest output time; rafts are yellow)");
+  print_line("or", "paraview " + text::in_shell((folder.path / "fields.pvd").string()));
+  print_line("or", "traceraft report " + text::in_shell(folder.path.string()) +
+                       " (writes a page with charts)");
+}
+
 std::string configuration_checksum(const config::Configuration& configuration) {
   return formatted("%08x", zlib::crc32_of(config::numerical_identity(configuration)));
 }
 
-std::string summary_json(const config::Configuration& configuration, const RunSetup& run,
-                         const simulation::RunState& state, const simulation::RunResult& result,
-                         const RunCost& cost, double memory_mb, const TableExtents& tables) {
-  const physics::Units& units = run.units;
+std::string summary_json(const config::Configuration& configuration, const RunTotals& totals,
+                         const simulation::RunResult& result, bool decay_promised,
+                         const TableExtents& tables) {
+  const physics::Units& units = totals.at.units;
   nlohmann::ordered_json json;
   json["end"] = end_name(result.end);
   if (!result.why.empty()) json["why"] = result.why;
   json["version"] = kVersion;
   json["build"] = output::program_checksum();
+  json["model"] = configuration.options().model;
   json["case"] = configuration.options().case_name;
   json["effects"] = configuration.options().effect;
   json[kConfiguration] = configuration_checksum(configuration);
@@ -89,10 +130,9 @@ std::string summary_json(const config::Configuration& configuration, const RunSe
                    {"diffusion_cm2_s", units.diffusion_cm2_s},
                    {"seconds_per_unit", units.seconds_per_unit()}};
   json["energy_guard"] = configuration.options().energy_guard;
-  json["energy_decay_promised"] = decay_promised(run);
-  const RunMoment end = moment_of(run, state.observables, state.observables.t * units.time());
-  for (const auto& column : run_columns()) put(json, column.name, column.unit, column.value(end));
-  const RunTotals totals{end, state.monitor, ground_of(run), cost, memory_mb};
+  json["energy_decay_promised"] = decay_promised;
+  for (const auto& column : run_columns())
+    put(json, column.name, column.unit, column.value(totals.at));
   for (const auto& total : run_totals()) put(json, total.name, total.unit, total.value(totals));
   json["blas"] = suitesparse::blas_description();
   for (const auto& [name, extent] : tables)
@@ -136,39 +176,47 @@ std::string repeated_times_text(const RunSetup& run) {
          "; given more than once: " + joined(repeated, ", ");
 }
 
+void print_effects(const config::Configuration& configuration, const physics::Units& units) {
+  if (configuration.options().effect.empty()) return;
+  print_line("effects", configuration.options().effect);
+  for (const auto& [effect, text] : effects::descriptions(
+           effects_of(configuration), model_without_effects(configuration), units))
+    print_line(effect.c_str(), text);
+}
+
 void print_setup(const config::Configuration& configuration, const RunSetup& run) {
   const physics::Units& units = run.units;
   text::say("traceraft %s\n", kVersion);
-  line("case", configuration.options().case_name);
-  line("surface", formatted("%s, R = %g um, area %.6g %s", configuration.options().surface.c_str(),
-                            units.radius_um, run.space->area * units.area(),
-                            text::unit_name(text::Unit::area, units.scaled).c_str()));
+  print_line("case", configuration.options().case_name);
+  print_line("surface",
+             formatted("%s, R = %g um, area %.6g %s", configuration.options().surface.c_str(),
+                       units.radius_um, run.space->area * units.area(),
+                       text::unit_name(text::Unit::area, units.scaled).c_str()));
   const fem::SurfaceSpace::Totals& totals = run.space->totals;
-  line("mesh",
-       formatted("%lld cells per edge, %lld cut tetrahedra, %lld nodes, %lld unknowns",
-                 configuration.options().cells, static_cast<long long>(totals.elements),
-                 static_cast<long long>(totals.nodes), static_cast<long long>(2 * totals.nodes)));
-  line("phase boundary", resolution_text(configuration, run));
-  line("mobility", formatted("%s, D = %g cm^2/s", configuration.options().mobility.c_str(),
-                             units.diffusion_cm2_s));
-  if (!configuration.options().effect.empty()) line("effects", configuration.options().effect);
-  for (const auto& [effect, text] :
-       effects::descriptions(effects_of(configuration), run.problem->model(), units))
-    line(effect.c_str(), text);
+  print_line(
+      "mesh",
+      formatted("%lld cells per edge, %lld cut tetrahedra, %lld nodes, %lld unknowns",
+                configuration.options().cells, static_cast<long long>(totals.elements),
+                static_cast<long long>(totals.nodes), static_cast<long long>(2 * totals.nodes)));
+  print_line("phase boundary", resolution_text(configuration, run));
+  print_line("mobility", formatted("%s, D = %g cm^2/s", configuration.options().mobility.c_str(),
+                                   units.diffusion_cm2_s));
+  print_effects(configuration, units);
   if (const double longest = run.problem->longest_step(); longest < run.t_end)
-    line("steps", formatted("at least %.0f: its effects limit a step to %g %s",
-                            std::ceil(run.t_end / longest), longest * units.time(),
-                            text::unit_name(text::Unit::time, units.scaled).c_str()));
-  line("units", formatted("length R = %g um, time R^2/D = %g s; the run ends at %g s = %g R^2/D",
-                          units.radius_um, units.seconds_per_unit(),
-                          run.t_end * units.seconds_per_unit(), run.t_end));
-  if (!run.repeated_labels.empty()) line("output times", repeated_times_text(run));
+    print_line("steps", formatted("at least %.0f: its effects limit a step to %g %s",
+                                  std::ceil(run.t_end / longest), longest * units.time(),
+                                  text::unit_name(text::Unit::time, units.scaled).c_str()));
+  print_line("units",
+             formatted("length R = %g um, time R^2/D = %g s; the run ends at %g s = %g R^2/D",
+                       units.radius_um, units.seconds_per_unit(),
+                       run.t_end * units.seconds_per_unit(), run.t_end));
+  if (!run.repeated_labels.empty()) print_line("output times", repeated_times_text(run));
   if (run.initial.size() > 0)
-    line("initial state", formatted("%s, mean concentration %.6f, seed %lld",
-                                    initial_text(configuration, run).c_str(), run.initial_mean,
-                                    configuration.options().seed));
+    print_line("initial state", formatted("%s, mean concentration %.6f, seed %lld",
+                                          initial_text(configuration, run).c_str(),
+                                          run.initial_mean, configuration.options().seed));
   const int workers = run.ranks->size() > 1 ? run.ranks->size() : run.team->size();
-  line(
+  print_line(
       "method",
       formatted("%s with %s, tolerance %g, %d %s%s, %s", configuration.options().integrator.c_str(),
                 configuration.options().linear_solver.c_str(), configuration.options().tolerance,
@@ -179,54 +227,34 @@ void print_setup(const config::Configuration& configuration, const RunSetup& run
 void print_summary(const config::Configuration& configuration, const RunSetup& run,
                    const simulation::RunState& state, const simulation::RunResult& result,
                    const RunCost& cost, double memory_mb, const RunFolder& folder) {
-  const physics::Units& units = run.units;
   const observables::Observables& row = state.observables;
   const time::IntegratorStatistics steps = run.integrator->statistics();
   const linear::LinearStatistics linear = run.integrator->linear_statistics();
-  const std::string length = text::unit_name(text::Unit::length, units.scaled);
-  text::say("\n%s at t = %.6g%s\n", end_name(result.end), row.t * units.time(),
-            units.scaled ? "" : " s");
-  if (!result.why.empty()) line("why", result.why);
-  line("rafts", formatted("%d", row.rafts) +
-                    (row.raft_fraction > 0.5
-                         ? formatted(", around %d domains of the other phase", row.domains)
-                         : ""));
-  line("raft fraction", formatted("%.4f of the area, mean concentration %.6f", row.raft_fraction,
-                                  row.mass / run.space->area));
-  line("perimeter",
-       formatted("%.5g %s (level curve %.5g %s)", row.perimeter * units.length(), length.c_str(),
-                 row.perimeter_level * units.length(), length.c_str()));
-  line("energy", energy_text(configuration, run, state));
-  line("mass drift",
-       formatted("%.1e relative%s", state.monitor.mass_drift(),
-                 run.problem->conserves_mass() ? "" : " (the mass may change in this model)"));
-  line("c on the surface", formatted("%.3f to %.3f", row.c_min, row.c_max));
+  const RunMoment end = moment_of(run, row, row.t * run.units.time());
+  const RunTotals totals{end, state.monitor, ground_of(run), cost, memory_mb};
+  print_end(totals, result);
+  print_line("energy", energy_text(configuration, run, state));
+  print_line(
+      "mass drift",
+      formatted("%.1e relative%s", state.monitor.mass_drift(),
+                run.problem->conserves_mass() ? "" : " (the mass may change in this model)"));
+  print_line("c on the surface", formatted("%.3f to %.3f", row.c_min, row.c_max));
   const std::string first_order =
       steps.first_order > 0 ? formatted(" (%ld with the first-order solution)", steps.first_order)
                             : "";
-  line("steps", formatted("%ld accepted", steps.steps) + first_order +
-                    formatted(", %ld rejected (error too large), %ld failed (not solved)",
-                              steps.rejected, steps.failures));
+  print_line("steps", formatted("%ld accepted", steps.steps) + first_order +
+                          formatted(", %ld rejected (error too large), %ld failed (not solved)",
+                                    steps.rejected, steps.failures));
   if (steps.newton_iterations > 0)
-    line("Newton iterations",
-         formatted("%ld, order of the last step %d", steps.newton_iterations, steps.order));
-  line(
+    print_line("Newton iterations",
+               formatted("%ld, order of the last step %d", steps.newton_iterations, steps.order));
+  print_line(
       "linear solves",
       formatted(
           "%ld, %.1f iterations each, %ld set-ups, %ld renewed, %ld fallbacks", linear.solves,
           static_cast<double>(linear.iterations) / static_cast<double>(std::max(1L, linear.solves)),
           linear.setups, steps.renewals, steps.fallbacks));
-  line("time", formatted("%s wall, %s CPU, peak memory %.0f MB",
-                         output::clock_text(cost.wall_seconds).c_str(),
-                         output::clock_text(cost.cpu_seconds).c_str(), memory_mb));
-  line("tables", folder.table("series.csv").string());
-  if (std::filesystem::exists(folder.path / "view.png")) {
-    line("open next", (folder.path / "view.png").string() +
-                          " (front and back at the latest output time; rafts are yellow)");
-    line("or", "paraview " + text::in_shell((folder.path / "fields.pvd").string()));
-    line("or", "traceraft report " + text::in_shell(folder.path.string()) +
-                   " (writes a page with charts)");
-  }
+  print_cost(totals, folder);
 }
 
 }  // namespace traceraft::run

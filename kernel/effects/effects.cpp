@@ -74,6 +74,28 @@ const std::string& physics_of(const EffectTerm& term) {
   return term.values.front() < 0 && !entry.reversed.empty() ? entry.reversed : entry.summary;
 }
 
+discs::DiscModel disc_model(const problem::CahnHilliardModel& model,
+                            const std::vector<EffectTerm>& terms) {
+  std::vector<EffectTerm> laws, others;  // laws first: others may ask for the line tension
+  for (const EffectTerm& term : terms)
+    (effects().find(term.effect).add_to_discs ? others : laws).push_back(term);
+  for (const EffectTerm& law : laws)
+    if (const auto alone = with_effects(model, {law});
+        alone.effects.size() > model.effects.size() || alone.diffusion_ratio)
+      throw InputError("effect " + law.effect + ": the model of discs does not have it");
+  const problem::CahnHilliardModel changed = with_effects(model, laws);
+  discs::DiscModel result;
+  result.mobility = changed.mobility;
+  result.well = changed.well;
+  result.epsilon = changed.epsilon;
+  result.seed = changed.seed;
+  for (const EffectTerm& term : others) {
+    const EffectEntry& entry = effects().find(term.effect);
+    entry.add_to_discs(Parameters(entry.parameters, term.values), result);
+  }
+  return result;
+}
+
 bool is_rate(const std::string& unit) {
   return unit == "1/s" || unit == "K/s";
 }

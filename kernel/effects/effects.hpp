@@ -9,6 +9,7 @@
 
 #include "kernel/core/named_list.hpp"
 #include "kernel/core/parameters.hpp"
+#include "kernel/discs/disc_model.hpp"
 #include "kernel/physics/units.hpp"
 #include "kernel/problem/cahn_hilliard.hpp"
 
@@ -39,6 +40,9 @@ struct EffectEntry {
   std::function<std::string(const Parameters&, const problem::CahnHilliardModel&,
                             const physics::Units&)>
       description = {};
+  // Adds it to a vesicle of discs. Those that change the mobility or the line tension alone need
+  // none; others without one are refused there.
+  std::function<void(const Parameters&, discs::DiscModel&)> add_to_discs = {};
 };
 
 EffectEntry allen_cahn_effect();
@@ -75,6 +79,11 @@ bool has_unit_wells(const problem::CahnHilliardModel& model);
 // not made for; ranges are those of whoever asks.
 problem::CahnHilliardModel with_effects(problem::CahnHilliardModel model,
                                         const std::vector<EffectTerm>& terms);
+
+// A vesicle of discs with the mobility, the wells and the line tension of `model`, and these
+// effects. Throws InputError for an effect that discs do not have.
+discs::DiscModel disc_model(const problem::CahnHilliardModel& model,
+                            const std::vector<EffectTerm>& terms);
 
 // A parameter per time?
 bool is_rate(const std::string& unit);

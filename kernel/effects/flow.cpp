@@ -32,17 +32,17 @@ double hold_of(const Parameters& p, const flow::FluidMembrane& membrane, double 
   return p["hold"] > 0 ? p["hold"] : flow::hold_of(membrane, epsilon);
 }
 
+std::uint64_t seed_of(const Parameters& p, std::uint64_t run_seed) {
+  return (static_cast<std::uint64_t>(p["seed"]) << 32) + run_seed;
+}
+
 std::string flow_description(const Parameters& p, const problem::CahnHilliardModel& model,
                              const physics::Units& units) {
   const flow::FluidMembrane membrane = membrane_of(p, model.epsilon);
-  const std::string text = formatted(
+  return formatted(
       "capillary A = %.4g, thermal Theta = %.4g, water W = %.4g; Saffman-Delbrueck length %.4g %s",
       membrane.capillary, membrane.thermal, membrane.water, 0.5 / membrane.water * units.length(),
       units.scaled ? "R" : "um");
-  if (membrane.thermal == 0) return text;
-  return text + formatted("; a draw every %.3g %s",
-                          hold_of(p, membrane, model.epsilon) * units.time(),
-                          units.scaled ? "R^2/D" : "s");
 }
 
 void add_flow(const Parameters& p, problem::CahnHilliardModel& model) {
@@ -50,9 +50,13 @@ void add_flow(const Parameters& p, problem::CahnHilliardModel& model) {
   if (membrane.capillary > 0)
     model.effects.push_back(std::make_shared<CapillaryFlow>(membrane, model.epsilon));
   if (membrane.thermal > 0)
-    model.effects.push_back(
-        std::make_shared<BrownianFlow>(membrane, model.epsilon, hold_of(p, membrane, model.epsilon),
-                                       (static_cast<std::uint64_t>(p["seed"]) << 32) + model.seed));
+    model.effects.push_back(std::make_shared<BrownianFlow>(
+        membrane, model.epsilon, hold_of(p, membrane, model.epsilon), seed_of(p, model.seed)));
+}
+
+void add_flow_to_discs(const Parameters& p, discs::DiscModel& model) {
+  model.membrane = membrane_of(p, model.epsilon);
+  model.seed = seed_of(p, model.seed);
 }
 
 }  // namespace
@@ -79,6 +83,7 @@ EffectEntry flow_effect() {
       add_flow};
   entry.strengths = 3;
   entry.description = flow_description;
+  entry.add_to_discs = add_flow_to_discs;
   return entry;
 }
 

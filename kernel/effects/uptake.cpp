@@ -20,7 +20,11 @@ EffectEntry uptake_effect() {
                    return DensityValue{-s * (1 - at.c), s};
                  }}));
           },
-          true};
+          true,
+          0,
+          1,
+          {},
+          [](const Parameters& p, discs::DiscModel& model) { model.uptake = p["rate"]; }};
 }
 
 }  // namespace traceraft::effects

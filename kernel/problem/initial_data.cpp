@@ -10,10 +10,7 @@ namespace traceraft::problem {
 
 const NamedList<InitialEntry>& initial_fields() {
   static const std::vector<InitialEntry> entries = {
-      bernoulli_noise(),
-      band_limited_noise(),
-      cap_rafts(),
-      formula_field(),
+      bernoulli_noise(), band_limited_noise(), cap_rafts(), disc_rafts(), formula_field(),
   };
   static const NamedList<InitialEntry> list("initial field", entries);
   return list;
@@ -50,8 +47,9 @@ void require_finite(const fem::SurfaceSpace& space, const Concentration& c,
 }
 
 Vec projected_concentration(const fem::SurfaceSpace& space, const InitialEntry& entry,
-                            const InitialRequest& request) {
-  const auto at_surface = [&, concentration = entry.concentration(request)](const Point& x) {
+                            const InitialRequest& request, const Parameters& parameters) {
+  const auto at_surface = [&, concentration =
+                                  entry.concentration(request, parameters)](const Point& x) {
     return concentration(request.surface ? mesh::lifted(*request.surface, x, space.h()) : x);
   };
   Vec load = Vec::Zero(space.nodes());
@@ -77,7 +75,7 @@ Vec make_initial_field(const std::string& specification, const fem::SurfaceSpace
   const Parameters parameters =
       parse_parameters("initial '" + entry.name + "'", parts.arguments, entry.parameters);
   return entry.nodal ? project(space, entry.nodal(space, request, parameters))
-                     : projected_concentration(space, entry, request);
+                     : projected_concentration(space, entry, request, parameters);
 }
 
 InitialEntry formula_field() {
@@ -85,11 +83,25 @@ InitialEntry formula_field() {
           "a formula for c(x, y, z), with coordinates in units of R",
           {},
           {},
-          [](const InitialRequest& request) {
+          [](const InitialRequest& request, const Parameters&) {
             if (!request.formula)
               throw InputError("initial 'formula': a formula is needed, as in \"0.5+0.1*z\"");
             return request.formula;
           }};
+}
+
+std::function<double(const Point&)> profile_around(const std::vector<CapRaft>& caps,
+                                                   const physics::DoubleWell& well,
+                                                   double epsilon) {
+  return [caps, well, epsilon](const Point& x) {
+    double outside = 1e300;  // arc length to the nearest raft, negative inside
+    for (const CapRaft& cap : caps) {
+      const Point axis = cap.direction.stableNormalized();
+      const double angle = std::atan2(axis.cross(x).norm(), axis.dot(x));
+      outside = std::min(outside, angle - cap.angle);
+    }
+    return well.profile(outside, epsilon);
+  };
 }
 
 InitialEntry cap_rafts() {
@@ -97,20 +109,12 @@ InitialEntry cap_rafts() {
           "rafts that are spherical caps, with equilibrium profiles",
           {},
           {},
-          [](const InitialRequest& request) {
+          [](const InitialRequest& request, const Parameters&) {
             if (request.caps.empty())
               throw InputError(
                   "initial 'caps': a direction and an angle for each raft are needed, as in \"0 0 "
                   "1 40; 1 0 0 25\"");
-            return [request](const Point& x) {
-              double outside = 1e300;  // arc length to the nearest raft, negative inside
-              for (const CapRaft& cap : request.caps) {
-                const Point axis = cap.direction.stableNormalized();
-                const double angle = std::atan2(axis.cross(x).norm(), axis.dot(x));
-                outside = std::min(outside, angle - cap.angle);
-              }
-              return request.well.profile(outside, request.epsilon);
-            };
+            return profile_around(request.caps, request.well, request.epsilon);
           }};
 }
 

@@ -9,6 +9,7 @@
 
 #include "kernel/core/named_list.hpp"
 #include "kernel/core/parameters.hpp"
+#include "kernel/discs/disc.hpp"
 #include "kernel/fem/surface_space.hpp"
 #include "kernel/physics/double_well.hpp"
 
@@ -38,12 +39,14 @@ struct InitialEntry {
   std::vector<ParameterSpec> parameters;
   // One of both: values at the nodes, or at any point of the surface.
   std::function<Vec(const fem::SurfaceSpace&, const InitialRequest&, const Parameters&)> nodal;
-  std::function<std::function<double(const Point&)>(const InitialRequest&)> concentration;
+  std::function<std::function<double(const Point&)>(const InitialRequest&, const Parameters&)>
+      concentration;
 };
 
 InitialEntry bernoulli_noise();
 InitialEntry band_limited_noise();
 InitialEntry cap_rafts();
+InitialEntry disc_rafts();
 InitialEntry formula_field();
 
 const NamedList<InitialEntry>& initial_fields();
@@ -51,6 +54,13 @@ const NamedList<InitialEntry>& initial_fields();
 // "band-limited:wavelength=0.3" -> projected nodal concentrations. Throws InputError.
 Vec make_initial_field(const std::string& specification, const fem::SurfaceSpace& space,
                        const InitialRequest& request);
+
+// The discs of the initial state `discs`. Throws InputError.
+std::vector<discs::Disc> random_discs(const InitialRequest& request, const Parameters& parameters);
+
+// Equilibrium profiles around caps; the nearest cap counts.
+std::function<double(const Point&)> profile_around(const std::vector<CapRaft>& caps,
+                                                   const physics::DoubleWell& well, double epsilon);
 
 // L² projection of nodal values with the stabilised mass matrix: M̃ c = M nodal. Throws InputError
 // if the data are not finite.

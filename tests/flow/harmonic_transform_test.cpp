@@ -6,11 +6,13 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "tests/support/harmonics.hpp"
 #include "tests/support/spaces.hpp"
 
 namespace traceraft::flow {
 namespace {
 
+using testing::exact_harmonic;
 using testing::random_directions;
 using testing::random_vector;
 
@@ -26,17 +28,6 @@ std::vector<Point> places() {
 
 HarmonicTransform transform(int degree, int threads = 1) {
   return {places(), degree, std::make_shared<ThreadTeam>(threads)};
-}
-
-double exact_harmonic(int l, int m, const Point& point) {
-  const auto order = static_cast<unsigned>(std::abs(m));
-  const double theta = std::acos(std::clamp(point.normalized()[2], -1.0, 1.0)),
-               phi = std::atan2(point[1], point[0]);
-  // std::sph_legendre is normalised over the whole sphere, with the sign (−1)^m.
-  const double of_theta = std::sph_legendre(static_cast<unsigned>(l), order, theta);
-  if (m == 0) return of_theta;
-  return (order % 2 == 0 ? 1 : -1) * std::sqrt(2.0) * of_theta *
-         (m > 0 ? std::cos(m * phi) : std::sin(-m * phi));
 }
 
 double error_of_degree(int l, int degree) {

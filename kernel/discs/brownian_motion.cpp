@@ -1,0 +1,137 @@
+#include "kernel/discs/brownian_motion.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace traceraft::discs {
+namespace {
+
+constexpr int kHighestDegree = 160;
+// This many waves over the half angle of a disc hardly move it: they would add 0.3 % to its
+// variance.
+constexpr double kWaves = 6;
+
+// P_l(x) and P_l'(x), l = 0, 1, …
+struct Legendre {
+  Vec value, slope;
+
+  Legendre(double x, int degree) : value(degree + 1), slope(degree + 1) {
+    value[0] = 1;
+    slope[0] = 0;
+    for (int l = 1; l <= degree; ++l) {
+      value[l] = l == 1 ? x : ((2 * l - 1) * x * value[l - 1] - (l - 1) * value[l - 2]) / l;
+      slope[l] = l * value[l - 1] + x * slope[l - 1];
+    }
+  }
+};
+
+int degree_for(const std::vector<Disc>& discs) {
+  double smallest = 1;
+  for (const Disc& disc : discs) smallest = std::min(smallest, half_angle(disc.area));
+  return std::min(kHighestDegree, static_cast<int>(std::ceil(kWaves / smallest)));
+}
+
+// √(2Θ (2l + 1)/(4π friction)) F_l(α) of a disc.
+Vec weights_of(const Disc& disc, const flow::FluidMembrane& membrane, int degree) {
+  const Legendre at(cosine_of_half_angle(disc.area), degree);
+  Vec weight(degree + 1);
+  weight[0] = 0;
+  for (int l = 1; l <= degree; ++l)
+    weight[l] = std::sqrt(2 * membrane.thermal * (2 * l + 1) / (4 * kPi * membrane.friction(l))) *
+                2 * at.slope[l] / (l * (l + 1.0));
+  return weight;
+}
+
+// Two unit vectors in the tangent plane.
+Eigen::Matrix<double, 3, 2> frame_at(const Point& x) {
+  Eigen::Index smallest = 0;
+  x.cwiseAbs().minCoeff(&smallest);
+  Eigen::Matrix<double, 3, 2> frame;
+  frame.col(0) = x.cross(Point(Point::Unit(smallest))).normalized();
+  frame.col(1) = x.cross(Point(frame.col(0)));
+  return frame;
+}
+
+// Of the great circle through both; any one of those where they face each other.
+Point common_normal(const Point& x, const Point& y, const Point& any) {
+  const Point normal = x.cross(y);
+  return normal.norm() > 1e-12 ? Point(normal.normalized()) : any;
+}
+
+}  // namespace
+
+void BrownianMotion::set_discs(const std::vector<Disc>& discs) {
+  discs_ = discs;
+  const auto count = static_cast<Eigen::Index>(discs.size());
+  const int degree = degree_for(discs);
+  std::vector<Vec> weights;
+  for (const Disc& disc : discs) weights.push_back(weights_of(disc, membrane_, degree));
+  along_.resize(count, count);
+  across_.resize(count, count);
+  Eigen::ArrayXXd weight(count, degree + 1);
+  for (Eigen::Index i = 0; i < count; ++i)
+    weight.row(i) = weights_of(discs[static_cast<std::size_t>(i)], membrane_, degree).transpose();
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Index last = i + 1;  // pairs (i, j) with j ≤ i
+    Eigen::ArrayXd x(last), value = Eigen::ArrayXd::Ones(last), before = Eigen::ArrayXd::Zero(last),
+                            slope = before, along = before, across = before, next(last);
+    for (Eigen::Index j = 0; j < i; ++j)
+      x[j] =
+          discs[static_cast<std::size_t>(i)].centre.dot(discs[static_cast<std::size_t>(j)].centre);
+    x[i] = 1;
+    for (int l = 1; l <= degree; ++l) {
+      next = ((2.0 * l - 1) / l) * x * value - ((l - 1.0) / l) * before;
+      slope = l * value + x * slope;
+      before = value;
+      value = next;
+      along += weight(i, l) * weight.col(l).head(last) * slope;
+      across += weight(i, l) * weight.col(l).head(last) * (l * (l + 1.0) * value - x * slope);
+    }
+    along_.row(i).head(last) = along.matrix().transpose();
+    across_.row(i).head(last) = across.matrix().transpose();
+  }
+  along_ = Eigen::MatrixXd(along_.selfadjointView<Eigen::Lower>());
+  across_ = Eigen::MatrixXd(across_.selfadjointView<Eigen::Lower>());
+}
+
+double BrownianMotion::largest_variance() const {
+  return along_.size() == 0 ? 0 : along_.diagonal().maxCoeff();
+}
+
+double BrownianMotion::variance_of_distance(std::size_t i, std::size_t j) const {
+  const auto p = static_cast<Eigen::Index>(i), q = static_cast<Eigen::Index>(j);
+  return along_(p, p) + along_(q, q) - 2 * along_(p, q);
+}
+
+std::vector<Point> BrownianMotion::displacements(double step, const Vec& normal) const {
+  const auto count = static_cast<Eigen::Index>(discs_.size());
+  std::vector<Eigen::Matrix<double, 3, 2>> frames;
+  for (const Disc& disc : discs_) frames.push_back(frame_at(disc.centre));
+  Eigen::MatrixXd covariance(2 * count, 2 * count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    covariance.block<2, 2>(2 * i, 2 * i) = along_(i, i) * Eigen::Matrix2d::Identity();
+    for (Eigen::Index j = 0; j < i; ++j) {
+      const auto p = static_cast<std::size_t>(i), q = static_cast<std::size_t>(j);
+      const Point &x = discs_[p].centre, &y = discs_[q].centre;
+      const Point normal_of_both = common_normal(x, y, frames[p].col(0));
+      const Eigen::Vector2d along_x = frames[p].transpose() * normal_of_both.cross(x),
+                            along_y = frames[q].transpose() * normal_of_both.cross(y),
+                            across_x = frames[p].transpose() * normal_of_both,
+                            across_y = frames[q].transpose() * normal_of_both;
+      covariance.block<2, 2>(2 * i, 2 * j) = along_(i, j) * along_x * along_y.transpose() +
+                                             across_(i, j) * across_x * across_y.transpose();
+    }
+  }
+  // Rounding may take discs that move as one below zero.
+  covariance.diagonal() *= 1 + 1e-10;
+  const Eigen::LLT<Eigen::MatrixXd> factors(covariance);
+  if (factors.info() != Eigen::Success) return {};
+  const Vec moved = factors.matrixL() * Vec(std::sqrt(step) * normal);
+  std::vector<Point> result;
+  for (Eigen::Index i = 0; i < count; ++i)
+    result.emplace_back(frames[static_cast<std::size_t>(i)] * moved.segment<2>(2 * i));
+  return result;
+}
+
+}  // namespace traceraft::discs

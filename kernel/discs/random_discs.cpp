@@ -1,0 +1,60 @@
+#include "kernel/discs/random_discs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "kernel/core/error.hpp"
+#include "kernel/core/random.hpp"
+#include "kernel/discs/phases.hpp"
+
+namespace traceraft::discs {
+namespace {
+
+enum Stream : std::uint64_t { kAreaStream = 3, kPlaceStream = 4 };
+constexpr std::uint64_t kTries = 10000;  // of each disc
+
+std::vector<double> random_areas(const RandomDiscs& request) {
+  std::vector<double> areas;
+  double sum = 0;
+  for (int k = 0; k < request.number; ++k) {
+    areas.push_back(std::exp(
+        request.spread * normal_random(request.seed, kAreaStream, static_cast<std::uint64_t>(k))));
+    sum += areas.back();
+  }
+  const double covered = 4 * kPi * request.raft_fraction -
+                         request.number * boundary_mass(request.well, request.epsilon);
+  if (!(covered > 0))
+    throw InputError("initial 'discs': " + std::to_string(request.number) +
+                     " discs are smaller than their boundaries are wide; choose fewer, or a "
+                     "smaller epsilon");
+  for (double& area : areas) area *= covered / sum;
+  std::sort(areas.rbegin(), areas.rend());
+  return areas;
+}
+
+}  // namespace
+
+std::vector<Disc> random_discs(const RandomDiscs& request) {
+  const double contact = contact_distance(request.well, request.epsilon);
+  std::vector<Disc> discs;
+  for (const double area : random_areas(request)) {
+    const std::uint64_t first = kTries * discs.size();
+    bool placed = false;
+    for (std::uint64_t k = 0; k < kTries && !placed; ++k) {
+      const Disc disc{
+          uniform_direction(uniform_random(request.seed, kPlaceStream, 2 * (first + k)),
+                            uniform_random(request.seed, kPlaceStream, 2 * (first + k) + 1)),
+          area};
+      placed = std::all_of(discs.begin(), discs.end(),
+                           [&](const Disc& other) { return gap(disc, other) > contact; });
+      if (placed) discs.push_back(disc);
+    }
+    if (!placed)
+      throw InputError("initial 'discs': there is no room for " + std::to_string(request.number) +
+                       " discs that do not touch; choose fewer, or a smaller raft fraction");
+  }
+  return discs;
+}
+
+}  // namespace traceraft::discs
