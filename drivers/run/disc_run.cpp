@@ -34,15 +34,19 @@ void refuse_other_physics(const config::Configuration& configuration,
                      ": the model of discs needs wells at 0 and 1");
 }
 
-// The areas of all discs and what they hold; nothing is outside.
+// Discs of local equilibrium that hold what the profiles of straight boundaries would; nothing is
+// outside.
 discs::DiscState starting_state(const config::Configuration& configuration,
                                 const discs::DiscModel& model, std::vector<discs::Disc> discs) {
   discs::DiscState state;
   state.discs = std::move(discs);
   double covered = 0;
-  for (const discs::Disc& disc : state.discs) {
+  const discs::Phases phases(model);
+  for (discs::Disc& disc : state.discs) {
     covered += disc.area;
-    state.mass += disc.area + discs::boundary_mass(model.well, model.epsilon);
+    const double mass = disc.area + discs::boundary_mass(model.well, model.epsilon);
+    state.mass += mass;
+    disc.area = phases.area_of_mass(mass);
   }
   if (covered > kMostCovered * 4 * kPi)
     throw InputError(configuration.where(&config::RunOptions::initial) +

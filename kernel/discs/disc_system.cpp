@@ -65,7 +65,7 @@ double DiscSystem::energy(const DiscState& state) const {
   double sum = 0, covered = 0;
   for (const Disc& disc : state.discs) {
     const double c = phases().inside(phases().potential(disc.area));
-    sum += phases().line_tension() * perimeter(disc.area) + disc.area * model_.well.energy(c);
+    sum += phases().boundary_energy(disc.area) + disc.area * model_.well.energy(c);
     covered += disc.area;
   }
   return sum + (4 * kPi - covered) * model_.well.energy(background(state));

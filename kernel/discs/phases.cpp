@@ -2,15 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "kernel/discs/disc.hpp"
 
 namespace traceraft::discs {
 namespace {
 
-constexpr int kIntervals = 256;     // of the table, between c = 0 and the spinodal
-constexpr int kBelow = 320;         // and below 0, to about −¼
-constexpr double kCertainly = 0.9;  // of the largest potential: a disc dissolves
+constexpr int kIntervals = 256;          // of the table, between c = 0 and the spinodal
+constexpr int kBelow = 320;              // and below 0, to about −¼
+constexpr double kSmallestRadius = 1.5;  // in δ
 
 // The smaller c with f0''(c) = 0.
 double spinodal(const physics::DoubleWell& well) {
@@ -33,9 +34,8 @@ Phases::Phases(const DiscModel& model)
       profile_length_(model.epsilon / std::sqrt(2 * model.well.rho)),
       line_tension_(model.epsilon * model.well.interface_energy()),
       largest_potential_(well_.derivative(spinodal(well_))) {
-  boundary_mass_ = discs::boundary_mass(well_, model.epsilon);
   contact_distance_ = discs::contact_distance(well_, model.epsilon);
-  smallest_area_ = area_of_half_angle(std::atan(line_tension_ / (kCertainly * largest_potential_)));
+  smallest_area_ = area_of_half_angle(std::atan(kSmallestRadius * profile_length_));
   spacing_ = spinodal(well_) / kIntervals;
   lowest_ = -kBelow * spacing_;
   // Simpson's rule in each interval; c = 0, where M may have a kink, is the end of one.
@@ -57,8 +57,14 @@ double Phases::mobility(double c) const {
   return std::max(value, 0.0);
 }
 
+RoundBoundaryAt Phases::boundary(double area) const {
+  const double sine = sine_of_half_angle(area), cosine = cosine_of_half_angle(area);
+  return round_boundary(cosine > 0 ? sine / cosine / profile_length_
+                                   : std::numeric_limits<double>::infinity());
+}
+
 double Phases::potential(double area) const {
-  return line_tension_ * curvature(area);
+  return line_tension_ * curvature(area) * boundary(area).value.potential;
 }
 
 // f0' rises on the branch.
@@ -106,21 +112,42 @@ double Phases::tail(double potential) const {
 }
 
 double Phases::mass(double area) const {
-  return area * inside(potential(area)) + boundary_mass_;
+  return area * inside(potential(area)) +
+         profile_length_ * profile_length_ * boundary(area).value.held_mass;
 }
 
-// dκ/d(area) = −1/(2π sin³α).
+// dκ/d(area) = −1/(2π sin³α); the radius is tan α.
 double Phases::mass_slope(double area) const {
-  const double c = inside(potential(area)), sine = sine_of_half_angle(area);
-  return c - area * line_tension_ / (2 * kPi * sine * sine * sine) / well_.second(c);
+  const double sine = sine_of_half_angle(area), cosine = cosine_of_half_angle(area);
+  const RoundBoundaryAt at = boundary(area);
+  const double c = inside(line_tension_ * curvature(area) * at.value.potential);
+  double potential_slope = -line_tension_ * at.value.potential / (2 * kPi * sine * sine * sine),
+         held_slope = 0;
+  if (cosine > 0) {
+    const double radius_slope = 1 / (2 * kPi * sine * cosine * cosine * profile_length_);
+    potential_slope += line_tension_ * curvature(area) * at.slope.potential * radius_slope;
+    held_slope = profile_length_ * profile_length_ * at.slope.held_mass * radius_slope;
+  }
+  return c + area * potential_slope / well_.second(c) + held_slope;
+}
+
+double Phases::boundary_energy(double area) const {
+  return line_tension_ * perimeter(area) * boundary(area).value.energy;
+}
+
+double Phases::diffuse_perimeter(double area) const {
+  return perimeter(area) * boundary(area).value.gradients;
 }
 
 double Phases::area_of_mass(double mass_of_disc) const {
-  double area = std::max(smallest_area_, mass_of_disc - boundary_mass_);
-  for (int k = 0; k < 50; ++k) {
-    const double step = (mass_of_disc - mass(area)) / mass_slope(area);
-    area = std::max(0.5 * smallest_area_, area + step);
-    if (std::fabs(step) <= 1e-14 * area) break;
+  double low = 0, high = 4 * kPi, area = std::min(mass_of_disc, 4 * kPi);
+  for (int k = 0; k < 100; ++k) {
+    const double excess = mass(area) - mass_of_disc;
+    (excess > 0 ? high : low) = area;
+    const double next = area - excess / mass_slope(area),
+                 taken = next > low && next < high ? next : 0.5 * (low + high);
+    if (std::fabs(taken - area) <= 1e-14 * area) break;
+    area = taken;
   }
   return area;
 }

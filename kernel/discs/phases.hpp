@@ -4,18 +4,20 @@
 #include <vector>
 
 #include "kernel/discs/disc_model.hpp"
+#include "kernel/discs/round_boundary.hpp"
 
 namespace traceraft::discs {
 
-// ∫ c over a diffuse boundary that is a circle, less that of the sharp one: π³δ²/3, whatever its
-// radius, with the length δ = ε/√(2ρ) of its profile.
+// ∫ c over the profile of a straight boundary around a circle, less that of the sharp one: π³δ²/3,
+// whatever its radius, with the length δ = ε/√(2ρ). Local equilibrium changes it (RoundBoundary).
 double boundary_mass(const physics::DoubleWell& well, double epsilon);
 // Two boundaries at this distance are one level curve ½ between their discs: 2 δ ln 3, where the
 // sum of both profiles is ½ halfway.
 double contact_distance(const physics::DoubleWell& well, double epsilon);
 
 // A boundary of curvature κ has the chemical potential μ = σκ (Gibbs and Thomson; the phases differ
-// by 1 in c), and both phases beside it have the concentrations with f0'(c) = μ. Diffusion between
+// by 1 in c), changed a little as it is diffuse (RoundBoundary, with the radius tan α of the same
+// curvature). Both phases beside it have the concentrations with f0'(c) = μ. Diffusion between
 // discs follows M(c) ∇μ = ∇G with G' = M f0'': G is harmonic where it is slow.
 class Phases {
  public:
@@ -25,7 +27,7 @@ class Phases {
   double potential(double area) const;                   // μ at the boundary of a disc
   // The largest μ at which there is a phase outside rafts: that of its spinodal.
   double largest_potential() const { return largest_potential_; }
-  // A disc with a larger potential dissolves.
+  // A smaller disc dissolves: it holds hardly less than one of no area.
   double smallest_area() const { return smallest_area_; }
 
   double outside(double potential) const;  // c of the phase outside, on its stable branch
@@ -41,17 +43,20 @@ class Phases {
   // ∫ c over a disc whose level curve ½ encloses `area`, with its boundary.
   double mass(double area) const;
   double mass_slope(double area) const;
-  double area_of_mass(double mass) const;  // the inverse
+  double area_of_mass(double mass) const;     // the inverse
+  double boundary_energy(double area) const;  // ∫ f0 + ½ ε² |∇c|² beyond that of both phases
+  double diffuse_perimeter(double area) const;  // ∫ ε |∇c|² over that of a straight boundary
 
   double contact_distance() const { return contact_distance_; }
 
  private:
   double mobility(double c) const;
+  RoundBoundaryAt boundary(double area) const;
 
   physics::MobilityPtr mobility_;
   physics::DoubleWell well_;
   double profile_length_;  // δ
-  double line_tension_, largest_potential_, smallest_area_, boundary_mass_, contact_distance_;
+  double line_tension_, largest_potential_, smallest_area_, contact_distance_;
   double lowest_, spacing_;    // of the table
   std::vector<double> table_;  // G
 };

@@ -24,12 +24,12 @@ Observables observe(const discs::DiscSystem& system, const discs::DiscState& sta
   row.c_min = row.c_max = system.background(state);
   double covered = 0;
   for (const discs::Disc& disc : state.discs) {
-    row.perimeter += discs::perimeter(disc.area);
+    row.perimeter += system.phases().diffuse_perimeter(disc.area);
+    row.perimeter_level += discs::perimeter(disc.area);
     covered += disc.area;
     row.largest_raft = std::max(row.largest_raft, disc.area);
     row.c_max = std::max(row.c_max, system.phases().inside(system.phases().potential(disc.area)));
   }
-  row.perimeter_level = row.perimeter;
   row.rafts = static_cast<int>(state.discs.size());
   row.raft_fraction = covered / (4 * kPi);
   // The phase outside is in one piece.
@@ -46,7 +46,7 @@ RaftReport raft_report(const discs::DiscSystem& system, const discs::DiscState& 
   }
   const Observables row = observe(system, state);
   report.area = 4 * kPi * row.raft_fraction;
-  report.perimeter = row.perimeter;
+  report.perimeter = row.perimeter_level;
   report.c_min = row.c_min;
   report.c_max = row.c_max;
   return report;

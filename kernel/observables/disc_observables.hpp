@@ -6,7 +6,6 @@
 
 namespace traceraft::observables {
 
-// Both perimeters are the length of all boundaries.
 Observables observe(const discs::DiscSystem& system, const discs::DiscState& state);
 // Without the points of any mesh.
 RaftReport raft_report(const discs::DiscSystem& system, const discs::DiscState& state);
