@@ -116,7 +116,9 @@ Configuration::Configuration(const GivenValues& file, const GivenValues& flags) 
     }
     set(spec, {text, "--" + spec.name});
   }
-  if (!given(&RunOptions::tolerance))
+  if (!given(&RunOptions::tolerance) && options_.model == "discs")
+    set_text(run_option(&RunOptions::tolerance), "1e-2");
+  else if (!given(&RunOptions::tolerance))
     for (const backends::IntegratorEntry& integrator : backends::integrators())
       if (integrator.name == options_.integrator)
         set_text(run_option(&RunOptions::tolerance), format_number(integrator.tolerance));

@@ -34,19 +34,20 @@ void refuse_other_physics(const config::Configuration& configuration,
                      ": the model of discs needs wells at 0 and 1");
 }
 
-// Discs of local equilibrium that hold what the profiles of straight boundaries would; nothing is
-// outside.
+// Discs of local equilibrium that hold what those with straight profiles would.
 discs::DiscState starting_state(const config::Configuration& configuration,
-                                const discs::DiscModel& model, std::vector<discs::Disc> discs) {
+                                const discs::DiscModel& model, const discs::StartingDiscs& start) {
   discs::DiscState state;
-  state.discs = std::move(discs);
+  state.mass = 4 * kPi * start.background;
   double covered = 0;
   const discs::Phases phases(model);
-  for (discs::Disc& disc : state.discs) {
+  for (const discs::Disc& disc : start.discs) {
     covered += disc.area;
-    const double mass = disc.area + discs::boundary_mass(model.well, model.epsilon);
-    state.mass += mass;
-    disc.area = phases.area_of_mass(mass);
+    const double beyond_background =
+        (1 - start.background) * (disc.area + discs::boundary_mass(model.well, model.epsilon));
+    state.mass += beyond_background;
+    state.discs.push_back(
+        {disc.centre, phases.area_of_mass(beyond_background + start.background * disc.area)});
   }
   if (covered > kMostCovered * 4 * kPi)
     throw InputError(configuration.where(&config::RunOptions::initial) +

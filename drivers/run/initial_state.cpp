@@ -84,16 +84,17 @@ Vec initial_field(const config::Configuration& configuration,
   });
 }
 
-std::vector<discs::Disc> initial_discs(const config::Configuration& configuration,
-                                       const problem::CahnHilliardModel& model) {
+discs::StartingDiscs initial_discs(const config::Configuration& configuration,
+                                   const problem::CahnHilliardModel& model) {
   const problem::InitialRequest request = basic_request(configuration, model);
   return with_option_context(configuration, &config::RunOptions::initial, [&] {
     const auto [name, arguments] = split_named_arguments(configuration.options().initial);
     if (name == "caps") {
-      std::vector<discs::Disc> discs;
+      discs::StartingDiscs start;
       for (const problem::CapRaft& cap : request.caps)
-        discs.push_back({cap.direction.stableNormalized(), discs::area_of_half_angle(cap.angle)});
-      return discs;
+        start.discs.push_back(
+            {cap.direction.stableNormalized(), discs::area_of_half_angle(cap.angle)});
+      return start;
     }
     if (name != "discs")
       throw InputError("the model of discs begins with rafts; choose discs or caps");

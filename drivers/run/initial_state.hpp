@@ -1,10 +1,8 @@
 // The concentration that a run begins with, as options say it.
 #pragma once
 
-#include <vector>
-
 #include "drivers/config/configuration.hpp"
-#include "kernel/discs/disc.hpp"
+#include "kernel/discs/random_discs.hpp"
 #include "kernel/fem/surface_space.hpp"
 #include "kernel/problem/cahn_hilliard.hpp"
 
@@ -16,7 +14,7 @@ Vec initial_field(const config::Configuration& configuration,
                   const problem::CahnHilliardModel& model, const fem::SurfaceSpace& space);
 
 // The rafts that a run of discs begins with: `caps` or `discs`. Throws InputError, also for others.
-std::vector<discs::Disc> initial_discs(const config::Configuration& configuration,
-                                       const problem::CahnHilliardModel& model);
+discs::StartingDiscs initial_discs(const config::Configuration& configuration,
+                                   const problem::CahnHilliardModel& model);
 
 }  // namespace traceraft::run

@@ -43,16 +43,6 @@ Vec weights_of(const Disc& disc, const flow::FluidMembrane& membrane, int degree
   return weight;
 }
 
-// Two unit vectors in the tangent plane.
-Eigen::Matrix<double, 3, 2> frame_at(const Point& x) {
-  Eigen::Index smallest = 0;
-  x.cwiseAbs().minCoeff(&smallest);
-  Eigen::Matrix<double, 3, 2> frame;
-  frame.col(0) = x.cross(Point(Point::Unit(smallest))).normalized();
-  frame.col(1) = x.cross(Point(frame.col(0)));
-  return frame;
-}
-
 // Of the great circle through both; any one of those where they face each other.
 Point common_normal(const Point& x, const Point& y, const Point& any) {
   const Point normal = x.cross(y);
@@ -106,8 +96,8 @@ double BrownianMotion::variance_of_distance(std::size_t i, std::size_t j) const 
 
 std::vector<Point> BrownianMotion::displacements(double step, const Vec& normal) const {
   const auto count = static_cast<Eigen::Index>(discs_.size());
-  std::vector<Eigen::Matrix<double, 3, 2>> frames;
-  for (const Disc& disc : discs_) frames.push_back(frame_at(disc.centre));
+  std::vector<TangentFrame> frames;
+  for (const Disc& disc : discs_) frames.push_back(tangent_frame(disc.centre));
   Eigen::MatrixXd covariance(2 * count, 2 * count);
   for (Eigen::Index i = 0; i < count; ++i) {
     covariance.block<2, 2>(2 * i, 2 * i) = along_(i, i) * Eigen::Matrix2d::Identity();

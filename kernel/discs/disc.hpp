@@ -43,4 +43,15 @@ inline double gap(const Disc& x, const Disc& y) {
   return angle_between(x.centre, y.centre) - half_angle(x.area) - half_angle(y.area);
 }
 
+// Two unit vectors, as columns, in the tangent plane of a point.
+using TangentFrame = Eigen::Matrix<double, 3, 2>;
+inline TangentFrame tangent_frame(const Point& x) {
+  Eigen::Index smallest = 0;
+  x.cwiseAbs().minCoeff(&smallest);
+  TangentFrame frame;
+  frame.col(0) = x.cross(Point(Point::Unit(smallest))).normalized();
+  frame.col(1) = x.cross(Point(frame.col(0)));
+  return frame;
+}
+
 }  // namespace traceraft::discs

@@ -90,23 +90,30 @@ void DiscSystem::plan_walk() {
   next_walk_ = last_walk_ + length * length / motion_.largest_variance();
 }
 
-bool DiscSystem::attempt(const Ripening& ripening, const DiscState& from, double step,
-                         Attempt& result) const {
+// A disc that dissolves within the step does not shorten it.
+bool DiscSystem::attempt(const Ripening& ripening, const DiscState& from, const Contents& first,
+                         double step, Attempt& result) const {
   const Contents start = contents_of(from);
-  Contents first, second, third, last;
-  if (!ripening.rate(start, first) || !ripening.rate(moved(start, step / 2, first), second) ||
-      !ripening.rate(moved(start, 0.75 * step, second), third))
+  const double shortest = phases().smallest_area();
+  const auto after = [&](const Contents& at, double time, const Contents& rate) {
+    Contents next = moved(at, time, rate);
+    next.area = next.area.cwiseMax(0.5 * shortest);
+    return next;
+  };
+  Contents second, third, last;
+  if (!ripening.rate(after(start, step / 2, first), second) ||
+      !ripening.rate(after(start, 0.75 * step, second), third))
     return false;
   const Contents end =
-      moved(moved(moved(start, step * 2 / 9, first), step / 3, second), step * 4 / 9, third);
+      after(moved(moved(start, step * 2 / 9, first), step / 3, second), step * 4 / 9, third);
   if (!ripening.rate(end, last)) return false;
-  const double shortest = phases().smallest_area();
   double error = 0;
   for (Eigen::Index i = 0; i < start.area.size(); ++i)
-    error = std::max(error, std::fabs(step * (-5 * first.area[i] / 72 + second.area[i] / 12 +
-                                              third.area[i] / 9 - last.area[i] / 8)) /
-                                (tolerance_ * std::max(end.area[i], shortest)));
-  result = {end, error};
+    if (end.area[i] > shortest)
+      error = std::max(error, std::fabs(step * (-5 * first.area[i] / 72 + second.area[i] / 12 +
+                                                third.area[i] / 9 - last.area[i] / 8)) /
+                                  (tolerance_ * end.area[i]));
+  result = {end, last, error};
   return std::isfinite(error);
 }
 
@@ -114,10 +121,12 @@ Status DiscSystem::advance(double t_end) {
   const double end = std::min(t_end, next_walk_), left = end - state_.t,
                shortest = 1e-14 * std::max(t_end, 1e-300);
   double step = next_step_ > 0 ? next_step_ : 1e-6 * left;
+  if (rate_.area.size() == 0 && !ripening_.rate(contents_of(state_), rate_))
+    return Status::fatal("the areas of these discs cannot change");
   Attempt taken;
   while (true) {
     step = std::min(step, left);
-    const bool solved = attempt(ripening_, state_, step, taken);
+    const bool solved = attempt(ripening_, state_, rate_, step, taken);
     const double growth = !solved ? kLargestCut
                                   : std::clamp(kSafety / std::cbrt(std::max(taken.error, 1e-12)),
                                                kLargestCut, kLargestGrowth);
@@ -135,15 +144,22 @@ Status DiscSystem::advance(double t_end) {
   state_.t = step == left ? end : state_.t + step;
   step_ = step;
   ++statistics_.steps;
+  rate_ = std::move(taken.rate);
+  const std::size_t count = state_.discs.size();
+  bool walked = false;
   dissolve_small_discs();
   if (state_.t >= next_walk_) {
     motion_.set_discs(state_.discs);
     if (!walk(state_.t - last_walk_))
       return Status::fatal("the Brownian displacements of discs have no covariance");
     plan_walk();
+    walked = true;
   }
   merge_touching_discs();
-  ripening_.set_places(state_.discs);
+  if (walked || state_.discs.size() < count) {
+    ripening_.set_places(state_.discs);
+    rate_.area.resize(0);
+  }
   return {};
 }
 
@@ -153,7 +169,9 @@ DiscState DiscSystem::interpolated(double t) const {
   result.t = t;
   Ripening ripening = ripening_;
   ripening.set_places(before_.discs);
-  if (Attempt then; t > before_.t && attempt(ripening, before_, t - before_.t, then))
+  Contents rate;
+  if (Attempt then; t > before_.t && ripening.rate(contents_of(before_), rate) &&
+                    attempt(ripening, before_, rate, t - before_.t, then))
     take_contents(then.contents, result);
   return result;
 }
@@ -254,6 +272,11 @@ void DiscSystem::save(std::ostream& out) const {
   write_binary(out, last_walk_);
   write_binary(out, next_walk_);
   write_binary(out, statistics_);
+  write_binary(out, rate_.mass);
+  for (const Vec* numbers : {&rate_.area, &ripening_.charges()}) {
+    write_binary(out, static_cast<std::int64_t>(numbers->size()));
+    write_binary(out, *numbers);
+  }
 }
 
 void DiscSystem::load(std::istream& in) {
@@ -274,7 +297,15 @@ void DiscSystem::load(std::istream& in) {
   read_binary(in, last_walk_);
   read_binary(in, next_walk_);
   read_binary(in, statistics_);
+  read_binary(in, rate_.mass);
+  Vec charges;
+  for (Vec* numbers : {&rate_.area, &charges}) {
+    std::int64_t size = 0;
+    read_binary(in, size);
+    read_binary(in, *numbers, size);
+  }
   ripening_.set_places(state_.discs);
+  ripening_.set_charges(std::move(charges));
 }
 
 }  // namespace traceraft::discs

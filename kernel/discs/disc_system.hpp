@@ -54,12 +54,14 @@ class DiscSystem {
  private:
   struct Attempt {
     Contents contents;
-    double error;  // over the tolerance
+    Contents rate;  // at the end
+    double error;   // over the tolerance
   };
 
   void discs_have_changed();
   void plan_walk();
-  bool attempt(const Ripening& ripening, const DiscState& from, double step, Attempt& result) const;
+  bool attempt(const Ripening& ripening, const DiscState& from, const Contents& rate, double step,
+               Attempt& result) const;
   bool walk(double time);
   bool touched_between(std::size_t i, std::size_t j, double before, double time) const;
   void dissolve_small_discs();
@@ -71,6 +73,7 @@ class DiscSystem {
   BrownianMotion motion_;
   double tolerance_;
   DiscState state_, before_;
+  Contents rate_;  // of the state; without areas: not known
   double step_ = 0, next_step_ = 0;
   double last_walk_ = 0, next_walk_ = 0;  // times
   DiscStatistics statistics_;

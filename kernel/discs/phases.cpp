@@ -25,7 +25,7 @@ double boundary_mass(const physics::DoubleWell& well, double epsilon) {
 }
 
 double contact_distance(const physics::DoubleWell& well, double epsilon) {
-  return 2 * std::log(3.0) * epsilon / std::sqrt(2 * well.rho);
+  return 2 * std::log(2 / spinodal(well) - 1) * epsilon / std::sqrt(2 * well.rho);
 }
 
 Phases::Phases(const DiscModel& model)
@@ -107,8 +107,11 @@ double Phases::flux_potential(double c) const {
 }
 
 double Phases::tail(double potential) const {
-  const double m = std::max(mobility(outside(potential)), 1e-12);
-  return profile_length_ * std::log1p(1 / m);
+  return profile_length_ * std::log1p(1 / mobility_outside(potential));
+}
+
+double Phases::mobility_outside(double potential) const {
+  return std::max(mobility(outside(potential)), 1e-12);
 }
 
 double Phases::mass(double area) const {

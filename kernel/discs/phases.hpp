@@ -11,8 +11,8 @@ namespace traceraft::discs {
 // ∫ c over the profile of a straight boundary around a circle, less that of the sharp one: π³δ²/3,
 // whatever its radius, with the length δ = ε/√(2ρ). Local equilibrium changes it (RoundBoundary).
 double boundary_mass(const physics::DoubleWell& well, double epsilon);
-// Two boundaries at this distance are one level curve ½ between their discs: 2 δ ln 3, where the
-// sum of both profiles is ½ halfway.
+// Two boundaries at this distance join: halfway the sum of their profiles is the concentration of
+// the spinodal, from where on c grows by itself. 2 δ ln(2/c_s − 1), six times ε.
 double contact_distance(const physics::DoubleWell& well, double epsilon);
 
 // A boundary of curvature κ has the chemical potential μ = σκ (Gibbs and Thomson; the phases differ
@@ -39,6 +39,8 @@ class Phases {
   // the tail of the profile lipids are more mobile than beyond: the resistance ∫ ds/M(s) of a tail
   // M = m + e^(−s/δ) is that of a sharp boundary at δ ln(1 + 1/m), where m = M(c) outside.
   double tail(double potential) const;
+
+  double mobility_outside(double potential) const;
 
   // ∫ c over a disc whose level curve ½ encloses `area`, with its boundary.
   double mass(double area) const;

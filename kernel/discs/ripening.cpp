@@ -16,12 +16,26 @@ void Ripening::set_places(const std::vector<Disc>& discs) {
   const auto count = static_cast<Eigen::Index>(discs.size());
   logarithms_.resize(count, count);
   angles_.resize(count, count);
+  of_dipoles_.setZero(count, 2 * count);
+  between_dipoles_.setZero(2 * count, 2 * count);
+  std::vector<TangentFrame> frames;
+  for (const Disc& disc : discs) frames.push_back(tangent_frame(disc.centre));
   for (Eigen::Index i = 0; i < count; ++i)
     for (Eigen::Index j = 0; j < i; ++j) {
-      const Point chord =
-          discs[static_cast<std::size_t>(i)].centre - discs[static_cast<std::size_t>(j)].centre;
-      logarithms_(i, j) = std::log(0.25 * chord.squaredNorm());  // 1 − cos θ = |x − y|²/2
-      angles_(i, j) = 2 * std::asin(std::min(1.0, 0.5 * chord.norm()));
+      const auto p = static_cast<std::size_t>(i), q = static_cast<std::size_t>(j);
+      const Point &x = discs[p].centre, &y = discs[q].centre;
+      const double chord = (x - y).norm(), w = 0.5 * chord * chord;  // 1 − cos θ
+      logarithms_(i, j) = std::log(0.5 * w);
+      angles_(i, j) = 2 * std::asin(std::min(1.0, 0.5 * chord));
+      const Eigen::RowVector2d x_along_y = x.transpose() * frames[q],
+                               y_along_x = y.transpose() * frames[p];
+      of_dipoles_.block<1, 2>(i, 2 * j) = x_along_y / (4 * kPi * w);
+      of_dipoles_.block<1, 2>(j, 2 * i) = y_along_x / (4 * kPi * w);
+      between_dipoles_.block<2, 2>(2 * i, 2 * j) =
+          (frames[p].transpose() * frames[q] / w + y_along_x.transpose() * x_along_y / (w * w)) /
+          (4 * kPi);
+      between_dipoles_.block<2, 2>(2 * j, 2 * i) =
+          between_dipoles_.block<2, 2>(2 * i, 2 * j).transpose();
     }
 }
 
@@ -40,29 +54,79 @@ Vec Ripening::half_angles_with_tails(const Vec& area) const {
   return angle + tail;
 }
 
+Vec Ripening::product(const Eigen::MatrixXd& green, const Vec& own, const Vec& x) const {
+  const Eigen::Index count = green.rows();
+  Vec result = Vec::Zero(3 * count);
+  result.head(count).noalias() += green.selfadjointView<Eigen::Lower>() * x.head(count);
+  result.head(count).noalias() += of_dipoles_ * x.tail(2 * count);
+  result.tail(2 * count) = own.cwiseProduct(x.tail(2 * count));
+  result.tail(2 * count).noalias() += of_dipoles_.transpose() * x.head(count);
+  result.tail(2 * count).noalias() +=
+      between_dipoles_.selfadjointView<Eigen::Lower>() * x.tail(2 * count);
+  return result;
+}
+
+// Conjugate gradients on charges and dipoles, preconditioned by the charges' matrix and the
+// dipoles' own terms: the whole matrix is symmetric and positive.
+bool Ripening::solve_charges(const Vec& angle, const Vec& difference, Vec& charge) const {
+  constexpr double kTolerance = 1e-5;
+  constexpr int kMostIterations = 200;
+  const Eigen::Index count = angle.size();
+  // ln((1 + cos α)/2) = 2 ln cos(α/2)
+  const Vec caps = angle.unaryExpr([](double a) { return 2 * std::log(std::cos(a / 2)); });
+  Eigen::MatrixXd green(count, count);
+  Vec own(2 * count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index j = 0; j < i; ++j)
+      green(i, j) = -(logarithms_(i, j) + caps[i] + caps[j] + 1) / (4 * kPi);
+    green(i, i) = -(2 * std::log(std::sin(angle[i] / 2)) + caps[i] + 1) / (4 * kPi);
+    const double radius = 2 * std::tan(angle[i] / 2);
+    own.segment<2>(2 * i).setConstant(1 / (2 * kPi * radius * radius));
+  }
+  const Eigen::LLT<Eigen::MatrixXd> factors(green);
+  if (factors.info() != Eigen::Success) return false;
+  const auto preconditioned = [&](const Vec& r) {
+    Vec z(3 * count);
+    z << factors.solve(r.head(count)), r.tail(2 * count).cwiseQuotient(own);
+    return z;
+  };
+  Vec right = Vec::Zero(3 * count);
+  right.head(count) = difference;
+  const double enough =
+      kTolerance * kTolerance * difference.dot(difference.cwiseQuotient(Vec(green.diagonal())));
+  if (charges_.size() != 3 * count) charges_ = Vec::Zero(3 * count);
+  Vec& x = charges_;
+  Vec r = right - product(green, own, x), z = preconditioned(r), d = z;
+  double now = r.dot(z);
+  for (int k = 0; k < kMostIterations && now > enough; ++k) {
+    const Vec applied = product(green, own, d);
+    const double along = d.dot(applied);
+    if (!(along > 0)) return false;
+    x += now / along * d;
+    r -= now / along * applied;
+    z = preconditioned(r);
+    const double next = r.dot(z);
+    d = z + next / now * d;
+    now = next;
+  }
+  charge = x.head(count);
+  return now <= enough;
+}
+
 bool Ripening::rate(const Contents& contents, Contents& result) const {
   const Eigen::Index count = contents.area.size();
   const double outside = uncovered(contents.area);
   if (!(outside > 0) || (count > 0 && !(contents.area.minCoeff() > 0))) return false;
   const double around = background(contents);
   const Vec angle = half_angles_with_tails(contents.area);
-  // ln((1 + cos α)/2) = 2 ln cos(α/2)
-  const Vec caps = angle.unaryExpr([](double a) { return 2 * std::log(std::cos(a / 2)); });
   const Vec potential = contents.area.unaryExpr([&](double area) {
     return phases_.flux_potential(phases_.outside(phases_.potential(area)));
   });
-  Eigen::MatrixXd green(count, count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    for (Eigen::Index j = 0; j < i; ++j)
-      green(i, j) = -(logarithms_(i, j) + caps[i] + caps[j] + 1) / (4 * kPi);
-    green(i, i) = -(2 * std::log(std::sin(angle[i] / 2)) + caps[i] + 1) / (4 * kPi);
-  }
   // The potential inside a disc is that of its boundary.
   const double mean =
       (outside * phases_.flux_potential(around) + contents.area.dot(potential)) / (4 * kPi);
-  const Eigen::LLT<Eigen::MatrixXd> factors(green);
-  if (factors.info() != Eigen::Success) return false;
-  const Vec flux = factors.solve((mean - potential.array()).matrix());
+  Vec flux;
+  if (!solve_charges(angle, (mean - potential.array()).matrix(), flux)) return false;
   result.area.resize(count);
   for (Eigen::Index i = 0; i < count; ++i)
     result.area[i] = flux[i] / (phases_.mass_slope(contents.area[i]) - around);

@@ -1,6 +1,7 @@
 // Ripening of discs: lipids diffuse outside them from small ones to large ones.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "kernel/discs/disc.hpp"
@@ -16,13 +17,14 @@ struct Contents {
 
 // Outside the discs the flux potential G obeys ΔG = −(what the background loses), and at the
 // boundary of disc i it is G(c_i), where c_i is in equilibrium with its curvature. Disc j is a
-// charge Q_j on its boundary (it takes up Q_j per time):
-//   G(c_i) = Ḡ − Σ_j N_ij Q_j,
-//   N_ij = −(ln((1 − cos θ_ij)/2) + ln((1 + cos α_i)/2) + ln((1 + cos α_j)/2) + 1)/(4π),
+// charge Q_j on its boundary (it takes up Q_j per time) and a dipole p_j at its centre, which its
+// neighbours induce:
+//   G(c_i) = Ḡ − Σ_j (N_ij Q_j + ∇_j N p_j),    0 = Σ_j (∇_i N Q_j + ∇_i ∇_j N p_j) + p_i/(2π
+//   a_i²), N_ij = −(ln((1 − cos θ_ij)/2) + ln((1 + cos α_i)/2) + ln((1 + cos α_j)/2) + 1)/(4π),
 //   N_ii = −(ln((1 − cos α_i)/2) + ln((1 + cos α_i)/2) + 1)/(4π),
-// which are means over boundaries of Green's function of the sphere. α is the half angle with the
-// tail of the profile (Phases::tail), as far as neighbours leave room for it. Dipoles are left out:
-// a disc stays round, and where it is.
+// means over boundaries of Green's function of the sphere. α is the half angle with the tail of the
+// profile (Phases::tail), as far as neighbours leave room for it, and a = 2 tan(α/2). Higher
+// multipoles are left out: a disc stays round, and where it is.
 class Ripening {
  public:
   explicit Ripening(const DiscModel& model) : phases_(model), uptake_(model.uptake) {}
@@ -33,15 +35,24 @@ class Ripening {
   void set_places(const std::vector<Disc>& discs);
   // d/dt of the contents. False if the discs are such that there is none.
   bool rate(const Contents& contents, Contents& result) const;
+  // Charges and dipoles that were found last. The next solve begins with them, so that whoever goes
+  // on bitwise keeps them.
+  const Vec& charges() const { return charges_; }
+  void set_charges(Vec charges) { charges_ = std::move(charges); }
   // The mean of c outside the discs: they do not hold the rest of the mass.
   double background(const Contents& contents) const;
 
  private:
+  Vec half_angles_with_tails(const Vec& area) const;
+  bool solve_charges(const Vec& angle, const Vec& difference, Vec& charge) const;
+  Vec product(const Eigen::MatrixXd& green, const Vec& own, const Vec& x) const;
+
   Phases phases_;
   double uptake_;
-  Vec half_angles_with_tails(const Vec& area) const;
-
-  Eigen::MatrixXd logarithms_, angles_;  // ln((1 − cos θ_ij)/2), θ_ij; for i > j
+  // Of the places alone: ln((1 − cos θ_ij)/2) and θ_ij for i > j; ∇_j N and ∇_i ∇_j N, with two
+  // directions of each disc.
+  Eigen::MatrixXd logarithms_, angles_, of_dipoles_, between_dipoles_;
+  mutable Vec charges_;  // and dipoles that were found last, to begin with
 };
 
 }  // namespace traceraft::discs

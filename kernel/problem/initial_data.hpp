@@ -9,7 +9,7 @@
 
 #include "kernel/core/named_list.hpp"
 #include "kernel/core/parameters.hpp"
-#include "kernel/discs/disc.hpp"
+#include "kernel/discs/random_discs.hpp"
 #include "kernel/fem/surface_space.hpp"
 #include "kernel/physics/double_well.hpp"
 
@@ -56,7 +56,7 @@ Vec make_initial_field(const std::string& specification, const fem::SurfaceSpace
                        const InitialRequest& request);
 
 // The discs of the initial state `discs`. Throws InputError.
-std::vector<discs::Disc> random_discs(const InitialRequest& request, const Parameters& parameters);
+discs::StartingDiscs random_discs(const InitialRequest& request, const Parameters& parameters);
 
 // Equilibrium profiles around caps; the nearest cap counts.
 std::function<double(const Point&)> profile_around(const std::vector<CapRaft>& caps,

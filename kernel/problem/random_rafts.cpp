@@ -1,9 +1,8 @@
-#include "kernel/discs/random_discs.hpp"
 #include "kernel/problem/initial_data.hpp"
 
 namespace traceraft::problem {
 
-std::vector<discs::Disc> random_discs(const InitialRequest& request, const Parameters& parameters) {
+discs::StartingDiscs random_discs(const InitialRequest& request, const Parameters& parameters) {
   return discs::random_discs({static_cast<int>(parameters["number"]), parameters["spread"],
                               request.raft_fraction, request.well, request.epsilon, request.seed});
 }
@@ -15,10 +14,14 @@ InitialEntry disc_rafts() {
            {"spread", "", 0.3, 0, 2, "standard deviation of the logarithm of their areas"}},
           {},
           [](const InitialRequest& request, const Parameters& parameters) {
+            const discs::StartingDiscs start = random_discs(request, parameters);
             std::vector<CapRaft> caps;
-            for (const discs::Disc& disc : random_discs(request, parameters))
+            for (const discs::Disc& disc : start.discs)
               caps.push_back({disc.centre, discs::half_angle(disc.area)});
-            return profile_around(caps, request.well, request.epsilon);
+            return [around = start.background,
+                    profile = profile_around(caps, request.well, request.epsilon)](const Point& x) {
+              return around + (1 - around) * profile(x);
+            };
           }};
 }
 

@@ -64,10 +64,10 @@ TEST(PhasesTest, ADiffuseBoundaryHoldsWhatTheIntegralOfItsProfileSays) {
   EXPECT_NEAR(sum - kPi * radius * radius, boundary_mass(well, epsilon), 1e-6);
 }
 
-TEST(PhasesTest, TwoBoundariesInContactHaveHalfBetweenThem) {
+TEST(PhasesTest, TwoBoundariesInContactHaveTheSpinodalBetweenThem) {
   const physics::DoubleWell well;
   const double half = contact_distance(well, 0.02) / 2;
-  EXPECT_NEAR(2 * well.profile(half, 0.02), 0.5, 1e-12);
+  EXPECT_NEAR(well.second(2 * well.profile(half, 0.02)), 0, 1e-12);
 }
 
 // Against the resistance of the tail, integrated: ∫ ds (1/m − 1/(m + e^(−s/δ))) = tail/m.

@@ -53,8 +53,8 @@ TEST(RipeningTest, TwoDiscsAtThePolesExchangeWhatTheExactSolutionSays) {
   const double slope = (value(1) - value(0)) / (std::log(std::tan((kPi - angle(1)) / 2)) -
                                                 std::log(std::tan(angle(0) / 2)));
   EXPECT_GT(flux[0], 0);  // the large one grows
-  EXPECT_NEAR(flux[0], 2 * kPi * slope, 1e-8 * flux[0]);
-  EXPECT_NEAR(flux[1], -flux[0], 1e-8 * flux[0]);
+  EXPECT_NEAR(flux[0], 2 * kPi * slope, 1e-4 * flux[0]);
+  EXPECT_NEAR(flux[1], -flux[0], 1e-4 * flux[0]);
 }
 
 TEST(RipeningTest, ADiscInEquilibriumWithWhatIsAroundItRests) {
