@@ -281,6 +281,10 @@ const Fault kFaults[] = {
        for (problem::EffectPtr& effect : m.effects)
          effect = std::make_shared<ScaledEffect>(effect, 0.9);
      }},
+    {"discs",
+     "a field with boundaries 15 % too wide",
+     {"energy, discs / field"},
+     [](problem::CahnHilliardModel& m) { m.epsilon *= 1.15; }},
     {"pfhub",
      "a well 5 % too deep",
      {"t = 0.1 to 100: largest relative difference"},

@@ -34,26 +34,14 @@ void refuse_other_physics(const config::Configuration& configuration,
                      ": the model of discs needs wells at 0 and 1");
 }
 
-// Discs of local equilibrium that hold what those with straight profiles would.
-discs::DiscState starting_state(const config::Configuration& configuration,
-                                const discs::DiscModel& model, const discs::StartingDiscs& start) {
-  discs::DiscState state;
-  state.mass = 4 * kPi * start.background;
-  double covered = 0;
-  const discs::Phases phases(model);
-  for (const discs::Disc& disc : start.discs) {
-    covered += disc.area;
-    const double beyond_background =
-        (1 - start.background) * (disc.area + discs::boundary_mass(model.well, model.epsilon));
-    state.mass += beyond_background;
-    state.discs.push_back(
-        {disc.centre, phases.area_of_mass(beyond_background + start.background * disc.area)});
-  }
-  if (covered > kMostCovered * 4 * kPi)
+void refuse_covered(const config::Configuration& configuration,
+                    const std::vector<discs::Disc>& discs) {
+  double share = 0;
+  for (const discs::Disc& disc : discs) share += disc.area / (4 * kPi);
+  if (share > kMostCovered)
     throw InputError(configuration.where(&config::RunOptions::initial) +
                      formatted(": discs cover %.0f %% of the sphere (allowed: at most %.0f %%)",
-                               100 * covered / (4 * kPi), 100 * kMostCovered));
-  return state;
+                               100 * share, 100 * kMostCovered));
 }
 
 // One process works on it; the ground is a sphere without a mesh.
@@ -230,9 +218,10 @@ DiscSetup build_disc_run(const config::Configuration& configuration) {
                           [&] { return effects::disc_model(model, effects_of(configuration)); });
   problem::CahnHilliardModel with_boundaries = model;
   with_boundaries.epsilon = physics.epsilon;
-  run.system = std::make_unique<discs::DiscSystem>(
-      physics, configuration.options().tolerance,
-      starting_state(configuration, physics, initial_discs(configuration, with_boundaries)));
+  const discs::StartingDiscs start = initial_discs(configuration, with_boundaries);
+  refuse_covered(configuration, start.discs);
+  run.system = std::make_unique<discs::DiscSystem>(physics, configuration.options().tolerance,
+                                                   discs::start_state(physics, start));
   return run;
 }
 

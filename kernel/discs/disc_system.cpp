@@ -44,6 +44,20 @@ Contents moved(const Contents& from, double step, const Contents& rate) {
 
 }  // namespace
 
+DiscState start_state(const DiscModel& model, const StartingDiscs& start) {
+  const Phases phases(model);
+  DiscState state;
+  state.mass = 4 * kPi * start.background;
+  for (const Disc& disc : start.discs) {
+    const double beyond_background =
+        (1 - start.background) * (disc.area + boundary_mass(model.well, model.epsilon));
+    state.mass += beyond_background;
+    state.discs.push_back(
+        {disc.centre, phases.area_of_mass(beyond_background + start.background * disc.area)});
+  }
+  return state;
+}
+
 DiscSystem::DiscSystem(const DiscModel& model, double tolerance, DiscState start)
     : model_(model),
       ripening_(model),

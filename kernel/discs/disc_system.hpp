@@ -8,6 +8,7 @@
 
 #include "kernel/core/status.hpp"
 #include "kernel/discs/brownian_motion.hpp"
+#include "kernel/discs/random_discs.hpp"
 #include "kernel/discs/ripening.hpp"
 
 namespace traceraft::discs {
@@ -17,6 +18,9 @@ struct DiscState {
   std::vector<Disc> discs;
   double mass = 0;  // ∫ c
 };
+
+// Discs of local equilibrium that hold what those with straight profiles would.
+DiscState start_state(const DiscModel& model, const StartingDiscs& start);
 
 struct DiscStatistics {
   std::int64_t steps = 0, rejected = 0, walks = 0, merged = 0, dissolved = 0;

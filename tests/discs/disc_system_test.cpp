@@ -24,9 +24,8 @@ DiscState random_state(int number, std::uint64_t seed = 1) {
   asked.number = number;
   asked.epsilon = 0.01;
   asked.seed = seed;
-  DiscState state;
-  state.discs = random_discs(asked).discs;
-  state.mass = 4 * kPi * asked.raft_fraction;
+  const DiscState state = start_state(brownian_model(0), random_discs(asked));
+  EXPECT_NEAR(state.mass, 4 * kPi * asked.raft_fraction, 1e-12);
   return state;
 }
 

@@ -14,6 +14,7 @@ const NamedList<StudyEntry>& studies() {
       coarsening_study(),
       raft_coarsening_study(),
       membrane_flow_study(),
+      rafts_as_discs_study(),
       pfhub_study(),
       fine_pfhub_study(),
       integrator_agreement_study(),

@@ -1,0 +1,152 @@
+// Rafts as discs against the field: energies, perimeters and numbers of the same vesicles.
+#include <cmath>
+
+#include "kernel/core/text.hpp"
+#include "kernel/discs/disc_system.hpp"
+#include "kernel/observables/disc_observables.hpp"
+#include "kernel/observables/resolved_boundary.hpp"
+#include "verification/bench/bench.hpp"
+#include "verification/statistics/sample.hpp"
+#include "verification/studies/studies.hpp"
+
+namespace traceraft::studies {
+namespace {
+
+constexpr int kRafts = 8;
+constexpr double kSpread = 0.3, kFraction = 0.16;
+
+struct DiscSizes {
+  double epsilon;
+  int cells, vesicles;
+  std::vector<double> times;
+};
+
+// At the times.
+using VesicleHistory = std::vector<observables::Observables>;
+
+VesicleHistory in_field(const bench::Bench& bench, const DiscSizes& sizes, std::uint64_t seed) {
+  const bench::SpacePtr space = bench.space(*geometry::make_surface("sphere"), sizes.cells, 1);
+  const bench::ProblemPtr problem =
+      bench.problem(space, bench::bench_model("degenerate", sizes.epsilon));
+  const observables::Observer observer(
+      *problem, space,
+      observables::resolved_boundary(problem->model(), space->h()).interface_energy);
+  problem::InitialRequest request;
+  request.raft_fraction = kFraction;
+  request.seed = seed;
+  const bench::StartState start = bench::initial_state(
+      *problem, formatted("discs:number=%d,spread=%g", kRafts, kSpread), request);
+  const time::IntegratorPtr integrator = bench.default_integrator(*problem, 1e-3);
+  VesicleHistory history;
+  Vec y(problem->size());
+  bench::advance_to(*integrator, start, sizes.times.back(), [&] {
+    for (; history.size() < sizes.times.size() &&
+           sizes.times[history.size()] <= integrator->time();) {
+      bench::require(integrator->interpolate(sizes.times[history.size()], y));
+      history.push_back(observer.measure(sizes.times[history.size()], y));
+    }
+  });
+  return history;
+}
+
+VesicleHistory as_discs(const DiscSizes& sizes, std::uint64_t seed) {
+  discs::DiscModel model;
+  model.mobility = physics::make_mobility("degenerate");
+  model.epsilon = sizes.epsilon;
+  discs::RandomDiscs asked;
+  asked.number = kRafts;
+  asked.spread = kSpread;
+  asked.raft_fraction = kFraction;
+  asked.epsilon = sizes.epsilon;
+  asked.seed = seed;
+  discs::DiscSystem system(model, 1e-3, discs::start_state(model, discs::random_discs(asked)));
+  VesicleHistory history;
+  while (history.size() < sizes.times.size()) {
+    bench::require(system.advance(sizes.times.back()));
+    for (; history.size() < sizes.times.size() && sizes.times[history.size()] <= system.state().t;)
+      history.push_back(
+          observables::observe(system, system.interpolated(sizes.times[history.size()])));
+  }
+  return history;
+}
+
+// The mean of a number over pairs of vesicles at one time, and its standard error.
+struct PairMean {
+  double mean, error;
+};
+template <class Number>
+PairMean over_pairs(const std::vector<VesicleHistory>& fields,
+                    const std::vector<VesicleHistory>& discs, std::size_t at,
+                    const Number& number) {
+  std::vector<double> values;
+  for (std::size_t k = 0; k < fields.size(); ++k)
+    values.push_back(number(fields[k][at], discs[k][at]));
+  const statistics::Sample sample = statistics::sample_of(values);
+  return {sample.mean, sample.deviation / std::sqrt(static_cast<double>(values.size()))};
+}
+
+void compare(const bench::Bench& bench, const DiscSizes& sizes, bench::Part part,
+             StudyReport& report) {
+  using Row = const observables::Observables&;
+  std::vector<VesicleHistory> fields(static_cast<std::size_t>(sizes.vesicles)), discs = fields;
+  bench.in_parallel(
+      sizes.vesicles,
+      [&](int k) {
+        const auto index = static_cast<std::size_t>(k);
+        fields[index] = in_field(bench, sizes, index + 1);
+        discs[index] = as_discs(sizes, index + 1);
+      },
+      part);
+  const std::string name = formatted("epsilon = %g R", sizes.epsilon);
+  bench::Table table{
+      name,
+      {"t", "rafts, field", "more in discs", "standard error", "perimeter, discs / field",
+       "standard error", "energy, discs / field", "standard error"},
+      {}};
+  double perimeters = 0, energies = 0, most = 0;
+  for (std::size_t i = 0; i < sizes.times.size(); ++i) {
+    const PairMean count = over_pairs(fields, discs, i, [](Row f, Row) { return 1.0 * f.rafts; }),
+                   more = over_pairs(fields, discs, i,
+                                     [](Row f, Row d) { return 1.0 * (d.rafts - f.rafts); }),
+                   perimeter = over_pairs(fields, discs, i,
+                                          [](Row f, Row d) { return d.perimeter / f.perimeter; }),
+                   energy = over_pairs(fields, discs, i,
+                                       [](Row f, Row d) { return d.energy / f.energy; });
+    table.rows.push_back({sizes.times[i], count.mean, more.mean, more.error, perimeter.mean,
+                          perimeter.error, energy.mean, energy.error});
+    const auto share = 1 / static_cast<double>(sizes.times.size());
+    perimeters += share * perimeter.mean;
+    energies += share * energy.mean;
+    most = statistics::larger(most, std::fabs(more.mean));
+  }
+  report.tables.push_back(table);
+  report.claims.push_back(claim_near(name + ": perimeter, discs / field, mean over the times",
+                                     perimeters, 1, bench.quick() ? 0.03 : 0.06));
+  report.claims.push_back(claim_near(name + ": energy, discs / field, mean over the times",
+                                     energies, 1, bench.quick() ? 0.01 : 0.06));
+  report.claims.push_back(
+      claim_at_most(name + ": largest mean difference in the number of rafts", most, 1));
+}
+
+StudyReport run_discs(const bench::Bench& bench) {
+  StudyReport report;
+  report.notes = {
+      formatted("%d rafts at random places, raft fraction %g, degenerate mobility, no flow. Discs "
+                "and field begin with the same rafts; errors are those of the mean over vesicles.",
+                kRafts, kFraction)};
+  if (bench.quick()) {
+    compare(bench, {0.03, 56, 4, {2, 5, 10}}, {}, report);
+    return report;
+  }
+  compare(bench, {0.03, 80, 8, {2, 5, 10, 20, 50, 100, 200}}, {0, 0.3}, report);
+  compare(bench, {0.02, 112, 8, {4.5, 11, 22, 45, 112, 225, 450}}, {0.3, 1}, report);
+  return report;
+}
+
+}  // namespace
+
+StudyEntry rafts_as_discs_study() {
+  return {"discs", "rafts as discs against the field: energies, perimeters, numbers", run_discs};
+}
+
+}  // namespace traceraft::studies
