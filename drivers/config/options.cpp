@@ -147,7 +147,7 @@ const std::vector<OptionSpec>& run_options() {
       listed(
           "INITIAL",
           {"initial", &R::initial, "noise", "Initial state",
-           "noise, band-limited:wavelength=0.3,amplitude=0.05, caps, discs:number=100, formula or "
+           "noise, band-limited:wavelength=0.3,amplitude=0.05, caps, discs:number=40, formula or "
            "restart:DIR; default with --model discs: discs"}),
       {"initial-formula", &R::initial_formula, "", "Initial state",
        "c(x,y,z) for --initial formula; coordinates in units of R"},

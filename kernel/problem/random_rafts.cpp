@@ -10,7 +10,7 @@ discs::StartingDiscs random_discs(const InitialRequest& request, const Parameter
 InitialEntry disc_rafts() {
   return {"discs",
           "round rafts at random places, with equilibrium profiles",
-          {{"number", "", 100, 1, 10000, "of rafts", ParameterKind::integer},
+          {{"number", "", 40, 1, 10000, "of rafts", ParameterKind::integer},
            {"spread", "", 0.3, 0, 2, "standard deviation of the logarithm of their areas"}},
           {},
           [](const InitialRequest& request, const Parameters& parameters) {

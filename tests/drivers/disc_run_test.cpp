@@ -34,7 +34,7 @@ TEST_F(DiscRunTest, HasTheFilesOfAnyRun) {
     EXPECT_TRUE(fs::exists(folder.path / "a" / file)) << file;
   const input::CsvTable table = input::CsvTable::read(folder.path / "a/observables.csv");
   ASSERT_EQ(table.rows(), 17U);
-  EXPECT_EQ(table.number(0, "rafts"), 100);
+  EXPECT_EQ(table.number(0, "rafts"), 40);
   EXPECT_LT(table.number(16, "rafts"), 20);
   EXPECT_EQ(table.number(0, "mass"), table.number(16, "mass"));
   // Areas of rafts.csv are the raft fraction.
