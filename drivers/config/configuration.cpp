@@ -117,7 +117,7 @@ Configuration::Configuration(const GivenValues& file, const GivenValues& flags) 
     set(spec, {text, "--" + spec.name});
   }
   if (!given(&RunOptions::tolerance) && options_.model == "discs")
-    set_text(run_option(&RunOptions::tolerance), "1e-2");
+    set_text(run_option(&RunOptions::tolerance), "5e-3");
   else if (!given(&RunOptions::tolerance))
     for (const backends::IntegratorEntry& integrator : backends::integrators())
       if (integrator.name == options_.integrator)

@@ -23,6 +23,9 @@ constexpr double kShortestGap = 0.3;
 // Discs do not meet that are this many standard deviations of a walk apart.
 constexpr double kFarApart = 8;
 
+// In areas at which a disc dissolves: larger ones do not do so within a step.
+constexpr double kAboutToDissolve = 4;
+
 constexpr double kSafety = 0.9, kLargestGrowth = 2, kLargestCut = 0.2;
 
 Contents contents_of(const DiscState& state) {
@@ -104,7 +107,7 @@ void DiscSystem::plan_walk() {
   next_walk_ = last_walk_ + length * length / motion_.largest_variance();
 }
 
-// A disc that dissolves within the step does not shorten it.
+// A small disc that dissolves within the step does not shorten it.
 bool DiscSystem::attempt(const Ripening& ripening, const DiscState& from, const Contents& first,
                          double step, Attempt& result) const {
   const Contents start = contents_of(from);
@@ -123,7 +126,7 @@ bool DiscSystem::attempt(const Ripening& ripening, const DiscState& from, const 
   if (!ripening.rate(end, last)) return false;
   double error = 0;
   for (Eigen::Index i = 0; i < start.area.size(); ++i)
-    if (end.area[i] > shortest)
+    if (end.area[i] > shortest || start.area[i] > kAboutToDissolve * shortest)
       error = std::max(error, std::fabs(step * (-5 * first.area[i] / 72 + second.area[i] / 12 +
                                                 third.area[i] / 9 - last.area[i] / 8)) /
                                   (tolerance_ * end.area[i]));

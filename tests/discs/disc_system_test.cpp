@@ -103,6 +103,19 @@ TEST(DiscSystemTest, TakesUpWhatTheRateSays) {
   EXPECT_NEAR(held_by_discs(system), system.state().mass, 1e-12);
 }
 
+// Long steps are tried where nothing changes any more, and explicit methods overshoot then.
+TEST(DiscSystemTest, OneDiscInEquilibriumStays) {
+  for (const double tolerance : {1e-3, 1e-2, 5e-2}) {
+    DiscState state;
+    state.discs = {{{0, 0, 1}, 1.9}};
+    state.mass = 2;
+    DiscSystem system(brownian_model(0), tolerance, state);
+    run_until(system, 1e6);
+    ASSERT_EQ(system.state().discs.size(), 1U) << tolerance;
+    EXPECT_NEAR(system.state().discs[0].area, 1.98, 0.02 + 2 * tolerance);
+  }
+}
+
 // With more thermal motion rafts meet sooner. Means over seeds, 4 standard errors.
 TEST(DiscSystemTest, BrownianMotionMergesDiscs) {
   const auto rafts = [](double thermal) {
