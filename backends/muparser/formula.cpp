@@ -57,8 +57,7 @@ std::function<double(const Point&)> parse_formula(const std::string& context,
     auto parsed = std::make_shared<Formula>(formula);
     return [parsed](const Point& x) { return (*parsed)(x); };
   } catch (const mu::Parser::exception_type& error) {
-    std::string why =
-        error.GetCode() == mu::ecINTERNAL_ERROR ? "it is incomplete" : error.GetMsg();
+    std::string why = error.GetCode() == mu::ecINTERNAL_ERROR ? "it is incomplete" : error.GetMsg();
     while (!why.empty() && (why.back() == '\n' || why.back() == '.')) why.pop_back();
     throw InputError(context + ": cannot read '" + formula.substr(0, 80) + "': " + why +
                      " (variables: x, y, z)");

@@ -172,8 +172,8 @@ const std::vector<OptionSpec>& run_options() {
                             "time integrator (see: traceraft list)"}),
       {"tolerance", &R::tolerance, "1e-3", "Time",
        "relative error of a step, in the L2 norm on the surface; default with euler: 5e-3, "
-       "with --model discs, of the area of each: 5e-3", 1e-12,
-       0.5},
+       "with --model discs, of the area of each: 5e-3",
+       1e-12, 0.5},
       {"initial-step", &R::initial_step, "0", "Time",
        "first step (s); 0: chosen from the initial state", 0, 1e300, D::time},
       {"min-step", &R::min_step, "0", "Time",
