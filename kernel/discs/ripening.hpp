@@ -19,8 +19,9 @@ struct Contents {
 // boundary of disc i it is G(c_i), where c_i is in equilibrium with its curvature. Disc j is a
 // charge Q_j on its boundary (it takes up Q_j per time) and a dipole p_j at its centre, which its
 // neighbours induce:
-//   G(c_i) = Ḡ − Σ_j (N_ij Q_j + ∇_j N p_j),    0 = Σ_j (∇_i N Q_j + ∇_i ∇_j N p_j) + p_i/(2π
-//   a_i²), N_ij = −(ln((1 − cos θ_ij)/2) + ln((1 + cos α_i)/2) + ln((1 + cos α_j)/2) + 1)/(4π),
+//   G(c_i) = Ḡ − Σ_j (N_ij Q_j + ∇_j N p_j),
+//   0 = Σ_j (∇_i N Q_j + ∇_i ∇_j N p_j) + p_i/(2π a_i²),
+//   N_ij = −(ln((1 − cos θ_ij)/2) + ln((1 + cos α_i)/2) + ln((1 + cos α_j)/2) + 1)/(4π),
 //   N_ii = −(ln((1 − cos α_i)/2) + ln((1 + cos α_i)/2) + 1)/(4π),
 // means over boundaries of Green's function of the sphere. α is the half angle with the tail of the
 // profile (Phases::tail), as far as neighbours leave room for it, and a = 2 tan(α/2). Higher
