@@ -46,6 +46,7 @@ class Ripening {
  private:
   Vec half_angles_with_tails(const Vec& area) const;
   bool solve_charges(const Vec& angle, const Vec& difference, Vec& charge) const;
+  void add_near_fluxes(const Vec& angle, const Vec& potential, Vec& charge) const;
   Vec product(const Eigen::MatrixXd& green, const Vec& own, const Vec& x) const;
 
   Phases phases_;
