@@ -121,9 +121,9 @@ void compare(const bench::Bench& bench, const DiscSizes& sizes, bench::Part part
   }
   report.tables.push_back(table);
   report.claims.push_back(claim_near(name + ": perimeter, discs / field, mean over the times",
-                                     perimeters, 1, bench.quick() ? 0.03 : 0.06));
+                                     perimeters, 1, bench.quick() ? 0.03 : 0.05));
   report.claims.push_back(claim_near(name + ": energy, discs / field, mean over the times",
-                                     energies, 1, bench.quick() ? 0.01 : 0.06));
+                                     energies, 1, bench.quick() ? 0.01 : 0.05));
   report.claims.push_back(
       claim_at_most(name + ": largest mean difference in the number of rafts", most, 1));
 }
