@@ -1,4 +1,4 @@
-// What becomes of exceptions: an exit code and a line that says why.
+// Exceptions become an exit code and a line that says why.
 #pragma once
 
 #include <exception>

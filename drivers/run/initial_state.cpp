@@ -32,7 +32,7 @@ std::vector<problem::CapRaft> parse_caps(const config::Configuration& configurat
   return caps;
 }
 
-// What needs no mesh.
+// The part of a request that needs no mesh.
 problem::InitialRequest basic_request(const config::Configuration& configuration,
                                       const problem::CahnHilliardModel& model) {
   problem::InitialRequest request;

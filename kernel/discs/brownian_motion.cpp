@@ -43,7 +43,7 @@ Vec weights_of(const Disc& disc, const flow::FluidMembrane& membrane, int degree
   return weight;
 }
 
-// Of the great circle through both; any one of those where they face each other.
+// The normal of the great circle through both; where they face each other, `any` is one.
 Point common_normal(const Point& x, const Point& y, const Point& any) {
   const Point normal = x.cross(y);
   return normal.norm() > 1e-12 ? Point(normal.normalized()) : any;

@@ -25,7 +25,7 @@ class BrownianMotion {
   void set_discs(const std::vector<Disc>& discs);
   // The largest variance per time of a displacement in one direction.
   double largest_variance() const;
-  // That of the distance of two discs.
+  // The same of the distance of two discs.
   double variance_of_distance(std::size_t i, std::size_t j) const;
   // Displacements in the time `step` from independent normal numbers, two of each disc. Tangent
   // vectors, in R. Empty if the covariance cannot be factorised.

@@ -23,7 +23,7 @@ double background_beside(double area, const physics::DoubleWell& well, double ep
   return c;
 }
 
-// What all discs cover together, and the background, so that the mean of c is what is asked for.
+// The area of all discs together, and the background: the mean of c is the one asked for.
 std::pair<double, double> covered_and_background(const RandomDiscs& request) {
   const double held = request.number * boundary_mass(request.well, request.epsilon);
   double covered = 4 * kPi * request.raft_fraction - held, background = 0;

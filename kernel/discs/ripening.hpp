@@ -51,8 +51,8 @@ class Ripening {
 
   Phases phases_;
   double uptake_;
-  // Of the places alone: ln((1 − cos θ_ij)/2) and θ_ij for i > j; ∇_j N and ∇_i ∇_j N, with two
-  // directions of each disc.
+  // These depend on the places alone: ln((1 − cos θ_ij)/2) and θ_ij for i > j; ∇_j N and ∇_i ∇_j N,
+  // with two directions of each disc.
   Eigen::MatrixXd logarithms_, angles_, of_dipoles_, between_dipoles_;
   mutable Vec charges_;  // and dipoles that were found last, to begin with
 };

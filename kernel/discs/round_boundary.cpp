@@ -37,7 +37,7 @@ class RoundRaft {
       c_[k] = 1 / (1 + std::exp(static_cast<double>(k) * kGrid - kLargest));
   }
 
-  // With c = ½ at a point of the grid, from the raft before it.
+  // Finds the raft with c = ½ at a point of the grid, from the one before.
   void solve(Eigen::Index half) {
     for (int iteration = 0; iteration < 40; ++iteration)
       if (newton_step(half) < 1e-12) return;

@@ -1,4 +1,4 @@
-// What is observed of a vesicle of discs: the same as of a concentration.
+// A vesicle of discs is observed like a concentration.
 #pragma once
 
 #include "kernel/discs/disc_system.hpp"

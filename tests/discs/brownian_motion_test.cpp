@@ -93,7 +93,7 @@ TEST(BrownianMotionTest, AWholeSphereRotatesAsWaterLetsIt) {
   flow::FluidMembrane stiff{0, 1e6, 1};
   BrownianMotion motion(stiff);
   motion.set_discs({disc({0, 0, 1}, 1.5)});
-  // Of all waves the rotation, l = 1, moves a hemisphere most: F_1 = 1.
+  // The rotation, l = 1, moves a hemisphere more than any other wave: F_1 = 1.
   const double rotation = 2 * stiff.thermal * 3 * 2 / (8 * kPi * stiff.friction(1));
   EXPECT_NEAR(rotation, 2 / (8 * kPi * stiff.water), 1e-6 * rotation);
   EXPECT_GT(motion.largest_variance(), rotation);

@@ -116,7 +116,7 @@ TEST(DiscSystemTest, OneDiscInEquilibriumStays) {
   }
 }
 
-// With more thermal motion rafts meet sooner. Means over seeds, 4 standard errors.
+// Rafts meet sooner with more thermal motion. Means over seeds.
 TEST(DiscSystemTest, BrownianMotionMergesDiscs) {
   const auto rafts = [](double thermal) {
     double sum = 0;
