@@ -1,6 +1,9 @@
 // docs/exit-codes.md explains them.
 #pragma once
 
+#include <exception>
+#include <string>
+
 namespace traceraft::drivers {
 
 enum ExitCode : int {
@@ -13,5 +16,12 @@ enum ExitCode : int {
   kLocked = 6,
   kInternalError = 70
 };
+
+// Exceptions become an exit code and a line that says why.
+struct Failure {
+  ExitCode code;
+  std::string why;
+};
+Failure failure_of(const std::exception_ptr& thrown);
 
 }  // namespace traceraft::drivers

@@ -12,7 +12,6 @@
 #include "drivers/config/number_checks.hpp"
 #include "drivers/config/text_checks.hpp"
 #include "drivers/exit_codes.hpp"
-#include "drivers/failure.hpp"
 #include "drivers/output/program.hpp"
 #include "drivers/text/say.hpp"
 #include "kernel/core/error.hpp"

@@ -14,6 +14,7 @@
 #include "drivers/ensemble/ensemble_report.hpp"
 #include "drivers/ensemble/histories_file.hpp"
 #include "drivers/exit_codes.hpp"
+#include "drivers/run/checked_options.hpp"
 #include "drivers/run/disc_run.hpp"
 #include "drivers/run/run_folder.hpp"
 #include "drivers/run/run_setup.hpp"
@@ -43,7 +44,7 @@ struct EnsembleRequest {
 config::Configuration new_configuration(const EnsembleRequest& request, config::GivenValues file) {
   file.erase("seed");
   const config::Configuration configuration(file, request.flags);
-  refuse_without_noise(configuration);
+  refuse_initial_state_but(configuration, {"noise", "band-limited", "discs"});
   return configuration;
 }
 
@@ -165,7 +166,7 @@ void refuse_unwritable_path(const EnsembleFolder& folder) {
 
 // Builds a first run, which may refuse the configuration.
 std::string resolution_of(const config::Configuration& configuration) {
-  if (configuration.options().model == "discs") {
+  if (run::is_of_discs(configuration)) {
     (void)run::build_disc_run(configuration);
     return "model of discs";
   }

@@ -7,6 +7,7 @@
 #include "drivers/config/config_file.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/parameters.hpp"
+#include "kernel/core/text.hpp"
 
 namespace traceraft::ensemble {
 
@@ -24,12 +25,16 @@ config::GivenValues settings_until(const config::Configuration& model, double t_
   return given;
 }
 
-void refuse_without_noise(const config::Configuration& model) {
-  const std::vector<std::string> random = {"noise", "band-limited", "discs"};
+void refuse_initial_state_but(const config::Configuration& model,
+                              const std::vector<std::string>& random) {
   if (std::count(random.begin(), random.end(),
                  split_named_arguments(model.options().initial).name) == 0)
     throw InputError(model.where(&config::RunOptions::initial) +
-                     ": runs differ in their initial state; choose noise, band-limited or discs");
+                     ": runs differ in their initial state; choose " + joined(random, " or "));
+}
+
+void refuse_without_noise(const config::Configuration& model) {
+  refuse_initial_state_but(model, {"noise", "discs"});
 }
 
 namespace {

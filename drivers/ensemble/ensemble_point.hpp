@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "drivers/config/configuration.hpp"
@@ -13,7 +14,11 @@ namespace traceraft::ensemble {
 // output before.
 config::GivenValues settings_until(const config::Configuration& model, double t_end);
 
-// Throws InputError if seeds make no difference.
+// Throws InputError unless the initial state is one of these, in which runs of several seeds
+// differ.
+void refuse_initial_state_but(const config::Configuration& model,
+                              const std::vector<std::string>& random);
+// The same for simulated vesicles.
 void refuse_without_noise(const config::Configuration& model);
 
 struct PointRequest {

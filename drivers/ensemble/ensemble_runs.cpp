@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "drivers/config/config_file.hpp"
 #include "drivers/exit_codes.hpp"
-#include "drivers/failure.hpp"
 #include "drivers/output/status_line.hpp"
+#include "drivers/run/checked_options.hpp"
 #include "drivers/run/disc_run.hpp"
 #include "drivers/run/summary.hpp"
 #include "drivers/text/say.hpp"
@@ -37,10 +38,17 @@ jobs::ProcessEnd run_here(const config::GivenValues& model, const EnsembleFolder
   }
 }
 
-jobs::ProcessEnd run_or_resume(const EnsembleFolder& folder, std::uint64_t seed, int threads) {
-  if (const config::GivenValues model = config::read_config_file(folder.config());
-      config::Configuration(model, {}).options().model == "discs")
-    return run_here(model, folder, seed);
+// What runs of discs in this folder have in common; none if they are of the field.
+std::optional<config::GivenValues> model_of_discs(const EnsembleFolder& folder) {
+  config::GivenValues model = config::read_config_file(folder.config());
+  if (!run::is_of_discs(config::Configuration(model, {}))) return std::nullopt;
+  return model;
+}
+
+jobs::ProcessEnd run_or_resume(const EnsembleFolder& folder,
+                               const std::optional<config::GivenValues>& discs, std::uint64_t seed,
+                               int threads) {
+  if (discs) return run_here(*discs, folder, seed);
   const std::string run = folder.run_of(seed).string(), thread_text = std::to_string(threads);
   std::vector<std::string> arguments = {"resume", run, "--threads", thread_text, "--quiet"};
   if (folder.member(seed).end == MemberEnd::missing)
@@ -71,7 +79,8 @@ EnsembleEnd run_members(const EnsemblePlan& plan, const EnsembleFolder& folder,
   work.kind = "runs";
   work.folder = folder.path();
   work.quiet = quiet;
-  work.run = [&](std::size_t k) { return run_or_resume(folder, seeds[k], jobs.threads); };
+  const std::optional<config::GivenValues> discs = model_of_discs(folder);
+  work.run = [&](std::size_t k) { return run_or_resume(folder, discs, seeds[k], jobs.threads); };
   work.name = [&](std::size_t k) { return "the run of seed " + std::to_string(seeds[k]); };
   work.share = [&] {
     double share = 0;
@@ -102,7 +111,7 @@ int run_member(const EnsembleFolder& folder, std::uint64_t seed, int threads, bo
   report(std::string(before == MemberEnd::missing ? "starts" : "continues") +
          ", threads: " + std::to_string(threads));
   const Stopwatch watch;
-  const jobs::ProcessEnd end = run_or_resume(folder, seed, threads);
+  const jobs::ProcessEnd end = run_or_resume(folder, model_of_discs(folder), seed, threads);
   if (end.exit_code == drivers::kSuccess)
     report("finished after " + output::clock_text(watch.seconds()));
   if (end.exit_code != drivers::kSuccess)

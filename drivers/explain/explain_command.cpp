@@ -220,10 +220,8 @@ drivers::Action define_explain(CLI::App& app) {
   app.add_option("--jobs", command->jobs,
                  "for series: runs at a time; default: one for each processor")
       ->check(CLI::Range(1, 1024));
-  app.add_option(
-         "--model", command->job.model,
-         "TOML file of the model, with names of flags as keys; for series also discs, with the "
-         "flags")
+  app.add_option("--model", command->job.model,
+                 "TOML file of the model, with names of flags as keys")
       ->type_name("FILE");
   app.add_option("--out", command->out,
                  "folder for the verdict, new or of a search to continue; default: runs/explain-N")

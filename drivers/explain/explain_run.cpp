@@ -199,7 +199,7 @@ std::string data_text(const ExplainSetup& setup) {
 
 config::GivenValues model_said(const ExplainJob& job) {
   config::GivenValues said = job.flags;
-  said.merge(config::read_model(job.model));
+  said.merge(config::read_config_file(job.model, "--model"));
   return said;
 }
 
@@ -217,6 +217,7 @@ ExplainSetup read_explain_job(const ExplainJob& job) {
   setup.synthetic = data.synthetic;
   const config::Configuration& model = setup.configuration = config::Configuration(setup.model, {});
   input::refuse_scaled(model);
+  run::refuse_discs(model);
   (void)run::physical_model(model);  // with its effects it has to be one
   setup.request.base = run::model_without_effects(model);
   const physics::DoubleWell& well = setup.request.base.well;

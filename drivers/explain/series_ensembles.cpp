@@ -12,6 +12,7 @@
 #include "drivers/input/json_members.hpp"
 #include "drivers/input/measured_units.hpp"
 #include "drivers/numerical_failure.hpp"
+#include "drivers/run/checked_options.hpp"
 #include "drivers/run/physical_model.hpp"
 #include "drivers/text/say.hpp"
 #include "kernel/core/error.hpp"
@@ -193,6 +194,7 @@ std::string note_on_looks(const statistics::Window& simulated, const statistics:
 
 void refuse_series(const observations::MeasuredVesicles& data, const config::Configuration& model) {
   input::refuse_scaled(model);
+  run::refuse_discs(model);
   if (model.options().surface != "sphere")
     throw InputError(model.where(&config::RunOptions::surface) +
                      ": series can be explained on spheres only");

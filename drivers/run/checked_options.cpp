@@ -24,6 +24,16 @@ std::string one_of(const config::Configuration& configuration,
   return word;
 }
 
+bool is_of_discs(const config::Configuration& configuration) {
+  return one_of(configuration, &config::RunOptions::model, "model") == "discs";
+}
+
+void refuse_discs(const config::Configuration& configuration) {
+  if (is_of_discs(configuration))
+    throw InputError(configuration.where(&config::RunOptions::model) +
+                     ": discs have no field; choose the model field");
+}
+
 void refuse_times_out_of_range(const config::Configuration& configuration) {
   const double unit = configuration.units().time(), end = configuration.options().t_end;
   const auto require = [&](const config::OptionSpec& spec, double value, double least) {

@@ -25,6 +25,11 @@ auto with_option_context(const config::Configuration& configuration,
 std::string one_of(const config::Configuration& configuration,
                    std::string config::RunOptions::*option, const char* kind);
 
+// Is it the model of discs? Throws InputError for a word that is no model.
+bool is_of_discs(const config::Configuration& configuration);
+// Throws InputError if it is, for commands that need the field.
+void refuse_discs(const config::Configuration& configuration);
+
 // Refuses times and steps that are too short or too long to compute with, in R²/D: integrators need
 // inverses of steps, and squares of these, as doubles. Throws InputError.
 void refuse_times_out_of_range(const config::Configuration& configuration);

@@ -95,15 +95,11 @@ class DiscRun {
   void finish(const simulation::RunResult& result, bool quiet) {
     progress_.finish();
     write_checkpoint();
-    TableExtents extents = tables_.extents();
-    if (const std::filesystem::path list = folder_.path / "fields.pvd";
-        std::filesystem::exists(list))
-      extents["fields.pvd"] = extent_of_file(list);
     const observables::Observables row = now();
     const RunMoment end = moment(row, row.t * run_.units.time());
     const RunTotals totals{end, monitor_, sphere(), cost(), posix::peak_memory_mb()};
-    posix::write_durably(folder_.summary(),
-                         summary_json(configuration_, totals, result, false, extents));
+    posix::write_durably(folder_.summary(), summary_json(configuration_, totals, result, false,
+                                                         tables_.extents_at_end(folder_)));
     if (quiet) return;
     const discs::DiscStatistics& statistics = run_.system->statistics();
     print_end(totals, result);
@@ -177,7 +173,7 @@ class DiscRun {
   void write_checkpoint() {
     tables_.sync();
     Checkpoint checkpoint;
-    checkpoint.configuration = config::numerical_identity(configuration_);
+    checkpoint.configuration = identity_;
     StringAppender out(checkpoint.state);
     write_binary(out, monitor_);
     write_binary(out, next_output_);
@@ -191,6 +187,7 @@ class DiscRun {
   const config::Configuration& configuration_;
   DiscSetup& run_;
   const RunFolder& folder_;
+  const std::string identity_ = config::numerical_identity(configuration_);
   CheckpointStore store_;
   RunTables tables_;
   RunCost before_;
@@ -236,13 +233,8 @@ void print_disc_setup(const config::Configuration& configuration, const DiscSetu
                        system.model().epsilon * units.radius_um, system.model().epsilon,
                        system.phases().smallest_area() * units.area(),
                        text::unit_name(text::Unit::area, units.scaled).c_str()));
-  print_line("mobility", formatted("%s, D = %g cm^2/s", configuration.options().mobility.c_str(),
-                                   units.diffusion_cm2_s));
-  print_effects(configuration, units);
-  print_line("units",
-             formatted("length R = %g um, time R^2/D = %g s; the run ends at %g s = %g R^2/D",
-                       units.radius_um, units.seconds_per_unit(),
-                       run.t_end * units.seconds_per_unit(), run.t_end));
+  print_physics(configuration, units);
+  print_units(run);
   print_line("initial state",
              formatted("%zu discs, mean concentration %.6f, seed %lld", system.state().discs.size(),
                        system.state().mass / (4 * kPi),

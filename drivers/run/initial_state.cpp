@@ -46,9 +46,8 @@ problem::InitialRequest basic_request(const config::Configuration& configuration
 
 problem::InitialRequest initial_request(const config::Configuration& configuration,
                                         const problem::CahnHilliardModel& model) {
-  problem::InitialRequest request;
   const long long cells = configuration.options().cells;
-  request = basic_request(configuration, model);
+  problem::InitialRequest request = basic_request(configuration, model);
   request.noise_cells = configuration.noise_cells();
   if (request.noise_cells > cells)
     throw InputError(configuration.where(&config::RunOptions::noise_cells) + ": " +

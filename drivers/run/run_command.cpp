@@ -35,6 +35,7 @@ struct ResumeRequest {
   config::GivenValues flags;  // options that do not change the numbers
   bool quiet = false;
 };
+
 void say_how_to_go_on(const RunFolder& folder) {
   text::say("  continue with          traceraft resume %s\n", text::in_shell(folder.path.string()));
 }
@@ -87,16 +88,12 @@ int execute_run(const config::Configuration& configuration, RunSetup& run, const
   const RunCost cost = checkpoints.cost();
   const double memory = run.ranks->sum(posix::peak_memory_mb());
   if (root) {
-    TableExtents extents = tables->extents();
-    if (const std::filesystem::path list = folder.path / "fields.pvd";
-        std::filesystem::exists(list))
-      extents["fields.pvd"] = extent_of_file(list);
     const observables::Observables& row = state.observables;
     const RunMoment end = moment_of(run, row, row.t * run.units.time());
     posix::write_durably(
         folder.summary(),
         summary_json(configuration, {end, state.monitor, ground_of(run), cost, memory}, result,
-                     run.integrator->promises_energy_decay(), extents));
+                     run.integrator->promises_energy_decay(), tables->extents_at_end(folder)));
   }
   if (!quiet) print_summary(configuration, run, state, result, cost, memory, folder);
   if (result.end == simulation::RunEnd::stopped && !quiet) say_how_to_go_on(folder);
@@ -123,10 +120,6 @@ void refuse_used_folder(const std::string& out) {
     refuse_before_lock(out);
     return RunFolder{out, nullptr};
   });
-}
-
-bool is_of_discs(const config::Configuration& configuration) {
-  return one_of(configuration, &config::RunOptions::model, "model") == "discs";
 }
 
 // Goes on from the checkpoint, if there is one.

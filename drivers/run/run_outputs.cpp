@@ -82,6 +82,13 @@ TableExtents RunTables::extents() const {
           {"rafts.csv", rafts_.extent()}};
 }
 
+TableExtents RunTables::extents_at_end(const RunFolder& folder) const {
+  TableExtents all = extents();
+  if (const std::filesystem::path list = folder.path / "fields.pvd"; std::filesystem::exists(list))
+    all["fields.pvd"] = extent_of_file(list);
+  return all;
+}
+
 void TableWriter::on_step(const simulation::RunState& state) {
   const observables::Observables& row = state.observables;
   tables_.add_step(moment_of(run_, row, row.t * run_.units.time()));

@@ -26,6 +26,8 @@ class RunTables {
   void add_output(const RunMoment& moment, const observables::RaftReport& rafts);
   void sync();
   TableExtents extents() const;
+  // And of the list of fields, if there is one.
+  TableExtents extents_at_end(const RunFolder& folder) const;
 
  private:
   const RunSchedule& schedule_;

@@ -176,12 +176,22 @@ std::string repeated_times_text(const RunSetup& run) {
          "; given more than once: " + joined(repeated, ", ");
 }
 
-void print_effects(const config::Configuration& configuration, const physics::Units& units) {
+void print_physics(const config::Configuration& configuration, const physics::Units& units) {
+  print_line("mobility", formatted("%s, D = %g cm^2/s", configuration.options().mobility.c_str(),
+                                   units.diffusion_cm2_s));
   if (configuration.options().effect.empty()) return;
   print_line("effects", configuration.options().effect);
   for (const auto& [effect, text] : effects::descriptions(
            effects_of(configuration), model_without_effects(configuration), units))
     print_line(effect.c_str(), text);
+}
+
+void print_units(const RunSchedule& run) {
+  const physics::Units& units = run.units;
+  print_line("units",
+             formatted("length R = %g um, time R^2/D = %g s; the run ends at %g s = %g R^2/D",
+                       units.radius_um, units.seconds_per_unit(),
+                       run.t_end * units.seconds_per_unit(), run.t_end));
 }
 
 void print_setup(const config::Configuration& configuration, const RunSetup& run) {
@@ -199,17 +209,12 @@ void print_setup(const config::Configuration& configuration, const RunSetup& run
                 configuration.options().cells, static_cast<long long>(totals.elements),
                 static_cast<long long>(totals.nodes), static_cast<long long>(2 * totals.nodes)));
   print_line("phase boundary", resolution_text(configuration, run));
-  print_line("mobility", formatted("%s, D = %g cm^2/s", configuration.options().mobility.c_str(),
-                                   units.diffusion_cm2_s));
-  print_effects(configuration, units);
+  print_physics(configuration, units);
   if (const double longest = run.problem->longest_step(); longest < run.t_end)
     print_line("steps", formatted("at least %.0f: its effects limit a step to %g %s",
                                   std::ceil(run.t_end / longest), longest * units.time(),
                                   text::unit_name(text::Unit::time, units.scaled).c_str()));
-  print_line("units",
-             formatted("length R = %g um, time R^2/D = %g s; the run ends at %g s = %g R^2/D",
-                       units.radius_um, units.seconds_per_unit(),
-                       run.t_end * units.seconds_per_unit(), run.t_end));
+  print_units(run);
   if (!run.repeated_labels.empty()) print_line("output times", repeated_times_text(run));
   if (run.initial.size() > 0)
     print_line("initial state", formatted("%s, mean concentration %.6f, seed %lld",

@@ -34,7 +34,8 @@ void print_summary(const config::Configuration& configuration, const RunSetup& r
 
 // Lines of such a report: a label and a value.
 void print_line(const char* label, const std::string& value);
-void print_effects(const config::Configuration& configuration, const physics::Units& units);
+void print_physics(const config::Configuration& configuration, const physics::Units& units);
+void print_units(const RunSchedule& run);
 // The parts of it that every model has: the end, rafts, perimeter; cost and what to open next.
 void print_end(const RunTotals& totals, const simulation::RunResult& result);
 void print_cost(const RunTotals& totals, const RunFolder& folder);

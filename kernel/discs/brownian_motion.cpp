@@ -85,8 +85,17 @@ void BrownianMotion::set_discs(const std::vector<Disc>& discs) {
   across_ = Eigen::MatrixXd(across_.selfadjointView<Eigen::Lower>());
 }
 
-double BrownianMotion::largest_variance() const {
-  return along_.size() == 0 ? 0 : along_.diagonal().maxCoeff();
+// P_l'(1) = l (l + 1)/2.
+double BrownianMotion::largest_variance(const std::vector<Disc>& discs) const {
+  const int degree = degree_for(discs);
+  double largest = 0;
+  for (const Disc& disc : discs) {
+    const Vec weight = weights_of(disc, membrane_, degree);
+    double variance = 0;
+    for (int l = 1; l <= degree; ++l) variance += weight[l] * weight[l] * (l * (l + 1.0) / 2);
+    largest = std::max(largest, variance);
+  }
+  return largest;
 }
 
 double BrownianMotion::variance_of_distance(std::size_t i, std::size_t j) const {

@@ -23,8 +23,8 @@ class BrownianMotion {
 
   bool none() const { return membrane_.thermal == 0; }
   void set_discs(const std::vector<Disc>& discs);
-  // The largest variance per time of a displacement in one direction.
-  double largest_variance() const;
+  // The largest variance per time of a displacement in one direction, of any discs.
+  double largest_variance(const std::vector<Disc>& discs) const;
   // The same of the distance of two discs.
   double variance_of_distance(std::size_t i, std::size_t j) const;
   // Displacements in the time `step` from independent normal numbers, two of each disc. Tangent

@@ -93,7 +93,6 @@ void DiscSystem::plan_walk() {
   last_walk_ = state_.t;
   next_walk_ = std::numeric_limits<double>::infinity();
   if (motion_.none() || state_.discs.empty()) return;
-  motion_.set_discs(state_.discs);
   double radii = 0, gaps = 0;
   for (const Disc& disc : state_.discs) radii += half_angle(disc.area);
   const auto count = static_cast<double>(state_.discs.size());
@@ -104,7 +103,7 @@ void DiscSystem::plan_walk() {
     gaps += std::max(nearest, kShortestGap * radii / count);
   }
   const double length = kWalk * gaps / count;
-  next_walk_ = last_walk_ + length * length / motion_.largest_variance();
+  next_walk_ = last_walk_ + length * length / motion_.largest_variance(state_.discs);
 }
 
 // A small disc that dissolves within the step does not shorten it.

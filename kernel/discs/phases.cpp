@@ -107,11 +107,7 @@ double Phases::flux_potential(double c) const {
 }
 
 double Phases::tail(double potential) const {
-  return profile_length_ * std::log1p(1 / mobility_outside(potential));
-}
-
-double Phases::mobility_outside(double potential) const {
-  return std::max(mobility(outside(potential)), 1e-12);
+  return profile_length_ * std::log1p(1 / std::max(mobility(outside(potential)), 1e-12));
 }
 
 double Phases::mass(double area) const {

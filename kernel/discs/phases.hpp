@@ -25,22 +25,17 @@ class Phases {
 
   double line_tension() const { return line_tension_; }  // energy per length, ε ∫ √(2 f0) dc
   double potential(double area) const;                   // μ at the boundary of a disc
-  // The largest μ at which there is a phase outside rafts: that of its spinodal.
-  double largest_potential() const { return largest_potential_; }
   // A smaller disc dissolves: it holds hardly less than one of no area.
   double smallest_area() const { return smallest_area_; }
 
   double outside(double potential) const;  // c of the phase outside, on its stable branch
   double inside(double potential) const;
-  double flux_potential(double c) const;        // G, 0 at c = 0; from −¼ to the spinodal
-  double flux_potential_slope(double c) const;  // M f0''
+  double flux_potential(double c) const;  // G, 0 at c = 0; from −¼ to the spinodal
 
   // How far from the boundary of a disc with this potential the phase outside seems to begin. In
   // the tail of the profile lipids are more mobile than beyond: the resistance ∫ ds/M(s) of a tail
   // M = m + e^(−s/δ) is that of a sharp boundary at δ ln(1 + 1/m), where m = M(c) outside.
   double tail(double potential) const;
-
-  double mobility_outside(double potential) const;
 
   // ∫ c over a disc whose level curve ½ encloses `area`, with its boundary.
   double mass(double area) const;
@@ -53,6 +48,7 @@ class Phases {
 
  private:
   double mobility(double c) const;
+  double flux_potential_slope(double c) const;  // M f0''
   RoundBoundaryAt boundary(double area) const;
 
   physics::MobilityPtr mobility_;

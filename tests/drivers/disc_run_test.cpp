@@ -83,6 +83,8 @@ TEST_F(DiscRunTest, RefusesWhatDiscsDoNotHave) {
   EXPECT_TRUE(refuses(traceraft(run + "--raft-fraction 0.7"), "room"));
   EXPECT_TRUE(refuses(traceraft(run + "--initial discs:number=9999"), "fewer"));
   EXPECT_TRUE(refuses(traceraft("run --validate --model disks"), "discs"));
+  EXPECT_TRUE(refuses(traceraft("ensemble --model disks --out " + out("none")), "discs"));
+  EXPECT_FALSE(fs::exists(folder.path / "none"));
   EXPECT_EQ(traceraft(run + "--effect 'bulk-mobility:strength=0.1; uptake:rate=1e-4'").code, 0);
 }
 

@@ -1,4 +1,4 @@
-#include "drivers/failure.hpp"
+#include "drivers/exit_codes.hpp"
 
 #include <filesystem>
 #include <new>
