@@ -26,7 +26,7 @@ struct CampaignGroup {
   std::string summary;
   Aim aim;
   CaseSettings common;
-  int effects = 1;  // that are hidden, one after the other of all that can be
+  int effects = 1;  // that are hidden besides, one after the other of all that can be
 };
 
 const NamedList<CampaignGroup>& campaign_groups();

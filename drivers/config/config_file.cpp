@@ -80,10 +80,13 @@ GivenValues read_config_file(const std::filesystem::path& path, const std::strin
   return values;
 }
 
-GivenValues read_model(const std::string& file_or_word) {
+bool is_model_word(const std::string& file_or_word) {
   const std::vector<std::string>& words = run_option(&RunOptions::model).words;
-  if (std::find(words.begin(), words.end(), file_or_word) == words.end())
-    return read_config_file(file_or_word, "--model");
+  return std::find(words.begin(), words.end(), file_or_word) != words.end();
+}
+
+GivenValues read_model(const std::string& file_or_word) {
+  if (!is_model_word(file_or_word)) return read_config_file(file_or_word, "--model");
   return {{"model", {file_or_word, "--model"}}};
 }
 

@@ -15,6 +15,7 @@ GivenValues read_config_file(const std::filesystem::path& path,
                              const std::string& flag = "--config");
 
 // A TOML file, or a word of the option `model` in place of one.
+bool is_model_word(const std::string& file_or_word);
 GivenValues read_model(const std::string& file_or_word);
 
 // All options with their resolved values, each with its meaning: reads back as the same run.

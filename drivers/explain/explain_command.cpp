@@ -21,6 +21,7 @@
 #include "drivers/input/model_of_data.hpp"
 #include "drivers/numerical_failure.hpp"
 #include "drivers/output/status_line.hpp"
+#include "drivers/run/checked_options.hpp"
 #include "drivers/run/run_folder.hpp"
 #include "drivers/text/say.hpp"
 #include "kernel/core/error.hpp"
@@ -34,6 +35,11 @@ namespace fs = std::filesystem;
 
 // Series are explained with D within this factor of the model's, if nothing else is known of it.
 constexpr double kTimeRange = 8;
+// With flow rafts may meet by themselves, and D may be that of lipids.
+constexpr double kTimeRangeOfDiscs = 1000;
+// Of series, for the model and for each effect.
+constexpr int kRuns = 8, kRunsOfDiscs = 32;
+constexpr double kZeroCelsius = 273.15, kRoomCelsius = 25;
 
 likelihood::UnitPrior unit_range(const config::Configuration& model, double diffusion_error) {
   constexpr double kReach = 2;
@@ -41,13 +47,14 @@ likelihood::UnitPrior unit_range(const config::Configuration& model, double diff
   if (diffusion_error > 0)
     return likelihood::UnitPrior::within_factor(
         seconds, std::exp(statistics::kNormal95 * diffusion_error), kReach);
-  return likelihood::UnitPrior::within_factor(seconds, kTimeRange);
+  return likelihood::UnitPrior::within_factor(
+      seconds, run::is_of_discs(model) ? kTimeRangeOfDiscs : kTimeRange);
 }
 
 struct ExplainCommand {
   ExplainJob job;
   std::string series, ensembles, out;
-  int runs = 8, jobs = 0;
+  int runs = 0, jobs = 0;
   bool quiet = false;
 };
 
@@ -98,8 +105,16 @@ SeriesSetup read_series_job(const ExplainCommand& command) {
     throw InputError(setup.model.where(&config::RunOptions::case_name) +
                      ": the membrane of the model is " + other);
   refuse_series(setup.data, setup.model);
-  setup.request = {observations::looks(setup.data), command.runs,        command.jobs,
-                   command.job.processors(),        command.job.without, command.quiet};
+  const bool discs = run::is_of_discs(setup.model);
+  setup.request = {observations::looks(setup.data),
+                   command.runs > 0 ? command.runs
+                   : discs          ? kRunsOfDiscs
+                                    : kRuns,
+                   command.jobs,
+                   command.job.processors(),
+                   command.job.without,
+                   kZeroCelsius + setup.data.celsius.value_or(kRoomCelsius),
+                   command.quiet};
   if (!command.ensembles.empty())
     take_over_ensembles(command.ensembles, setup.model, setup.request);
   return setup;
@@ -170,7 +185,15 @@ void refuse_to_overwrite(const ExplainCommand& command, const fs::path& out) {
         " holds the model, which the extended model would overwrite; choose another folder");
 }
 
+// A word is a value of the model, and no file.
+void take_word_of_model(ExplainJob& job) {
+  if (!config::is_model_word(job.model)) return;
+  job.flags["model"] = {job.model, "--model"};
+  job.model.clear();
+}
+
 int explain(ExplainCommand command) {
+  take_word_of_model(command.job);
   if (command.job.data.empty() && command.series.empty())
     throw InputError("--data or --series: a folder of measurements is needed");
   find_series(command);
@@ -209,9 +232,9 @@ drivers::Action define_explain(CLI::App& app) {
                  "folder of series (dataset.toml, measurements.csv), if they are not in --data")
       ->type_name("DIR");
   app.add_option("--runs", command->runs,
-                 "for series: number of seeds for the model and for each effect")
-      ->check(CLI::Range(3, 1000))
-      ->capture_default_str();
+                 "for series: number of seeds for the model and for each effect; default: 8, with "
+                 "discs 32")
+      ->check(CLI::Range(3, 1000));
   app.add_option("--ensembles", command->ensembles,
                  "for series: folder 'ensembles' of an earlier search with the same model; its "
                  "simulations are reused, and missing ones are added to it")
@@ -221,8 +244,9 @@ drivers::Action define_explain(CLI::App& app) {
                  "for series: runs at a time; default: one for each processor")
       ->check(CLI::Range(1, 1024));
   app.add_option("--model", command->job.model,
-                 "TOML file of the model, with names of flags as keys")
-      ->type_name("FILE");
+                 "TOML file of the model, with names of flags as keys; or discs, for series: rafts "
+                 "as discs, which are fast and can flow")
+      ->type_name("FILE|discs");
   app.add_option("--out", command->out,
                  "folder for the verdict, new or of a search to continue; default: runs/explain-N")
       ->type_name("DIR");
@@ -245,7 +269,7 @@ drivers::Action define_explain(CLI::App& app) {
   app.add_flag("--quiet", command->quiet, "print errors only");
   config::add_options(app, command->job.flags, [](const config::OptionSpec& spec) {
     return (spec.group == "Physics" || spec.group == "Surface" || spec.group == "Case" ||
-            spec.name == "raft-fraction") &&
+            spec.name == "raft-fraction" || spec.name == "initial") &&
            spec.name != "scaled" && spec.name != "model";
   });
   app.footer(

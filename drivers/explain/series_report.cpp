@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "drivers/data/agreement_report.hpp"
 #include "drivers/data/measured_report.hpp"
+#include "drivers/explain/series_strength.hpp"
 #include "drivers/explain/series_verdict.hpp"
 #include "drivers/explain/verdict_sentence.hpp"
 #include "drivers/output/chart.hpp"
@@ -67,15 +67,19 @@ std::string ground(const selection::SeriesExplanation& found, const SeriesEnsemb
          " for trends.";
 }
 
+// Before and after.
 std::vector<output::Row> offset_rows(const selection::SeriesExplanation& found) {
-  std::vector<output::Row> rows{{"measured relative to the model", "on average", "deviations",
-                                 "per e-fold of time", "deviations"}};
-  for (const selection::SeriesOffset& o : found.offsets) {
+  std::vector<output::Row> rows{
+      {"measured relative to", "", "on average", "deviations", "per e-fold of time", "deviations"}};
+  const auto add = [&](const std::string& model, const std::vector<selection::SeriesOffset>& all) {
     const auto text = [](double ln) { return formatted("%+.1f %%", 100 * std::expm1(ln)); };
-    rows.push_back({observations::name_of(o.quantity).label, text(o.level),
-                    formatted("%+.1f", o.level_deviations), text(o.slope),
-                    formatted("%+.1f", o.slope_deviations)});
-  }
+    for (const selection::SeriesOffset& o : all)
+      rows.push_back({model, observations::name_of(o.quantity).label, text(o.level),
+                      formatted("%+.1f", o.level_deviations), text(o.slope),
+                      formatted("%+.1f", o.slope_deviations)});
+  };
+  add("the model", found.offsets);
+  add("the model with " + found.scores.front().effect, found.best_offsets);
   return rows;
 }
 
@@ -86,31 +90,32 @@ std::string advice(const selection::SeriesTie& tie, const selection::SeriesExpla
 }
 
 std::vector<output::Row> score_rows(const config::Configuration& model,
+                                    const SeriesEnsembles& ensembles,
                                     const selection::SeriesExplanation& found) {
   std::vector<output::Row> rows{{"effect", "2 ln likelihood ratio", "of noise alone", "p",
-                                 "parameter", "at least", "at most", "unit", "vesicles needed",
-                                 "shown by"}};
+                                 "p of the trend left", "parameter", "best", "at least", "at most",
+                                 "unit", "vesicles needed", "shown by"}};
   for (const selection::SeriesScore& s : found.scores) {
-    const StrengthScale scale = scale_of(s, model);
+    const ToldStrength told = told_strength(model, ensembles, s);
     rows.push_back({s.effect, formatted("%.1f", s.gain), formatted("%.1f", s.null_mean),
-                    formatted("%.3f", s.p), scale.parameter,
-                    s.bounded ? formatted("%.3g", scale.factor * s.low) : "",
-                    s.bounded ? formatted("%.3g", scale.factor * s.high) : "not determined",
-                    scale.unit, vesicles_text(s.vesicles, found),
-                    observations::name_of(s.telling).label});
+                    formatted("%.3f", s.p), formatted("%.3f", s.trend_p), told.parameter,
+                    formatted("%.3g", told.value), told.low ? formatted("%.3g", *told.low) : "",
+                    told.high ? formatted("%.3g", *told.high) : "not determined", told.unit,
+                    vesicles_text(s.vesicles, found), observations::name_of(s.telling).label});
   }
   return rows;
 }
 
 // "exchange with target 0.16, ..."
-std::string assumed_text(const SeriesEnsembles& ensembles, const physics::Units& units) {
+std::string assumed_text(const config::Configuration& model, const SeriesEnsembles& ensembles,
+                         const selection::SeriesExplanation& found) {
   std::string text;
-  for (const effects::EffectTerm& term : ensembles.terms) {
+  for (const selection::SeriesScore& score : found.scores) {
     std::string own;
-    for (const FoundParameter& p : assumed_parameters(term, units))
+    for (const FoundParameter& p : assumed_parameters(model, ensembles, score))
       own += (own.empty() ? "" : ", ") + p.name + formatted(" %.3g", p.value) +
              (p.unit.empty() ? "" : " " + p.unit);
-    if (!own.empty()) text += (text.empty() ? "" : "; ") + term.effect + " with " + own;
+    if (!own.empty()) text += (text.empty() ? "" : "; ") + score.effect + " with " + own;
   }
   return text;
 }
@@ -124,13 +129,25 @@ SeriesEnsembles in_seconds(SeriesEnsembles ensembles, const selection::SeriesExp
   convert(ensembles.base, found.base.ln_unit);
   for (selection::SeriesCandidate& candidate : ensembles.candidates)
     for (const selection::SeriesScore& score : found.scores)
-      if (score.effect == candidate.effect) convert(candidate.runs, score.ln_unit);
+      if (score.effect == candidate.effect)
+        for (selection::SeriesLevel& level : candidate.levels) convert(level.runs, score.ln_unit);
   return ensembles;
+}
+
+// The level that is nearest to the fit.
+std::size_t nearest_level(const selection::SeriesCandidate& candidate,
+                          const selection::SeriesExplanation& found) {
+  for (const selection::SeriesScore& score : found.scores)
+    if (score.effect == candidate.effect && !candidate.has_one_level())
+      return static_cast<std::size_t>(std::clamp<long>(
+          std::lround(score.amplitude) - 1, 0, static_cast<long>(candidate.levels.size()) - 1));
+  return 0;
 }
 
 // The exponents of the perimeter, over the times that were looked at.
 std::vector<PerimeterExponent> exponents(const observations::MeasuredVesicles& data,
-                                         const SeriesEnsembles& ensembles) {
+                                         const SeriesEnsembles& ensembles,
+                                         const selection::SeriesExplanation& found) {
   const statistics::Window window = observations::looks(data);
   std::vector<PerimeterExponent> result;
   if (const auto law = observations::fit_measurements(data, window))
@@ -142,7 +159,7 @@ std::vector<PerimeterExponent> exponents(const observations::MeasuredVesicles& d
   };
   add("the model", ensembles.base);
   for (const selection::SeriesCandidate& candidate : ensembles.candidates)
-    add("with " + candidate.effect, candidate.runs);
+    add("with " + candidate.effect, candidate.levels[nearest_level(candidate, found)].runs);
   return result;
 }
 
@@ -171,27 +188,21 @@ bench::Chart curve_chart(observations::Quantity quantity,
   for (const observations::Measurement& m : data.measurements)
     if (m.of(quantity)) measured.points.emplace_back(m.time, *m.of(quantity));
   chart.series.push_back(measured);
-  const likelihood::RunCurves base(simulated.base);
+  const selection::SeriesCurves curves(
+      selection::SeriesSamples(simulated.base, simulated.candidates), simulated.candidates);
   const auto add = [&](const std::string& name, const std::vector<double>& times, double ln_unit,
-                       const std::function<double(double)>& ln_mean) {
+                       const likelihood::RunCurves& mean) {
     bench::ChartSeries series{name, {}, bench::Mark::line};
     for (const double t : times)
-      series.points.emplace_back(t * std::exp(ln_unit), std::exp(ln_mean(std::log(t))));
+      series.points.emplace_back(t * std::exp(ln_unit), std::exp(mean.mean(quantity, std::log(t))));
     chart.series.push_back(series);
   };
-  const auto of_base = [&](double ln_t) { return base.mean(quantity, ln_t); };
-  add("the model", observations::common_times(simulated.base, kOfCharts), found.base.ln_unit,
-      of_base);
+  const std::vector<double> times = observations::common_times(simulated.base, kOfCharts);
+  add("the model", times, found.base.ln_unit, curves.base);
   const selection::SeriesScore& best = found.scores.front();
-  for (const selection::SeriesCandidate& candidate : simulated.candidates) {
-    if (candidate.effect != best.effect) continue;
-    const likelihood::RunCurves changed(candidate.runs);
-    const double amplitude = best.value / candidate.strength;
-    add("with " + candidate.effect, observations::common_times(candidate.runs, kOfCharts),
-        best.ln_unit, [&](double ln_t) {
-          return of_base(ln_t) + amplitude * (changed.mean(quantity, ln_t) - of_base(ln_t));
-        });
-  }
+  for (std::size_t k = 0; k < simulated.candidates.size(); ++k)
+    if (simulated.candidates[k].effect == best.effect)
+      add("with " + best.effect, times, best.ln_unit, curves.with(k).at(best.amplitude));
   return chart;
 }
 
@@ -212,6 +223,22 @@ std::string diffusion_sentence(const config::Configuration& model,
                                                        : ", if nothing is missing.");
 }
 
+// D is the inverse of the unit.
+std::string range_sentence(const config::Configuration& model,
+                           const selection::SeriesExplanation& found) {
+  const selection::UnitRange& range = found.unit_range;
+  const auto bound = [&](double ln_unit, const std::string& effect, bool open) {
+    if (open) return std::string("the end of the search");
+    return formatted("%.3g cm^2/s", units_of(model, ln_unit).diffusion_cm2_s) +
+           (effect.empty() ? "" : " (" + effect + ")");
+  };
+  return std::string("With ") +
+         (selection::is_named(found.finding) ? "what is named" : "any effect of the search") +
+         " at a strength that these data do not exclude, D may be from " +
+         bound(range.high, range.high_by, range.high_open) + " to " +
+         bound(range.low, range.low_by, range.low_open) + " (95 %).";
+}
+
 }  // namespace
 
 void write_series_explanation(const fs::path& folder, const observations::MeasuredVesicles& data,
@@ -219,7 +246,7 @@ void write_series_explanation(const fs::path& folder, const observations::Measur
                               const selection::SeriesExplanation& found,
                               const selection::SeriesRequest& request, bool quiet) {
   const SeriesEnsembles ensembles = in_seconds(simulated, found);
-  const std::vector<PerimeterExponent> laws = exponents(data, ensembles);
+  const std::vector<PerimeterExponent> laws = exponents(data, ensembles, found);
   const std::string verdict =
       "Verdict of the series: " + verdict_words(found.finding, class_of(found));
   std::vector<std::string> words{data::title_of(data) + ": " + std::to_string(found.vesicles) +
@@ -227,19 +254,21 @@ void write_series_explanation(const fs::path& folder, const observations::Measur
                                  sentence(found), ground(found, simulated, request)};
   for (const selection::SeriesTie& tie : found.ties) words.push_back(advice(tie, found));
   words.push_back(diffusion_sentence(model, found));
+  words.push_back(range_sentence(model, found));
   if (const std::string onset = data::onset_note(data, ensembles.base); !onset.empty())
     words.push_back(onset);
   words.insert(words.end(), ensembles.notes.begin(), ensembles.notes.end());
   const observations::SimulatedVesicle vesicle =
       observations::simulated_vesicle(model.units().length(), ensembles.base, data);
   for (const std::string& note : observations::differences(data, vesicle)) words.push_back(note);
-  if (const std::string text = assumed_text(simulated, found_units(model, found)); !text.empty())
+  if (const std::string text = assumed_text(model, simulated, found); !text.empty())
     words.push_back(
         "For effects with several parameters only the first was varied. Fixed were: " + text + ".");
   for (const auto& members : found.classes)
     if (members.size() > 1)
       words.push_back("These effects look alike in series: " + joined(members, ", ") + ".");
-  const std::vector<output::Row> offset = offset_rows(found), scores = score_rows(model, found),
+  const std::vector<output::Row> offset = offset_rows(found),
+                                 scores = score_rows(model, simulated, found),
                                  exponent = exponent_rows(laws);
 
   output::Page page("What series of vesicles say about the model");

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "drivers/explain/extended_model.hpp"
+#include "drivers/explain/series_strength.hpp"
 #include "drivers/output/program.hpp"
 #include "kernel/core/parameters.hpp"
 #include "kernel/effects/effects.hpp"
@@ -11,43 +12,40 @@
 namespace traceraft::explain {
 namespace {
 
-physics::Units units_of(const config::Configuration& model, double ln_unit) {
-  return model.units().with_seconds_per_unit(std::exp(ln_unit));
+input::Json number_or_null(const std::optional<double>& number) {
+  return number ? input::Json(*number) : input::Json();
 }
 
-// The effect as it was simulated; null if it was not.
-const effects::EffectTerm* term_of(const SeriesEnsembles& ensembles, const std::string& effect) {
-  for (const effects::EffectTerm& term : ensembles.terms)
-    if (term.effect == effect) return &term;
-  return nullptr;
-}
-
-std::vector<FoundParameter> assumed_of(const config::Configuration& model,
-                                       const SeriesEnsembles& ensembles,
-                                       const selection::SeriesScore& score) {
-  const effects::EffectTerm* term = term_of(ensembles, score.effect);
-  return term ? assumed_parameters(*term, units_of(model, score.ln_unit))
-              : std::vector<FoundParameter>();
+// In D, the inverse of the unit.
+input::Json range_json(const config::Configuration& model, const selection::UnitRange& range) {
+  const auto bound = [&](double ln_unit, bool open) {
+    return open ? input::Json() : input::Json(units_of(model, ln_unit).diffusion_cm2_s);
+  };
+  return {{"low", bound(range.high, range.high_open)},
+          {"low_by", range.high_by},
+          {"high", bound(range.low, range.low_open)},
+          {"high_by", range.low_by}};
 }
 
 input::Json scores_json(const config::Configuration& model, const SeriesEnsembles& ensembles,
                         const selection::SeriesExplanation& found) {
   input::Json scores = input::Json::array();
   for (const selection::SeriesScore& s : found.scores) {
-    const StrengthScale scale = scale_of(s, model);
+    const ToldStrength told = told_strength(model, ensembles, s);
     input::Json assumed = input::Json::object();
-    for (const FoundParameter& p : assumed_of(model, ensembles, s))
+    for (const FoundParameter& p : assumed_parameters(model, ensembles, s))
       assumed[p.name] = {{"value", p.value}, {"unit", p.unit}};
     scores.push_back({{"effect", s.effect},
                       {"score", s.gain},
                       {"null_mean", s.null_mean},
                       {"p", s.p},
-                      {"parameter", scale.parameter},
-                      {"value", scale.factor * s.value},
-                      {"sigma", scale.factor * s.sigma},
-                      {"low", s.bounded ? input::Json(scale.factor * s.low) : input::Json()},
-                      {"high", s.bounded ? input::Json(scale.factor * s.high) : input::Json()},
-                      {"unit", scale.unit},
+                      {"trend_p", s.trend_p},
+                      {"parameter", told.parameter},
+                      {"value", told.value},
+                      {"sigma", told.sigma},
+                      {"low", number_or_null(told.low)},
+                      {"high", number_or_null(told.high)},
+                      {"unit", told.unit},
                       {"assumed", assumed},
                       {"vesicles_needed", s.vesicles},
                       {"shown_by", observations::name_of(s.telling).id}});
@@ -55,9 +53,9 @@ input::Json scores_json(const config::Configuration& model, const SeriesEnsemble
   return scores;
 }
 
-input::Json offsets_json(const selection::SeriesExplanation& found) {
+input::Json offsets_json(const std::vector<selection::SeriesOffset>& all) {
   input::Json offsets = input::Json::array();
-  for (const selection::SeriesOffset& o : found.offsets)
+  for (const selection::SeriesOffset& o : all)
     offsets.push_back({{"quantity", observations::name_of(o.quantity).id},
                        {"of", "ln"},
                        {"level", o.level},
@@ -72,13 +70,13 @@ std::vector<FoundParameter> series_parameters(const config::Configuration& model
                                               const SeriesEnsembles& ensembles,
                                               const selection::SeriesExplanation& found) {
   const selection::SeriesScore& best = found.scores.front();
-  const StrengthScale scale = scale_of(best, model);
   const double ln_unit = selection::is_named(found.finding) ? best.ln_unit : found.base.ln_unit;
   std::vector<FoundParameter> result;
   if (selection::is_named(found.finding)) {
-    result.push_back({best.effect, scale.parameter, scale.unit, scale.factor * best.value,
-                      scale.factor * best.sigma});
-    for (FoundParameter& p : assumed_of(model, ensembles, best)) result.push_back(std::move(p));
+    const ToldStrength told = told_strength(model, ensembles, best);
+    result.push_back({best.effect, told.parameter, told.unit, told.value, told.sigma});
+    for (FoundParameter& p : assumed_parameters(model, ensembles, best))
+      result.push_back(std::move(p));
   }
   const double D = units_of(model, ln_unit).diffusion_cm2_s;
   result.push_back({"", "diffusion", "cm^2/s", D,
@@ -90,11 +88,10 @@ std::vector<FoundParameter> series_parameters(const config::Configuration& model
 config::GivenValues named_model(config::GivenValues model, const SeriesEnsembles& ensembles,
                                 const selection::SeriesExplanation& found) {
   const selection::SeriesScore& best = found.scores.front();
-  effects::EffectTerm term = *term_of(ensembles, best.effect);
-  term.values.front() = best.value;
-  const physics::Units units = units_of(config::Configuration(model, {}), best.ln_unit);
+  const config::Configuration base(model, {});
+  const physics::Units units = units_of(base, best.ln_unit);
   model["diffusion"] = {format_number(units.diffusion_cm2_s), "--diffusion"};
-  model["effect"] = {effect_text({within_range(term, units)}, units), "--effect"};
+  model["effect"] = {effect_text({found_term(base, ensembles, best)}, units), "--effect"};
   return model;
 }
 
@@ -114,19 +111,6 @@ std::vector<std::string> class_of(const selection::SeriesExplanation& found) {
 physics::Units found_units(const config::Configuration& model,
                            const selection::SeriesExplanation& found) {
   return units_of(model, found.base.ln_unit);
-}
-
-StrengthScale scale_of(const selection::SeriesScore& score, const config::Configuration& model) {
-  const ParameterSpec& spec = effects::effects().find(score.effect).parameters.front();
-  return {spec.name, spec.unit,
-          1 / effects::to_model_units(spec.unit, units_of(model, score.ln_unit))};
-}
-
-std::vector<FoundParameter> assumed_parameters(const effects::EffectTerm& term,
-                                               const physics::Units& units) {
-  std::vector<FoundParameter> all = parameters_of(term, units);
-  all.erase(all.begin());
-  return all;
 }
 
 input::Json series_json(const config::Configuration& model, const SeriesEnsembles& ensembles,
@@ -154,7 +138,9 @@ input::Json series_json(const config::Configuration& model, const SeriesEnsemble
             {"sigma", D * found.unit_deviation},
             {"unit", "cm^2/s"},
             {"determined", found.unit_told && !found.unit_at_end}}},
-          {"offsets", offsets_json(found)},
+          {"diffusion_range", range_json(model, found.unit_range)},
+          {"offsets", offsets_json(found.offsets)},
+          {"best_offsets", offsets_json(found.best_offsets)},
           {"scores", scores_json(model, ensembles, found)},
           {"classes", found.classes},
           {"ties", ties},

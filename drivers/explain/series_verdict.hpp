@@ -18,17 +18,6 @@ physics::Units found_units(const config::Configuration& model,
 // Effects that explain the data, the best first; none if nothing was named.
 std::vector<std::string> class_of(const selection::SeriesExplanation& found);
 
-// The parameter that was looked for, and its unit over that of the model with the D of this fit.
-struct StrengthScale {
-  std::string parameter, unit;
-  double factor;
-};
-StrengthScale scale_of(const selection::SeriesScore& score, const config::Configuration& model);
-
-// The parameters of an effect that were not looked for, as they were simulated.
-std::vector<FoundParameter> assumed_parameters(const effects::EffectTerm& term,
-                                               const physics::Units& units);
-
 // The exponent of the perimeter: measured, or simulated with this model.
 struct PerimeterExponent {
   std::string model;

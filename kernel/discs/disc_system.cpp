@@ -19,6 +19,8 @@ constexpr std::uint64_t kFirstUniform = std::uint64_t{1} << 32;
 constexpr double kWalk = 0.2;
 // Gaps shorter than this share of the mean radius do not shorten walks further.
 constexpr double kShortestGap = 0.3;
+// The displacement of a disc that has no neighbours (rad). Nothing but its place depends on it.
+constexpr double kLoneWalk = 0.5 * kPi;
 
 // Discs do not meet that are this many standard deviations of a walk apart.
 constexpr double kFarApart = 8;
@@ -102,7 +104,7 @@ void DiscSystem::plan_walk() {
       if (i != j) nearest = std::min(nearest, gap(state_.discs[i], state_.discs[j]));
     gaps += std::max(nearest, kShortestGap * radii / count);
   }
-  const double length = kWalk * gaps / count;
+  const double length = state_.discs.size() == 1 ? kLoneWalk : kWalk * gaps / count;
   next_walk_ = last_walk_ + length * length / motion_.largest_variance(state_.discs);
 }
 

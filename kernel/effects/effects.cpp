@@ -74,14 +74,19 @@ const std::string& physics_of(const EffectTerm& term) {
   return term.values.front() < 0 && !entry.reversed.empty() ? entry.reversed : entry.summary;
 }
 
+bool discs_can_have(const EffectTerm& term, const problem::CahnHilliardModel& model) {
+  if (effects().find(term.effect).add_to_discs) return true;
+  const problem::CahnHilliardModel alone = with_effects(model, {term});
+  return alone.effects.size() == model.effects.size() && !alone.diffusion_ratio;
+}
+
 discs::DiscModel disc_model(const problem::CahnHilliardModel& model,
                             const std::vector<EffectTerm>& terms) {
   std::vector<EffectTerm> laws, others;  // laws first: others may ask for the line tension
   for (const EffectTerm& term : terms)
     (effects().find(term.effect).add_to_discs ? others : laws).push_back(term);
   for (const EffectTerm& law : laws)
-    if (const auto alone = with_effects(model, {law});
-        alone.effects.size() > model.effects.size() || alone.diffusion_ratio)
+    if (!discs_can_have(law, model))
       throw InputError("effect " + law.effect + ": the model of discs does not have it");
   const problem::CahnHilliardModel changed = with_effects(model, laws);
   discs::DiscModel result;

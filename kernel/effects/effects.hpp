@@ -80,6 +80,8 @@ bool has_unit_wells(const problem::CahnHilliardModel& model);
 problem::CahnHilliardModel with_effects(problem::CahnHilliardModel model,
                                         const std::vector<EffectTerm>& terms);
 
+// Does the model of discs have this effect?
+bool discs_can_have(const EffectTerm& term, const problem::CahnHilliardModel& model);
 // A vesicle of discs with the mobility, the wells and the line tension of `model`, and these
 // effects. Throws InputError for an effect that discs do not have.
 discs::DiscModel disc_model(const problem::CahnHilliardModel& model,

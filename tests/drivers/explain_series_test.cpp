@@ -61,7 +61,7 @@ class ExplainSeriesTest : public ::testing::Test {
   static std::unique_ptr<ProgramEnd> made_;
 };
 const std::string ExplainSeriesTest::kWithout =
-    "--without allen-cahn,asymmetry,bulk-mobility,cooling,exchange,gravity,line-tension,"
+    "--without allen-cahn,asymmetry,bulk-mobility,cooling,exchange,flow,gravity,line-tension,"
     "mobility-contrast,mobility-exponent";
 std::unique_ptr<testing::TemporaryFolder> ExplainSeriesTest::folder_;
 std::unique_ptr<ProgramEnd> ExplainSeriesTest::made_;
@@ -121,7 +121,8 @@ TEST_F(ExplainSeriesTest, TakesNoSimulationsThatAreOthers) {
   foreign["identity"] = "another";
   // The file as earlier versions of the program wrote it, and of another model.
   const nlohmann::json older{{"identity", json_of(file)["identity"]},
-                             {"strengths", json_of(file)["strengths"]}};
+                             {"looks", json_of(file)["looks"]},
+                             {"strengths", {{"uptake", {1.0}}}}};
   for (const nlohmann::json& strengths : {older, foreign}) {
     posix::write_durably(file, strengths.dump());
     EXPECT_TRUE(refuses(traceraft(of_others("third", simulations())),
@@ -130,9 +131,9 @@ TEST_F(ExplainSeriesTest, TakesNoSimulationsThatAreOthers) {
   posix::write_durably(file, kept);
   EXPECT_FALSE(fs::exists(in("third")));
   for (const char* strengths :
-       {"5", "\"x\"", "{\"uptake\": [\"a\"]}", "{\"uptake\": [null]}", "{\"uptake\": []}"}) {
+       {"5", "\"x\"", "{\"uptake\": [[\"a\"]]}", "{\"uptake\": [null]}", "{\"uptake\": []}"}) {
     nlohmann::json damaged = json_of(file);
-    damaged["strengths"] = nlohmann::json::parse(strengths);
+    damaged["levels"] = nlohmann::json::parse(strengths);
     posix::write_durably(file, damaged.dump());
     const ProgramEnd end = traceraft(of_others("fourth", simulations()));
     EXPECT_EQ(end.code, 4) << strengths << end.output;

@@ -37,8 +37,12 @@ class SeriesVerdictTest : public ::testing::Test {
                     score("gravity", 1, 1e-3)};
     found.named = {{"cooling", "uptake"}};
     found.offsets = {{observations::Quantity::fraction, 0.02, 4, 0.001, 1}};
-    ensembles.terms = {assimilation::find_candidate("cooling")->term({5e-4}),
-                       assimilation::find_candidate("uptake")->term({1e-3})};
+    simulate("cooling", {5e-4});
+    simulate("uptake", {1e-3});
+    simulate("gravity", {1e-3});
+  }
+  void simulate(const std::string& effect, const std::vector<double>& coefficients) {
+    ensembles.effects.push_back({{assimilation::find_candidate(effect)->term(coefficients)}});
   }
   input::Json json(const std::string& file) const {
     return input::from_json(folder.path / file, [](const input::Json& content) { return content; });
@@ -75,7 +79,7 @@ TEST_F(SeriesVerdictTest, NamesWhatExplainsMostInPhysicalUnits) {
 
 // A fitted strength may lie beyond what is possible.
 TEST_F(SeriesVerdictTest, WritesAModelThatCanBeRun) {
-  ensembles.terms = {assimilation::find_candidate("asymmetry")->term({0.5})};
+  simulate("asymmetry", {0.5});
   found.scores.front().effect = "asymmetry";
   found.scores.front().value = 1e3;
   explain::write_series_verdict(folder.path, "", model, ensembles, found,
@@ -99,7 +103,7 @@ TEST_F(SeriesVerdictTest, ATrendNamesNothing) {
 
 // Parameters that were not looked for are said.
 TEST_F(SeriesVerdictTest, SaysWhatWasAssumed) {
-  ensembles.terms = {assimilation::find_candidate("exchange")->term({3e-3, 1e-3})};
+  simulate("exchange", {3e-3, 1e-3});
   found.scores.front().effect = "exchange";
   explain::write_series_verdict(folder.path, "", model, ensembles, found,
                                 {likelihood::UnitPrior::within_factor(0.1, 8)});
@@ -108,7 +112,7 @@ TEST_F(SeriesVerdictTest, SaysWhatWasAssumed) {
   EXPECT_TRUE(parameters["exchange.target"]["sigma"].is_null());
   const input::Json series = explain::series_json({model, {}}, ensembles, found, {});
   EXPECT_NEAR(series["scores"][0]["assumed"]["target"]["value"].get<double>(), 0.25, 1e-12);
-  EXPECT_TRUE(series["scores"][1]["assumed"].empty());
+  EXPECT_TRUE(series["scores"][2]["assumed"].empty());
 }
 
 TEST_F(SeriesVerdictTest, SaysHowMeasurementsLieBesideTheModel) {

@@ -141,7 +141,7 @@ TEST(Calibration, FindsWhatAnExplanationFinds) {
   selection::SeriesRequest request{likelihood::UnitPrior::within_factor(1.5 * kSeconds, 8)};
   request.replicates = 9;
   const selection::SeriesExplanation explained = selection::explain_series(
-      data, runs, {{"another", 1, true, simulate(1.2 * kEpsilon, true, 40, 77)}}, request);
+      data, runs, {{"another", {{1, simulate(1.2 * kEpsilon, true, 40, 77)}}, true}}, request);
   const likelihood::EnsembleFit found =
       calibration::calibrate(data, {}, {{{}, runs}}, request.unit).best;
   EXPECT_NEAR(found.ln_unit, explained.base.ln_unit, 1e-3);

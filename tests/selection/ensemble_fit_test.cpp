@@ -17,7 +17,7 @@ TEST(EnsembleFit, FindsUnitAndStrength) {
   const likelihood::RunCurves changed(ensemble({-1 / 3.0, 0, 0.05}));
   const auto blocks = likelihood::observed_series(measured({-1 / 3.0, 0, 0.025}, 20, 0.02, 3));
   const likelihood::EnsembleFit fit = likelihood::fit_ensemble(
-      blocks, {&base, &changed}, likelihood::UnitPrior::within_factor(1, 8));
+      blocks, {&base, {&changed}}, likelihood::UnitPrior::within_factor(1, 8));
   EXPECT_NEAR(std::exp(fit.ln_unit), 3, 0.3);
   EXPECT_NEAR(fit.amplitude, 0.5, 4 * fit.deviation);
   EXPECT_LT(fit.deviation, 0.1);
@@ -25,7 +25,7 @@ TEST(EnsembleFit, FindsUnitAndStrength) {
       likelihood::fit_ensemble(blocks, {&base}, likelihood::UnitPrior::within_factor(1, 8));
   EXPECT_GT(without.deviance, fit.deviance + 20);
   // 2 ln of the likelihood of all looks together, and of what was known of D.
-  const likelihood::EnsembleModel model{&base, &changed};
+  const likelihood::EnsembleModel model{&base, {&changed}};
   const likelihood::ObservationMetric metric = likelihood::metric_of(blocks, model, fit);
   const Vec r = likelihood::residual(blocks, model, fit);
   const double known =
@@ -109,7 +109,7 @@ TEST(ObservationMetric, ErrorsAreThoseOfTheChangedModel) {
   const auto variance = [&](double amplitude) {
     likelihood::EnsembleFit fit;
     fit.amplitude = amplitude;
-    return 1 / likelihood::metric_of(blocks, {&base, &changed}, fit)
+    return 1 / likelihood::metric_of(blocks, {&base, {&changed}}, fit)
                    .product(Vec::Ones(1), Vec::Ones(1));
   };
   EXPECT_NEAR(variance(0), 0.04, 1e-6);

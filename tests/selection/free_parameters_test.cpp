@@ -14,7 +14,7 @@ assimilation::Hypothesis hypothesis(double first, double second) {
            {assimilation::find_candidate("gravity").value(), {0}}}};
 }
 
-assimilation::FilterResult pass_with(const Vec& score) {
+assimilation::FilterResult pass_of_score(const Vec& score) {
   assimilation::FilterResult pass;
   pass.information = Eigen::MatrixXd::Identity(5, 5);
   pass.score = score;
@@ -22,14 +22,14 @@ assimilation::FilterResult pass_with(const Vec& score) {
 }
 
 TEST(FreeParameters, AreAllWithinTheirRanges) {
-  const assimilation::FilterResult pass = pass_with(Vec::Constant(5, -1));
+  const assimilation::FilterResult pass = pass_of_score(Vec::Constant(5, -1));
   EXPECT_EQ(free_parameters(pass, hypothesis(1, 1)), (Indices{0, 1, 2, 3, 4}));
   EXPECT_EQ(free_parameters(pass, {}), (Indices{0, 1}));
 }
 
 TEST(FreeParameters, StayWhereTheyCannotGoFurther) {
-  const assimilation::FilterResult down = pass_with(Vec::Constant(5, -1)),
-                                   up = pass_with(Vec::Constant(5, 1));
+  const assimilation::FilterResult down = pass_of_score(Vec::Constant(5, -1)),
+                                   up = pass_of_score(Vec::Constant(5, 1));
   EXPECT_EQ(free_parameters(down, hypothesis(0, 1)), (Indices{0, 1, 3, 4}));
   EXPECT_EQ(free_parameters(down, hypothesis(0, 0)), (Indices{0, 1, 4}));
   EXPECT_EQ(free_parameters(up, hypothesis(0, 0)), (Indices{0, 1, 2, 3, 4}));
@@ -38,7 +38,7 @@ TEST(FreeParameters, StayWhereTheyCannotGoFurther) {
 TEST(FreeParameters, StayBelowTheUpperEnd) {
   const assimilation::Candidate asymmetry = assimilation::find_candidate("asymmetry").value();
   const auto at = [&](double value) { return assimilation::Hypothesis{{{asymmetry, {value}}}}; };
-  assimilation::FilterResult pass = pass_with(Vec::Constant(5, 1));
+  assimilation::FilterResult pass = pass_of_score(Vec::Constant(5, 1));
   EXPECT_EQ(free_parameters(pass, at(asymmetry.most)), (Indices{0, 1}));
   EXPECT_EQ(free_parameters(pass, at(0.9 * asymmetry.most)), (Indices{0, 1, 2}));
   EXPECT_EQ(free_parameters(pass, at(asymmetry.least)), (Indices{0, 1, 2}));
@@ -49,7 +49,7 @@ TEST(FreeParameters, StayBelowTheUpperEnd) {
 
 // The other coefficients explain what one that is held would explain, and they may be free then.
 TEST(FreeParameters, HaveTheirOptimumBesideThoseThatAreHeld) {
-  assimilation::FilterResult pass = pass_with(Vec::Zero(5));
+  assimilation::FilterResult pass = pass_of_score(Vec::Zero(5));
   pass.information(assimilation::kDiffusionRatio, 2) =
       pass.information(2, assimilation::kDiffusionRatio) = 0.8;
   pass.score[assimilation::kDiffusionRatio] = 1;

@@ -73,7 +73,7 @@ TEST(EnsembleFit, CountsDeviationsWithTheScatterOfTheRuns) {
     request.replicates = 29;
     std::vector<observations::History> runs;
     for (std::uint64_t k = 0; k < 10; ++k) runs.push_back(vesicle({}, 1000 * set + k));
-    const std::vector<SeriesCandidate> alone{{"uptake", 2, true, runs}};
+    const std::vector<SeriesCandidate> alone{{"uptake", {{2, runs}}, true}};
     observations::MeasuredVesicles data = measured({}, 40, 0.02, 1, 1000 * set + 100);
     keep_only(observations::Quantity::perimeter, data);
     const SeriesExplanation found = explain_series(data, runs, alone, request);
@@ -129,7 +129,7 @@ TEST(SeriesExplanation, IntervalsOfDHoldTheTruth) {
     SeriesRequest request{likelihood::UnitPrior::within_factor(1, 8)};
     request.replicates = 49;
     const SeriesExplanation found =
-        explain_series(data, base, {{"line-tension", 1, true, more_rafts}}, request);
+        explain_series(data, base, {{"line-tension", {{1, more_rafts}}, true}}, request);
     held += std::fabs(found.base.ln_unit) < statistics::kNormal95 * found.unit_deviation;
   }
   EXPECT_GE(held, kSets * 95 / 100);
@@ -149,7 +149,7 @@ TEST(SeriesExplanation, KnowsThatItDoesNotKnowD) {
   const RaftLaw rest{0};
   SeriesRequest request{likelihood::UnitPrior::within_factor(1, 8)};
   request.replicates = 99;
-  std::vector<SeriesCandidate> more_rafts{{"line-tension", 1, true, ensemble({0, 0, 0, 0.3})}};
+  std::vector<SeriesCandidate> more_rafts{{"line-tension", {{1, ensemble({0, 0, 0, 0.3})}}, true}};
   const SeriesExplanation found =
       explain_series(measured(rest, 10, 0.1, 1), ensemble(rest), more_rafts, request);
   EXPECT_FALSE(found.unit_told);
@@ -158,7 +158,7 @@ TEST(SeriesExplanation, KnowsThatItDoesNotKnowD) {
   // Three runs say even less, but what was known before is known.
   std::vector<observations::History> few = ensemble(rest);
   few.resize(3);
-  more_rafts[0].runs.resize(3);
+  more_rafts[0].levels[0].runs.resize(3);
   const double of_few =
       explain_series(measured(rest, 10, 0.1, 1), few, more_rafts, request).unit_deviation;
   EXPECT_LE(of_few, std::log(8.0) / statistics::kNormal95);

@@ -99,7 +99,7 @@ TEST(SeriesExplanation, SeesWhatAnotherDDoesIfDIsKnown) {
   const auto explained_with = [&](double factor) {
     SeriesRequest request{likelihood::UnitPrior::within_factor(1, factor)};
     request.replicates = 49;
-    return explain_series(data, ensemble({}), {{"bulk-mobility", 1, true, slower}}, request);
+    return explain_series(data, ensemble({}), {{"bulk-mobility", {{1, slower}}, true}}, request);
   };
   const SeriesExplanation unknown = explained_with(8), known = explained_with(1.05);
   EXPECT_EQ(unknown.finding, Finding::not_identifiable);
@@ -128,7 +128,7 @@ TEST(SeriesExplanation, CountsVesiclesByTheBoundsOfTheirEffect) {
       return c.effect == score.effect && c.two_sided;
     });
     if (candidate == drawn.end()) continue;
-    const double deviation = (score.high - score.low) / 2 / 1.96 / candidate->strength;
+    const double deviation = (score.high - score.low) / 2 / 1.96 / candidate->levels[0].strength;
     ASSERT_TRUE(std::isfinite(score.vesicles)) << score.effect;
     EXPECT_NEAR(score.vesicles, 15 * 16 * deviation * deviation, 0.25 * score.vesicles)
         << score.effect;
@@ -138,8 +138,8 @@ TEST(SeriesExplanation, CountsVesiclesByTheBoundsOfTheirEffect) {
 // Classes that are nearly as probable as the best one are named with what would tell them apart.
 TEST(SeriesExplanation, SaysWhatWouldTellClassesApart) {
   constexpr int kVesicles = 8, kMore = 20;
-  std::vector<SeriesCandidate> two = {candidates()[0]};                  // a drift of the fraction
-  two.push_back({"cooling", 1, true, ensemble({-1 / 3.0, 0.6, 0.05})});  // and a plateau
+  std::vector<SeriesCandidate> two = {candidates()[0]};  // a drift of the fraction
+  two.push_back({"cooling", {{1, ensemble({-1 / 3.0, 0.6, 0.05})}}, true});  // and a plateau
   SeriesRequest request{likelihood::UnitPrior::within_factor(1, 8)};
   request.replicates = 99;
   const auto explain = [&](const RaftLaw& law, int vesicles) {
@@ -160,6 +160,55 @@ TEST(SeriesExplanation, SaysWhatWouldTellClassesApart) {
   const SeriesExplanation told = explain({-1 / 3.0, 0.6, 0.05}, kMore);
   EXPECT_EQ(told.finding, Finding::named);
   EXPECT_EQ(told.named[0], std::vector<std::string>{"cooling"});
+}
+
+// An effect that was simulated at several strengths, of which the true one is between two.
+TEST(SeriesExplanation, FindsTheStrengthAmongLevels) {
+  SeriesCandidate flow{"flow", {}, false};
+  for (const double strength : {0.5, 1.5, 4.0})
+    flow.levels.push_back({strength, ensemble({-1 / 3.0, strength, 0})});
+  flow.typical = 1;
+  const std::vector<SeriesCandidate> two{flow, candidates()[0]};
+  SeriesRequest request{likelihood::UnitPrior::within_factor(1, 8)};
+  request.replicates = 99;
+  const auto explain = [&](const RaftLaw& law) {
+    return explain_series(measured(law, 15, 0.1, 2), ensemble({}), two, request);
+  };
+  const SeriesExplanation found = explain({-1 / 3.0, 2.5, 0});
+  EXPECT_EQ(found.finding, Finding::named);
+  EXPECT_EQ(found.scores[0].effect, "flow");
+  EXPECT_LT(found.scores[0].low, 2.5);
+  EXPECT_GT(found.scores[0].high, 2.5);
+  EXPECT_LT(found.scores[0].high, 2 * found.scores[0].low);
+  EXPECT_NEAR(std::exp(found.scores[0].ln_unit), 2, 0.6);
+  EXPECT_EQ(explain({}).finding, Finding::none);
+}
+
+// Vesicles whose effect is as if D were another: D may be that of the model without it, too.
+TEST(SeriesExplanation, RangeOfDHoldsWhatAnEffectMayDo) {
+  observations::MeasuredVesicles data = measured({}, 20, 0.05, 1);
+  auto& looks = data.measurements;  // early ones, which all runs cover
+  looks.erase(
+      std::remove_if(looks.begin(), looks.end(), [](const auto& m) { return m.time > 100; }),
+      looks.end());
+  std::vector<observations::History> faster;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) faster.push_back(vesicle({}, seed, 0.5));
+  const auto range_with = [&](const SeriesCandidate& candidate) {
+    SeriesRequest request{likelihood::UnitPrior::within_factor(1, 8)};
+    request.replicates = 49;
+    return explain_series(data, ensemble({}), {candidate}, request).unit_range;
+  };
+  const UnitRange confounded = range_with({"bulk-mobility", {{1, faster}}, false}),
+                  clear = range_with(candidates()[0]);
+  for (const UnitRange& range : {confounded, clear}) {
+    EXPECT_LT(range.low, 0);
+    EXPECT_GT(range.high, 0);
+  }
+  // Twice as fast at a strength of 1; beyond, whole numbers of rafts tell the difference.
+  EXPECT_GT(confounded.high, std::log(2.0));
+  EXPECT_EQ(confounded.high_by, "bulk-mobility");
+  EXPECT_LT(clear.high, 0.7 * std::log(2.0));
+  EXPECT_GT(confounded.low, clear.low - 0.1);
 }
 
 }  // namespace

@@ -54,10 +54,10 @@ TEST(SeriesNeed, NoiseOfMoreVesiclesHasThatOfTheRuns) {
     return history;
   };
   std::vector<observations::History> runs;
-  SeriesCandidate uptake{"uptake", 1, true, {}};
+  SeriesCandidate uptake{"uptake", {{1, {}}}, true};
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     runs.push_back(run(seed, 0));
-    uptake.runs.push_back(run(seed, 0.2));
+    uptake.levels[0].runs.push_back(run(seed, 0.2));
   }
   observations::MeasuredVesicles data;
   for (int v = 0; v < 6; ++v)

@@ -39,10 +39,10 @@ inline std::vector<observations::History> ensemble(const RaftLaw& law) {
 }
 
 inline std::vector<selection::SeriesCandidate> candidates() {
-  return {{"uptake", 2, true, ensemble({-1 / 3.0, 0, 0.05})},
-          {"cooling", 1, true, ensemble({-1 / 3.0, 0, 0.06})},
-          {"ohta-kawasaki", 3, false, ensemble({-1 / 3.0, 2, 0})},
-          {"line-tension", 1, true, ensemble({-1 / 3.0, 0, 0, 0.3})}};
+  return {{"uptake", {{2, ensemble({-1 / 3.0, 0, 0.05})}}, true},
+          {"cooling", {{1, ensemble({-1 / 3.0, 0, 0.06})}}, true},
+          {"ohta-kawasaki", {{3, ensemble({-1 / 3.0, 2, 0})}}, false},
+          {"line-tension", {{1, ensemble({-1 / 3.0, 0, 0, 0.3})}}, true}};
 }
 
 inline observations::MeasuredVesicles measured(const RaftLaw& law, int vesicles, double noise,

@@ -53,8 +53,7 @@ RunEmulator RunEmulator::with_others(const Eigen::MatrixXd& weights) const {
 }
 
 likelihood::RunCurves RunEmulator::at(const std::vector<double>& ln_parameters) const {
-  return likelihood::RunCurves::combined(at_points_,
-                                         regression_weights(ln_parameters_, ln_parameters, kWidth));
+  return combined(regression_weights(ln_parameters_, ln_parameters, kWidth));
 }
 
 likelihood::RunCurves RunEmulator::derivative(const std::vector<double>& ln_parameters,
@@ -67,7 +66,16 @@ likelihood::RunCurves RunEmulator::derivative(const std::vector<double>& ln_para
   const std::vector<double> less = regression_weights(ln_parameters_, below, kWidth);
   for (std::size_t k = 0; k < weights.size(); ++k)
     weights[k] = (weights[k] - less[k]) / (2 * kStep);
-  return likelihood::RunCurves::combined(at_points_, weights);
+  return combined(weights);
+}
+
+// All points have the same scatter.
+likelihood::RunCurves RunEmulator::combined(const std::vector<double>& weights) const {
+  std::vector<const likelihood::RunCurves*> all;
+  for (const likelihood::RunCurves& curves : at_points_) all.push_back(&curves);
+  const auto count = static_cast<Eigen::Index>(weights.size());
+  return likelihood::RunCurves::combined(all, Eigen::Map<const Vec>(weights.data(), count),
+                                         Vec::Unit(count, 0));
 }
 
 void RunEmulator::set_curves(const std::vector<likelihood::RunSamples>& samples) {

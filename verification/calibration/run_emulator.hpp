@@ -32,6 +32,7 @@ class RunEmulator {
 
  private:
   void set_curves(const std::vector<likelihood::RunSamples>& samples);
+  likelihood::RunCurves combined(const std::vector<double>& weights) const;
 
   std::vector<std::vector<double>> ln_parameters_;
   std::shared_ptr<std::vector<likelihood::RunSamples>> samples_;  // one per point

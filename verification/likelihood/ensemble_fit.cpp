@@ -14,11 +14,18 @@ namespace {
 constexpr double kUsualScatter = 0.1;
 constexpr double kLeastInformation = 1e-12;
 
-// Standard deviation of the amplitude, whatever the unit is; the scatter is independent of both.
-double deviation_of_amplitude(const FreeParameters& free, const Eigen::MatrixXd& h) {
-  if (free.all.size() < 2 || free.all[1].kind != FreeParameter::Kind::amplitude) return 0;
-  const double own = h(1, 1) - h(0, 1) * h(0, 1) / std::max(h(0, 0), kLeastInformation);
-  return std::sqrt(2 / std::max(own, kLeastInformation));
+// Of ln of the unit and the amplitude; the scatter is independent of both. What nothing is known of
+// has a large variance, not an infinite one.
+Eigen::Matrix2d covariance_of(const FreeParameters& free, const Eigen::MatrixXd& h) {
+  Eigen::Matrix2d result = Eigen::Matrix2d::Zero();
+  const double unit = std::max(h(0, 0), kLeastInformation);
+  result(0, 0) = 2 / unit;
+  if (free.all.size() < 2 || free.all[1].kind != FreeParameter::Kind::amplitude) return result;
+  const double slope = h(0, 1) / unit;  // of ln of the unit by the amplitude, but for its sign
+  result(1, 1) = 2 / std::max(h(1, 1) - h(0, 1) * slope, kLeastInformation);
+  result(0, 1) = result(1, 0) = -slope * result(1, 1);
+  result(0, 0) += slope * slope * result(1, 1);
+  return result;
 }
 
 EnsembleFit fit_from(const EnsembleFit& start, const EnsembleLikelihood& likelihood,
@@ -33,8 +40,25 @@ EnsembleFit fit_from(const EnsembleFit& start, const EnsembleLikelihood& likelih
       free.get(start));
   free.set(found.x, fit);
   fit.deviance = found.at.value;
-  fit.deviation = deviation_of_amplitude(free, found.at.hessian);
+  fit.covariance = covariance_of(free, found.at.hessian);
+  fit.deviation = std::sqrt(fit.covariance(1, 1));
   return fit;
+}
+
+// The best of fits at each level, from one level to the next.
+EnsembleFit best_of_levels(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
+                           const UnitPrior& unit, const EnsembleFit& near) {
+  EnsembleFit best, fit = near;
+  best.deviance = std::numeric_limits<double>::infinity();
+  for (double a = 1; a <= model.largest_amplitude(); a += 1) {
+    const RunCurves curves = model.at(a);
+    const EnsembleModel level(&curves);
+    fit =
+        fit_from(fit, EnsembleLikelihood(blocks, level, unit), FreeParameters(blocks, level, unit));
+    fit.amplitude = a;
+    if (fit.deviance < best.deviance) best = fit;
+  }
+  return best;
 }
 
 }  // namespace
@@ -95,8 +119,12 @@ EnsembleFit fit_ensemble(const std::vector<ObservedSeries>& blocks, const Ensemb
 
 EnsembleFit fit_ensemble(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
                          const UnitPrior& unit, const EnsembleFit& near) {
-  return fit_from(near, EnsembleLikelihood(blocks, model, unit),
-                  FreeParameters(blocks, model, unit));
+  const EnsembleLikelihood likelihood(blocks, model, unit);
+  const FreeParameters free(blocks, model, unit);
+  const EnsembleFit fit = fit_from(near, likelihood, free);
+  if (!model.has_several_levels()) return fit;
+  const EnsembleFit other = fit_from(best_of_levels(blocks, model, unit, near), likelihood, free);
+  return other.deviance < fit.deviance ? other : fit;
 }
 
 statistics::Interval as_probable(const std::vector<ObservedSeries>& blocks,
@@ -119,15 +147,18 @@ statistics::Interval as_probable(const std::vector<ObservedSeries>& blocks,
 
 Vec expected(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
              const EnsembleFit& fit) {
+  const RunCurves curves = model.at(fit.amplitude);
   return per_look(blocks, [&](const ObservedSeries& block, Eigen::Index i) {
-    return model.mean(block.quantity, block.ln_t[i] - fit.ln_unit, fit.amplitude);
+    return curves.mean(block.quantity, block.ln_t[i] - fit.ln_unit);
   });
 }
 
 ObservationMetric metric_of(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
                             const EnsembleFit& fit) {
-  return {blocks, known_covariance(blocks, *model.base, fit.ln_unit, expected(blocks, model, fit)),
-          fit.scatter};
+  return {
+      blocks,
+      known_covariance(blocks, model.at(fit.amplitude), fit.ln_unit, expected(blocks, model, fit)),
+      fit.scatter};
 }
 
 Vec residual(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,

@@ -5,39 +5,17 @@
 
 #include <vector>
 
+#include "verification/likelihood/ensemble_model.hpp"
 #include "verification/likelihood/observations.hpp"
 #include "verification/statistics/bootstrap.hpp"
 
 namespace traceraft::likelihood {
 
-// The model with an effect of strength a has the logarithms mean + a (changed − mean).
-struct EnsembleModel {
-  const RunCurves* base;
-  const RunCurves* changed = nullptr;  // with the effect at strength 1; none: the base alone
-  bool two_sided = true;
-
-  // The logarithm at a time (in units of the runs) with the effect at that amplitude.
-  double mean(observations::Quantity quantity, double ln_t, double amplitude) const {
-    return base->mean(quantity, ln_t) + amplitude * response(quantity, ln_t);
-  }
-  // Its derivatives by the amplitude and by ln t.
-  double response(observations::Quantity quantity, double ln_t) const {
-    return changed == nullptr ? 0 : changed->mean(quantity, ln_t) - base->mean(quantity, ln_t);
-  }
-  double slope(observations::Quantity quantity, double ln_t, double amplitude) const {
-    const double slope = base->slope(quantity, ln_t);
-    return changed == nullptr ? slope
-                              : slope + amplitude * (changed->slope(quantity, ln_t) - slope);
-  }
-};
-
-// The largest amplitude of an effect in a fit, over that which has been simulated.
-inline constexpr double kLargestAmplitude = 2;
-
 struct EnsembleFit {
   double ln_unit = 0;    // of R²/D in seconds
-  double amplitude = 0;  // a
-  double deviation = 0;  // of a; 0 if there is no effect
+  double amplitude = 0;  // of the effect
+  double deviation = 0;  // of the amplitude, whatever the unit is; 0 if there is no effect
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  // of ln_unit and amplitude
   ObservationScatter scatter;
   double deviance = 0;  // −2 ln of the likelihood, and of what was known of the unit
 
@@ -67,7 +45,8 @@ struct UnitPrior {
 };
 EnsembleFit fit_ensemble(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
                          const UnitPrior& unit);
-// From the fit of a model that differs little.
+// From the fit of a model that differs little. If the model has several levels, the best fit of
+// those at each level is another start.
 EnsembleFit fit_ensemble(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
                          const UnitPrior& unit, const EnsembleFit& near);
 

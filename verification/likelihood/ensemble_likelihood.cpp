@@ -63,60 +63,53 @@ EnsembleLikelihood::EnsembleLikelihood(const std::vector<ObservedSeries>& blocks
     for (Eigen::Index i = 0; i < count; ++i)
       for (Eigen::Index j = 0; j < count; ++j)
         correlation(i, j) =
-            model.base->correlation(series.quantity, series.ln_t[i] - series.ln_t[j]);
+            model.base().correlation(series.quantity, series.ln_t[i] - series.ln_t[j]);
     blocks_.push_back({&series, std::move(correlation)});
   }
 }
 
-EnsembleLikelihood::Looks EnsembleLikelihood::looks(const Block& block,
-                                                    const EnsembleFit& at) const {
+EnsembleLikelihood::Looks EnsembleLikelihood::looks(const Block& block, const EnsembleFit& fit,
+                                                    const RunCurves& curves) const {
   const ObservedSeries& series = *block.series;
   const Eigen::Index count = series.values.size();
-  const double scatter = square(at.scatter.look[observations::index_of(series.quantity)]);
+  const double scatter = square(fit.scatter.look[observations::index_of(series.quantity)]);
   Looks result{Vec(count), Vec(count), Vec(count)};
   for (Eigen::Index i = 0; i < count; ++i) {
-    const double t = series.ln_t[i] - at.ln_unit;
-    const double mean = model_.mean(series.quantity, t, at.amplitude);
+    const double t = series.ln_t[i] - fit.ln_unit;
+    const double mean = curves.mean(series.quantity, t);
     const observations::StatedError& stated = series.stated[static_cast<std::size_t>(i)];
     result.residual[i] = series.values[i] - mean - stated.bias(mean);
-    result.run[i] = std::sqrt(model_.base->variance(series.quantity, t));
+    result.run[i] = std::sqrt(curves.variance(series.quantity, t));
     result.own[i] = stated.of_logarithm(mean) + scatter;
   }
   return result;
 }
 
-double EnsembleLikelihood::mean_derivative(observations::Quantity quantity, double t,
-                                           const EnsembleFit& at,
-                                           const FreeParameter& parameter) const {
-  switch (parameter.kind) {
-    case Kind::unit:
-      return -model_.slope(quantity, t, at.amplitude);
-    case Kind::amplitude:
-      return model_.response(quantity, t);
-    default:
-      return parameter.derivative->mean(quantity, t);
-  }
-}
-
-EnsembleLikelihood::Looks EnsembleLikelihood::derivative(const Block& block, const EnsembleFit& at,
+EnsembleLikelihood::Looks EnsembleLikelihood::derivative(const Block& block, const Place& at,
                                                          const FreeParameter& parameter) const {
   constexpr double kStep = 1e-4;  // of the mean, for what stated errors make of it
+  const bool by_unit = parameter.kind == Kind::unit;
+  const RunCurves& by = by_unit                             ? at.curves
+                        : parameter.kind == Kind::amplitude ? at.by_amplitude
+                                                            : *parameter.derivative;
   const ObservedSeries& series = *block.series;
   const Eigen::Index count = series.values.size();
   Looks result{Vec(count), Vec::Zero(count), Vec(count)};
   for (Eigen::Index i = 0; i < count; ++i) {
-    const double t = series.ln_t[i] - at.ln_unit;
-    const double mean = model_.mean(series.quantity, t, at.amplitude);
-    const double change = mean_derivative(series.quantity, t, at, parameter);
+    const double t = series.ln_t[i] - at.fit.ln_unit;
+    const double mean = at.curves.mean(series.quantity, t);
+    const double change = by_unit ? -by.slope(series.quantity, t) : by.mean(series.quantity, t);
     const observations::StatedError& stated = series.stated[static_cast<std::size_t>(i)];
     const double above = mean + kStep, below = mean - kStep;
     const double bias = (stated.bias(above) - stated.bias(below)) / (2 * kStep);
     result.residual[i] = -(1 + bias) * change;
     result.own[i] =
         (stated.of_logarithm(above) - stated.of_logarithm(below)) / (2 * kStep) * change;
-    const double variance = model_.base->variance(series.quantity, t);
-    if (parameter.kind == Kind::unit && variance > 0)
-      result.run[i] = -0.5 * model_.base->variance_slope(series.quantity, t) / std::sqrt(variance);
+    const double variance = at.curves.variance(series.quantity, t);
+    if (parameter.kind == Kind::curve || !(variance > 0)) continue;
+    const double more =
+        by_unit ? -by.variance_slope(series.quantity, t) : by.variance(series.quantity, t);
+    result.run[i] = 0.5 * more / std::sqrt(variance);
   }
   return result;
 }
@@ -131,8 +124,9 @@ Eigen::MatrixXd EnsembleLikelihood::covariance(const Block& block, const Looks& 
 
 double EnsembleLikelihood::deviance(const EnsembleFit& at) const {
   double sum = unit_.deviance(at.ln_unit);
+  const RunCurves curves = model_.at(at.amplitude);
   for (const Block& block : blocks_) {
-    const Looks here = looks(block, at);
+    const Looks here = looks(block, at, curves);
     const Eigen::LLT<Eigen::MatrixXd> factor(covariance(block, here, at));
     sum += factor.matrixL().solve(here.residual).squaredNorm() + log_determinant(factor);
   }
@@ -141,7 +135,7 @@ double EnsembleLikelihood::deviance(const EnsembleFit& at) const {
 
 // Let K be the covariance, α = K⁻¹ r and, for each parameter, B = K⁻¹ ∂K. Then
 //   ∂(rᵀ K⁻¹ r + ln |K|) = 2 α·∂r − αᵀ ∂K α + tr B,   E ∂∂' = 2 ∂rᵀ K⁻¹ ∂r' + tr(B B')
-void EnsembleLikelihood::add_block(const Block& block, const EnsembleFit& at,
+void EnsembleLikelihood::add_block(const Block& block, const Place& at,
                                    const std::vector<FreeParameter>& parameters,
                                    DevianceExpansion& sum) const {
   struct Own {
@@ -152,8 +146,8 @@ void EnsembleLikelihood::add_block(const Block& block, const EnsembleFit& at,
   };
   const observations::Quantity quantity = block.series->quantity;
   const Eigen::Index count = block.series->values.size();
-  const Looks here = looks(block, at);
-  const Eigen::LLT<Eigen::MatrixXd> factor(covariance(block, here, at));
+  const Looks here = looks(block, at.fit, at.curves);
+  const Eigen::LLT<Eigen::MatrixXd> factor(covariance(block, here, at.fit));
   const Eigen::MatrixXd inverse = factor.solve(Eigen::MatrixXd::Identity(count, count));
   const Vec alpha = inverse.lazyProduct(here.residual);
   sum.value += alpha.dot(here.residual) + log_determinant(factor);
@@ -195,7 +189,8 @@ DevianceExpansion EnsembleLikelihood::expand(const EnsembleFit& at,
   const auto size = static_cast<Eigen::Index>(parameters.size());
   DevianceExpansion result{unit_.deviance(at.ln_unit), Vec::Zero(size),
                            Eigen::MatrixXd::Zero(size, size)};
-  for (const Block& block : blocks_) add_block(block, at, parameters, result);
+  const Place place{at, model_.at(at.amplitude), model_.by_amplitude(at.amplitude)};
+  for (const Block& block : blocks_) add_block(block, place, parameters, result);
   for (Eigen::Index p = 0; p < size; ++p)
     if (parameters[static_cast<std::size_t>(p)].kind == Kind::unit) {
       result.gradient[p] += unit_.slope(at.ln_unit);
@@ -212,8 +207,8 @@ FreeParameters::FreeParameters(const std::vector<ObservedSeries>& blocks,
     bounds.push_back({low, high});
   };
   add({Kind::unit}, unit.lowest(), unit.highest());
-  if (model.changed != nullptr)
-    add({Kind::amplitude}, model.two_sided ? -kLargestAmplitude : 0.0, kLargestAmplitude);
+  if (model.has_effect())
+    add({Kind::amplitude}, model.least_amplitude(), model.largest_amplitude());
   for (const observations::Quantity quantity : observations::kQuantities)
     if (std::any_of(blocks.begin(), blocks.end(),
                     [&](const ObservedSeries& block) { return block.quantity == quantity; }))

@@ -46,14 +46,17 @@ class EnsembleLikelihood {
   struct Looks {
     Vec residual, run, own;
   };
-  Looks looks(const Block& block, const EnsembleFit& at) const;
+  // The model with the amplitude of a fit, and its derivative by that.
+  struct Place {
+    const EnsembleFit& fit;
+    RunCurves curves, by_amplitude;
+  };
+  Looks looks(const Block& block, const EnsembleFit& fit, const RunCurves& curves) const;
   // Derivatives by a parameter that is no scatter.
-  Looks derivative(const Block& block, const EnsembleFit& at, const FreeParameter& parameter) const;
-  double mean_derivative(observations::Quantity quantity, double t, const EnsembleFit& at,
-                         const FreeParameter& parameter) const;
+  Looks derivative(const Block& block, const Place& at, const FreeParameter& parameter) const;
   Eigen::MatrixXd covariance(const Block& block, const Looks& looks, const EnsembleFit& at) const;
-  void add_block(const Block& block, const EnsembleFit& at,
-                 const std::vector<FreeParameter>& parameters, DevianceExpansion& sum) const;
+  void add_block(const Block& block, const Place& at, const std::vector<FreeParameter>& parameters,
+                 DevianceExpansion& sum) const;
 
   const EnsembleModel model_;
   const UnitPrior& unit_;

@@ -136,14 +136,21 @@ RunCurves::RunCurves(const std::vector<double>& times, QuantityCurves mean, RunS
     for (double& value : values) value *= of_mean;
 }
 
-RunCurves RunCurves::combined(const std::vector<RunCurves>& all,
-                              const std::vector<double>& weights) {
-  RunCurves result = all.front();
-  for (std::size_t q = 0; q < observations::kQuantities.size(); ++q)
-    for (std::size_t i = 0; i < result.mean_[q].size(); ++i) {
-      double& value = result.mean_[q][i] = 0;
-      for (std::size_t k = 0; k < all.size(); ++k) value += weights[k] * all[k].mean_[q][i];
+RunCurves RunCurves::combined(const std::vector<const RunCurves*>& all, const Vec& means,
+                              const Vec& variances) {
+  RunCurves result = *all.front();
+  for (std::size_t q = 0; q < observations::kQuantities.size(); ++q) {
+    std::vector<double>&mean = result.mean_[q], &variance = result.scatter_.variance[q];
+    std::fill(mean.begin(), mean.end(), 0);
+    std::fill(variance.begin(), variance.end(), 0);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      const auto index = static_cast<Eigen::Index>(k);
+      for (std::size_t i = 0; i < mean.size(); ++i) {
+        mean[i] += means[index] * all[k]->mean_[q][i];
+        variance[i] += variances[index] * all[k]->scatter_.variance[q][i];
+      }
     }
+  }
   return result;
 }
 

@@ -76,8 +76,10 @@ class RunCurves {
   RunCurves(const std::vector<double>& times, QuantityCurves mean, RunScatter scatter,
             std::size_t count);
 
-  // Σ weights[k] × means of the k-th, with the scatter of the first. All have the same times.
-  static RunCurves combined(const std::vector<RunCurves>& all, const std::vector<double>& weights);
+  // Σ means[k] × means of the k-th and Σ variances[k] × its variances, with the correlation of the
+  // first. All have the same times.
+  static RunCurves combined(const std::vector<const RunCurves*>& all, const Vec& means,
+                            const Vec& variances);
 
   double mean(observations::Quantity quantity, double ln_t) const {
     return spline_.at(mean_[observations::index_of(quantity)], ln_t);

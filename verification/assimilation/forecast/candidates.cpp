@@ -16,6 +16,8 @@ namespace {
 constexpr double kLength = 1;
 // Contrast of the curvature, below which it sorts nothing.
 constexpr double kCurved = 0.05;
+// Value of a level set at points of the unit sphere, below which the surface is that sphere.
+constexpr double kOnSphere = 1e-9;
 
 // The strength is the only coefficient; the other parameters keep their values.
 std::function<effects::EffectTerm(const std::vector<double>&)> strength_of(
@@ -89,14 +91,21 @@ double Candidate::within_range(double coefficient) const {
   return std::clamp(coefficient, least, most);
 }
 
+// New ones come last, as what chance does in blind cases goes by their places.
 std::vector<Candidate> candidates() {
-  return {
-      by_strength("allen-cahn", 1e-3, false),       by_strength("asymmetry", 1e-3, true),
-      of_mobility("bulk-mobility", 1e-3, false),    by_strength("cooling", 1e-5, true),
-      by_strength("curvature", 1e-3, true),         exchange(),
-      by_strength("gravity", 1e-3, true),           by_strength("line-tension", 1e-3, true),
-      by_strength("mobility-contrast", 1e-3, true), of_mobility("mobility-exponent", 1e-3, true),
-      by_strength("ohta-kawasaki", 1e-3, false),    by_strength("uptake", 1e-3, true)};
+  return {by_strength("allen-cahn", 1e-3, false),
+          by_strength("asymmetry", 1e-3, true),
+          of_mobility("bulk-mobility", 1e-3, false),
+          by_strength("cooling", 1e-5, true),
+          by_strength("curvature", 1e-3, true),
+          exchange(),
+          by_strength("gravity", 1e-3, true),
+          by_strength("line-tension", 1e-3, true),
+          by_strength("mobility-contrast", 1e-3, true),
+          of_mobility("mobility-exponent", 1e-3, true),
+          by_strength("ohta-kawasaki", 1e-3, false),
+          by_strength("uptake", 1e-3, true),
+          by_strength("flow", 1, false)};
 }
 
 std::optional<Candidate> find_candidate(const std::string& effect) {
@@ -109,14 +118,18 @@ std::vector<Candidate> candidates_for(const problem::CahnHilliardModel& base,
                                       const geometry::LevelSet& surface,
                                       const std::vector<Point>& places,
                                       const std::vector<std::string>& without) {
-  const bool curved = curvature_contrast(surface, places) > kCurved;
+  const bool curved = curvature_contrast(surface, places) > kCurved,
+             sphere = std::all_of(places.begin(), places.end(), [&](const Point&x) {
+               return std::fabs(surface.value(x.stableNormalized())) < kOnSphere;
+             });
   std::vector<Candidate> result;
   for (const Candidate& candidate : candidates()) {
     const bool left_out =
         std::find(without.begin(), without.end(), candidate.effect) != without.end();
     const bool fits =
         effects::has_unit_wells(base) || !effects::effects().find(candidate.effect).unit_wells;
-    if (!left_out && fits && (curved || candidate.effect != "curvature"))
+    if (!left_out && fits && (curved || candidate.effect != "curvature") &&
+        (sphere || candidate.effect != "flow"))
       result.push_back(candidate);
   }
   return result;

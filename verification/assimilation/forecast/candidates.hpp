@@ -36,7 +36,8 @@ std::optional<Candidate> find_candidate(const std::string& effect);
 
 // Those that a model on a surface may lack, near `places`, but for effects that are not to be
 // looked for. On a mesh even a sphere is curved differently from place to place, in a pattern that
-// resembles nothing but is not noise: where curvature hardly varies it is none of them.
+// resembles nothing but is not noise: where curvature hardly varies it is none of them. Flow is
+// made for spheres.
 std::vector<Candidate> candidates_for(const problem::CahnHilliardModel& base,
                                       const geometry::LevelSet& surface,
                                       const std::vector<Point>& places,

@@ -28,8 +28,9 @@ void refuse(const observations::MeasuredVesicles& data,
   if (candidates.empty()) throw InputError("series: no effect is left to search for");
   if (base.size() < 3) throw InputError("series need three runs of every model at least");
   for (const SeriesCandidate& candidate : candidates)
-    if (candidate.runs.size() != base.size())
-      throw InputError("the ensemble with " + candidate.effect + " has other runs than the base");
+    for (const SeriesLevel& level : candidate.levels)
+      if (level.runs.size() != base.size())
+        throw InputError("the ensemble with " + candidate.effect + " has other runs than the base");
 }
 
 // The unit of time at which the last look lies at the end of the runs. With a larger D the last
@@ -42,9 +43,33 @@ double shortest_unit(const observations::MeasuredVesicles& data,
     for (const observations::History& run : runs) end = std::min(end, run.time.back());
   };
   shorten(base);
-  for (const SeriesCandidate& candidate : candidates) shorten(candidate.runs);
+  for (const SeriesCandidate& candidate : candidates)
+    for (const SeriesLevel& level : candidate.levels) shorten(level.runs);
   for (const observations::Measurement& m : data.measurements) last = std::max(last, m.time);
   return last / end;
+}
+
+// The level of each candidate that is nearest to its fit; the typical one if that has none of it.
+std::vector<std::size_t> levels_shown(const SeriesGains& gains,
+                                      const std::vector<SeriesCandidate>& candidates) {
+  std::vector<std::size_t> levels;
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    const auto last = static_cast<long>(candidates[k].levels.size());
+    const long nearest = std::min(std::lround(gains.fits[k].amplitude), last);
+    levels.push_back(nearest < 1 || last == 1 ? candidates[k].typical
+                                              : static_cast<std::size_t>(nearest - 1));
+  }
+  return levels;
+}
+
+// Where there are several levels the logarithm of the strength is what is known, once it is not
+// near zero.
+statistics::Interval strength_bounds(const SeriesCandidate& candidate,
+                                     const likelihood::EnsembleFit& fit, double width) {
+  const double value = candidate.strength_at(fit.amplitude);
+  if (candidate.has_one_level()) return {candidate.two_sided ? value - width : 0.0, value + width};
+  if (fit.amplitude <= 1) return {0, value + width};
+  return {value * std::exp(-width / value), value * std::exp(width / value)};
 }
 
 struct Squares {
@@ -63,10 +88,11 @@ class SeriesSearch {
         candidates_(candidates),
         request_(request),
         blocks_(likelihood::observed_series(data)),
-        curves_(base, candidates),
-        gains_(gains_of(blocks_, curves_, candidates, request.unit,
+        curves_(SeriesSamples(base, candidates), candidates),
+        gains_(gains_of(blocks_, curves_, candidates.size(), request.unit,
                         likelihood::fit_ensemble(blocks_, {&curves_.base}, request.unit))),
-        responses_(blocks_, curves_, gains_.base, request.unit),
+        levels_(levels_shown(gains_, candidates)),
+        responses_(blocks_, curves_, levels_, gains_.base, request.unit),
         classes_(classes_of(responses_, candidates.size())),
         null_(null_of(data, base, candidates, gains_.base, request.unit, request.replicates)),
         noise_(noise_of_more(data, base, candidates, gains_.base, request.unit, null_)) {}
@@ -82,21 +108,26 @@ class SeriesSearch {
     result_.unit_at_end = from_end < std::min(kMostAtEnd, kAtEnd * range);
     result_.unit_told = result_.unit_deviation < kTold * request_.unit.deviation;
     result_.offsets = gains_.offsets;
-    for (SeriesOffset& offset : result_.offsets) {
-      const auto q = static_cast<std::size_t>(offset.quantity);
-      offset.level_deviations /= null_.levels[q];
-      offset.slope_deviations /= null_.slopes[q];
-    }
+    in_deviations_of_noise(result_.offsets);
     result_.p = 1;
     for (std::size_t k = 0; k < candidates_.size(); ++k) result_.scores.push_back(score_of(k));
     for (const auto& members : classes_) result_.classes.push_back(names_of(members));
     judge();
+    result_.unit_range = range_of_unit();
     std::sort(result_.scores.begin(), result_.scores.end(),
               [this](const SeriesScore& a, const SeriesScore& b) { return more_telling(a, b); });
     return std::move(result_);
   }
 
  private:
+  void in_deviations_of_noise(std::vector<SeriesOffset>& offsets) const {
+    for (SeriesOffset& offset : offsets) {
+      const auto q = static_cast<std::size_t>(offset.quantity);
+      offset.level_deviations /= null_.levels[q];
+      offset.slope_deviations /= null_.slopes[q];
+    }
+  }
+
   // From drawn data, whose fits end where that of the measurements does: near an end the larger of
   // both sides. 1.96 times it is the half of a 95 % interval, as the runs are few, which is no
   // wider than what was known of D before.
@@ -114,8 +145,24 @@ class SeriesSearch {
     const double own = std::min(above, below) > kFree * both
                            ? both
                            : std::sqrt(std::max(away.mean(), back.mean()));
-    const int runs = static_cast<int>(candidates_.front().runs.size());
+    const int runs = static_cast<int>(candidates_.front().levels.front().runs.size());
     return std::min(statistics::student_factor(runs) * own, known);
+  }
+
+  // Errors of the unit from drawn data are larger than those of the fit.
+  UnitRange range_of_unit() const {
+    std::vector<std::size_t> numbers;
+    for (std::size_t k = 0; k < candidates_.size(); ++k)
+      if (!is_named(result_.finding) || is_named_member(candidates_[k].effect))
+        numbers.push_back(k);
+    const double fitted = std::sqrt(gains_.base.covariance(0, 0));
+    return unit_range(blocks_, curves_, candidates_, numbers, gains_, null_.mean, request_.unit,
+                      std::max(1.0, result_.unit_deviation / fitted));
+  }
+  bool is_named_member(const std::string& effect) const {
+    return std::any_of(result_.named.begin(), result_.named.end(), [&](const auto& members) {
+      return std::count(members.begin(), members.end(), effect) > 0;
+    });
   }
 
   SeriesScore score_of(std::size_t k) {
@@ -125,19 +172,25 @@ class SeriesSearch {
     const double noise = null_.mean[static_cast<Eigen::Index>(k)];
     const double p = share_of_noise(null_.highest, gain / noise);
     result_.p = std::min(result_.p, p);
-    const double width = bound_width(fit.deviation, 1, candidate.two_sided, noise);
-    const double least = candidate.two_sided ? fit.amplitude - width : 0.0;
-    const double most = fit.amplitude + width;
+    const double deviation = candidate.deviation(fit);
+    const statistics::Interval bounds =
+        strength_bounds(candidate, fit, bound_width(deviation, 1, candidate.two_sided, noise));
+    const likelihood::EnsembleModel model = curves_.with(k);
+    const double least = candidate.strength_at(model.least_amplitude()),
+                 most = candidate.strength_at(model.largest_amplitude());
     return {candidate.effect,
             gain,
             noise,
             p,
+            share_of_noise(null_.trend, trend_left(blocks_, model, fit)),
             fit.ln_unit,
-            fit.amplitude * candidate.strength,
-            fit.deviation * std::fabs(candidate.strength),
-            std::min(least * candidate.strength, most * candidate.strength),
-            std::max(least * candidate.strength, most * candidate.strength),
-            most <= likelihood::kLargestAmplitude && least >= -likelihood::kLargestAmplitude,
+            fit.amplitude,
+            candidate.strength_at(fit.amplitude),
+            deviation,
+            bounds.low,
+            bounds.high,
+            bounds.low >= std::min(least, most) && bounds.high <= std::max(least, most),
+            candidate.levels[levels_[k]].strength,
             needed(responses_.of(k), k),
             responses_.telling(responses_.of(k))};
   }
@@ -176,9 +229,10 @@ class SeriesSearch {
             result_.scores.begin(), result_.scores.end(),
             [this](const SeriesScore& a, const SeriesScore& b) { return more_telling(a, b); }) -
         result_.scores.begin());
-    const likelihood::EnsembleModel model{&curves_.base, &curves_.changed[best]};
-    result_.trend_p = share_of_noise(
-        null_.trend, lacking ? trend_left(blocks_, model, gains_.fits[best]) : gains_.trend);
+    result_.trend_p =
+        lacking ? result_.scores[best].trend_p : share_of_noise(null_.trend, gains_.trend);
+    result_.best_offsets = offsets(blocks_, curves_.with(best), gains_.fits[best]);
+    in_deviations_of_noise(result_.best_offsets);
     if (result_.trend_p <= kTrendLevel * request_.false_alarms) {
       result_.finding = Finding::unnamed;
       if (lacking) result_.named = {{candidates_[best].effect}};
@@ -207,8 +261,8 @@ class SeriesSearch {
         result_.named.insert(result_.named.begin(), names_of(members));
       } else if (gain(best) - gain(other) < kTelling * noise) {
         result_.named.push_back(names_of(members));
-        const SeriesResponse difference =
-            gains_.fits[best].amplitude * responses_.beyond(best, other);
+        const double factor = candidates_[best].has_one_level() ? gains_.fits[best].amplitude : 1.0;
+        const SeriesResponse difference = factor * responses_.beyond(best, other);
         result_.ties.push_back({candidates_[best].effect, candidates_[other].effect,
                                 needed(difference, best), responses_.telling(difference)});
       }
@@ -221,6 +275,7 @@ class SeriesSearch {
   const std::vector<likelihood::ObservedSeries> blocks_;
   const SeriesCurves curves_;
   const SeriesGains gains_;
+  const std::vector<std::size_t> levels_;  // per candidate, whose responses are meant
   const SeriesResponses responses_;
   const SeriesClasses classes_;
   const SeriesNull null_;

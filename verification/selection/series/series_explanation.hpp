@@ -8,6 +8,7 @@
 
 #include "verification/selection/search/judgement.hpp"
 #include "verification/selection/series/series_gains.hpp"
+#include "verification/selection/series/series_unit_range.hpp"
 
 namespace traceraft::selection {
 
@@ -26,12 +27,15 @@ struct SeriesScore {
   double gain;       // 2 ln of the likelihood ratio, the effect's strength being free
   double null_mean;  // the same of data of the base model, on average
   double p;          // share of these in which any effect gains as much, over its own average
+  double trend_p;    // share of these that leave as large a trend as the data do with the effect
   double ln_unit;    // of R²/D in seconds, with the effect
-  double value,      // the strength, in units of the parameter of the ensemble
+  double amplitude;  // of its fit
+  double value,      // the strength, in R and R²/D
       sigma;         // its standard deviation
   double low, high;  // its 95 % bounds
   bool bounded;      // they are within what has been simulated
-  double vesicles;   // so many as these show it at the ensemble's strength; see times_needed
+  double shown;      // a strength
+  double vesicles;   // so many as these show it at that strength; see times_needed
   observations::Quantity telling;  // what shows it best
 };
 
@@ -45,13 +49,15 @@ struct SeriesTie {
 struct SeriesExplanation {
   Finding finding;
   int vesicles, looks;
-  double p;                                       // that the best score is noise
-  double trend_p;                                 // that what is left of the best model is
-  likelihood::EnsembleFit base;                   // without any effect
-  double unit_deviation;                          // of its ln_unit, from data of the base model
-  bool unit_at_end;                               // it would be further away if the fit let it
-  bool unit_told;                                 // is it known much better than before?
+  double p;                      // that the best score is noise
+  double trend_p;                // that what is left of the best model is
+  likelihood::EnsembleFit base;  // without any effect
+  double unit_deviation;         // of its ln_unit, from data of the base model
+  bool unit_at_end;              // it would be further away if the fit let it
+  bool unit_told;                // is it known much better than before?
+  UnitRange unit_range;  // whatever effect is at work: of the named ones, of all if none is named
   std::vector<SeriesOffset> offsets;              // of the measurements beside it
+  std::vector<SeriesOffset> best_offsets;         // beside the model with the first of the scores
   std::vector<SeriesScore> scores;                // most telling first
   std::vector<std::vector<std::string>> classes;  // effects that change series alike
   std::vector<std::vector<std::string>> named;    // those of them that explain the data

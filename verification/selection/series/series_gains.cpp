@@ -10,40 +10,62 @@ namespace {
 
 constexpr std::uint64_t kOthers = 4;  // stream of random numbers
 
-likelihood::RunCurves others_of(const std::vector<observations::History>& runs,
-                                const Eigen::MatrixXd& weights) {
-  return likelihood::RunCurves(
-      likelihood::RunSamples(runs, observations::common_times(runs, observations::kCurveTimes))
-          .others(weights));
+std::vector<double> times_of_all(const std::vector<observations::History>& runs,
+                                 const std::vector<SeriesCandidate>& candidates) {
+  std::vector<observations::History> all = runs;
+  for (const SeriesCandidate& candidate : candidates)
+    for (const SeriesLevel& level : candidate.levels)
+      all.insert(all.end(), level.runs.begin(), level.runs.end());
+  return observations::common_times(all, observations::kCurveTimes);
 }
 
 }  // namespace
 
-SeriesCurves::SeriesCurves(const std::vector<observations::History>& runs,
-                           const std::vector<SeriesCandidate>& candidates)
-    : base(runs) {
-  for (const SeriesCandidate& candidate : candidates) changed.emplace_back(candidate.runs);
+SeriesSamples::SeriesSamples(const std::vector<observations::History>& runs,
+                             const std::vector<SeriesCandidate>& candidates)
+    : base(runs, times_of_all(runs, candidates)) {
+  for (const SeriesCandidate& candidate : candidates) {
+    levels.emplace_back();
+    for (const SeriesLevel& level : candidate.levels)
+      levels.back().emplace_back(level.runs, base.times());
+  }
 }
 
-SeriesCurves::SeriesCurves(const std::vector<observations::History>& runs,
+SeriesCurves::SeriesCurves(const SeriesSamples& samples,
+                           const std::vector<SeriesCandidate>& candidates)
+    : base(samples.base) {
+  for (const auto& some : samples.levels) levels_.emplace_back(some.begin(), some.end());
+  for (const SeriesCandidate& candidate : candidates) two_sided_.push_back(candidate.two_sided);
+}
+
+SeriesCurves::SeriesCurves(const SeriesSamples& samples,
                            const std::vector<SeriesCandidate>& candidates,
                            const Eigen::MatrixXd& weights)
-    : base(others_of(runs, weights)) {
-  for (const SeriesCandidate& candidate : candidates)
-    changed.push_back(others_of(candidate.runs, weights));
+    : base(samples.base.others(weights)) {
+  for (const auto& some : samples.levels) {
+    levels_.emplace_back();
+    for (const likelihood::RunSamples& runs : some)
+      levels_.back().emplace_back(runs.others(weights));
+  }
+  for (const SeriesCandidate& candidate : candidates) two_sided_.push_back(candidate.two_sided);
+}
+
+likelihood::EnsembleModel SeriesCurves::with(std::size_t candidate) const {
+  std::vector<const likelihood::RunCurves*> levels;
+  for (const likelihood::RunCurves& curves : levels_[candidate]) levels.push_back(&curves);
+  return {&base, std::move(levels), two_sided_[candidate]};
 }
 
 SeriesGains gains_of(const std::vector<likelihood::ObservedSeries>& blocks,
-                     const SeriesCurves& curves, const std::vector<SeriesCandidate>& candidates,
+                     const SeriesCurves& curves, std::size_t candidates,
                      const likelihood::UnitPrior& unit, const likelihood::EnsembleFit& base) {
   SeriesGains gains;
   gains.base = base;
   gains.trend = trend_left(blocks, {&curves.base}, gains.base);
   gains.offsets = offsets(blocks, {&curves.base}, gains.base);
-  gains.values.resize(static_cast<Eigen::Index>(candidates.size()));
-  for (std::size_t k = 0; k < candidates.size(); ++k) {
-    gains.fits.push_back(likelihood::fit_ensemble(
-        blocks, {&curves.base, &curves.changed[k], candidates[k].two_sided}, unit, gains.base));
+  gains.values.resize(static_cast<Eigen::Index>(candidates));
+  for (std::size_t k = 0; k < candidates; ++k) {
+    gains.fits.push_back(likelihood::fit_ensemble(blocks, curves.with(k), unit, gains.base));
     gains.values[static_cast<Eigen::Index>(k)] =
         std::max(0.0, gains.base.deviance - gains.fits[k].deviance);
   }
@@ -59,6 +81,7 @@ SeriesNull null_of(const observations::MeasuredVesicles& data,
   SeriesNull result;
   const observations::StatedErrors errors(data);
   const auto count = static_cast<Eigen::Index>(candidates.size());
+  const SeriesSamples samples(runs, candidates);
   Eigen::MatrixXd gained(replicates, count);
   result.trend.resize(replicates);
   result.ln_unit.resize(replicates);
@@ -67,9 +90,9 @@ SeriesNull null_of(const observations::MeasuredVesicles& data,
     const std::vector<likelihood::ObservedSeries> blocks = likelihood::observed_series(
         likelihood::drawn_vesicles(data, errors, {&runs}, fit, replicate));
     const likelihood::UnitPrior known = likelihood::drawn_unit(fit, unit, replicate);
-    const SeriesCurves curves(runs, candidates,
+    const SeriesCurves curves(samples, candidates,
                               likelihood::weights_of_other_runs(runs.size(), replicate, kOthers));
-    const SeriesGains gains = gains_of(blocks, curves, candidates, known,
+    const SeriesGains gains = gains_of(blocks, curves, candidates.size(), known,
                                        likelihood::fit_ensemble(blocks, {&curves.base}, known));
     gained.row(r) = gains.values.transpose();
     result.trend[r] = gains.trend;

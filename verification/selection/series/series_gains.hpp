@@ -8,28 +8,38 @@
 #include <vector>
 
 #include "verification/likelihood/ensemble_fit.hpp"
+#include "verification/selection/series/series_candidate.hpp"
 #include "verification/selection/series/series_misfit.hpp"
 
 namespace traceraft::selection {
 
-// Simulated vesicles that differ in their seeds, the same seeds in all ensembles.
-struct SeriesCandidate {
-  std::string effect;
-  double strength;  // of its first parameter, with its sign
-  bool two_sided;
-  std::vector<observations::History> runs;  // in units of R²/D
+// The samples of each ensemble, at the times that all of them cover.
+struct SeriesSamples {
+  likelihood::RunSamples base;
+  std::vector<std::vector<likelihood::RunSamples>> levels;  // of each candidate
+
+  SeriesSamples(const std::vector<observations::History>& runs,
+                const std::vector<SeriesCandidate>& candidates);
 };
 
 // The curves of each ensemble.
-struct SeriesCurves {
-  likelihood::RunCurves base;
-  std::vector<likelihood::RunCurves> changed;  // with each candidate
-
-  SeriesCurves(const std::vector<observations::History>& runs,
-               const std::vector<SeriesCandidate>& candidates);
+class SeriesCurves {
+ public:
+  SeriesCurves(const SeriesSamples& samples, const std::vector<SeriesCandidate>& candidates);
   // The curves of other runs, with the same weights in all ensembles.
-  SeriesCurves(const std::vector<observations::History>& runs,
-               const std::vector<SeriesCandidate>& candidates, const Eigen::MatrixXd& weights);
+  SeriesCurves(const SeriesSamples& samples, const std::vector<SeriesCandidate>& candidates,
+               const Eigen::MatrixXd& weights);
+
+  likelihood::RunCurves base;
+  // With a candidate, whose curves must not move while the model is used.
+  likelihood::EnsembleModel with(std::size_t candidate) const;
+  const likelihood::RunCurves& level(std::size_t candidate, std::size_t number) const {
+    return levels_[candidate][number];
+  }
+
+ private:
+  std::vector<std::vector<likelihood::RunCurves>> levels_;
+  std::vector<bool> two_sided_;
 };
 
 struct SeriesGains {
@@ -41,7 +51,7 @@ struct SeriesGains {
 };
 // `base`: the fit of the model without any effect.
 SeriesGains gains_of(const std::vector<likelihood::ObservedSeries>& blocks,
-                     const SeriesCurves& curves, const std::vector<SeriesCandidate>& candidates,
+                     const SeriesCurves& curves, std::size_t candidates,
                      const likelihood::UnitPrior& unit, const likelihood::EnsembleFit& base);
 
 // The gains of data that the base model would give.

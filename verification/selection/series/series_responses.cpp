@@ -20,13 +20,15 @@ SeriesResponse operator*(double factor, const SeriesResponse& response) {
 }
 
 SeriesResponses::SeriesResponses(const std::vector<likelihood::ObservedSeries>& blocks,
-                                 const SeriesCurves& curves, const likelihood::EnsembleFit& fit,
+                                 const SeriesCurves& curves, const std::vector<std::size_t>& levels,
+                                 const likelihood::EnsembleFit& fit,
                                  const likelihood::UnitPrior& unit)
     : metric_(likelihood::metric_of(blocks, {&curves.base}, fit)),
       by_unit_{likelihood::unit_response(blocks, curves.base, fit.ln_unit), 1 / unit.deviation} {
   const double squares = product(by_unit_, by_unit_);
-  for (const likelihood::RunCurves& changed : curves.changed) {
-    const SeriesResponse e{likelihood::response(blocks, curves.base, changed, fit.ln_unit)};
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    const SeriesResponse e{
+        likelihood::response(blocks, curves.base, curves.level(k, levels[k]), fit.ln_unit)};
     own_.push_back(minus(e, product(by_unit_, e) / squares * by_unit_));
   }
 }

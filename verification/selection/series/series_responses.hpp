@@ -18,8 +18,10 @@ SeriesResponse operator*(double factor, const SeriesResponse& response);
 // `fit`: of the base model; `unit`: what was known of D before.
 class SeriesResponses {
  public:
+  // `levels`: of each candidate, the number of the level whose response is meant.
   SeriesResponses(const std::vector<likelihood::ObservedSeries>& blocks, const SeriesCurves& curves,
-                  const likelihood::EnsembleFit& fit, const likelihood::UnitPrior& unit);
+                  const std::vector<std::size_t>& levels, const likelihood::EnsembleFit& fit,
+                  const likelihood::UnitPrior& unit);
 
   const SeriesResponse& of(std::size_t k) const { return own_[k]; }
   // The part of effect k's response of which no amount of effect j is capable.
