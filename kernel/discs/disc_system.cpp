@@ -27,6 +27,8 @@ constexpr double kFarApart = 8;
 
 // In areas at which a disc dissolves: larger ones do not do so within a step.
 constexpr double kAboutToDissolve = 4;
+// Areas of discs that are smaller than this share of the mean one are as exact as that share is.
+constexpr double kSmallShare = 0.1;
 
 constexpr double kSafety = 0.9, kLargestGrowth = 2, kLargestCut = 0.2;
 
@@ -43,8 +45,24 @@ void take_contents(const Contents& contents, DiscState& state) {
   state.mass = contents.mass;
 }
 
-Contents moved(const Contents& from, double step, const Contents& rate) {
-  return {from.area + step * rate.area, from.mass + step * rate.mass};
+DiscCoordinates coordinates_of(const Contents& contents) {
+  return {contents.area.array().pow(1.5).matrix(), contents.mass};
+}
+
+Contents contents_at(const DiscCoordinates& at) {
+  return {at.power.array().pow(2.0 / 3).matrix(), at.mass};
+}
+
+DiscCoordinates moved(const DiscCoordinates& from, double step, const DiscCoordinates& rate) {
+  return {from.power + step * rate.power, from.mass + step * rate.mass};
+}
+
+// d/dt of the coordinates.
+bool rate_at(const Ripening& ripening, const Contents& contents, DiscCoordinates& result) {
+  Contents rate;
+  if (!ripening.rate(contents, rate)) return false;
+  result = {(1.5 * contents.area.array().sqrt() * rate.area.array()).matrix(), rate.mass};
+  return true;
 }
 
 }  // namespace
@@ -109,38 +127,55 @@ void DiscSystem::plan_walk() {
 }
 
 // A small disc that dissolves within the step does not shorten it.
-bool DiscSystem::attempt(const Ripening& ripening, const DiscState& from, const Contents& first,
-                         double step, Attempt& result) const {
-  const Contents start = contents_of(from);
-  const double shortest = phases().smallest_area();
-  const auto after = [&](const Contents& at, double time, const Contents& rate) {
-    Contents next = moved(at, time, rate);
-    next.area = next.area.cwiseMax(0.5 * shortest);
-    return next;
+bool DiscSystem::attempt(const Ripening& ripening, const DiscState& from,
+                         const DiscCoordinates& first, double step, Attempt& result) const {
+  const Contents before = contents_of(from);
+  const DiscCoordinates start = coordinates_of(before);
+  const double shortest = phases().smallest_area(), least = std::pow(0.5 * shortest, 1.5);
+  const auto after = [&](const DiscCoordinates& at, double time, const DiscCoordinates& rate) {
+    DiscCoordinates next = moved(at, time, rate);
+    next.power = next.power.cwiseMax(least);
+    return contents_at(next);
   };
-  Contents second, third, last;
-  if (!ripening.rate(after(start, step / 2, first), second) ||
-      !ripening.rate(after(start, 0.75 * step, second), third))
+  DiscCoordinates second, third, last;
+  if (!rate_at(ripening, after(start, step / 2, first), second) ||
+      !rate_at(ripening, after(start, 0.75 * step, second), third))
     return false;
   const Contents end =
       after(moved(moved(start, step * 2 / 9, first), step / 3, second), step * 4 / 9, third);
-  if (!ripening.rate(end, last)) return false;
+  if (!rate_at(ripening, end, last)) return false;
   double error = 0;
-  for (Eigen::Index i = 0; i < start.area.size(); ++i)
-    if (end.area[i] > shortest || start.area[i] > kAboutToDissolve * shortest)
-      error = std::max(error, std::fabs(step * (-5 * first.area[i] / 72 + second.area[i] / 12 +
-                                                third.area[i] / 9 - last.area[i] / 8)) /
-                                  (tolerance_ * end.area[i]));
+  const double small = kSmallShare * end.area.mean();
+  for (Eigen::Index i = 0; i < before.area.size(); ++i)
+    if (end.area[i] > shortest || before.area[i] > kAboutToDissolve * shortest) {
+      const double off = step * (-5 * first.power[i] / 72 + second.power[i] / 12 +
+                                 third.power[i] / 9 - last.power[i] / 8);
+      error = std::max(error, std::fabs(off) / (1.5 * std::sqrt(end.area[i])) /
+                                  (tolerance_ * std::max(end.area[i], small)));
+    }
   result = {end, last, error};
   return std::isfinite(error);
+}
+
+// No disc that is not small dissolves within a step: half of the area below which it may is left.
+double DiscSystem::longest_step() const {
+  const double small = kAboutToDissolve * phases().smallest_area();
+  double step = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < state_.discs.size(); ++i) {
+    const double area = state_.discs[i].area, rate = rate_.power[static_cast<Eigen::Index>(i)];
+    if (rate < 0 && area > small)
+      step = std::min(step, (std::pow(0.5 * small, 1.5) - std::pow(area, 1.5)) / rate);
+  }
+  return step;
 }
 
 Status DiscSystem::advance(double t_end) {
   const double end = std::min(t_end, next_walk_), left = end - state_.t,
                shortest = 1e-14 * std::max(t_end, 1e-300);
   double step = next_step_ > 0 ? next_step_ : 1e-6 * left;
-  if (rate_.area.size() == 0 && !ripening_.rate(contents_of(state_), rate_))
+  if (rate_.power.size() == 0 && !rate_at(ripening_, contents_of(state_), rate_))
     return Status::fatal("the areas of these discs cannot change");
+  step = std::min(step, longest_step());
   Attempt taken;
   while (true) {
     step = std::min(step, left);
@@ -176,7 +211,7 @@ Status DiscSystem::advance(double t_end) {
   merge_touching_discs();
   if (walked || state_.discs.size() < count) {
     ripening_.set_places(state_.discs);
-    rate_.area.resize(0);
+    rate_.power.resize(0);
   }
   return {};
 }
@@ -187,8 +222,8 @@ DiscState DiscSystem::interpolated(double t) const {
   result.t = t;
   Ripening ripening = ripening_;
   ripening.set_places(before_.discs);
-  Contents rate;
-  if (Attempt then; t > before_.t && ripening.rate(contents_of(before_), rate) &&
+  DiscCoordinates rate;
+  if (Attempt then; t > before_.t && rate_at(ripening, contents_of(before_), rate) &&
                     attempt(ripening, before_, rate, t - before_.t, then))
     take_contents(then.contents, result);
   return result;
@@ -291,7 +326,7 @@ void DiscSystem::save(std::ostream& out) const {
   write_binary(out, next_walk_);
   write_binary(out, statistics_);
   write_binary(out, rate_.mass);
-  for (const Vec* numbers : {&rate_.area, &ripening_.charges()}) {
+  for (const Vec* numbers : {&rate_.power, &ripening_.charges()}) {
     write_binary(out, static_cast<std::int64_t>(numbers->size()));
     write_binary(out, *numbers);
   }
@@ -317,7 +352,7 @@ void DiscSystem::load(std::istream& in) {
   read_binary(in, statistics_);
   read_binary(in, rate_.mass);
   Vec charges;
-  for (Vec* numbers : {&rate_.area, &charges}) {
+  for (Vec* numbers : {&rate_.power, &charges}) {
     std::int64_t size = 0;
     read_binary(in, size);
     read_binary(in, *numbers, size);

@@ -26,6 +26,13 @@ struct DiscStatistics {
   std::int64_t steps = 0, rejected = 0, walks = 0, merged = 0, dissolved = 0;
 };
 
+// Steps are made in A^(3/2) of each area A. A disc that dissolves loses area as −1/√A nearly, as
+// its potential goes with its curvature, so that this falls in a straight line.
+struct DiscCoordinates {
+  Vec power;
+  double mass = 0;
+};
+
 // A step is one of ripening (Bogacki and Shampine, order 3, with an error estimate). Discs walk
 // once in a while, as far as they would have wandered since they walked last, which is short
 // against the distances of neighbours. Two discs that touch become one, which keeps the mass: at
@@ -58,14 +65,15 @@ class DiscSystem {
  private:
   struct Attempt {
     Contents contents;
-    Contents rate;  // at the end
-    double error;   // over the tolerance
+    DiscCoordinates rate;  // at the end
+    double error;          // over the tolerance
   };
 
   void discs_have_changed();
   void plan_walk();
-  bool attempt(const Ripening& ripening, const DiscState& from, const Contents& rate, double step,
-               Attempt& result) const;
+  double longest_step() const;
+  bool attempt(const Ripening& ripening, const DiscState& from, const DiscCoordinates& rate,
+               double step, Attempt& result) const;
   bool walk(double time);
   bool touched_between(std::size_t i, std::size_t j, double before, double time) const;
   void dissolve_small_discs();
@@ -77,7 +85,7 @@ class DiscSystem {
   BrownianMotion motion_;
   double tolerance_;
   DiscState state_, before_;
-  Contents rate_;  // of the state; without areas: not known
+  DiscCoordinates rate_;  // d/dt of the state; empty: not known
   double step_ = 0, next_step_ = 0;
   double last_walk_ = 0, next_walk_ = 0;  // times
   DiscStatistics statistics_;

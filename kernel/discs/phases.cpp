@@ -106,8 +106,8 @@ double Phases::flux_potential(double c) const {
          s * (first + s * (3 * rise - 2 * first - last + s * (first + last - 2 * rise)));
 }
 
-double Phases::tail(double potential) const {
-  return profile_length_ * std::log1p(1 / std::max(mobility(outside(potential)), 1e-12));
+double Phases::tail(double c) const {
+  return profile_length_ * std::log1p(1 / std::max(mobility(c), 1e-12));
 }
 
 double Phases::mass(double area) const {

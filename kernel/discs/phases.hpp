@@ -32,10 +32,10 @@ class Phases {
   double inside(double potential) const;
   double flux_potential(double c) const;  // G, 0 at c = 0; from −¼ to the spinodal
 
-  // How far from the boundary of a disc with this potential the phase outside seems to begin. In
+  // How far from the boundary of a disc the phase outside, of concentration c, seems to begin. In
   // the tail of the profile lipids are more mobile than beyond: the resistance ∫ ds/M(s) of a tail
-  // M = m + e^(−s/δ) is that of a sharp boundary at δ ln(1 + 1/m), where m = M(c) outside.
-  double tail(double potential) const;
+  // M = m + e^(−s/δ) is that of a sharp boundary at δ ln(1 + 1/m), where m = M(c).
+  double tail(double c) const;
 
   // ∫ c over a disc whose level curve ½ encloses `area`, with its boundary.
   double mass(double area) const;

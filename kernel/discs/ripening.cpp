@@ -39,10 +39,10 @@ void Ripening::set_places(const std::vector<Disc>& discs) {
     }
 }
 
-Vec Ripening::half_angles_with_tails(const Vec& area) const {
+Vec Ripening::half_angles_with_tails(const Vec& area, const Vec& outside) const {
   constexpr double kShare = 0.45;  // of the gap to a neighbour
   Vec angle = area.unaryExpr([](double a) { return half_angle(a); });
-  Vec tail = area.unaryExpr([&](double a) { return phases_.tail(phases_.potential(a)); });
+  Vec tail = outside.unaryExpr([&](double c) { return phases_.tail(c); });
   for (Eigen::Index i = 0; i < area.size(); ++i) {
     tail[i] = std::min(tail[i], kShare * (kPi - angle[i]));
     for (Eigen::Index j = 0; j < i; ++j) {
@@ -148,10 +148,10 @@ bool Ripening::rate(const Contents& contents, Contents& result) const {
   const double outside = uncovered(contents.area);
   if (!(outside > 0) || (count > 0 && !(contents.area.minCoeff() > 0))) return false;
   const double around = background(contents);
-  const Vec angle = half_angles_with_tails(contents.area);
-  const Vec potential = contents.area.unaryExpr([&](double area) {
-    return phases_.flux_potential(phases_.outside(phases_.potential(area)));
-  });
+  const Vec beside = contents.area.unaryExpr(
+      [&](double area) { return phases_.outside(phases_.potential(area)); });
+  const Vec angle = half_angles_with_tails(contents.area, beside);
+  const Vec potential = beside.unaryExpr([&](double c) { return phases_.flux_potential(c); });
   // The potential inside a disc is that of its boundary.
   const double mean =
       (outside * phases_.flux_potential(around) + contents.area.dot(potential)) / (4 * kPi);

@@ -44,7 +44,8 @@ class Ripening {
   double background(const Contents& contents) const;
 
  private:
-  Vec half_angles_with_tails(const Vec& area) const;
+  // `outside`: c beside each disc.
+  Vec half_angles_with_tails(const Vec& area, const Vec& outside) const;
   bool solve_charges(const Vec& angle, const Vec& difference, Vec& charge) const;
   void add_near_fluxes(const Vec& angle, const Vec& potential, Vec& charge) const;
   Vec product(const Eigen::MatrixXd& green, const Vec& own, const Vec& x) const;

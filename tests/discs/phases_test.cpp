@@ -78,7 +78,7 @@ TEST(PhasesTest, TheTailOfAProfileHasTheResistanceOfItsLengthLess) {
   double less = 0;
   for (double s = step / 2; s < 40 * length; s += step)
     less += step * (1 - m / (m + std::exp(-s / length)));
-  EXPECT_NEAR(phases.tail(mu), less, 1e-6);
+  EXPECT_NEAR(phases.tail(phases.outside(mu)), less, 1e-6);
 }
 
 }  // namespace

@@ -45,17 +45,26 @@ EnsembleFit fit_from(const EnsembleFit& start, const EnsembleLikelihood& likelih
   return fit;
 }
 
-// The best of fits at each level, from one level to the next.
+// The best of fits at each level, from one level to the next. A strong effect may shift the unit in
+// proportion to its strength, so that the last shift is repeated.
 EnsembleFit best_of_levels(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
                            const UnitPrior& unit, const EnsembleFit& near) {
   EnsembleFit best, fit = near;
   best.deviance = std::numeric_limits<double>::infinity();
+  double shift = 0;
   for (double a = 1; a <= model.largest_amplitude(); a += 1) {
     const RunCurves curves = model.at(a);
     const EnsembleModel level(&curves);
-    fit =
-        fit_from(fit, EnsembleLikelihood(blocks, level, unit), FreeParameters(blocks, level, unit));
+    const EnsembleLikelihood likelihood(blocks, level, unit);
+    const FreeParameters free(blocks, level, unit);
+    const double before = fit.ln_unit;
+    EnsembleFit shifted = fit;
+    shifted.ln_unit += shift;
+    const EnsembleFit one = fit_from(fit, likelihood, free),
+                      other = fit_from(shifted, likelihood, free);
+    fit = other.deviance < one.deviance ? other : one;
     fit.amplitude = a;
+    shift = fit.ln_unit - before;
     if (fit.deviance < best.deviance) best = fit;
   }
   return best;

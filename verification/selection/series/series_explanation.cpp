@@ -170,7 +170,7 @@ class SeriesSearch {
     const SeriesCandidate& candidate = candidates_[k];
     const double gain = gains_.values[static_cast<Eigen::Index>(k)];
     const double noise = null_.mean[static_cast<Eigen::Index>(k)];
-    const double p = share_of_noise(null_.highest, gain / noise);
+    const double p = share_of_noise(null_.highest, null_.surprise(k, gain));
     result_.p = std::min(result_.p, p);
     const double deviation = candidate.deviation(fit);
     const statistics::Interval bounds =
@@ -208,11 +208,20 @@ class SeriesSearch {
 
   bool significant(double p) const { return p <= request_.false_alarms; }
 
-  // The more telling one is the more probable one of two that noise hardly explains. The gain in
-  // units of what noise gains says which those are, not which of them it is.
+  bool leaves_trend(const SeriesScore& score) const {
+    return score.trend_p <= kTrendLevel * request_.false_alarms;
+  }
+
+  // One beside which a trend is left does not explain the data. Of two that noise hardly explains
+  // the more probable one is the more telling. Their p says which those are, not which of them it
+  // is.
   bool more_telling(const SeriesScore& a, const SeriesScore& b) const {
+    const auto explains = [this](const SeriesScore& s) {
+      return significant(s.p) && !leaves_trend(s);
+    };
+    if (explains(a) != explains(b)) return explains(a);
     if (significant(a.p) != significant(b.p)) return significant(a.p);
-    return significant(a.p) ? a.gain > b.gain : a.gain / a.null_mean > b.gain / b.null_mean;
+    return significant(a.p) ? a.gain > b.gain : a.p < b.p;
   }
   // Before scores are sorted.
   std::size_t best_of(const std::vector<std::size_t>& candidates) const {
@@ -259,7 +268,8 @@ class SeriesSearch {
       const std::size_t other = best_of(members);
       if (std::count(members.begin(), members.end(), best) > 0) {
         result_.named.insert(result_.named.begin(), names_of(members));
-      } else if (gain(best) - gain(other) < kTelling * noise) {
+      } else if (gain(best) - gain(other) < kTelling * noise &&
+                 !leaves_trend(result_.scores[other])) {
         result_.named.push_back(names_of(members));
         const double factor = candidates_[best].has_one_level() ? gains_.fits[best].amplitude : 1.0;
         const SeriesResponse difference = factor * responses_.beyond(best, other);

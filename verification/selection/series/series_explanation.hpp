@@ -26,7 +26,7 @@ struct SeriesScore {
   std::string effect;
   double gain;       // 2 ln of the likelihood ratio, the effect's strength being free
   double null_mean;  // the same of data of the base model, on average
-  double p;          // share of these in which any effect gains as much, over its own average
+  double p;          // share of these in which any effect gains as much, for what it is
   double trend_p;    // share of these that leave as large a trend as the data do with the effect
   double ln_unit;    // of R²/D in seconds, with the effect
   double amplitude;  // of its fit

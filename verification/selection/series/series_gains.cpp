@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "verification/likelihood/drawn_vesicles.hpp"
+#include "verification/selection/fit/score_test.hpp"
 
 namespace traceraft::selection {
 namespace {
@@ -82,7 +83,8 @@ SeriesNull null_of(const observations::MeasuredVesicles& data,
   const observations::StatedErrors errors(data);
   const auto count = static_cast<Eigen::Index>(candidates.size());
   const SeriesSamples samples(runs, candidates);
-  Eigen::MatrixXd gained(replicates, count);
+  Eigen::MatrixXd& gained = result.gains;
+  gained.resize(replicates, count);
   result.trend.resize(replicates);
   result.ln_unit.resize(replicates);
   for (int r = 0; r < replicates; ++r) {
@@ -106,8 +108,18 @@ SeriesNull null_of(const observations::MeasuredVesicles& data,
   for (auto* squares : {&result.levels, &result.slopes})
     for (double& value : *squares) value = std::sqrt(value / replicates);
   result.mean = gained.colwise().mean().transpose().cwiseMax(0.5);
-  result.highest = (gained * result.mean.cwiseInverse().asDiagonal()).rowwise().maxCoeff();
+  result.highest.setZero(replicates);
+  for (Eigen::Index r = 0; r < replicates; ++r)
+    for (Eigen::Index k = 0; k < count; ++k)
+      result.highest[r] =
+          std::max(result.highest[r], result.surprise(static_cast<std::size_t>(k), gained(r, k)));
   return result;
+}
+
+double SeriesNull::surprise(std::size_t candidate, double gain) const {
+  constexpr double kLeast = 1e-300;
+  return -std::log(
+      std::max(gamma_tail(gains.col(static_cast<Eigen::Index>(candidate)), gain), kLeast));
 }
 
 }  // namespace traceraft::selection
