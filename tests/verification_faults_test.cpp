@@ -116,6 +116,7 @@ struct Fault {
   bench::RunProgram program = {};
   const char* seen_on_ranks = "";  // the claim that sees `program`, if solvers work on ranks
   const char* failure = "";        // words of why the computation fails
+  std::function<void(discs::DiscModel&)> discs = {};
 };
 
 std::ostream& operator<<(std::ostream& out, const Fault& fault) {
@@ -144,6 +145,10 @@ class BrokenBench final : public bench::Bench {
                             problem::CahnHilliardModel model) const override {
     if (fault_.model) fault_.model(model);
     return bench::Bench::problem(std::move(space), std::move(model));
+  }
+  discs::DiscModel disc_model(discs::DiscModel model) const override {
+    if (fault_.discs) fault_.discs(model);
+    return model;
   }
   time::IntegratorPtr make_integrator(const problem::DaeProblem& problem,
                                       const fem::SurfaceSpace& space, const std::string& name,
@@ -285,6 +290,18 @@ const Fault kFaults[] = {
      "a field with boundaries 15 % too wide",
      {"energy, discs / field"},
      [](problem::CahnHilliardModel& m) { m.epsilon *= 1.15; }},
+    {"published",
+     "a membrane ten times as viscous",
+     {"2:1: root mean square", "3:1: root mean square"},
+     {},
+     {},
+     "",
+     0,
+     false,
+     {},
+     "",
+     "",
+     [](discs::DiscModel& m) { m.membrane.thermal *= 0.1; }},
     {"pfhub",
      "a well 5 % too deep",
      {"t = 0.1 to 100: largest relative difference"},

@@ -38,7 +38,7 @@ constexpr double kTimeRange = 8;
 // With flow rafts may meet by themselves, and D may be that of lipids.
 constexpr double kTimeRangeOfDiscs = 1000;
 // Of series, for the model and for each effect.
-constexpr int kRuns = 8, kRunsOfDiscs = 32;
+constexpr int kRuns = 8, kRunsOfDiscs = 64;
 constexpr double kZeroCelsius = 273.15, kRoomCelsius = 25;
 
 likelihood::UnitPrior unit_range(const config::Configuration& model, double diffusion_error) {
@@ -233,7 +233,7 @@ drivers::Action define_explain(CLI::App& app) {
       ->type_name("DIR");
   app.add_option("--runs", command->runs,
                  "for series: number of seeds for the model and for each effect; default: 8, with "
-                 "discs 32")
+                 "discs 64")
       ->check(CLI::Range(3, 1000));
   app.add_option("--ensembles", command->ensembles,
                  "for series: folder 'ensembles' of an earlier search with the same model; its "

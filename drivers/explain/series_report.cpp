@@ -218,6 +218,10 @@ std::string diffusion_sentence(const config::Configuration& model,
                 std::exp(statistics::kNormal95 * found.unit_deviation));
   if (!found.unit_told)
     return "These series say hardly more about D than was known before: " + range + ".";
+  if (selection::is_named(found.finding))
+    return "With " + found.scores.front().effect +
+           formatted(" D is %.3g cm^2/s; without it, it would be %.3g cm^2/s.",
+                     units_of(model, found.scores.front().ln_unit).diffusion_cm2_s, D);
   return "D is " + range +
          (found.finding == selection::Finding::unnamed ? ", if what is missing does not change D."
                                                        : ", if nothing is missing.");

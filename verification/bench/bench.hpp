@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "kernel/discs/disc_model.hpp"
 #include "kernel/problem/cahn_hilliard.hpp"
 #include "kernel/problem/initial_data.hpp"
 #include "kernel/time/integrator.hpp"
@@ -63,6 +64,8 @@ class Bench {
   virtual SpacePtr space(const geometry::LevelSet& surface, int cells, int threads) const;
   SpacePtr space(const std::string& surface, int cells) const;
   virtual ProblemPtr problem(SpacePtr space, problem::CahnHilliardModel model) const;
+  // The model of discs that a study asks for.
+  virtual discs::DiscModel disc_model(discs::DiscModel model) const { return model; }
   virtual time::IntegratorPtr make_integrator(const problem::DaeProblem& problem,
                                               const fem::SurfaceSpace& space,
                                               const std::string& name,

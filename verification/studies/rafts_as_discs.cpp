@@ -2,10 +2,8 @@
 #include <cmath>
 
 #include "kernel/core/text.hpp"
-#include "kernel/discs/disc_system.hpp"
-#include "kernel/observables/disc_observables.hpp"
 #include "kernel/observables/resolved_boundary.hpp"
-#include "verification/bench/bench.hpp"
+#include "verification/bench/disc_vesicle.hpp"
 #include "verification/statistics/sample.hpp"
 #include "verification/studies/studies.hpp"
 
@@ -49,7 +47,7 @@ VesicleHistory in_field(const bench::Bench& bench, const DiscSizes& sizes, std::
   return history;
 }
 
-VesicleHistory as_discs(const DiscSizes& sizes, std::uint64_t seed) {
+VesicleHistory as_discs(const bench::Bench& bench, const DiscSizes& sizes, std::uint64_t seed) {
   discs::DiscModel model;
   model.mobility = physics::make_mobility("degenerate");
   model.epsilon = sizes.epsilon;
@@ -59,15 +57,7 @@ VesicleHistory as_discs(const DiscSizes& sizes, std::uint64_t seed) {
   asked.raft_fraction = kFraction;
   asked.epsilon = sizes.epsilon;
   asked.seed = seed;
-  discs::DiscSystem system(model, 1e-3, discs::start_state(model, discs::random_discs(asked)));
-  VesicleHistory history;
-  while (history.size() < sizes.times.size()) {
-    bench::require(system.advance(sizes.times.back()));
-    for (; history.size() < sizes.times.size() && sizes.times[history.size()] <= system.state().t;)
-      history.push_back(
-          observables::observe(system, system.interpolated(sizes.times[history.size()])));
-  }
-  return history;
+  return bench::follow_discs(bench, model, asked, 1e-3, sizes.times);
 }
 
 // The mean of a number over pairs of vesicles at one time, and its standard error.
@@ -94,7 +84,7 @@ void compare(const bench::Bench& bench, const DiscSizes& sizes, bench::Part part
       [&](int k) {
         const auto index = static_cast<std::size_t>(k);
         fields[index] = in_field(bench, sizes, index + 1);
-        discs[index] = as_discs(sizes, index + 1);
+        discs[index] = as_discs(bench, sizes, index + 1);
       },
       part);
   const std::string name = formatted("epsilon = %g R", sizes.epsilon);

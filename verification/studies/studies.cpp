@@ -15,6 +15,7 @@ const NamedList<StudyEntry>& studies() {
       raft_coarsening_study(),
       membrane_flow_study(),
       rafts_as_discs_study(),
+      published_vesicles_study(),
       pfhub_study(),
       fine_pfhub_study(),
       integrator_agreement_study(),

@@ -18,6 +18,7 @@ StudyEntry coarsening_study();
 StudyEntry raft_coarsening_study();
 StudyEntry membrane_flow_study();
 StudyEntry rafts_as_discs_study();
+StudyEntry published_vesicles_study();
 StudyEntry pfhub_study();
 StudyEntry fine_pfhub_study();
 StudyEntry solver_iterations_study();
