@@ -48,7 +48,8 @@ TEST(RipeningTest, TwoDiscsAtThePolesExchangeWhatTheExactSolutionSays) {
     return phases.flux_potential(phases.outside(phases.potential(contents.area[i])));
   };
   const auto angle = [&](int i) {
-    return half_angle(contents.area[i]) + phases.tail(phases.outside(phases.potential(contents.area[i])));
+    return half_angle(contents.area[i]) +
+           phases.tail(phases.outside(phases.potential(contents.area[i])));
   };
   const double slope = (value(1) - value(0)) / (std::log(std::tan((kPi - angle(1)) / 2)) -
                                                 std::log(std::tan(angle(0) / 2)));
@@ -68,7 +69,8 @@ TEST(RipeningTest, TwoDiscsAnywhereExchangeWhatTheExactSolutionSays) {
     return phases.flux_potential(phases.outside(phases.potential(contents.area[i])));
   };
   const auto angle = [&](int i) {
-    return half_angle(contents.area[i]) + phases.tail(phases.outside(phases.potential(contents.area[i])));
+    return half_angle(contents.area[i]) +
+           phases.tail(phases.outside(phases.potential(contents.area[i])));
   };
   for (const double apart : {0.9, 1.1, 2.0}) {
     ripening.set_places({{{0, 0, 1}, 0.4}, {{std::sin(apart), 0, std::cos(apart)}, 0.25}});

@@ -56,7 +56,7 @@ TEST_F(ExplainDiscsTest, NamesBrownianMotionWithItsViscosity) {
   EXPECT_EQ(viscosity["unit"], "nPa s m");
   EXPECT_GT(viscosity["value"], 4 / 3.0);
   EXPECT_LT(viscosity["value"], 4 * 3.0);
-  EXPECT_NEAR(verdict["parameters"]["flow.temperature"]["value"], 273.15 + 19.2, 1e-9);
+  EXPECT_NEAR(verdict["parameters"]["flow.temperature"]["value"], 273.15 + 25, 1e-9);
   EXPECT_TRUE(verdict["parameters"]["flow.temperature"]["sigma"].is_null());
 }
 
@@ -67,12 +67,16 @@ TEST_F(ExplainDiscsTest, SaysWhatTheEffectMakesOfTheGap) {
   EXPECT_EQ(flow["effect"], "flow");
   EXPECT_GT(flow["high"], flow["low"]);
   EXPECT_GT(flow["trend_p"], 0.02);
-  const auto slope = [&](const char* offsets) {
-    return std::fabs(series[offsets][0]["slope_deviations"].get<double>());
+  const auto level = [&](const char* offsets) {
+    return std::fabs(series[offsets][0]["level_deviations"].get<double>());
   };
-  EXPECT_LT(slope("best_offsets"), slope("offsets"));
-  EXPECT_LT(series["diffusion_range"]["low"], 5e-6);
-  EXPECT_GT(series["diffusion_range"]["high"], 5e-6);
+  EXPECT_LT(level("best_offsets"), level("offsets"));
+  // Both ends of D are those of what is known of it, or within.
+  for (const char* end : {"low", "high"})
+    if (const auto bound = series["diffusion_range"][end]; !bound.is_null()) {
+      EXPECT_GT(bound, 5e-6 / 1.5);
+      EXPECT_LT(bound, 5e-6 * 1.5);
+    }
 }
 
 TEST_F(ExplainDiscsTest, WritesAModelThatRuns) {
