@@ -95,6 +95,7 @@ class SeriesSearch {
         responses_(blocks_, curves_, levels_, gains_.base, request.unit),
         classes_(classes_of(responses_, candidates.size())),
         null_(null_of(data, base, candidates, gains_.base, request.unit, request.replicates)),
+        surprise_(surprise_of(gains_.values, null_)),
         noise_(noise_of_more(data, base, candidates, gains_.base, request.unit, null_)) {}
 
   SeriesExplanation run() {
@@ -170,7 +171,8 @@ class SeriesSearch {
     const SeriesCandidate& candidate = candidates_[k];
     const double gain = gains_.values[static_cast<Eigen::Index>(k)];
     const double noise = null_.mean[static_cast<Eigen::Index>(k)];
-    const double p = share_of_noise(null_.highest, null_.surprise(k, gain));
+    const double p =
+        share_of_noise(surprise_.highest, surprise_.data[static_cast<Eigen::Index>(k)]);
     result_.p = std::min(result_.p, p);
     const double deviation = candidate.deviation(fit);
     const statistics::Interval bounds =
@@ -289,6 +291,7 @@ class SeriesSearch {
   const SeriesResponses responses_;
   const SeriesClasses classes_;
   const SeriesNull null_;
+  const SeriesSurprise surprise_;
   const std::vector<SeriesNoise> noise_;  // per candidate
   SeriesExplanation result_;
 };

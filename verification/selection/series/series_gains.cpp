@@ -108,18 +108,24 @@ SeriesNull null_of(const observations::MeasuredVesicles& data,
   for (auto* squares : {&result.levels, &result.slopes})
     for (double& value : *squares) value = std::sqrt(value / replicates);
   result.mean = gained.colwise().mean().transpose().cwiseMax(0.5);
-  result.highest.setZero(replicates);
-  for (Eigen::Index r = 0; r < replicates; ++r)
-    for (Eigen::Index k = 0; k < count; ++k)
-      result.highest[r] =
-          std::max(result.highest[r], result.surprise(static_cast<std::size_t>(k), gained(r, k)));
   return result;
 }
 
-double SeriesNull::surprise(std::size_t candidate, double gain) const {
+SeriesSurprise surprise_of(const Vec& gains, const SeriesNull& null) {
   constexpr double kLeast = 1e-300;
-  return -std::log(
-      std::max(gamma_tail(gains.col(static_cast<Eigen::Index>(candidate)), gain), kLeast));
+  const Eigen::Index replicates = null.gains.rows();
+  SeriesSurprise result{Vec(gains.size()), Vec::Zero(replicates)};
+  for (Eigen::Index k = 0; k < gains.size(); ++k) {
+    Vec all(replicates + 1);
+    all << null.gains.col(k), gains[k];
+    const auto surprise = [&](double gain) {
+      return -std::log(std::max(gamma_tail(all, gain), kLeast));
+    };
+    result.data[k] = surprise(gains[k]);
+    for (Eigen::Index r = 0; r < replicates; ++r)
+      result.highest[r] = std::max(result.highest[r], surprise(null.gains(r, k)));
+  }
+  return result;
 }
 
 }  // namespace traceraft::selection

@@ -57,20 +57,24 @@ SeriesGains gains_of(const std::vector<likelihood::ObservedSeries>& blocks,
 // The gains of data that the base model would give.
 struct SeriesNull {
   Vec mean;     // of each candidate's gain, half a unit at least
-  Vec highest;  // of each replicate: the largest surprise
   Vec trend;    // of each replicate: what is left of the base
   Vec ln_unit;  // of each replicate: that of the base
   // Root mean squares over the replicates, one per quantity. They are more than 1, as the model's
   // mean is that of a few runs.
   std::array<double, observations::kQuantities.size()>
-      levels{},  // of SeriesOffset's level_deviations
-      slopes{};  // of its slope_deviations
+      levels{},           // of SeriesOffset's level_deviations
+      slopes{};           // of its slope_deviations
   Eigen::MatrixXd gains;  // a row per replicate, a column per candidate
-
-  // −ln of how often a candidate gains as much. Candidates that are adaptable gain more by noise;
-  // a gamma distribution stands for what each of them gains.
-  double surprise(std::size_t candidate, double gain) const;
 };
+
+// −ln of how often noise gains as much. Candidates that are adaptable gain more by it: a gamma
+// distribution stands for what each of them gains, of data and replicates alike. If the data have
+// no signal they are one more replicate, so that ranks are exact.
+struct SeriesSurprise {
+  Vec data;     // per candidate
+  Vec highest;  // the largest of each replicate
+};
+SeriesSurprise surprise_of(const Vec& gains, const SeriesNull& null);
 // `fit`: of the base model to the data.
 SeriesNull null_of(const observations::MeasuredVesicles& data,
                    const std::vector<observations::History>& runs,
