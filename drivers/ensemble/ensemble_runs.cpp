@@ -38,7 +38,7 @@ jobs::ProcessEnd run_here(const config::GivenValues& model, const EnsembleFolder
   }
 }
 
-// What runs of discs in this folder have in common; none if they are of the field.
+// The model of the runs in this folder if it is one of discs.
 std::optional<config::GivenValues> model_of_discs(const EnsembleFolder& folder) {
   config::GivenValues model = config::read_config_file(folder.config());
   if (!run::is_of_discs(config::Configuration(model, {}))) return std::nullopt;

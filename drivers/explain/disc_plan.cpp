@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "drivers/explain/brownian_viscosity.hpp"
 #include "drivers/run/physical_model.hpp"
 #include "kernel/core/text.hpp"
 #include "verification/assimilation/forecast/candidates.hpp"
+#include "verification/selection/series/brownian_viscosity.hpp"
 #include "verification/selection/series/series_size.hpp"
 
 namespace traceraft::explain {
@@ -35,12 +35,12 @@ std::optional<PlannedEffect> DiscSizes::find(std::size_t k) const {
 // the water is that of a typical viscosity.
 PlannedEffect DiscSizes::brownian_levels() const {
   const physics::Units units = model_.units();
-  const double water = drag_of_water(kTypical, units), step = std::exp(1.0),
-               least = thermal_of(kFastest * kLargest, request_.kelvin, units),
-               most = thermal_of(kLeast / kSlowest, request_.kelvin, units);
+  const double water = selection::drag_of_water(kTypical, units), step = std::exp(1.0),
+               least = selection::thermal_of(kFastest * kLargest, request_.kelvin, units),
+               most = selection::thermal_of(kLeast / kSlowest, request_.kelvin, units);
   PlannedEffect planned;
   for (double thermal = least; thermal < step * most; thermal *= step)
-    planned.levels.push_back(flow_with({0, water, thermal}, units));
+    planned.levels.push_back(selection::flow_with({0, water, thermal}, units));
   return planned;
 }
 
@@ -73,7 +73,7 @@ std::optional<PlannedEffect> DiscSizes::by_response(const std::string& effect) c
 std::size_t typical_level(const PlannedEffect& planned, const config::Configuration& model,
                           const SeriesPlanRequest& request) {
   if (planned.levels.size() == 1) return 0;
-  const double typical = thermal_of(kTypical, request.kelvin, model.units());
+  const double typical = selection::thermal_of(kTypical, request.kelvin, model.units());
   std::size_t best = 0;
   for (std::size_t k = 0; k < planned.levels.size(); ++k)
     if (std::fabs(std::log(planned.strength(k) / typical)) <

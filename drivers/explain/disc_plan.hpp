@@ -15,7 +15,7 @@ class DiscSizes {
   DiscSizes(const config::Configuration& model, const SeriesPlanRequest& request);
 
   const std::vector<std::string>& effects() const { return effects_; }
-  // Of the k-th effect. Nothing: a signal to stop came.
+  // The strengths of the k-th effect. Nothing: a signal to stop came.
   std::optional<PlannedEffect> find(std::size_t k) const;
 
  private:

@@ -35,9 +35,10 @@ namespace fs = std::filesystem;
 
 // Series are explained with D within this factor of the model's, if nothing else is known of it.
 constexpr double kTimeRange = 8;
-// With flow rafts may meet by themselves, and D may be that of lipids.
+// The same of discs: where the membrane flows rafts meet by themselves, and D may be that of
+// lipids.
 constexpr double kTimeRangeOfDiscs = 1000;
-// Of series, for the model and for each effect.
+// Seeds for series, of the model and of each effect.
 constexpr int kRuns = 8, kRunsOfDiscs = 64;
 constexpr double kZeroCelsius = 273.15, kRoomCelsius = 25;
 

@@ -134,16 +134,6 @@ SeriesEnsembles in_seconds(SeriesEnsembles ensembles, const selection::SeriesExp
   return ensembles;
 }
 
-// The level that is nearest to the fit.
-std::size_t nearest_level(const selection::SeriesCandidate& candidate,
-                          const selection::SeriesExplanation& found) {
-  for (const selection::SeriesScore& score : found.scores)
-    if (score.effect == candidate.effect && !candidate.has_one_level())
-      return static_cast<std::size_t>(std::clamp<long>(
-          std::lround(score.amplitude) - 1, 0, static_cast<long>(candidate.levels.size()) - 1));
-  return 0;
-}
-
 // The exponents of the perimeter, over the times that were looked at.
 std::vector<PerimeterExponent> exponents(const observations::MeasuredVesicles& data,
                                          const SeriesEnsembles& ensembles,
@@ -159,7 +149,9 @@ std::vector<PerimeterExponent> exponents(const observations::MeasuredVesicles& d
   };
   add("the model", ensembles.base);
   for (const selection::SeriesCandidate& candidate : ensembles.candidates)
-    add("with " + candidate.effect, candidate.levels[nearest_level(candidate, found)].runs);
+    for (const selection::SeriesScore& score : found.scores)
+      if (score.effect == candidate.effect)
+        add("with " + candidate.effect, candidate.levels[score.level].runs);
   return result;
 }
 

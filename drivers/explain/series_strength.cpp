@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "drivers/explain/brownian_viscosity.hpp"
+#include "verification/selection/series/brownian_viscosity.hpp"
 
 namespace traceraft::explain {
 namespace {
@@ -24,16 +24,10 @@ bool is_brownian(const PlannedEffect& planned) {
   return planned.effect() == "flow" && sought_of(planned).name == "thermal";
 }
 
-double water_of(const PlannedEffect& planned) {
-  const auto& specs = effects::effects().find("flow").parameters;
-  const auto at = std::find_if(specs.begin(), specs.end(),
-                               [](const ParameterSpec& spec) { return spec.name == "water"; });
-  return planned.levels.front().values[static_cast<std::size_t>(at - specs.begin())];
-}
-
 double told_viscosity(const PlannedEffect& planned, const SeriesEnsembles& ensembles,
                       double thermal, const physics::Units& units) {
-  return viscosity_of(thermal, water_of(planned), ensembles.kelvin, units);
+  return selection::viscosity_of(thermal, selection::membrane_of(planned.levels.front()).water,
+                                 ensembles.kelvin, units);
 }
 
 // The more viscous, the weaker the motion.
@@ -82,7 +76,8 @@ std::vector<FoundParameter> assumed_parameters(const config::Configuration& mode
     return all;
   }
   std::vector<FoundParameter> assumed;
-  for (FoundParameter& p : parameters_of(brownian_flow(1, ensembles.kelvin, units), units))
+  for (FoundParameter& p :
+       parameters_of(selection::brownian_flow(1, ensembles.kelvin, units), units))
     if (p.name == "temperature" || p.name == "water-viscosity") assumed.push_back(std::move(p));
   return assumed;
 }
@@ -92,8 +87,8 @@ effects::EffectTerm found_term(const config::Configuration& model, const SeriesE
   const PlannedEffect& planned = planned_of(ensembles, score.effect);
   const physics::Units units = units_of(model, score.ln_unit);
   if (is_brownian(planned))
-    return brownian_flow(told_viscosity(planned, ensembles, score.value, units), ensembles.kelvin,
-                         units);
+    return selection::brownian_flow(told_viscosity(planned, ensembles, score.value, units),
+                                    ensembles.kelvin, units);
   effects::EffectTerm term = planned.levels.front();
   term.values[planned.sought()] = score.value;
   return within_range(std::move(term), planned.sought(), units);

@@ -18,7 +18,7 @@ struct ToldStrength {
   double value, sigma;
   std::optional<double> low, high;  // 95 %; nothing where the data do not bound it
 };
-// That of Brownian flow is told as the viscosity of the membrane.
+// Brownian flow is told as the viscosity of the membrane.
 ToldStrength told_strength(const config::Configuration& model, const SeriesEnsembles& ensembles,
                            const selection::SeriesScore& score);
 

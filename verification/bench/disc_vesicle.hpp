@@ -9,7 +9,7 @@
 
 namespace traceraft::bench {
 
-// What is seen of it at the times (R²/D), which ascend. Throws std::runtime_error if it cannot be
+// Its observables at the times (R²/D), which ascend. Throws std::runtime_error if it cannot be
 // followed.
 std::vector<observables::Observables> follow_discs(const Bench& bench,
                                                    const discs::DiscModel& model,

@@ -57,14 +57,16 @@ EnsembleFit best_of_levels(const std::vector<ObservedSeries>& blocks, const Ense
     const EnsembleModel level(&curves);
     const EnsembleLikelihood likelihood(blocks, level, unit);
     const FreeParameters free(blocks, level, unit);
-    const double before = fit.ln_unit;
-    EnsembleFit shifted = fit;
-    shifted.ln_unit += shift;
-    const EnsembleFit one = fit_from(fit, likelihood, free),
-                      other = fit_from(shifted, likelihood, free);
-    fit = other.deviance < one.deviance ? other : one;
+    EnsembleFit here = fit_from(fit, likelihood, free);
+    if (shift != 0) {
+      EnsembleFit shifted = fit;
+      shifted.ln_unit += shift;
+      const EnsembleFit other = fit_from(shifted, likelihood, free);
+      if (other.deviance < here.deviance) here = other;
+    }
+    shift = here.ln_unit - fit.ln_unit;
+    fit = here;
     fit.amplitude = a;
-    shift = fit.ln_unit - before;
     if (fit.deviance < best.deviance) best = fit;
   }
   return best;

@@ -1,11 +1,10 @@
-// What is published of vesicles, beside rafts that ripen, and rafts that also meet in a membrane
+// Published perimeters of vesicles, beside rafts that ripen, and rafts that also meet in a membrane
 // with the viscosity that others measured. Nothing is fitted.
-#include <algorithm>
 #include <cmath>
 
 #include "kernel/core/text.hpp"
 #include "verification/bench/disc_vesicle.hpp"
-#include "verification/statistics/sample.hpp"
+#include "verification/statistics/power_law.hpp"
 #include "verification/studies/studies.hpp"
 
 namespace traceraft::studies {
@@ -27,7 +26,6 @@ const Published kPublished[] = {{"2:1", "2to1", {49, 4.69, -0.34, 0}, 0.157, 250
 // k_B T at 20 °C in pN µm, and the viscosity of water in mPa s.
 constexpr double kRadius = 5, kEpsilon = 0.05, kOfLipids = 5, kThermal = 4.05e-3, kWater = 1;
 constexpr double kLessViscous = 4.1, kMoreViscous = 9.7;
-constexpr double kSlopeBegin = 100, kSlopeEnd = 316;  // s
 
 struct Membrane {
   double diffusion, viscosity;  // 0: it does not flow
@@ -78,26 +76,20 @@ std::vector<double> mean_perimeters(const bench::Bench& bench, const Published& 
   return means;
 }
 
-double slope(const std::vector<double>& times, const std::vector<double>& values) {
-  const auto at = [&](double t) {
-    const auto found = std::min_element(times.begin(), times.end(), [&](double a, double b) {
-      return std::fabs(a - t) < std::fabs(b - t);
-    });
-    return static_cast<std::size_t>(found - times.begin());
-  };
-  const std::size_t i = at(kSlopeBegin), j = at(kSlopeEnd);
-  return std::log(values[j] / values[i]) / std::log(times[j] / times[i]);
-}
-
 statistics::Points points_of(const std::vector<double>& times, const std::vector<double>& values) {
   statistics::Points points;
   for (std::size_t i = 0; i < times.size(); ++i) points.emplace_back(times[i], values[i]);
   return points;
 }
 
+// From 100 to 316 s, the first and the fourth of the times.
+double slope(const std::vector<double>& times, const std::vector<double>& values) {
+  return statistics::fit_power_law({{times[0], values[0]}, {times[3], values[3]}}).slope;
+}
+
 void compare(const bench::Bench& bench, const Published& published, bench::Part part,
              bench::Chart& chart, StudyReport& report) {
-  const std::vector<double> times{100, 147, 215, 316, 464, 681, 1000};
+  const std::vector<double> times{100, 147, 215, 316, 464, 681, 1000};  // s
   std::vector<double> law;
   for (const double t : times) law.push_back(published.perimeter.at(t));
   const double third = (part.to - part.from) / 3;

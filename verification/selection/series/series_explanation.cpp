@@ -192,7 +192,7 @@ class SeriesSearch {
             bounds.low,
             bounds.high,
             bounds.low >= std::min(least, most) && bounds.high <= std::max(least, most),
-            candidate.levels[levels_[k]].strength,
+            levels_[k],
             needed(responses_.of(k), k),
             responses_.telling(responses_.of(k))};
   }

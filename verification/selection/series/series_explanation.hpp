@@ -34,8 +34,9 @@ struct SeriesScore {
       sigma;         // its standard deviation
   double low, high;  // its 95 % bounds
   bool bounded;      // they are within what has been simulated
-  double shown;      // a strength
-  double vesicles;   // so many as these show it at that strength; see times_needed
+  std::size_t
+      level;        // of the candidate, nearest to the fit; the typical one if that has none of it
+  double vesicles;  // so many as these show it at that level; see times_needed
   observations::Quantity telling;  // what shows it best
 };
 

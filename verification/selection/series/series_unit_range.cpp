@@ -23,15 +23,14 @@ class UnitProfile {
            const likelihood::EnsembleFit& base, double least_deviance, double noise) {
     const double most = least_deviance + std::pow(statistics::kNormal95, 2) * std::max(1.0, noise);
     const double step = model.has_several_levels() ? 0.5 : 0.25;
-    for (const double direction : {1.0, -1.0}) {
+    widen_by("", base, most);
+    for (const double direction : {step, -step}) {
       likelihood::EnsembleFit near = base;
-      for (double a = 0; a <= model.largest_amplitude() && a >= model.least_amplitude();
-           a += direction * step) {
+      for (double a = direction; a <= model.largest_amplitude() && a >= model.least_amplitude();
+           a += direction) {
         const likelihood::RunCurves curves = model.at(a);
         near = likelihood::fit_ensemble(blocks_, {&curves}, unit_, near);
-        if (near.deviance <= most)
-          widen(a == 0 ? "" : effect, near.ln_unit,
-                widening_ * std::sqrt((most - near.deviance) * near.covariance(0, 0)));
+        widen_by(effect, near, most);
       }
     }
   }
@@ -44,9 +43,11 @@ class UnitProfile {
   }
 
  private:
-  void widen(const std::string& effect, double ln_unit, double width) {
-    const double low = std::max(ln_unit - width, unit_.lowest()),
-                 high = std::min(ln_unit + width, unit_.highest());
+  void widen_by(const std::string& effect, const likelihood::EnsembleFit& fit, double most) {
+    if (fit.deviance > most) return;
+    const double width = widening_ * std::sqrt((most - fit.deviance) * fit.covariance(0, 0)),
+                 low = std::max(fit.ln_unit - width, unit_.lowest()),
+                 high = std::min(fit.ln_unit + width, unit_.highest());
     if (low < range_.low) {
       range_.low = low;
       range_.low_by = effect;

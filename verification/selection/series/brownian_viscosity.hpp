@@ -4,7 +4,7 @@
 #include "kernel/effects/effects.hpp"
 #include "kernel/flow/fluid_membrane.hpp"
 
-namespace traceraft::explain {
+namespace traceraft::selection {
 
 // W of a membrane with this viscosity (nPa s m) between waters of the default viscosity.
 double drag_of_water(double viscosity, const physics::Units& units);
@@ -20,7 +20,9 @@ double viscosity_of(double thermal, double water, double kelvin, const physics::
 
 // The effect flow of a membrane that is described by its numbers.
 effects::EffectTerm flow_with(const flow::FluidMembrane& membrane, const physics::Units& units);
-// The same by the viscosity (nPa s m), with Brownian motion alone.
+// The numbers of such an effect.
+flow::FluidMembrane membrane_of(const effects::EffectTerm& flow);
+// The effect flow by the viscosity (nPa s m), with Brownian motion alone.
 effects::EffectTerm brownian_flow(double viscosity, double kelvin, const physics::Units& units);
 
-}  // namespace traceraft::explain
+}  // namespace traceraft::selection

@@ -1,11 +1,11 @@
-#include "drivers/explain/brownian_viscosity.hpp"
+#include "verification/selection/series/brownian_viscosity.hpp"
 
 #include <cmath>
 #include <stdexcept>
 
 #include "kernel/discs/brownian_motion.hpp"
 
-namespace traceraft::explain {
+namespace traceraft::selection {
 namespace {
 
 const std::vector<ParameterSpec>& flow_parameters() {
@@ -75,6 +75,11 @@ effects::EffectTerm flow_with(const flow::FluidMembrane& membrane, const physics
   return term;
 }
 
+flow::FluidMembrane membrane_of(const effects::EffectTerm& flow) {
+  const auto number = [&](const std::string& name) { return flow.values[index_of(name)]; };
+  return {number("capillary"), number("water"), number("thermal")};
+}
+
 effects::EffectTerm brownian_flow(double viscosity, double kelvin, const physics::Units& units) {
   effects::EffectTerm term = flow_by_default(units);
   term.values[index_of("membrane-viscosity")] =
@@ -83,4 +88,4 @@ effects::EffectTerm brownian_flow(double viscosity, double kelvin, const physics
   return term;
 }
 
-}  // namespace traceraft::explain
+}  // namespace traceraft::selection
