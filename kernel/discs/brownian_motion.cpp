@@ -55,8 +55,6 @@ void BrownianMotion::set_discs(const std::vector<Disc>& discs) {
   discs_ = discs;
   const auto count = static_cast<Eigen::Index>(discs.size());
   const int degree = degree_for(discs);
-  std::vector<Vec> weights;
-  for (const Disc& disc : discs) weights.push_back(weights_of(disc, membrane_, degree));
   along_.resize(count, count);
   across_.resize(count, count);
   Eigen::ArrayXXd weight(count, degree + 1);

@@ -30,7 +30,16 @@ constexpr double kAboutToDissolve = 4;
 // Areas of discs that are smaller than this share of the mean one are as exact as that share is.
 constexpr double kSmallShare = 0.1;
 
-constexpr double kSafety = 0.9, kLargestGrowth = 2, kLargestCut = 0.2;
+constexpr double kSafety = 0.9, kLargestGrowth = 5, kLargestCut = 0.2;
+// A step takes at most this share of what is left of a disc's time, at its present rate: longer
+// ones are rejected.
+constexpr double kShareOfLife = 0.5;
+// Of an area, for a coordinate that falls in a straight line where a disc dissolves.
+constexpr double kPower = 1.75;
+// d(A^p)/dA
+double power_slope(double area) {
+  return kPower * std::pow(area, kPower - 1);
+}
 
 Contents contents_of(const DiscState& state) {
   Contents contents{Vec(static_cast<Eigen::Index>(state.discs.size())), state.mass};
@@ -46,11 +55,11 @@ void take_contents(const Contents& contents, DiscState& state) {
 }
 
 DiscCoordinates coordinates_of(const Contents& contents) {
-  return {contents.area.array().pow(1.5).matrix(), contents.mass};
+  return {contents.area.array().pow(kPower).matrix(), contents.mass};
 }
 
 Contents contents_at(const DiscCoordinates& at) {
-  return {at.power.array().pow(2.0 / 3).matrix(), at.mass};
+  return {at.power.array().pow(1 / kPower).matrix(), at.mass};
 }
 
 DiscCoordinates moved(const DiscCoordinates& from, double step, const DiscCoordinates& rate) {
@@ -61,7 +70,7 @@ DiscCoordinates moved(const DiscCoordinates& from, double step, const DiscCoordi
 bool rate_at(const Ripening& ripening, const Contents& contents, DiscCoordinates& result) {
   Contents rate;
   if (!ripening.rate(contents, rate)) return false;
-  result = {(1.5 * contents.area.array().sqrt() * rate.area.array()).matrix(), rate.mass};
+  result = {contents.area.unaryExpr(&power_slope).cwiseProduct(rate.area), rate.mass};
   return true;
 }
 
@@ -131,7 +140,7 @@ bool DiscSystem::attempt(const Ripening& ripening, const DiscState& from,
                          const DiscCoordinates& first, double step, Attempt& result) const {
   const Contents before = contents_of(from);
   const DiscCoordinates start = coordinates_of(before);
-  const double shortest = phases().smallest_area(), least = std::pow(0.5 * shortest, 1.5);
+  const double shortest = phases().smallest_area(), least = std::pow(0.5 * shortest, kPower);
   const auto after = [&](const DiscCoordinates& at, double time, const DiscCoordinates& rate) {
     DiscCoordinates next = moved(at, time, rate);
     next.power = next.power.cwiseMax(least);
@@ -150,7 +159,7 @@ bool DiscSystem::attempt(const Ripening& ripening, const DiscState& from,
     if (end.area[i] > shortest || before.area[i] > kAboutToDissolve * shortest) {
       const double off = step * (-5 * first.power[i] / 72 + second.power[i] / 12 +
                                  third.power[i] / 9 - last.power[i] / 8);
-      error = std::max(error, std::fabs(off) / (1.5 * std::sqrt(end.area[i])) /
+      error = std::max(error, std::fabs(off) / power_slope(end.area[i]) /
                                   (tolerance_ * std::max(end.area[i], small)));
     }
   result = {end, last, error};
@@ -164,7 +173,8 @@ double DiscSystem::longest_step() const {
   for (std::size_t i = 0; i < state_.discs.size(); ++i) {
     const double area = state_.discs[i].area, rate = rate_.power[static_cast<Eigen::Index>(i)];
     if (rate < 0 && area > small)
-      step = std::min(step, (std::pow(0.5 * small, 1.5) - std::pow(area, 1.5)) / rate);
+      step = std::min(
+          step, kShareOfLife * (std::pow(0.5 * small, kPower) - std::pow(area, kPower)) / rate);
   }
   return step;
 }

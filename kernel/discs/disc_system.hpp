@@ -26,8 +26,9 @@ struct DiscStatistics {
   std::int64_t steps = 0, rejected = 0, walks = 0, merged = 0, dissolved = 0;
 };
 
-// Steps are made in A^(3/2) of each area A. A disc that dissolves loses area as −1/√A nearly, as
-// its potential goes with its curvature, so that this falls in a straight line.
+// Steps are made in A^(7/4) of each area A. A disc that dissolves loses area like a power of A
+// between −½ (a constant mobility) and −1 (the degenerate one), so that this falls in a straight
+// line nearly.
 struct DiscCoordinates {
   Vec power;
   double mass = 0;

@@ -67,21 +67,14 @@ double Phases::potential(double area) const {
   return line_tension_ * curvature(area) * boundary(area).value.potential;
 }
 
-// f0' rises on the branch.
+// The smallest root of x³ − x = q, with x from −1 to 1 between the wells (Viète).
 double Phases::outside(double potential) const {
-  double low = lowest_, high = spinodal(well_);
-  if (potential >= largest_potential_) return high;
-  if (potential <= well_.derivative(low)) return low;
-  double c = std::clamp(potential / well_.second(0), low, high);
-  for (int k = 0; k < 60; ++k) {
-    const double excess = well_.derivative(c) - potential;
-    (excess > 0 ? high : low) = c;
-    const double next = c - excess / well_.second(c);
-    const double taken = next > low && next < high ? next : 0.5 * (low + high);
-    if (std::fabs(taken - c) <= 1e-15) return taken;
-    c = taken;
-  }
-  return c;
+  if (potential >= largest_potential_) return spinodal(well_);
+  const double width = well_.b - well_.a,
+               q = 1.5 * std::sqrt(3.0) * 2 * potential / (well_.rho * width * width * width);
+  const double x = -2 / std::sqrt(3.0) *
+                   (q > -1 ? std::cos((std::acos(q) - kPi) / 3) : std::cosh(std::acosh(-q) / 3));
+  return std::max(lowest_, 0.5 * (well_.a + well_.b + width * x));
 }
 
 // f0' is odd about ½.

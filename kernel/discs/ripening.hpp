@@ -48,14 +48,15 @@ class Ripening {
   Vec half_angles_with_tails(const Vec& area, const Vec& outside) const;
   bool solve_charges(const Vec& angle, const Vec& difference, Vec& charge) const;
   void add_near_fluxes(const Vec& angle, const Vec& potential, Vec& charge) const;
-  Vec product(const Eigen::MatrixXd& green, const Vec& own, const Vec& x) const;
+  Vec product(const Vec& caps, const Vec& own, const Vec& x) const;
 
   Phases phases_;
   double uptake_;
-  // These depend on the places alone: ln((1 − cos θ_ij)/2) and θ_ij for i > j; ∇_j N and ∇_i ∇_j N,
-  // with two directions of each disc.
-  Eigen::MatrixXd logarithms_, angles_, of_dipoles_, between_dipoles_;
-  mutable Vec charges_;  // and dipoles that were found last, to begin with
+  // These depend on the places alone: ln((1 − cos θ_ij)/2) and θ_ij for i > j; and the lower half
+  // of the matrix of charges and dipoles (two directions each) without the diagonal and the caps.
+  Eigen::MatrixXd logarithms_, angles_;
+  Eigen::MatrixXf between_;  // single precision is exact enough, and twice as fast
+  mutable Vec charges_;      // and dipoles that were found last, to begin with
 };
 
 }  // namespace traceraft::discs
