@@ -33,6 +33,31 @@ TEST(EnsembleFit, FindsUnitAndStrength) {
   EXPECT_NEAR(fit.deviance, metric.product(r, r) + metric.log_determinant() + known, 1e-8);
 }
 
+// Fifty vesicles beside the mean of ten runs, whose own offset is in the fit.
+TEST(EnsembleFit, KnowsTheErrorOfTheRuns) {
+  constexpr int kDraws = 60;
+  double without = 0, with = 0;
+  for (std::uint64_t draw = 0; draw < kDraws; ++draw) {
+    std::vector<observations::History> runs, more;
+    for (std::uint64_t k = 0; k < 10; ++k) {
+      runs.push_back(vesicle({}, 1000 + 10 * draw + k));
+      more.push_back(vesicle({-1 / 3.0, 0, 0, 0.3}, 1000 + 10 * draw + k));
+    }
+    const likelihood::RunCurves base(runs), changed(more);
+    const auto blocks = likelihood::observed_series(
+        measured({-1 / 3.0, 0, 0, 0.15}, 50, 0.05, 1, 10000 + 50 * draw));
+    const likelihood::EnsembleModel model{&base, {&changed}};
+    const likelihood::EnsembleFit fit =
+        likelihood::fit_ensemble(blocks, model, likelihood::UnitPrior::within_factor(1, 1.001));
+    const double truth = std::log(1.15) / std::log(1.3), off = fit.amplitude - truth;
+    without += std::pow(off / fit.deviation, 2) / kDraws;
+    with +=
+        std::pow(off / likelihood::with_error_of_runs(blocks, model, fit).deviation, 2) / kDraws;
+  }
+  EXPECT_GT(without, 3);
+  EXPECT_NEAR(with, 1, 0.55);  // three standard deviations of the mean of 60 squares
+}
+
 // One raft and two, where as many are expected: what was counted says nothing of how well.
 TEST(ObservationMetric, CountsAreKnownByTheNumberExpected) {
   const likelihood::RunCurves base(ensemble({}));

@@ -52,13 +52,26 @@ TEST_F(EnsembleModelTest, SeveralLevelsAreMet) {
   EXPECT_EQ(several.least_amplitude(), 0);
   EXPECT_EQ(several.largest_amplitude(), 5);
   for (std::size_t k = 0; k < 5; ++k)
-    for (const Quantity quantity : observations::kQuantities) {
-      const double amplitude = static_cast<double>(k) + 1;
-      EXPECT_NEAR(several.at(amplitude).mean(quantity, kLnT),
+    for (const Quantity quantity : observations::kQuantities)
+      EXPECT_NEAR(several.at(static_cast<double>(k) + 1).mean(quantity, kLnT),
                   curves.level(0, k).mean(quantity, kLnT), 1e-12);
-      EXPECT_NEAR(several.at(amplitude).variance(quantity, kLnT),
-                  curves.level(0, k).variance(quantity, kLnT), 1e-12);
-    }
+}
+
+// Variances of few runs jump from level to level, here between 1 and 3.
+TEST_F(EnsembleModelTest, ScatterIsAMeanOverNeighbours) {
+  std::vector<RunCurves> values;
+  for (int k = 0; k <= 12; ++k) {
+    likelihood::RunScatter scatter{{}, {0.5, 0.5, 0.5}};
+    for (auto& own : scatter.variance) own.assign(3, k % 2 == 0 ? 1 : 3);
+    values.emplace_back(std::vector<double>{1, 10, 100}, scatter.variance, scatter, 1000000);
+  }
+  std::vector<const RunCurves*> levels;
+  for (std::size_t k = 1; k < values.size(); ++k) levels.push_back(&values[k]);
+  const EnsembleModel model(&values[0], levels);
+  for (const double a : {4.0, 6.5, 7.3, 9.0})
+    EXPECT_NEAR(model.at(a).variance(Quantity::rafts, 1), 2, 0.01) << a;
+  const double alike = several.at(2.5).variance(Quantity::perimeter, kLnT);
+  EXPECT_NEAR(alike, curves.level(0, 2).variance(Quantity::perimeter, kLnT), 0.1 * alike);
 }
 
 TEST_F(EnsembleModelTest, DerivativeIsContinuousAndThatOfTheCurves) {

@@ -45,6 +45,16 @@ EnsembleFit fit_from(const EnsembleFit& start, const EnsembleLikelihood& likelih
   return fit;
 }
 
+std::vector<Eigen::Index> looks_at(const std::vector<ObservedSeries>& blocks,
+                                   observations::Quantity quantity) {
+  std::vector<Eigen::Index> result;
+  Eigen::Index next = 0;
+  for (const ObservedSeries& block : blocks)
+    for (Eigen::Index i = 0; i < block.values.size(); ++i, ++next)
+      if (block.quantity == quantity) result.push_back(next);
+  return result;
+}
+
 // The best of fits at each level, from one level to the next. A strong effect may shift the unit in
 // proportion to its strength, so that the last shift is repeated.
 EnsembleFit best_of_levels(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
@@ -136,6 +146,35 @@ EnsembleFit fit_ensemble(const std::vector<ObservedSeries>& blocks, const Ensemb
   if (!model.has_several_levels()) return fit;
   const EnsembleFit other = fit_from(best_of_levels(blocks, model, unit, near), likelihood, free);
   return other.deviance < fit.deviance ? other : fit;
+}
+
+// A mean that is off by δ moves the fit by P Jᵀ K⁻¹ δ. Here P is the covariance of the fit, J has
+// the derivatives of the mean by its parameters, and K is the covariance of the looks. The runs
+// that tell δ are few.
+EnsembleFit with_error_of_runs(const std::vector<ObservedSeries>& blocks,
+                               const EnsembleModel& model, EnsembleFit fit) {
+  const RunCurves curves = model.at(fit.amplitude), by = model.by_amplitude(fit.amplitude);
+  const ObservationMetric metric = metric_of(blocks, model, fit);
+  const Vec ln_t = per_look(blocks, [&](const ObservedSeries& block, Eigen::Index i) {
+    return block.ln_t[i] - fit.ln_unit;
+  });
+  const Vec by_unit = metric.solved(unit_response(blocks, curves, fit.ln_unit)),
+            by_amplitude = metric.solved(
+                per_look(blocks, ln_t, [&](const ObservedSeries&block, Eigen::Index, double t) {
+                  return by.mean(block.quantity, t);
+                }));
+  Eigen::Matrix2d pulled = Eigen::Matrix2d::Zero();
+  for (const observations::Quantity quantity : observations::kQuantities) {
+    const std::vector<Eigen::Index> looks = looks_at(blocks, quantity);
+    Eigen::MatrixX2d pull(looks.size(), 2);
+    pull << by_unit(looks), by_amplitude(looks);
+    pulled += pull.transpose() * curves.covariance(quantity, ln_t(looks)) * pull;
+  }
+  const double student = statistics::student_factor(static_cast<int>(curves.count()));
+  fit.covariance +=
+      student * student * curves.share_of_mean() * fit.covariance * pulled * fit.covariance;
+  fit.deviation = std::sqrt(fit.covariance(1, 1));
+  return fit;
 }
 
 statistics::Interval as_probable(const std::vector<ObservedSeries>& blocks,

@@ -50,6 +50,11 @@ EnsembleFit fit_ensemble(const std::vector<ObservedSeries>& blocks, const Ensemb
 EnsembleFit fit_ensemble(const std::vector<ObservedSeries>& blocks, const EnsembleModel& model,
                          const UnitPrior& unit, const EnsembleFit& near);
 
+// The fit with a covariance to which the error of the mean of the runs has been added. All vesicles
+// are held against the same runs, so that more vesicles do not make it smaller.
+EnsembleFit with_error_of_runs(const std::vector<ObservedSeries>& blocks,
+                               const EnsembleModel& model, EnsembleFit fit);
+
 // Difference of deviances, a standard deviation where they are parabolas.
 inline constexpr double kAboutAsProbable = 1;
 // Units of time (s), from the shortest to the longest, by which the data are about as probable as

@@ -44,6 +44,18 @@ Vec cubic_weights(double amplitude, Eigen::Index count, HermiteBasis (*basis)(do
   return weights;
 }
 
+// Weights of levels near an amplitude, which sum to 1, and their derivatives by it.
+struct NearLevels {
+  Vec value, slope;
+};
+NearLevels near_levels(double amplitude, Eigen::Index count) {
+  constexpr double kWidth = 1.5;  // in levels
+  const Eigen::ArrayXd off =
+      (Eigen::ArrayXd::LinSpaced(count, 0, static_cast<double>(count - 1)) - amplitude) / kWidth;
+  const Eigen::ArrayXd bell = (-0.5 * off.square()).exp(), slope = bell * off / kWidth;
+  return {bell / bell.sum(), (slope - bell * slope.sum() / bell.sum()) / bell.sum()};
+}
+
 }  // namespace
 
 EnsembleModel::EnsembleModel(const RunCurves* base, std::vector<const RunCurves*> levels,
@@ -63,27 +75,16 @@ double EnsembleModel::largest_amplitude() const {
 
 RunCurves EnsembleModel::at(double amplitude) const {
   const auto count = static_cast<Eigen::Index>(curves_.size());
-  Vec scatter = Vec::Unit(count, 0);
-  if (count > 2) {
-    const Eigen::Index k = interval_of(amplitude, count);
-    const double share = std::clamp(amplitude - static_cast<double>(k), 0.0, 1.0);
-    scatter.setZero();
-    scatter[k] = 1 - share;
-    scatter[k + 1] = share;
-  }
-  return RunCurves::combined(curves_, cubic_weights(amplitude, count, hermite_values), scatter);
+  return RunCurves::combined(
+      curves_, cubic_weights(amplitude, count, hermite_values),
+      has_several_levels() ? near_levels(amplitude, count).value : Vec::Unit(count, 0));
 }
 
 RunCurves EnsembleModel::by_amplitude(double amplitude) const {
   const auto count = static_cast<Eigen::Index>(curves_.size());
-  Vec scatter = Vec::Zero(count);
-  if (count > 2) {
-    const Eigen::Index k = interval_of(amplitude, count);
-    scatter[k] = -1;
-    scatter[k + 1] = 1;
-  }
-  return RunCurves::combined(curves_, cubic_weights(amplitude, count, hermite_derivatives),
-                             scatter);
+  return RunCurves::combined(
+      curves_, cubic_weights(amplitude, count, hermite_derivatives),
+      has_several_levels() ? near_levels(amplitude, count).slope : Vec::Zero(count));
 }
 
 }  // namespace traceraft::likelihood

@@ -13,8 +13,9 @@ inline constexpr double kLargestAmplitude = 2;
 // The amplitude 0 is the base, and k the k-th level: the effect at its k-th strength. Logarithms
 // are linear in the amplitude if there is one level, also beyond it. If there are more, they are
 // cubic between levels, with a continuous derivative (Catmull and Rom, "A class of local
-// interpolating splines", 1974), and the scatter of runs is linear between them. One level has the
-// scatter of the base.
+// interpolating splines", 1974). The scatter of runs is a mean over the nearest levels: from few
+// runs it is known badly, and a fit would choose the level at which it happens to fit. One level
+// has the scatter of the base.
 class EnsembleModel {
  public:
   // All curves must outlive it and have the same times. `two_sided`: may the amplitude of a single

@@ -84,6 +84,14 @@ double ObservationMetric::product(const Vec& u, const Vec& v,
   return sum;
 }
 
+Vec ObservationMetric::solved(const Vec& v) const {
+  Vec result = Vec::Zero(v.size());
+  for (const Block& block : blocks_)
+    result.segment(block.first, block.count) =
+        block.factor.solve(v.segment(block.first, block.count));
+  return result;
+}
+
 double ObservationMetric::log_determinant() const {
   statistics::LogOfProduct diagonal;
   for (const Block& block : blocks_) {

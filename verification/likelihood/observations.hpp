@@ -72,6 +72,7 @@ class ObservationMetric {
                     const ObservationScatter& scatter,
                     std::optional<observations::Quantity> only = {});
   double product(const Vec& u, const Vec& v, std::optional<observations::Quantity> only = {}) const;
+  Vec solved(const Vec& v) const;  // the inverse of the covariance times v
   double log_determinant() const;  // of the covariance
 
  private:

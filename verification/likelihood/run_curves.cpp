@@ -130,7 +130,7 @@ RunCurves::RunCurves(const RunSamples& samples)
 
 RunCurves::RunCurves(const std::vector<double>& times, QuantityCurves mean, RunScatter scatter,
                      std::size_t count)
-    : spline_(times), mean_(std::move(mean)), scatter_(std::move(scatter)) {
+    : spline_(times), mean_(std::move(mean)), scatter_(std::move(scatter)), count_(count) {
   const double of_mean = 1 + 1 / static_cast<double>(count);
   for (std::vector<double>& values : scatter_.variance)
     for (double& value : values) value *= of_mean;

@@ -93,6 +93,9 @@ class RunCurves {
   double correlation(observations::Quantity quantity, double ln_factor) const;
   // The covariance of one more run at several times: a row and a column for each.
   Eigen::MatrixXd covariance(observations::Quantity quantity, const Vec& ln_t) const;
+  // The share of it that is the error of the mean, the same for all runs that are held against it.
+  double share_of_mean() const { return 1 / (static_cast<double>(count_) + 1); }
+  std::size_t count() const { return count_; }
   // The derivatives of the mean and of the variance by ln t.
   double slope(observations::Quantity quantity, double ln_t) const {
     return spline_.slope(mean_[observations::index_of(quantity)], ln_t);
@@ -105,6 +108,7 @@ class RunCurves {
   LogSpline spline_;
   QuantityCurves mean_;
   RunScatter scatter_;
+  std::size_t count_;
 };
 
 }  // namespace traceraft::likelihood

@@ -167,7 +167,9 @@ class SeriesSearch {
   }
 
   SeriesScore score_of(std::size_t k) {
-    const likelihood::EnsembleFit& fit = gains_.fits[k];
+    const likelihood::EnsembleModel model = curves_.with(k);
+    const likelihood::EnsembleFit fit =
+        likelihood::with_error_of_runs(blocks_, model, gains_.fits[k]);
     const SeriesCandidate& candidate = candidates_[k];
     const double gain = gains_.values[static_cast<Eigen::Index>(k)];
     const double noise = null_.mean[static_cast<Eigen::Index>(k)];
@@ -177,7 +179,6 @@ class SeriesSearch {
     const double deviation = candidate.deviation(fit);
     const statistics::Interval bounds =
         strength_bounds(candidate, fit, bound_width(deviation, 1, candidate.two_sided, noise));
-    const likelihood::EnsembleModel model = curves_.with(k);
     const double least = candidate.strength_at(model.least_amplitude()),
                  most = candidate.strength_at(model.largest_amplitude());
     return {candidate.effect,
