@@ -129,10 +129,12 @@ class BrokenBench final : public bench::Bench {
       : bench::Bench({true, "", "", 1, {}, fault.program}), fault_(fault) {}
 
   using bench::Bench::space;
-  bench::SpacePtr space(const geometry::LevelSet& surface, int cells, int threads) const override {
+  bench::SpacePtr space(geometry::LevelSetPtr surface, int cells, int threads) const override {
     const auto result = std::make_shared<fem::SurfaceSpace>(
-        geometry::FunctionLevelSet(
-            [&](const Point& x) { return surface.value(x) - fault_.inflation; }),
+        std::make_shared<geometry::FunctionLevelSet>(
+            [surface, inflation = fault_.inflation](const Point& x) {
+              return surface->value(x) - inflation;
+            }),
         cells, std::make_shared<ThreadTeam>(threads), std::make_shared<SerialCommunicator>());
     if (fault_.no_stabilisation) {
       std::fill(result->normal_stiffness.values.begin(), result->normal_stiffness.values.end(),

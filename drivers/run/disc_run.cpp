@@ -61,7 +61,7 @@ class DiscRun {
         before_(checkpoint ? checkpoint->cost : RunCost{}),
         progress_(run, quiet) {
     if (configuration.options().fields) {
-      space_.emplace(*surface_of(configuration),
+      space_.emplace(surface_of(configuration),
                      std::min(kPictureCells, configuration.options().cells),
                      std::make_shared<ThreadTeam>(1), std::make_shared<SerialCommunicator>());
       files_.emplace(folder, run, *space_, run.system->model().well);

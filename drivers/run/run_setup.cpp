@@ -52,7 +52,7 @@ RunSetup build_run(const config::Configuration& configuration, InitialState init
   refuse_too_fine(configuration, *surface, *run.ranks);
   run.space = with_option_context(configuration, &config::RunOptions::surface, [&] {
     return std::make_shared<const fem::SurfaceSpace>(
-        *surface, configuration.options().cells, run.team, run.ranks, physics.mass_stabilisation);
+        surface, configuration.options().cells, run.team, run.ranks, physics.mass_stabilisation);
   });
   with_option_context(configuration, &config::RunOptions::effect, [&] {
     for (const problem::EffectPtr& effect : physics.effects) effect->require_surface(*run.space);

@@ -125,17 +125,19 @@ void fill_zero_row_sum(const std::vector<double>& edge, const std::vector<RowBlo
   });
 }
 
-SurfaceSpace::SurfaceSpace(const geometry::LevelSet& level_set, std::int64_t cells,
+SurfaceSpace::SurfaceSpace(geometry::LevelSetPtr level_set_, std::int64_t cells,
                            std::shared_ptr<const ThreadTeam> team_,
                            std::shared_ptr<const Communicator> communicator_,
                            double mass_stabilisation_)
-    : SurfaceSpace(Geometry(level_set, cells, *team_, *communicator_), team_, communicator_,
-                   mass_stabilisation_) {}
+    : SurfaceSpace(level_set_, Geometry(*level_set_, cells, *team_, *communicator_), team_,
+                   communicator_, mass_stabilisation_) {}
 
-SurfaceSpace::SurfaceSpace(Geometry geometry, std::shared_ptr<const ThreadTeam> team_,
+SurfaceSpace::SurfaceSpace(geometry::LevelSetPtr level_set_, Geometry geometry,
+                           std::shared_ptr<const ThreadTeam> team_,
                            std::shared_ptr<const Communicator> communicator_,
                            double mass_stabilisation_)
-    : mesh(std::move(geometry.mesh)),
+    : level_set(std::move(level_set_)),
+      mesh(std::move(geometry.mesh)),
       surface(std::move(geometry.surface)),
       elements(std::move(geometry.elements)),
       moments(build_trace_moments(surface, elements)),

@@ -27,11 +27,12 @@ class SurfaceSpace {
  public:
   // Throws InputError when the surface is not closed inside the box, the mesh is too coarse, or the
   // level set has no gradient on its surface. `mass_stabilisation`: of M̃, in units of h.
-  SurfaceSpace(const geometry::LevelSet& level_set, std::int64_t cells,
+  SurfaceSpace(geometry::LevelSetPtr level_set, std::int64_t cells,
                std::shared_ptr<const ThreadTeam> team,
                std::shared_ptr<const Communicator> communicator,
                double mass_stabilisation = kMassStabilisation);
 
+  const geometry::LevelSetPtr level_set;
   const mesh::ActiveMesh mesh;
   const mesh::CutSurface surface;
   const std::vector<CutElement> elements;
@@ -83,7 +84,8 @@ class SurfaceSpace {
   Status solve_mass(VecView b, VecRef x) const;
 
  private:
-  SurfaceSpace(Geometry geometry, std::shared_ptr<const ThreadTeam> team,
+  SurfaceSpace(geometry::LevelSetPtr level_set, Geometry geometry,
+               std::shared_ptr<const ThreadTeam> team,
                std::shared_ptr<const Communicator> communicator, double mass_stabilisation);
 };
 

@@ -17,7 +17,7 @@ Vec nodal(const fem::SurfaceSpace& space, const std::function<double(const Point
 }
 
 TEST(Blur, IsThatOfAGaussian) {
-  const bench::SpacePtr space = serial_space(*geometry::make_surface("sphere"), 32);
+  const bench::SpacePtr space = serial_space(geometry::make_surface("sphere"), 32);
   constexpr double kWidth = 0.2;
   const Blur blur(*space, kWidth);
   const Vec uniform = Vec::Constant(space->nodes(), 0.7);

@@ -34,8 +34,8 @@ struct Measured {
         model{asked.base, 1, {}, {}} {
     settings.rank = 40;
     settings.replicates = 99;
-    data = make_filter_problems(drawn.vesicles, *geometry::make_surface("sphere"), asked.base, 12,
-                                2, false, settings);
+    data = make_filter_problems(drawn.vesicles, geometry::make_surface("sphere"), asked.base, 12, 2,
+                                false, settings);
   }
   FilterResult pass() const {
     std::vector<ErrorMaps> maps;

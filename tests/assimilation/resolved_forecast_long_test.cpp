@@ -73,14 +73,14 @@ class ResolvedForecastTest : public ::testing::Test {
 
 TEST_F(ResolvedForecastTest, LeavesLittleOfTheErrorOfTheMesh) {
   const geometry::LevelSetPtr surface = geometry::make_surface("sphere");
-  const bench::SpacePtr own = serial_space(*surface, 16);
-  const FinerMeshes meshes = finer_meshes(*surface, own, 16);
+  const bench::SpacePtr own = serial_space(surface, 16);
+  const FinerMeshes meshes = finer_meshes(surface, own, 16);
   const FinerTraces traces = finer_traces(meshes, series);
   ResolvedForecast resolved(meshes, traces, model, rafts(*meshes.spaces[1]), integrator);
   const ResolvedForecast::End end = resolved.advance(1, kBegin, kEnd);
 
   // On its own mesh, so that what no field on it can represent does not count.
-  const bench::SpacePtr exact_space = serial_space(*surface, 80);
+  const bench::SpacePtr exact_space = serial_space(surface, 80);
   const Vec exact = MeshTransfer(*exact_space, own)(alone(exact_space));
   const auto norm = [&](const Vec& c) { return std::sqrt(own->inner(c, c)); };
   const double error = norm(end.field - exact);
@@ -91,8 +91,8 @@ TEST_F(ResolvedForecastTest, LeavesLittleOfTheErrorOfTheMesh) {
 
 TEST_F(ResolvedForecastTest, GoesOnFromACorrectedState) {
   const geometry::LevelSetPtr surface = geometry::make_surface("sphere");
-  const bench::SpacePtr own = serial_space(*surface, 16);
-  const FinerMeshes meshes = finer_meshes(*surface, own, 16);
+  const bench::SpacePtr own = serial_space(surface, 16);
+  const FinerMeshes meshes = finer_meshes(surface, own, 16);
   const FinerTraces traces = finer_traces(meshes, series);
   ResolvedForecast plain(meshes, traces, model, rafts(*meshes.spaces[1]), integrator),
       corrected = plain;

@@ -23,7 +23,7 @@ selection::BlindRequest rafts_between(double first, double last) {
 
 bool rest(const std::vector<FieldSeries>& vesicles, const problem::CahnHilliardModel& base,
           const FilterSettings& settings = {}) {
-  return are_at_rest(make_filter_problems(vesicles, *geometry::make_surface("sphere"), base,
+  return are_at_rest(make_filter_problems(vesicles, geometry::make_surface("sphere"), base,
                                           kRestCells, 2, false, settings),
                      base);
 }

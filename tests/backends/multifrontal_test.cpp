@@ -37,7 +37,7 @@ Eigen::MatrixXd permuted(const suitesparse::SupernodalStructure& structure,
 
 // Two surfaces that do not touch: the elimination tree has two roots.
 std::shared_ptr<const fem::SurfaceSpace> two_spheres() {
-  const geometry::FunctionLevelSet phi([](const Point& x) {
+  const auto phi = std::make_shared<geometry::FunctionLevelSet>([](const Point& x) {
     return std::min((x - Point(0, 0, 0.8)).norm(), (x + Point(0, 0, 0.8)).norm()) - 0.5;
   });
   return std::make_shared<fem::SurfaceSpace>(phi, 20, std::make_shared<ThreadTeam>(1),

@@ -96,7 +96,7 @@ TEST(VtuWriter, RanksWritePiecesOfTheWhole) {
   std::size_t triangles = 0;
   std::mutex mutex;
   testing::run_on_ranks(3, [&](const auto& ranks) {
-    const fem::SurfaceSpace part(*geometry::make_surface("sphere"), 16,
+    const fem::SurfaceSpace part(geometry::make_surface("sphere"), 16,
                                  std::make_shared<ThreadTeam>(1), ranks);
     const Vec numbers = Vec::Constant(static_cast<Eigen::Index>(part.surface.points.size()), 7);
     const std::string file = zlib::vtu_text(part, 1.0, {{"c", numbers}});

@@ -13,7 +13,7 @@ namespace {
 template <class F>
 std::string complaint(const F& f, int cells = 32) {
   try {
-    const geometry::FunctionLevelSet surface(
+    const auto surface = std::make_shared<geometry::FunctionLevelSet>(
         [f](const Point& x) { return f(x.squaredNorm() - 1); });
     const fem::SurfaceSpace space(surface, cells, std::make_shared<ThreadTeam>(1),
                                   std::make_shared<SerialCommunicator>());

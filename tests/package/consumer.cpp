@@ -9,7 +9,7 @@ using namespace traceraft;
 
 int main() {
   const auto team = std::make_shared<ThreadTeam>(2);
-  const auto space = std::make_shared<fem::SurfaceSpace>(*geometry::make_surface("torus"), 24, team,
+  const auto space = std::make_shared<fem::SurfaceSpace>(geometry::make_surface("torus"), 24, team,
                                                          std::make_shared<SerialCommunicator>());
   problem::CahnHilliardModel model;
   model.mobility = physics::make_mobility("degenerate");

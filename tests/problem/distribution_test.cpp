@@ -29,7 +29,7 @@ constexpr int kCells = 24;
 
 std::shared_ptr<const fem::SurfaceSpace> part_of(std::shared_ptr<const Communicator> ranks,
                                                  const std::string& surface = "sphere") {
-  return std::make_shared<fem::SurfaceSpace>(*geometry::make_surface(surface), kCells,
+  return std::make_shared<fem::SurfaceSpace>(geometry::make_surface(surface), kCells,
                                              std::make_shared<ThreadTeam>(1), std::move(ranks));
 }
 
@@ -343,7 +343,7 @@ TEST_P(Distribution, AMeshThatIsTooCoarseIsRefusedAlike) {
     }
   };
   const auto build = [](std::shared_ptr<const Communicator> ranks) {
-    fem::SurfaceSpace(*geometry::make_surface("dziuk"), 10, std::make_shared<ThreadTeam>(1),
+    fem::SurfaceSpace(geometry::make_surface("dziuk"), 10, std::make_shared<ThreadTeam>(1),
                       std::move(ranks));
   };
   const std::string expected = complaint([&] { build(std::make_shared<SerialCommunicator>()); });

@@ -18,7 +18,7 @@ using testing::make_space;
 using testing::noise_state;
 
 std::shared_ptr<const fem::SurfaceSpace> shared_space(int cells) {
-  return std::make_shared<fem::SurfaceSpace>(*geometry::make_surface("sphere"), cells,
+  return std::make_shared<fem::SurfaceSpace>(geometry::make_surface("sphere"), cells,
                                              std::make_shared<ThreadTeam>(1), backends::world());
 }
 

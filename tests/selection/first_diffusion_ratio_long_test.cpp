@@ -20,7 +20,7 @@ TEST(FirstDiffusionRatio, IsFoundFromFarAway) {
     std::vector<assimilation::FieldSeries> vesicles = drawn.vesicles;
     for (assimilation::FieldSnapshot& snapshot : vesicles[0].snapshots) snapshot.time *= factor;
     const assimilation::FilterProblems data = assimilation::make_filter_problems(
-        vesicles, *geometry::make_surface("sphere"), base, 10, 2, true, few);
+        vesicles, geometry::make_surface("sphere"), base, 10, 2, true, few);
     const assimilation::FilterModel found =
         with_first_diffusion_ratio(data, {base, 1, {}, {}}, few);
     EXPECT_NEAR(std::log(found.diffusion_ratio * factor), 0, 0.2) << factor;

@@ -30,7 +30,7 @@ assimilation::FilterSettings settings() {
 
 assimilation::FilterProblems problems(const std::vector<assimilation::FieldSeries>& vesicles,
                                       const assimilation::FilterSettings& how = settings()) {
-  return assimilation::make_filter_problems(vesicles, *geometry::make_surface("sphere"),
+  return assimilation::make_filter_problems(vesicles, geometry::make_surface("sphere"),
                                             request().base, kCells, 2, true, how);
 }
 
@@ -274,7 +274,7 @@ TEST(FieldFilter, KnowsNoUnitOfC) {
   assimilation::FilterModel model{asked.base, 1, {}, {}};
   const auto pass_of = [&] {
     const assimilation::FilterProblems data = assimilation::make_filter_problems(
-        vesicles, *geometry::make_surface("sphere"), model.base, kCells, 2, true, settings());
+        vesicles, geometry::make_surface("sphere"), model.base, kCells, 2, true, settings());
     std::vector<assimilation::ErrorMaps> maps;
     return assimilation::filter_fields(data, model, settings(), maps);
   };
@@ -305,7 +305,7 @@ TEST(FieldFilter, AllowsForAZeroAndAScaleThatAllSnapshotsShare) {
     for (assimilation::FieldSnapshot& snapshot : vesicles[0].snapshots)
       snapshot.values = (1 + gain) * snapshot.values.array() + offset;
     assimilation::FilterProblems data = assimilation::make_filter_problems(
-        vesicles, *geometry::make_surface("sphere"), model.base, kCells, 2, true, how);
+        vesicles, geometry::make_surface("sphere"), model.base, kCells, 2, true, how);
     std::vector<assimilation::ErrorMaps> maps;
     return assimilation::filter_fields(data, model, how, maps);
   };
@@ -332,7 +332,7 @@ TEST(FieldFilter, TakesATurnAlong) {
   const assimilation::FilterModel model{asked.base, 1, {}, {}};
   const auto pass = [&] {
     const assimilation::FilterProblems data = assimilation::make_filter_problems(
-        series, *geometry::make_surface("sphere"), asked.base, 12, 1, false, settings);
+        series, geometry::make_surface("sphere"), asked.base, 12, 1, false, settings);
     std::vector<assimilation::ErrorMaps> maps;
     return std::pair(assimilation::filter_fields(data, model, settings, maps), data[0].turns);
   };

@@ -16,7 +16,7 @@ inline std::shared_ptr<const fem::SurfaceSpace> make_space(int cells,
                                                            int threads = 1,
                                                            const Point& offset = Point::Zero()) {
   return std::make_shared<fem::SurfaceSpace>(
-      geometry::ShiftedLevelSet(geometry::make_surface(surface), offset), cells,
+      std::make_shared<geometry::ShiftedLevelSet>(geometry::make_surface(surface), offset), cells,
       std::make_shared<ThreadTeam>(threads), std::make_shared<SerialCommunicator>());
 }
 

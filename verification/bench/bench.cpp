@@ -42,14 +42,14 @@ std::string Bench::linear_solver() const {
   return request.linear_solver.empty() ? "block" : request.linear_solver;
 }
 
-SpacePtr Bench::space(const geometry::LevelSet& surface, int cells, int threads) const {
-  return std::make_shared<const fem::SurfaceSpace>(surface, cells,
+SpacePtr Bench::space(geometry::LevelSetPtr surface, int cells, int threads) const {
+  return std::make_shared<const fem::SurfaceSpace>(std::move(surface), cells,
                                                    std::make_shared<ThreadTeam>(threads),
                                                    std::make_shared<SerialCommunicator>());
 }
 
 SpacePtr Bench::space(const std::string& surface, int cells) const {
-  return space(*geometry::make_surface(surface), cells, request.threads);
+  return space(geometry::make_surface(surface), cells, request.threads);
 }
 
 ProblemPtr Bench::problem(SpacePtr space, problem::CahnHilliardModel model) const {

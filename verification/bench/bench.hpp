@@ -61,7 +61,7 @@ class Bench {
   std::string integrator() const;
   std::string linear_solver() const;
 
-  virtual SpacePtr space(const geometry::LevelSet& surface, int cells, int threads) const;
+  virtual SpacePtr space(geometry::LevelSetPtr surface, int cells, int threads) const;
   SpacePtr space(const std::string& surface, int cells) const;
   virtual ProblemPtr problem(SpacePtr space, problem::CahnHilliardModel model) const;
   // The model of discs that a study asks for.

@@ -30,8 +30,9 @@ struct Motion {
   Point home(const Point& x) const { return turn * (x - shift); }
 };
 
-inline geometry::FunctionLevelSet moved(const geometry::LevelSetPtr& base, const Motion& motion) {
-  return geometry::FunctionLevelSet([=](const Point& x) { return base->value(motion.home(x)); });
+inline geometry::LevelSetPtr moved(const geometry::LevelSetPtr& base, const Motion& motion) {
+  return std::make_shared<geometry::FunctionLevelSet>(
+      [=](const Point& x) { return base->value(motion.home(x)); });
 }
 
 }  // namespace traceraft::bench

@@ -75,7 +75,7 @@ Drift drift_on_ranks(const bench::Bench& bench, const Combination& what) {
 
 Drift drift_of(const bench::Bench& bench, const Combination& what) {
   if (what.ranks > 1) return drift_on_ranks(bench, what);
-  const bench::SpacePtr space = bench.space(*geometry::make_surface(what.surface), kCells, 1);
+  const bench::SpacePtr space = bench.space(geometry::make_surface(what.surface), kCells, 1);
   const bench::ProblemPtr problem =
       bench.problem(space, bench::bench_model(what.mobility, kEpsilon));
   problem::InitialRequest request;

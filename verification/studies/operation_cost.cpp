@@ -31,7 +31,7 @@ StudyReport run(const bench::Bench& bench) {
   std::vector<std::array<double, 3>> levels;  // nodes, set-up, assembly in products
   for (int cells = 64; cells <= (bench.quick() ? 128 : 512); cells *= 2) {
     const Stopwatch watch;
-    const bench::SpacePtr space = bench.space(*geometry::make_surface("sphere"), cells, 1);
+    const bench::SpacePtr space = bench.space(geometry::make_surface("sphere"), cells, 1);
     const double setup = watch.seconds(), peak = posix::peak_memory_mb();
     const bench::ProblemPtr problem =
         bench.problem(space, bench::bench_model("degenerate", 2 * space->h()));

@@ -23,7 +23,7 @@ struct DiscSizes {
 using VesicleHistory = std::vector<observables::Observables>;
 
 VesicleHistory in_field(const bench::Bench& bench, const DiscSizes& sizes, std::uint64_t seed) {
-  const bench::SpacePtr space = bench.space(*geometry::make_surface("sphere"), sizes.cells, 1);
+  const bench::SpacePtr space = bench.space(geometry::make_surface("sphere"), sizes.cells, 1);
   const bench::ProblemPtr problem =
       bench.problem(space, bench::bench_model("degenerate", sizes.epsilon));
   const observables::Observer observer(

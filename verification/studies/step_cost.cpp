@@ -24,7 +24,7 @@ struct TimedRun {
 
   TimedRun(const bench::Bench& bench, int cells, int threads, std::string solver_)
       : solver(std::move(solver_)),
-        space(bench.space(*geometry::make_surface("sphere"), cells, threads)),
+        space(bench.space(geometry::make_surface("sphere"), cells, threads)),
         problem(bench.problem(space, bench::bench_model("degenerate", epsilon_on(cells)))),
         integrator(bench.make_integrator(*problem, *space, "euler", solver, {})) {
     problem::InitialRequest request;

@@ -103,7 +103,7 @@ StudyReport measure_meshes(const bench::Bench& bench, const std::vector<Mesh>& m
   Most most[std::size(kVariants)];
   const double finest = meshes.back().cells;
   for (const auto& [cells, variants] : meshes) {
-    const bench::SpacePtr space = bench.space(*geometry::make_surface("sphere"), cells, 1);
+    const bench::SpacePtr space = bench.space(geometry::make_surface("sphere"), cells, 1);
     for (const int variant : variants)
       measure(bench, space, kVariants[variant], table, most[variant]);
     bench.progress(cells * cells / (finest * finest));

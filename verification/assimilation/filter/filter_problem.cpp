@@ -50,13 +50,14 @@ std::vector<NoisyValues> noisy_values(const FilterProblem& data) {
 }
 
 // The parts of a problem that are common to all vesicles.
-FilterProblem on_meshes(const geometry::LevelSet& surface, const problem::CahnHilliardModel& base,
-                        int cells, int threads, const FilterSettings& settings) {
+FilterProblem on_meshes(const geometry::LevelSetPtr& surface,
+                        const problem::CahnHilliardModel& base, int cells, int threads,
+                        const FilterSettings& settings) {
   FilterProblem data;
   // On meshes of some thousand nodes threads are better used for different columns and models.
   data.team = std::make_shared<ThreadTeam>(threads);
   data.space = serial_space(surface, cells, base.mass_stabilisation);
-  data.sphere = is_sphere(surface);
+  data.sphere = is_sphere(*surface);
   data.finer = std::make_shared<const FinerMeshes>(finer_meshes(surface, data.space, cells));
   data.mass = fem::as_eigen(*data.space, data.space->stabilised_mass);
   data.patterns = std::make_shared<const GapPatterns>(*data.space, settings.gap_degree);
@@ -222,7 +223,7 @@ void set_correlation(const NoiseCorrelation& correlation, const problem::CahnHil
 }
 
 FilterProblems make_filter_problems(const std::vector<FieldSeries>& series,
-                                    const geometry::LevelSet& surface,
+                                    const geometry::LevelSetPtr& surface,
                                     const problem::CahnHilliardModel& base, int cells, int threads,
                                     bool hold_out, const FilterSettings& settings) {
   FilterProblems problems(series.size(), on_meshes(surface, base, cells, threads, settings));

@@ -94,7 +94,7 @@ void set_correlation(const NoiseCorrelation& correlation, const problem::CahnHil
 // of four snapshots or more is forecast, but counts for nothing. Throws InputError for places that
 // are off the surface, and where more than a twentieth of the values are outliers.
 FilterProblems make_filter_problems(const std::vector<FieldSeries>& series,
-                                    const geometry::LevelSet& surface,
+                                    const geometry::LevelSetPtr& surface,
                                     const problem::CahnHilliardModel& base, int cells, int threads,
                                     bool hold_out, const FilterSettings& settings);
 

@@ -13,14 +13,15 @@ constexpr std::array<double, 2> kFiner{1.5, 2.25};
 
 }  // namespace
 
-bench::SpacePtr serial_space(const geometry::LevelSet& surface, int cells,
+bench::SpacePtr serial_space(const geometry::LevelSetPtr& surface, int cells,
                              double mass_stabilisation) {
   return std::make_shared<const fem::SurfaceSpace>(surface, cells, std::make_shared<ThreadTeam>(1),
                                                    std::make_shared<SerialCommunicator>(),
                                                    mass_stabilisation);
 }
 
-FinerMeshes finer_meshes(const geometry::LevelSet& surface, const bench::SpacePtr& own, int cells) {
+FinerMeshes finer_meshes(const geometry::LevelSetPtr& surface, const bench::SpacePtr& own,
+                         int cells) {
   FinerMeshes meshes;
   for (std::size_t m = 0; m < kFiner.size(); ++m)
     meshes.spaces[m] = serial_space(surface, static_cast<int>(std::lround(kFiner[m] * cells)),

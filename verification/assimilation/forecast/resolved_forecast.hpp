@@ -16,7 +16,7 @@ using MakeForecaster =
     std::function<time::IntegratorPtr(const problem::DaeProblem&, const fem::SurfaceSpace&)>;
 
 // A space of one thread, which its matrices and solvers use.
-bench::SpacePtr serial_space(const geometry::LevelSet& surface, int cells,
+bench::SpacePtr serial_space(const geometry::LevelSetPtr& surface, int cells,
                              double mass_stabilisation = fem::kMassStabilisation);
 
 // The two finer meshes. They do not depend on the model.
@@ -27,7 +27,8 @@ struct FinerMeshes {
   MeshTransfer up,                        // from the first of the two to the finest
       down;                               // from the finest to the first of the two
 };
-FinerMeshes finer_meshes(const geometry::LevelSet& surface, const bench::SpacePtr& own, int cells);
+FinerMeshes finer_meshes(const geometry::LevelSetPtr& surface, const bench::SpacePtr& own,
+                         int cells);
 
 // The traces on each of the two meshes, one per snapshot: where it was measured.
 using FinerTraces = std::array<std::vector<PointTrace>, 2>;

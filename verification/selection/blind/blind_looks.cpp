@@ -37,7 +37,8 @@ Point Placement::in_mesh(const Point& x) const {
 
 BlindLooks::BlindLooks(const BlindRequest& request)
     : placement(request.seed, 2 * mesh::kBoxHalfWidth / request.cells),
-      surface(geometry::make_surface("sphere"), placement.offset),
+      surface(std::make_shared<geometry::ShiftedLevelSet>(geometry::make_surface("sphere"),
+                                                          placement.offset)),
       labels(snapshot_times(request)) {
   for (const double t : labels) times.push_back(request.diffusion_ratio * t);
 }

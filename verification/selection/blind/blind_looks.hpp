@@ -18,7 +18,7 @@ struct Placement {
 
 struct BlindLooks {
   Placement placement;
-  geometry::ShiftedLevelSet surface;
+  geometry::LevelSetPtr surface;
   std::vector<double> labels,  // times of the snapshots, in units of R²/D of the model
       times;                   // the same in units of R²/D of the truth
 

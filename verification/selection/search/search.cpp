@@ -42,7 +42,7 @@ bool operator==(const ForecastPoint& a, const ForecastPoint& b) {
 
 assimilation::FilterProblems problems_of(const std::vector<assimilation::FieldSeries>& series,
                                          const ExplainRequest& request) {
-  return assimilation::make_filter_problems(series, *request.surface, request.base, request.cells,
+  return assimilation::make_filter_problems(series, request.surface, request.base, request.cells,
                                             request.threads, request.hold_out, request.filter);
 }
 
