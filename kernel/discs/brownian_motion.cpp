@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/flow/legendre.hpp"
+
 namespace traceraft::discs {
 namespace {
 
@@ -11,20 +13,6 @@ constexpr int kHighestDegree = 160;
 // This many waves over the half angle of a disc hardly move it: they would add 0.3 % to its
 // variance.
 constexpr double kWaves = 6;
-
-// P_l(x) and P_l'(x), l = 0, 1, …
-struct Legendre {
-  Vec value, slope;
-
-  Legendre(double x, int degree) : value(degree + 1), slope(degree + 1) {
-    value[0] = 1;
-    slope[0] = 0;
-    for (int l = 1; l <= degree; ++l) {
-      value[l] = l == 1 ? x : ((2 * l - 1) * x * value[l - 1] - (l - 1) * value[l - 2]) / l;
-      slope[l] = l * value[l - 1] + x * slope[l - 1];
-    }
-  }
-};
 
 int degree_for(const std::vector<Disc>& discs) {
   double smallest = 1;
@@ -34,12 +22,9 @@ int degree_for(const std::vector<Disc>& discs) {
 
 // √(2Θ (2l + 1)/(4π friction)) F_l(α) of a disc.
 Vec weights_of(const Disc& disc, const flow::FluidMembrane& membrane, int degree) {
-  const Legendre at(cosine_of_half_angle(disc.area), degree);
-  Vec weight(degree + 1);
-  weight[0] = 0;
+  Vec weight = flow::means_over_cap(cosine_of_half_angle(disc.area), degree);
   for (int l = 1; l <= degree; ++l)
-    weight[l] = std::sqrt(2 * membrane.thermal * (2 * l + 1) / (4 * kPi * membrane.friction(l))) *
-                2 * at.slope[l] / (l * (l + 1.0));
+    weight[l] *= std::sqrt(2 * membrane.thermal * (2 * l + 1) / (4 * kPi * membrane.friction(l)));
   return weight;
 }
 

@@ -12,21 +12,23 @@ namespace {
 // Draws of this effect stand far from those of others with the same seed.
 constexpr std::uint64_t kFirstStream = std::uint64_t{1} << 40;
 
-Vec deviation_of(const flow::FluidMembrane& membrane, int degree, double hold) {
-  return flow::by_degree(degree, [&](int l) {
-    return l < 1 ? 0 : std::sqrt(2 * membrane.thermal / (membrane.friction(l) * hold));
-  });
-}
-
 }  // namespace
 
 // The draws before and after the time that was asked for last are kept, with their ghosts.
 class BrownianFlow::Streams {
  public:
   Streams(const BrownianFlow& flow, const fem::SurfaceSpace& space)
-      : flow_(&flow), space_(flow_space(flow.degree_)(space)) {}
+      : flow_(&flow), space_(make_flow_space(space, flow.membrane_, flow.degree_)) {}
 
-  const std::vector<flow::ElementCurl>& curls() const { return space_->curls; }
+  const std::vector<flow::ElementCurl>& curls() const { return space_.curls; }
+  Vec draw(double number) const {
+    const auto stream = kFirstStream + static_cast<std::uint64_t>(number);
+    Vec normal(space_.harmonics.size());
+    for (Eigen::Index k = 0; k < normal.size(); ++k)
+      normal[k] = normal_random(flow_->seed_, stream, static_cast<std::uint64_t>(k));
+    return std::sqrt(2 * flow_->membrane_.thermal / flow_->hold_) *
+           space_.friction->brownian(normal);
+  }
   Vec at(const fem::SurfaceSpace& space, double t) const {
     const double when = t / flow_->hold_, number = std::floor(when), share = when - number;
     const std::lock_guard lock(mutex_);
@@ -44,22 +46,22 @@ class BrownianFlow::Streams {
     Known& known = known_[std::fmod(number, 2) == 0 ? 0 : 1];
     if (known.number != number || known.psi.size() == 0) {
       Vec buffer;
-      known.psi = space.with_ghosts(space_->harmonics.synthesis(flow_->draw(number)), buffer);
+      known.psi = space.with_ghosts(space_.harmonics.synthesis(draw(number)), buffer);
       known.number = number;
     }
     return known.psi;
   }
 
   const BrownianFlow* flow_;
-  std::shared_ptr<const FlowSpace> space_;
+  FlowSpace space_;
   mutable std::mutex mutex_;
   mutable std::array<Known, 2> known_;
 };
 
 BrownianFlow::BrownianFlow(const flow::FluidMembrane& membrane, double epsilon, double hold,
                            std::uint64_t seed)
-    : degree_(flow::brownian_degree(epsilon)),
-      deviation_(deviation_of(membrane, degree_, hold)),
+    : membrane_(membrane),
+      degree_(flow::brownian_degree(epsilon)),
       hold_(hold),
       seed_(seed),
       streams_([this](const fem::SurfaceSpace& space) {
@@ -68,12 +70,8 @@ BrownianFlow::BrownianFlow(const flow::FluidMembrane& membrane, double epsilon, 
 
 BrownianFlow::~BrownianFlow() = default;
 
-Vec BrownianFlow::draw(double number) const {
-  Vec result(deviation_.size());
-  const auto stream = kFirstStream + static_cast<std::uint64_t>(number);
-  for (Eigen::Index k = 0; k < result.size(); ++k)
-    result[k] = deviation_[k] * normal_random(seed_, stream, static_cast<std::uint64_t>(k));
-  return result;
+Vec BrownianFlow::draw(const fem::SurfaceSpace& space, double number) const {
+  return streams_.on(space)->draw(number);
 }
 
 void BrownianFlow::add_residual(const fem::SurfaceSpace& space, double t, VecView c, VecView,

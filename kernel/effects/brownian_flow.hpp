@@ -1,4 +1,4 @@
-// Brownian flow of a spherical membrane: the velocity that thermal forces give it.
+// Brownian flow of a membrane: the velocity that thermal forces give it.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 
 namespace traceraft::effects {
 
-// ∂c/∂t + u·∇c = … with u = n × ∇ψ and ψ a sum of harmonics, each with the variance
-// 2Θ/(friction(l) τ): in many times τ, the hold, rafts move as fluctuation and dissipation say.
+// ∂c/∂t + u·∇c = … with u = n × ∇ψ and ψ a sum of harmonics with the covariance 2Θ F⁻¹/τ of the
+// friction F: in many times τ, the hold, rafts move as fluctuation and dissipation say.
 // Draws are made at multiples of τ, and ψ is linear between them: integrators see a continuous
 // function, and its limit of small τ is that of Stratonovich, as of a velocity that has a memory. A
 // draw is a function of the seed, the degree, the order and the number of its hold. It depends
-// neither on the mesh, nor on the number of ranks, nor on the highest degree.
+// neither on the mesh nor on the number of ranks, nor on a sphere on the highest degree.
 class BrownianFlow final : public problem::Effect {
  public:
   BrownianFlow(const flow::FluidMembrane& membrane, double epsilon, double hold,
@@ -25,7 +25,7 @@ class BrownianFlow final : public problem::Effect {
   bool conserves_mass() const override { return true; }
   bool dissipates_energy() const override { return false; }
   double longest_step() const override { return 0.5 * hold_; }
-  void require_surface(const fem::SurfaceSpace& space) const override { require_sphere(space); }
+  void require_surface(const fem::SurfaceSpace& space) const override { (void)streams_.on(space); }
 
   void add_residual(const fem::SurfaceSpace& space, double t, VecView c, VecView mu,
                     VecRef residual_c, VecRef residual_mu) const override;
@@ -36,13 +36,13 @@ class BrownianFlow final : public problem::Effect {
                            VecRef product_mu) const override;
 
   // The coefficients of ψ that were drawn at so many holds.
-  Vec draw(double number) const;
+  Vec draw(const fem::SurfaceSpace& space, double number) const;
 
  private:
   class Streams;  // on one space
 
-  int degree_;     // the highest
-  Vec deviation_;  // of each degree and order
+  flow::FluidMembrane membrane_;
+  int degree_;  // the highest, on a sphere
   double hold_;
   std::uint64_t seed_;
   mutable PerSpace<Streams> streams_;

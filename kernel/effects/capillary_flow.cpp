@@ -1,25 +1,23 @@
 #include "kernel/effects/capillary_flow.hpp"
 
 namespace traceraft::effects {
-namespace {
-
-// The capillary force turns no sphere as a whole: its torque, l = 1, is an error of the mesh.
-Vec mobility_of(const flow::FluidMembrane& membrane, int degree) {
-  return flow::by_degree(degree, [&](int l) { return l < 2 ? 0 : 1 / membrane.friction(l); });
-}
-
-}  // namespace
 
 CapillaryFlow::CapillaryFlow(const flow::FluidMembrane& membrane, double epsilon)
     : capillary_(membrane.capillary),
-      mobility_(mobility_of(membrane, flow::capillary_degree(epsilon))),
-      operators_(flow_space(flow::capillary_degree(epsilon))) {}
+      operators_([membrane, epsilon](const fem::SurfaceSpace& space) {
+        return std::make_shared<const FlowSpace>(
+            make_flow_space(space, membrane, flow::capillary_degree(epsilon)));
+      }) {}
 
 Vec CapillaryFlow::stream(const fem::SurfaceSpace& space, VecView c, VecView mu) const {
   const auto operators = operators_.on(space);
   Vec force = Vec::Zero(space.nodes());
   flow::add_transport(space, operators->curls, capillary_, c, mu, force);
-  return mobility_.cwiseProduct(operators->harmonics.analysis(force));
+  return operators->friction->capillary(operators->harmonics.analysis(force));
+}
+
+double CapillaryFlow::dissipation(const fem::SurfaceSpace& space, VecView c, VecView mu) const {
+  return operators_.on(space)->friction->power(stream(space, c, mu)) / capillary_;
 }
 
 Vec CapillaryFlow::stream_at_nodes(const fem::SurfaceSpace& space, VecView c, VecView mu) const {
@@ -59,7 +57,7 @@ void CapillaryFlow::add_tangent_product(const fem::SurfaceSpace& space, double, 
   flow::add_transport(space, curls, capillary_, direction_c, mu, force);
   flow::add_transport(space, curls, capillary_, c, direction_mu, force);
   const flow::HarmonicTransform& harmonics = operators->harmonics;
-  const Vec change = harmonics.synthesis(mobility_.cwiseProduct(harmonics.analysis(force)));
+  const Vec change = harmonics.synthesis(operators->friction->capillary(harmonics.analysis(force)));
   flow::add_transport(space, curls, -1, c, space.with_ghosts(change, buffer), product_c);
 }
 

@@ -1,4 +1,4 @@
-// Flow of a spherical membrane that the line tension of rafts drives.
+// Flow of a membrane that the line tension of rafts drives.
 #pragma once
 
 #include "kernel/effects/flow_space.hpp"
@@ -21,7 +21,9 @@ class CapillaryFlow final : public problem::Effect {
   // Short waves grow then, at a rate of about A.
   bool may_be_extrapolated() const override { return false; }
   bool tangent_is_assembled() const override { return false; }
-  void require_surface(const fem::SurfaceSpace& space) const override { require_sphere(space); }
+  void require_surface(const fem::SurfaceSpace& space) const override {
+    (void)operators_.on(space);
+  }
 
   void add_residual(const fem::SurfaceSpace& space, double t, VecView c, VecView mu,
                     VecRef residual_c, VecRef residual_mu) const override;
@@ -34,14 +36,14 @@ class CapillaryFlow final : public problem::Effect {
                            VecView direction_c, VecView direction_mu, VecRef product_c,
                            VecRef product_mu) const override;
 
-  // The coefficients of ψ. Collective.
-  Vec stream(const fem::SurfaceSpace& space, VecView c, VecView mu) const;
+  // What friction takes of the energy per time: ψᵀ F ψ/A. Collective.
+  double dissipation(const fem::SurfaceSpace& space, VecView c, VecView mu) const;
 
  private:
+  Vec stream(const fem::SurfaceSpace& space, VecView c, VecView mu) const;  // coefficients of ψ
   Vec stream_at_nodes(const fem::SurfaceSpace& space, VecView c, VecView mu) const;
 
   double capillary_;
-  Vec mobility_;  // of each degree and order: from a force to the stream function
   mutable PerSpace<FlowSpace> operators_;
 };
 

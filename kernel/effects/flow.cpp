@@ -73,7 +73,7 @@ EffectEntry flow_effect() {
        {"temperature", "K", 0, 0, 500, "of Brownian motion; 0: there is none"},
        {"water-viscosity", "mPa s", 1, 1e-3, 1e3, "eta_w, on both sides"},
        {"water", "", 1.25, 1e-3, 1e3, "W = R eta_w/eta_m, the drag of the water"},
-       {"hold", "s", 0, 0, 1e9, "time between draws; 0: a point moves a quarter of epsilon in it"},
+       {"hold", "s", 0, 0, 1e9, "time between draws; 0: a small raft moves half of epsilon in it"},
        {"seed", "", 1, 0, 1e9, "seed of the draws, combined with that of the run",
         ParameterKind::integer}},
       MassClass::conserves,

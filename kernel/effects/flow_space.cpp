@@ -1,26 +1,22 @@
 #include "kernel/effects/flow_space.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "kernel/core/error.hpp"
 
 namespace traceraft::effects {
 
-PerSpace<FlowSpace>::Compute flow_space(int degree) {
-  return [degree](const fem::SurfaceSpace& space) {
-    std::vector<Point> nodes;
-    for (int i = 0; i < space.nodes(); ++i) nodes.push_back(space.mesh.position(i));
-    return std::make_shared<const FlowSpace>(
-        FlowSpace{flow::element_curls(space), {nodes, degree, space.team, space.communicator}});
-  };
-}
-
-void require_sphere(const fem::SurfaceSpace& space) {
-  double off = 0;
-  for (const Point& x : space.surface.position) off = std::max(off, std::fabs(x.norm() - 1));
-  if (space.communicator->max(off) > space.h() * space.h())
-    throw InputError("effect flow: it is made for the sphere, and this surface is another");
+FlowSpace make_flow_space(const fem::SurfaceSpace& space, const flow::FluidMembrane& membrane,
+                          int degree) try {
+  const geometry::StarSurface surface(space.level_set);
+  std::shared_ptr<const flow::Friction> friction = flow::make_friction(surface, membrane, degree);
+  std::vector<Point> rays;
+  for (int i = 0; i < space.nodes(); ++i) rays.push_back(space.mesh.position(i) - surface.centre());
+  const int highest = friction->degree();
+  return {flow::element_curls(space),
+          std::move(friction),
+          {rays, highest, space.team, space.communicator}};
+} catch (const InputError& error) {
+  throw InputError(std::string("effect flow: it needs a surface like a sphere, and ") +
+                   error.what());
 }
 
 }  // namespace traceraft::effects

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "kernel/core/types.hpp"
+#include "kernel/flow/legendre.hpp"
 
 namespace traceraft::flow {
 namespace {
@@ -17,9 +18,11 @@ int clamped_degree(double degree, int least) {
 }  // namespace
 
 // ⟨|u|²⟩ τ with ⟨ψ_lm²⟩ = 2Θ/(friction τ) and Σ_m |∇Y_lm|² = l (l + 1)(2l + 1)/(4π).
-double FluidMembrane::spreading_rate() const {
+double FluidMembrane::spreading_rate(double half_angle) const {
+  const Vec mean = means_over_cap(std::cos(half_angle), kHighestDegree);
   double sum = 0;
-  for (int l = 1; l <= kHighestDegree; ++l) sum += (2 * l + 1) * l * (l + 1) / friction(l);
+  for (int l = 1; l <= kHighestDegree; ++l)
+    sum += (2 * l + 1) * l * (l + 1) / friction(l) * mean[l] * mean[l];
   return 2 * thermal * sum / (4 * kPi);
 }
 
@@ -36,8 +39,9 @@ int brownian_degree(double epsilon) {
 }
 
 double hold_of(const FluidMembrane& membrane, double epsilon) {
-  constexpr double kMoved = 0.25;  // of epsilon
-  return kMoved * kMoved * epsilon * epsilon / membrane.spreading_rate();
+  constexpr double kRadius = 5, kMoved = 0.5;  // of epsilon
+  return kMoved * kMoved * epsilon * epsilon /
+         membrane.spreading_rate(std::min(kRadius * epsilon, 0.5 * kPi));
 }
 
 }  // namespace traceraft::flow

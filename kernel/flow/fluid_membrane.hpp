@@ -1,13 +1,12 @@
-// A spherical membrane as a fluid of two dimensions between two waters: friction of its flow, and
-// the numbers that describe it. Saffman, Delbrück, PNAS 72 (1975); Henle, Levine, Phys. Rev. E 81
-// (2010).
+// A membrane as a fluid of two dimensions between two waters: the numbers that describe it, and the
+// friction of its flow on a sphere. Saffman, Delbrück, PNAS 72 (1975); Henle, Levine, Phys. Rev. E
+// 81 (2010).
 #pragma once
 
 namespace traceraft::flow {
 
-// Of a membrane with viscosity η_m on a sphere of radius R, water with viscosity η_w on both sides,
-// lipids with the mobility prefactor D, and e as the unit of the energy density. Lengths are in R,
-// times in R²/D.
+// The membrane has the viscosity η_m and a size R, the water on both sides η_w, lipids have the
+// mobility prefactor D, and e as the unit of the energy density. Lengths are in R, times in R²/D.
 struct FluidMembrane {
   double capillary = 0;  // A = e R²/(η_m D): how fast line tension moves the membrane
   double water = 1.25;   // W = R η_w/η_m: drag of the water; R/(2 W) is the length of Saffman
@@ -17,8 +16,8 @@ struct FluidMembrane {
   // that of the membrane, (l − 1)(l + 2), which rotations do not feel, and that of the water,
   // W (2l + 1); times l (l + 1).
   double friction(int l) const { return ((l - 1.0) * (l + 2) + water * (2 * l + 1)) * l * (l + 1); }
-  // The mean square displacement of a point per time in Brownian flow.
-  double spreading_rate() const;
+  // The mean square displacement per time, in Brownian flow, of a cap with this half angle.
+  double spreading_rate(double half_angle) const;
 };
 
 // A of a line tension σ and a boundary of width ε: σ = e ε/(6√2). σ and η_m are in units of a force
@@ -30,8 +29,8 @@ double capillary_number(double line_tension, double epsilon, double membrane_vis
 int capillary_degree(double epsilon);
 int brownian_degree(double epsilon);
 
-// The time for which a Brownian velocity is held: a point moves a quarter of ε in it. It does not
-// depend on the highest degree.
+// The time for which a Brownian velocity is held. In it a small raft, of a radius of 5 ε, moves by
+// half of ε. On other surfaces than the sphere it is that of a sphere.
 double hold_of(const FluidMembrane& membrane, double epsilon);
 
 }  // namespace traceraft::flow

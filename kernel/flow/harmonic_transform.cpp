@@ -4,24 +4,10 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "kernel/flow/legendre.hpp"
+
 namespace traceraft::flow {
 namespace {
-
-// P̃_lm at x = cos θ for l = m … degree, by the recurrence in l, which is stable: entry l − m.
-Vec legendre(int degree, int m, double x) {
-  const double sine = std::sqrt(std::fmax(0.0, (1 - x) * (1 + x)));
-  double diagonal = std::sqrt(0.5);  // P̃_mm = √((2m + 1)/(2m)) sin θ P̃_(m-1)(m-1)
-  for (int k = 1; k <= m; ++k) diagonal *= std::sqrt((2 * k + 1) / (2.0 * k)) * sine;
-  Vec value(degree - m + 1);
-  value[0] = diagonal;
-  if (degree > m) value[1] = std::sqrt(2 * m + 3.0) * x * diagonal;
-  for (int l = m + 2; l <= degree; ++l) {
-    const double factor = std::sqrt((4.0 * l * l - 1) / (static_cast<double>(l) * l - m * m));
-    const double before = std::sqrt(((l - 1.0) * (l - 1) - m * m) / (4.0 * (l - 1) * (l - 1) - 1));
-    value[l - m] = factor * (x * value[l - m - 1] - before * value[l - m - 2]);
-  }
-  return value;
-}
 
 // Lagrange's polynomials of the places 0, 1, …, 7 at x.
 template <std::size_t N>
@@ -64,7 +50,7 @@ HarmonicTransform::HarmonicTransform(const std::vector<Point>& points, int degre
   for (int m = 0; m <= degree_; ++m) {
     Eigen::MatrixXd values(rings_, degree_ - m + 1);
     for (int i = 0; i < rings_; ++i)
-      values.row(i) = legendre(degree_, m, std::cos((i + 0.5) * kPi / rings_)).transpose();
+      values.row(i) = legendre(degree_, m, (i + 0.5) * kPi / rings_).transpose();
     legendre_.push_back(std::move(values));
   }
 }

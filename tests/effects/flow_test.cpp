@@ -28,11 +28,12 @@ Vec residual_of(const problem::Effect& effect, const fem::SurfaceSpace& space, d
 
 // 4,000 draws of 2l + 1 numbers: the mean square is known to √(2/(4000 (2l + 1))), 1.3 % at most.
 TEST(BrownianFlow, EveryModeHasTheVarianceThatFluctuationAndDissipationSay) {
+  const auto space = make_space(12);
   const BrownianFlow flow(kMembrane, 0.05, kHold, 1);
   constexpr int kDraws = 4000, kDegree = 10;
   Vec squares = Vec::Zero(kDegree + 1);
   for (int k = 0; k < kDraws; ++k) {
-    const Vec drawn = flow.draw(k);
+    const Vec drawn = flow.draw(*space, k);
     ASSERT_EQ(drawn.size(), (kDegree + 1) * (kDegree + 1));
     for (int l = 0; l <= kDegree; ++l)
       squares[l] += drawn.segment(flow::harmonic_index(l, -l), 2 * l + 1).squaredNorm() / kDraws;
@@ -45,12 +46,15 @@ TEST(BrownianFlow, EveryModeHasTheVarianceThatFluctuationAndDissipationSay) {
 }
 
 TEST(BrownianFlow, DrawsDoNotDependOnTheHighestDegree) {
-  const Vec few = BrownianFlow(kMembrane, 0.1, kHold, 3).draw(17),
-            many = BrownianFlow(kMembrane, 0.02, kHold, 3).draw(17);
+  const auto space = make_space(12);
+  const auto drawn = [&](double epsilon, std::uint64_t seed, double number) {
+    return BrownianFlow(kMembrane, epsilon, kHold, seed).draw(*space, number);
+  };
+  const Vec few = drawn(0.1, 3, 17), many = drawn(0.02, 3, 17);
   EXPECT_LT(few.size(), many.size());
   EXPECT_EQ(many.head(few.size()), few);
-  EXPECT_NE(BrownianFlow(kMembrane, 0.1, kHold, 4).draw(17), few);
-  EXPECT_NE(BrownianFlow(kMembrane, 0.1, kHold, 3).draw(18), few);
+  EXPECT_NE(drawn(0.1, 4, 17), few);
+  EXPECT_NE(drawn(0.1, 3, 18), few);
 }
 
 TEST(BrownianFlow, MovesNoConstantAndKeepsTheMass) {
@@ -155,8 +159,8 @@ TEST(Flow, RefusesWhatContradictsItself) {
     EXPECT_THROW(add_effects(bad, kPhysical, model), InputError) << bad;
   EXPECT_THROW(add_effects("flow:membrane-viscosity=4,line-tension=1", kScaled, model), InputError);
   EXPECT_NO_THROW(add_effects("flow:thermal=1e-3", kScaled, model));
-  const auto ellipsoid = make_space(12, "ellipsoid:a=1.2,b=1,c=0.9");
-  EXPECT_THROW(model.effects.front()->require_surface(*ellipsoid), InputError);
+  const auto torus = make_space(24, "torus");
+  EXPECT_THROW(model.effects.front()->require_surface(*torus), InputError);
 }
 
 }  // namespace
