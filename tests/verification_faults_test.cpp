@@ -273,7 +273,9 @@ const Fault kFaults[] = {
      [](problem::CahnHilliardModel& m) { m.mobility = physics::make_mobility("degenerate"); }},
     {"flow",
      "flow 20 % faster than its force and its draws say, and a leak of 1e-9 per area",
-     {"dE/dt + dissipation", "centre of a raft", "largest relative drift of the mass"},
+     {"sphere: dE/dt + dissipation", "ellipsoid: dE/dt + dissipation",
+      "biconcave: dE/dt + dissipation", "A = 1000, t = 12: energy that friction takes",
+      "centre of a raft", "largest relative drift of the mass"},
      [](problem::CahnHilliardModel& m) {
        for (problem::EffectPtr& effect : m.effects)
          effect = std::make_shared<ScaledEffect>(effect, 1.2);
@@ -282,12 +284,24 @@ const Fault kFaults[] = {
     {"flow",
      "flow 10 % slower than its force says, and a mobility 5 % too small",
      {"energies: largest", "mode 2 of a cap, rate of becoming round: relative",
-      "mode 3 of a cap, rate of becoming round: relative"},
+      "mode 3 of a cap, rate of becoming round: relative", "two rafts that merge"},
      [](problem::CahnHilliardModel& m) {
        m.mobility = std::make_shared<ScaledMobility>(m.mobility, 0.95);
        for (problem::EffectPtr& effect : m.effects)
          effect = std::make_shared<ScaledEffect>(effect, 0.9);
      }},
+    {"flow-coarsening",
+     "no flow in fields, and the drag of another fluid in discs",
+     {"perimeter at the end", "drag of the water: exponent", "drag of the membrane: exponent"},
+     [](problem::CahnHilliardModel& m) { m.effects.clear(); },
+     {},
+     "",
+     0,
+     false,
+     {},
+     "",
+     "",
+     [](discs::DiscModel& m) { m.membrane.water = m.membrane.water > 1 ? 0.05 : 100; }},
     {"discs",
      "a field with boundaries 15 % too wide",
      {"energy, discs / field"},

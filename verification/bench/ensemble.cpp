@@ -13,7 +13,9 @@ constexpr double kLevel = 0.5;
 
 Member run_member(const Bench& bench, const EnsembleRequest& request, std::uint64_t seed) {
   const SpacePtr space = bench.space(geometry::make_surface("sphere"), request.cells, 1);
-  const ProblemPtr problem = bench.problem(space, bench_model(request.mobility, request.epsilon));
+  problem::CahnHilliardModel model = bench_model(request.mobility, request.epsilon);
+  model.effects = request.effects;
+  const ProblemPtr problem = bench.problem(space, model);
   problem::InitialRequest initial;
   initial.raft_fraction = request.raft_fraction;
   initial.seed = seed;

@@ -19,8 +19,9 @@ struct EnsembleRequest {
   int members;
   std::vector<double> times;           // common to all, ascending, within (0, t_end]
   std::vector<double> snapshot_times;  // of spectra and raft areas
-  int highest_degree = 0;              // of the spectra; 0: none
-  Part part = {};                      // of the study
+  std::vector<problem::EffectPtr> effects = {};
+  int highest_degree = 0;  // of the spectra; 0: none
+  Part part = {};          // of the study
 };
 
 struct Member {

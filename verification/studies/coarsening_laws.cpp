@@ -22,6 +22,9 @@ statistics::Window window_where(const std::vector<double>& times,
 Ensemble::Ensemble(const bench::Bench& bench, bench::EnsembleRequest request_)
     : request(std::move(request_)), members(bench::run_ensemble(bench, request)) {}
 
+Ensemble::Ensemble(bench::EnsembleRequest request_, std::vector<bench::Member> members_)
+    : request(std::move(request_)), members(std::move(members_)) {}
+
 std::vector<double> Ensemble::mean(std::vector<double> bench::Member::*values) const {
   return bench::geometric_mean(members, values, statistics::each_once(members.size()));
 }
@@ -36,7 +39,8 @@ bench::Exponent measure_law(const Ensemble& ensemble, const Law& law,
                             const statistics::Window& window, bench::Origin origin,
                             bench::Table& exponents) {
   if (!(window.end >= 3 * window.begin))
-    throw std::runtime_error("the window of the " + law.quantity + " is too short to fit a law");
+    throw std::runtime_error(formatted("the window of the %s, t = %.3g to %.3g, is too short",
+                                       law.quantity.c_str(), window.begin, window.end));
   const bench::Exponent found = bench::fit_exponent(
       ensemble.members, law.values, ensemble.request.times, window.begin, window.end, origin);
   exponents.rows.push_back(
@@ -81,6 +85,13 @@ bench::Chart coarsening_chart(const std::string& title, const std::string& y_lab
   return {title, "t (R^2/D)", y_label, true, true, std::move(series)};
 }
 
+std::vector<double> times_between(double begin, double end) {
+  constexpr int kPerDecade = 24;
+  std::vector<double> times;
+  for (double t = begin; t <= end; t *= std::pow(10.0, 1.0 / kPerDecade)) times.push_back(t);
+  return times;
+}
+
 bench::EnsembleRequest ensemble_request(const std::string& mobility, double fraction,
                                         const Sizes& sizes, double t_end) {
   bench::EnsembleRequest request;
@@ -92,9 +103,7 @@ bench::EnsembleRequest ensemble_request(const std::string& mobility, double frac
   request.tolerance = 1e-2;  // 1e-3 gives nearly the same rafts (docs/decisions/0013)
   request.t_end = t_end;
   request.part = sizes.part;
-  constexpr int kPerDecade = 24;
-  for (double t = 0.1; t <= t_end; t *= std::pow(10.0, 1.0 / kPerDecade))
-    request.times.push_back(t);
+  request.times = times_between(0.1, t_end);
   return request;
 }
 

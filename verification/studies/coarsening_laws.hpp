@@ -23,6 +23,7 @@ struct Ensemble {
   std::vector<bench::Member> members;
 
   Ensemble(const bench::Bench& bench, bench::EnsembleRequest request);
+  Ensemble(bench::EnsembleRequest request, std::vector<bench::Member> members);
   // At the common times, over all members.
   std::vector<double> mean(std::vector<double> bench::Member::*values) const;
 };
@@ -58,7 +59,9 @@ struct Sizes {
   bench::Part part = {};  // of the time that all of them take
 };
 
-// 24 times per decade from t = 0.1 on.
+// 24 times per decade.
+std::vector<double> times_between(double begin, double end);
+// At times from t = 0.1 on.
 bench::EnsembleRequest ensemble_request(const std::string& mobility, double fraction,
                                         const Sizes& sizes, double t_end);
 

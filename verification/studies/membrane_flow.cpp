@@ -29,8 +29,9 @@ bench::StartState start_of(const problem::CahnHilliard& problem,
                                  problem::make_initial_field("formula", problem.space(), request));
 }
 
-problem::CahnHilliardModel model_of(double epsilon, problem::EffectPtr flow) {
-  problem::CahnHilliardModel model = bench::bench_model("degenerate", epsilon);
+problem::CahnHilliardModel model_of(double epsilon, problem::EffectPtr flow,
+                                    const std::string& mobility = "degenerate") {
+  problem::CahnHilliardModel model = bench::bench_model(mobility, epsilon);
   model.effects.push_back(std::move(flow));
   return model;
 }
@@ -49,10 +50,9 @@ double smooth_state(const Point& at) {
          0.1 * x * (x * x - 3 * y * y);
 }
 
-problem::CahnHilliardModel reference_model() {
-  return model_of(kReferenceEpsilon,
-                  std::make_shared<effects::CapillaryFlow>(
-                      FluidMembrane{kReferenceCapillary, kWater, 0}, kReferenceEpsilon));
+problem::CahnHilliardModel reference_model(double capillary) {
+  return model_of(kReferenceEpsilon, std::make_shared<effects::CapillaryFlow>(
+                                         FluidMembrane{capillary, kWater, 0}, kReferenceEpsilon));
 }
 
 void measure_reference(const bench::Bench& bench, StudyReport& report) {
@@ -61,7 +61,7 @@ void measure_reference(const bench::Bench& bench, StudyReport& report) {
   double largest = 0;
   for (const int cells : bench.quick() ? std::vector<int>{24, 48} : std::vector<int>{32, 64}) {
     const bench::ProblemPtr problem =
-        bench.problem(bench.space("sphere", cells), reference_model());
+        bench.problem(bench.space("sphere", cells), reference_model(kReferenceCapillary));
     const time::IntegratorPtr integrator = bench.default_integrator(*problem, 1e-4);
     std::size_t next = 0;
     Vec y(problem->size());
@@ -84,11 +84,23 @@ void measure_reference(const bench::Bench& bench, StudyReport& report) {
   report.claims.push_back(claim_order("energies: order in h", levels, 2, 0.5));
 }
 
-// With ẏ = 0 the first half of the residual is what moves c. μ times that of the base model is the
-// dissipation by mobility.
-void measure_dissipation(const bench::Bench& bench, StudyReport& report) {
-  const bench::SpacePtr space = bench.space("sphere", 24);
-  const bench::ProblemPtr problem = bench.problem(space, reference_model()),
+// What mobility and friction take of the energy per time. With ẏ = 0 the first half of the residual
+// of the model without flow is what mobility moves.
+struct Dissipation {
+  double mobility, friction;
+};
+Dissipation dissipation_of(const problem::CahnHilliard& problem, const problem::CahnHilliard& base,
+                           const effects::CapillaryFlow& flow, const Vec& y) {
+  Vec r(y.size());
+  bench::require(base.residual(0, y, Vec::Zero(r.size()), r));
+  return {problem.mu_of(y).dot(r.head(problem.block_size())),
+          flow.dissipation(problem.space(), problem.c_of(y), problem.mu_of(y))};
+}
+
+void measure_dissipation(const bench::Bench& bench, const std::string& surface,
+                         StudyReport& report) {
+  const bench::SpacePtr space = bench.space(surface, 48);
+  const bench::ProblemPtr problem = bench.problem(space, reference_model(kReferenceCapillary)),
                           base = bench.problem(space,
                                                bench::bench_model("degenerate", kReferenceEpsilon));
   const bench::StartState here = start_of(*problem, smooth_state);
@@ -96,21 +108,48 @@ void measure_dissipation(const bench::Bench& bench, StudyReport& report) {
   const double slope =
       (problem->energy(here.y + step * here.ydot) - problem->energy(here.y - step * here.ydot)) /
       (2 * step);
-  Vec r(problem->size());
-  bench::require(base->residual(0, here.y, Vec::Zero(r.size()), r));
-  const double mobility = problem->mu_of(here.y).dot(r.head(problem->block_size()));
-  const FluidMembrane membrane{kReferenceCapillary, kWater, 0};
-  const Vec psi = effects::CapillaryFlow(membrane, kReferenceEpsilon)
-                      .stream(*space, problem->c_of(here.y), problem->mu_of(here.y));
-  double friction = 0;
-  for (int l = 1; flow::harmonic_index(l, l) < psi.size(); ++l)
-    friction += membrane.friction(l) *
-                psi.segment(flow::harmonic_index(l, -l), 2 * l + 1).squaredNorm() /
-                membrane.capillary;
-  report.claims.push_back(claim_at_most("dE/dt + dissipation by mobility + by friction, relative",
-                                        std::fabs(slope + mobility + friction) / -slope, 1e-6));
-  report.notes.push_back(
-      formatted("Friction takes %.2g of what this state loses.", friction / -slope));
+  const Dissipation taken = dissipation_of(
+      *problem, *base, effects::CapillaryFlow({kReferenceCapillary, kWater, 0}, kReferenceEpsilon),
+      here.y);
+  report.claims.push_back(
+      claim_at_most(surface + ": dE/dt + dissipation by mobility + by friction, relative",
+                    std::fabs(slope + taken.mobility + taken.friction) / -slope, 1e-6));
+  report.notes.push_back(formatted("Friction takes %.2g of what this state loses on the %s.",
+                                   taken.friction / -slope, surface.c_str()));
+}
+
+// What mobility and friction have taken of the smooth state until t = 12, at A = 1000, by the same
+// independent program.
+void measure_shares(const bench::Bench& bench, StudyReport& report) {
+  constexpr double kCapillary = 1000, kEnd = 12, kFall = 0.09240666;
+  constexpr Dissipation kTaken{0.05630, 0.03610};
+  const bench::SpacePtr space = bench.space("sphere", bench.quick() ? 32 : 64);
+  const bench::ProblemPtr problem = bench.problem(space, reference_model(kCapillary)),
+                          base = bench.problem(space,
+                                               bench::bench_model("degenerate", kReferenceEpsilon));
+  const effects::CapillaryFlow flow({kCapillary, kWater, 0}, kReferenceEpsilon);
+  const time::IntegratorPtr integrator = bench.default_integrator(*problem, 1e-4);
+  const bench::StartState start = start_of(*problem, smooth_state);
+  Dissipation before = dissipation_of(*problem, *base, flow, start.y), taken{0, 0};
+  double t = 0;
+  bench::advance_to(*integrator, start, kEnd, [&] {
+    const Dissipation now = dissipation_of(*problem, *base, flow, integrator->state());
+    const double half = 0.5 * (std::min(integrator->time(), kEnd) - t);
+    taken.mobility += half * (before.mobility + now.mobility);
+    taken.friction += half * (before.friction + now.friction);
+    t = integrator->time();
+    before = now;
+  });
+  Vec end(problem->size());
+  bench::require(integrator->interpolate(kEnd, end));
+  const double margin = bench.quick() ? 0.02 : 0.005;
+  const auto claim = [&](const char* what, double measured, double exact) {
+    report.claims.push_back(claim_near(formatted("A = 1000, t = 12: %s / spectral", what),
+                                       measured / exact, 1, margin));
+  };
+  claim("fall of the energy", problem->energy(start.y) - problem->energy(end), kFall);
+  claim("energy that mobility takes", taken.mobility, kTaken.mobility);
+  claim("energy that friction takes", taken.friction, kTaken.friction);
 }
 
 // ∫ c Re (x + iy)^m: proportional to the amplitude of a boundary at angle + δ cos mφ.
@@ -169,15 +208,81 @@ void measure_relaxation(const bench::Bench& bench, StudyReport& report) {
   report.tables.push_back(table);
 }
 
+// Two rafts that overlap by a tenth of their radius become one, and this becomes round. With s(c) =
+// c²(3 − 2c) the elongation is |∫ s (x + iy)²|/∫ s (x² + y²). It falls at the rate of mode 2 in the
+// end, if boundaries restore their profile in less time than flow stretches them in. So flow is
+// slow here, and the mobility constant: with A = 1e5 the rate was half as large.
+struct Merging {
+  double rate;    // over that of mode 2 of the round raft of the same area
+  double halved;  // time in which the elongation falls to a half, times that rate
+};
+Merging measured_merging(const bench::Bench& bench, const FluidMembrane& membrane, double epsilon,
+                         int cells) {
+  constexpr double kRadius = 0.4, kApart = 0.9 * kRadius;
+  const bench::ProblemPtr problem =
+      bench.problem(bench.space("sphere", cells),
+                    model_of(epsilon, std::make_shared<effects::CapillaryFlow>(membrane, epsilon),
+                             "constant:value=0.25"));
+  const bench::StartState start = start_of(*problem, [&](const Point& x) {
+    double nearest = kPi;
+    for (const double side : {-1.0, 1.0}) {
+      const Point centre(side * std::sin(kApart), 0, std::cos(kApart));
+      nearest = std::min(nearest, std::acos(std::clamp(centre.dot(x.normalized()), -1.0, 1.0)));
+    }
+    return problem->model().well.profile(nearest - kRadius, epsilon);
+  });
+  const fem::SurfaceSpace& space = problem->space();
+  Vec square(space.nodes()), difference(space.nodes());
+  for (int i = 0; i < space.nodes(); ++i) {
+    const Point x = space.mesh.position(i);
+    square[i] = x[0] * x[0] + x[1] * x[1];
+    difference[i] = x[0] * x[0] - x[1] * x[1];
+  }
+  const auto elongation = [&](const Vec& y) {
+    const Vec inside = problem->c_of(y).unaryExpr([](double c) { return c * c * (3 - 2 * c); });
+    return std::fabs(space.inner(difference, inside)) / space.inner(square, inside);
+  };
+  const double angle = std::acos(1 - problem->mass(start.y) / (2 * kPi)),
+               theory = analytic::relaxation_rate(membrane, epsilon, angle, 2),
+               first = elongation(start.y);
+  const time::IntegratorPtr integrator = bench.default_integrator(*problem, 1e-4);
+  statistics::Points late;
+  double halved = 0;
+  bench::advance_to(*integrator, start, 5 / theory, [&] {
+    const double now = elongation(integrator->state());
+    if (halved == 0 && now < 0.5 * first) halved = integrator->time();
+    if (now < 0.2 * first && now > 0.02 * first)
+      late.emplace_back(integrator->time(), std::log(now));
+  });
+  return {-statistics::fit_line(late).slope / theory, halved * theory};
+}
+
+void measure_merging(const bench::Bench& bench, StudyReport& report) {
+  const FluidMembrane membrane{1e3, kWater, 0};
+  bench::Table table{
+      "merging", {"epsilon", "cells", "late rate / mode 2", "time to half / mode 2"}, {}};
+  Merging last{};
+  for (const double epsilon :
+       bench.quick() ? std::vector<double>{0.05} : std::vector<double>{0.05, 0.025}) {
+    const int cells = static_cast<int>(std::lround(4 / epsilon));
+    last = measured_merging(bench, membrane, epsilon, cells);
+    table.rows.push_back({epsilon, static_cast<double>(cells), last.rate, last.halved});
+  }
+  report.tables.push_back(table);
+  report.claims.push_back(claim_near("two rafts that merge: late rate of becoming round / theory",
+                                     last.rate, 1, bench.quick() ? 0.15 : 0.1));
+}
+
 // Angular velocities are of the modes with l = 1, and D_r = Θ/(8π W) in R²/D whatever the membrane.
-void measure_rotation(StudyReport& report) {
+void measure_rotation(const bench::Bench& bench, StudyReport& report) {
   constexpr int kDraws = 10000;
   constexpr double kHold = 0.1;
   const FluidMembrane membrane{0, kWater, 1e-3};
+  const bench::SpacePtr space = bench.space("sphere", 12);
   const effects::BrownianFlow flow(membrane, 0.1, kHold, 1);
   double squares = 0;
   for (int k = 0; k < kDraws; ++k)
-    squares += flow.draw(k).segment<3>(flow::harmonic_index(1, -1)).squaredNorm();
+    squares += flow.draw(*space, k).segment<3>(flow::harmonic_index(1, -1)).squaredNorm();
   // Y_1m = √(3/4π) x_m.
   const double rate = squares / kDraws / 3 * 3 / (4 * kPi) * kHold / 2;
   const double theory = membrane.thermal / (8 * kPi * kWater);
@@ -259,9 +364,12 @@ StudyReport run(const bench::Bench& bench) {
                 kWater)};
   measure_reference(bench, report);
   bench.progress(0.5);
-  measure_dissipation(bench, report);
+  for (const char* surface : {"sphere", "ellipsoid", "biconcave"})
+    measure_dissipation(bench, surface, report);
+  measure_shares(bench, report);
   measure_relaxation(bench, report);
-  measure_rotation(report);
+  measure_merging(bench, report);
+  measure_rotation(bench, report);
   measure_wandering(bench, report);
   return report;
 }

@@ -3,6 +3,7 @@
 
 #include "backends/posix/process.hpp"
 #include "kernel/core/stopwatch.hpp"
+#include "kernel/effects/capillary_flow.hpp"
 #include "kernel/fem/mobility_stiffness.hpp"
 #include "verification/bench/bench.hpp"
 #include "verification/statistics/sample.hpp"
@@ -21,6 +22,44 @@ double median_seconds(int repetitions, const Action& action) {
     times.push_back(watch.seconds());
   }
   return statistics::quantile(times, 0.5);
+}
+
+// A membrane that flows, over one that does not: a residual, and a run to the same time.
+void measure_flow(const bench::Bench& bench, StudyReport& report) {
+  const int cells = bench.quick() ? 64 : 128;
+  const double epsilon = 6.4 / cells, t_end = 0.5;
+  const bench::SpacePtr space = bench.space(geometry::make_surface("sphere"), cells, 1);
+  problem::CahnHilliardModel model = bench::bench_model("degenerate", epsilon);
+  const bench::ProblemPtr without = bench.problem(space, model);
+  model.effects = {
+      std::make_shared<effects::CapillaryFlow>(flow::FluidMembrane{1000, 1.25, 0}, epsilon)};
+  const bench::ProblemPtr with = bench.problem(space, model);
+  problem::InitialRequest request;
+  request.raft_fraction = 0.4;
+  const auto residual = [&](const problem::CahnHilliard& problem) {
+    const bench::StartState start = bench::initial_state(problem, "noise", request);
+    Vec r(problem.size());
+    return median_seconds(21, [&] { (void)problem.residual(0, start.y, start.ydot, r); });
+  };
+  const auto run_to_end = [&](const problem::CahnHilliard& problem) {
+    const bench::StartState start = bench::initial_state(problem, "noise", request);
+    const time::IntegratorPtr integrator = bench.default_integrator(problem, 1e-3);
+    const Stopwatch watch;
+    bench::advance_to(*integrator, start, t_end);
+    return std::pair(watch.seconds(), static_cast<double>(integrator->statistics().steps));
+  };
+  const auto [plain, plain_steps] = run_to_end(*without);
+  const auto [flowing, flowing_steps] = run_to_end(*with);
+  const double residual_ratio = residual(*with) / residual(*without);
+  report.tables.push_back({"flow",
+                           {"cells", "epsilon", "residual, with / without",
+                            "run to t = 0.5, with / without", "steps with", "steps without"},
+                           {{static_cast<double>(cells), epsilon, residual_ratio, flowing / plain,
+                             flowing_steps, plain_steps}}});
+  report.claims.push_back(
+      claim_at_most("time of a residual with capillary flow / without", residual_ratio, 3));
+  report.claims.push_back(
+      claim_at_most("time of a run with capillary flow / without", flowing / plain, 3));
 }
 
 StudyReport run(const bench::Bench& bench) {
@@ -65,6 +104,7 @@ StudyReport run(const bench::Bench& bench) {
       claim_between("set-up time, 2n cells / n cells (4 like the surface)", fine[1] / coarse[1], 0,
                     6),
       claim_between("time to assemble K_M / time of a product (at most 3 x 3)", fine[2], 0, 9)};
+  measure_flow(bench, report);
   return report;
 }
 

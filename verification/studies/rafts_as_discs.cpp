@@ -2,6 +2,8 @@
 #include <cmath>
 
 #include "kernel/core/text.hpp"
+#include "kernel/effects/brownian_flow.hpp"
+#include "kernel/effects/capillary_flow.hpp"
 #include "kernel/observables/resolved_boundary.hpp"
 #include "verification/bench/disc_vesicle.hpp"
 #include "verification/statistics/sample.hpp"
@@ -17,6 +19,7 @@ struct DiscSizes {
   double epsilon;
   int cells, vesicles;
   std::vector<double> times;
+  flow::FluidMembrane membrane = {};  // thermal = 0: there is no flow
 };
 
 // At the times.
@@ -24,8 +27,13 @@ using VesicleHistory = std::vector<observables::Observables>;
 
 VesicleHistory in_field(const bench::Bench& bench, const DiscSizes& sizes, std::uint64_t seed) {
   const bench::SpacePtr space = bench.space(geometry::make_surface("sphere"), sizes.cells, 1);
-  const bench::ProblemPtr problem =
-      bench.problem(space, bench::bench_model("degenerate", sizes.epsilon));
+  problem::CahnHilliardModel model = bench::bench_model("degenerate", sizes.epsilon);
+  if (sizes.membrane.thermal > 0)
+    model.effects = {
+        std::make_shared<effects::CapillaryFlow>(sizes.membrane, sizes.epsilon),
+        std::make_shared<effects::BrownianFlow>(
+            sizes.membrane, sizes.epsilon, flow::hold_of(sizes.membrane, sizes.epsilon), seed)};
+  const bench::ProblemPtr problem = bench.problem(space, model);
   const observables::Observer observer(
       *problem, space,
       observables::resolved_boundary(problem->model(), space->h()).interface_energy);
@@ -47,10 +55,14 @@ VesicleHistory in_field(const bench::Bench& bench, const DiscSizes& sizes, std::
   return history;
 }
 
-VesicleHistory as_discs(const bench::Bench& bench, const DiscSizes& sizes, std::uint64_t seed) {
+// `walk`: the seed of Brownian motion.
+VesicleHistory as_discs(const bench::Bench& bench, const DiscSizes& sizes, std::uint64_t seed,
+                        std::uint64_t walk = 1) {
   discs::DiscModel model;
   model.mobility = physics::make_mobility("degenerate");
   model.epsilon = sizes.epsilon;
+  model.membrane = sizes.membrane;
+  model.seed = walk;
   discs::RandomDiscs asked;
   asked.number = kRafts;
   asked.spread = kSpread;
@@ -118,18 +130,83 @@ void compare(const bench::Bench& bench, const DiscSizes& sizes, bench::Part part
       claim_at_most(name + ": largest mean difference in the number of rafts", most, 1));
 }
 
+// The mean of a quantity over vesicles, and its standard error.
+template <class Quantity>
+PairMean over_vesicles(const std::vector<VesicleHistory>& all, std::size_t at,
+                       const Quantity& quantity) {
+  return over_pairs(all, all, at,
+                    [&](const observables::Observables& one, const observables::Observables&) {
+                      return quantity(one);
+                    });
+}
+
+// Brownian motion is drawn, in the field for each vesicle and in discs for each walk. So means are
+// compared: discs make many walks from each start, and what is left is the scatter of the field.
+void compare_with_flow(const bench::Bench& bench, const DiscSizes& sizes, int walks,
+                       bench::Part part, StudyReport& report) {
+  std::vector<VesicleHistory> fields(static_cast<std::size_t>(sizes.vesicles)), discs;
+  for (int k = 0; k < sizes.vesicles * walks; ++k)
+    discs.push_back(as_discs(bench, sizes, static_cast<std::uint64_t>(k / walks) + 1,
+                             static_cast<std::uint64_t>(k) + 1));
+  bench.in_parallel(
+      sizes.vesicles,
+      [&](int k) {
+        const auto index = static_cast<std::size_t>(k);
+        fields[index] = in_field(bench, sizes, index + 1);
+      },
+      part);
+  bench::Table table{
+      "with flow",
+      {"t", "rafts, field", "standard error", "rafts, discs", "standard error", "perimeter, field",
+       "standard error", "perimeter, discs / field", "standard error"},
+      {}};
+  std::vector<double> field_means(fields.size(), 0.0);
+  double perimeters = 0, more = 0, counts = 0;
+  const auto share = 1 / static_cast<double>(sizes.times.size());
+  for (std::size_t i = 0; i < sizes.times.size(); ++i) {
+    using Row = const observables::Observables&;
+    const auto rafts = [](Row row) { return 1.0 * row.rafts; };
+    const auto perimeter = [](Row row) { return row.perimeter; };
+    const PairMean rafts_of_field = over_vesicles(fields, i, rafts),
+                   rafts_of_discs = over_vesicles(discs, i, rafts),
+                   of_field = over_vesicles(fields, i, perimeter),
+                   of_discs = over_vesicles(discs, i, perimeter);
+    const double ratio = of_discs.mean / of_field.mean;
+    table.rows.push_back(
+        {sizes.times[i], rafts_of_field.mean, rafts_of_field.error, rafts_of_discs.mean,
+         rafts_of_discs.error, of_field.mean, of_field.error, ratio,
+         ratio * std::hypot(of_field.error / of_field.mean, of_discs.error / of_discs.mean)});
+    perimeters += share * ratio;
+    more += share * (rafts_of_discs.mean - rafts_of_field.mean);
+    for (std::size_t k = 0; k < fields.size(); ++k) {
+      field_means[k] += share * fields[k][i].perimeter / of_field.mean;
+      counts += share * std::pow(fields[k][i].rafts - rafts_of_field.mean, 2);
+    }
+  }
+  report.tables.push_back(table);
+  const auto vesicles = static_cast<double>(fields.size());
+  const double error = statistics::sample_of(field_means).deviation / std::sqrt(vesicles),
+               error_of_count = std::sqrt(counts / (vesicles * (vesicles - 1)));
+  report.claims.push_back(claim_near("with flow: perimeter, discs / field, mean over the times",
+                                     perimeters, 1, 0.05 + 2 * error, 2 * error));
+  report.claims.push_back(claim_near("with flow: more rafts in discs, mean over the times", more, 0,
+                                     0.5 + 2 * error_of_count, 2 * error_of_count));
+}
+
 StudyReport run_discs(const bench::Bench& bench) {
   StudyReport report;
   report.notes = {
-      formatted("%d rafts at random places, raft fraction %g, degenerate mobility, no flow. Discs "
-                "and field begin with the same rafts; errors are those of the mean over vesicles.",
+      formatted("%d rafts at random places, raft fraction %g, degenerate mobility. Discs and "
+                "field begin with the same rafts; errors are those of the mean over vesicles.",
                 kRafts, kFraction)};
   if (bench.quick()) {
     compare(bench, {0.03, 56, 4, {2, 5, 10}}, {}, report);
     return report;
   }
-  compare(bench, {0.03, 80, 8, {2, 5, 10, 20, 50, 100, 200}}, {0, 0.3}, report);
-  compare(bench, {0.02, 112, 8, {4.5, 11, 22, 45, 112, 225, 450}}, {0.3, 1}, report);
+  compare(bench, {0.03, 80, 8, {2, 5, 10, 20, 50, 100, 200}}, {0, 0.2}, report);
+  compare(bench, {0.02, 112, 8, {4.5, 11, 22, 45, 112, 225, 450}}, {0.2, 0.6}, report);
+  compare_with_flow(bench, {0.03, 56, 10, {1, 2, 4, 8, 16}, {1e4, 1.25, 0.05}}, 30, {0.6, 1},
+                    report);
   return report;
 }
 

@@ -14,6 +14,7 @@ const NamedList<StudyEntry>& studies() {
       coarsening_study(),
       raft_coarsening_study(),
       membrane_flow_study(),
+      flow_coarsening_study(),
       rafts_as_discs_study(),
       published_vesicles_study(),
       pfhub_study(),

@@ -17,6 +17,7 @@ StudyEntry integrator_agreement_study();
 StudyEntry coarsening_study();
 StudyEntry raft_coarsening_study();
 StudyEntry membrane_flow_study();
+StudyEntry flow_coarsening_study();
 StudyEntry rafts_as_discs_study();
 StudyEntry published_vesicles_study();
 StudyEntry pfhub_study();

@@ -16,6 +16,8 @@ constexpr double kUsualChange = 0.06;
 constexpr std::size_t kMoreRounds = 3;
 // Width of the neighbourhood that maps are means over, in widths of phase boundaries.
 constexpr double kMapWidth = 2;
+// D is far from the model's from this factor on.
+constexpr double kFarFromModel = 3;
 // Beyond that many standard deviations a snapshot is said to be rotated or scaled.
 constexpr double kChanged = 3;
 
@@ -49,27 +51,56 @@ bool progresses(const Search& search, const Explanation& result) {
   return false;
 }
 
+// Refits of some trials from other starts, which take the place of those that are less probable.
+struct OtherStarts {
+  std::vector<assimilation::FilterModel> starts;
+  std::vector<std::size_t> which;  // of the trials
+
+  // A trial without any of its last effect.
+  void add(std::size_t trial, assimilation::FilterModel start) {
+    std::vector<double>& coefficients = start.hypothesis.parts.back().coefficients;
+    coefficients.assign(coefficients.size(), 0);
+    starts.push_back(std::move(start));
+    which.push_back(trial);
+  }
+  void refit(Search& search, SearchState& state, std::size_t before,
+             std::vector<Refit>& fits) const {
+    std::vector<Refit> others = search.refit_all(state, starts, before);
+    for (std::size_t k = 0; k < which.size(); ++k) {
+      Refit& fit = fits[which[k]];
+      const bool failed = !fit.failure.empty();
+      if (others[k].failure.empty() && (failed || others[k].deviance < fit.deviance))
+        fit = std::move(others[k]);
+    }
+  }
+};
+
 // First orders of an effect that another D makes up for may lie beyond a ridge, from where the way
 // does not lead back: where such refits end worse than without the effect, they begin once more
-// with nothing of it.
-std::vector<Refit> refit_from_nothing(Search& search, SearchState& state,
-                                      const std::vector<assimilation::FilterModel>& trials,
-                                      std::vector<Refit> fits) {
-  std::vector<assimilation::FilterModel> again;
-  std::vector<std::size_t> which;
+// with nothing of it. Where what is missing has driven D far from that of the model, they also
+// begin at that one.
+void refit_from_nothing(Search& search, SearchState& state,
+                        const std::vector<assimilation::FilterModel>& trials,
+                        std::vector<Refit>& fits) {
+  OtherStarts nothing, own;
+  const bool far =
+      std::fabs(std::log(state.so_far.found.diffusion_ratio)) > std::log(kFarFromModel);
   for (std::size_t k = 0; k < fits.size(); ++k) {
-    if (fits[k].failure.empty() && fits[k].deviance <= state.so_far.found.deviance) continue;
-    again.push_back(trials[k]);
-    std::vector<double>& coefficients = again.back().hypothesis.parts.back().coefficients;
-    coefficients.assign(coefficients.size(), 0);
-    which.push_back(k);
+    if (!fits[k].failure.empty() || fits[k].deviance > state.so_far.found.deviance)
+      nothing.add(k, trials[k]);
+    if (!far) continue;
+    assimilation::FilterModel start = trials[k];
+    start.diffusion_ratio = 1;
+    own.add(k, std::move(start));
   }
-  if (again.empty()) return fits;
-  search.tell("  refits that start from strength 0");
-  std::vector<Refit> better = search.refit_all(state, again, trials.size());
-  for (std::size_t k = 0; k < which.size(); ++k)
-    if (better[k].failure.empty()) fits[which[k]] = std::move(better[k]);
-  return fits;
+  if (!nothing.which.empty()) {
+    search.tell("  refits that start from strength 0");
+    nothing.refit(search, state, trials.size(), fits);
+  }
+  if (far) {
+    search.tell("  refits that start from the model's D");
+    own.refit(search, state, trials.size() + nothing.which.size(), fits);
+  }
 }
 
 // Without what was dropped before.
@@ -128,8 +159,8 @@ SearchState screen_candidates(Search& search, SearchState state) {
 SearchState refit_shortlist(Search& search, SearchState state) {
   const std::vector<assimilation::FilterModel> trials = trials_of(search, state);
   search.tell(formatted("%zu refits (gains are 2 ln of the likelihood ratio)", trials.size()));
-  const std::vector<Refit> fits =
-      refit_from_nothing(search, state, trials, search.refit_all(state, trials));
+  std::vector<Refit> fits = search.refit_all(state, trials);
+  refit_from_nothing(search, state, trials, fits);
   Round& round = state.so_far.rounds.back();
   for (const Refit& fit : fits)
     if (fit.failure.empty())
