@@ -13,6 +13,9 @@
 
 namespace traceraft::geometry {
 
+// Surfaces lie in the box [−5/3, 5/3]³, as in the reference results.
+inline constexpr double kBoxHalfWidth = 5.0 / 3.0;
+
 // Contract: continuously differentiable with ∇φ ≠ 0 near Γ, finite in the whole box, thread-safe.
 // φ need not be a distance: the discretisation uses its zero set and its normalised gradient.
 class LevelSet {

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "kernel/core/error.hpp"
-#include "kernel/mesh/cube_mesh.hpp"
 
 namespace traceraft::geometry {
 namespace {
@@ -41,7 +40,7 @@ double StarSurface::radius(const Point& direction) const {
 double StarSurface::distance(const Point& from, const Point& direction) const {
   const auto phi = [&](double r) { return level_set_->value(from + r * direction); };
   if (!(phi(0) < 0)) throw InputError("the centre lies outside this one");
-  const double longest = (mesh::kBoxHalfWidth - from.lpNorm<Eigen::Infinity>()) /
+  const double longest = (kBoxHalfWidth - from.lpNorm<Eigen::Infinity>()) /
                          direction.lpNorm<Eigen::Infinity>();  // within the box
   double low = 0, high = 0;
   for (int k = 1; k <= kSamples; ++k) {

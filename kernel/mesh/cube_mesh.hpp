@@ -5,11 +5,11 @@
 #include <array>
 #include <cstdint>
 
-#include "kernel/core/types.hpp"
+#include "kernel/geometry/level_set.hpp"
 
 namespace traceraft::mesh {
 
-inline constexpr double kBoxHalfWidth = 5.0 / 3.0;  // in units of R, as in the reference results
+using geometry::kBoxHalfWidth;
 
 using Lattice = std::array<std::int64_t, 3>;  // integer coordinates of a vertex or a cell
 
