@@ -91,14 +91,13 @@ class SurfaceFriction final : public Friction {
     constexpr int kIterations = 12;
     const Eigen::LLT<Eigen::MatrixXd> shifted(of_membrane + kShift * stiffness);
     Eigen::MatrixXd flows = Eigen::MatrixXd::Identity(of_membrane.rows(), 8);
-    Eigen::MatrixXd small, norms;
     for (int k = 0; k < kIterations; ++k) {
       flows = shifted.solve(stiffness * flows);
       for (Eigen::Index j = 0; j < flows.cols(); ++j) flows.col(j).normalize();
     }
-    small = flows.transpose() * of_membrane * flows;
-    norms = flows.transpose() * stiffness * flows;
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz(small, norms);
+    const Eigen::MatrixXd power_of_membrane = flows.transpose() * of_membrane * flows,
+                          norms = flows.transpose() * stiffness * flows;
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz(power_of_membrane, norms);
     const Eigen::Index count = (ritz.eigenvalues().array() < kNone).count();
     rotations_ = flows * ritz.eigenvectors().leftCols(count);
     const Eigen::MatrixXd power = rotations_.transpose() * friction_ * rotations_;

@@ -216,21 +216,24 @@ struct Merging {
   double rate;    // over that of mode 2 of the round raft of the same area
   double halved;  // time in which the elongation falls to a half, times that rate
 };
-Merging measured_merging(const bench::Bench& bench, const FluidMembrane& membrane, double epsilon,
-                         int cells) {
-  constexpr double kRadius = 0.4, kApart = 0.9 * kRadius;
-  const bench::ProblemPtr problem =
-      bench.problem(bench.space("sphere", cells),
-                    model_of(epsilon, std::make_shared<effects::CapillaryFlow>(membrane, epsilon),
-                             "constant:value=0.25"));
-  const bench::StartState start = start_of(*problem, [&](const Point& x) {
+bench::StartState two_rafts(const problem::CahnHilliard& problem) {
+  constexpr double kRadius = 0.4, kApart = 0.9 * kRadius;  // half of the distance
+  return start_of(problem, [&](const Point& x) {
     double nearest = kPi;
     for (const double side : {-1.0, 1.0}) {
       const Point centre(side * std::sin(kApart), 0, std::cos(kApart));
       nearest = std::min(nearest, std::acos(std::clamp(centre.dot(x.normalized()), -1.0, 1.0)));
     }
-    return problem->model().well.profile(nearest - kRadius, epsilon);
+    return problem.model().well.profile(nearest - kRadius, problem.model().epsilon);
   });
+}
+Merging measured_merging(const bench::Bench& bench, const FluidMembrane& membrane, double epsilon,
+                         int cells) {
+  const bench::ProblemPtr problem =
+      bench.problem(bench.space("sphere", cells),
+                    model_of(epsilon, std::make_shared<effects::CapillaryFlow>(membrane, epsilon),
+                             "constant:value=0.25"));
+  const bench::StartState start = two_rafts(*problem);
   const fem::SurfaceSpace& space = problem->space();
   Vec square(space.nodes()), difference(space.nodes());
   for (int i = 0; i < space.nodes(); ++i) {
