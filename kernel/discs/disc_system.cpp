@@ -34,7 +34,7 @@ constexpr double kSafety = 0.9, kLargestGrowth = 5, kLargestCut = 0.2;
 // A step takes at most this share of what is left of a disc's time, at its present rate: longer
 // ones are rejected.
 constexpr double kShareOfLife = 0.5;
-// Of an area, for a coordinate that falls in a straight line where a disc dissolves.
+// The power of an area that falls in a straight line, nearly, where a disc dissolves.
 constexpr double kPower = 1.75;
 // d(A^p)/dA
 double power_slope(double area) {

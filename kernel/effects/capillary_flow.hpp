@@ -36,7 +36,7 @@ class CapillaryFlow final : public problem::Effect {
                            VecView direction_c, VecView direction_mu, VecRef product_c,
                            VecRef product_mu) const override;
 
-  // What friction takes of the energy per time: ψᵀ F ψ/A. Collective.
+  // Friction takes as much of the energy per time: ψᵀ F ψ/A. Collective.
   double dissipation(const fem::SurfaceSpace& space, VecView c, VecView mu) const;
 
  private:

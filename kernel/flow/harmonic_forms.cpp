@@ -27,8 +27,8 @@ double fejer_weight(int i, int n) {
   return 2 * (1 - 2 * sum) / n;
 }
 
-// With the directions θ and φ: ∇_Γ u · ∇_Γ v dA = Σ D_a u A_ab D_b v dΩ, where D = (∂_θ, ∂_φ/sin
-// θ), A = (1 − ν νᵀ)/(n·s), ν = (n·e_θ, n·e_φ) and s the ray; dA = r²/(n·s) dΩ.
+// Integrals are over directions: ∇_Γ u · ∇_Γ v dA = Σ D_a u A_ab D_b v dΩ with a, b = θ, φ. Here D
+// = (∂_θ, ∂_φ/sin θ), A = (1 − ν νᵀ)/(n·s), ν = (n·e_θ, n·e_φ), and s is the ray; dA = r²/(n·s) dΩ.
 struct Density {
   double mass;
   Eigen::Matrix2d metric;  // A
@@ -48,7 +48,7 @@ Density density_at(const geometry::StarSurface& surface, double theta, double ph
           at.gaussian_curvature()};
 }
 
-// Of one ring, between two waves each: ∫ wave_m wave_m' density dφ, times the weight of the ring.
+// The integrals over one ring, ∫ wave_m wave_m' density dφ, times the weight of the ring.
 struct RingIntegrals {
   Eigen::MatrixXd mass;
   std::array<Eigen::MatrixXd, 3> metric, curved;  // θθ, θφ, φφ

@@ -5,8 +5,8 @@
 
 namespace traceraft::geometry {
 
-// Of fourth order. With steps of 2e-3 R the errors of a smooth level set are 1e-10 of its size,
-// which is what rounding leaves of second derivatives.
+// Differences are of fourth order. With steps of 2e-3 R the errors of a smooth level set are 1e-10
+// of its size, which is what rounding leaves of second derivatives.
 struct LevelSetDerivatives {
   Point gradient;
   Eigen::Matrix3d hessian;

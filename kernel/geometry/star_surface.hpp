@@ -12,7 +12,7 @@ class StarSurface {
   // without crossing it.
   explicit StarSurface(LevelSetPtr level_set);
 
-  // That of a unit sphere, wherever it is; of another surface the origin.
+  // The centre of a unit sphere, wherever it is, or the origin.
   const Point& centre() const { return centre_; }
   bool is_unit_sphere() const { return unit_sphere_; }
   // Where the ray in a direction, a unit vector, meets the surface: the distance from the centre.

@@ -84,8 +84,8 @@ void measure_reference(const bench::Bench& bench, StudyReport& report) {
   report.claims.push_back(claim_order("energies: order in h", levels, 2, 0.5));
 }
 
-// What mobility and friction take of the energy per time. With ẏ = 0 the first half of the residual
-// of the model without flow is what mobility moves.
+// Mobility and friction take as much of the energy per time. With ẏ = 0 the first half of the
+// residual of the model without flow is what mobility moves.
 struct Dissipation {
   double mobility, friction;
 };
@@ -118,8 +118,8 @@ void measure_dissipation(const bench::Bench& bench, const std::string& surface,
                                    taken.friction / -slope, surface.c_str()));
 }
 
-// What mobility and friction have taken of the smooth state until t = 12, at A = 1000, by the same
-// independent program.
+// Parts of the energy of the smooth state that mobility and friction have taken until t = 12, at A
+// = 1000, by the same independent program.
 void measure_shares(const bench::Bench& bench, StudyReport& report) {
   constexpr double kCapillary = 1000, kEnd = 12, kFall = 0.09240666;
   constexpr Dissipation kTaken{0.05630, 0.03610};
