@@ -42,8 +42,10 @@ INSTANTIATE_TEST_SUITE_P(Quick, StudyTest, ::testing::ValuesIn(studies_of_all())
 TEST(TimedStudies, MeshesGrowLikeTheSurface) {
   const studies::StudyReport report =
       studies::studies().find("cost").run(bench::Bench({true, "", "", 1}));
-  ASSERT_EQ(report.tables.size(), 1u);
+  ASSERT_EQ(report.tables.size(), 2u);
   EXPECT_EQ(report.tables[0].rows.size(), 2u);
+  ASSERT_EQ(report.tables[1].rows.size(), 1u);  // flow: times and steps
+  for (const bench::Cell& cell : report.tables[1].rows[0]) EXPECT_GT(cell.number, 0);
   const auto nodes = std::find_if(
       report.claims.begin(), report.claims.end(),
       [](const studies::Claim& c) { return c.what.find("nodes") != std::string::npos; });
