@@ -168,17 +168,20 @@ class SeriesSearch {
 
   SeriesScore score_of(std::size_t k) {
     const likelihood::EnsembleModel model = curves_.with(k);
-    const likelihood::EnsembleFit fit =
-        likelihood::with_error_of_runs(blocks_, model, gains_.fits[k]);
+    const likelihood::EnsembleFit& fit = gains_.fits[k];
     const SeriesCandidate& candidate = candidates_[k];
     const double gain = gains_.values[static_cast<Eigen::Index>(k)];
     const double noise = null_.mean[static_cast<Eigen::Index>(k)];
     const double p =
         share_of_noise(surprise_.highest, surprise_.data[static_cast<Eigen::Index>(k)]);
     result_.p = std::min(result_.p, p);
-    const double deviation = candidate.deviation(fit);
-    const statistics::Interval bounds =
-        strength_bounds(candidate, fit, bound_width(deviation, 1, candidate.two_sided, noise));
+    const double deviation =
+        candidate.deviation(likelihood::with_error_of_runs(blocks_, model, fit));
+    // The error of the runs is one reason why noise gains more than it should: it counts once.
+    const double width =
+        std::max(bound_width(candidate.deviation(fit), 1, candidate.two_sided, noise),
+                 bound_width(deviation, 1, candidate.two_sided, 0));
+    const statistics::Interval bounds = strength_bounds(candidate, fit, width);
     const double least = candidate.strength_at(model.least_amplitude()),
                  most = candidate.strength_at(model.largest_amplitude());
     return {candidate.effect,
