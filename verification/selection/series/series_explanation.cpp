@@ -175,13 +175,11 @@ class SeriesSearch {
     const double p =
         share_of_noise(surprise_.highest, surprise_.data[static_cast<Eigen::Index>(k)]);
     result_.p = std::min(result_.p, p);
+    // Bounds know the error of the runs by what noise gains too much.
     const double deviation =
         candidate.deviation(likelihood::with_error_of_runs(blocks_, model, fit));
-    // The error of the runs is one reason why noise gains more than it should: it counts once.
-    const double width =
-        std::max(bound_width(candidate.deviation(fit), 1, candidate.two_sided, noise),
-                 bound_width(deviation, 1, candidate.two_sided, 0));
-    const statistics::Interval bounds = strength_bounds(candidate, fit, width);
+    const statistics::Interval bounds = strength_bounds(
+        candidate, fit, bound_width(candidate.deviation(fit), 1, candidate.two_sided, noise));
     const double least = candidate.strength_at(model.least_amplitude()),
                  most = candidate.strength_at(model.largest_amplitude());
     return {candidate.effect,
