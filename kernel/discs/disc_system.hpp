@@ -70,7 +70,6 @@ class DiscSystem {
     double error;          // over the tolerance
   };
 
-  void discs_have_changed();
   void plan_walk();
   double longest_step() const;
   bool attempt(const Ripening& ripening, const DiscState& from, const DiscCoordinates& rate,

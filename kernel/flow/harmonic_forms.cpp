@@ -14,11 +14,6 @@ namespace {
 // Harmonics need as many rings as their products have degrees; the shape has degrees of its own.
 constexpr int kRingsOfTheShape = 48;
 
-// Column of cos mφ (m > 0) or sin |m|φ (m < 0).
-Eigen::Index wave_index(int m) {
-  return m > 0 ? 2 * m - 1 : -2 * m;
-}
-
 // Fejér's first rule for ∫ f(θ) sin θ dθ at θ = (i + ½)π/n.
 double fejer_weight(int i, int n) {
   const double theta = (i + 0.5) * kPi / n;
@@ -70,7 +65,7 @@ class Assembly {
       slopes_.push_back(std::move(slope));
       over_sines_.push_back(std::move(over_sine));
     }
-    const Eigen::MatrixXd waves = wave_matrix();
+    const Eigen::MatrixXd waves = waves_at(columns(), degree);
     for (int i = 0; i < rings_; ++i) integrals_.push_back(ring_integrals(surface, waves, i));
   }
 
@@ -93,19 +88,6 @@ class Assembly {
 
  private:
   int columns() const { return 2 * rings_; }
-
-  Eigen::MatrixXd wave_matrix() const {
-    Eigen::MatrixXd waves(columns(), 2 * degree_ + 1);
-    for (int j = 0; j < columns(); ++j) {
-      const double phi = 2 * kPi * j / columns();
-      waves(j, 0) = 1 / std::sqrt(2 * kPi);
-      for (int m = 1; m <= degree_; ++m) {
-        waves(j, wave_index(m)) = std::cos(m * phi) / std::sqrt(kPi);
-        waves(j, wave_index(-m)) = std::sin(m * phi) / std::sqrt(kPi);
-      }
-    }
-    return waves;
-  }
 
   RingIntegrals ring_integrals(const geometry::StarSurface& surface, const Eigen::MatrixXd& waves,
                                int i) const {

@@ -28,6 +28,19 @@ constexpr int kParts = 8;
 
 }  // namespace
 
+Eigen::MatrixXd waves_at(int angles, int degree) {
+  Eigen::MatrixXd waves(angles, 2 * degree + 1);
+  for (int j = 0; j < angles; ++j) {
+    waves(j, 0) = 1 / std::sqrt(2 * kPi);
+    for (int m = 1; m <= degree; ++m) {
+      const double angle = 2 * kPi * ((static_cast<long long>(j) * m) % angles) / angles;
+      waves(j, wave_index(m)) = std::cos(angle) / std::sqrt(kPi);
+      waves(j, wave_index(-m)) = std::sin(angle) / std::sqrt(kPi);
+    }
+  }
+  return waves;
+}
+
 HarmonicTransform::HarmonicTransform(const std::vector<Point>& points, int degree,
                                      std::shared_ptr<const ThreadTeam> team,
                                      std::shared_ptr<const Communicator> ranks)
@@ -38,15 +51,7 @@ HarmonicTransform::HarmonicTransform(const std::vector<Point>& points, int degre
       columns_(2 * rings_) {
   stencils_.reserve(points.size());
   for (const Point& point : points) stencils_.push_back(stencil_of(point));
-  waves_.resize(columns_, 2 * degree_ + 1);
-  for (int j = 0; j < columns_; ++j) {
-    waves_(j, 0) = 1 / std::sqrt(2 * kPi);
-    for (int m = 1; m <= degree_; ++m) {
-      const double angle = 2 * kPi * ((static_cast<long long>(j) * m) % columns_) / columns_;
-      waves_(j, 2 * m - 1) = std::cos(angle) / std::sqrt(kPi);
-      waves_(j, 2 * m) = std::sin(angle) / std::sqrt(kPi);
-    }
-  }
+  waves_ = waves_at(columns_, degree_);
   for (int m = 0; m <= degree_; ++m) {
     Eigen::MatrixXd values(rings_, degree_ - m + 1);
     for (int i = 0; i < rings_; ++i)
@@ -135,8 +140,8 @@ Vec HarmonicTransform::analysis(VecView values) const {
   Vec coefficients(size());
   for (int m = -degree_; m <= degree_; ++m) {
     const int order = std::abs(m);
-    const Vec of_degrees = legendre_[static_cast<std::size_t>(order)].transpose() *
-                           series.col(m > 0 ? 2 * m - 1 : -2 * m);
+    const Vec of_degrees =
+        legendre_[static_cast<std::size_t>(order)].transpose() * series.col(wave_index(m));
     for (int l = order; l <= degree_; ++l)
       coefficients[harmonic_index(l, m)] = of_degrees[l - order];
   }
@@ -150,8 +155,7 @@ Vec HarmonicTransform::synthesis(const Vec& coefficients) const {
     Vec of_degrees(degree_ - order + 1);
     for (int l = order; l <= degree_; ++l)
       of_degrees[l - order] = coefficients[harmonic_index(l, m)];
-    series.col(m > 0 ? 2 * m - 1 : -2 * m) =
-        legendre_[static_cast<std::size_t>(order)] * of_degrees;
+    series.col(wave_index(m)) = legendre_[static_cast<std::size_t>(order)] * of_degrees;
   }
   const Grid grid = with_margin(series * waves_.transpose());
   Vec values(static_cast<Eigen::Index>(stencils_.size()));

@@ -19,6 +19,13 @@ inline Eigen::Index harmonic_index(int l, int m) {
   return static_cast<Eigen::Index>(l) * l + l + m;
 }
 
+// Waves at equal angles φ (rows): 1/√2π, cos mφ/√π and sin |m|φ/√π for m up to a degree.
+Eigen::MatrixXd waves_at(int angles, int degree);
+// The column of the wave of order m.
+inline Eigen::Index wave_index(int m) {
+  return m > 0 ? 2 * m - 1 : -2 * m;
+}
+
 // f(l) for every harmonic up to a degree.
 template <class OfDegree>
 Vec by_degree(int degree, const OfDegree& f) {
@@ -77,7 +84,7 @@ class HarmonicTransform {
   std::shared_ptr<const Communicator> ranks_;
   int rings_, columns_;
   std::vector<Stencil> stencils_;          // one per point
-  Eigen::MatrixXd waves_;                  // columns × (1, cos φ, sin φ, cos 2φ, …)
+  Eigen::MatrixXd waves_;                  // at the columns
   std::vector<Eigen::MatrixXd> legendre_;  // of each order m: rings × (degree − m + 1)
 };
 

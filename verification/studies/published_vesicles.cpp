@@ -5,6 +5,7 @@
 #include "kernel/core/text.hpp"
 #include "verification/bench/disc_vesicle.hpp"
 #include "verification/statistics/power_law.hpp"
+#include "verification/studies/coarsening_laws.hpp"
 #include "verification/studies/studies.hpp"
 
 namespace traceraft::studies {
@@ -76,12 +77,6 @@ std::vector<double> mean_perimeters(const bench::Bench& bench, const Published& 
   return means;
 }
 
-statistics::Points points_of(const std::vector<double>& times, const std::vector<double>& values) {
-  statistics::Points points;
-  for (std::size_t i = 0; i < times.size(); ++i) points.emplace_back(times[i], values[i]);
-  return points;
-}
-
 // From 100 to 316 s, the first and the fourth of the times.
 double slope(const std::vector<double>& times, const std::vector<double>& values) {
   return statistics::fit_power_law({{times[0], values[0]}, {times[3], values[3]}}).slope;
@@ -126,11 +121,11 @@ void compare(const bench::Bench& bench, const Published& published, bench::Part 
       name.c_str(), slope(times, law), slope(times, ripening), slope(times, less),
       slope(times, more), without));
   chart.series.push_back(
-      {published.composition + " published", points_of(times, law), bench::Mark::both});
+      {published.composition + " published", as_points(times, law), bench::Mark::both});
   chart.series.push_back(
-      {published.composition + " without flow", points_of(times, ripening), bench::Mark::line});
+      {published.composition + " without flow", as_points(times, ripening), bench::Mark::line});
   chart.series.push_back({published.composition + " with flow, 4.1 to 9.7 nPa s m",
-                          points_of(times, less), bench::Mark::band, more});
+                          as_points(times, less), bench::Mark::band, more});
 }
 
 StudyReport run_published(const bench::Bench& bench) {
