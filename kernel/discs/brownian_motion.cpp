@@ -20,12 +20,18 @@ int degree_for(const std::vector<Disc>& discs) {
   return std::min(kHighestDegree, static_cast<int>(std::ceil(kWaves / smallest)));
 }
 
-// √(2Θ (2l + 1)/(4π friction)) F_l(α) of a disc.
-Vec weights_of(const Disc& disc, const flow::FluidMembrane& membrane, int degree) {
-  Vec weight = flow::means_over_cap(cosine_of_half_angle(disc.area), degree);
+// √(2Θ (2l + 1)/(4π friction)) of all degrees.
+Vec sizes_of_waves(const flow::FluidMembrane& membrane, int degree) {
+  Vec size = Vec::Zero(degree + 1);
   for (int l = 1; l <= degree; ++l)
-    weight[l] *= std::sqrt(2 * membrane.thermal * (2 * l + 1) / (4 * kPi * membrane.friction(l)));
-  return weight;
+    size[l] = std::sqrt(2 * membrane.thermal * (2 * l + 1) / (4 * kPi * membrane.friction(l)));
+  return size;
+}
+
+// The same, times F_l(α) of a disc.
+Vec weights_of(const Disc& disc, const Vec& sizes) {
+  const int degree = static_cast<int>(sizes.size()) - 1;
+  return flow::means_over_cap(cosine_of_half_angle(disc.area), degree).cwiseProduct(sizes);
 }
 
 // The normal of the great circle through both; where they face each other, `any` is one.
@@ -43,23 +49,30 @@ void BrownianMotion::set_discs(const std::vector<Disc>& discs) {
   along_.resize(count, count);
   across_.resize(count, count);
   Eigen::ArrayXXd weight(count, degree + 1);
+  const Vec sizes = sizes_of_waves(membrane_, degree);
   for (Eigen::Index i = 0; i < count; ++i)
-    weight.row(i) = weights_of(discs[static_cast<std::size_t>(i)], membrane_, degree).transpose();
+    weight.row(i) = weights_of(discs[static_cast<std::size_t>(i)], sizes).transpose();
   for (Eigen::Index i = 0; i < count; ++i) {
     const Eigen::Index last = i + 1;  // pairs (i, j) with j ≤ i
     Eigen::ArrayXd x(last), value = Eigen::ArrayXd::Ones(last), before = Eigen::ArrayXd::Zero(last),
-                            slope = before, along = before, across = before, next(last);
+                            slope = before, along = before, across = before;
     for (Eigen::Index j = 0; j < i; ++j)
       x[j] =
           discs[static_cast<std::size_t>(i)].centre.dot(discs[static_cast<std::size_t>(j)].centre);
     x[i] = 1;
     for (int l = 1; l <= degree; ++l) {
-      next = ((2.0 * l - 1) / l) * x * value - ((l - 1.0) / l) * before;
-      slope = l * value + x * slope;
-      before = value;
-      value = next;
-      along += weight(i, l) * weight.col(l).head(last) * slope;
-      across += weight(i, l) * weight.col(l).head(last) * (l * (l + 1.0) * value - x * slope);
+      // One pass over all arrays: they are short, and memory is what this waits for.
+      const double own = weight(i, l), ahead = (2.0 * l - 1) / l, back = (l - 1.0) / l;
+      const double* others = weight.col(l).data();
+      for (Eigen::Index j = 0; j < last; ++j) {
+        const double here = value[j], next = ahead * x[j] * here - back * before[j],
+                     both = own * others[j];
+        slope[j] = l * here + x[j] * slope[j];
+        before[j] = here;
+        value[j] = next;
+        along[j] += both * slope[j];
+        across[j] += both * (l * (l + 1.0) * next - x[j] * slope[j]);
+      }
     }
     along_.row(i).head(last) = along.matrix().transpose();
     across_.row(i).head(last) = across.matrix().transpose();
@@ -68,17 +81,16 @@ void BrownianMotion::set_discs(const std::vector<Disc>& discs) {
   across_ = Eigen::MatrixXd(across_.selfadjointView<Eigen::Lower>());
 }
 
-// P_l'(1) = l (l + 1)/2.
+// P_l'(1) = l (l + 1)/2. The smallest disc moves fastest; all others leave room for it, so that no
+// rest around them is smaller.
 double BrownianMotion::largest_variance(const std::vector<Disc>& discs) const {
-  const int degree = degree_for(discs);
-  double largest = 0;
-  for (const Disc& disc : discs) {
-    const Vec weight = weights_of(disc, membrane_, degree);
-    double variance = 0;
-    for (int l = 1; l <= degree; ++l) variance += weight[l] * weight[l] * (l * (l + 1.0) / 2);
-    largest = std::max(largest, variance);
-  }
-  return largest;
+  const Disc& smallest = *std::min_element(
+      discs.begin(), discs.end(), [](const Disc& a, const Disc& b) { return a.area < b.area; });
+  const Vec weight = weights_of(smallest, sizes_of_waves(membrane_, degree_for(discs)));
+  double variance = 0;
+  for (Eigen::Index l = 1; l < weight.size(); ++l)
+    variance += weight[l] * weight[l] * (static_cast<double>(l * (l + 1)) / 2);
+  return variance;
 }
 
 double BrownianMotion::variance_of_distance(std::size_t i, std::size_t j) const {

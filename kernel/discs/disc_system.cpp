@@ -128,7 +128,8 @@ void DiscSystem::plan_walk() {
   for (std::size_t i = 0; i < state_.discs.size(); ++i) {
     double nearest = kPi;
     for (std::size_t j = 0; j < state_.discs.size(); ++j)
-      if (i != j) nearest = std::min(nearest, gap(state_.discs[i], state_.discs[j]));
+      if (i != j && !are_apart(state_.discs[i], state_.discs[j], nearest))
+        nearest = gap(state_.discs[i], state_.discs[j]);
     gaps += std::max(nearest, kShortestGap * radii / count);
   }
   const double length = state_.discs.size() == 1 ? kLoneWalk : kWalk * gaps / count;
@@ -261,8 +262,7 @@ bool DiscSystem::walk(double time) {
   for (std::size_t i = 0; i < count; ++i) merged_into[i] = i;
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t j = 0; j < i; ++j)
-      if (merged_into[i] == i && merged_into[j] == j &&
-          touched_between(i, j, gap(start[i], start[j]), time)) {
+      if (merged_into[i] == i && merged_into[j] == j && touched_between(i, j, start, time)) {
         merged_into[i] = j;
         merge(j, i);
       }
@@ -276,9 +276,12 @@ bool DiscSystem::walk(double time) {
 
 // A Brownian path from the one distance to the other has touched 0 with the probability
 // exp(−2 · both/(variance of their distance)).
-bool DiscSystem::touched_between(std::size_t i, std::size_t j, double before, double time) const {
-  const double contact = phases().contact_distance(), first = before - contact;
-  if (first > kFarApart * std::sqrt(motion_.variance_of_distance(i, j) * time)) return false;
+bool DiscSystem::touched_between(std::size_t i, std::size_t j, const std::vector<Disc>& start,
+                                 double time) const {
+  const double contact = phases().contact_distance(),
+               wander = std::sqrt(motion_.variance_of_distance(i, j) * time);
+  if (are_apart(start[i], start[j], contact + kFarApart * wander)) return false;
+  const double first = gap(start[i], start[j]) - contact;
   const double last = gap(state_.discs[i], state_.discs[j]) - contact;
   if (first <= 0 || last <= 0) return true;
   const double chance = std::exp(-2 * first * last / (motion_.variance_of_distance(i, j) * time));
@@ -310,7 +313,7 @@ void DiscSystem::merge_touching_discs() {
   const double contact = phases().contact_distance();
   for (std::size_t i = 0; i < discs.size();) {
     std::size_t j = 0;
-    while (j < i && gap(discs[i], discs[j]) > contact) ++j;
+    while (j < i && are_apart(discs[i], discs[j], contact)) ++j;
     if (j == i) {
       ++i;
       continue;

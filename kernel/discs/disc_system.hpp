@@ -75,7 +75,8 @@ class DiscSystem {
   bool attempt(const Ripening& ripening, const DiscState& from, const DiscCoordinates& rate,
                double step, Attempt& result) const;
   bool walk(double time);
-  bool touched_between(std::size_t i, std::size_t j, double before, double time) const;
+  bool touched_between(std::size_t i, std::size_t j, const std::vector<Disc>& start,
+                       double time) const;
   void dissolve_small_discs();
   void merge(std::size_t kept, std::size_t gone);
   void merge_touching_discs();

@@ -35,6 +35,16 @@ TEST(BrownianMotionTest, ADiscMovesAsTheSumOverAllWavesSays) {
   }
 }
 
+TEST(BrownianMotionTest, TheSmallestDiscMovesFastest) {
+  const BrownianMotion motion(kMembrane);
+  const Disc small = disc({1, 0, 0}, 0.15), middle = disc({0, 0, 1}, 0.3);
+  const double fastest = motion.largest_variance({small});
+  EXPECT_GT(fastest, 1.2 * motion.largest_variance({middle}));
+  for (const double angle : {0.4, 1.5, 2.9})
+    EXPECT_DOUBLE_EQ(motion.largest_variance({middle, small, disc({-1, 0, 0}, angle)}), fastest)
+        << angle;
+}
+
 // Covariances from the derivatives of all harmonics at both places.
 TEST(BrownianMotionTest, TwoDiscsMoveTogetherAsTheHarmonicsDo) {
   const std::vector<Disc> discs = {disc({1, 0.2, 0.3}, 0.25), disc({0.8, 0.7, -0.1}, 0.3)};
