@@ -17,11 +17,12 @@ CaseSettings with(const std::function<void(CaseSettings&)>& change) {
 }
 
 // Flow has a group of its own, so that the cases of the others stay what they were.
-constexpr char kFlow[] = "flow";
+constexpr char kFlow[] = "flow", kBrownianFlow[] = "brownian-flow";
 
 std::vector<std::string> effects_in_turn() {
   std::vector<std::string> all = selection::effects_to_hide();
-  all.erase(std::remove(all.begin(), all.end(), kFlow), all.end());
+  for (const char* own : {kFlow, kBrownianFlow})
+    all.erase(std::remove(all.begin(), all.end(), own), all.end());
   return all;
 }
 
@@ -64,6 +65,8 @@ const NamedList<CampaignGroup>& campaign_groups() {
                  Aim::name, with([](CaseSettings& s) { s.stated = 2; }), 1},
                 {"flow", "flow of the membrane, driven by line tension", Aim::name,
                  with([](CaseSettings& s) { s.hidden = {kFlow}; }), 0},
+                {"brownian-flow", "flow of the membrane, driven by thermal forces", Aim::name,
+                 with([](CaseSettings& s) { s.hidden = {kBrownianFlow}; }), 0},
                 {"null", "nothing hidden, 10 % noise", Aim::nothing, {}, 0},
                 {"null-quiet", "nothing hidden, 5 % noise", Aim::nothing,
                  with([](CaseSettings& s) { s.noise = 0.05; }), 0},

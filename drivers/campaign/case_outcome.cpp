@@ -47,7 +47,8 @@ CaseOutcome outcome_of(const std::string& word) {
 
 std::string names_of(const std::vector<effects::EffectTerm>& terms) {
   std::string names;
-  for (const effects::EffectTerm& term : terms) names += (names.empty() ? "" : " + ") + term.effect;
+  for (const effects::EffectTerm& term : terms)
+    names += (names.empty() ? "" : " + ") + assimilation::candidate_name(term);
   return names;
 }
 
@@ -83,14 +84,16 @@ std::optional<StrengthError> strength_error(const HiddenTruth& truth, physics::U
                                             const explain::Verdict& verdict) {
   if (truth.effects.empty() || !selection::is_named(verdict.finding)) return {};
   const effects::EffectTerm& term = truth.effects.front();
-  const ParameterSpec& strength = effects::effects().find(term.effect).parameters.front();
+  const std::string name = assimilation::candidate_name(term);
+  const std::size_t place = assimilation::find_candidate(name)->parameter;
+  const ParameterSpec& strength = effects::effects().find(term.effect).parameters[place];
   const std::vector<explain::FoundParameter>& all = verdict.parameters;
   const auto found = std::find_if(all.begin(), all.end(), [&](const explain::FoundParameter& p) {
-    return p.effect == term.effect && p.name == strength.name;
+    return p.effect == name && p.name == strength.name;
   });
   if (found == all.end()) return {};
   // A gap that no strength reaches is one at the end of the range, where a search ends, too.
-  const double hidden = term.values.front();
+  const double hidden = term.values[place];
   if (strength.unit.empty() && (hidden <= strength.min || hidden >= strength.max)) return {};
   units.diffusion_cm2_s *= truth.diffusion_ratio;
   const double value = hidden / effects::to_model_units(strength.unit, units);

@@ -22,9 +22,9 @@ DiscSizes::DiscSizes(const config::Configuration& model, const SeriesPlanRequest
     : model_(model), request_(request) {
   const problem::CahnHilliardModel base = run::model_without_effects(model);
   for (const assimilation::Candidate& candidate : assimilation::candidates())
-    if (candidate.directions == 1 &&
+    if (candidate.directions == 1 && !candidate.random &&
         effects::discs_can_have(candidate.term({candidate.step}), base))
-      effects_.push_back(candidate.effect);
+      effects_.push_back(candidate.name);
 }
 
 std::optional<PlannedEffect> DiscSizes::find(std::size_t k) const {

@@ -136,16 +136,23 @@ void refuse_exchanged_phases(const config::Configuration& model,
 assimilation::Hypothesis own_effects(const config::Configuration& model,
                                      const std::vector<assimilation::Candidate>& asked,
                                      const std::vector<std::string>& without) {
-  const std::vector<effects::EffectTerm> terms = run::effects_of(model);
-  const assimilation::Hypothesis own = run::with_option_context(
-      model, &config::RunOptions::effect, [&] { return assimilation::of_model(terms); });
-  for (const effects::EffectTerm& term : terms) {
-    if (std::count(without.begin(), without.end(), term.effect) > 0)
-      throw InputError("--without: the model has " + term.effect +
+  const assimilation::Hypothesis own =
+      run::with_option_context(model, &config::RunOptions::effect, [&] {
+        std::vector<effects::EffectTerm> terms;
+        for (const effects::EffectTerm& term : run::effects_of(model))
+          for (const effects::EffectTerm& single :
+               effects::in_single_strengths(term, run::model_without_effects(model).epsilon))
+            terms.push_back(single);
+        return assimilation::of_model(terms);
+      });
+  for (const assimilation::Hypothesis::Part& part : own.parts) {
+    const std::string& name = part.candidate.name;
+    if (std::count(without.begin(), without.end(), name) > 0)
+      throw InputError("--without: the model has " + name +
                        ", and fits its strength; remove it from the model instead");
     if (std::none_of(asked.begin(), asked.end(),
-                     [&](const assimilation::Candidate& c) { return c.effect == term.effect; }))
-      throw InputError(model.where(&config::RunOptions::effect) + ": effect " + term.effect +
+                     [&](const assimilation::Candidate& c) { return c.name == name; }))
+      throw InputError(model.where(&config::RunOptions::effect) + ": effect " + name +
                        " does almost nothing on this surface, so that no data determine its "
                        "strength; leave it out");
   }
@@ -164,8 +171,8 @@ void set_effects(const config::Configuration& model, ExplainSetup& setup) {
   for (const assimilation::Candidate& candidate : asked)
     for (const assimilation::Hypothesis::Part& part : request.own.parts)
       if (assimilation::are_one(candidate, part.candidate))
-        setup.notes.push_back(candidate.effect + " is left out of the search: the model's " +
-                              part.candidate.effect + " is another form of it.");
+        setup.notes.push_back(candidate.name + " is left out of the search: the model's " +
+                              part.candidate.name + " is another form of it.");
 }
 
 }  // namespace

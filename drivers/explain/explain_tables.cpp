@@ -63,8 +63,7 @@ std::vector<output::Row> gap_rows(const selection::Explanation& found) {
     const auto text = [](const std::optional<double>& share) {
       return share ? formatted("%.0f %%", 100 * *share) : "too small to say";
     };
-    const assimilation::SharesClosed closed =
-        assimilation::shares_closed(found.base.gap, found.found.gap, found.found.expected);
+    const assimilation::SharesClosed closed = selection::shares_closed(found.base.gap, found.found);
     rows.push_back({"share of the closable gap that is closed (of squares)", text(closed.train),
                     text(closed.heldout)});
   }
@@ -85,7 +84,7 @@ std::vector<output::Row> score_rows(const selection::Round& round) {
   for (const selection::CandidateScore& s : round.screening.scores) {
     std::string refitted;
     for (const selection::Refit& fit : round.refits)
-      if (fit.hypothesis.parts.back().candidate.effect == s.effect)
+      if (fit.hypothesis.parts.back().candidate.name == s.effect)
         refitted = formatted("%.1f", round.without.deviance - fit.deviance);
     rows.push_back({s.effect, formatted("%.1f", s.score), formatted("%.1f", s.null_mean),
                     formatted("%.3f", s.p), refitted});

@@ -9,13 +9,12 @@
 #include "verification/statistics/sample.hpp"
 
 namespace traceraft::explain {
-namespace {
-
-// Times of the found model are in units of R²/(diffusion ratio D).
 physics::Units found_units(physics::Units units, const selection::Refit& fit) {
   units.diffusion_cm2_s *= fit.diffusion_ratio;
   return units;
 }
+
+namespace {
 
 // Errors of the coefficients, carried on to the parameters by differences. That of the strength,
 // beside coefficients that are held at the end of their range.
@@ -27,7 +26,7 @@ double variance_of(const assimilation::Hypothesis::Part& part, std::size_t param
   const bool all_held = std::all_of(part.coefficients.begin(), part.coefficients.end(), held);
   for (int d = 0; d < part.candidate.directions; ++d) {
     std::vector<double> moved = part.coefficients;
-    if (parameter == 0 && held(moved[d]) && !all_held) {
+    if (parameter == part.candidate.parameter && held(moved[d]) && !all_held) {
       slope[d] = 0;
       continue;
     }
@@ -64,10 +63,14 @@ std::vector<FoundParameter> found_parameters(const selection::Refit& fit,
   for (const auto& part : fit.hypothesis.parts) {
     const int n = part.candidate.directions;
     std::vector<FoundParameter> own = parameters_of(part.candidate.term(part.coefficients), units);
-    for (std::size_t k = 0; k < static_cast<std::size_t>(n); ++k)
+    for (FoundParameter& p : own) p.effect = part.candidate.name;
+    for (std::size_t k = part.candidate.parameter, end = k + static_cast<std::size_t>(n); k < end;
+         ++k)
       own[k].sigma = std::sqrt(variance_of(part, k, fit.covariance.block(first, first, n, n))) /
                      effects::to_model_units(own[k].unit, units);
-    result.insert(result.end(), own.begin(), own.end());
+    const effects::EffectTerm term = part.candidate.term(part.coefficients);
+    for (std::size_t k = 0; k < own.size(); ++k)
+      if (own[k].sigma || effects::is_used(term, k)) result.push_back(own[k]);
     first += n;
   }
   const double D = units.diffusion_cm2_s;
@@ -134,7 +137,9 @@ std::vector<FoundBound> found_bounds(const selection::Explanation& found,
   const physics::Units units = found_units(base, found.found);
   std::vector<FoundBound> result;
   for (const selection::Bound& bound : selection::bounds_of(found)) {
-    const ParameterSpec& spec = effects::effects().find(bound.effect).parameters.front();
+    const assimilation::Candidate candidate = *assimilation::find_candidate(bound.effect);
+    const ParameterSpec& spec =
+        effects::effects().find(assimilation::effect_of(candidate)).parameters[candidate.parameter];
     const double factor = 1 / effects::to_model_units(spec.unit, units);
     result.push_back(
         {bound.effect, spec.name, spec.unit, factor * bound.low, factor * bound.high, bound.seen});
@@ -146,9 +151,11 @@ config::GivenValues found_model(const selection::Explanation& found, config::Giv
   const physics::Units units = config::Configuration(model, {}).units();
   const physics::Units now = found_units(units, found.found);
   model["diffusion"] = {format_number(now.diffusion_cm2_s), "--diffusion"};
-  std::vector<effects::EffectTerm> terms = found.found.hypothesis.terms();
-  const auto is_none = [](const effects::EffectTerm& term) { return term.values.front() == 0; };
-  terms.erase(std::remove_if(terms.begin(), terms.end(), is_none), terms.end());
+  std::vector<effects::EffectTerm> terms;
+  for (const assimilation::Hypothesis::Part& part : found.found.hypothesis.parts) {
+    const effects::EffectTerm term = part.candidate.term(part.coefficients);
+    if (term.values[part.candidate.parameter] != 0) terms.push_back(term);
+  }
   if (!terms.empty()) model["effect"] = {effect_text(terms, now), "--effect"};
   return model;
 }
@@ -159,8 +166,10 @@ std::string effect_text(const std::vector<effects::EffectTerm>& terms,
   for (const effects::EffectTerm& term : terms) {
     text += (text.empty() ? "" : "; ") + term.effect;
     const char* before = ":";
-    for (const FoundParameter& p : parameters_of(term, units)) {
-      text += before + p.name + "=" + format_number(p.value);
+    const std::vector<FoundParameter> parameters = parameters_of(term, units);
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+      if (!effects::is_used(term, k)) continue;
+      text += before + parameters[k].name + "=" + format_number(parameters[k].value);
       before = ",";
     }
   }

@@ -16,6 +16,9 @@ struct FoundParameter {
   std::optional<double> sigma;  // none: it was assumed, not found
 };
 
+// Times of a found model are in units of R²/(its D).
+physics::Units found_units(physics::Units base, const selection::Refit& fit);
+
 // All parameters of an effect, in their own units and without sigma.
 std::vector<FoundParameter> parameters_of(const effects::EffectTerm& term,
                                           const physics::Units& units);

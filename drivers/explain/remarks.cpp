@@ -7,6 +7,8 @@
 #include "drivers/explain/found_parameters.hpp"
 #include "drivers/explain/verdict_sentence.hpp"
 #include "kernel/core/text.hpp"
+#include "verification/selection/series/brownian_viscosity.hpp"
+#include "verification/statistics/sample.hpp"
 
 namespace traceraft::explain {
 namespace {
@@ -70,22 +72,22 @@ void add_own(const selection::Explanation& found, const ExplainSetup& setup,
   const physics::Units base = setup.configuration.units();
   const std::vector<FoundParameter> fitted = found_parameters(fit_shown(found), base);
   const auto contradicts = [](const FoundParameter& p, const FoundParameter& stated) {
-    return p.effect == stated.effect && p.name == stated.name && p.sigma &&
-           std::fabs(p.value - stated.value) > kSure * *p.sigma;
+    return p.name == stated.name && p.sigma && std::fabs(p.value - stated.value) > kSure * *p.sigma;
   };
-  for (const effects::EffectTerm& term : setup.request.own.terms())
-    for (const FoundParameter& stated : parameters_of(term, base))
+  for (const assimilation::Hypothesis::Part& part : setup.request.own.parts)
+    for (const FoundParameter& stated : parameters_of(part.candidate.term(part.coefficients), base))
       for (const FoundParameter& p : fitted)
-        if (contradicts(p, stated))
+        if (p.effect == part.candidate.name && contradicts(p, stated))
           all.push_back(
               "The model states " + p.effect + " with " + p.name +
               formatted(" = %.4g. These data contradict it: the fit is %.4g (standard error %.2g).",
                         stated.value, p.value, *p.sigma));
   const assimilation::Hypothesis& shown = fit_shown(found).hypothesis;
-  const std::vector<effects::EffectTerm> terms = shown.terms();
-  for (std::size_t k = 0; k < shown.known; ++k)
-    if (terms[k].values.front() == 0)
-      all.push_back("These data show nothing of the model's " + terms[k].effect + ".");
+  for (std::size_t k = 0; k < shown.known; ++k) {
+    const assimilation::Candidate& candidate = shown.parts[k].candidate;
+    if (candidate.term(shown.parts[k].coefficients).values[candidate.parameter] == 0)
+      all.push_back("These data show nothing of the model's " + candidate.name + ".");
+  }
 }
 
 // The user learns which times would help.
@@ -176,6 +178,42 @@ void add_story(const selection::Explanation& found, std::vector<std::string>& al
                             -t.less));
 }
 
+// The viscosity of a membrane that moves rafts as they were seen to move.
+std::string viscosity_text(const selection::Refit& fit, const physics::Units& base) {
+  constexpr double kKelvin = 298;
+  const std::vector<FoundParameter> all = found_parameters(fit, base);
+  const auto named = [&](const std::string& name) {
+    return std::find_if(all.begin(), all.end(), [&](const FoundParameter& p) {
+      return p.name == name && assimilation::find_candidate(p.effect) &&
+             assimilation::find_candidate(p.effect)->random;
+    });
+  };
+  const FoundParameter &thermal = *named("thermal"), &water = *named("water");
+  const physics::Units units = found_units(base, fit);
+  const auto viscosity = [&](double value) {
+    return selection::viscosity_of(value, water.value, kKelvin, units);
+  };
+  const double width = statistics::kNormal95 * *thermal.sigma;
+  return formatted("At %.0f K it is that of a membrane with a viscosity of %.2g nPa s m (%.2g to ",
+                   kKelvin, viscosity(thermal.value), viscosity(thermal.value + width)) +
+         (width < thermal.value ? formatted("%.2g).", viscosity(thermal.value - width))
+                                : "any larger one).");
+}
+
+// Nobody can say where rafts go at random.
+void add_random(const selection::Explanation& found, const physics::Units& base,
+                std::vector<std::string>& all) {
+  const selection::Refit& fit = found.found;
+  if (!fit.hypothesis.is_random()) return;
+  const double expected = fit.expected.train,
+               without = std::sqrt(
+                   std::max(0.0, expected * expected - fit.random.train * fit.random.train));
+  all.push_back(formatted("Random motion cannot be forecast, so the gap stays. What changes is the "
+                          "gap to be expected: %.4g with this motion, %.4g without. ",
+                          expected, without) +
+                (base.scaled ? "" : viscosity_text(fit, base)));
+}
+
 // A strength that cannot be larger was wanted larger.
 void add_ends(const selection::Explanation& found, const physics::Units& base,
               std::vector<std::string>& all) {
@@ -183,8 +221,8 @@ void add_ends(const selection::Explanation& found, const physics::Units& base,
     const double a = part.coefficients.front();
     const assimilation::Candidate& own = part.candidate;
     if (own.directions > 1 || a == 0 || (a > own.least && a < own.most)) continue;
-    const FoundParameter strength = parameters_of(own.term(part.coefficients), base).front();
-    all.push_back(own.effect + " is as strong as the search allows, " + strength.name +
+    const FoundParameter strength = parameters_of(own.term(part.coefficients), base)[own.parameter];
+    all.push_back(own.name + " is as strong as the search allows, " + strength.name +
                   formatted(" %.4g", strength.value) +
                   ". Something similar but of another form may be missing.");
   }
@@ -263,9 +301,9 @@ void add_rerun(const selection::Explanation& found, std::vector<std::string>& al
 std::string more_effects(const selection::Explanation& found) {
   const std::optional<double> last =
       found.rounds.size() > 1
-          ? assimilation::share_closed(found.rounds[found.rounds.size() - 2].without.gap.train,
-                                       found.rounds.back().without.gap.train,
-                                       found.rounds.back().without.expected.train)
+          ? selection::shares_closed(found.rounds[found.rounds.size() - 2].without.gap,
+                                     found.rounds.back().without)
+                .train
           : std::nullopt;
   if (last && *last < selection::kLeastProgress)
     return formatted(
@@ -289,6 +327,7 @@ std::vector<std::string> remarks(const selection::Explanation& found, const phys
                   found.noise_model.correlation.length()));
   add_diffusion_ratio(found, base, all);
   add_story(found, all);
+  add_random(found, base, all);
   add_ends(found, base, all);
   add_class(found, base, all);
   add_mesh(found, all);

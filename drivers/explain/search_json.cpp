@@ -30,7 +30,7 @@ using Parts = std::vector<assimilation::Hypothesis::Part>;
 std::vector<StoredPart> stored_parts(const Parts& parts) {
   std::vector<StoredPart> stored;
   for (const auto& [candidate, coefficients] : parts)
-    stored.push_back({candidate.effect, coefficients, candidate.term(coefficients).values});
+    stored.push_back({candidate.name, coefficients, candidate.term(coefficients).values});
   return stored;
 }
 
@@ -43,10 +43,10 @@ assimilation::Candidate candidate_of(const std::string& effect) {
 Parts parts_of(const std::vector<StoredPart>& stored) {
   Parts parts;
   for (const StoredPart& part : stored) {
-    const effects::EffectTerm term{candidate_of(part.effect).effect, part.values};
+    const effects::EffectTerm term{assimilation::effect_of(candidate_of(part.effect)), part.values};
     if (term.values.size() != effects::effects().find(term.effect).parameters.size())
       throw DamagedFile("a search has " + term.effect + " with unknown parameters");
-    parts.push_back({assimilation::part_of(term).candidate, part.coefficients});
+    parts.push_back({assimilation::part_of(term, part.effect).candidate, part.coefficients});
     if (part.coefficients.size() != static_cast<std::size_t>(parts.back().candidate.directions))
       throw DamagedFile("a search has " + term.effect + " with unknown coefficients");
   }
@@ -55,7 +55,7 @@ Parts parts_of(const std::vector<StoredPart>& stored) {
 
 std::vector<std::string> names_of(const std::vector<assimilation::Candidate>& candidates) {
   std::vector<std::string> names;
-  for (const assimilation::Candidate& candidate : candidates) names.push_back(candidate.effect);
+  for (const assimilation::Candidate& candidate : candidates) names.push_back(candidate.name);
   return names;
 }
 
@@ -127,6 +127,8 @@ void describe(Members& members, selection::Refit& fit) {
   members("diffusion_ratio_deviation", fit.diffusion_ratio_deviation);
   members("gap", fit.gap);
   members("expected", fit.expected);
+  members("random", fit.random);
+  members("random_gain", fit.random_gain);
   members("snapshots", fit.snapshots);
   members("settled", fit.settled);
   members("failure", fit.failure);

@@ -92,11 +92,21 @@ selection::BlindRequest sizing_request(const config::Configuration& model,
   return sizing;
 }
 
+// Brownian flow is for discs: fields with enough vesicles would take days.
+std::vector<std::string> forecast_effects() {
+  std::vector<std::string> names = selection::effects_to_hide();
+  const auto random = [](const std::string& name) {
+    return assimilation::find_candidate(name)->random;
+  };
+  names.erase(std::remove_if(names.begin(), names.end(), random), names.end());
+  return names;
+}
+
 // The strengths of effects on a field, from one simulation of the base.
 class FieldSizes {
  public:
   FieldSizes(const config::Configuration& model, const SeriesPlanRequest& request)
-      : request_(sizing_request(model, request)), effects_(selection::effects_to_hide()) {}
+      : request_(sizing_request(model, request)), effects_(forecast_effects()) {}
 
   const std::vector<std::string>& effects() const { return effects_; }
 

@@ -60,8 +60,7 @@ input::Json gap_json(const assimilation::Gaps& gaps) {
 
 input::Json closed_json(const selection::Explanation& found) {
   if (found.found.hypothesis.added() == 0) return {};
-  const assimilation::SharesClosed closed =
-      assimilation::shares_closed(found.base.gap, found.found.gap, found.found.expected);
+  const assimilation::SharesClosed closed = selection::shares_closed(found.base.gap, found.found);
   return {{"train", input::number_or_null(closed.train)},
           {"heldout", input::number_or_null(closed.heldout)}};
 }
@@ -152,7 +151,7 @@ std::vector<std::string> not_looked_for(const selection::Explanation& found) {
   for (const std::string& name : effects::effects().names())
     if (std::none_of(
             looked_for.begin(), looked_for.end(),
-            [&](const assimilation::Candidate& candidate) { return candidate.effect == name; }) &&
+            [&](const assimilation::Candidate& candidate) { return candidate.name == name; }) &&
         !found.rounds.front().known.hypothesis.has(name))
       names.push_back(name);
   return names;

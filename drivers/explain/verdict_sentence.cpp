@@ -12,9 +12,8 @@ namespace {
 // "rafts that repel each other over a distance; ...": of the effects that it adds.
 std::string in_words(const assimilation::Hypothesis& hypothesis) {
   std::string words;
-  const std::vector<effects::EffectTerm> terms = hypothesis.terms();
-  for (std::size_t k = hypothesis.known; k < terms.size(); ++k)
-    words += (words.empty() ? "" : "; ") + effects::physics_of(terms[k]);
+  for (std::size_t k = hypothesis.known; k < hypothesis.parts.size(); ++k)
+    words += (words.empty() ? "" : "; ") + assimilation::physics_of(hypothesis.parts[k]);
   return words;
 }
 
@@ -48,8 +47,7 @@ std::string nothing_sentence(const selection::Explanation& found) {
 // An effect that closes next to nothing of the gap is not close to the truth.
 bool closes_something(const selection::Explanation& found, const selection::Refit& fit) {
   constexpr double kLeast = 0.1;
-  const assimilation::SharesClosed closed =
-      assimilation::shares_closed(found.base.gap, fit.gap, fit.expected);
+  const assimilation::SharesClosed closed = selection::shares_closed(found.base.gap, fit);
   return closed.heldout.value_or(closed.train.value_or(0)) >= kLeast;
 }
 

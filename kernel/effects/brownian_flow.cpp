@@ -29,6 +29,18 @@ class BrownianFlow::Streams {
     return std::sqrt(2 * flow_->membrane_.thermal / flow_->hold_) *
            space_.friction->brownian(normal);
   }
+  // ψ at the nodes for each independent normal number, but the constant.
+  const Eigen::MatrixXd& modes() const {
+    const std::lock_guard lock(mutex_);
+    if (modes_.size() > 0) return modes_;
+    const Eigen::Index size = space_.harmonics.size();
+    for (Eigen::Index k = 1; k < size; ++k) {
+      const Vec psi = space_.harmonics.synthesis(space_.friction->brownian(Vec::Unit(size, k)));
+      if (k == 1) modes_.resize(psi.size(), size - 1);
+      modes_.col(k - 1) = std::sqrt(2 * flow_->membrane_.thermal) * psi;
+    }
+    return modes_;
+  }
   Vec at(const fem::SurfaceSpace& space, double t) const {
     const double when = t / flow_->hold_, number = std::floor(when), share = when - number;
     const std::lock_guard lock(mutex_);
@@ -56,6 +68,7 @@ class BrownianFlow::Streams {
   FlowSpace space_;
   mutable std::mutex mutex_;
   mutable std::array<Known, 2> known_;
+  mutable Eigen::MatrixXd modes_;
 };
 
 BrownianFlow::BrownianFlow(const flow::FluidMembrane& membrane, double epsilon, double hold,
@@ -72,6 +85,15 @@ BrownianFlow::~BrownianFlow() = default;
 
 Vec BrownianFlow::draw(const fem::SurfaceSpace& space, double number) const {
   return streams_.on(space)->draw(number);
+}
+
+Eigen::MatrixXd BrownianFlow::noises(const fem::SurfaceSpace& space, VecView c) const {
+  const auto streams = streams_.on(space);
+  const Eigen::MatrixXd& modes = streams->modes();
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(modes.rows(), modes.cols());
+  for (Eigen::Index k = 0; k < modes.cols(); ++k)
+    flow::add_transport(space, streams->curls(), 1, c, modes.col(k), result.col(k));
+  return result;
 }
 
 void BrownianFlow::add_residual(const fem::SurfaceSpace& space, double t, VecView c, VecView,

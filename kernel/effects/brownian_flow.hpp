@@ -15,7 +15,7 @@ namespace traceraft::effects {
 // function, and its limit of small τ is that of Stratonovich, as of a velocity that has a memory. A
 // draw is a function of the seed, the degree, the order and the number of its hold. It depends
 // neither on the mesh nor on the number of ranks, nor on a sphere on the highest degree.
-class BrownianFlow final : public problem::Effect {
+class BrownianFlow final : public problem::RandomEffect {
  public:
   BrownianFlow(const flow::FluidMembrane& membrane, double epsilon, double hold,
                std::uint64_t seed);
@@ -34,6 +34,9 @@ class BrownianFlow final : public problem::Effect {
   void add_tangent_product(const fem::SurfaceSpace& space, double t, VecView c, VecView mu,
                            VecView direction_c, VecView direction_mu, VecRef product_c,
                            VecRef product_mu) const override;
+
+  // Of each harmonic of ψ.
+  Eigen::MatrixXd noises(const fem::SurfaceSpace& space, VecView c) const override;
 
   // The coefficients of ψ that were drawn at so many holds.
   Vec draw(const fem::SurfaceSpace& space, double number) const;

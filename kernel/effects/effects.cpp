@@ -69,6 +69,12 @@ void add(const EffectTerm& term, problem::CahnHilliardModel& model) {
 
 }  // namespace
 
+bool is_used(const EffectTerm& term, std::size_t parameter) {
+  const EffectEntry& entry = effects().find(term.effect);
+  return !entry.uses ||
+         entry.uses(Parameters(entry.parameters, term.values), entry.parameters[parameter].name);
+}
+
 const std::string& physics_of(const EffectTerm& term) {
   const EffectEntry& entry = effects().find(term.effect);
   return term.values.front() < 0 && !entry.reversed.empty() ? entry.reversed : entry.summary;

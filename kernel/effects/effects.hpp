@@ -43,6 +43,8 @@ struct EffectEntry {
   // Adds it to a vesicle of discs. Those that change the mobility or the line tension alone need
   // none; others without one are refused there.
   std::function<void(const Parameters&, discs::DiscModel&)> add_to_discs = {};
+  // Does a parameter count, beside the values of the others? Empty: all do.
+  std::function<bool(const Parameters&, const std::string& name)> uses = {};
 };
 
 EffectEntry allen_cahn_effect();
@@ -69,6 +71,13 @@ struct EffectTerm {
   std::string effect;
   std::vector<double> values;
 };
+
+// A flow as one term for each of the two that drive it, line tension and thermal forces, with their
+// strengths A and Θ; any other effect as it is. Throws InputError for a flow that nothing drives.
+std::vector<EffectTerm> in_single_strengths(const EffectTerm& term, double epsilon);
+
+// Does a parameter count, beside the values of the others?
+bool is_used(const EffectTerm& term, std::size_t parameter);
 
 // Its physics in words, by the sign of its strength.
 const std::string& physics_of(const EffectTerm& term);

@@ -36,6 +36,19 @@ std::uint64_t seed_of(const Parameters& p, std::uint64_t run_seed) {
   return (static_cast<std::uint64_t>(p["seed"]) << 32) + run_seed;
 }
 
+// Numbers, or viscosities and forces; and of Brownian motion only where there is some.
+bool flow_uses(const Parameters& p, const std::string& name) {
+  const bool physical = p["membrane-viscosity"] != 0,
+             brownian = p["thermal"] != 0 || p["temperature"] != 0;
+  if (name == "hold") return brownian && p["hold"] != 0;
+  if (name == "seed") return brownian;
+  if (name == "capillary") return !physical && (p["capillary"] != 0 || !brownian);
+  if (name == "thermal") return !physical && brownian;
+  if (name == "water") return !physical;
+  if (name == "line-tension" || name == "temperature") return physical && p[name] != 0;
+  return physical;
+}
+
 std::string flow_description(const Parameters& p, const problem::CahnHilliardModel& model,
                              const physics::Units& units) {
   const flow::FluidMembrane membrane = membrane_of(p, model.epsilon);
@@ -61,6 +74,29 @@ void add_flow_to_discs(const Parameters& p, discs::DiscModel& model) {
 
 }  // namespace
 
+std::vector<EffectTerm> in_single_strengths(const EffectTerm& term, double epsilon) {
+  if (term.effect != "flow") return {term};
+  const std::vector<ParameterSpec>& specs = effects().find(term.effect).parameters;
+  const flow::FluidMembrane membrane = membrane_of(Parameters(specs, term.values), epsilon);
+  const auto with = [&](const std::string& strength, double value) {
+    EffectTerm single = term;
+    for (std::size_t k = 0; k < specs.size(); ++k) {
+      const std::string& name = specs[k].name;
+      if (name == strength)
+        single.values[k] = value;
+      else if (name == "water")
+        single.values[k] = membrane.water;
+      else if (name != "hold" && name != "seed")
+        single.values[k] = specs[k].default_value;
+    }
+    return single;
+  };
+  std::vector<EffectTerm> singles;
+  if (membrane.capillary > 0) singles.push_back(with("capillary", membrane.capillary));
+  if (membrane.thermal > 0) singles.push_back(with("thermal", membrane.thermal));
+  return singles;
+}
+
 EffectEntry flow_effect() {
   EffectEntry entry{
       "flow",
@@ -84,6 +120,7 @@ EffectEntry flow_effect() {
   entry.strengths = 3;
   entry.description = flow_description;
   entry.add_to_discs = add_flow_to_discs;
+  entry.uses = flow_uses;
   return entry;
 }
 

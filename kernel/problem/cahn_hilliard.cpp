@@ -7,6 +7,16 @@
 #include "kernel/fem/mobility_stiffness.hpp"
 
 namespace traceraft::problem {
+
+CahnHilliardModel without_noise(CahnHilliardModel model) {
+  const auto random = [](const EffectPtr& effect) {
+    return dynamic_cast<const RandomEffect*>(effect.get()) != nullptr;
+  };
+  model.effects.erase(std::remove_if(model.effects.begin(), model.effects.end(), random),
+                      model.effects.end());
+  return model;
+}
+
 fem::CsrMatrix gradient_energy_matrix(const fem::SurfaceSpace& space,
                                       const CahnHilliardModel& model) {
   const double e2 = model.epsilon * model.epsilon;

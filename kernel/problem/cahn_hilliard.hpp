@@ -30,6 +30,9 @@ struct CahnHilliardModel {
   double beta() const { return 4 * well.rho * (well.b - well.a) * (well.b - well.a); }
 };
 
+// The model without the effects that are random.
+CahnHilliardModel without_noise(CahnHilliardModel model);
+
 // ε² (K + ρ S): the gradient energy is half its quadratic form.
 fem::CsrMatrix gradient_energy_matrix(const fem::SurfaceSpace& space,
                                       const CahnHilliardModel& model);

@@ -55,4 +55,12 @@ class Effect {
 
 using EffectPtr = std::shared_ptr<const Effect>;
 
+// An effect whose draws are, in many of them, independent white noises W_k times fields:
+//   M̃ dc = … + Σ_k r_k(c) dW_k.
+class RandomEffect : public Effect {
+ public:
+  // The r_k, nodes × their number, per square root of R²/D. Serial spaces only.
+  virtual Eigen::MatrixXd noises(const fem::SurfaceSpace& space, VecView c) const = 0;
+};
+
 }  // namespace traceraft::problem

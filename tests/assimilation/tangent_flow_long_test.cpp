@@ -86,7 +86,7 @@ TEST_F(TangentFlowTest, IsExactWhereDistantPointsAreCoupled) {
   const auto& all = candidates();
   const Candidate& repulsion =
       *std::find_if(all.begin(), all.end(),
-                    [](const Candidate& candidate) { return candidate.effect == "ohta-kawasaki"; });
+                    [](const Candidate& candidate) { return candidate.name == "ohta-kawasaki"; });
   constexpr double kStrength = 0.6;  // changes c by 6 % of its contrast
   const auto with = [&](double strength) {
     return problem::CahnHilliard(space,

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "kernel/core/error.hpp"
+#include "verification/assimilation/forecast/candidates.hpp"
 
 namespace traceraft {
 namespace {
@@ -98,6 +99,20 @@ TEST(StrengthError, IsInUnitsOfTheTruth) {
   EXPECT_FALSE(campaign::strength_error(truth, units, found));
   truth.effects.clear();
   EXPECT_FALSE(campaign::strength_error(truth, units, found));
+}
+
+// Flow is two effects to be found, each with its own strength.
+TEST(StrengthError, OfBrownianFlowIsThatOfItsThermalStrength) {
+  const campaign::HiddenTruth truth{
+      {assimilation::find_candidate("brownian-flow")->term({0.002})}, 1, 0.03};
+  EXPECT_EQ(campaign::names_of(truth.effects), "brownian-flow");
+  explain::Verdict found = verdict(selection::Finding::named, {"brownian-flow"});
+  found.parameters = {{"brownian-flow", "water", "", 1.25, {}},
+                      {"brownian-flow", "thermal", "", 0.0018, 0.0001}};
+  const auto error = campaign::strength_error(truth, {}, found);
+  ASSERT_TRUE(error);
+  EXPECT_NEAR(error->relative, 0.1, 1e-9);
+  EXPECT_NEAR(error->deviations, -2, 1e-9);
 }
 
 // Where sizing stopped the search has to stop, too: that it does is no success.

@@ -43,6 +43,36 @@ TEST(FoundParameters, WhatIsHeldDoesNotBlurTheRate) {
   EXPECT_GT(found[1].sigma.value(), 1);  // of a target nothing is known
 }
 
+// The strength is the second parameter of flow, and others that do not count are not told.
+TEST(FoundParameters, BrownianFlowIsToldByItsOwnStrength) {
+  selection::Explanation found;
+  selection::Refit& fit = found.found;
+  fit.hypothesis.parts = {{assimilation::find_candidate("brownian-flow").value(), {0.001}}};
+  fit.covariance = Vec::Constant(1, 4e-8).asDiagonal();
+  fit.diffusion_ratio = 2;
+  const auto parameters = explain::found_parameters(fit, kCell);
+  ASSERT_EQ(parameters.size(), 4U);
+  EXPECT_EQ(parameters[0].effect + "." + parameters[0].name, "brownian-flow.thermal");
+  EXPECT_EQ(parameters[0].value, 0.001);
+  EXPECT_NEAR(parameters[0].sigma.value(), 2e-4, 1e-9);
+  EXPECT_EQ(parameters[1].name, "water");
+  EXPECT_EQ(parameters[2].name, "seed");
+  const auto model = explain::found_model(found, {});
+  EXPECT_EQ(model.at("effect").text, "flow:thermal=0.001,water=1.25,seed=1");
+}
+
+// No forecast closes what moves at random: that part of a gap is explained.
+TEST(FoundParameters, SharesClosedLeaveOutWhatIsRandom) {
+  selection::Refit fit;
+  fit.gap = fit.expected = {5, 0};
+  fit.random = {4, 0};
+  EXPECT_NEAR(selection::shares_closed({5, 0}, fit).train.value(), 1, 1e-14);
+  fit.gap = {std::sqrt(25 + 8.0), 0};
+  EXPECT_NEAR(selection::shares_closed({5, 0}, fit).train.value(), 0.5, 1e-14);
+  fit.random = {};
+  EXPECT_FALSE(selection::shares_closed({5, 0}, fit).train);
+}
+
 // D makes up for part of what is missing without a name.
 TEST(FoundParameters, KnowNoDiffusionWhereSomethingIsMissing) {
   selection::Explanation found;
@@ -231,7 +261,7 @@ TEST(OwnEffects, AreNotLookedForInAnotherForm) {
     std::vector<std::string> names;
     for (const assimilation::Candidate& candidate : assimilation::candidates_beside(
              assimilation::of_model({term}), assimilation::candidates()))
-      names.push_back(candidate.effect);
+      names.push_back(candidate.name);
     return names;
   };
   const auto has = [](const std::vector<std::string>& names, const char* name) {

@@ -13,6 +13,8 @@ namespace {
 selection::Refit fit_of(const std::string& effect, double deviance) {
   selection::Refit fit;
   fit.hypothesis.parts = {{assimilation::find_candidate(effect).value(), {0.25}}};
+  fit.random = {0.1, 0.2};
+  fit.random_gain = 17;
   fit.deviance = deviance;
   fit.covariance = Eigen::MatrixXd::Identity(1, 1);
   return fit;
@@ -90,6 +92,21 @@ TEST(SearchJson, KeepsEffectsOfTheModel) {
   ASSERT_EQ(read.terms().size(), 2u);
   EXPECT_EQ(read.terms()[0].values, own.values);
   EXPECT_NE(assimilation::find_candidate("ohta-kawasaki")->term({12.5}).values, own.values);
+}
+
+// Flow is two candidates, of which a strength of 0 tells nothing.
+TEST(SearchJson, KeepsWhichOfTheTwoFlowsItIs) {
+  for (const double strength : {0.0, 0.3})
+    for (const std::string name : {"flow", "brownian-flow"}) {
+      selection::SearchState state;
+      state.so_far.found = fit_of(name, 100);
+      state.so_far.found.hypothesis.parts[0].coefficients[0] = strength;
+      const assimilation::Hypothesis read =
+          explain::search_from(explain::search_json(state), {}).so_far.found.hypothesis;
+      EXPECT_EQ(read.name(), name);
+      EXPECT_EQ(read.is_random(), name == "brownian-flow" && strength > 0);
+      EXPECT_EQ(read.terms()[0].values, state.so_far.found.hypothesis.terms()[0].values);
+    }
 }
 
 // A state that no search writes is damage, never a crash.

@@ -67,6 +67,26 @@ TEST(BrownianFlow, MovesNoConstantAndKeepsTheMass) {
   EXPECT_LT(residual_of(flow, *space, 0.33, one, c).norm(), 1e-13 * moved.norm());
 }
 
+// What a draw does is a sum of the noises, with normal numbers.
+TEST(BrownianFlow, IsASumOfItsNoises) {
+  const auto space = make_space(12);
+  const BrownianFlow flow(kMembrane, 0.1, kHold, 1);
+  const Vec c = random_vector(space->nodes(), 1);
+  const Eigen::MatrixXd noises = flow.noises(*space, c);
+  EXPECT_EQ(noises.cols(), 6 * 6 - 1);
+  const auto factors = noises.colPivHouseholderQr();
+  constexpr int kDraws = 20;
+  double squares = 0;
+  for (int k = 0; k < kDraws; ++k) {
+    const Vec drawn = -std::sqrt(kHold) * residual_of(flow, *space, k * kHold, c, c),
+              normal = factors.solve(drawn);
+    EXPECT_LT((noises * normal - drawn).norm(), 1e-10 * drawn.norm());
+    squares += normal.squaredNorm() / (kDraws * 35);
+  }
+  EXPECT_NEAR(squares, 1, 4 * std::sqrt(2.0 / (kDraws * 35)));
+  EXPECT_LT(flow.noises(*space, Vec::Ones(c.size())).norm(), 1e-13 * noises.norm());
+}
+
 // A run that goes on asks for the same times in another order.
 TEST(BrownianFlow, IsAFunctionOfTime) {
   const auto space = make_space(12);
@@ -148,6 +168,43 @@ TEST(Flow, FromNoiseLosesEnergyWithEveryIntegrator) {
   }
   EXPECT_LT(ends[0], 0.5 * initial);
   for (const double end : ends) EXPECT_NEAR(end, ends[0], 0.1 * ends[0]);
+}
+
+TEST(Flow, IsTwoEffectsByTheirNumbers) {
+  const std::vector<EffectTerm> both = read_effects(
+      "flow:membrane-viscosity=4,line-tension=1,temperature=298,hold=2", physics::Units{5, 1e-5});
+  const std::vector<EffectTerm> singles = in_single_strengths(both.front(), 0.01);
+  ASSERT_EQ(singles.size(), 2U);
+  problem::CahnHilliardModel model = make_model();
+  model.epsilon = 0.01;
+  const auto space = make_space(12);
+  const Vec c = random_vector(space->nodes(), 1), mu = random_vector(space->nodes(), 2);
+  const auto rates = [&](const std::vector<EffectTerm>& terms) {
+    Vec sum = Vec::Zero(c.size());
+    for (const problem::EffectPtr& effect : with_effects(model, terms).effects)
+      sum += residual_of(*effect, *space, 0.3, c, mu);
+    return sum;
+  };
+  EXPECT_LT((rates(singles) - rates(both)).norm(), 1e-12 * rates(both).norm());
+  for (const EffectTerm& single : singles)
+    EXPECT_EQ(with_effects(model, {single}).effects.size(), 1U);
+  const EffectTerm other{"gravity", {0.3}};
+  EXPECT_EQ(in_single_strengths(other, 0.01).front().values, other.values);
+}
+
+TEST(Flow, ShowsTheNumbersThatCount) {
+  const auto used = [](const std::string& text) {
+    const EffectTerm term = read_effects(text, physics::Units{5, 1e-5}).front();
+    std::vector<std::string> names;
+    for (std::size_t k = 0; k < term.values.size(); ++k)
+      if (is_used(term, k)) names.push_back(effects().find("flow").parameters[k].name);
+    return names;
+  };
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(used("flow:capillary=3"), (Names{"capillary", "water"}));
+  EXPECT_EQ(used("flow:thermal=3"), (Names{"thermal", "water", "seed"}));
+  EXPECT_EQ(used("flow:membrane-viscosity=3,temperature=298,hold=1"),
+            (Names{"membrane-viscosity", "temperature", "water-viscosity", "hold", "seed"}));
 }
 
 TEST(Flow, RefusesWhatContradictsItself) {

@@ -38,7 +38,7 @@ class RivalsTest : public ::testing::Test {
     request_.confirm = false;
     const std::set<std::string> some{"exchange", "gravity", "line-tension", "uptake"};
     for (const assimilation::Candidate& candidate : assimilation::candidates())
-      if (some.count(candidate.effect) == 0) request_.without.push_back(candidate.effect);
+      if (some.count(candidate.name) == 0) request_.without.push_back(candidate.name);
   }
 
   // Each once.
@@ -254,7 +254,7 @@ TEST_F(OwnEffectsTest, AreFittedAndNotFound) {
   EXPECT_EQ(lacking.finding, Finding::named);
   EXPECT_EQ(class_of(lacking), std::vector<std::string>{"uptake"});
   ASSERT_EQ(lacking.found.hypothesis.parts.size(), 2u);
-  EXPECT_EQ(lacking.found.hypothesis.parts[0].candidate.effect, "gravity");
+  EXPECT_EQ(lacking.found.hypothesis.parts[0].candidate.name, "gravity");
   EXPECT_NEAR(lacking.found.hypothesis.parts[0].coefficients[0], 0, 4 * deviation(lacking));
   EXPECT_LT(deviation(lacking), 0.001);
   EXPECT_NEAR(lacking.found.gap.train, whole.found.gap.train, 0.02 * whole.found.gap.train);

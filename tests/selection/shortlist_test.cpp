@@ -18,7 +18,7 @@ CandidateScore score(const std::string& effect, double gained) {
 
 std::vector<std::string> names(const std::vector<assimilation::Hypothesis::Part>& parts) {
   std::vector<std::string> result;
-  for (const auto& part : parts) result.push_back(part.candidate.effect);
+  for (const auto& part : parts) result.push_back(part.candidate.name);
   return result;
 }
 

@@ -53,7 +53,8 @@ enum : std::uint64_t {
   kriging_noise = 12,
   field_draws = 13,
   registration = 14,
-  replicate_noise_size = 16
+  replicate_noise_size = 16,
+  replicate_random_effects = 17
 };
 }  // namespace fixed_seed
 

@@ -94,6 +94,11 @@ FieldComparison compare_field(const FilterProblem& data, const problem::CahnHill
   comparison.frames = turned.cols() + frame.cols();
   const Columns unknown =
       at_points(in, error_values.middleCols(in.first_frame, comparison.known - in.first_frame));
+  for (const RandomFields& part : forecast.random) {
+    in.random.push_back({part.parameter, part.variance, seen(part.fields)});
+    in.random_squares +=
+        part.variance * (noise.asDiagonal() * at_points(in, in.random.back().values)).squaredNorm();
+  }
   in.expected_squares = noise.squaredNorm() + (noise.asDiagonal() * unknown).squaredNorm();
   const Columns no_share = Columns::Zero(forecast.c.size(), frame.cols());
   comparison.fields = side_by_side(side_by_side(errors, no_share), patterns);

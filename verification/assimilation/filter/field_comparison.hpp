@@ -6,12 +6,20 @@
 
 namespace traceraft::assimilation {
 
+// What a random effect may have added since the snapshot before, at the variance 1.
+struct RandomFields {
+  Eigen::Index parameter;  // the place of the variance among the parameters
+  double variance;         // that the errors of the belief have it with
+  Columns fields;          // nodes × noises
+};
+
 // Knowledge of c at the nodes, and how it depends on what is not known.
 struct Belief {
-  Vec c;               // the most probable one
-  Columns errors;      // L, nodes × directions: covariance L Lᵀ
-  Columns parameters;  // ∂c/∂θ, nodes × parameters
-  Columns replicates;  // errors of the replicates, nodes × replicates
+  Vec c;                                  // the most probable one
+  Columns errors;                         // L, nodes × directions: covariance L Lᵀ
+  Columns parameters;                     // ∂c/∂θ, nodes × parameters
+  Columns replicates;                     // errors of the replicates, nodes × replicates
+  std::vector<RandomFields> random = {};  // since the snapshot before
 };
 
 struct FieldComparison {

@@ -6,7 +6,7 @@
 
 #include "backends/openblas/dense_algebra.hpp"
 #include "kernel/core/random.hpp"
-#include "verification/assimilation/filter/field_comparison.hpp"
+#include "verification/assimilation/filter/random_motion.hpp"
 #include "verification/statistics/random_streams.hpp"
 
 namespace traceraft::assimilation {
@@ -24,7 +24,9 @@ class Filter {
         diffusion_ratio_(model.diffusion_ratio),
         settings_(settings),
         maps_(maps),
-        problem_(data.space, effects::with_effects(model.base, model.hypothesis.terms())),
+        random_(random_parts(data, model.hypothesis, model.screened)),
+        problem_(data.space, problem::without_noise(
+                                 effects::with_effects(model.base, model.hypothesis.terms()))),
         flow_(problem_, data.tangent_solver,
               maps.intervals() == 0 ? std::make_shared<const ThreadTeam>(1) : data.team),
         forcing_(problem_, model.base, model.hypothesis, model.screened) {
@@ -39,6 +41,7 @@ class Filter {
     belief_.replicates = data.first.draws.leftCols(settings.replicates);
     result_.information = Eigen::MatrixXd::Zero(parameters, parameters);
     result_.score = Vec::Zero(parameters);
+    result_.variance_score = result_.variance_information = Vec::Zero(parameters);
     result_.null_scores = Eigen::MatrixXd::Zero(parameters, settings.replicates);
   }
 
@@ -64,9 +67,11 @@ class Filter {
     const auto on_its_mesh = [this](const problem::DaeProblem& p) {
       return data_.make_integrator(p, *data_.space);
     };
-    const Forecast way = forecast(problem_, on_its_mesh, belief_.c, begin, end,
-                                  {settings_.tangent_steps, settings_.error_steps});
+    const Forecast way =
+        forecast(problem_, on_its_mesh, belief_.c, begin, end,
+                 {settings_.tangent_steps, settings_.error_steps, settings_.random_steps});
     if (resolved_) map_errors(way, turn);
+    if (resolved_) map_random(way.paths[2], end - begin, turn);
     belief_.errors = openblas::product(
         maps_.image[k], openblas::transposed_product(maps_.basis[k], data_.mass * belief_.errors));
     belief_.replicates = maps_.replicates[k].leftCols(settings_.replicates);
@@ -78,6 +83,44 @@ class Filter {
     if (resolved_) map_mesh(k, resolved.get(), there);
     belief_.parameters.col(kMeshError) += maps_.mesh_error[k].doubt;
     belief_.c = there + maps_.mesh_error[k].field;
+    add_random(k, end - begin);
+  }
+
+  void map_random(const TangentPath& way, double duration, const SnapshotTurn* turn) {
+    maps_.random.emplace_back();
+    maps_.duration.push_back(duration);
+    for (const FilterProblem::Random& random : data_.random) {
+      const Columns fields =
+          noises_at_end(data_, *random.effect, way, settings_.random_rank, flow_);
+      maps_.random.back().push_back(turn ? turn->own.columns(fields) : fields);
+    }
+  }
+
+  // What random effects may have added since snapshot k.
+  void add_random(std::size_t k, double duration) {
+    belief_.random.clear();
+    for (std::size_t p = 0; p < random_.size(); ++p) {
+      belief_.random.push_back(
+          {random_[p].parameter, random_[p].variance,
+           std::sqrt(duration / maps_.duration[k]) * maps_.random[k][random_[p].effect]});
+      if (random_[p].variance == 0) continue;
+      const Columns errors = std::sqrt(random_[p].variance) * belief_.random[p].fields;
+      belief_.errors = side_by_side(belief_.errors, errors);
+      belief_.replicates += openblas::product(
+          errors, normal_columns(statistics::fixed_seed::replicate_random_effects,
+                                 stream_of(k + 1, p), errors.cols(), belief_.replicates.cols()));
+    }
+  }
+
+  std::uint64_t stream_of(std::size_t snapshot, std::size_t part) const {
+    return 10 * (1000 * data_.vesicle + snapshot) + part;
+  }
+  static Columns normal_columns(std::uint64_t seed, std::uint64_t stream, Eigen::Index rows,
+                                Eigen::Index columns) {
+    Columns normal(rows, columns);
+    for (Eigen::Index i = 0; i < normal.size(); ++i)
+      normal.data()[i] = normal_random(seed, stream, static_cast<std::uint64_t>(i));
+    return normal;
   }
 
   // ∂F/∂θ of all parameters. With F = F(diffusion ratio t, …) the derivative S of c by ln diffusion
@@ -144,21 +187,35 @@ class Filter {
     result_.information += in.parameters.transpose() * weighted;
     result_.score += weighted.transpose() * in.values;
     result_.deviance += in.weighted_squares + weight.log_determinant();
+    const Eigen::Index patterns = in.directions.cols() - in.state_directions;
+    const Columns sizes = sizes_of_model_errors(in, patterns);
     if (in.replicates.cols() > 0)
-      result_.null_scores += weighted.transpose() * in.replicates + model_errors(in, weighted);
+      result_.null_scores +=
+          weighted.transpose() * in.replicates +
+          Columns(weighted.transpose() * in.directions.rightCols(patterns)) * sizes;
+    if (in.random.empty()) return;
+    const Columns values = side_by_side(
+        in.values, in.replicates + openblas::product(in.directions.rightCols(patterns), sizes));
+    const InnovationCovariance no_error(in, 0);
+    for (const RandomValues& part : in.random) {
+      account(variance_score(weight, part.values, values), part.parameter);
+      const VarianceScore alone = variance_score(no_error, part.values, in.values);
+      result_.variance_score[part.parameter] += alone.scores[0];
+      result_.variance_information[part.parameter] += alone.information;
+    }
   }
 
-  // The effect of errors of the model, as large as they seem to be, on the scores of the
-  // replicates: parameters × replicates.
-  Columns model_errors(const Innovation& in, const Columns& weighted) const {
-    const Eigen::Index patterns = in.directions.cols() - in.state_directions;
-    const std::uint64_t stream = 1000 * data_.vesicle + in.snapshot;
-    Columns sizes(patterns, in.replicates.cols());
-    for (Eigen::Index i = 0; i < sizes.size(); ++i)
-      sizes.data()[i] =
-          in.model_error * normal_random(statistics::fixed_seed::replicate_model_errors, stream,
-                                         static_cast<std::uint64_t>(i));
-    return Columns(weighted.transpose() * in.directions.rightCols(patterns)) * sizes;
+  void account(const VarianceScore& variance, Eigen::Index parameter) {
+    result_.information(parameter, parameter) += variance.information;
+    result_.score[parameter] += variance.scores[0];
+    result_.null_scores.row(parameter) += variance.scores.tail(variance.scores.size() - 1);
+  }
+
+  // Errors of the model in the replicates, as large as they seem to be: patterns × replicates.
+  Columns sizes_of_model_errors(const Innovation& in, Eigen::Index patterns) const {
+    return in.model_error * normal_columns(statistics::fixed_seed::replicate_model_errors,
+                                           1000 * data_.vesicle + in.snapshot, patterns,
+                                           in.replicates.cols());
   }
 
   // `found`: the innovation's amplitudes; `directions`: what those of the innovation are in the
@@ -178,6 +235,7 @@ class Filter {
   const double diffusion_ratio_;
   const FilterSettings& settings_;
   ErrorMaps& maps_;
+  const std::vector<RandomPart> random_;
   problem::CahnHilliard problem_;
   std::optional<ResolvedForecast> resolved_;  // where the maps are to be filled
   TangentFlow flow_;
@@ -189,6 +247,8 @@ class Filter {
 void add(FilterResult& all, FilterResult&& one) {
   all.information += one.information;
   all.score += one.score;
+  all.variance_score += one.variance_score;
+  all.variance_information += one.variance_information;
   all.null_scores += one.null_scores;
   all.deviance += one.deviance;
   std::move(one.innovations.begin(), one.innovations.end(), std::back_inserter(all.innovations));

@@ -23,6 +23,9 @@ struct ErrorMaps {
       image;                        // per interval, of the same shape: the basis at its end
   std::vector<Columns> replicates;  // errors of the forecast at its end, nodes × replicates
   std::vector<ResolvedForecast::End> mesh_error;  // what the forecast lacks on its own mesh
+  // What random effects with the variance 1 add, per interval and effect: nodes × fields.
+  std::vector<std::vector<Columns>> random;
+  std::vector<double> duration;  // of each interval, in units of the model's time
 
   std::size_t intervals() const { return basis.size(); }
 };
@@ -40,6 +43,9 @@ struct FilterResult {
   Vec score;                    // Σ Xᵀ S⁻¹ ν, one per parameter
   Eigen::MatrixXd null_scores;  // parameters × replicates: the score of each replicate
   double deviance = 0;          // Σ νᵀ S⁻¹ ν + ln |S|
+  // Score and information (its diagonal) of parameters that are variances, if the model has no
+  // other errors: those may look like a random effect. 0 for other parameters.
+  Vec variance_score, variance_information;
   // explained_parts of each snapshot that counts, patterns × (1 + parameters + replicates): of its
   // values, its parameters and its replicates. Empty if there are no replicates.
   std::vector<Columns> gap_parts,

@@ -19,8 +19,10 @@ struct FilterSettings {
   int replicates = 199;   // of the noise, through everything that is linear
   int tangent_steps = 3;  // between two snapshots, for derivatives by parameters
   int error_steps = 2;    // the same for errors of the state
-  double gain = 0.1;      // standard deviation of the unknown scale of each snapshot's values
-  double offset = 0.1;    // the same of their unknown zero, in units of the distance of the phases
+  int random_steps = 3;   // the same for random effects, and at most so many fields of one:
+  int random_rank = 120;
+  double gain = 0.1;    // standard deviation of the unknown scale of each snapshot's values
+  double offset = 0.1;  // the same of their unknown zero, in units of the distance of the phases
   double first_gain = 0.1,  // `gain` of the first snapshot, which forecasts begin with
       first_offset = 0.1;   // `offset` of the first snapshot
   // Standard deviation of the point spread function of the images, in R: they have it, or none.
@@ -71,6 +73,12 @@ struct FilterProblem {
   std::shared_ptr<const Blur> blur;  // if the images have one
   linear::LinearSolverFactory tangent_solver;
   MakeForecaster make_integrator;
+  // Effects with the variance 1 that the state may be moved by at random.
+  struct Random {
+    std::string name;
+    std::shared_ptr<const problem::RandomEffect> effect;
+  };
+  std::vector<Random> random;
 
   double time(std::size_t snapshot) const { return series.snapshots[snapshot].time; }
 };

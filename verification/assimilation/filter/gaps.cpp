@@ -42,6 +42,10 @@ Gaps expected_gaps(const FilterResult& pass) {
   return over_snapshots(pass, [](const Innovation& in) { return in.expected_squares; });
 }
 
+Gaps random_gaps(const FilterResult& pass) {
+  return over_snapshots(pass, [](const Innovation& in) { return in.random_squares; });
+}
+
 std::vector<SnapshotGap> snapshot_gaps(const FilterResult& pass) {
   std::vector<SnapshotGap> gaps;
   for (const Innovation& in : pass.innovations) {

@@ -30,6 +30,7 @@ struct SnapshotGap {
 // Measured minus forecast.
 Gaps gaps_of_pass(const FilterResult& pass);
 Gaps expected_gaps(const FilterResult& pass);  // if nothing is missing
+Gaps random_gaps(const FilterResult& pass);    // the part of these that random effects make
 
 std::vector<SnapshotGap> snapshot_gaps(const FilterResult& pass);
 

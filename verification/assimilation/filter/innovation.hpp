@@ -13,6 +13,14 @@ namespace traceraft::assimilation {
 // last part, then the coefficients of the hypothesis and those of the screened candidates.
 inline constexpr int kDiffusionRatio = 0, kMeshError = 1, kFirstParameter = 2;
 
+// What a random effect adds to the values at the variance 1: values × noises, in units of the
+// noise.
+struct RandomValues {
+  Eigen::Index parameter;  // the place of the variance among the parameters
+  double variance;         // that the state's directions have it with
+  Columns values;
+};
+
 struct Innovation {
   std::size_t vesicle, snapshot;  // of the data
   bool held_out;                  // it counts for nothing, but between members of a class
@@ -30,11 +38,13 @@ struct Innovation {
   // Number of the first directions that are what the first snapshot's scale and zero make of the
   // forecast.
   Eigen::Index first_frame = 0;
-  Eigen::MatrixXd gram;         // Gᵀ G, directions × directions, its lower half
-  Columns parameters;           // X, values × parameters: derivatives of the forecast
-  Columns replicates;           // values × replicates: values of noise alone
+  Eigen::MatrixXd gram;  // Gᵀ G, directions × directions, its lower half
+  Columns parameters;    // X, values × parameters: derivatives of the forecast
+  Columns replicates;    // values × replicates: values of noise alone
+  std::vector<RandomValues> random = {};
   double weighted_squares = 0;  // νᵀ S⁻¹ ν, one per value on average
   double expected_squares = 0;  // of the gap in c, by noise and what it leaves unknown of c
+  double random_squares = 0;    // by random effects, likewise, which `expected_squares` includes
   // `frame`: most probable turns about the three axes, scale and zero of the values, and their blur
   // if images have one, each in its standard deviations. `gap`: the values without what `frame`,
   // and the first snapshot's scale and zero, make of them, each at its point, in units of its

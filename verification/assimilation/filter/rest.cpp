@@ -66,7 +66,7 @@ class Interval {
 
   // The model's forecast as the microscope would see it.
   Vec expected(double diffusion_ratio) const {
-    const problem::CahnHilliard problem(data_.space, base_);
+    const problem::CahnHilliard problem(data_.space, problem::without_noise(base_));
     const double start = data_.time(snapshot_ - 1),
                  time = diffusion_ratio * (data_.time(snapshot_) - start);
     const Vec end = advanced(data_, problem, before_.field, start, start + time);

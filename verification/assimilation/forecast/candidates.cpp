@@ -6,6 +6,7 @@
 
 #include "kernel/core/error.hpp"
 #include "kernel/core/text.hpp"
+#include "kernel/geometry/star_surface.hpp"
 #include "verification/assimilation/forecast/curvature_contrast.hpp"
 #include "verification/bench/bench.hpp"
 
@@ -16,15 +17,13 @@ namespace {
 constexpr double kLength = 1;
 // Contrast of the curvature, below which it sorts nothing.
 constexpr double kCurved = 0.05;
-// Value of a level set at points of the unit sphere, below which the surface is that sphere.
-constexpr double kOnSphere = 1e-9;
 
 // The strength is the only coefficient; the other parameters keep their values.
-std::function<effects::EffectTerm(const std::vector<double>&)> strength_of(
-    effects::EffectTerm term) {
-  return [term = std::move(term)](const std::vector<double>& a) {
+std::function<effects::EffectTerm(const std::vector<double>&)> strength_of(effects::EffectTerm term,
+                                                                           std::size_t parameter) {
+  return [term = std::move(term), parameter](const std::vector<double>& a) {
     effects::EffectTerm result = term;
-    result.values.front() = a[0];
+    result.values[parameter] = a[0];
     return result;
   };
 }
@@ -44,7 +43,7 @@ Candidate by_strength(const std::string& effect, double step, bool two_sided) {
   const double least = pure ? strength.min : two_sided ? -any : 0, most = pure ? strength.max : any;
   return {effect,
           1,
-          strength_of(by_default(effects::effects().find(effect))),
+          strength_of(by_default(effects::effects().find(effect)), 0),
           step,
           effects::is_rate(strength.unit),
           two_sided,
@@ -56,6 +55,41 @@ Candidate of_mobility(const std::string& effect, double step, bool two_sided) {
   Candidate candidate = by_strength(effect, step, two_sided);
   candidate.like_diffusion_ratio = true;
   return candidate;
+}
+
+// Flow that line tension drives, and flow that thermal forces drive.
+constexpr char kFlow[] = "flow", kBrownianFlow[] = "brownian-flow";
+constexpr std::size_t kThermal = 1;  // place of that strength among the parameters
+
+Candidate capillary_flow() {
+  Candidate candidate = by_strength(kFlow, 1, false);
+  candidate.physics = "flow of the membrane, which the line tension of rafts drives";
+  return candidate;
+}
+
+Candidate brownian_flow() {
+  const effects::EffectEntry& entry = effects::effects().find(kFlow);
+  Candidate candidate = by_strength(kFlow, 1e-4, false);
+  candidate.name = kBrownianFlow;
+  candidate.term = strength_of(by_default(entry), kThermal);
+  candidate.rate = true;  // variances grow with time
+  candidate.most = entry.parameters[kThermal].max;
+  candidate.parameter = kThermal;
+  candidate.random = true;
+  candidate.physics = "flow of the membrane that thermal forces drive, so that rafts wander";
+  return candidate;
+}
+
+bool is_like_sphere(const geometry::LevelSet& surface, const std::vector<Point>& places) {
+  // The level set outlives the question.
+  const geometry::LevelSetPtr shared(&surface, [](const geometry::LevelSet*) {});
+  try {
+    const geometry::StarSurface star(shared);
+    for (const Point& x : places) (void)star.radius((x - star.centre()).normalized());
+  } catch (const InputError&) {
+    return false;
+  }
+  return true;
 }
 
 std::vector<double> coefficients_of_exchange(double rate, double target) {
@@ -81,7 +115,7 @@ Candidate exchange() {
 
 std::vector<std::string> names_of(const std::vector<Candidate>& some) {
   std::vector<std::string> names;
-  for (const Candidate& candidate : some) names.push_back(candidate.effect);
+  for (const Candidate& candidate : some) names.push_back(candidate.name);
   return names;
 }
 
@@ -105,12 +139,17 @@ std::vector<Candidate> candidates() {
           of_mobility("mobility-exponent", 1e-3, true),
           by_strength("ohta-kawasaki", 1e-3, false),
           by_strength("uptake", 1e-3, true),
-          by_strength("flow", 1, false)};
+          capillary_flow(),
+          brownian_flow()};
 }
 
-std::optional<Candidate> find_candidate(const std::string& effect) {
+std::string effect_of(const Candidate& candidate) {
+  return candidate.term(std::vector<double>(candidate.directions, 0)).effect;
+}
+
+std::optional<Candidate> find_candidate(const std::string& name) {
   for (const Candidate& candidate : candidates())
-    if (candidate.effect == effect) return candidate;
+    if (candidate.name == name) return candidate;
   return {};
 }
 
@@ -119,30 +158,38 @@ std::vector<Candidate> candidates_for(const problem::CahnHilliardModel& base,
                                       const std::vector<Point>& places,
                                       const std::vector<std::string>& without) {
   const bool curved = curvature_contrast(surface, places) > kCurved,
-             sphere = std::all_of(places.begin(), places.end(), [&](const Point&x) {
-               return std::fabs(surface.value(x.stableNormalized())) < kOnSphere;
-             });
+             flows = is_like_sphere(surface, places);
   std::vector<Candidate> result;
   for (const Candidate& candidate : candidates()) {
     const bool left_out =
-        std::find(without.begin(), without.end(), candidate.effect) != without.end();
+        std::find(without.begin(), without.end(), candidate.name) != without.end();
     const bool fits =
-        effects::has_unit_wells(base) || !effects::effects().find(candidate.effect).unit_wells;
-    if (!left_out && fits && (curved || candidate.effect != "curvature") &&
-        (sphere || candidate.effect != "flow"))
+        effects::has_unit_wells(base) || !effects::effects().find(effect_of(candidate)).unit_wells;
+    if (!left_out && fits && (curved || candidate.name != "curvature") &&
+        (flows || effect_of(candidate) != kFlow))
       result.push_back(candidate);
   }
   return result;
 }
 
+std::string candidate_name(const effects::EffectTerm& term) {
+  const bool brownian =
+      term.effect == kFlow && term.values.front() == 0 && term.values[kThermal] > 0;
+  return brownian ? kBrownianFlow : term.effect;
+}
+
 Hypothesis::Part part_of(const effects::EffectTerm& term) {
-  const std::optional<Candidate> found = find_candidate(term.effect);
+  return part_of(term, candidate_name(term));
+}
+
+Hypothesis::Part part_of(const effects::EffectTerm& term, const std::string& candidate) {
+  const std::optional<Candidate> found = find_candidate(candidate);
   if (!found)
     throw InputError("effect " + term.effect + ": its strength cannot be fitted (possible: " +
                      joined(names_of(candidates()), ", ") + ")");
-  Hypothesis::Part part{*found, {term.values.front()}};
+  Hypothesis::Part part{*found, {term.values[found->parameter]}};
   if (found->directions == 1)
-    part.candidate.term = strength_of(term);
+    part.candidate.term = strength_of(term, found->parameter);
   else
     part.coefficients = coefficients_of_exchange(term.values[0], term.values[1]);
   return part;
@@ -156,13 +203,13 @@ Hypothesis of_model(const std::vector<effects::EffectTerm>& own) {
 }
 
 bool are_one(const Candidate& a, const Candidate& b) {
-  return a.special_case == b.effect || b.special_case == a.effect;
+  return a.special_case == b.name || b.special_case == a.name;
 }
 
 std::vector<Candidate> candidates_beside(const Hypothesis& own, std::vector<Candidate> all) {
   const auto taken = [&](const Candidate& candidate) {
     return std::any_of(own.parts.begin(), own.parts.end(), [&](const Hypothesis::Part& part) {
-      return candidate.effect == part.candidate.effect || are_one(candidate, part.candidate);
+      return candidate.name == part.candidate.name || are_one(candidate, part.candidate);
     });
   };
   all.erase(std::remove_if(all.begin(), all.end(), taken), all.end());
@@ -181,23 +228,35 @@ Eigen::Index Hypothesis::coefficients() const {
   return count;
 }
 
+bool Hypothesis::is_random() const {
+  return std::any_of(parts.begin(), parts.end(), [](const Part& part) {
+    return part.candidate.random && part.coefficients.front() > 0;
+  });
+}
+
+std::string physics_of(const Hypothesis::Part& part) {
+  return part.candidate.physics.empty()
+             ? effects::physics_of(part.candidate.term(part.coefficients))
+             : part.candidate.physics;
+}
+
 std::string Hypothesis::name() const {
   std::string text;
   for (std::size_t k = known; k < parts.size(); ++k)
-    text += (text.empty() ? "" : " + ") + parts[k].candidate.effect;
+    text += (text.empty() ? "" : " + ") + parts[k].candidate.name;
   return text;
 }
 
 bool Hypothesis::has(const std::string& effect) const {
   return std::any_of(parts.begin(), parts.end(),
-                     [&](const Part& part) { return part.candidate.effect == effect; });
+                     [&](const Part& part) { return part.candidate.name == effect; });
 }
 
 bool Hypothesis::contains(const Hypothesis& other) const {
   return std::equal(parts.begin(), parts.end(), other.parts.begin(), other.parts.end(),
                     [](const Part& own, const Part& others) {
-                      const std::string& effect = others.candidate.effect;
-                      return own.candidate.effect == effect || own.candidate.special_case == effect;
+                      const std::string& effect = others.candidate.name;
+                      return own.candidate.name == effect || own.candidate.special_case == effect;
                     });
 }
 
@@ -208,8 +267,8 @@ CoefficientForcing::CoefficientForcing(const problem::CahnHilliard& problem,
     : problem_(problem) {
   const auto space = std::shared_ptr<const fem::SurfaceSpace>(&problem.space(), [](auto*) {});
   const auto changed = [&](const Hypothesis& h) {
-    return std::make_shared<const problem::CahnHilliard>(space,
-                                                         effects::with_effects(model, h.terms()));
+    return std::make_shared<const problem::CahnHilliard>(
+        space, problem::without_noise(effects::with_effects(model, h.terms())));
   };
   Hypothesis extended = hypothesis;
   const auto add_pairs = [&](std::size_t part) {

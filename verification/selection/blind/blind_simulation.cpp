@@ -7,10 +7,21 @@
 
 namespace traceraft::selection {
 
+namespace {
+
+// Vesicles have random effects of their own.
+problem::CahnHilliardModel with_seed(const BlindRequest& request) {
+  problem::CahnHilliardModel model = request.base;
+  model.seed = request.seed;
+  return model;
+}
+
+}  // namespace
+
 BlindSimulation::BlindSimulation(const BlindRequest& request, const BlindMethod& method,
                                  const std::vector<effects::EffectTerm>& effects)
     : request_(request),
-      problem_(method.space, effects::with_effects(request.base, effects)),
+      problem_(method.space, effects::with_effects(with_seed(request), effects)),
       make_integrator_([method](const problem::DaeProblem& problem) {
         time::IntegratorSettings settings;
         settings.tolerance = method.tolerance;

@@ -46,10 +46,11 @@ effects::EffectTerm EffectSizing::term(const std::string& effect,
                                        std::vector<double> coefficients) const {
   const assimilation::Candidate candidate = candidate_to_hide(effect);
   for (int k = 0; k < 2; ++k) {
-    const double ratio = request_.gap / gap_of(candidate.term(coefficients));
+    const double change = request_.gap / gap_of(drawn_often(candidate.term(coefficients))),
+                 ratio = candidate.random ? change * change : change;
     for (double& a : coefficients) a = candidate.within_range(ratio * a);
   }
-  return candidate.term(coefficients);
+  return drawn_often(candidate.term(coefficients));
 }
 
 std::vector<double> EffectSizing::random_coefficients(const assimilation::Candidate& candidate,
@@ -62,6 +63,16 @@ std::vector<double> EffectSizing::random_coefficients(const assimilation::Candid
     coefficients.push_back(sign * candidate.step * (candidate.directions > 1 ? 0.2 + u : 1));
   }
   return coefficients;
+}
+
+// Brownian flow changes several times between snapshots.
+effects::EffectTerm EffectSizing::drawn_often(effects::EffectTerm term) const {
+  constexpr double kDraws = 10;
+  const auto& specs = effects::effects().find(term.effect).parameters;
+  for (std::size_t k = 0; k < specs.size(); ++k)
+    if (specs[k].name == "hold")
+      term.values[k] = (request_.last - request_.first) / (request_.snapshots - 1) / kDraws;
+  return term;
 }
 
 double EffectSizing::gap_of(const effects::EffectTerm& term) const {
@@ -90,7 +101,7 @@ assimilation::Candidate candidate_to_hide(const std::string& effect) {
 std::vector<std::string> effects_to_hide() {
   std::vector<std::string> names;
   for (const assimilation::Candidate& candidate : assimilation::candidates())
-    if (candidate.effect != "curvature") names.push_back(candidate.effect);
+    if (candidate.name != "curvature") names.push_back(candidate.name);
   return names;
 }
 

@@ -33,6 +33,7 @@ class EffectSizing {
   effects::EffectTerm term(const std::string& effect, std::vector<double> coefficients) const;
 
  private:
+  effects::EffectTerm drawn_often(effects::EffectTerm term) const;
   // Coefficients in a random direction that the effect allows.
   std::vector<double> random_coefficients(const assimilation::Candidate& candidate,
                                           std::uint64_t number) const;

@@ -63,6 +63,7 @@ Evaluation evaluate(const assimilation::FilterProblems& data,
     if (!std::isfinite(fit.deviance)) throw std::runtime_error("its likelihood is not a number");
     fit.gap = assimilation::gaps_of_pass(pass);
     fit.expected = assimilation::expected_gaps(pass);
+    fit.random = assimilation::random_gaps(pass);
     fit.snapshots = assimilation::snapshot_gaps(pass);
     set_covariance(result.covariance, fit);
   } catch (const std::runtime_error& error) {
@@ -121,6 +122,7 @@ class NewtonSearch {
       found.settled = settled(here_, model_);
       if (!better) break;
     }
+    if (found.failure.empty() && model_.hypothesis.is_random()) found.random_gain = random_gain();
     return std::move(found);
   }
 
@@ -137,6 +139,13 @@ class NewtonSearch {
       model_ = with_strengths(0.5, model_);
       here_ = evaluated(model_);
     }
+  }
+
+  double random_gain() {
+    assimilation::FilterModel without = model_;
+    for (assimilation::Hypothesis::Part& part : without.hypothesis.parts)
+      if (part.candidate.random) part.coefficients.front() = 0;
+    return evaluated(without).fit.deviance - here_.fit.deviance;
   }
 
   // So many times the step, or half of that, ...: false if none is better than here. Where D makes
@@ -186,7 +195,19 @@ Refit refit(const assimilation::FilterProblems& data, const assimilation::Filter
   return NewtonSearch(data, start, settings, maps).run();
 }
 
+assimilation::SharesClosed shares_closed(const assimilation::Gaps& base, const Refit& fit) {
+  const auto rest = [](double all, double random) {
+    return std::sqrt(std::max(0.0, all * all - random * random));
+  };
+  const auto rests = [&](const assimilation::Gaps& all) {
+    return assimilation::Gaps{rest(all.train, fit.random.train),
+                              rest(all.heldout, fit.random.heldout)};
+  };
+  return assimilation::shares_closed(base, rests(fit.gap), rests(fit.expected));
+}
+
 double certainty(const Refit& fit, std::size_t effect) {
+  if (fit.hypothesis.parts[effect].candidate.random) return fit.random_gain;
   Eigen::Index first = 0;
   for (std::size_t k = 0; k < effect; ++k) first += fit.hypothesis.parts[k].candidate.directions;
   const auto& part = fit.hypothesis.parts[effect];

@@ -20,13 +20,21 @@ struct Refit {
   // `gap`: measured minus forecast. `expected`: the gap that is to be expected if nothing is
   // missing, by the noise and by what it leaves unknown of the state.
   assimilation::Gaps gap, expected;
+  assimilation::Gaps random = {};  // the part of `expected` that random effects make
+  // −2 ln of the likelihood without random effects, over that with them, all else being the same.
+  double random_gain = 0;
   std::vector<assimilation::SnapshotGap> snapshots;  // the same, one by one
   bool settled = true;                               // was the search for the coefficients over?
   std::string failure;  // why a forecast failed, if it did: no refit then
 };
 
+// The share of a base's gap that a refit closes. A random effect makes a gap that no forecast
+// closes: that part of it is explained.
+assimilation::SharesClosed shares_closed(const assimilation::Gaps& base, const Refit& fit);
+
 // (coefficients)ᵀ C⁻¹ (coefficients) of one of its effects, with their covariance C: what its
-// absence costs in deviance, to first order, all else being free.
+// absence costs in deviance, to first order, all else being free. That of a random effect is what
+// it costs.
 double certainty(const Refit& fit, std::size_t effect);
 
 // The better one of a refit and the one without its last effect, which is a refit of the same

@@ -167,14 +167,15 @@ class Scores {
   }
 
   CandidateScore of(std::size_t k) const {
-    const Gain found = gain(k, result_.score);
+    Gain found = gain(k, result_.score);
+    if (screened_[k].random) found.coefficients[0] = variance(own_[k].indices.front());
     const double mean = null_mean_[static_cast<Eigen::Index>(k)];
     const Eigen::MatrixXd covariance = covariance_of(own_[k].profile.information, own_[k].seen);
     double resolution = std::numeric_limits<double>::infinity();
     for (const Eigen::Index d : own_[k].seen)
       resolution = std::min(
           resolution, response(k, std::sqrt(covariance(d, d)) * Vec::Unit(covariance.rows(), d)));
-    return {screened_[k].effect,
+    return {screened_[k].name,
             {found.coefficients.data(), found.coefficients.data() + found.coefficients.size()},
             found.score,
             mean,
@@ -190,10 +191,18 @@ class Scores {
     const Vec u = score(own.indices) - own.profile.projection * score(nuisances_);
     return most_gain(own.profile.information, u, own.seen, screened_[k].two_sided);
   }
+  double variance(Eigen::Index parameter) const {
+    const double information = result_.variance_information[parameter];
+    return information > 0 ? std::max(0.0, result_.variance_score[parameter] / information) : 0;
+  }
   double response(std::size_t k, const Vec& coefficients) const {
+    const Indices& indices = own_[k].indices;
     return assimilation::root_mean_square(
         result_.innovations, false, [&](const assimilation::Innovation& in) {
-          return (in.parameters(Eigen::all, own_[k].indices) * coefficients).squaredNorm();
+          for (const assimilation::RandomValues& part : in.random)
+            if (part.parameter == indices.front())
+              return coefficients[0] * part.values.squaredNorm();
+          return (in.parameters(Eigen::all, indices) * coefficients).squaredNorm();
         });
   }
 
@@ -218,7 +227,7 @@ std::vector<ConfoundedWithDiffusionRatio> confounded_with_diffusion_ratio(
         Profile(F, others, {assimilation::kDiffusionRatio, first}).information;
     const double correlation = I(0, 1) / std::sqrt(I(0, 0) * I(1, 1));
     if (candidate.like_diffusion_ratio && !candidate.two_sided && correlation > kConfounded)
-      result.push_back({candidate.effect, I(0, 1) / I(0, 0), correlation});
+      result.push_back({candidate.name, I(0, 1) / I(0, 0), correlation});
     first += candidate.directions;
   }
   return result;

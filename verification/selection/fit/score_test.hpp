@@ -15,7 +15,9 @@ double gamma_tail(const Vec& replicates, double value);
 
 struct CandidateScore {
   std::string effect;
-  std::vector<double> coefficients;  // most probable ones, to first order, within their signs
+  // Most probable ones, to first order, within their signs. The variance of a random effect is that
+  // without errors of the model, which the score allows for: they may look like it.
+  std::vector<double> coefficients;
   // 2 ln of the likelihood gained, to first order. Diffusion ratio and mesh error are free.
   double score;
   double null_mean;  // `score` of noise alone, on average over the replicates, half a unit at least

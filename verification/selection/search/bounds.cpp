@@ -11,13 +11,13 @@ namespace {
 // 95 % of normally distributed values are below.
 constexpr double kOneSided = 1.645;
 
-// Derivatives of the first parameter by the coefficients.
+// Derivatives of the strength by the coefficients.
 Vec slopes(const assimilation::Candidate& candidate) {
   Vec slope(candidate.directions);
   for (int d = 0; d < candidate.directions; ++d) {
     std::vector<double> a(static_cast<std::size_t>(candidate.directions), 0.0);
     a[static_cast<std::size_t>(d)] = candidate.step;
-    slope[d] = candidate.term(a).values.front() / candidate.step;
+    slope[d] = candidate.term(a).values[candidate.parameter] / candidate.step;
   }
   return slope;
 }
@@ -48,7 +48,7 @@ std::vector<Bound> bounds_of(const Screening& screening,
   std::vector<Bound> bounds;
   for (const assimilation::Candidate& candidate : screened)
     for (const CandidateScore& score : screening.scores)
-      if (score.effect == candidate.effect) bounds.push_back(bound_of(score, candidate));
+      if (score.effect == candidate.name) bounds.push_back(bound_of(score, candidate));
   return bounds;
 }
 

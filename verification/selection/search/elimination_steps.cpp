@@ -15,7 +15,7 @@ constexpr int kMostReplacements = 3;
 assimilation::Hypothesis without(assimilation::Hypothesis hypothesis, const std::string& effect) {
   auto& parts = hypothesis.parts;
   parts.erase(std::remove_if(parts.begin(), parts.end(),
-                             [&](const auto& part) { return part.candidate.effect == effect; }),
+                             [&](const auto& part) { return part.candidate.name == effect; }),
               parts.end());
   return hypothesis;
 }
@@ -24,7 +24,7 @@ std::vector<std::string> unresolved(const Refit& found, double values, double me
   std::vector<std::string> effects;
   for (std::size_t k = found.hypothesis.known; k < found.hypothesis.parts.size(); ++k)
     if (!resolved(found, k, values, mesh_error))
-      effects.push_back(found.hypothesis.parts[k].candidate.effect);
+      effects.push_back(found.hypothesis.parts[k].candidate.name);
   return effects;
 }
 
@@ -86,7 +86,7 @@ std::vector<assimilation::FilterModel> trials_near(const Search& search, const S
   const std::vector<assimilation::Candidate>& all = search.candidates();
   std::copy_if(
       all.begin(), all.end(), std::back_inserter(open),
-      [&](const assimilation::Candidate& c) { return !was_dropped(state.so_far, c.effect); });
+      [&](const assimilation::Candidate& c) { return !was_dropped(state.so_far, c.name); });
   std::vector<assimilation::FilterModel> trials;
   for (assimilation::Hypothesis& near :
        neighbours(state.so_far.found, state.so_far.rounds, search.values(), open)) {

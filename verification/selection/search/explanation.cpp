@@ -13,7 +13,7 @@ namespace {
 // Is it the hypothesis, or that with something more?
 bool has_found(const assimilation::Hypothesis& hypothesis, const assimilation::Hypothesis& found) {
   return std::all_of(found.parts.begin(), found.parts.end(),
-                     [&](const auto& part) { return hypothesis.has(part.candidate.effect); });
+                     [&](const auto& part) { return hypothesis.has(part.candidate.name); });
 }
 
 }  // namespace
@@ -45,9 +45,7 @@ std::vector<Bound> bounds_of(const Explanation& found) {
 
 std::optional<double> closed_by_last_round(const Explanation& found) {
   if (found.rounds.empty()) return {};
-  const assimilation::Gaps& before = found.rounds.back().without.gap;
-  return assimilation::share_closed(before.train, found.found.gap.train,
-                                    found.found.expected.train);
+  return shares_closed(found.rounds.back().without.gap, found.found).train;
 }
 
 bool is_named(const Explanation& found) {

@@ -48,7 +48,7 @@ std::string word_for(Finding finding) {
 }
 
 const std::string& last_effect(const assimilation::Hypothesis& hypothesis) {
-  return hypothesis.parts.back().candidate.effect;
+  return hypothesis.parts.back().candidate.name;
 }
 
 double mesh_doubt(double values, double mesh_error) {

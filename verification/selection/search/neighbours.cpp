@@ -20,7 +20,7 @@ std::vector<assimilation::Hypothesis::Part> rivals(const std::string& effect,
   for (const Round& round : rounds) {
     const auto is = [](const std::string& name) {
       return
-          [name](const Refit& fit) { return fit.hypothesis.parts.back().candidate.effect == name; };
+          [name](const Refit& fit) { return fit.hypothesis.parts.back().candidate.name == name; };
     };
     const auto own = std::find_if(round.refits.begin(), round.refits.end(), is(effect));
     if (own == round.refits.end()) continue;
@@ -42,7 +42,7 @@ std::vector<assimilation::Hypothesis> neighbours(
   const auto may_be_taken = [&](const std::string& effect) {
     return !here.has(effect) &&
            std::any_of(allowed.begin(), allowed.end(),
-                       [&](const assimilation::Candidate& c) { return c.effect == effect; });
+                       [&](const assimilation::Candidate& c) { return c.name == effect; });
   };
   for (std::size_t k = here.known; k < here.parts.size(); ++k) {
     const assimilation::Candidate& own = here.parts[k].candidate;
@@ -51,8 +51,8 @@ std::vector<assimilation::Hypothesis> neighbours(
       result.back().parts.erase(result.back().parts.begin() + static_cast<std::ptrdiff_t>(k));
     }
     std::vector<std::string> tried;
-    for (const assimilation::Hypothesis::Part& rival : rivals(own.effect, rounds)) {
-      const std::string& effect = rival.candidate.effect;
+    for (const assimilation::Hypothesis::Part& rival : rivals(own.name, rounds)) {
+      const std::string& effect = rival.candidate.name;
       if (!may_be_taken(effect) || std::count(tried.begin(), tried.end(), effect) > 0) continue;
       tried.push_back(effect);
       result.push_back(here);

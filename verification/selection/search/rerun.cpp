@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "verification/assimilation/filter/noise_levels.hpp"
+#include "verification/assimilation/filter/random_motion.hpp"
 
 namespace traceraft::selection {
 namespace {
@@ -16,10 +17,18 @@ constexpr char kOtherIntegrator[] = "rosenbrock";
 // Standard deviations, beyond which one in a hundred truths falls short.
 constexpr double kRefuted = 2.33;
 
+std::vector<assimilation::Candidate> candidates_of(const assimilation::Hypothesis& hypothesis) {
+  std::vector<assimilation::Candidate> own;
+  for (const assimilation::Hypothesis::Part& part : hypothesis.parts) own.push_back(part.candidate);
+  return own;
+}
+
 assimilation::FilterProblems problems_with(const std::optional<assimilation::NoiseModel>& noise,
                                            const std::vector<assimilation::FieldSeries>& series,
-                                           const ExplainRequest& request) {
+                                           const ExplainRequest& request,
+                                           const assimilation::Hypothesis& hypothesis) {
   assimilation::FilterProblems data = problems_of(series, request);
+  assimilation::set_random_effects(candidates_of(hypothesis), request.base, data);
   if (noise) assimilation::set_noise_model(*noise, request.base, request.filter, data);
   return data;
 }
@@ -33,16 +42,15 @@ assimilation::FilterResult pass_of(const assimilation::FilterProblems& data,
 
 assimilation::FilterResult pass_of_model(const assimilation::FilterProblems& data,
                                          const ExplainRequest& request, double diffusion_ratio,
-                                         const std::vector<effects::EffectTerm>& effects) {
+                                         const assimilation::Hypothesis& hypothesis) {
   assimilation::FilterSettings alone = request.filter;
   alone.replicates = 0;
-  return pass_of(data, {effects::with_effects(request.base, effects), diffusion_ratio, {}, {}},
-                 alone);
+  return pass_of(data, {request.base, diffusion_ratio, hypothesis, {}}, alone);
 }
 
 assimilation::FilterResult pass_of_model(const assimilation::FilterProblems& data,
                                          const ExplainRequest& request, const Refit& fit) {
-  return pass_of_model(data, request, fit.diffusion_ratio, fit.hypothesis.terms());
+  return pass_of_model(data, request, fit.diffusion_ratio, fit.hypothesis);
 }
 
 // A pass per processor.
@@ -100,19 +108,29 @@ Rerun compare_forecasts(const assimilation::FilterResult& base,
   // If the found model is the truth, its innovations ν have the covariance S; νᵀ S⁻¹ d has the
   // variance dᵀ S⁻¹ d then, d being the difference of the forecasts.
   double along = 0, difference = 0, count = 0;
+  assimilation::VarianceGain random;
   for (std::size_t k = 0; k < found.innovations.size(); ++k) {
     const assimilation::Innovation& f = found.innovations[k];
     if (f.held_out != held_out) continue;
     count += static_cast<double>(f.values.size());
     assimilation::Columns values(f.values.size(), 2);
     values << f.values, base.innovations[k].values - f.values;
-    const assimilation::Columns weighted = assimilation::InnovationCovariance(f, 0).solve(values);
+    const assimilation::InnovationCovariance weight(f, 0);
+    const assimilation::Columns weighted = weight.solve(values);
     const double one = values.col(1).dot(weighted.col(0)), two = values.col(1).dot(weighted.col(1));
     result.gain += 2 * one + two;
     along -= one;
     difference += two;
+    const assimilation::VarianceGain own = assimilation::variance_gain(f, weight);
+    random.gain += own.gain;
+    random.mean += own.mean;
+    random.variance += own.variance;
   }
-  result.shortfall = difference > 0 ? along / std::sqrt(difference) : 0;
+  result.gain += random.gain;
+  // The mean of the gain less the gain, which has the variance 4 dᵀ S⁻¹ d by the forecasts.
+  const double short_of = 2 * along + random.mean - random.gain,
+               variance = 4 * difference + random.variance;
+  result.shortfall = variance > 0 ? short_of / std::sqrt(variance) : 0;
   result.doubt = mesh_doubt(count, mesh_error);
   return result;
 }
@@ -132,7 +150,8 @@ void run_again(const std::vector<assimilation::FieldSeries>& series, const Expla
   Rerun result;
   std::optional<assimilation::FilterProblems> data;
   std::string no_data;
-  attempt(no_data, [&] { data = problems_with(found.noise_model, series, other); });
+  attempt(no_data,
+          [&] { data = problems_with(found.noise_model, series, other, found.found.hypothesis); });
   if (found.found.hypothesis.added() > 0) {
     result.failure = no_data;
     if (data) attempt(result.failure, [&] { result = compare_both(*data, other, found); });
@@ -154,8 +173,9 @@ ModelGaps gaps_of_model(const std::vector<assimilation::FieldSeries>& series,
                         const std::optional<assimilation::NoiseModel>& noise) {
   ExplainRequest alone = request;
   alone.filter.replicates = 0;
-  const assimilation::FilterResult pass =
-      pass_of_model(problems_with(noise, series, alone), alone, diffusion_ratio, effects);
+  const assimilation::Hypothesis hypothesis = assimilation::of_model(effects);
+  const assimilation::FilterResult pass = pass_of_model(
+      problems_with(noise, series, alone, hypothesis), alone, diffusion_ratio, hypothesis);
   return {assimilation::gaps_of_pass(pass), assimilation::expected_gaps(pass)};
 }
 

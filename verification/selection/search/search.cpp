@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "verification/assimilation/filter/random_motion.hpp"
+
 namespace traceraft::selection {
 namespace {
 
@@ -12,7 +14,7 @@ bool same_hypothesis(const assimilation::Hypothesis& a, const assimilation::Hypo
          std::equal(
              a.parts.begin(), a.parts.end(), b.parts.begin(), b.parts.end(),
              [](const assimilation::Hypothesis::Part& p, const assimilation::Hypothesis::Part& q) {
-               return p.candidate.effect == q.candidate.effect && p.coefficients == q.coefficients;
+               return p.candidate.name == q.candidate.name && p.coefficients == q.coefficients;
              });
 }
 
@@ -53,7 +55,12 @@ Search::Search(const std::vector<assimilation::FieldSeries>& series, const Expla
       candidates_(assimilation::candidates_beside(
           request.own,
           assimilation::candidates_for(request.base, *request.surface,
-                                       data_.front().space->surface.position, request.without))) {}
+                                       data_.front().space->surface.position, request.without))) {
+  std::vector<assimilation::Candidate> all = candidates_;
+  for (const assimilation::Hypothesis::Part& part : request.own.parts)
+    all.push_back(part.candidate);
+  assimilation::set_random_effects(all, request.base, data_);
+}
 
 void Search::tell(const std::string& news) const {
   if (request_.progress) request_.progress(news);
@@ -73,7 +80,7 @@ assimilation::FilterModel Search::model(const SearchState& state) const {
   const Refit& found = state.so_far.found;
   assimilation::FilterModel model{request_.base, found.diffusion_ratio, found.hypothesis, {}};
   std::copy_if(candidates_.begin(), candidates_.end(), std::back_inserter(model.screened),
-               [&](const assimilation::Candidate& c) { return !found.hypothesis.has(c.effect); });
+               [&](const assimilation::Candidate& c) { return !found.hypothesis.has(c.name); });
   return model;
 }
 

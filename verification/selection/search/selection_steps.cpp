@@ -40,9 +40,7 @@ std::vector<FrameChange> frame_changes(const assimilation::FilterResult& fields,
 // Says what is left. Is it worth while to look for more?
 bool progresses(const Search& search, const Explanation& result) {
   if (result.rounds.empty()) return true;
-  const assimilation::Gaps &base = result.base.gap, &now = result.found.gap;
-  if (const auto closed =
-          assimilation::share_closed(base.train, now.train, result.found.expected.train))
+  if (const auto closed = shares_closed(result.base.gap, result.found).train)
     search.tell(formatted("  %.0f %% of the gap is left", 100 * (1 - *closed)));
   const std::optional<double> last = closed_by_last_round(result);
   if (!last || *last >= kLeastProgress) return true;
