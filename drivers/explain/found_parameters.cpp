@@ -69,8 +69,10 @@ std::vector<FoundParameter> found_parameters(const selection::Refit& fit,
       own[k].sigma = std::sqrt(variance_of(part, k, fit.covariance.block(first, first, n, n))) /
                      effects::to_model_units(own[k].unit, units);
     const effects::EffectTerm term = part.candidate.term(part.coefficients);
+    const std::vector<ParameterSpec>& specs = effects::effects().find(term.effect).parameters;
     for (std::size_t k = 0; k < own.size(); ++k)
-      if (own[k].sigma || effects::is_used(term, k)) result.push_back(own[k]);
+      if (own[k].sigma || (effects::is_used(term, k) && specs[k].kind != ParameterKind::integer))
+        result.push_back(own[k]);
     first += n;
   }
   const double D = units.diffusion_cm2_s;

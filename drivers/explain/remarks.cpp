@@ -178,40 +178,49 @@ void add_story(const selection::Explanation& found, std::vector<std::string>& al
                             -t.less));
 }
 
-// The viscosity of a membrane that moves rafts as they were seen to move.
+// "4.1 nPa s m (2.9 to 6.3)": the viscosity of a membrane that moves rafts as they were seen to
+// move.
 std::string viscosity_text(const selection::Refit& fit, const physics::Units& base) {
-  constexpr double kKelvin = 298;
-  const std::vector<FoundParameter> all = found_parameters(fit, base);
-  const auto named = [&](const std::string& name) {
-    return std::find_if(all.begin(), all.end(), [&](const FoundParameter& p) {
-      return p.name == name && assimilation::find_candidate(p.effect) &&
-             assimilation::find_candidate(p.effect)->random;
+  constexpr double kKelvin = 298, kNoMembrane = 1e-3;  // nPa s m: a film of water of 1 nm has that
+  const auto of_motion = [&](const std::string& name) {
+    const std::vector<FoundParameter> all = found_parameters(fit, base);
+    return *std::find_if(all.begin(), all.end(), [&](const FoundParameter& p) {
+      return p.name == name && p.effect == "brownian-flow";
     });
   };
-  const FoundParameter &thermal = *named("thermal"), &water = *named("water");
-  const physics::Units units = found_units(base, fit);
+  const FoundParameter thermal = of_motion("thermal"), water = of_motion("water");
   const auto viscosity = [&](double value) {
-    return selection::viscosity_of(value, water.value, kKelvin, units);
+    return selection::viscosity_of(value, water.value, kKelvin, found_units(base, fit));
   };
-  const double width = statistics::kNormal95 * *thermal.sigma;
-  return formatted("At %.0f K it is that of a membrane with a viscosity of %.2g nPa s m (%.2g to ",
-                   kKelvin, viscosity(thermal.value), viscosity(thermal.value + width)) +
-         (width < thermal.value ? formatted("%.2g).", viscosity(thermal.value - width))
-                                : "any larger one).");
+  const double width = statistics::kNormal95 * thermal.sigma.value_or(0),
+               least = viscosity(thermal.value + width);
+  const std::string at = formatted("At %.0f K it is ", kKelvin);
+  if (viscosity(thermal.value) < kNoMembrane)
+    return at + "faster than the water beside any membrane allows.";
+  return at + "that of a membrane with a viscosity of " +
+         formatted("%.2g nPa s m (", viscosity(thermal.value)) +
+         (least < kNoMembrane ? "0" : formatted("%.2g", least)) + " to " +
+         (width < thermal.value ? formatted("%.2g", viscosity(thermal.value - width)) : "any") +
+         ").";
 }
 
-// Nobody can say where rafts go at random.
+// Nobody can say where rafts go at random. Where they go far, what is left of it in second order
+// looks like other effects.
 void add_random(const selection::Explanation& found, const physics::Units& base,
                 std::vector<std::string>& all) {
+  constexpr double kFar = 1.5;
   const selection::Refit& fit = found.found;
   if (!fit.hypothesis.is_random()) return;
-  const double expected = fit.expected.train,
-               without = std::sqrt(
-                   std::max(0.0, expected * expected - fit.random.train * fit.random.train));
+  const double expected = fit.expected.train, random = fit.random.train,
+               without = std::sqrt(std::max(0.0, expected * expected - random * random));
   all.push_back(formatted("Random motion cannot be forecast, so the gap stays. What changes is the "
                           "gap to be expected: %.4g with this motion, %.4g without. ",
                           expected, without) +
                 (base.scaled ? "" : viscosity_text(fit, base)));
+  if (random > kFar * without)
+    all.push_back(
+        "Rafts move further between snapshots than these forecasts resolve. Effects that were "
+        "found beside the random motion may be none. Shorter intervals would tell.");
 }
 
 // A strength that cannot be larger was wanted larger.

@@ -291,12 +291,12 @@ TEST_F(ExplainRefusalTest, NeedsEffectsThatCanBeFitted) {
     EXPECT_TRUE(refuses(testing::traceraft(command(13) + " --effect " + effect), "--effect"))
         << effect;
   // On a sphere there is no other one than curvature.
-  EXPECT_TRUE(
-      refuses(testing::traceraft(
-                  command(13) +
-                  " --without allen-cahn,asymmetry,bulk-mobility,cooling,exchange,gravity,"
-                  "flow,line-tension,mobility-contrast,mobility-exponent,ohta-kawasaki,uptake"),
-              "--without"));
+  EXPECT_TRUE(refuses(
+      testing::traceraft(
+          command(13) +
+          " --without allen-cahn,asymmetry,brownian-flow,bulk-mobility,cooling,exchange,"
+          "gravity,flow,line-tension,mobility-contrast,mobility-exponent,ohta-kawasaki,uptake"),
+      "--without"));
 }
 
 TEST_F(ExplainRefusalTest, SaysWhichPointIsOff) {

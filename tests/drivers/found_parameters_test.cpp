@@ -51,14 +51,32 @@ TEST(FoundParameters, BrownianFlowIsToldByItsOwnStrength) {
   fit.covariance = Vec::Constant(1, 4e-8).asDiagonal();
   fit.diffusion_ratio = 2;
   const auto parameters = explain::found_parameters(fit, kCell);
-  ASSERT_EQ(parameters.size(), 4U);
+  ASSERT_EQ(parameters.size(), 3U);  // with D, without the seed
   EXPECT_EQ(parameters[0].effect + "." + parameters[0].name, "brownian-flow.thermal");
   EXPECT_EQ(parameters[0].value, 0.001);
   EXPECT_NEAR(parameters[0].sigma.value(), 2e-4, 1e-9);
   EXPECT_EQ(parameters[1].name, "water");
-  EXPECT_EQ(parameters[2].name, "seed");
   const auto model = explain::found_model(found, {});
   EXPECT_EQ(model.at("effect").text, "flow:thermal=0.001,water=1.25,seed=1");
+}
+
+// D = 1e-5 cm²/s and R = 5 µm: Θ = 1e-3 is k_B T/(4.1 nPa s m D), and W nearly that of such a membrane.
+TEST(FoundParameters, BrownianFlowIsThatOfAViscosity) {
+  selection::Explanation found;
+  found.finding = selection::Finding::named;
+  found.found.hypothesis.parts = {{assimilation::find_candidate("brownian-flow").value(), {0.001}}};
+  found.found.covariance = Vec::Constant(1, 4e-8).asDiagonal();
+  found.found.expected = {0.05, 0};
+  found.found.random = {0.03, 0};
+  found.rounds.resize(1);
+  const auto said = [&] { return joined(explain::remarks(found, kCell), "\n"); };
+  EXPECT_NE(said().find("0.05 with this motion, 0.04 without"), std::string::npos) << said();
+  EXPECT_NE(said().find("4.2 nPa s m (2.2 to 8.9)"), std::string::npos) << said();
+  EXPECT_EQ(said().find("further between snapshots"), std::string::npos) << said();
+  found.found.random.train = 0.045;
+  EXPECT_NE(said().find("further between snapshots"), std::string::npos) << said();
+  found.found.hypothesis.parts[0].coefficients = {1};
+  EXPECT_NE(said().find("faster than the water"), std::string::npos) << said();
 }
 
 // No forecast closes what moves at random: that part of a gap is explained.
