@@ -14,7 +14,7 @@ std::set<std::string> names_on(const std::string& surface) {
   std::set<std::string> names;
   for (const Candidate& candidate :
        candidates_for(testing::make_model(), *geometry::make_surface(surface),
-                      testing::make_space(12, surface)->surface.position, {"gravity"}))
+                      testing::make_space(24, surface)->surface.position, {"gravity"}))
     names.insert(candidate.name);
   return names;
 }
