@@ -63,7 +63,7 @@ std::vector<output::Row> gap_rows(const selection::Explanation& found) {
     const auto text = [](const std::optional<double>& share) {
       return share ? formatted("%.0f %%", 100 * *share) : "too small to say";
     };
-    const assimilation::SharesClosed closed = selection::shares_closed(found.base.gap, found.found);
+    const assimilation::SharesClosed closed = selection::shares_closed(found.base, found.found);
     rows.push_back({"share of the closable gap that is closed (of squares)", text(closed.train),
                     text(closed.heldout)});
   }

@@ -310,7 +310,7 @@ void add_rerun(const selection::Explanation& found, std::vector<std::string>& al
 std::string more_effects(const selection::Explanation& found) {
   const std::optional<double> last =
       found.rounds.size() > 1
-          ? selection::shares_closed(found.rounds[found.rounds.size() - 2].without.gap,
+          ? selection::shares_closed(found.rounds[found.rounds.size() - 2].without,
                                      found.rounds.back().without)
                 .train
           : std::nullopt;

@@ -60,7 +60,7 @@ input::Json gap_json(const assimilation::Gaps& gaps) {
 
 input::Json closed_json(const selection::Explanation& found) {
   if (found.found.hypothesis.added() == 0) return {};
-  const assimilation::SharesClosed closed = selection::shares_closed(found.base.gap, found.found);
+  const assimilation::SharesClosed closed = selection::shares_closed(found.base, found.found);
   return {{"train", input::number_or_null(closed.train)},
           {"heldout", input::number_or_null(closed.heldout)}};
 }

@@ -47,7 +47,7 @@ std::string nothing_sentence(const selection::Explanation& found) {
 // An effect that closes next to nothing of the gap is not close to the truth.
 bool closes_something(const selection::Explanation& found, const selection::Refit& fit) {
   constexpr double kLeast = 0.1;
-  const assimilation::SharesClosed closed = selection::shares_closed(found.base.gap, fit);
+  const assimilation::SharesClosed closed = selection::shares_closed(found.base, fit);
   return closed.heldout.value_or(closed.train.value_or(0)) >= kLeast;
 }
 

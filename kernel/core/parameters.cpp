@@ -10,6 +10,14 @@
 
 namespace traceraft {
 
+std::size_t place_of(std::string_view name, const std::vector<ParameterSpec>& specs) {
+  const auto found = std::find_if(specs.begin(), specs.end(),
+                                  [&](const ParameterSpec& spec) { return spec.name == name; });
+  if (found == specs.end())
+    throw std::logic_error("parameter '" + std::string(name) + "' was not declared");
+  return static_cast<std::size_t>(found - specs.begin());
+}
+
 Parameters::Parameters(const std::vector<ParameterSpec>& specs, std::vector<double> values)
     : values_(std::move(values)) {
   for (const ParameterSpec& spec : specs) names_.push_back(spec.name);

@@ -23,6 +23,9 @@ struct ParameterSpec {
   bool is_number() const { return kind == ParameterKind::number || kind == ParameterKind::integer; }
 };
 
+// Throws std::logic_error if it is not declared.
+std::size_t place_of(std::string_view name, const std::vector<ParameterSpec>& specs);
+
 // An option that is a word or the path of a file.
 inline ParameterSpec text_parameter(std::string name, std::string default_text, std::string meaning,
                                     ParameterKind kind = ParameterKind::word) {

@@ -30,7 +30,7 @@ struct CahnHilliardModel {
   double beta() const { return 4 * well.rho * (well.b - well.a) * (well.b - well.a); }
 };
 
-// The model without the effects that are random.
+// The model without its RandomEffects.
 CahnHilliardModel without_noise(CahnHilliardModel model);
 
 // ε² (K + ρ S): the gradient energy is half its quadratic form.

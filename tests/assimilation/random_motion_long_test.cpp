@@ -67,7 +67,7 @@ TEST_F(RandomMotionTest, SimulationsScatterAsMuchAndInTheSameWay) {
     model.seed = static_cast<std::uint64_t>(seed) + 1;
     Candidate candidate = find_candidate("brownian-flow").value();
     effects::EffectTerm term = candidate.term({kThermal});
-    term.values[7] = 0.03;  // hold
+    term.values[place_of("hold", effects::effects().find("flow").parameters)] = 0.03;
     runs.col(seed) =
         advance(problem::CahnHilliard(space, effects::with_effects(model, {term})), c, kBegin, kEnd)
             .end;

@@ -60,7 +60,8 @@ TEST(FoundParameters, BrownianFlowIsToldByItsOwnStrength) {
   EXPECT_EQ(model.at("effect").text, "flow:thermal=0.001,water=1.25,seed=1");
 }
 
-// D = 1e-5 cm²/s and R = 5 µm: Θ = 1e-3 is k_B T/(4.1 nPa s m D), and W nearly that of such a membrane.
+// D = 1e-5 cm²/s and R = 5 µm: Θ = 1e-3 is k_B T/(4.1 nPa s m D), and W nearly that of such a
+// membrane.
 TEST(FoundParameters, BrownianFlowIsThatOfAViscosity) {
   selection::Explanation found;
   found.finding = selection::Finding::named;
@@ -81,14 +82,16 @@ TEST(FoundParameters, BrownianFlowIsThatOfAViscosity) {
 
 // No forecast closes what moves at random: that part of a gap is explained.
 TEST(FoundParameters, SharesClosedLeaveOutWhatIsRandom) {
-  selection::Refit fit;
-  fit.gap = fit.expected = {5, 0};
+  selection::Refit base, fit;
+  base.gap = fit.gap = fit.expected = {5, 0};
   fit.random = {4, 0};
-  EXPECT_NEAR(selection::shares_closed({5, 0}, fit).train.value(), 1, 1e-14);
+  EXPECT_NEAR(selection::shares_closed(base, fit).train.value(), 1, 1e-14);
   fit.gap = {std::sqrt(25 + 8.0), 0};
-  EXPECT_NEAR(selection::shares_closed({5, 0}, fit).train.value(), 0.5, 1e-14);
-  fit.random = {};
-  EXPECT_FALSE(selection::shares_closed({5, 0}, fit).train);
+  EXPECT_NEAR(selection::shares_closed(base, fit).train.value(), 0.5, 1e-14);
+  // A base that has the motion already lacks nothing.
+  base.random = fit.random;
+  fit.gap = {5, 0};
+  EXPECT_FALSE(selection::shares_closed(base, fit).train);
 }
 
 // D makes up for part of what is missing without a name.

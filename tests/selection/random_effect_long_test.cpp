@@ -51,7 +51,7 @@ TEST_F(RandomEffectTest, IsNamedWithItsStrength) {
   // No forecast closes the gap; what is to be expected of it grows.
   EXPECT_NEAR(found.found.gap.train / found.base.gap.train, 1, 0.1);
   EXPECT_GT(found.found.random.train, 0.2 * found.found.expected.train);
-  EXPECT_GT(shares_closed(found.base.gap, found.found).train.value(), 0.6);
+  EXPECT_GT(shares_closed(found.base, found.found).train.value(), 0.6);
   EXPECT_TRUE(found.rerun->confirms());
 }
 

@@ -59,7 +59,9 @@ Candidate of_mobility(const std::string& effect, double step, bool two_sided) {
 
 // Flow that line tension drives, and flow that thermal forces drive.
 constexpr char kFlow[] = "flow", kBrownianFlow[] = "brownian-flow";
-constexpr std::size_t kThermal = 1;  // place of that strength among the parameters
+std::size_t place_of_thermal() {
+  return place_of("thermal", effects::effects().find(kFlow).parameters);
+}
 
 Candidate capillary_flow() {
   Candidate candidate = by_strength(kFlow, 1, false);
@@ -69,12 +71,13 @@ Candidate capillary_flow() {
 
 Candidate brownian_flow() {
   const effects::EffectEntry& entry = effects::effects().find(kFlow);
+  const std::size_t thermal = place_of_thermal();
   Candidate candidate = by_strength(kFlow, 1e-4, false);
   candidate.name = kBrownianFlow;
-  candidate.term = strength_of(by_default(entry), kThermal);
+  candidate.term = strength_of(by_default(entry), thermal);
   candidate.rate = true;  // variances grow with time
-  candidate.most = entry.parameters[kThermal].max;
-  candidate.parameter = kThermal;
+  candidate.most = entry.parameters[thermal].max;
+  candidate.parameter = thermal;
   candidate.random = true;
   candidate.physics = "flow of the membrane that thermal forces drive, so that rafts wander";
   return candidate;
@@ -174,7 +177,7 @@ std::vector<Candidate> candidates_for(const problem::CahnHilliardModel& base,
 
 std::string candidate_name(const effects::EffectTerm& term) {
   const bool brownian =
-      term.effect == kFlow && term.values.front() == 0 && term.values[kThermal] > 0;
+      term.effect == kFlow && term.values.front() == 0 && term.values[place_of_thermal()] > 0;
   return brownian ? kBrownianFlow : term.effect;
 }
 

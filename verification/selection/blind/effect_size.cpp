@@ -68,10 +68,9 @@ std::vector<double> EffectSizing::random_coefficients(const assimilation::Candid
 // Brownian flow changes several times between snapshots.
 effects::EffectTerm EffectSizing::drawn_often(effects::EffectTerm term) const {
   constexpr double kDraws = 10;
-  const auto& specs = effects::effects().find(term.effect).parameters;
-  for (std::size_t k = 0; k < specs.size(); ++k)
-    if (specs[k].name == "hold")
-      term.values[k] = (request_.last - request_.first) / (request_.snapshots - 1) / kDraws;
+  if (term.effect == "flow")
+    term.values[place_of("hold", effects::effects().find(term.effect).parameters)] =
+        (request_.last - request_.first) / (request_.snapshots - 1) / kDraws;
   return term;
 }
 

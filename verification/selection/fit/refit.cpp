@@ -195,15 +195,20 @@ Refit refit(const assimilation::FilterProblems& data, const assimilation::Filter
   return NewtonSearch(data, start, settings, maps).run();
 }
 
-assimilation::SharesClosed shares_closed(const assimilation::Gaps& base, const Refit& fit) {
+namespace {
+
+assimilation::Gaps without_random(const assimilation::Gaps& gaps, const Refit& fit) {
   const auto rest = [](double all, double random) {
     return std::sqrt(std::max(0.0, all * all - random * random));
   };
-  const auto rests = [&](const assimilation::Gaps& all) {
-    return assimilation::Gaps{rest(all.train, fit.random.train),
-                              rest(all.heldout, fit.random.heldout)};
-  };
-  return assimilation::shares_closed(base, rests(fit.gap), rests(fit.expected));
+  return {rest(gaps.train, fit.random.train), rest(gaps.heldout, fit.random.heldout)};
+}
+
+}  // namespace
+
+assimilation::SharesClosed shares_closed(const Refit& base, const Refit& fit) {
+  return assimilation::shares_closed(without_random(base.gap, base), without_random(fit.gap, fit),
+                                     without_random(fit.expected, fit));
 }
 
 double certainty(const Refit& fit, std::size_t effect) {

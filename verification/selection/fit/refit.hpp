@@ -28,9 +28,9 @@ struct Refit {
   std::string failure;  // why a forecast failed, if it did: no refit then
 };
 
-// The share of a base's gap that a refit closes. A random effect makes a gap that no forecast
+// The shares of a base's gaps that a refit closes. A random effect makes a gap that no forecast
 // closes: that part of it is explained.
-assimilation::SharesClosed shares_closed(const assimilation::Gaps& base, const Refit& fit);
+assimilation::SharesClosed shares_closed(const Refit& base, const Refit& fit);
 
 // (coefficients)ᵀ C⁻¹ (coefficients) of one of its effects, with their covariance C: what its
 // absence costs in deviance, to first order, all else being free. That of a random effect is what

@@ -45,7 +45,7 @@ std::vector<Bound> bounds_of(const Explanation& found) {
 
 std::optional<double> closed_by_last_round(const Explanation& found) {
   if (found.rounds.empty()) return {};
-  return shares_closed(found.rounds.back().without.gap, found.found).train;
+  return shares_closed(found.rounds.back().without, found.found).train;
 }
 
 bool is_named(const Explanation& found) {

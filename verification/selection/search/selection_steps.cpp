@@ -40,7 +40,7 @@ std::vector<FrameChange> frame_changes(const assimilation::FilterResult& fields,
 // Says what is left. Is it worth while to look for more?
 bool progresses(const Search& search, const Explanation& result) {
   if (result.rounds.empty()) return true;
-  if (const auto closed = shares_closed(result.base.gap, result.found).train)
+  if (const auto closed = shares_closed(result.base, result.found).train)
     search.tell(formatted("  %.0f %% of the gap is left", 100 * (1 - *closed)));
   const std::optional<double> last = closed_by_last_round(result);
   if (!last || *last >= kLeastProgress) return true;

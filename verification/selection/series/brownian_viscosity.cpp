@@ -1,7 +1,6 @@
 #include "verification/selection/series/brownian_viscosity.hpp"
 
 #include <cmath>
-#include <stdexcept>
 
 #include "kernel/discs/brownian_motion.hpp"
 
@@ -13,9 +12,7 @@ const std::vector<ParameterSpec>& flow_parameters() {
 }
 
 std::size_t index_of(const std::string& name) {
-  for (std::size_t k = 0; k < flow_parameters().size(); ++k)
-    if (flow_parameters()[k].name == name) return k;
-  throw std::logic_error("flow has no parameter " + name);
+  return place_of(name, flow_parameters());
 }
 
 double in_model_units(const std::string& name, double value, const physics::Units& units) {
