@@ -136,9 +136,25 @@ TEST_P(TangentOfEffect, IsTheDerivativeOfTheForecast) {
   }
 }
 
-// All that a sphere shows.
-INSTANTIATE_TEST_SUITE_P(Effects, TangentOfEffect,
-                         ::testing::ValuesIn(selection::effects_to_hide()), [](const auto& info) {
+// Forecasts do not change with the variance of a random effect.
+TEST_F(TangentFlowTest, RandomEffectsForceNothing) {
+  const Candidate candidate = find_candidate("brownian-flow").value();
+  const CoefficientForcing forcing(base, base.model(), {}, {candidate});
+  const Columns slope = derivative(Columns::Zero(space->nodes(), 1),
+                                   [&](double t, VecView y) { return forcing(t, y); });
+  EXPECT_EQ(slope.norm(), 0);
+}
+
+// All that a sphere shows in the mean.
+std::vector<std::string> effects_on_forecasts() {
+  std::vector<std::string> names = selection::effects_to_hide();
+  const auto random = [](const std::string& name) { return find_candidate(name)->random; };
+  names.erase(std::remove_if(names.begin(), names.end(), random), names.end());
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Effects, TangentOfEffect, ::testing::ValuesIn(effects_on_forecasts()),
+                         [](const auto& info) {
                            std::string name = info.param;
                            for (char& letter : name)
                              if (letter == '-') letter = '_';

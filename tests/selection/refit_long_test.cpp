@@ -6,6 +6,7 @@
 #include "kernel/core/error.hpp"
 #include "tests/support/small_vesicle.hpp"
 #include "verification/assimilation/filter/gaps.hpp"
+#include "verification/assimilation/filter/random_motion.hpp"
 #include "verification/assimilation/forecast/candidates.hpp"
 #include "verification/selection/fit/refit.hpp"
 
@@ -177,7 +178,9 @@ TEST(Filter, DoesNotLookAtWhatIsHeldOut) {
   const assimilation::FilterModel model{request().base, 1, {}, assimilation::candidates()};
   const auto pass_of = [&](const std::vector<assimilation::FieldSeries>& measured) {
     std::vector<assimilation::ErrorMaps> maps;
-    return assimilation::filter_fields(problems(measured, few), model, few, maps);
+    assimilation::FilterProblems data = problems(measured, few);
+    assimilation::set_random_effects(assimilation::candidates(), model.base, data);
+    return assimilation::filter_fields(data, model, few, maps);
   };
   const assimilation::FilterResult before = pass_of(vesicles);
   vesicles[0].snapshots[3].values.array() += 0.05;
