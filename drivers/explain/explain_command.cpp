@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -25,6 +26,7 @@
 #include "drivers/run/run_folder.hpp"
 #include "drivers/text/say.hpp"
 #include "kernel/core/error.hpp"
+#include "kernel/core/named_list.hpp"
 #include "kernel/effects/effects.hpp"
 #include "verification/statistics/sample.hpp"
 
@@ -193,6 +195,18 @@ void take_word_of_model(ExplainJob& job) {
   job.model.clear();
 }
 
+// Flow is two of the candidates. Effects that are none may be left out, too.
+void refuse_unknown_candidates(const std::vector<std::string>& names) {
+  std::vector<std::string> valid = effects::effects().names();
+  for (const assimilation::Candidate& candidate : assimilation::candidates())
+    if (std::find(valid.begin(), valid.end(), candidate.name) == valid.end())
+      valid.push_back(candidate.name);
+  std::sort(valid.begin(), valid.end());
+  for (const std::string& name : names)
+    if (std::find(valid.begin(), valid.end(), name) == valid.end())
+      throw InputError("--without: " + unknown_name_message("effect", name, valid));
+}
+
 int explain(ExplainCommand command) {
   take_word_of_model(command.job);
   if (command.job.data.empty() && command.series.empty())
@@ -200,7 +214,7 @@ int explain(ExplainCommand command) {
   find_series(command);
   if (command.series.empty() && !command.ensembles.empty())
     throw InputError("--ensembles: there are no series to compare with them");
-  for (const std::string& effect : command.job.without) (void)effects::effects().find(effect);
+  refuse_unknown_candidates(command.job.without);
   std::optional<ExplainSetup> fields;
   std::optional<SeriesSetup> series;
   if (!command.series.empty()) series = read_series_job(command);
