@@ -7,6 +7,7 @@
 #include "drivers/input/field_dataset.hpp"
 #include "kernel/physics/units.hpp"
 #include "tests/support/program.hpp"
+#include "tests/support/small_vesicle.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "verification/bench/bench.hpp"
 #include "verification/selection/blind/blind_case.hpp"
@@ -20,17 +21,7 @@ using testing::refuses;
 class ExplainTest : public ::testing::Test {
  protected:
   // A request for what a vesicle of 5 µm with ε = 0.75 µm and D = 1e-5 cm²/s would show.
-  selection::BlindRequest request() const {
-    selection::BlindRequest request;
-    request.base = bench::bench_model("degenerate", 0.15);
-    request.cells = 24;
-    request.first = 30;
-    request.last = 140;
-    request.snapshots = 5;
-    request.points = 1200;
-    request.seed = 2;
-    return request;
-  }
+  selection::BlindRequest request() const { return testing::searched_vesicle(); }
   selection::BlindCase draw(const std::string& effect,
                             double gap = selection::BlindRequest{}.gap) const {
     selection::BlindRequest asked = request();

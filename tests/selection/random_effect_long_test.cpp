@@ -13,15 +13,8 @@ namespace {
 class RandomEffectTest : public ::testing::Test {
  protected:
   static BlindRequest asked(const std::vector<std::string>& hidden) {
-    BlindRequest request;
-    request.base = bench::bench_model("degenerate", 0.15);
+    BlindRequest request = testing::searched_vesicle();
     request.effects = hidden;
-    request.cells = 24;
-    request.first = 30;
-    request.last = 140;
-    request.snapshots = 5;
-    request.points = 1200;
-    request.seed = 2;
     return request;
   }
   static Explanation explained(const std::vector<std::string>& hidden) {

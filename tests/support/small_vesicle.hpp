@@ -21,4 +21,17 @@ inline selection::BlindRequest small_vesicle(int snapshots) {
   return asked;
 }
 
+// One that has what a whole search needs, with nothing hidden.
+inline selection::BlindRequest searched_vesicle() {
+  selection::BlindRequest asked;
+  asked.base = bench::bench_model("degenerate", 0.15);
+  asked.cells = 24;
+  asked.first = 30;
+  asked.last = 140;
+  asked.snapshots = 5;
+  asked.points = 1200;
+  asked.seed = 2;
+  return asked;
+}
+
 }  // namespace traceraft::testing
