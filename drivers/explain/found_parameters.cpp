@@ -62,13 +62,13 @@ std::vector<FoundParameter> found_parameters(const selection::Refit& fit,
   Eigen::Index first = 0;
   for (const auto& part : fit.hypothesis.parts) {
     const int n = part.candidate.directions;
-    std::vector<FoundParameter> own = parameters_of(part.candidate.term(part.coefficients), units);
+    const effects::EffectTerm term = part.candidate.term(part.coefficients);
+    std::vector<FoundParameter> own = parameters_of(term, units);
     for (FoundParameter& p : own) p.effect = part.candidate.name;
     for (std::size_t k = part.candidate.parameter, end = k + static_cast<std::size_t>(n); k < end;
          ++k)
       own[k].sigma = std::sqrt(variance_of(part, k, fit.covariance.block(first, first, n, n))) /
                      effects::to_model_units(own[k].unit, units);
-    const effects::EffectTerm term = part.candidate.term(part.coefficients);
     const std::vector<ParameterSpec>& specs = effects::effects().find(term.effect).parameters;
     for (std::size_t k = 0; k < own.size(); ++k)
       if (own[k].sigma || (effects::is_used(term, k) && specs[k].kind != ParameterKind::integer))

@@ -42,11 +42,11 @@ inline double angle_between(const Point& x, const Point& y) {
 inline double gap(const Disc& x, const Disc& y) {
   return angle_between(x.centre, y.centre) - half_angle(x.area) - half_angle(y.area);
 }
-// Is the gap larger than that? Chords are shorter than arcs, and π √(area/4π) is longer than a half
-// angle: most pairs need no angle.
-inline bool are_apart(const Disc& x, const Disc& y, double distance) {
+// The gap is at least this, which needs no angle: chords are shorter than arcs, and π √(area/4π) is
+// longer than a half angle.
+inline double least_gap(const Disc& x, const Disc& y) {
   const double radii = 0.5 * std::sqrt(kPi) * (std::sqrt(x.area) + std::sqrt(y.area));
-  return (x.centre - y.centre).norm() > radii + distance || gap(x, y) > distance;
+  return (x.centre - y.centre).norm() - radii;
 }
 
 // Two unit vectors, as columns, in the tangent plane of a point.

@@ -128,8 +128,8 @@ void DiscSystem::plan_walk() {
   for (std::size_t i = 0; i < state_.discs.size(); ++i) {
     double nearest = kPi;
     for (std::size_t j = 0; j < state_.discs.size(); ++j)
-      if (i != j && !are_apart(state_.discs[i], state_.discs[j], nearest))
-        nearest = gap(state_.discs[i], state_.discs[j]);
+      if (i != j && least_gap(state_.discs[i], state_.discs[j]) < nearest)
+        nearest = std::min(nearest, gap(state_.discs[i], state_.discs[j]));
     gaps += std::max(nearest, kShortestGap * radii / count);
   }
   const double length = state_.discs.size() == 1 ? kLoneWalk : kWalk * gaps / count;
@@ -279,9 +279,10 @@ bool DiscSystem::walk(double time) {
 bool DiscSystem::touched_between(std::size_t i, std::size_t j, const std::vector<Disc>& start,
                                  double time) const {
   const double contact = phases().contact_distance(),
-               wander = std::sqrt(motion_.variance_of_distance(i, j) * time);
-  if (are_apart(start[i], start[j], contact + kFarApart * wander)) return false;
+               far = kFarApart * std::sqrt(motion_.variance_of_distance(i, j) * time);
+  if (least_gap(start[i], start[j]) - contact > far) return false;
   const double first = gap(start[i], start[j]) - contact;
+  if (first > far) return false;
   const double last = gap(state_.discs[i], state_.discs[j]) - contact;
   if (first <= 0 || last <= 0) return true;
   const double chance = std::exp(-2 * first * last / (motion_.variance_of_distance(i, j) * time));
@@ -311,9 +312,12 @@ void DiscSystem::merge(std::size_t kept, std::size_t gone) {
 void DiscSystem::merge_touching_discs() {
   std::vector<Disc>& discs = state_.discs;
   const double contact = phases().contact_distance();
+  const auto are_apart = [&](const Disc& x, const Disc& y) {
+    return least_gap(x, y) > contact || gap(x, y) > contact;
+  };
   for (std::size_t i = 0; i < discs.size();) {
     std::size_t j = 0;
-    while (j < i && are_apart(discs[i], discs[j], contact)) ++j;
+    while (j < i && are_apart(discs[i], discs[j])) ++j;
     if (j == i) {
       ++i;
       continue;

@@ -67,8 +67,8 @@ double Phases::potential(double area) const {
   return line_tension_ * curvature(area) * boundary(area).value.potential;
 }
 
-// With x from −1 to 1 between the wells, f0' is ½ρ(b − a)³ (x³ − x). The smallest root of x³ − x =
-// 2q/√27 by Viète's formula.
+// Between the wells x goes from −1 to 1, and f0' is ½ρ(b − a)³ (x³ − x). The smallest root of x³ −
+// x = 2q/√27 by Viète's formula.
 double Phases::outside(double potential) const {
   if (potential >= largest_potential_) return spinodal(well_);
   const double width = well_.b - well_.a,

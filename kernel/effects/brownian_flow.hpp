@@ -35,7 +35,7 @@ class BrownianFlow final : public problem::RandomEffect {
                            VecView direction_c, VecView direction_mu, VecRef product_c,
                            VecRef product_mu) const override;
 
-  // Of each harmonic of ψ.
+  // Each harmonic of ψ is one.
   Eigen::MatrixXd noises(const fem::SurfaceSpace& space, VecView c) const override;
 
   // The coefficients of ψ that were drawn at so many holds.

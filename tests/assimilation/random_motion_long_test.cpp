@@ -1,4 +1,4 @@
-// What Brownian flow adds to a state, against simulations with it.
+// Brownian flow adds to a state as simulations with it say.
 #include <gtest/gtest.h>
 
 #include "backends/list.hpp"
@@ -57,7 +57,7 @@ TEST_F(RandomMotionTest, OneOfTheCandidatesIsRandom) {
 }
 
 // The fields are the independent directions of a scatter, which 100 runs show with a known error.
-// That velocities are the same over a third of the time costs some percent.
+// Velocities that are the same over a third of the time cost some percent.
 TEST_F(RandomMotionTest, SimulationsScatterAsMuchAndInTheSameWay) {
   constexpr int kRuns = 100;
   const Columns fields = std::sqrt(kThermal) * noises(kBegin, kEnd);

@@ -67,7 +67,7 @@ TEST(BrownianFlow, MovesNoConstantAndKeepsTheMass) {
   EXPECT_LT(residual_of(flow, *space, 0.33, one, c).norm(), 1e-13 * moved.norm());
 }
 
-// What a draw does is a sum of the noises, with normal numbers.
+// A draw is a sum of the noises, with normal numbers.
 TEST(BrownianFlow, IsASumOfItsNoises) {
   const auto space = make_space(12);
   const BrownianFlow flow(kMembrane, 0.1, kHold, 1);

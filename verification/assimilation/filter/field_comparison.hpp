@@ -6,7 +6,7 @@
 
 namespace traceraft::assimilation {
 
-// What a random effect may have added since the snapshot before, at the variance 1.
+// The fields that a random effect may have added since the snapshot before, at the variance 1.
 struct RandomFields {
   Eigen::Index parameter;  // the place of the variance among the parameters
   double variance;         // that the errors of the belief have it with

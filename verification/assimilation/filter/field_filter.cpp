@@ -196,10 +196,11 @@ class Filter {
     if (in.random.empty()) return;
     const Columns values = side_by_side(
         in.values, in.replicates + openblas::product(in.directions.rightCols(patterns), sizes));
-    const InnovationCovariance no_error(in, 0);
     for (const RandomValues& part : in.random) {
       account(variance_score(weight, part.values, values), part.parameter);
-      const VarianceScore alone = variance_score(no_error, part.values, in.values);
+      if (part.variance > 0) continue;
+      const VarianceScore alone =
+          variance_score(InnovationCovariance(in, 0), part.values, in.values);
       result_.variance_score[part.parameter] += alone.scores[0];
       result_.variance_information[part.parameter] += alone.information;
     }

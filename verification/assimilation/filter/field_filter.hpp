@@ -43,7 +43,7 @@ struct FilterResult {
   Vec score;                    // Σ Xᵀ S⁻¹ ν, one per parameter
   Eigen::MatrixXd null_scores;  // parameters × replicates: the score of each replicate
   double deviance = 0;          // Σ νᵀ S⁻¹ ν + ln |S|
-  // Score and information (its diagonal) of parameters that are variances, if the model has no
+  // Score and information (its diagonal) of the variances of screened effects, if the model has no
   // other errors: those may look like a random effect. 0 for other parameters.
   Vec variance_score, variance_information;
   // explained_parts of each snapshot that counts, patterns × (1 + parameters + replicates): of its

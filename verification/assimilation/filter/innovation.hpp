@@ -13,8 +13,8 @@ namespace traceraft::assimilation {
 // last part, then the coefficients of the hypothesis and those of the screened candidates.
 inline constexpr int kDiffusionRatio = 0, kMeshError = 1, kFirstParameter = 2;
 
-// What a random effect adds to the values at the variance 1: values × noises, in units of the
-// noise.
+// The part of the values that a random effect adds at the variance 1: values × noises, in units of
+// the noise.
 struct RandomValues {
   Eigen::Index parameter;  // the place of the variance among the parameters
   double variance;         // that the state's directions have it with

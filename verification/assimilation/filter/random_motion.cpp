@@ -50,7 +50,8 @@ std::vector<RandomPart> random_parts(const FilterProblem& data, const Hypothesis
 
 Columns noises_at_end(const FilterProblem& data, const problem::RandomEffect& effect,
                       const TangentPath& along, int most, TangentFlow& flow) {
-  const Eigen::Index nodes = data.space->nodes();
+  const Eigen::Index nodes = data.space->nodes(),
+                     added = effect.noises(*data.space, along.stages.front().head(nodes)).cols();
   Columns all(nodes, 0);
   for (std::size_t step = 0; step < along.grid.steps.size(); ++step) {
     const double length = along.grid.steps[step];
@@ -65,7 +66,6 @@ Columns noises_at_end(const FilterProblem& data, const problem::RandomEffect& ef
       forced.topRows(nodes) = -noises / std::sqrt(length);
       return forced;
     };
-    const Eigen::Index added = effect.noises(*data.space, alone.stages[0].head(nodes)).cols();
     all = side_by_side(all, Columns::Zero(nodes, added));
     flow.advance(alone, all, forcing);
   }

@@ -68,7 +68,7 @@ std::vector<double> EffectSizing::random_coefficients(const assimilation::Candid
 // Brownian flow changes several times between snapshots.
 effects::EffectTerm EffectSizing::drawn_often(effects::EffectTerm term) const {
   constexpr double kDraws = 10;
-  if (term.effect == "flow")
+  if (assimilation::find_candidate(assimilation::candidate_name(term))->random)
     term.values[place_of("hold", effects::effects().find(term.effect).parameters)] =
         (request_.last - request_.first) / (request_.snapshots - 1) / kDraws;
   return term;

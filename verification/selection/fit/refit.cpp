@@ -26,6 +26,13 @@ void set_covariance(const Eigen::MatrixXd& unknown, Refit& fit) {
   fit.covariance = inverse.asDiagonal() * unknown.bottomRightCorner(n, n) * inverse.asDiagonal();
 }
 
+assimilation::Gaps without_random(const assimilation::Gaps& gaps, const Refit& fit) {
+  const auto rest = [](double all, double random) {
+    return std::sqrt(std::max(0.0, all * all - random * random));
+  };
+  return {rest(gaps.train, fit.random.train), rest(gaps.heldout, fit.random.heldout)};
+}
+
 // The evaluation of a model as it is.
 struct Evaluation {
   Refit fit;
@@ -194,17 +201,6 @@ Refit refit(const assimilation::FilterProblems& data, const assimilation::Filter
             const std::vector<assimilation::ErrorMaps>& maps) {
   return NewtonSearch(data, start, settings, maps).run();
 }
-
-namespace {
-
-assimilation::Gaps without_random(const assimilation::Gaps& gaps, const Refit& fit) {
-  const auto rest = [](double all, double random) {
-    return std::sqrt(std::max(0.0, all * all - random * random));
-  };
-  return {rest(gaps.train, fit.random.train), rest(gaps.heldout, fit.random.heldout)};
-}
-
-}  // namespace
 
 assimilation::SharesClosed shares_closed(const Refit& base, const Refit& fit) {
   return assimilation::shares_closed(without_random(base.gap, base), without_random(fit.gap, fit),
