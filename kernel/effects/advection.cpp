@@ -52,7 +52,7 @@ class Advection final : public problem::Effect {
                                  int e, double t) const {
     const mesh::ActiveTet& tet = space.mesh.tets[e];
     const Point normal = mesh::cut_normal(space.mesh, tet);
-    const auto gradient = mesh::scaled_gradients(tet.kuhn);
+    const auto& gradient = space.mesh.shape(tet).gradients;
     // The weighted traces, ∫ φ_j u.
     Eigen::Matrix<double, 4, 3> carried = Eigen::Matrix<double, 4, 3>::Zero();
     for (int k = 0; k < element.triangles(); ++k) {

@@ -88,7 +88,7 @@ class ThermalNoise final : public problem::Effect {
   Eigen::Vector4d element_flux(const fem::SurfaceSpace& space, std::size_t e, double t) const {
     const mesh::ActiveTet& tet = space.mesh.tets[e];
     const auto place = static_cast<std::uint64_t>(space.mesh.node_id[tet.node[0]]) * 6 +
-                       static_cast<std::uint64_t>(tet.kuhn);
+                       static_cast<std::uint64_t>(tet.shape);
     const double when = t / tau_;
     const double begin = std::floor(when), share = when - begin;
     const Eigen::Vector2d flux = (1 - share) * draw(place, begin) + share * draw(place, begin + 1);

@@ -5,7 +5,7 @@ namespace {
 
 Eigen::Matrix<double, 4, 3> basis_gradients(const mesh::ActiveMesh& mesh,
                                             const mesh::ActiveTet& tet) {
-  return mesh::scaled_gradients(tet.kuhn) / mesh.cube.h();
+  return mesh.shape(tet).gradients / mesh.cube.h();
 }
 
 }  // namespace
@@ -40,11 +40,12 @@ std::vector<CutElement> build_cut_elements(const mesh::ActiveMesh& mesh,
 }
 
 std::array<double, 6> normal_coupling(const mesh::ActiveMesh& mesh, const mesh::ActiveTet& tet) {
-  const double h = mesh.cube.h(), volume = h * h * h / 6;
+  const mesh::TetShape& shape = mesh.shape(tet);
+  const double h = mesh.cube.h(), volume = h * h * h * shape.six_volumes / 6;
   const Eigen::Vector4d along = basis_gradients(mesh, tet) * mesh::cut_normal(mesh, tet);
   std::array<double, 6> coupling;
   for (int e = 0; e < 6; ++e)
-    coupling[e] = volume * along[mesh::kTetEdges[e][0]] * along[mesh::kTetEdges[e][1]];
+    coupling[e] = shape.size * volume * along[mesh::kTetEdges[e][0]] * along[mesh::kTetEdges[e][1]];
   return coupling;
 }
 

@@ -73,10 +73,9 @@ struct SurfaceSpace::Geometry {
   mesh::CutSurface surface;
   std::vector<CutElement> elements;
 
-  Geometry(const geometry::LevelSet& level_set, std::int64_t cells, const ThreadTeam& team,
+  Geometry(const geometry::LevelSet& level_set, mesh::ActiveMesh mesh_, const ThreadTeam& team,
            const Communicator& ranks)
-      : mesh(mesh::build_active_mesh(level_set, cells, ranks)),
-        surface(checked_surface(level_set, mesh, ranks)) {
+      : mesh(std::move(mesh_)), surface(checked_surface(level_set, mesh, ranks)) {
     const std::vector<mesh::LiftedTriangle> lifted =
         mesh::lifted_triangles(level_set, mesh, surface, team);
     elements = build_cut_elements(mesh, lifted);
@@ -129,8 +128,15 @@ SurfaceSpace::SurfaceSpace(geometry::LevelSetPtr level_set_, std::int64_t cells,
                            std::shared_ptr<const ThreadTeam> team_,
                            std::shared_ptr<const Communicator> communicator_,
                            double mass_stabilisation_)
-    : SurfaceSpace(level_set_, Geometry(*level_set_, cells, *team_, *communicator_), team_,
+    : SurfaceSpace(level_set_, mesh::build_active_mesh(*level_set_, cells, *communicator_), team_,
                    communicator_, mass_stabilisation_) {}
+
+SurfaceSpace::SurfaceSpace(geometry::LevelSetPtr level_set_, mesh::ActiveMesh mesh_,
+                           std::shared_ptr<const ThreadTeam> team_,
+                           std::shared_ptr<const Communicator> communicator_,
+                           double mass_stabilisation_)
+    : SurfaceSpace(level_set_, Geometry(*level_set_, std::move(mesh_), *team_, *communicator_),
+                   team_, communicator_, mass_stabilisation_) {}
 
 SurfaceSpace::SurfaceSpace(geometry::LevelSetPtr level_set_, Geometry geometry,
                            std::shared_ptr<const ThreadTeam> team_,

@@ -25,8 +25,14 @@ class SurfaceSpace {
   struct Geometry;
 
  public:
-  // Throws InputError when the surface is not closed inside the box, the mesh is too coarse, or the
-  // level set has no gradient on its surface. `mass_stabilisation`: of M̃, in units of h.
+  // On a mesh of the surface. Throws InputError when it is too coarse, or the level set has no
+  // gradient on its surface. `mass_stabilisation`: of M̃, in units of h.
+  SurfaceSpace(geometry::LevelSetPtr level_set, mesh::ActiveMesh mesh,
+               std::shared_ptr<const ThreadTeam> team,
+               std::shared_ptr<const Communicator> communicator,
+               double mass_stabilisation = kMassStabilisation);
+  // On all cut cells, of one size. Throws InputError, too, when the surface is not closed inside
+  // the box.
   SurfaceSpace(geometry::LevelSetPtr level_set, std::int64_t cells,
                std::shared_ptr<const ThreadTeam> team,
                std::shared_ptr<const Communicator> communicator,
@@ -44,12 +50,13 @@ class SurfaceSpace {
   const PatternPtr pattern;
   const double mass_stabilisation;
 
-  CsrMatrix mass;              // M_ij = ∫_Γ φ_i φ_j: singular, see stabilised_mass
-  CsrMatrix stiffness;         // K_ij = ∫_Γ ∇_Γφ_i·∇_Γφ_j
-  CsrMatrix normal_stiffness;  // S_ij = ∫_cut tets (n·∇φ_i)(n·∇φ_j) dx; S·1 = 0
-  CsrMatrix stabilised_mass;   // M̃ = M + mass_stabilisation h S
-  Vec node_area;               // w_i = ∫_Γ φ_i, so ∫_Γ c_h = w·c
-  double area;                 // Σ w_i: of Γ, by lifted triangles
+  CsrMatrix mass;       // M_ij = ∫_Γ φ_i φ_j: singular, see stabilised_mass
+  CsrMatrix stiffness;  // K_ij = ∫_Γ ∇_Γφ_i·∇_Γφ_j
+  // S_ij = Σ_T h_T/h ∫_T (n·∇φ_i)(n·∇φ_j) dx over the cut tetrahedra; S·1 = 0
+  CsrMatrix normal_stiffness;
+  CsrMatrix stabilised_mass;  // M̃ = M + mass_stabilisation h S
+  Vec node_area;              // w_i = ∫_Γ φ_i, so ∫_Γ c_h = w·c
+  double area;                // Σ w_i: of Γ, by lifted triangles
 
   // Over all ranks.
   struct Totals {
@@ -58,7 +65,7 @@ class SurfaceSpace {
   const Totals totals;
   const GlobalOrder order;  // of the nodes
 
-  double h() const { return mesh.cube.h(); }
+  double h() const { return mesh.cube.h(); }      // of the smallest cells
   int nodes() const { return mesh.owned_nodes; }  // of this rank
   // Does a triangle count on this rank?
   bool owns_triangle(std::size_t t) const { return mesh.owns(mesh.tets[surface.triangle_tet[t]]); }

@@ -35,7 +35,7 @@ std::vector<ElementCurl> element_curls(const fem::SurfaceSpace& space) {
   std::vector<ElementCurl> curls(space.elements.size());
   for (std::size_t e = 0; e < curls.size(); ++e) {
     const mesh::ActiveTet& tet = space.mesh.tets[e];
-    const auto gradient = mesh::scaled_gradients(tet.kuhn);
+    const auto& gradient = space.mesh.shape(tet).gradients;
     const Point area = area_vector(space, e) / (space.h() * space.h());
     for (std::size_t k = 0; k < curls[e].size(); ++k) {
       const auto& [i, j] = mesh::kTetEdges[k];

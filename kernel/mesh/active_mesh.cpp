@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -12,8 +13,8 @@ namespace traceraft::mesh {
 namespace {
 
 struct GlobalTet {
-  std::array<std::int64_t, 4> vertex;
-  int kuhn;
+  std::array<std::int64_t, 4> vertex;  // ascending
+  int shape;
 };
 
 void require_outside(const geometry::LevelSet& surface, const CubeMesh& mesh) {
@@ -100,28 +101,38 @@ class VertexLookup {
   std::vector<int> row_begin_;
 };
 
-// A Kuhn edge is its smaller node and one of seven directions, so edges are numbered without a
-// sort. Nodes are numbered by their id here.
+// Edges ascend in their lower node, then in the higher one. Nodes are numbered by their id here.
 void number_edges(ActiveMesh& mesh, std::size_t nodes) {
-  const auto key = [](const ActiveTet& tet, std::size_t e) {
-    const auto& corner = kKuhnCorners[static_cast<std::size_t>(tet.kuhn)];
-    const auto low = static_cast<std::size_t>(kTetEdges[e][0]);
-    const auto high = static_cast<std::size_t>(kTetEdges[e][1]);
-    const int direction = corner[high] - corner[low];  // 1 … 7
-    return static_cast<std::size_t>(7 * tet.node[low] + direction - 1);
+  const auto low = [](const ActiveTet& tet, std::size_t e) {
+    return static_cast<std::size_t>(tet.node[static_cast<std::size_t>(kTetEdges[e][0])]);
   };
-  std::vector<int> high_node(7 * nodes, -1);
+  const auto high = [](const ActiveTet& tet, std::size_t e) {
+    return tet.node[static_cast<std::size_t>(kTetEdges[e][1])];
+  };
+  std::vector<int> begin(nodes + 1, 0);  // of the edges of a lower node, each once per tetrahedron
   for (const ActiveTet& tet : mesh.tets)
-    for (std::size_t e = 0; e < 6; ++e)
-      high_node[key(tet, e)] = tet.node[static_cast<std::size_t>(kTetEdges[e][1])];
-  std::vector<int> number(high_node.size(), -1);
-  for (std::size_t k = 0; k < high_node.size(); ++k) {
-    if (high_node[k] < 0) continue;
-    number[k] = static_cast<int>(mesh.edges.size());
-    mesh.edges.push_back({static_cast<int>(k / 7), high_node[k]});
+    for (std::size_t e = 0; e < 6; ++e) ++begin[low(tet, e) + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<int> highs(6 * mesh.tets.size()), next(begin.begin(), begin.end() - 1);
+  for (const ActiveTet& tet : mesh.tets)
+    for (std::size_t e = 0; e < 6; ++e) highs[next[low(tet, e)]++] = high(tet, e);
+
+  std::vector<int> first_edge(nodes);
+  for (std::size_t node = 0; node < nodes; ++node) {
+    const auto from = highs.begin() + begin[node], to = highs.begin() + begin[node + 1];
+    std::sort(from, to);
+    first_edge[node] = static_cast<int>(mesh.edges.size());
+    const auto end = std::unique(from, to);
+    for (auto at = from; at != end; ++at) mesh.edges.push_back({static_cast<int>(node), *at});
+    next[node] = static_cast<int>(end - highs.begin());
   }
   for (ActiveTet& tet : mesh.tets)
-    for (std::size_t e = 0; e < 6; ++e) tet.edge[e] = number[key(tet, e)];
+    for (std::size_t e = 0; e < 6; ++e) {
+      const std::size_t node = low(tet, e);
+      const auto from = highs.begin() + begin[node], to = highs.begin() + next[node];
+      tet.edge[e] =
+          first_edge[node] + static_cast<int>(std::lower_bound(from, to, high(tet, e)) - from);
+    }
 }
 
 // From the order of the ids to the local one: owned nodes, then ghosts by neighbour. Returns the
@@ -169,26 +180,31 @@ HaloPlan plan_halo(const ActiveMesh& mesh, const std::vector<int>& owner) {
   return plan;
 }
 
-}  // namespace
+// The six of a cell, in the order of kKuhnCorners.
+std::vector<TetShape> shapes_of_a_cell() {
+  std::vector<TetShape> shapes;
+  for (const auto& corners : kKuhnCorners) {
+    const auto at = [&](std::size_t i) { return corner_of({0, 0, 0}, corners[i]); };
+    shapes.push_back(tet_shape({at(0), at(1), at(2), at(3)}));
+  }
+  return shapes;
+}
 
-ActiveMesh build_active_mesh(const geometry::LevelSet& surface, std::int64_t cells,
-                             const Communicator& ranks) {
+// The mesh of the tetrahedra at the nodes of this rank, in global order.
+ActiveMesh assembled(const geometry::LevelSet& surface, const CubeMesh& cube,
+                     std::vector<TetShape> shapes, const std::vector<GlobalTet>& tets,
+                     const Partition& partition, const Communicator& ranks) {
   ActiveMesh mesh;
-  mesh.cube = {cells};
-  const Partition partition(surface, mesh.cube, ranks.size());
-  const std::vector<GlobalTet> cut = find_cut_tets(surface, mesh.cube, partition, ranks);
-  require_outside(surface, mesh.cube);
-  if (!ranks.all(!cut.empty()))
-    throw InputError(std::to_string(ranks.size()) + " ranks are too many for a mesh of " +
-                     std::to_string(cells) + " cells per edge; use fewer ranks or more cells");
-  const std::vector<std::int64_t> ids = collect_vertices(cut);
+  mesh.cube = cube;
+  mesh.shapes = std::move(shapes);
+  const std::vector<std::int64_t> ids = collect_vertices(tets);
   const VertexLookup node(mesh.cube, ids);
-  mesh.tets.reserve(cut.size());
-  for (const GlobalTet& tet : cut)
+  mesh.tets.reserve(tets.size());
+  for (const GlobalTet& tet : tets)
     mesh.tets.push_back(
         {{node(tet.vertex[0]), node(tet.vertex[1]), node(tet.vertex[2]), node(tet.vertex[3])},
          {},
-         tet.kuhn});
+         tet.shape});
   number_edges(mesh, ids.size());
   const std::vector<int> owner = number_nodes(mesh, ids, partition, ranks.rank());
   mesh.halo = plan_halo(mesh, owner);
@@ -196,16 +212,83 @@ ActiveMesh build_active_mesh(const geometry::LevelSet& surface, std::int64_t cel
   return mesh;
 }
 
-Eigen::Matrix<double, 4, 3> scaled_gradients(int kuhn) {
-  // The barycentric coordinates, with the axes in the order p of the permutation: λ0 = 1 − ξ_p0, λ1
-  // = ξ_p0 − ξ_p1, …, λ3 = ξ_p2.
-  const auto& axis = kKuhnPermutations[static_cast<std::size_t>(kuhn)];
-  Eigen::Matrix<double, 4, 3> gradients = Eigen::Matrix<double, 4, 3>::Zero();
-  for (int i = 0; i < 3; ++i) {
-    gradients(i, axis[static_cast<std::size_t>(i)]) -= 1;
-    gradients(i + 1, axis[static_cast<std::size_t>(i)]) += 1;
+// Numbers shapes in the order in which they are met, after those of a cell.
+class ShapeList {
+ public:
+  int number(const std::array<Lattice, 4>& vertex) {
+    std::array<std::int64_t, 9> sides;
+    for (std::size_t i = 0; i < 9; ++i) sides[i] = vertex[i / 3 + 1][i % 3] - vertex[0][i % 3];
+    const auto [entry, added] = numbers_.try_emplace(sides, static_cast<int>(shapes.size()));
+    if (added) shapes.push_back(tet_shape(vertex));
+    return entry->second;
   }
-  return gradients;
+
+  std::vector<TetShape> shapes = shapes_of_a_cell();
+
+ private:
+  std::map<std::array<std::int64_t, 9>, int> numbers_;
+};
+
+// All bits of a number mixed (the finaliser of SplitMix64; Steele, Lea, Flood, OOPSLA 2014).
+std::uint64_t mixed_bits(std::uint64_t bits) {
+  bits = (bits ^ bits >> 30) * 0xBF58476D1CE4E5B9U;
+  bits = (bits ^ bits >> 27) * 0x94D049BB133111EBU;
+  return bits ^ bits >> 31;
+}
+
+// Does every cut face belong to two tetrahedra? The hashes of all cancel each other then.
+bool is_closed(const ActiveMesh& mesh) {
+  std::uint64_t left = 0;
+  for (const ActiveTet& tet : mesh.tets)
+    for (std::size_t opposite = 0; opposite < 4; ++opposite) {
+      std::uint64_t hash = 0;
+      int below = 0;
+      for (std::size_t i = 0; i < 4; ++i) {
+        if (i == opposite) continue;
+        hash = mixed_bits(hash + static_cast<std::uint64_t>(tet.node[i]) + 1);
+        below += mesh.phi[tet.node[i]] < 0;
+      }
+      if (below != 0 && below != 3) left ^= hash;
+    }
+  return left == 0;
+}
+
+}  // namespace
+
+ActiveMesh build_active_mesh(const geometry::LevelSet& surface, std::int64_t cells,
+                             const Communicator& ranks) {
+  const CubeMesh cube{cells};
+  const Partition partition(surface, cube, ranks.size());
+  const std::vector<GlobalTet> cut = find_cut_tets(surface, cube, partition, ranks);
+  require_outside(surface, cube);
+  if (!ranks.all(!cut.empty()))
+    throw InputError(std::to_string(ranks.size()) + " ranks are too many for a mesh of " +
+                     std::to_string(cells) + " cells per edge; use fewer ranks or more cells");
+  return assembled(surface, cube, shapes_of_a_cell(), cut, partition, ranks);
+}
+
+ActiveMesh build_active_mesh(const geometry::LevelSet& surface, const RefinementForest& forest) {
+  const CubeMesh cube = forest.levels().lattice();
+  ShapeList list;
+  std::vector<GlobalTet> tets;
+  tets.reserve(forest.leaf_cells().size());
+  for (const int leaf : forest.leaf_cells()) {
+    std::array<Lattice, 4> vertex;
+    for (std::size_t i = 0; i < 4; ++i)
+      vertex[i] = forest.vertices()[forest.cells()[leaf].vertex[i]].at;
+    const auto id = [&](const Lattice& at) { return cube.vertex_id(at); };
+    std::sort(vertex.begin(), vertex.end(),
+              [&](const Lattice& a, const Lattice& b) { return id(a) < id(b); });
+    tets.push_back(
+        {{id(vertex[0]), id(vertex[1]), id(vertex[2]), id(vertex[3])}, list.number(vertex)});
+  }
+  require_outside(surface, cube);
+  ActiveMesh mesh = assembled(surface, cube, std::move(list.shapes), tets, {}, kAlone);
+  if (!is_closed(mesh))
+    throw InputError("mesh-levels: the largest tetrahedra, " +
+                     std::to_string(forest.levels().coarsest_cells()) +
+                     " per edge of the box, are too coarse for this surface; use fewer levels");
+  return mesh;
 }
 
 }  // namespace traceraft::mesh

@@ -1,5 +1,6 @@
-// The part of the background mesh that carries unknowns: the cut tetrahedra, their vertices (the
-// nodes of the P1 space) and their edges.
+// The part of a background mesh that carries unknowns: the cut tetrahedra, their vertices (the
+// nodes of the P1 space) and their edges. Vertices are points of one lattice; tetrahedra are those
+// of its cells, all of one size, or larger ones.
 #pragma once
 
 #include <array>
@@ -9,13 +10,15 @@
 #include "kernel/core/communicator.hpp"
 #include "kernel/geometry/level_set.hpp"
 #include "kernel/mesh/cube_mesh.hpp"
+#include "kernel/mesh/refinement_forest.hpp"
+#include "kernel/mesh/tet_shape.hpp"
 
 namespace traceraft::mesh {
 
 struct ActiveTet {
-  std::array<int, 4> node;  // in Kuhn order
+  std::array<int, 4> node;  // ascending in their lattice points
   std::array<int, 6> edge;  // in the order of kTetEdges
-  int kuhn;                 // which of the six tetrahedra of its cell
+  int shape;                // number in ActiveMesh::shapes
 };
 
 struct ActiveEdge {
@@ -30,6 +33,7 @@ struct ActiveMesh {
   CubeMesh cube;
   std::vector<std::int64_t> node_id;  // global vertex id of each node
   std::vector<double> phi;            // level set at the nodes; never zero
+  std::vector<TetShape> shapes;       // of the tetrahedra; the first six are those of a cell
   std::vector<ActiveTet> tets;
   std::vector<ActiveEdge> edges;  // ascending in the id of `low`
   int owned_nodes = 0;
@@ -39,6 +43,9 @@ struct ActiveMesh {
   bool owns(int node) const { return node < owned_nodes; }
   // A tetrahedron counts where its lowest node does, on one rank only.
   bool owns(const ActiveTet& tet) const { return owns(tet.node[0]); }
+  const TetShape& shape(const ActiveTet& tet) const {
+    return shapes[static_cast<std::size_t>(tet.shape)];
+  }
   Point position(int node) const {
     return cube.position(cube.vertex(node_id[static_cast<std::size_t>(node)]));
   }
@@ -51,7 +58,8 @@ struct ActiveMesh {
 ActiveMesh build_active_mesh(const geometry::LevelSet& surface, std::int64_t cells,
                              const Communicator& ranks = kAlone);
 
-// Gradients of the barycentric coordinates of a Kuhn tetrahedron, times h: row i is h ∇λ_i.
-Eigen::Matrix<double, 4, 3> scaled_gradients(int kuhn);
+// The same of the cut leaves of a forest of the surface, in their order; serial. Throws InputError
+// if Γ_h is not closed, because the largest tetrahedra are too coarse for the surface.
+ActiveMesh build_active_mesh(const geometry::LevelSet& surface, const RefinementForest& forest);
 
 }  // namespace traceraft::mesh

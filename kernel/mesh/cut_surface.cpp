@@ -14,11 +14,6 @@ int edge_between(int i, int j) {
   return table[i][j];
 }
 
-// Is the permutation that Kuhn tetrahedron k comes from odd, i.e. is the tetrahedron left-handed?
-bool left_handed(int kuhn) {
-  return kuhn == 1 || kuhn == 2 || kuhn == 5;
-}
-
 }  // namespace
 
 CutPolygon cut_polygon(const ActiveMesh& mesh, const ActiveTet& tet) {
@@ -39,7 +34,7 @@ CutPolygon cut_polygon(const ActiveMesh& mesh, const ActiveTet& tet) {
   else
     polygon = {4, {edge_between(a, c), edge_between(a, d), edge_between(b, d), edge_between(b, c)}};
   // The lists above are counter-clockwise from outside if (a, b, c, d) is right-handed.
-  bool odd = left_handed(tet.kuhn);
+  bool odd = mesh.shape(tet).left_handed;
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < i; ++j) odd ^= order[j] > order[i];
   if (odd) std::swap(polygon.edge[1], polygon.edge[polygon.count - 1]);
@@ -48,8 +43,8 @@ CutPolygon cut_polygon(const ActiveMesh& mesh, const ActiveTet& tet) {
 
 Point cut_normal(const ActiveMesh& mesh, const ActiveTet& tet) {
   Point gradient = Point::Zero();
-  const auto gradients = scaled_gradients(tet.kuhn);
-  for (int i = 0; i < 4; ++i) gradient += mesh.phi[tet.node[i]] * gradients.row(i).transpose();
+  const auto& basis = mesh.shape(tet).gradients;
+  for (int i = 0; i < 4; ++i) gradient += mesh.phi[tet.node[i]] * basis.row(i).transpose();
   return gradient.normalized();
 }
 

@@ -27,7 +27,7 @@ double integrate(const SurfaceSpace& space, const std::vector<mesh::LiftedTriang
     const mesh::ActiveTet& tet = space.mesh.tets[space.surface.triangle_tet[k]];
     Point gradient = Point::Zero();
     for (int v = 0; v < 4; ++v)
-      gradient += c[tet.node[v]] / space.h() * mesh::scaled_gradients(tet.kuhn).row(v).transpose();
+      gradient += c[tet.node[v]] / space.h() * space.mesh.shape(tet).gradients.row(v).transpose();
     const double squared_slope = gradient.dot(lifted[k].inverse_metric * gradient);
     for (const auto& [at, weight] : kDegreeFourRule)
       sum += weight * lifted[k].area *

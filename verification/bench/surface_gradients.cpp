@@ -6,7 +6,7 @@ std::vector<Point> surface_gradients(const fem::SurfaceSpace& space, VecView nod
   std::vector<Point> gradients;
   for (const int number : space.surface.triangle_tet) {
     const mesh::ActiveTet& tet = space.mesh.tets[number];
-    const auto basis = mesh::scaled_gradients(tet.kuhn);
+    const auto& basis = space.mesh.shape(tet).gradients;
     Point gradient = Point::Zero();
     for (int i = 0; i < 4; ++i)
       gradient += nodal[tet.node[i]] / space.h() * basis.row(i).transpose();
