@@ -66,6 +66,16 @@ class Rosenbrock final : public time::ControlledIntegrator {
   std::string name() const override { return "rosenbrock"; }
   bool promises_energy_decay() const override { return false; }
 
+  // A step begins at a consistent state: where both halves were carried to another mesh, μ follows
+  // from c there.
+  void load(CheckpointIn in) override {
+    time::ControlledIntegrator::load(in);
+    if (!in.carried) return;
+    Vec rate(problem_.size());
+    const Status status = problem_.consistent_initial_state(time(), history_.newest(), rate);
+    if (!status.ok()) throw IoError("its state has no potential there: " + status.why);
+  }
+
  private:
   Status residual(double t, VecView y, VecView ydot, Vec& r) {
     const ScopedTimer timer(statistics_.assembly_seconds);

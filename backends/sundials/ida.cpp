@@ -113,7 +113,7 @@ class Ida final : public time::Integrator {
     read_binary(in, y_, problem_.size());
     create(t_, y_, Vec::Zero(y_.size()));
     load_ida_memory(memory_, in);
-    equations_.load(in);
+    equations_.load(in, y_);
   }
 
  private:

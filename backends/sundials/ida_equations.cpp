@@ -80,9 +80,9 @@ void IdaEquations::save(CheckpointOut out) const {
   solver_.save(out);
 }
 
-void IdaEquations::load(CheckpointIn in) {
+void IdaEquations::load(CheckpointIn in, VecView y) {
   newton_test_.load(in);
-  guard_.load(in);
+  guard_.load(in, y);
   solver_.load(in);
 }
 

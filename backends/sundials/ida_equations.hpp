@@ -47,9 +47,10 @@ class IdaEquations {
   time::IntegratorStatistics added_to(time::IntegratorStatistics statistics) const;
   linear::LinearStatistics linear_statistics() const { return solver_.linear_statistics(); }
 
-  // Everything that the next step depends on, for a memory that this is attached to.
+  // Everything that the next step depends on, for a memory that this is attached to. y: the state
+  // that goes on.
   void save(CheckpointOut out) const;
-  void load(CheckpointIn in);
+  void load(CheckpointIn in, VecView y);
   // The number of residuals and the time spent on them: checkpoints have both before the memory.
   void save_residuals(CheckpointOut out) const;
   void load_residuals(CheckpointIn in);

@@ -171,7 +171,7 @@ int run_calibration(CalibrateRequest request) {
   input::refuse_scaled(model);
   refuse_calibrating(model);
   ensemble::refuse_without_noise(model);
-  (void)run::build_run(model, run::InitialState::build);
+  (void)run::build_run(model);
   const int most_cells = most_cells_of(request, model);
   const fs::path out = folder_for(request);
   const posix::FolderLock lock(out);

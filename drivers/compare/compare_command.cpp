@@ -160,7 +160,7 @@ int compare(const CompareRequest& request) {
     throw InputError("--out: " + folder.path().string() +
                      " holds runs of another build of traceraft; choose another folder");
   const run::RunSetup run =
-      run::build_run(configuration, run::InitialState::build,
+      run::build_run(configuration, {},
                      {{"integrator", plan.integrators}, {"linear-solver", plan.linear_solvers}});
   plan.initial_state = checksum(run.initial);
   if (before && before->initial_state != plan.initial_state)

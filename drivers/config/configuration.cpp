@@ -124,9 +124,28 @@ Configuration::Configuration(const GivenValues& file, const GivenValues& flags) 
         set_text(run_option(&RunOptions::tolerance), format_number(integrator.tolerance));
   if (options_.model == "discs" && options_.initial == "noise" && !given(&RunOptions::initial))
     set_text(run_option(&RunOptions::initial), "discs");
+  if (options_.cells_per_boundary > 0) set_cells_by_boundary();
   // A case's choice is for its own mesh.
   if (!given(&RunOptions::noise_cells) && options_.noise_cells > options_.cells)
     set_text(run_option(&RunOptions::noise_cells), std::to_string(options_.cells));
+}
+
+// A multiple of 32, so that cells can double five times.
+void Configuration::set_cells_by_boundary() {
+  constexpr double kWidths = 6;  // of a boundary, in epsilon
+  constexpr std::int64_t kMultiple = 32;
+  if (given(&RunOptions::cells))
+    throw InputError(where(&RunOptions::cells_per_boundary) +
+                     ": give either this or the number of cells");
+  const double epsilon = options_.epsilon / units().length();
+  const double wanted = 2 * mesh::kBoxHalfWidth * options_.cells_per_boundary / (kWidths * epsilon);
+  const OptionSpec& cells = run_option(&RunOptions::cells);
+  const double multiples = std::ceil(wanted / static_cast<double>(kMultiple) - 1e-9);
+  if (!(multiples * static_cast<double>(kMultiple) <= cells.max))
+    throw InputError(where(&RunOptions::cells_per_boundary) + ": it needs " +
+                     format_number(std::ceil(wanted)) + " cells per edge, more than " +
+                     format_number(cells.max));
+  set_text(cells, std::to_string(kMultiple * static_cast<std::int64_t>(multiples)));
 }
 
 bool Configuration::from_flag(const std::string& name) const {

@@ -46,10 +46,11 @@ class Configuration {
 
   physics::Units units() const;
   std::int64_t noise_cells() const;  // with 0 resolved
-  double noise_length() const;       // of its mesh, um
+  double noise_length() const;       // of its mesh, um; under --scaled R
 
  private:
   void set(const OptionSpec& spec, const GivenValue& value);
+  void set_cells_by_boundary();
   void set_text(const OptionSpec& spec, const std::string& text);
 
   RunOptions options_;

@@ -23,10 +23,13 @@ std::vector<OptionNeed> all_needs() {
       {"raft-fraction", "initial", {"noise", "band-limited", "discs"}},
       {"noise-cells", "initial", {"noise"}},
       {"keep", "integrator", {"euler"}},
+      {"mesh-levels", "mesh", {"adaptive"}},
+      {"mesh-threshold", "mesh", {"adaptive"}},
   };
-  for (const char* option : {"surface-formula", "potential", "stabilisation", "mass-stabilisation",
-                             "noise-cells", "integrator", "initial-step", "min-step", "max-step",
-                             "keep", "energy-guard", "linear-solver", "linear-tolerance"})
+  for (const char* option :
+       {"surface-formula", "mesh", "cells-per-boundary", "potential", "stabilisation",
+        "mass-stabilisation", "noise-cells", "integrator", "initial-step", "min-step", "max-step",
+        "keep", "energy-guard", "linear-solver", "linear-tolerance"})
     needs.push_back({option, "model", {"field"}});
   for (const backends::IntegratorEntry& integrator : backends::integrators())
     for (const ParameterSpec& parameter : integrator.parameters)

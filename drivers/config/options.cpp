@@ -120,6 +120,19 @@ const std::vector<OptionSpec>& run_options() {
        "length scale R of the surface (um): the radius of a spherical vesicle", 1e-6, 1e9},
       {"cells", &R::cells, "128", "Surface", "cells per edge of the box [-5/3 R, 5/3 R]^3", 4,
        4096},
+      {"cells-per-boundary", &R::cells_per_boundary, "0", "Surface",
+       "cells across a phase boundary, 6 epsilon, instead of --cells; 0: as --cells says", 0, 100},
+      one_of({"uniform", "adaptive"},
+             {"mesh", &R::mesh, "uniform", "Surface",
+              "uniform: all cells of one size; adaptive: larger ones away from the phase "
+              "boundaries, --cells being the smallest"}),
+      {"mesh-levels", &R::mesh_levels, "0", "Surface",
+       "how often the cells of --mesh adaptive double; 0: as often as the area keeps to 1e-5", 0,
+       8},
+      {"mesh-threshold", &R::mesh_threshold, "0.0675", "Surface",
+       "epsilon |grad c| above which the cells of --mesh adaptive are the smallest; 0.18 is the "
+       "largest in a boundary at rest",
+       1e-4, 0.17},
 
       {"epsilon", &R::epsilon, "0.05", "Physics",
        "width parameter epsilon of the phase boundary (um)", 1e-9, 1e9, D::length},

@@ -29,6 +29,10 @@ struct RunOptions {
   std::string surface, surface_formula;
   double radius = 0;  // µm
   std::int64_t cells = 0;
+  double cells_per_boundary = 0;
+  std::string mesh;  // uniform or adaptive
+  std::int64_t mesh_levels = 0;
+  double mesh_threshold = 0;
 
   double epsilon = 0;    // µm or R
   double diffusion = 0;  // cm²/s

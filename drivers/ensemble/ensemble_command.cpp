@@ -171,7 +171,7 @@ std::string resolution_of(const config::Configuration& configuration) {
     return "model of discs";
   }
   return run::resolution_text(configuration,
-                              run::build_run(configuration, run::InitialState::build));
+                              run::build_run(configuration));
 }
 
 int run_ensemble(const EnsembleRequest& request) {

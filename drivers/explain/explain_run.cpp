@@ -138,10 +138,11 @@ assimilation::Hypothesis own_effects(const config::Configuration& model,
                                      const std::vector<std::string>& without) {
   const assimilation::Hypothesis own =
       run::with_option_context(model, &config::RunOptions::effect, [&] {
-        const double epsilon = run::model_without_effects(model).epsilon;
+        const problem::CahnHilliardModel base = run::model_without_effects(model);
         std::vector<effects::EffectTerm> terms;
         for (const effects::EffectTerm& term : run::effects_of(model))
-          for (const effects::EffectTerm& single : effects::in_single_strengths(term, epsilon))
+          for (const effects::EffectTerm& single :
+               effects::in_single_strengths(term, base.epsilon, base.well))
             terms.push_back(single);
         return assimilation::of_model(terms);
       });

@@ -63,6 +63,25 @@ class Reader {
   std::string_view left_;
 };
 
+// Eight bits to a character; the first one says how many of the last are none.
+std::string text_of_bits(const std::vector<bool>& bits) {
+  if (bits.empty()) return "";
+  std::string text(1 + (bits.size() + 7) / 8, '\0');
+  text[0] = static_cast<char>(8 * (text.size() - 1) - bits.size());
+  for (std::size_t k = 0; k < bits.size(); ++k)
+    if (bits[k]) text[1 + k / 8] = static_cast<char>(text[1 + k / 8] | 1 << k % 8);
+  return text;
+}
+
+std::vector<bool> bits_of_text(const std::string& text) {
+  if (text.empty()) return {};
+  const auto unused = static_cast<unsigned char>(text[0]);
+  if (text.size() < 2 || unused > 7) throw IoError("its mesh is damaged");
+  std::vector<bool> bits(8 * (text.size() - 1) - unused);
+  for (std::size_t k = 0; k < bits.size(); ++k) bits[k] = (text[1 + k / 8] >> k % 8 & 1) != 0;
+  return bits;
+}
+
 // The size and the checksum of what follows them.
 std::string prefix(std::string_view body) {
   std::string result(kMagic);
@@ -92,6 +111,7 @@ std::string encode(const Checkpoint& checkpoint) {
   write_binary(out, static_cast<std::uint64_t>(checkpoint.concentration.size()));
   out.write(reinterpret_cast<const char*>(checkpoint.concentration.data()),
             static_cast<std::streamsize>(field));
+  write_text(out, text_of_bits(checkpoint.forest));
   write_binary(out, static_cast<std::int64_t>(checkpoint.step));
   write_binary(out, checkpoint.cost.wall_seconds);
   write_binary(out, checkpoint.cost.cpu_seconds);
@@ -121,6 +141,7 @@ Checkpoint decode(const std::string& data) {
   }
   checkpoint.state = in.text();
   checkpoint.concentration = in.numbers();
+  checkpoint.forest = bits_of_text(in.text());
   checkpoint.step = static_cast<long>(in.number<std::int64_t>());
   checkpoint.cost.wall_seconds = in.number<double>();
   checkpoint.cost.cpu_seconds = in.number<double>();

@@ -25,6 +25,7 @@ struct Checkpoint {
   TableExtents tables;                // when it was written
   std::string state;                  // RunState::save
   std::vector<double> concentration;  // c at the nodes, for --initial restart:DIR
+  std::vector<bool> forest;           // of a mesh that follows the boundaries, as bits
   long step = 0;
   RunCost cost;
 };

@@ -64,7 +64,7 @@ class DiscRun {
       space_.emplace(surface_of(configuration),
                      std::min(kPictureCells, configuration.options().cells),
                      std::make_shared<ThreadTeam>(1), std::make_shared<SerialCommunicator>());
-      files_.emplace(folder, run, *space_, run.system->model().well);
+      files_.emplace(folder, run, run.system->model().well);
     }
     if (checkpoint)
       go_on_from(checkpoint->state);
@@ -77,7 +77,9 @@ class DiscRun {
     Stopwatch since_checkpoint;
     while (run_.system->state().t < run_.t_end) {
       if (posix::stop_requested()) return {simulation::RunEnd::stopped, ""};
-      if (const Status status = run_.system->advance(run_.t_end); !status.ok())
+      const double stop =
+          next_output_ < run_.output_times.size() ? run_.output_times[next_output_] : run_.t_end;
+      if (const Status status = run_.system->advance(stop); !status.ok())
         return {simulation::RunEnd::failed, status.why};
       const observables::Observables row = now();
       monitor_.accept(row);
@@ -167,7 +169,7 @@ class DiscRun {
           field.concentration(x);
       result.raft.push_back(field.raft(x));
     }
-    files_->write(result);
+    files_->write(*space_, result);
   }
 
   void write_checkpoint() {

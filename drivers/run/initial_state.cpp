@@ -83,6 +83,13 @@ Vec initial_field(const config::Configuration& configuration,
   });
 }
 
+bool is_given_at_points(const config::Configuration& configuration) {
+  const std::string name = split_named_arguments(configuration.options().initial).name;
+  for (const problem::InitialEntry& entry : problem::initial_fields())
+    if (entry.name == name) return static_cast<bool>(entry.concentration);
+  return false;
+}
+
 discs::StartingDiscs initial_discs(const config::Configuration& configuration,
                                    const problem::CahnHilliardModel& model) {
   const problem::InitialRequest request = basic_request(configuration, model);

@@ -5,7 +5,7 @@
 namespace traceraft::run {
 
 void Progress::on_step(const simulation::RunState& state) {
-  const time::Integrator& integrator = state.integrator;
+  const time::Integrator& integrator = state.integrator();
   show(integrator.time(), integrator.statistics().steps, integrator.step(),
        state.monitor.mass_drift(), state.observables.rafts);
 }

@@ -54,7 +54,7 @@ int execute_run(const config::Configuration& configuration, RunSetup& run, const
                 const std::optional<Checkpoint>& checkpoint, bool quiet) {
   const bool root = run.ranks->root();
   posix::catch_stop_signals();
-  simulation::RunState state{*run.integrator, {}, 0, {}};
+  simulation::RunState state{run, run.adaptation.get()};
   std::optional<RunTables> tables;
   if (root) tables.emplace(folder, run, checkpoint ? checkpoint->tables : TableExtents{});
   std::optional<TableWriter> rows;
@@ -78,10 +78,10 @@ int execute_run(const config::Configuration& configuration, RunSetup& run, const
     if (Status status = start_run(run); !status.ok())
       result = {simulation::RunEnd::failed, status.why};
     if (result.end != simulation::RunEnd::failed)
-      simulation::begin_run(state, *run.observer, run.output_times, listeners);
+      simulation::begin_run(state, run.output_times, listeners);
   }
   if (result.end != simulation::RunEnd::failed)
-    result = simulation::continue_run(state, *run.observer, run.t_end, run.output_times, listeners,
+    result = simulation::continue_run(state, run.t_end, run.output_times, listeners,
                                       [&] { return run.ranks->any(posix::stop_requested()); });
   progress.finish();
   if (run.integrator->statistics().steps > 0) checkpoints.write(state);
@@ -153,7 +153,7 @@ int run(const RunRequest& request) {
   refuse_used_folder(request.out);
   if (is_of_discs(configuration)) return run_discs(request, configuration);
   if (!request.quiet) announce_fine_mesh(configuration);
-  RunSetup run = build_run(configuration, InitialState::build);
+  RunSetup run = build_run(configuration);
   const bool quiet = request.quiet || !run.ranks->root();
   if (!quiet) print_setup(configuration, run);
   if (request.validate) {
@@ -186,9 +186,8 @@ int resume(const ResumeRequest& request) {
     }
     return finish_disc_run(configuration, run, folder, checkpoint, request.quiet);
   }
-  RunSetup run =
-      build_run(configuration, ranks->any(checkpoint.has_value()) ? InitialState::from_checkpoint
-                                                                  : InitialState::build);
+  RunSetup run = build_run(configuration, {ranks->any(checkpoint.has_value()),
+                                           checkpoint ? checkpoint->forest : std::vector<bool>()});
   const bool quiet = request.quiet || !ranks->root();
   if (!quiet) {
     print_setup(configuration, run);

@@ -1,5 +1,7 @@
 #include "drivers/run/run_numbers.hpp"
 
+#include <algorithm>
+
 #include "backends/zlib/checksum.hpp"
 
 namespace traceraft::run {
@@ -14,7 +16,12 @@ RunMoment moment_of(const RunSetup& run, const observables::Observables& observa
 }
 
 RunGround ground_of(const RunSetup& run) {
-  return {run.space->totals, run.space->area, run.space->h(), run.ranks->size(), run.team->size()};
+  return {run.space->totals,
+          run.space->area,
+          run.space->h(),
+          run.ranks->size(),
+          run.team->size(),
+          run.adaptation ? run.adaptation->statistics() : simulation::RemeshStatistics{}};
 }
 
 namespace {
@@ -85,6 +92,15 @@ const std::vector<ReportedNumber<RunTotals>>& run_totals() {
       {"area", U::area, "of the surface", [](T r) { return r.ground.area * r.at.units.area(); }},
       {"h", U::length, "edge of a cell of the mesh",
        [](T r) { return r.ground.h * r.at.units.length(); }},
+      {"remeshes", U::count, "changes of a mesh that follows the boundaries",
+       [](T r) { return number(r.ground.remeshing.remeshes); }},
+      {"mean_nodes", U::count, "nodes of such a mesh, mean over the steps",
+       [](T r) { return r.ground.remeshing.node_steps / std::max(1.0, r.ground.remeshing.steps); }},
+      {"highest_energy_jump", U::ratio,
+       "largest rise of the energy from one mesh to the next, relative to it",
+       [](T r) { return r.ground.remeshing.highest_jump; }},
+      {"lowest_energy_jump", U::ratio, "largest fall",
+       [](T r) { return r.ground.remeshing.lowest_jump; }},
       {"mean_concentration", U::ratio, "mass over area",
        [](T r) { return r.at.observables.mass / r.ground.area; }},
       {"mass_drift", U::ratio, "largest change of the mass, relative to it",

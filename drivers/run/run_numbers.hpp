@@ -30,8 +30,9 @@ RunMoment moment_of(const RunSetup& run, const observables::Observables& observa
 // The surface that a run is on, and those who work on it.
 struct RunGround {
   fem::SurfaceSpace::Totals mesh;  // zeros: there is none
-  double area, h;                  // R², R
+  double area, h;                  // R², R; h of the smallest cells
   int ranks, threads;
+  simulation::RemeshStatistics remeshing{};
 };
 RunGround ground_of(const RunSetup& run);
 

@@ -106,23 +106,24 @@ void FieldWriter::on_output(const observables::Observables& row,
     Vec buffer;
     return Vec(fem::trace(space, space.with_ghosts(nodal, buffer)));
   };
-  files_.write({row.t,
+  files_.write(space,
+               {row.t,
                 {{"c", traced(run_.problem->c_of(y))}, {"mu", traced(run_.problem->mu_of(y))}},
                 rafts.of_point});
 }
 
-void FieldFiles::write(const SurfaceFields& fields) const {
-  const Communicator& ranks = *space_.communicator;
+void FieldFiles::write(const fem::SurfaceSpace& space, const SurfaceFields& fields) const {
+  const Communicator& ranks = *space.communicator;
   const double length = schedule_.units.length();
   const std::size_t index = schedule_.output_index(fields.t);
   const bool alone = ranks.size() == 1;
   posix::write_durably(
       folder_.fields() / (alone ? field_name(index, ranks) : piece_name(index, ranks.rank())),
-      zlib::vtu_text(space_, length, fields.fields,
-                     {{"raft", largest_at_corners(space_.surface, fields.raft)}}));
+      zlib::vtu_text(space, length, fields.fields,
+                     {{"raft", largest_at_corners(space.surface, fields.raft)}}));
   const observables::Image image = observables::draw_front_and_back(
-      space_, fields.fields.front().values, well_.a, well_.b, kViewPixels);
-  const double half_width = observables::view_half_width(space_) * length;
+      space, fields.fields.front().values, well_.a, well_.b, kViewPixels);
+  const double half_width = observables::view_half_width(space) * length;
   // Nothing is named before all of it is there.
   if (!ranks.all(true) || !ranks.root()) return;
   if (!alone) {
@@ -197,9 +198,10 @@ void CheckpointWriter::write(const simulation::RunState& state) {
   checkpoint.configuration = configuration_;
   StringAppender out(checkpoint.state);
   state.save(CheckpointOut(out, run_.space->order));
-  const Vec c = run_.space->order.gathered(run_.problem->c_of(state.integrator.state()));
+  const Vec c = run_.space->order.gathered(run_.problem->c_of(state.integrator().state()));
   checkpoint.concentration.assign(c.data(), c.data() + c.size());
-  checkpoint.step = state.integrator.statistics().steps;
+  checkpoint.step = state.integrator().statistics().steps;
+  if (run_.adaptation) checkpoint.forest = run_.adaptation->forest().bits();
   checkpoint.cost = cost();
   if (tables_) {
     checkpoint.tables = tables_->extents();

@@ -59,10 +59,9 @@ struct SurfaceFields {
 // field-NNNN-RRRR.vtu, joined by field-NNNN.pvtu.
 class FieldFiles {
  public:
-  FieldFiles(const RunFolder& folder, const RunSchedule& schedule, const fem::SurfaceSpace& space,
-             const physics::DoubleWell& well)
-      : folder_(folder), schedule_(schedule), space_(space), well_(well) {}
-  void write(const SurfaceFields& fields) const;  // collective
+  FieldFiles(const RunFolder& folder, const RunSchedule& schedule, const physics::DoubleWell& well)
+      : folder_(folder), schedule_(schedule), well_(well) {}
+  void write(const fem::SurfaceSpace& space, const SurfaceFields& fields) const;  // collective
 
  private:
   void collect(std::size_t newest) const;
@@ -70,7 +69,6 @@ class FieldFiles {
 
   const RunFolder& folder_;
   const RunSchedule& schedule_;
-  const fem::SurfaceSpace& space_;
   physics::DoubleWell well_;
 };
 
@@ -78,7 +76,7 @@ class FieldFiles {
 class FieldWriter final : public simulation::RunListener {
  public:
   FieldWriter(const RunFolder& folder, const RunSetup& run)
-      : files_(folder, run, *run.space, run.problem->model().well), run_(run) {}
+      : files_(folder, run, run.problem->model().well), run_(run) {}
   void on_output(const observables::Observables& row, const observables::RaftReport& rafts,
                  VecView y) override;
 

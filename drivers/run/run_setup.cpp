@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <optional>
 #include <thread>
 
 #include "backends/list.hpp"
@@ -11,6 +12,7 @@
 #include "drivers/run/memory_need.hpp"
 #include "drivers/run/numerical_methods.hpp"
 #include "drivers/run/physical_model.hpp"
+#include "drivers/run/run_mesh.hpp"
 #include "kernel/core/text.hpp"
 
 namespace traceraft::run {
@@ -29,9 +31,52 @@ int thread_count(const config::Configuration& configuration, const Communicator&
   return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 2);
 }
 
+// All that depends on the mesh but the mesh itself. Refers to the configuration.
+simulation::MeshAdaptation::MakeRest rest_of(const config::Configuration& configuration,
+                                             const RunSetup& run,
+                                             const problem::CahnHilliardModel& physics,
+                                             const backends::IntegratorEntry& integrator,
+                                             const time::IntegratorSettings& settings) {
+  return [&configuration, &integrator, physics, settings, team = run.team,
+          energy = run.boundary.interface_energy](std::shared_ptr<const fem::SurfaceSpace> space) {
+    simulation::Discretisation on;
+    on.problem = std::make_unique<problem::CahnHilliard>(space, physics);
+    on.observer = std::make_unique<observables::Observer>(*on.problem, space, energy);
+    on.integrator =
+        integrator.make(*on.problem, linear_solver(configuration, *space), team, settings);
+    on.space = std::move(space);
+    return on;
+  };
+}
+
+// The mesh that follows the boundaries, and the initial state on it.
+std::optional<mesh::RefinementForest> begin_adaptive(const config::Configuration& configuration,
+                                                     const geometry::LevelSetPtr& surface,
+                                                     const problem::CahnHilliardModel& physics,
+                                                     const InitialState& initial,
+                                                     const MakeSpace& make_space, RunSetup& run) {
+  if (!is_adaptive(configuration, physics, *run.ranks)) return std::nullopt;
+  const mesh::RefinementLevels levels = refinement_levels(configuration, *surface);
+  if (!initial.from_checkpoint && is_given_at_points(configuration)) {
+    FieldOnMesh begin = adapted_field(*surface, levels, refinement_rule(configuration, levels),
+                                      physics, make_space, [&](const fem::SurfaceSpace& space) {
+                                        return initial_field(configuration, physics, space);
+                                      });
+    run.space = std::move(begin.space);
+    run.initial = std::move(begin.field);
+    return std::move(begin.forest);
+  }
+  mesh::RefinementForest forest =
+      initial.from_checkpoint
+          ? mesh::RefinementForest(*surface, levels, initial.forest)
+          : mesh::RefinementForest(*surface, levels, levels.finest_generation());
+  run.space = make_space(mesh::build_active_mesh(*surface, forest));
+  return forest;
+}
+
 }  // namespace
 
-RunSetup build_run(const config::Configuration& configuration, InitialState initial,
+RunSetup build_run(const config::Configuration& configuration, const InitialState& initial,
                    const config::Compared& compared) {
   RunSetup run;
   static_cast<RunSchedule&>(run) = run_schedule(configuration);
@@ -50,28 +95,42 @@ RunSetup build_run(const config::Configuration& configuration, InitialState init
   run.team = std::make_shared<ThreadTeam>(thread_count(configuration, *run.ranks));
   const geometry::LevelSetPtr surface = surface_of(configuration);
   refuse_too_fine(configuration, *surface, *run.ranks);
-  run.space = with_option_context(configuration, &config::RunOptions::surface, [&] {
-    return std::make_shared<const fem::SurfaceSpace>(
-        surface, configuration.options().cells, run.team, run.ranks, physics.mass_stabilisation);
-  });
+  const MakeSpace make_space = [surface, team = run.team, ranks = run.ranks,
+                                mass = physics.mass_stabilisation](mesh::ActiveMesh mesh) {
+    return std::make_shared<const fem::SurfaceSpace>(surface, std::move(mesh), team, ranks, mass);
+  };
+  std::optional<mesh::RefinementForest> forest =
+      begin_adaptive(configuration, surface, physics, initial, make_space, run);
+  if (!forest)
+    run.space = with_option_context(configuration, &config::RunOptions::surface, [&] {
+      return make_space(
+          mesh::build_active_mesh(*surface, configuration.options().cells, *run.ranks));
+    });
   with_option_context(configuration, &config::RunOptions::effect, [&] {
     for (const problem::EffectPtr& effect : physics.effects) effect->require_surface(*run.space);
     return 0;
   });
-  run.problem = std::make_unique<problem::CahnHilliard>(run.space, physics);
+  if (!initial.from_checkpoint) {
+    if (run.initial.size() == 0) run.initial = initial_field(configuration, physics, *run.space);
+    run.initial_mean = run.space->integral(run.initial) / run.space->area;
+  }
+  run.boundary = observables::resolved_boundary(physics, run.space->h());
+  const auto make_rest = rest_of(configuration, run, physics, integrator, settings);
+  static_cast<simulation::Discretisation&>(run) = make_rest(run.space);
   if (settings.reject_energy_rises && !run.problem->dissipates_energy())
     throw InputError(configuration.where(&config::RunOptions::energy_guard) +
                      ": reject needs a model that can only lose energy, and this one may gain "
                      "energy; choose warn or off");
-  if (initial == InitialState::build) {
-    run.initial = initial_field(configuration, physics, *run.space);
-    run.initial_mean = run.space->integral(run.initial) / run.space->area;
+  if (configuration.given(&config::RunOptions::keep) && settings.kept_solution == "second" &&
+      !run.problem->may_be_extrapolated())
+    throw InputError(configuration.where(&config::RunOptions::keep) +
+                     ": with these effects the second-order solution of euler is unstable; leave "
+                     "the choice to it");
+  if (forest) {
+    const fem::RefinementRule rule = refinement_rule(configuration, forest->levels());
+    run.adaptation = std::make_unique<simulation::MeshAdaptation>(std::move(*forest), rule,
+                                                                  make_space, make_rest);
   }
-  run.boundary = observables::resolved_boundary(physics, run.space->h());
-  run.observer = std::make_unique<observables::Observer>(*run.problem, run.space,
-                                                         run.boundary.interface_energy);
-  const linear::LinearSolverChoice solvers = linear_solver(configuration, *run.space);
-  run.integrator = integrator.make(*run.problem, solvers, run.team, settings);
   return run;
 }
 

@@ -164,9 +164,10 @@ std::string resolution_text(const config::Configuration& configuration, const Ru
 std::string initial_text(const config::Configuration& configuration, const RunSetup& run) {
   const std::string kind = configuration.options().initial;
   if (kind != "noise") return kind;
-  const double length = configuration.noise_length();
-  return formatted("noise of %.3g um = %.3g epsilon", length,
-                   length / (run.problem->model().epsilon * run.units.radius_um));
+  const double length = configuration.noise_length();  // in the units of the outputs
+  return formatted("noise of %.3g %s = %.3g epsilon", length,
+                   text::unit_name(text::Unit::length, run.units.scaled).c_str(),
+                   length / (run.problem->model().epsilon * run.units.length()));
 }
 
 std::string repeated_times_text(const RunSetup& run) {
@@ -194,6 +195,12 @@ void print_units(const RunSchedule& run) {
                        run.t_end * units.seconds_per_unit(), run.t_end));
 }
 
+std::string sizes_text(const RunSetup& run) {
+  if (!run.adaptation) return "";
+  return formatted(" and, away from boundaries, down to %lld",
+                   static_cast<long long>(run.adaptation->forest().levels().coarsest_cells()));
+}
+
 void print_setup(const config::Configuration& configuration, const RunSetup& run) {
   const physics::Units& units = run.units;
   text::say("traceraft %s\n", kVersion);
@@ -205,9 +212,10 @@ void print_setup(const config::Configuration& configuration, const RunSetup& run
   const fem::SurfaceSpace::Totals& totals = run.space->totals;
   print_line(
       "mesh",
-      formatted("%lld cells per edge, %lld cut tetrahedra, %lld nodes, %lld unknowns",
-                configuration.options().cells, static_cast<long long>(totals.elements),
-                static_cast<long long>(totals.nodes), static_cast<long long>(2 * totals.nodes)));
+      formatted("%lld cells per edge%s, %lld cut tetrahedra, %lld nodes, %lld unknowns",
+                configuration.options().cells, sizes_text(run).c_str(),
+                static_cast<long long>(totals.elements), static_cast<long long>(totals.nodes),
+                static_cast<long long>(2 * totals.nodes)));
   print_line("phase boundary", resolution_text(configuration, run));
   print_physics(configuration, units);
   if (const double longest = run.problem->longest_step(); longest < run.t_end)
@@ -227,6 +235,12 @@ void print_setup(const config::Configuration& configuration, const RunSetup& run
                 configuration.options().linear_solver.c_str(), configuration.options().tolerance,
                 workers, run.ranks->size() > 1 ? "rank" : "thread", workers == 1 ? "" : "s",
                 suitesparse::blas_description().c_str()));
+}
+
+std::string meshes_text(const simulation::RemeshStatistics& meshes) {
+  return formatted("%ld changes, %.0f nodes in the mean of the steps, energy %+.1e to %+.1e in one",
+                   meshes.remeshes, meshes.node_steps / std::max(1.0, meshes.steps),
+                   meshes.lowest_jump, meshes.highest_jump);
 }
 
 void print_summary(const config::Configuration& configuration, const RunSetup& run,
@@ -250,6 +264,7 @@ void print_summary(const config::Configuration& configuration, const RunSetup& r
   print_line("steps", formatted("%ld accepted", steps.steps) + first_order +
                           formatted(", %ld rejected (error too large), %ld failed (not solved)",
                                     steps.rejected, steps.failures));
+  if (run.adaptation) print_line("meshes", meshes_text(run.adaptation->statistics()));
   if (steps.newton_iterations > 0)
     print_line("Newton iterations",
                formatted("%ld, order of the last step %d", steps.newton_iterations, steps.order));

@@ -1,6 +1,7 @@
 // Where the state of a run is written to and read from, whatever number of ranks it is spread over.
 #pragma once
 
+#include <functional>
 #include <istream>
 #include <ostream>
 #include <vector>
@@ -21,15 +22,24 @@ struct CheckpointOut {
   const GlobalOrder* order = nullptr;
 };
 
+// State vectors that were written on another mesh, and what they are on the present one.
+struct CarriedStates {
+  Eigen::Index length;  // of those that were written
+  std::function<Vec(VecView)> carry;
+};
+
 struct CheckpointIn {
   CheckpointIn(std::istream& stream_) : stream(stream_) {}
   CheckpointIn(std::istream& stream_, const GlobalOrder& order_)
       : stream(stream_), order(&order_) {}
+  CheckpointIn(std::istream& stream_, const CarriedStates& carried_)  // of one process
+      : stream(stream_), carried(&carried_) {}
 
   bool distributed() const { return order && order->ranks().size() > 1; }
 
   std::istream& stream;
   const GlobalOrder* order = nullptr;
+  const CarriedStates* carried = nullptr;
 };
 
 template <class T>
@@ -64,6 +74,12 @@ void read_binary(CheckpointIn in, T& value) {
 
 // `expected`: the length on this rank.
 inline void read_binary(CheckpointIn in, Vec& state, Eigen::Index expected) {
+  if (in.carried) {
+    Vec written;
+    read_binary(in.stream, written, in.carried->length);
+    state = in.carried->carry(written);
+    return;
+  }
   if (!in.distributed()) return read_binary(in.stream, state, expected);
   const Eigen::Index n = in.order->size();
   Vec whole;

@@ -212,7 +212,7 @@ Status DiscSystem::advance(double t_end) {
   const std::size_t count = state_.discs.size();
   bool walked = false;
   dissolve_small_discs();
-  if (state_.t >= next_walk_) {
+  if (state_.t >= next_walk_ || (state_.t >= t_end && !motion_.none())) {
     motion_.set_discs(state_.discs);
     if (!walk(state_.t - last_walk_))
       return Status::fatal("the Brownian displacements of discs have no covariance");

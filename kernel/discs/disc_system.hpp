@@ -38,7 +38,8 @@ struct DiscCoordinates {
 // once in a while, as far as they would have wandered since they walked last, which is short
 // against the distances of neighbours. Two discs that touch become one, which keeps the mass: at
 // the end of a step, or on a walk, with the probability that a Brownian path between both its ends
-// has touched. Draws depend on the seed and the number of the walk.
+// has touched. They walk at the end that a step is given, too: what is shown then is where they
+// are. Draws depend on the seed and the number of the walk.
 class DiscSystem {
  public:
   // `tolerance`: of the error of a disc's area in a step, relative to it. Discs that touch merge at
@@ -56,7 +57,8 @@ class DiscSystem {
 
   // One step, which does not pass t_end.
   Status advance(double t_end);
-  // At a time within the last step: discs are where they were before it.
+  // At a time within the last step. Discs are where they were before it: to see them where they
+  // are, let a step end there.
   DiscState interpolated(double t) const;
 
   // Everything that goes on. load: throws IoError at the end of the data.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "kernel/core/text.hpp"
+
 namespace traceraft::effects {
 namespace {
 
@@ -33,9 +35,19 @@ void require_strength(const EffectEntry& entry, const Parameters& given) {
   if (std::any_of(entry.parameters.begin(), last,
                   [&](const ParameterSpec& spec) { return given[spec.name] != 0; }))
     return;
-  const std::string& strength = entry.parameters.front().name;
+  std::vector<std::string> strengths;
+  for (auto spec = entry.parameters.begin(); spec != last; ++spec) strengths.push_back(spec->name);
   throw InputError("effect " + entry.name + ": a strength other than 0 is needed, as in " +
-                   entry.name + ":" + strength + "=...");
+                   entry.name + ":" + joined(strengths, "=..., or ") + "=...");
+}
+
+// What contradicts another strength is the effect's own to say.
+void refuse_idle_parameters(const EffectEntry& entry, const EffectTerm& term,
+                            const Parameters& given, const std::vector<ParameterSpec>& specs) {
+  for (std::size_t k = static_cast<std::size_t>(entry.strengths); k < specs.size(); ++k)
+    if (given[specs[k].name] != specs[k].default_value && !is_used(term, k))
+      throw InputError("effect " + entry.name + ": " + specs[k].name +
+                       " does nothing beside the other values; leave it out");
 }
 
 void refuse_forces(const EffectEntry& entry, const Parameters& given) {
@@ -49,13 +61,14 @@ void refuse_forces(const EffectEntry& entry, const Parameters& given) {
 EffectTerm read_term(const std::string& one, const physics::Units& units) {
   const NamedArguments named = split_named_arguments(one);
   const EffectEntry& entry = effects().find(named.name);
-  const Parameters given =
-      parse_parameters("effect " + entry.name, named.arguments, specs_in(entry, units));
+  const std::vector<ParameterSpec> specs = specs_in(entry, units);
+  const Parameters given = parse_parameters("effect " + entry.name, named.arguments, specs);
   require_strength(entry, given);
   if (units.scaled) refuse_forces(entry, given);
   EffectTerm term{entry.name, {}};
   for (const ParameterSpec& spec : entry.parameters)
     term.values.push_back(given[spec.name] * to_model_units(spec.unit, units));
+  refuse_idle_parameters(entry, term, given, specs);
   return term;
 }
 

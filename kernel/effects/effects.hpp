@@ -74,7 +74,8 @@ struct EffectTerm {
 
 // A flow as one term for each of the two that drive it, line tension and thermal forces, with their
 // strengths A and Θ; any other effect as it is. Throws InputError for a flow that nothing drives.
-std::vector<EffectTerm> in_single_strengths(const EffectTerm& term, double epsilon);
+std::vector<EffectTerm> in_single_strengths(const EffectTerm& term, double epsilon,
+                                            const physics::DoubleWell& well);
 
 // Does a parameter count, beside the values of the others?
 bool is_used(const EffectTerm& term, std::size_t parameter);

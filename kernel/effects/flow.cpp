@@ -9,7 +9,8 @@ namespace {
 
 // The three numbers are given, or follow from viscosities, line tension and temperature. Forces are
 // in pN here, lengths in R and times in R²/D.
-flow::FluidMembrane membrane_of(const Parameters& p, double epsilon) {
+flow::FluidMembrane membrane_of(const Parameters& p, double epsilon,
+                                const physics::DoubleWell& well) {
   const double viscosity = p["membrane-viscosity"];
   if (viscosity == 0) {
     if (p["line-tension"] != 0 || p["temperature"] != 0)
@@ -20,9 +21,9 @@ flow::FluidMembrane membrane_of(const Parameters& p, double epsilon) {
     throw InputError(
         "effect flow: give membrane-viscosity, with line-tension and temperature, or capillary and "
         "thermal");
-  const flow::FluidMembrane membrane{flow::capillary_number(p["line-tension"], epsilon, viscosity),
-                                     p["water-viscosity"] / viscosity,
-                                     p["temperature"] / viscosity};
+  const flow::FluidMembrane membrane{
+      flow::capillary_number(p["line-tension"], epsilon, well.interface_energy(), viscosity),
+      p["water-viscosity"] / viscosity, p["temperature"] / viscosity};
   if (membrane.capillary == 0 && membrane.thermal == 0)
     throw InputError("effect flow: without line-tension and temperature nothing moves");
   return membrane;
@@ -45,13 +46,13 @@ bool flow_uses(const Parameters& p, const std::string& name) {
   if (name == "capillary") return !physical && (p["capillary"] != 0 || !brownian);
   if (name == "thermal") return !physical && brownian;
   if (name == "water") return !physical;
-  if (name == "line-tension" || name == "temperature") return physical && p[name] != 0;
+  if (name == "line-tension" || name == "temperature") return p[name] != 0;
   return physical;
 }
 
 std::string flow_description(const Parameters& p, const problem::CahnHilliardModel& model,
                              const physics::Units& units) {
-  const flow::FluidMembrane membrane = membrane_of(p, model.epsilon);
+  const flow::FluidMembrane membrane = membrane_of(p, model.epsilon, model.well);
   return formatted(
       "capillary A = %.4g, thermal Theta = %.4g, water W = %.4g; Saffman-Delbrueck length %.4g %s",
       membrane.capillary, membrane.thermal, membrane.water, 0.5 / membrane.water * units.length(),
@@ -59,7 +60,7 @@ std::string flow_description(const Parameters& p, const problem::CahnHilliardMod
 }
 
 void add_flow(const Parameters& p, problem::CahnHilliardModel& model) {
-  const flow::FluidMembrane membrane = membrane_of(p, model.epsilon);
+  const flow::FluidMembrane membrane = membrane_of(p, model.epsilon, model.well);
   if (membrane.capillary > 0)
     model.effects.push_back(std::make_shared<CapillaryFlow>(membrane, model.epsilon));
   if (membrane.thermal > 0)
@@ -68,16 +69,17 @@ void add_flow(const Parameters& p, problem::CahnHilliardModel& model) {
 }
 
 void add_flow_to_discs(const Parameters& p, discs::DiscModel& model) {
-  model.membrane = membrane_of(p, model.epsilon);
+  model.membrane = membrane_of(p, model.epsilon, model.well);
   model.seed = seed_of(p, model.seed);
 }
 
 }  // namespace
 
-std::vector<EffectTerm> in_single_strengths(const EffectTerm& term, double epsilon) {
+std::vector<EffectTerm> in_single_strengths(const EffectTerm& term, double epsilon,
+                                            const physics::DoubleWell& well) {
   if (term.effect != "flow") return {term};
   const std::vector<ParameterSpec>& specs = effects().find(term.effect).parameters;
-  const flow::FluidMembrane membrane = membrane_of(Parameters(specs, term.values), epsilon);
+  const flow::FluidMembrane membrane = membrane_of(Parameters(specs, term.values), epsilon, well);
   const auto with = [&](const std::string& strength, double value) {
     EffectTerm single = term;
     for (std::size_t k = 0; k < specs.size(); ++k) {

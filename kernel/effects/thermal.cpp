@@ -45,6 +45,7 @@ class ThermalNoise final : public problem::Effect {
   bool conserves_mass() const override { return true; }
   bool dissipates_energy() const override { return false; }
   double longest_step() const override { return 0.5 * tau_; }
+  bool needs_equal_cells() const override { return true; }
 
   void add_residual(const fem::SurfaceSpace& space, double t, VecView c, VecView, VecRef residual_c,
                     VecRef) const override {

@@ -45,7 +45,7 @@ std::array<double, 6> normal_coupling(const mesh::ActiveMesh& mesh, const mesh::
   const Eigen::Vector4d along = basis_gradients(mesh, tet) * mesh::cut_normal(mesh, tet);
   std::array<double, 6> coupling;
   for (int e = 0; e < 6; ++e)
-    coupling[e] = shape.size * volume * along[mesh::kTetEdges[e][0]] * along[mesh::kTetEdges[e][1]];
+    coupling[e] = volume * along[mesh::kTetEdges[e][0]] * along[mesh::kTetEdges[e][1]];
   return coupling;
 }
 

@@ -29,8 +29,7 @@ inline constexpr std::array<std::array<int, 3>, 2> kPolygonTriangles = {{{0, 1, 
 std::vector<CutElement> build_cut_elements(const mesh::ActiveMesh& mesh,
                                            const std::vector<mesh::LiftedTriangle>& lifted);
 
-// h_T/h ∫_T (n·∇λ_i)(n·∇λ_j) dx of the edges of a tetrahedron: the element matrix of S off the
-// diagonal.
+// ∫_T (n·∇λ_i)(n·∇λ_j) dx of the edges of a tetrahedron: the element matrix of S off the diagonal.
 std::array<double, 6> normal_coupling(const mesh::ActiveMesh& mesh, const mesh::ActiveTet& tet);
 
 // Integrals of the basis functions over Γ_T, divided by |Γ_T|. Pairs are those of each node with

@@ -53,6 +53,16 @@ CsrMatrix normal_matrix(const SurfaceSpace& space) {
       space, [&](std::size_t t) { return normal_coupling(space.mesh, space.mesh.tets[t]); });
 }
 
+// The same with the weights h_T/h.
+CsrMatrix local_normal_matrix(const SurfaceSpace& space) {
+  return zero_row_sum_matrix(space, [&](std::size_t t) {
+    const mesh::ActiveTet& tet = space.mesh.tets[t];
+    std::array<double, 6> value = normal_coupling(space.mesh, tet);
+    for (double& entry : value) entry *= space.mesh.shape(tet).size;
+    return value;
+  });
+}
+
 CsrMatrix mass_matrix(const SurfaceSpace& space) {
   std::vector<double> edge(space.mesh.edges.size(), 0.0), diagonal(space.mesh.nodes(), 0.0);
   for (std::size_t t = 0; t < space.elements.size(); ++t) {
@@ -156,7 +166,7 @@ SurfaceSpace::SurfaceSpace(geometry::LevelSetPtr level_set_, Geometry geometry,
       mass(mass_matrix(*this)),
       stiffness(stiffness_matrix(*this)),
       normal_stiffness(normal_matrix(*this)),
-      stabilised_mass(combine(1.0, mass, mass_stabilisation * h(), normal_stiffness)),
+      stabilised_mass(combine(1.0, mass, mass_stabilisation * h(), local_normal_matrix(*this))),
       node_area(Vec::Zero(nodes())),
       totals(totals_of(mesh, surface, *communicator)),
       order({mesh.node_id.begin(), mesh.node_id.begin() + mesh.owned_nodes}, communicator) {

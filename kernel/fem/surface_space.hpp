@@ -50,13 +50,12 @@ class SurfaceSpace {
   const PatternPtr pattern;
   const double mass_stabilisation;
 
-  CsrMatrix mass;       // M_ij = ∫_Γ φ_i φ_j: singular, see stabilised_mass
-  CsrMatrix stiffness;  // K_ij = ∫_Γ ∇_Γφ_i·∇_Γφ_j
-  // S_ij = Σ_T h_T/h ∫_T (n·∇φ_i)(n·∇φ_j) dx over the cut tetrahedra; S·1 = 0
-  CsrMatrix normal_stiffness;
-  CsrMatrix stabilised_mass;  // M̃ = M + mass_stabilisation h S
-  Vec node_area;              // w_i = ∫_Γ φ_i, so ∫_Γ c_h = w·c
-  double area;                // Σ w_i: of Γ, by lifted triangles
+  CsrMatrix mass;              // M_ij = ∫_Γ φ_i φ_j: singular, see stabilised_mass
+  CsrMatrix stiffness;         // K_ij = ∫_Γ ∇_Γφ_i·∇_Γφ_j
+  CsrMatrix normal_stiffness;  // S_ij = ∫_cut tets (n·∇φ_i)(n·∇φ_j) dx; S·1 = 0
+  CsrMatrix stabilised_mass;   // M̃ = M + mass_stabilisation Σ_T h_T S_T
+  Vec node_area;               // w_i = ∫_Γ φ_i, so ∫_Γ c_h = w·c
+  double area;                 // Σ w_i: of Γ, by lifted triangles
 
   // Over all ranks.
   struct Totals {

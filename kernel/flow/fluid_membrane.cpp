@@ -26,8 +26,9 @@ double FluidMembrane::spreading_rate(double half_angle) const {
   return 2 * thermal * sum / (4 * kPi);
 }
 
-double capillary_number(double line_tension, double epsilon, double membrane_viscosity) {
-  return 6 * std::sqrt(2.0) * line_tension / (epsilon * membrane_viscosity);
+double capillary_number(double line_tension, double epsilon, double interface_energy,
+                        double membrane_viscosity) {
+  return line_tension / (epsilon * interface_energy * membrane_viscosity);
 }
 
 int capillary_degree(double epsilon) {

@@ -20,9 +20,11 @@ struct FluidMembrane {
   double spreading_rate(double half_angle) const;
 };
 
-// A of a line tension σ and a boundary of width ε: σ = e ε/(6√2). σ and η_m are in units of a force
-// and of that force times R/D.
-double capillary_number(double line_tension, double epsilon, double membrane_viscosity);
+// A of a line tension σ and a boundary of width ε: σ = e ε I with I, the energy of a boundary of
+// width 1, from the wells (physics::DoubleWell::interface_energy). σ and η_m are in units of a
+// force and of that force times R/D.
+double capillary_number(double line_tension, double epsilon, double interface_energy,
+                        double membrane_viscosity);
 
 // The highest degrees that count. Waves shorter than a boundary is wide carry next to no force, and
 // move as l⁻⁴ of it; in Brownian flow they would only broaden it.

@@ -306,6 +306,14 @@ RefinementForest RefinementForest::refined(const geometry::LevelSet& surface,
   return builder.finished();
 }
 
+std::vector<int> RefinementForest::leaf_generations() const {
+  std::vector<int> result;
+  result.reserve(leaf_cells_.size());
+  for (const int leaf : leaf_cells_)
+    result.push_back(cells_[static_cast<std::size_t>(leaf)].generation);
+  return result;
+}
+
 std::vector<bool> RefinementForest::bits() const {
   std::vector<bool> result;
   std::vector<int> todo;

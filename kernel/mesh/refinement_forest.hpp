@@ -62,6 +62,7 @@ class RefinementForest {
   const std::vector<Cell>& cells() const { return cells_; }
   // Numbers of the leaves that Γ_h cuts, in the order of the lattice points of their vertices.
   const std::vector<int>& leaf_cells() const { return leaf_cells_; }
+  std::vector<int> leaf_generations() const;
 
   // Is a cell bisected? One bit for each near cell, depth first from root to root.
   std::vector<bool> bits() const;

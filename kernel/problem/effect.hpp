@@ -37,6 +37,8 @@ class Effect {
   virtual bool dissipates_explicitly() const { return dissipates_energy(); }
   // Are they stable, too, where c and μ are extrapolated?
   virtual bool may_be_extrapolated() const { return true; }
+  // Does it need tetrahedra of one size, as noise does that is drawn for each?
+  virtual bool needs_equal_cells() const { return false; }
   // The longest step, as of DaeProblem.
   virtual double longest_step() const { return std::numeric_limits<double>::infinity(); }
   // Throws InputError if the effect is not made for this surface.

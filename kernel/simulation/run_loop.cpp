@@ -3,12 +3,26 @@
 #include <stdexcept>
 
 namespace traceraft::simulation {
+namespace {
+
+// What the monitor sees between two meshes is no rise of the energy.
+Status follow_boundaries(RunState& state) {
+  if (!state.adaptation) return {};
+  const long before = state.adaptation->statistics().remeshes;
+  if (Status status = state.adaptation->before_step(state.on); !status.ok()) return status;
+  if (state.adaptation->statistics().remeshes > before)
+    state.monitor.go_on_from(state.on.problem->energy(state.integrator().state()));
+  return {};
+}
+
+}  // namespace
 
 void RunState::save(CheckpointOut out) const {
   write_binary(out, monitor);
   write_binary(out, static_cast<std::uint64_t>(next_output));
   write_binary(out, observables);
-  integrator.save(out);
+  if (adaptation) adaptation->save(out);
+  on.integrator->save(out);
 }
 
 void RunState::load(CheckpointIn in) {
@@ -17,13 +31,14 @@ void RunState::load(CheckpointIn in) {
   read_binary(in, next);
   read_binary(in, observables);
   next_output = static_cast<std::size_t>(next);
-  integrator.load(in);
+  if (adaptation) adaptation->load(in);
+  on.integrator->load(in);
 }
 
-void begin_run(RunState& state, const observables::Observer& observer,
-               const std::vector<double>& output_times,
+void begin_run(RunState& state, const std::vector<double>& output_times,
                const std::vector<RunListener*>& listeners) {
-  const time::Integrator& integrator = state.integrator;
+  const time::Integrator& integrator = *state.on.integrator;
+  const observables::Observer& observer = *state.on.observer;
   const observables::RaftReport rafts = observer.rafts(integrator.state());
   state.observables = observer.measure(integrator.time(), integrator.state(), rafts);
   state.monitor.start(state.observables, observer.mass_scale(), observer.energy_scale());
@@ -35,13 +50,14 @@ void begin_run(RunState& state, const observables::Observer& observer,
   for (RunListener* listener : listeners) listener->on_step(state);
 }
 
-RunResult continue_run(RunState& state, const observables::Observer& observer, double t_end,
-                       const std::vector<double>& output_times,
+RunResult continue_run(RunState& state, double t_end, const std::vector<double>& output_times,
                        const std::vector<RunListener*>& listeners,
                        const std::function<bool()>& stop) {
-  time::Integrator& integrator = state.integrator;
-  while (integrator.time() < t_end) {
+  while (state.on.integrator->time() < t_end) {
     if (stop()) return {RunEnd::stopped, ""};
+    if (Status status = follow_boundaries(state); !status.ok()) return {RunEnd::failed, status.why};
+    time::Integrator& integrator = *state.on.integrator;
+    const observables::Observer& observer = *state.on.observer;
     if (Status status = integrator.advance(); !status.ok()) return {RunEnd::failed, status.why};
     state.observables = observer.measure(integrator.time(), integrator.state());
     state.monitor.accept(state.observables);

@@ -5,19 +5,21 @@
 #include <vector>
 
 #include "kernel/core/checkpoint_stream.hpp"
-#include "kernel/observables/observables.hpp"
+#include "kernel/simulation/discretisation.hpp"
+#include "kernel/simulation/mesh_adaptation.hpp"
 #include "kernel/simulation/run_monitor.hpp"
-#include "kernel/time/integrator.hpp"
 
 namespace traceraft::simulation {
 
 // Everything that changes during a run; what a checkpoint holds.
 struct RunState {
-  time::Integrator& integrator;
-  RunMonitor monitor;
-  std::size_t next_output = 0;           // first requested time not yet delivered
-  observables::Observables observables;  // at the last accepted step
+  Discretisation& on;
+  MeshAdaptation* adaptation = nullptr;  // of a mesh that follows the boundaries
+  RunMonitor monitor{};
+  std::size_t next_output = 0;             // first requested time not yet delivered
+  observables::Observables observables{};  // at the last accepted step
 
+  const time::Integrator& integrator() const { return *on.integrator; }
   void save(CheckpointOut out) const;
   void load(CheckpointIn in);  // throws IoError
 };
@@ -42,13 +44,12 @@ struct RunResult {
 };
 
 // Measures the initial state and tells the listeners, unless the state was loaded.
-void begin_run(RunState& state, const observables::Observer& observer,
-               const std::vector<double>& output_times, const std::vector<RunListener*>& listeners);
+void begin_run(RunState& state, const std::vector<double>& output_times,
+               const std::vector<RunListener*>& listeners);
 
-// Advances to t_end. `stop` is asked after every step and says the same on all ranks.
-// `output_times` ascend.
-RunResult continue_run(RunState& state, const observables::Observer& observer, double t_end,
-                       const std::vector<double>& output_times,
+// Advances to t_end, on meshes that follow where the state asks for it. `stop` is asked after every
+// step and says the same on all ranks. `output_times` ascend.
+RunResult continue_run(RunState& state, double t_end, const std::vector<double>& output_times,
                        const std::vector<RunListener*>& listeners,
                        const std::function<bool()>& stop);
 

@@ -29,6 +29,9 @@ class RunMonitor {
     energy_ = row.energy;
   }
 
+  // On another mesh, where the same state has another energy.
+  void go_on_from(double energy) { energy_ = energy; }
+
   double relative_drift(const observables::Observables& row) const {
     return (row.mass - initial_mass_) / mass_scale_;
   }

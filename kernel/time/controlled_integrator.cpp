@@ -78,7 +78,7 @@ void ControlledIntegrator::load(CheckpointIn in) {
   history_.load(in, problem_.size());
   if (history_.size() == 0) throw IoError("checkpoint: it holds no state");
   read_binary(in, statistics_);
-  guard_.load(in);
+  guard_.load(in, history_.state(0));
   make_control();
   solver_.load(in);
 }

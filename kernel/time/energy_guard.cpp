@@ -23,9 +23,10 @@ void EnergyGuard::save(CheckpointOut out) const {
   write_binary(out, refused_);
 }
 
-void EnergyGuard::load(CheckpointIn in) {
+void EnergyGuard::load(CheckpointIn in, VecView y) {
   for (double* value : {&allowed_, &energy_}) read_binary(in, *value);
   read_binary(in, refused_);
+  if (active_ && in.carried) energy_ = problem_.energy(y);
 }
 
 }  // namespace traceraft::time

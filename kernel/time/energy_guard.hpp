@@ -31,7 +31,8 @@ class EnergyGuard {
 
   long refused() const { return refused_; }
   void save(CheckpointOut out) const;
-  void load(CheckpointIn in);
+  // y: the state that goes on; on another mesh, its energy there is what counts.
+  void load(CheckpointIn in, VecView y);
 
  private:
   const problem::DaeProblem& problem_;

@@ -20,6 +20,7 @@ class StateHistory {
   // 0: the newest
   double time(std::size_t back) const { return entries_[entries_.size() - 1 - back].t; }
   const Vec& state(std::size_t back) const { return entries_[entries_.size() - 1 - back].y; }
+  Vec& newest() { return entries_.back().y; }
 
   // The polynomial through all kept states. Its weights sum to one, so every linear functional that
   // the states share (the mass) is kept. Exactly a state at its time.

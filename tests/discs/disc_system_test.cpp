@@ -132,6 +132,29 @@ TEST(DiscSystemTest, BrownianMotionMergesDiscs) {
   EXPECT_GT(rafts(0), rafts(1e-2) + 5);
 }
 
+// Steps that end somewhere show discs where they are then, however far their next walk is.
+TEST(DiscSystemTest, ADiscHasWanderedAsFarAsItsMotionSays) {
+  constexpr int kSeeds = 300;
+  constexpr double kTimes[] = {0.5, 1, 2};
+  double squares[] = {0, 0, 0}, rate = 0;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    DiscModel physics = brownian_model(1e-2);
+    physics.seed = static_cast<std::uint64_t>(seed);
+    DiscState state;
+    state.discs = {{{0, 0, 1}, 0.2}};
+    state.mass = 0.4;
+    DiscSystem system(physics, 1e-2, state);
+    rate = physics.membrane.spreading_rate(half_angle(system.state().discs[0].area));
+    for (int k = 0; k < 3; ++k) {
+      run_until(system, kTimes[k]);
+      squares[k] += (system.state().discs[0].centre - Point(0, 0, 1)).squaredNorm() / kSeeds;
+    }
+  }
+  // The sum of two squares with one variance has a relative deviation of 1 over the root of seeds.
+  for (int k = 0; k < 3; ++k)
+    EXPECT_NEAR(squares[k] / (rate * kTimes[k]), 1, 3.5 / std::sqrt(kSeeds)) << k;
+}
+
 TEST(RandomDiscsTest, HaveTheMassThatIsAskedForAndDoNotTouch) {
   RandomDiscs asked;
   asked.number = 80;

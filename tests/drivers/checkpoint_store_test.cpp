@@ -18,6 +18,7 @@ run::Checkpoint sample(long step) {
   checkpoint.tables = {{"series.csv", {1234, 0xDEADBEEF}}, {"rafts.csv", {99, 7}}};
   checkpoint.state = std::string(5000, 'q') + std::to_string(step);
   checkpoint.concentration = {0.25, 0.5, 1.0 / 3};
+  checkpoint.forest = {true, false, false, true, true, false, false, false, true, false, true};
   checkpoint.step = step;
   checkpoint.cost.wall_seconds = 1.5;
   checkpoint.cost.cpu_seconds = 2.5;
@@ -36,6 +37,7 @@ TEST(Checkpoint, RoundTrips) {
   EXPECT_TRUE(a.tables == b.tables);
   EXPECT_EQ(a.state, b.state);
   EXPECT_EQ(a.concentration, b.concentration);
+  EXPECT_EQ(a.forest, b.forest);
   EXPECT_EQ(a.step, b.step);
   EXPECT_EQ(a.cost.wall_seconds, b.cost.wall_seconds);
   EXPECT_EQ(a.cost.cpu_seconds, b.cost.cpu_seconds);

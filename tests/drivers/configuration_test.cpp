@@ -196,8 +196,7 @@ TEST(RunSetup, TakesALevelSetOfAnySize) {
     return run::build_run(config::Configuration({}, flags({{"cells", "16"},
                                                            {"epsilon", "0.8"},
                                                            {"surface", "formula"},
-                                                           {"surface-formula", formula}})),
-                          run::InitialState::build)
+                                                           {"surface-formula", formula}})))
         .space->area;
   };
   const double usual = area("x^2+y^2+z^2-1");
@@ -210,7 +209,7 @@ TEST(RunSetup, ChecksEverythingBeforeAnythingRuns) {
     config::GivenValues given = flags(values);
     given.emplace("cells", config::GivenValue{"16", "--cells"});
     return complaint(
-        [&] { run::build_run(config::Configuration({}, given), run::InitialState::build); });
+        [&] { run::build_run(config::Configuration({}, given)); });
   };
   EXPECT_EQ(of({{"epsilon", "0.5"}}), "");
   EXPECT_EQ(of({{"surface", "spere"}}).find("--surface: unknown surface 'spere'; did you mean"),
@@ -251,7 +250,7 @@ TEST(RunSetup, RefusesTimesThatDoublesCannotHold) {
     config::GivenValues given = flags(values);
     given.emplace("cells", config::GivenValue{"8", "--cells"});
     return complaint([&] {
-      run::build_run(config::Configuration({}, given), run::InitialState::from_checkpoint);
+      run::build_run(config::Configuration({}, given), run::InitialState{true});
     });
   };
   const std::string allowed = " is too short or too long to compute with (allowed: ";
@@ -275,7 +274,7 @@ TEST(RunSetup, SortsOutputTimesAndNamesThoseThatAreRepeated) {
     return run::build_run(
         config::Configuration({},
                               flags({{"cells", "8"}, {"t-end", "100"}, {"output-times", times}})),
-        run::InitialState::from_checkpoint);
+        run::InitialState{true});
   };
   const run::RunSetup run = of("100,20,9,1e1,10, 20.0,10");
   EXPECT_EQ(run.output_labels, (std::vector<double>{9, 10, 20, 100}));
@@ -288,7 +287,7 @@ TEST(RunSetup, RefusesOptionsOfMethodsThatAreNotChosen) {
   config::GivenValues given = flags({{"cells", "8"}, {"ida-maxord", "2"}});
   const auto of = [&](const auto&... compared) {
     return complaint([&] {
-      run::build_run(config::Configuration({}, given), run::InitialState::from_checkpoint,
+      run::build_run(config::Configuration({}, given), run::InitialState{true},
                      compared...);
     });
   };

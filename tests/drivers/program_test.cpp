@@ -191,6 +191,35 @@ TEST_F(ProgramTest, ContinuesBitwiseWithOtherMethods) {
   }
 }
 
+TEST_F(ProgramTest, FollowsBoundariesAndContinuesBitwiseAcrossMeshes) {
+  const std::string run =
+      "run --quiet --threads 1 --case two-rafts --mesh adaptive --cells 64 --epsilon 0.2 "
+      "--t-end 1.5 --checkpoint-interval 0 --out ";
+  ASSERT_EQ(traceraft(run + out("whole")).code, 0);
+  const pid_t child = testing::start_traceraft(run + out("killed"));
+  wait_for_rows("killed", 25);
+  kill_running(child);
+  ASSERT_EQ(traceraft("resume --quiet " + out("killed")).code, 0);
+  expect_same_results("whole", "killed");
+  const auto summary = json_of(folder.path / "whole/summary.json");
+  EXPECT_GE(summary["remeshes"], 1);
+  EXPECT_LT(summary["mean_nodes"], 9000);  // of 10,912
+  EXPECT_LT(summary["mass_drift"], 1e-12);
+  EXPECT_EQ(summary["energy_rises"], 0);
+}
+
+TEST_F(ProgramTest, SaysWhereNoMeshCanFollow) {
+  const std::string run = "run --validate --mesh adaptive --case two-rafts ";
+  EXPECT_TRUE(refuses(traceraft(run + "--effect thermal:strength=1e-6"), "uniform"));
+  EXPECT_TRUE(refuses(traceraft(run + "--cells 100 --mesh-levels 3"), "nearest: 104"));
+  EXPECT_TRUE(refuses(traceraft(run + "--cells 17"), "--mesh uniform"));
+  EXPECT_TRUE(refuses(traceraft("run --validate --mesh-levels 3"), "--mesh adaptive"));
+  EXPECT_TRUE(refuses(traceraft("run --validate --mesh fine"), "uniform, adaptive"));
+  EXPECT_TRUE(refuses(traceraft("run --validate --cells 64 --cells-per-boundary 4"), "either"));
+  const ProgramEnd end = traceraft("run --validate --scaled --epsilon 0.1 --cells-per-boundary 4");
+  EXPECT_TRUE(names(end.output, "64 cells per edge")) << end.output;
+}
+
 TEST_F(ProgramTest, StartsAgainWhenKilledBeforeTheFirstCheckpoint) {
   ASSERT_EQ(traceraft("run --quiet " + quick + "--out " + out("whole")).code, 0);
   // The folder as a kill right after the configuration was written leaves it.

@@ -129,6 +129,15 @@ TEST(Flow, FollowsFromViscositiesLineTensionAndTemperature) {
   ASSERT_EQ(physical.effects.size(), 2u);
   ASSERT_EQ(scaled.effects.size(), 2u);
   const Vec c = random_vector(space->nodes(), 1), mu = random_vector(space->nodes(), 2);
+  // A well whose boundaries are half as wide and pull twice as much.
+  problem::CahnHilliardModel steep = make_model();
+  steep.epsilon = 0.01;
+  steep.well.rho = 1;
+  add_effects("flow:membrane-viscosity=4,line-tension=2", kPhysical, steep);
+  const Vec mu_0 = random_vector(space->nodes(), 2), c_0 = random_vector(space->nodes(), 1);
+  const Vec usual = residual_of(*physical.effects[0], *space, 0.33, c_0, mu_0);
+  EXPECT_LT((residual_of(*steep.effects[0], *space, 0.33, c_0, mu_0) - usual).norm(),
+            1e-6 * usual.norm());
   for (std::size_t k = 0; k < 2; ++k) {
     const Vec a = residual_of(*physical.effects[k], *space, 0.33, c, mu),
               b = residual_of(*scaled.effects[k], *space, 0.33, c, mu);
@@ -173,7 +182,7 @@ TEST(Flow, FromNoiseLosesEnergyWithEveryIntegrator) {
 TEST(Flow, IsTwoEffectsByTheirNumbers) {
   const std::vector<EffectTerm> both = read_effects(
       "flow:membrane-viscosity=4,line-tension=1,temperature=298,hold=2", physics::Units{5, 1e-5});
-  const std::vector<EffectTerm> singles = in_single_strengths(both.front(), 0.01);
+  const std::vector<EffectTerm> singles = in_single_strengths(both.front(), 0.01, {});
   ASSERT_EQ(singles.size(), 2U);
   problem::CahnHilliardModel model = make_model();
   model.epsilon = 0.01;
@@ -189,7 +198,7 @@ TEST(Flow, IsTwoEffectsByTheirNumbers) {
   for (const EffectTerm& single : singles)
     EXPECT_EQ(with_effects(model, {single}).effects.size(), 1U);
   const EffectTerm other{"gravity", {0.3}};
-  EXPECT_EQ(in_single_strengths(other, 0.01).front().values, other.values);
+  EXPECT_EQ(in_single_strengths(other, 0.01, {}).front().values, other.values);
 }
 
 TEST(Flow, ShowsTheNumbersThatCount) {
@@ -212,7 +221,9 @@ TEST(Flow, RefusesWhatContradictsItself) {
   constexpr physics::Units kPhysical{5, 1e-5, false}, kScaled{5, 1e-5, true};
   for (const char* bad :
        {"flow:water=1", "flow:line-tension=1", "flow:membrane-viscosity=4",
-        "flow:membrane-viscosity=4,capillary=1", "flow:capillary=1,temperature=300"})
+        "flow:membrane-viscosity=4,capillary=1", "flow:capillary=1,temperature=300",
+        "flow:membrane-viscosity=4,line-tension=1,water=2", "flow:capillary=1,water-viscosity=2",
+        "flow:capillary=1,hold=4"})
     EXPECT_THROW(add_effects(bad, kPhysical, model), InputError) << bad;
   EXPECT_THROW(add_effects("flow:membrane-viscosity=4,line-tension=1", kScaled, model), InputError);
   EXPECT_NO_THROW(add_effects("flow:thermal=1e-3", kScaled, model));

@@ -24,13 +24,6 @@ std::vector<int> random_generations(const RefinementForest& forest, std::uint64_
   return wanted;
 }
 
-std::vector<int> generations(const RefinementForest& forest) {
-  std::vector<int> result;
-  for (const int leaf : forest.leaf_cells())
-    result.push_back(forest.cells()[static_cast<std::size_t>(leaf)].generation);
-  return result;
-}
-
 std::vector<std::int64_t> nodes_of(const geometry::LevelSet& surface,
                                    const RefinementForest& forest) {
   return build_active_mesh(surface, forest).node_id;
@@ -96,13 +89,15 @@ TEST(RefinementForest, GivesEachPlaceAtLeastWhatIsWantedThere) {
     forest = forest.refined(*surface, wanted);
   }
   const ActiveMesh mesh = build_active_mesh(*surface, forest);
-  const std::vector<int> generation = generations(forest);
+  const std::vector<int> generation = forest.leaf_generations();
   int coarsest = 9;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     coarsest = std::min(coarsest, generation[t]);
     EXPECT_NEAR(mesh.shape(mesh.tets[t]).size, std::exp2((9 - generation[t]) / 3.0), 1e-12);
     for (const int node : mesh.tets[t].node)
-      if (in_cap(mesh.position(node))) EXPECT_EQ(generation[t], 9);
+      if (in_cap(mesh.position(node))) {
+        EXPECT_EQ(generation[t], 9);
+      }
   }
   EXPECT_EQ(coarsest, 0);
 }
@@ -112,7 +107,7 @@ TEST(RefinementForest, KeepsWhatIsWantedAsItIs) {
   const RefinementForest coarse(*surface, {64, 2}, 1);
   const RefinementForest forest = coarse.refined(*surface, random_generations(coarse, 4));
   EXPECT_NE(nodes_of(*surface, forest), nodes_of(*surface, coarse));
-  EXPECT_EQ(nodes_of(*surface, forest.refined(*surface, generations(forest))),
+  EXPECT_EQ(nodes_of(*surface, forest.refined(*surface, forest.leaf_generations())),
             nodes_of(*surface, forest));
   const std::vector<int> coarsest(forest.leaf_cells().size(), 1);
   EXPECT_EQ(nodes_of(*surface, forest.refined(*surface, coarsest)), nodes_of(*surface, coarse));

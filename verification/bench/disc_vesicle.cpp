@@ -14,9 +14,9 @@ std::vector<observables::Observables> follow_discs(const Bench& bench,
   discs::DiscSystem system(own, tolerance, discs::start_state(own, discs::random_discs(start)));
   std::vector<observables::Observables> history;
   while (history.size() < times.size()) {
-    require(system.advance(times.back()));
+    if (system.state().t < times[history.size()]) require(system.advance(times[history.size()]));
     for (; history.size() < times.size() && times[history.size()] <= system.state().t;)
-      history.push_back(observables::observe(system, system.interpolated(times[history.size()])));
+      history.push_back(observables::observe(system, system.state()));
   }
   return history;
 }

@@ -9,7 +9,7 @@ MeshTransfer::MeshTransfer(const fem::SurfaceSpace& from, bench::SpacePtr to,
     : to_(std::move(to)) {
   const mesh::CutSurface& surface = to_->surface;
   std::vector<Point> points;
-  std::vector<SurfacePlace> places;
+  std::vector<mesh::SurfacePlace> places;
   Vec weights(static_cast<Eigen::Index>(surface.triangles.size() * fem::kDegreeFourRule.size()));
   for (std::size_t t = 0; t < surface.triangles.size(); ++t)
     for (std::size_t p = 0; p < fem::kDegreeFourRule.size(); ++p) {

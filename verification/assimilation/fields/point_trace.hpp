@@ -2,22 +2,17 @@
 #pragma once
 
 #include <Eigen/Sparse>
-#include <array>
 #include <vector>
 
 #include "kernel/fem/surface_space.hpp"
+#include "kernel/mesh/nearest_triangle.hpp"
 
 namespace traceraft::assimilation {
 
 // A row per point, a column per node: values = trace · nodal. Serial spaces only.
 using PointTrace = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-// A point of Γ_h: on one of its triangles, in barycentric coordinates.
-struct SurfacePlace {
-  int triangle;
-  std::array<double, 3> at;
-};
-PointTrace trace_at(const fem::SurfaceSpace& space, const std::vector<SurfacePlace>& places);
+PointTrace trace_at(const fem::SurfaceSpace& space, const std::vector<mesh::SurfacePlace>& places);
 
 // A field at a point is c_h at the point of Γ_h nearest to it. Throws InputError naming the first
 // point that is further than `reach` away.

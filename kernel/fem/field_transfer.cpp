@@ -1,0 +1,77 @@
+#include "kernel/fem/field_transfer.hpp"
+
+#include <algorithm>
+
+#include "kernel/mesh/nearest_triangle.hpp"
+
+namespace traceraft::fem {
+namespace {
+
+// The barycentric coordinates of a point; false if one is below −tolerance.
+bool inside(const mesh::ActiveMesh& mesh, const mesh::ActiveTet& tet, const Point& x,
+            std::array<double, 4>& at) {
+  constexpr double kRoundoff = 1e-9;
+  const Point from_first = (x - mesh.position(tet.node[0])) / mesh.cube.h();
+  const auto& gradient = mesh.shape(tet).gradients;
+  for (int i = 0; i < 4; ++i) {
+    at[i] = (i == 0 ? 1 : 0) + gradient.row(i).dot(from_first);
+    if (at[i] < -kRoundoff) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+FieldTransfer::FieldTransfer(const SurfaceSpace& from, const SurfaceSpace& to)
+    : begin_{0}, old_area_(from.node_area), new_area_(to.node_area), area_(to.area) {
+  const auto& ids = from.mesh.node_id;
+  const mesh::NearestTriangle nearest(from.surface);
+  const auto add = [&](int node, double weight) {
+    node_.push_back(node);
+    weight_.push_back(weight);
+  };
+  for (int i = 0; i < to.nodes(); ++i) {
+    const auto same = std::lower_bound(ids.begin(), ids.end(), to.mesh.node_id[i]);
+    if (same != ids.end() && *same == to.mesh.node_id[i]) {
+      add(static_cast<int>(same - ids.begin()), 1);
+      ++copied_;
+    } else {
+      const Point x = to.mesh.position(i);
+      const mesh::SurfacePlace place = nearest.find(x).place;
+      const mesh::ActiveTet& tet = from.mesh.tets[from.surface.triangle_tet[place.triangle]];
+      std::array<double, 4> at;
+      if (inside(from.mesh, tet, x, at)) {
+        for (std::size_t k = 0; k < 4; ++k) add(tet.node[k], at[k]);
+      } else {
+        for (std::size_t k = 0; k < 3; ++k) {
+          const mesh::CutPoint& cut =
+              from.surface.points[from.surface.triangles[place.triangle][k]];
+          add(cut.low, place.at[k] * (1 - cut.s));
+          add(cut.high, place.at[k] * cut.s);
+        }
+      }
+    }
+    begin_.push_back(static_cast<int>(node_.size()));
+  }
+}
+
+Vec FieldTransfer::field(VecView nodal) const {
+  Vec result(new_area_.size());
+  for (Eigen::Index i = 0; i < result.size(); ++i) {
+    double sum = 0;
+    for (int k = begin_[i]; k < begin_[i + 1]; ++k) sum += weight_[k] * nodal[node_[k]];
+    result[i] = sum;
+  }
+  return result;
+}
+
+Vec FieldTransfer::state(VecView y) const {
+  const Eigen::Index old_nodes = old_area_.size(), nodes = new_area_.size();
+  Vec result(2 * nodes);
+  Vec c = field(y.head(old_nodes));
+  c.array() += (dot(old_area_, y.head(old_nodes)) - dot(new_area_, c)) / area_;
+  result << c, field(y.tail(old_nodes));
+  return result;
+}
+
+}  // namespace traceraft::fem

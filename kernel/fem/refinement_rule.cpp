@@ -1,0 +1,55 @@
+#include "kernel/fem/refinement_rule.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace traceraft::fem {
+
+std::vector<double> boundary_indicator(const SurfaceSpace& space, double epsilon, VecView c) {
+  std::vector<double> indicator;
+  indicator.reserve(space.elements.size());
+  for (const CutElement& element : space.elements) {
+    double square = 0;  // |∇_Γ c|² = −Σ ∇_Γλ_i·∇_Γλ_j (c_i − c_j)² over the edges
+    for (std::size_t e = 0; e < 6; ++e) {
+      const auto& [i, j] = mesh::kTetEdges[e];
+      const double difference = c[element.node[i]] - c[element.node[j]];
+      square -= element.coupling[e] * difference * difference;
+    }
+    indicator.push_back(epsilon * std::sqrt(std::max(0.0, square)));
+  }
+  return indicator;
+}
+
+int RefinementRule::generation(double indicator, double threshold_now) const {
+  constexpr double kRoundoff = 1e-9;
+  if (!(indicator < threshold_now)) return finest_generation;
+  // Three generations halve the size.
+  const double coarser = 1.5 * std::log2(threshold_now / std::max(indicator, 1e-300));
+  const double most = finest_generation - coarsest_generation;
+  return finest_generation - static_cast<int>(std::min(most, coarser + kRoundoff));
+}
+
+std::vector<int> wanted_generations(const SurfaceSpace& space, const RefinementRule& rule,
+                                    const std::vector<double>& indicator,
+                                    const std::vector<int>& generation) {
+  std::vector<int> wanted, at_node(static_cast<std::size_t>(space.nodes()), 0);
+  for (std::size_t t = 0; t < indicator.size(); ++t) {
+    const int least = rule.generation(indicator[t], rule.threshold);
+    const int most = rule.generation(indicator[t], 0.5 * rule.threshold);
+    wanted.push_back(std::clamp(generation[t], least, most));
+    for (const int node : space.elements[t].node)
+      at_node[node] = std::max(at_node[node], wanted.back());
+  }
+  for (std::size_t t = 0; t < wanted.size(); ++t)
+    for (const int node : space.elements[t].node) wanted[t] = std::max(wanted[t], at_node[node]);
+  return wanted;
+}
+
+bool too_coarse(const RefinementRule& rule, const std::vector<double>& indicator,
+                const std::vector<int>& generation) {
+  for (std::size_t t = 0; t < indicator.size(); ++t)
+    if (generation[t] < rule.generation(indicator[t], 2 * rule.threshold)) return true;
+  return false;
+}
+
+}  // namespace traceraft::fem

@@ -1,0 +1,86 @@
+#include "kernel/simulation/mesh_adaptation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "kernel/fem/field_transfer.hpp"
+
+namespace traceraft::simulation {
+namespace {
+
+// A remesh costs one to two steps. It is worth it where it saves a tenth of the tetrahedra.
+constexpr int kStepsBetweenLooks = 15;
+constexpr double kWorthIt = 0.9;
+
+// The integrator takes over the run of another one on another mesh.
+void carry(const time::Integrator& from, const fem::FieldTransfer& transfer, time::Integrator& to) {
+  std::stringstream stream;
+  from.save(CheckpointOut(stream));
+  const CarriedStates carried{from.state().size(), [&](VecView y) { return transfer.state(y); }};
+  to.load(CheckpointIn(stream, carried));
+}
+
+}  // namespace
+
+MeshAdaptation::MeshAdaptation(mesh::RefinementForest forest, const fem::RefinementRule& rule,
+                               MakeSpace make_space, MakeRest make_rest)
+    : forest_(std::move(forest)),
+      rule_(rule),
+      make_space_(std::move(make_space)),
+      make_rest_(std::move(make_rest)) {}
+
+Status MeshAdaptation::before_step(Discretisation& on) {
+  const fem::SurfaceSpace& space = *on.space;
+  const problem::CahnHilliardModel& model = on.problem->model();
+  const std::vector<double> indicator =
+      fem::boundary_indicator(space, model.epsilon / (model.well.b - model.well.a),
+                              on.problem->c_of(on.integrator->state()));
+  const std::vector<int> generation = forest_.leaf_generations();
+  statistics_.node_steps += space.nodes();
+  ++statistics_.steps;
+  const bool must = fem::too_coarse(rule_, indicator, generation);
+  if (!must && ++steps_since_ < kStepsBetweenLooks) return {};
+  steps_since_ = 0;
+  mesh::RefinementForest forest = forest_.refined(
+      *space.level_set, fem::wanted_generations(space, rule_, indicator, generation));
+  const double ratio = static_cast<double>(forest.leaf_cells().size()) /
+                       static_cast<double>(forest_.leaf_cells().size());
+  if (!must && ratio > kWorthIt) return {};
+  mesh::ActiveMesh mesh = mesh::build_active_mesh(*space.level_set, forest);
+  if (mesh.node_id == space.mesh.node_id && mesh.tets.size() == space.mesh.tets.size()) return {};
+  return move_to(on, std::move(forest), std::move(mesh));
+}
+
+Status MeshAdaptation::move_to(Discretisation& on, mesh::RefinementForest forest,
+                               mesh::ActiveMesh mesh) {
+  Discretisation next = make_rest_(make_space_(std::move(mesh)));
+  const double before = on.problem->energy(on.integrator->state());
+  try {
+    carry(*on.integrator, fem::FieldTransfer(*on.space, *next.space), *next.integrator);
+  } catch (const IoError& error) {
+    return Status::fatal(std::string("the new mesh: ") + error.what());
+  }
+  const double after = next.problem->energy(next.integrator->state());
+  const double jump =
+      (after - before) / std::max(std::fabs(before), on.problem->energy_scale() * 1e-3);
+  statistics_.highest_jump = std::max(statistics_.highest_jump, jump);
+  statistics_.lowest_jump = std::min(statistics_.lowest_jump, jump);
+  ++statistics_.remeshes;
+  forest_ = std::move(forest);
+  std::swap(on, next);  // integrators go before the problems that they refer to
+  return {};
+}
+
+void MeshAdaptation::save(CheckpointOut out) const {
+  write_binary(out, statistics_);
+  write_binary(out, steps_since_);
+}
+
+void MeshAdaptation::load(CheckpointIn in) {
+  read_binary(in, statistics_);
+  read_binary(in, steps_since_);
+}
+
+}  // namespace traceraft::simulation
