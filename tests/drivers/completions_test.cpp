@@ -185,14 +185,14 @@ TEST(Completions, WordsAreAccepted) {
     if (option.placeholder.find('|') == std::string::npos) continue;
     for (const auto& [word, meaning] : manual::offered_values(option.placeholder).values) {
       const ProgramEnd end =
-          traceraft("run --validate --quiet --case two-rafts --cells 12 --epsilon 1 " +
+          traceraft("run --validate --quiet --case two-rafts --cells 32 --epsilon 1 " +
                     std::string(option.flags.front() == "--keep" ? "--integrator euler " : "") +
                     option.flags.front() + " " + word);
       EXPECT_EQ(end.code, 0) << option.flags.front() << " " << word << ": " << end.output;
       ++accepted;
     }
   }
-  EXPECT_EQ(accepted, 11u) << "of --model, --potential, --keep and --energy-guard";
+  EXPECT_EQ(accepted, 13u) << "of --model, --mesh, --potential, --keep and --energy-guard";
 }
 
 TEST(Completions, UnknownShellsAreAnswered) {

@@ -217,7 +217,7 @@ TEST_F(ProgramTest, SaysWhereNoMeshCanFollow) {
   EXPECT_TRUE(refuses(traceraft("run --validate --mesh fine"), "uniform, adaptive"));
   EXPECT_TRUE(refuses(traceraft("run --validate --cells 64 --cells-per-boundary 4"), "either"));
   const ProgramEnd end = traceraft("run --validate --scaled --epsilon 0.1 --cells-per-boundary 4");
-  EXPECT_TRUE(names(end.output, "64 cells per edge")) << end.output;
+  EXPECT_TRUE(names(end.output, "32 cells per edge")) << end.output;
 }
 
 TEST_F(ProgramTest, StartsAgainWhenKilledBeforeTheFirstCheckpoint) {
