@@ -41,7 +41,7 @@ void require_strength(const EffectEntry& entry, const Parameters& given) {
                    entry.name + ":" + joined(strengths, "=..., or ") + "=...");
 }
 
-// What contradicts another strength is the effect's own to say.
+// An effect says itself which of its strengths contradict each other.
 void refuse_idle_parameters(const EffectEntry& entry, const EffectTerm& term,
                             const Parameters& given, const std::vector<ParameterSpec>& specs) {
   for (std::size_t k = static_cast<std::size_t>(entry.strengths); k < specs.size(); ++k)

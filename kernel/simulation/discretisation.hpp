@@ -1,4 +1,4 @@
-// What a run computes with on its present mesh.
+// The objects that a run computes with on its present mesh.
 #pragma once
 
 #include <memory>

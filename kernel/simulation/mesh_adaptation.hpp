@@ -11,7 +11,7 @@
 
 namespace traceraft::simulation {
 
-// What changes of meshes did to a run.
+// The changes of meshes in a run.
 struct RemeshStatistics {
   long remeshes = 0;
   double highest_jump = 0, lowest_jump = 0;  // of the energy, over that before the jump

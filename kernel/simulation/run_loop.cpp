@@ -5,7 +5,7 @@
 namespace traceraft::simulation {
 namespace {
 
-// What the monitor sees between two meshes is no rise of the energy.
+// For the monitor a jump of the energy between two meshes is no rise.
 Status follow_boundaries(RunState& state) {
   if (!state.adaptation) return {};
   const long before = state.adaptation->statistics().remeshes;
