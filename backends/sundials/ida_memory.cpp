@@ -56,10 +56,14 @@ void load_ida_memory(void* memory, CheckpointIn in) {
   for_each_number(m, [&](auto& number) { read_binary(in, number); });
   Vec buffer;
   for (int k = 0; k < vectors(m); ++k) {
-    read_binary(in, buffer, view(m->ida_phi[k]).size());
+    // The first is the state, the others are divided differences.
+    if (k == 0)
+      read_binary(in, buffer, view(m->ida_phi[k]).size());
+    else
+      read_difference(in, buffer, view(m->ida_phi[k]).size());
     view(m->ida_phi[k]) = buffer;
   }
-  read_binary(in, buffer, view(m->ida_ee).size());
+  read_difference(in, buffer, view(m->ida_ee).size());
   view(m->ida_ee) = buffer;
 }
 

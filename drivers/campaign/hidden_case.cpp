@@ -30,11 +30,12 @@ input::Json truth_json(const selection::BlindCase& drawn, const selection::Blind
   for (const effects::EffectTerm& term : drawn.truth) {
     const auto& specs = effects::effects().find(term.effect).parameters;
     input::Json values = input::Json::object();
-    for (std::size_t k = 0; k < specs.size(); ++k)
-      values[specs[k].name] = {
-          {"value", term.values[k] / effects::to_model_units(specs[k].unit, own)},
-          {"unit", specs[k].unit},
-          {"scaled", term.values[k]}};
+    for (std::size_t k = 0; k < specs.size(); ++k)  // those that count
+      if (effects::is_used(term, k))
+        values[specs[k].name] = {
+            {"value", term.values[k] / effects::to_model_units(specs[k].unit, own)},
+            {"unit", specs[k].unit},
+            {"scaled", term.values[k]}};
     hidden.push_back({{"effect", term.effect}, {"parameters", values}});
   }
   return {{"salt", sodium::random_salt()},
@@ -126,8 +127,11 @@ HiddenTruth open_truth(const fs::path& folder) {
     HiddenTruth truth{{}, json.at("diffusion_ratio"), json.at("noise")};
     for (const input::Json& hidden : json.at("effects")) {
       effects::EffectTerm term{hidden.at("effect"), {}};
-      for (const input::Json& parameter : hidden.at("parameters"))
-        term.values.push_back(parameter.at("scaled"));
+      const input::Json& values = hidden.at("parameters");
+      for (const ParameterSpec& spec : effects::effects().find(term.effect).parameters)
+        term.values.push_back(values.contains(spec.name)
+                                  ? values.at(spec.name).at("scaled").get<double>()
+                                  : spec.default_value);  // it does nothing
       truth.effects.push_back(term);
     }
     return truth;

@@ -219,7 +219,7 @@ void print_setup(const config::Configuration& configuration, const RunSetup& run
   print_line("phase boundary", resolution_text(configuration, run));
   print_physics(configuration, units);
   if (const double longest = run.problem->longest_step(); longest < run.t_end)
-    print_line("steps", formatted("at least %.0f: its effects limit a step to %g %s",
+    print_line("steps", formatted("at least %.0f: the effects allow steps up to %g %s",
                                   std::ceil(run.t_end / longest), longest * units.time(),
                                   text::unit_name(text::Unit::time, units.scaled).c_str()));
   print_units(run);

@@ -22,10 +22,11 @@ struct CheckpointOut {
   const GlobalOrder* order = nullptr;
 };
 
-// State vectors that were written on another mesh, and what they are on the present one.
+// State vectors that were written on another mesh, and what they are on the present one. Carrying
+// is affine: a difference of states becomes the difference of what they become.
 struct CarriedStates {
   Eigen::Index length;  // of those that were written
-  std::function<Vec(VecView)> carry;
+  std::function<Vec(VecView)> state, difference;
 };
 
 struct CheckpointIn {
@@ -72,12 +73,12 @@ void read_binary(CheckpointIn in, T& value) {
   value = scatter(ranks, values)[0].value;
 }
 
-// `expected`: the length on this rank.
+// A state vector. `expected`: the length on this rank.
 inline void read_binary(CheckpointIn in, Vec& state, Eigen::Index expected) {
   if (in.carried) {
     Vec written;
     read_binary(in.stream, written, in.carried->length);
-    state = in.carried->carry(written);
+    state = in.carried->state(written);
     return;
   }
   if (!in.distributed()) return read_binary(in.stream, state, expected);
@@ -88,6 +89,14 @@ inline void read_binary(CheckpointIn in, Vec& state, Eigen::Index expected) {
   state.resize(expected);
   state << in.order->scattered(whole.head(root ? n : 0)),
       in.order->scattered(whole.tail(root ? n : 0));
+}
+
+// A difference of state vectors, or a rate.
+inline void read_difference(CheckpointIn in, Vec& difference, Eigen::Index expected) {
+  if (!in.carried) return read_binary(in, difference, expected);
+  Vec written;
+  read_binary(in.stream, written, in.carried->length);
+  difference = in.carried->difference(written);
 }
 
 }  // namespace traceraft

@@ -175,6 +175,25 @@ Status CahnHilliard::consistent_initial_state(double t, VecRef y, VecRef ydot) c
   return {};
 }
 
+// Corrections with ε² (K + ρ S) + β M̃ in place of the tangent, which is not definite.
+Status CahnHilliard::fit_concentration(double t, VecRef y) const {
+  constexpr int kCorrections = 3;
+  const int n = block_size();
+  const fem::CsrMatrix matrix =
+      fem::combine(1, gradient_energy_, model_.beta(), space_->stabilised_mass);
+  const Vec rest = Vec::Zero(size());
+  Vec r(size()), correction(n);
+  const double mass = this->mass(y);
+  for (int k = 0; k < kCorrections; ++k) {
+    if (Status status = residual(t, y, rest, r); !status.ok()) return status;
+    if (Status status = space_->solve_spd(matrix, r.tail(n), correction, 1e-6); !status.ok())
+      return status;
+    y.head(n) += correction;
+  }
+  y.head(n).array() += (mass - this->mass(y)) / space_->area;
+  return {};
+}
+
 double CahnHilliard::norm(VecView y) const {
   return std::sqrt(std::max(0.0, space_->inner(c_of(y), c_of(y))));
 }

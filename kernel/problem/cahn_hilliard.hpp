@@ -69,6 +69,10 @@ class CahnHilliard final : public DaeProblem {
   double energy_scale() const override;  // of a surface halfway between the wells
   const Communicator& ranks() const override { return *space_->communicator; }
 
+  // c of a state (c, μ) that does not quite fulfil F2, moved until it does with μ as it is; ∫c
+  // stays. Where c has been interpolated, μ from F2 would be rough, and rough parts decay at once.
+  Status fit_concentration(double t, VecRef y) const;
+
   const fem::SurfaceSpace& space() const { return *space_; }
   const CahnHilliardModel& model() const { return model_; }
 

@@ -14,12 +14,23 @@ namespace {
 constexpr int kStepsBetweenLooks = 15;
 constexpr double kWorthIt = 0.9;
 
-// The integrator takes over the run of another one on another mesh.
-void carry(const time::Integrator& from, const fem::FieldTransfer& transfer, time::Integrator& to) {
+// The integrator takes over the run of another one on another mesh. All states move as much as the
+// newest has to, so that what is extrapolated from them is as smooth as before.
+Status carry(const Discretisation& from, Discretisation& to) {
+  const fem::FieldTransfer transfer(*from.space, *to.space);
+  const Vec& newest = from.integrator->state();
+  const auto difference = [&](VecView y) { return transfer.state(y); };
+  const Vec interpolated = difference(newest);
+  Vec fitted = interpolated;
+  const Status status = to.problem->fit_concentration(from.integrator->time(), fitted);
+  if (!status.ok()) return status;
+  const Vec shift = fitted - interpolated;
+  const CarriedStates carried{
+      newest.size(), [&](VecView y) -> Vec { return transfer.state(y) + shift; }, difference};
   std::stringstream stream;
-  from.save(CheckpointOut(stream));
-  const CarriedStates carried{from.state().size(), [&](VecView y) { return transfer.state(y); }};
-  to.load(CheckpointIn(stream, carried));
+  from.integrator->save(CheckpointOut(stream));
+  to.integrator->load(CheckpointIn(stream, carried));
+  return {};
 }
 
 }  // namespace
@@ -58,9 +69,10 @@ Status MeshAdaptation::move_to(Discretisation& on, mesh::RefinementForest forest
   Discretisation next = make_rest_(make_space_(std::move(mesh)));
   const double before = on.problem->energy(on.integrator->state());
   try {
-    carry(*on.integrator, fem::FieldTransfer(*on.space, *next.space), *next.integrator);
+    if (Status status = carry(on, next); !status.ok())
+      return Status::fatal("the state on a new mesh: " + status.why);
   } catch (const IoError& error) {
-    return Status::fatal(std::string("the new mesh: ") + error.what());
+    return Status::fatal(std::string("the state on a new mesh: ") + error.what());
   }
   const double after = next.problem->energy(next.integrator->state());
   const double jump =

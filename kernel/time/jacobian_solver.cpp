@@ -148,7 +148,7 @@ void JacobianSolver::load(CheckpointIn in) {
     read_binary(in, origin.shift);
     read_binary(in, origin.tangent);
     read_binary(in, origin.y, problem_.size());
-    read_binary(in, origin.ydot, problem_.size());
+    read_difference(in, origin.ydot, problem_.size());
     Status status =
         problem_.jacobian(origin.t, origin.y, origin.ydot, origin.shift, origin.tangent, J_[0]);
     if (status.ok()) status = renew(0);
