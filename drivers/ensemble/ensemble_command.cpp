@@ -170,8 +170,7 @@ std::string resolution_of(const config::Configuration& configuration) {
     (void)run::build_disc_run(configuration);
     return "model of discs";
   }
-  return run::resolution_text(configuration,
-                              run::build_run(configuration));
+  return run::resolution_text(configuration, run::build_run(configuration));
 }
 
 int run_ensemble(const EnsembleRequest& request) {

@@ -208,8 +208,7 @@ TEST(RunSetup, ChecksEverythingBeforeAnythingRuns) {
   const auto of = [](std::initializer_list<std::pair<std::string, std::string>> values) {
     config::GivenValues given = flags(values);
     given.emplace("cells", config::GivenValue{"16", "--cells"});
-    return complaint(
-        [&] { run::build_run(config::Configuration({}, given)); });
+    return complaint([&] { run::build_run(config::Configuration({}, given)); });
   };
   EXPECT_EQ(of({{"epsilon", "0.5"}}), "");
   EXPECT_EQ(of({{"surface", "spere"}}).find("--surface: unknown surface 'spere'; did you mean"),
@@ -249,9 +248,8 @@ TEST(RunSetup, RefusesTimesThatDoublesCannotHold) {
   const auto of = [](std::initializer_list<std::pair<std::string, std::string>> values) {
     config::GivenValues given = flags(values);
     given.emplace("cells", config::GivenValue{"8", "--cells"});
-    return complaint([&] {
-      run::build_run(config::Configuration({}, given), run::InitialState{true});
-    });
+    return complaint(
+        [&] { run::build_run(config::Configuration({}, given), run::InitialState{true}); });
   };
   const std::string allowed = " is too short or too long to compute with (allowed: ";
   EXPECT_EQ(of({{"t-end", "1e-300"}}), "--t-end: 1e-300" + allowed + "1e-102 to 1e+98)");
@@ -287,8 +285,7 @@ TEST(RunSetup, RefusesOptionsOfMethodsThatAreNotChosen) {
   config::GivenValues given = flags({{"cells", "8"}, {"ida-maxord", "2"}});
   const auto of = [&](const auto&... compared) {
     return complaint([&] {
-      run::build_run(config::Configuration({}, given), run::InitialState{true},
-                     compared...);
+      run::build_run(config::Configuration({}, given), run::InitialState{true}, compared...);
     });
   };
   EXPECT_EQ(of(), "");
