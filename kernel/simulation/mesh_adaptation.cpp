@@ -54,8 +54,11 @@ Status MeshAdaptation::before_step(Discretisation& on) {
   const bool must = fem::too_coarse(rule_, indicator, generation);
   if (!must && ++steps_since_ < kStepsBetweenLooks) return {};
   steps_since_ = 0;
-  mesh::RefinementForest forest = forest_.refined(
-      *space.level_set, fem::wanted_generations(space, rule_, indicator, generation));
+  std::vector<int> wanted = fem::wanted_generations(space, rule_, indicator, generation);
+  // A coarsened place may soon have to be refined again: coarsening waits for a look.
+  if (must)
+    for (std::size_t t = 0; t < wanted.size(); ++t) wanted[t] = std::max(wanted[t], generation[t]);
+  mesh::RefinementForest forest = forest_.refined(*space.level_set, wanted);
   const double ratio = static_cast<double>(forest.leaf_cells().size()) /
                        static_cast<double>(forest_.leaf_cells().size());
   if (!must && ratio > kWorthIt) return {};
