@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "drivers/run/checked_options.hpp"
 #include "kernel/mesh/lifted_surface.hpp"

@@ -48,19 +48,20 @@ CsrMatrix stiffness_matrix(const SurfaceSpace& space) {
   });
 }
 
-CsrMatrix normal_matrix(const SurfaceSpace& space) {
-  return zero_row_sum_matrix(
-      space, [&](std::size_t t) { return normal_coupling(space.mesh, space.mesh.tets[t]); });
-}
-
-// The same with the weights h_T/h.
-CsrMatrix local_normal_matrix(const SurfaceSpace& space) {
+// Σ_T weight(shape of T) S_T.
+template <class Weight>
+CsrMatrix normal_matrix(const SurfaceSpace& space, const Weight& weight) {
   return zero_row_sum_matrix(space, [&](std::size_t t) {
     const mesh::ActiveTet& tet = space.mesh.tets[t];
     std::array<double, 6> value = normal_coupling(space.mesh, tet);
-    for (double& entry : value) entry *= space.mesh.shape(tet).size;
+    for (double& entry : value) entry *= weight(space.mesh.shape(tet));
     return value;
   });
+}
+
+CsrMatrix stabilised_mass_matrix(const SurfaceSpace& space) {
+  return combine(1.0, space.mass, space.mass_stabilisation * space.h(),
+                 normal_matrix(space, [](const mesh::TetShape& shape) { return shape.size; }));
 }
 
 CsrMatrix mass_matrix(const SurfaceSpace& space) {
@@ -165,8 +166,8 @@ SurfaceSpace::SurfaceSpace(geometry::LevelSetPtr level_set_, Geometry geometry,
       mass_stabilisation(mass_stabilisation_),
       mass(mass_matrix(*this)),
       stiffness(stiffness_matrix(*this)),
-      normal_stiffness(normal_matrix(*this)),
-      stabilised_mass(combine(1.0, mass, mass_stabilisation * h(), local_normal_matrix(*this))),
+      normal_stiffness(normal_matrix(*this, [](const mesh::TetShape&) { return 1.0; })),
+      stabilised_mass(stabilised_mass_matrix(*this)),
       node_area(Vec::Zero(nodes())),
       totals(totals_of(mesh, surface, *communicator)),
       order({mesh.node_id.begin(), mesh.node_id.begin() + mesh.owned_nodes}, communicator) {

@@ -14,11 +14,6 @@ class LatticeIndex {
   LatticeIndex() { resize(1 << 10); }
 
   bool contains(std::int64_t id) const { return slots_[slot(id)].id == id; }
-  // The number of a point; −1 if it has none.
-  int find(std::int64_t id) const {
-    const Slot& at = slots_[slot(id)];
-    return at.id == id ? at.number : -1;
-  }
   // The number that the point has, or gets now.
   int insert(std::int64_t id, int number) {
     Slot& at = slots_[slot(id)];

@@ -82,9 +82,8 @@ class RefinementForest::Builder {
     forest_.bend_ = other.bend_;
   }
 
-  // Bisects every near cell, depth first, of which bisects(cell number, mark) holds. Roots have the
-  // mark that marks of their number are; those of children are child_mark(mark of the parent, 0 or
-  // 1).
+  // Visits near cells, depth first, and bisects those of which bisects(cell, mark) holds. The mark
+  // of a root is its number, that of a child is child_mark(mark of the parent, 0 or 1).
   template <class Bisects, class ChildMark>
   void grow(const Bisects& bisects, const ChildMark& child_mark) {
     std::vector<std::pair<int, int>> todo;  // cell and mark
