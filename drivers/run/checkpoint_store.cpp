@@ -14,7 +14,7 @@
 namespace traceraft::run {
 namespace {
 
-constexpr char kMagic[] = "traceraft checkpoint 5\n";  // the number is the version of the format
+constexpr char kMagic[] = "traceraft checkpoint 6\n";  // the number is the version of the format
 constexpr std::size_t kMagicSize = sizeof kMagic - 1;
 constexpr std::uint64_t kLargestCheckpoint = std::uint64_t{1} << 36;
 constexpr std::size_t kKept = 2;
@@ -200,17 +200,6 @@ Vec concentration_of(const Checkpoint& checkpoint, const std::filesystem::path& 
   return Eigen::Map<const Vec>(checkpoint.concentration.data(), nodes);
 }
 
-namespace {
-
-// The line of an option in a numerical identity.
-std::string line_of(const std::string& identity, const std::string& option) {
-  const std::size_t begin = ("\n" + identity).find("\n" + option + " = ");
-  return begin == std::string::npos ? ""
-                                    : identity.substr(begin, identity.find('\n', begin) - begin);
-}
-
-}  // namespace
-
 std::optional<Checkpoint> last_checkpoint(const std::filesystem::path& run_folder,
                                           const std::string& identity) {
   const CheckpointStore store(run_folder / "checkpoints");
@@ -222,30 +211,6 @@ std::optional<Checkpoint> last_checkpoint(const std::filesystem::path& run_folde
                      "run with --initial restart:" +
                      run_folder.string());
   return checkpoint;
-}
-
-Vec final_concentration(const std::filesystem::path& run_folder, int nodes,
-                        const std::string& identity) {
-  std::error_code unreadable;
-  if (!std::filesystem::is_directory(run_folder / "checkpoints", unreadable))
-    throw InputError("restart: " + run_folder.string() +
-                     " is not the folder of a run: it has no checkpoints");
-  Checkpoint checkpoint;
-  try {
-    checkpoint = CheckpointStore(run_folder / "checkpoints").newest();
-  } catch (const IoError& error) {
-    throw InputError(std::string("restart: ") + error.what());
-  } catch (const std::filesystem::filesystem_error& error) {
-    throw InputError(std::string("restart: ") + error.what());
-  }
-  for (const char* option : {"surface", "surface-formula", "cells"}) {
-    const std::string theirs = line_of(checkpoint.configuration, option);
-    const std::string ours = line_of(identity, option);
-    if (theirs != ours)
-      throw InputError("restart: " + run_folder.string() + " has " + theirs +
-                       ", but this run has " + ours);
-  }
-  return concentration_of(checkpoint, run_folder, nodes);
 }
 
 }  // namespace traceraft::run

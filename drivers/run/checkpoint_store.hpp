@@ -96,10 +96,4 @@ Vec concentration_of(const Checkpoint& checkpoint, const std::filesystem::path& 
 std::optional<Checkpoint> last_checkpoint(const std::filesystem::path& run_folder,
                                           const std::string& identity);
 
-// c at the nodes in the newest checkpoint of another run's folder. Throws InputError if there is
-// none or it is on another mesh: surface and cells are compared with the numerical identity of this
-// run.
-Vec final_concentration(const std::filesystem::path& run_folder, int nodes,
-                        const std::string& identity);
-
 }  // namespace traceraft::run

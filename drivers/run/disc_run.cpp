@@ -125,7 +125,7 @@ class DiscRun {
     time::IntegratorStatistics steps;
     steps.steps = run_.system->statistics().steps;
     steps.rejected = run_.system->statistics().rejected;
-    return {run_.units, row, t, run_.system->step(), steps, {}};
+    return {run_.units, row, t, run_.system->step(), steps, {}, 0};
   }
   RunCost cost() const {
     return {before_.wall_seconds + watch_.seconds(),
@@ -152,7 +152,7 @@ class DiscRun {
     for (; next_output_ < run_.output_times.size() &&
            run_.output_times[next_output_] <= run_.system->state().t;
          ++next_output_) {
-      const discs::DiscState state = run_.system->interpolated(run_.output_times[next_output_]);
+      const discs::DiscState& state = run_.system->state();  // steps end at output times
       tables_.add_output(
           moment(observables::observe(*run_.system, state), run_.output_labels[next_output_]),
           observables::raft_report(*run_.system, state));

@@ -3,9 +3,8 @@
 #include <sstream>
 
 #include "backends/muparser/formula.hpp"
-#include "drivers/config/config_file.hpp"
 #include "drivers/run/checked_options.hpp"
-#include "drivers/run/checkpoint_store.hpp"
+#include "drivers/run/earlier_field.hpp"
 #include "drivers/run/physical_model.hpp"
 #include "kernel/problem/initial_data.hpp"
 
@@ -71,20 +70,15 @@ Vec initial_field(const config::Configuration& configuration,
                                         : &config::RunOptions::initial;
   return with_option_context(configuration, option, [&] {
     const auto [name, folder] = split_named_arguments(kind);
-    if (name == "restart") {
-      const bool root = space.communicator->root();
-      const int nodes = static_cast<int>(space.totals.nodes);
-      return space.order.scattered(
-          root ? final_concentration(folder, nodes, config::numerical_identity(configuration))
-               : Vec());
-    }
+    if (name == "restart") return earlier_field(folder, configuration, model, space);
     (void)problem::initial_fields().find(name, {"restart:DIR"});
     return problem::make_initial_field(kind, space, request);
   });
 }
 
-bool is_given_at_points(const config::Configuration& configuration) {
+bool is_given_on_any_mesh(const config::Configuration& configuration) {
   const std::string name = split_named_arguments(configuration.options().initial).name;
+  if (name == "restart") return true;
   for (const problem::InitialEntry& entry : problem::initial_fields())
     if (entry.name == name) return static_cast<bool>(entry.concentration);
   return false;

@@ -13,9 +13,8 @@ namespace traceraft::run {
 Vec initial_field(const config::Configuration& configuration,
                   const problem::CahnHilliardModel& model, const fem::SurfaceSpace& space);
 
-// Does a formula give it at any point, so that it can be had on any mesh? Noise and restarts
-// cannot.
-bool is_given_at_points(const config::Configuration& configuration);
+// Is it the same field on any mesh, but for errors of the mesh? Noise is not.
+bool is_given_on_any_mesh(const config::Configuration& configuration);
 
 // The rafts that a run of discs begins with: `caps` or `discs`. Throws InputError, also for others.
 discs::StartingDiscs initial_discs(const config::Configuration& configuration,

@@ -12,6 +12,7 @@
 #include "drivers/run/memory_need.hpp"
 #include "drivers/run/physical_model.hpp"
 #include "drivers/run/progress.hpp"
+#include "drivers/run/run_mesh.hpp"
 #include "drivers/run/run_outputs.hpp"
 #include "drivers/run/summary.hpp"
 #include "drivers/text/say.hpp"
@@ -106,6 +107,7 @@ int execute_run(const config::Configuration& configuration, RunSetup& run, const
 
 // A fine mesh takes its time before anything else is said.
 void announce_fine_mesh(const config::Configuration& configuration) {
+  if (!begins_finest(configuration)) return;
   const geometry::LevelSetPtr surface = surface_of(configuration);
   const double nodes = nodes_of_fine_mesh(*surface, configuration.options().cells);
   if (nodes == 0 || !backends::world()->root()) return;

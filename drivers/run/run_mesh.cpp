@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "drivers/run/checked_options.hpp"
+#include "drivers/run/initial_state.hpp"
 #include "kernel/mesh/lifted_surface.hpp"
 
 namespace traceraft::run {
@@ -12,6 +13,7 @@ namespace {
 constexpr std::int64_t kFewestCells = 16;  // per edge of the box, of the largest tetrahedra
 constexpr double kAreaTolerance = 1e-5;
 constexpr int kMostLevels = 6;
+constexpr double kWorthIt = 0.98;         // tetrahedra of another mesh, over those of this one
 constexpr std::int64_t kBeginCells = 64;  // a mesh that sees rafts of any size that is of interest
 
 double lifted_area(const geometry::LevelSet& surface, const mesh::RefinementLevels& levels,
@@ -54,6 +56,10 @@ bool is_adaptive(const config::Configuration& configuration,
   return true;
 }
 
+bool begins_finest(const config::Configuration& configuration) {
+  return configuration.options().mesh == "uniform" || !is_given_on_any_mesh(configuration);
+}
+
 mesh::RefinementLevels refinement_levels(const config::Configuration& configuration,
                                          const geometry::LevelSet& surface) {
   const std::int64_t cells = configuration.options().cells;
@@ -76,7 +82,7 @@ mesh::RefinementLevels refinement_levels(const config::Configuration& configurat
 
 fem::RefinementRule refinement_rule(const config::Configuration& configuration,
                                     const mesh::RefinementLevels& levels) {
-  return {configuration.options().mesh_threshold, 0, levels.finest_generation()};
+  return {configuration.options().mesh_threshold, levels.finest_generation()};
 }
 
 FieldOnMesh adapted_field(const geometry::LevelSet& surface, const mesh::RefinementLevels& levels,
@@ -89,16 +95,17 @@ FieldOnMesh adapted_field(const geometry::LevelSet& surface, const mesh::Refinem
   mesh::RefinementForest forest(surface, levels, begin);
   SpacePtr space = make_space(mesh::build_active_mesh(surface, forest));
   Vec field = make_field(*space);
-  // Each round halves the tetrahedra that are too large; the last ones settle the coarse ones.
+  // Two or three rounds refine; the last ones settle what is coarse.
   for (int round = 0; round < 4 + 2 * levels.levels; ++round) {
-    const std::vector<double> indicator =
-        fem::boundary_indicator(*space, physics.epsilon / (physics.well.b - physics.well.a), field);
-    mesh::RefinementForest next = forest.refined(
-        surface, fem::wanted_generations(*space, rule, indicator, forest.leaf_generations()));
-    mesh::ActiveMesh mesh = mesh::build_active_mesh(surface, next);
-    if (mesh.node_id == space->mesh.node_id) break;
+    const std::vector<double> indicator = simulation::boundary_indicator(*space, physics, field);
+    const std::vector<int> generation = forest.leaf_generations();
+    mesh::RefinementForest next =
+        forest.refined(surface, fem::wanted_generations(*space, rule, indicator, generation));
+    const double ratio = static_cast<double>(next.leaf_cells().size()) /
+                         static_cast<double>(forest.leaf_cells().size());
+    if (ratio > kWorthIt && !fem::too_coarse(rule, indicator, generation)) break;
     forest = std::move(next);
-    space = make_space(std::move(mesh));
+    space = make_space(mesh::build_active_mesh(surface, forest));
     field = make_field(*space);
   }
   return {std::move(forest), std::move(space), std::move(field)};

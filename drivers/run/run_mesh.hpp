@@ -17,6 +17,9 @@ namespace traceraft::run {
 bool is_adaptive(const config::Configuration& configuration,
                  const problem::CahnHilliardModel& physics, const Communicator& ranks);
 
+// Are all cells as small as the smallest at the beginning?
+bool begins_finest(const config::Configuration& configuration);
+
 // --mesh-levels, or the most that change the area by less than 1e-5. Throws InputError.
 mesh::RefinementLevels refinement_levels(const config::Configuration& configuration,
                                          const geometry::LevelSet& surface);

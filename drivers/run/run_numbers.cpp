@@ -12,7 +12,8 @@ RunMoment moment_of(const RunSetup& run, const observables::Observables& observa
           t,
           run.integrator->step(),
           run.integrator->statistics(),
-          run.integrator->linear_statistics()};
+          run.integrator->linear_statistics(),
+          run.space->totals.nodes};
 }
 
 RunGround ground_of(const RunSetup& run) {
@@ -73,6 +74,8 @@ const std::vector<ReportedNumber<RunMoment>>& run_columns() {
       {"linear_setups", U::count, "preconditioners or factorisations so far",
        [](M m) { return number(m.linear.setups); }},
       {"order", U::count, "order of the last step", [](M m) { return number(m.steps.order); }},
+      {"nodes", U::count, "nodes of the mesh whose basis functions touch the surface",
+       [](M m) { return number(m.nodes); }},
   };
   return columns;
 }
@@ -81,8 +84,6 @@ const std::vector<ReportedNumber<RunTotals>>& run_totals() {
   using T = const RunTotals&;
   using U = text::Unit;
   static const std::vector<ReportedNumber<RunTotals>> totals = {
-      {"nodes", U::count, "nodes whose basis functions touch the surface",
-       [](T r) { return number(r.ground.mesh.nodes); }},
       {"unknowns", U::count, "c and μ at the nodes",
        [](T r) { return 2 * number(r.ground.mesh.nodes); }},
       {"cut_tetrahedra", U::count, "tetrahedra that the surface cuts",
@@ -101,6 +102,8 @@ const std::vector<ReportedNumber<RunTotals>>& run_totals() {
        [](T r) { return r.ground.remeshing.highest_jump; }},
       {"lowest_energy_jump", U::ratio, "largest fall",
        [](T r) { return r.ground.remeshing.lowest_jump; }},
+      {"remesh_s", U::seconds, "spent on new meshes, and on telling where they are needed",
+       [](T r) { return r.ground.remeshing.seconds; }},
       {"mean_concentration", U::ratio, "mass over area",
        [](T r) { return r.at.observables.mass / r.ground.area; }},
       {"mass_drift", U::ratio, "largest change of the mass, relative to it",
@@ -186,7 +189,8 @@ std::uint32_t report_layout() {
   for (const auto& column : run_columns()) layout += std::string(column.name) + "\n";
   for (const std::size_t size :
        {sizeof(observables::Observables), sizeof(simulation::RunMonitor),
-        sizeof(time::IntegratorStatistics), sizeof(linear::LinearStatistics)})
+        sizeof(time::IntegratorStatistics), sizeof(linear::LinearStatistics),
+        sizeof(simulation::RemeshStatistics)})
     layout += std::to_string(size) + "\n";
   return zlib::crc32_of(layout);
 }

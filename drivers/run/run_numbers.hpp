@@ -24,6 +24,7 @@ struct RunMoment {
   double step;  // the one that ends there, or that the time lies in; R²/D
   time::IntegratorStatistics steps;
   linear::LinearStatistics linear;
+  std::int64_t nodes;  // of the mesh; 0: there is none
 };
 RunMoment moment_of(const RunSetup& run, const observables::Observables& observables, double t);
 

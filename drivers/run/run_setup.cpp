@@ -50,14 +50,13 @@ simulation::MeshAdaptation::MakeRest rest_of(const config::Configuration& config
 }
 
 // The mesh that follows the boundaries, and the initial state on it.
-std::optional<mesh::RefinementForest> begin_adaptive(const config::Configuration& configuration,
-                                                     const geometry::LevelSetPtr& surface,
-                                                     const problem::CahnHilliardModel& physics,
-                                                     const InitialState& initial,
-                                                     const MakeSpace& make_space, RunSetup& run) {
-  if (!is_adaptive(configuration, physics, *run.ranks)) return std::nullopt;
+mesh::RefinementForest begin_adaptive(const config::Configuration& configuration,
+                                      const geometry::LevelSetPtr& surface,
+                                      const problem::CahnHilliardModel& physics,
+                                      const InitialState& initial, const MakeSpace& make_space,
+                                      RunSetup& run) {
   const mesh::RefinementLevels levels = refinement_levels(configuration, *surface);
-  if (!initial.from_checkpoint && is_given_at_points(configuration)) {
+  if (!initial.from_checkpoint && !begins_finest(configuration)) {
     FieldOnMesh begin = adapted_field(*surface, levels, refinement_rule(configuration, levels),
                                       physics, make_space, [&](const fem::SurfaceSpace& space) {
                                         return initial_field(configuration, physics, space);
@@ -94,14 +93,16 @@ RunSetup build_run(const config::Configuration& configuration, const InitialStat
   run.ranks = backends::world();
   run.team = std::make_shared<ThreadTeam>(thread_count(configuration, *run.ranks));
   const geometry::LevelSetPtr surface = surface_of(configuration);
-  refuse_too_fine(configuration, *surface, *run.ranks);
+  const bool adaptive = is_adaptive(configuration, physics, *run.ranks);
+  if (begins_finest(configuration)) refuse_too_fine(configuration, *surface, *run.ranks);
   const MakeSpace make_space = [surface, team = run.team, ranks = run.ranks,
                                 mass = physics.mass_stabilisation](mesh::ActiveMesh mesh) {
     return std::make_shared<const fem::SurfaceSpace>(surface, std::move(mesh), team, ranks, mass);
   };
-  std::optional<mesh::RefinementForest> forest =
-      begin_adaptive(configuration, surface, physics, initial, make_space, run);
-  if (!forest)
+  std::optional<mesh::RefinementForest> forest;
+  if (adaptive)
+    forest = begin_adaptive(configuration, surface, physics, initial, make_space, run);
+  else
     run.space = with_option_context(configuration, &config::RunOptions::surface, [&] {
       return make_space(
           mesh::build_active_mesh(*surface, configuration.options().cells, *run.ranks));

@@ -100,7 +100,6 @@ DiscSystem::DiscSystem(const DiscModel& model, double tolerance, DiscState start
   merge_touching_discs();
   plan_walk();
   ripening_.set_places(state_.discs);
-  before_ = state_;
 }
 
 double DiscSystem::background(const DiscState& state) const {
@@ -203,7 +202,6 @@ Status DiscSystem::advance(double t_end) {
     next_step_ = step;
     if (step < shortest) return Status::fatal("the areas of discs change too fast to follow");
   }
-  before_ = state_;
   take_contents(taken.contents, state_);
   state_.t = step == left ? end : state_.t + step;
   step_ = step;
@@ -225,19 +223,6 @@ Status DiscSystem::advance(double t_end) {
     rate_.power.resize(0);
   }
   return {};
-}
-
-DiscState DiscSystem::interpolated(double t) const {
-  if (t >= state_.t) return state_;
-  DiscState result = before_;
-  result.t = t;
-  Ripening ripening = ripening_;
-  ripening.set_places(before_.discs);
-  DiscCoordinates rate;
-  if (Attempt then; t > before_.t && rate_at(ripening, contents_of(before_), rate) &&
-                    attempt(ripening, before_, rate, t - before_.t, then))
-    take_contents(then.contents, result);
-  return result;
 }
 
 // Moves all discs, and merges those that touched on their way.
@@ -329,14 +314,12 @@ void DiscSystem::merge_touching_discs() {
 }
 
 void DiscSystem::save(std::ostream& out) const {
-  for (const DiscState* state : {&state_, &before_}) {
-    write_binary(out, state->t);
-    write_binary(out, state->mass);
-    write_binary(out, static_cast<std::uint64_t>(state->discs.size()));
-    for (const Disc& disc : state->discs)
-      for (const double number : {disc.centre[0], disc.centre[1], disc.centre[2], disc.area})
-        write_binary(out, number);
-  }
+  write_binary(out, state_.t);
+  write_binary(out, state_.mass);
+  write_binary(out, static_cast<std::uint64_t>(state_.discs.size()));
+  for (const Disc& disc : state_.discs)
+    for (const double number : {disc.centre[0], disc.centre[1], disc.centre[2], disc.area})
+      write_binary(out, number);
   write_binary(out, step_);
   write_binary(out, next_step_);
   write_binary(out, last_walk_);
@@ -350,17 +333,15 @@ void DiscSystem::save(std::ostream& out) const {
 }
 
 void DiscSystem::load(std::istream& in) {
-  for (DiscState* state : {&state_, &before_}) {
-    std::uint64_t count = 0;
-    read_binary(in, state->t);
-    read_binary(in, state->mass);
-    read_binary(in, count);
-    state->discs.clear();
-    for (std::uint64_t k = 0; k < count; ++k) {
-      std::array<double, 4> numbers;
-      read_binary(in, numbers);
-      state->discs.push_back({{numbers[0], numbers[1], numbers[2]}, numbers[3]});
-    }
+  std::uint64_t count = 0;
+  read_binary(in, state_.t);
+  read_binary(in, state_.mass);
+  read_binary(in, count);
+  state_.discs.clear();
+  for (std::uint64_t k = 0; k < count; ++k) {
+    std::array<double, 4> numbers;
+    read_binary(in, numbers);
+    state_.discs.push_back({{numbers[0], numbers[1], numbers[2]}, numbers[3]});
   }
   read_binary(in, step_);
   read_binary(in, next_step_);

@@ -57,9 +57,6 @@ class DiscSystem {
 
   // One step, which does not pass t_end.
   Status advance(double t_end);
-  // At a time within the last step. Discs are where they were before it: to see them where they
-  // are, let a step end there.
-  DiscState interpolated(double t) const;
 
   // Everything that goes on. load: throws IoError at the end of the data.
   void save(std::ostream& out) const;
@@ -87,7 +84,7 @@ class DiscSystem {
   Ripening ripening_;
   BrownianMotion motion_;
   double tolerance_;
-  DiscState state_, before_;
+  DiscState state_;
   DiscCoordinates rate_;  // d/dt of the state; empty: not known
   double step_ = 0, next_step_ = 0;
   double last_walk_ = 0, next_walk_ = 0;  // times

@@ -20,20 +20,36 @@ bool inside(const mesh::ActiveMesh& mesh, const mesh::ActiveTet& tet, const Poin
   return true;
 }
 
+// The number of the node at a lattice point of another mesh; −1: there is none.
+int node_at(const mesh::ActiveMesh& mesh, const mesh::CubeMesh& other, std::int64_t id) {
+  mesh::Lattice at = other.vertex(id);
+  for (std::int64_t& coordinate : at) {
+    coordinate *= mesh.cube.cells;
+    if (coordinate % other.cells != 0) return -1;
+    coordinate /= other.cells;
+  }
+  const std::int64_t own = mesh.cube.vertex_id(at);
+  const auto found = std::lower_bound(mesh.node_id.begin(), mesh.node_id.end(), own);
+  if (found == mesh.node_id.end() || *found != own) return -1;
+  return static_cast<int>(found - mesh.node_id.begin());
+}
+
 }  // namespace
 
 FieldTransfer::FieldTransfer(const SurfaceSpace& from, const SurfaceSpace& to)
-    : begin_{0}, old_area_(from.node_area), new_area_(to.node_area), area_(to.area) {
-  const auto& ids = from.mesh.node_id;
+    : begin_{0},
+      old_area_(from.node_area),
+      new_area_(to.node_area),
+      area_(to.area),
+      ranks_(to.communicator) {
   const mesh::NearestTriangle nearest(from.surface);
   const auto add = [&](int node, double weight) {
     node_.push_back(node);
     weight_.push_back(weight);
   };
   for (int i = 0; i < to.nodes(); ++i) {
-    const auto same = std::lower_bound(ids.begin(), ids.end(), to.mesh.node_id[i]);
-    if (same != ids.end() && *same == to.mesh.node_id[i]) {
-      add(static_cast<int>(same - ids.begin()), 1);
+    if (const int same = node_at(from.mesh, to.mesh.cube, to.mesh.node_id[i]); same >= 0) {
+      add(same, 1);
       ++copied_;
     } else {
       const Point x = to.mesh.position(i);
@@ -69,7 +85,7 @@ Vec FieldTransfer::state(VecView y) const {
   const Eigen::Index old_nodes = old_area_.size(), nodes = new_area_.size();
   Vec result(2 * nodes);
   Vec c = field(y.head(old_nodes));
-  c.array() += (dot(old_area_, y.head(old_nodes)) - dot(new_area_, c)) / area_;
+  c.array() += (dot(old_area_, y.head(old_nodes)) - ranks_->sum(dot(new_area_, c))) / area_;
   result << c, field(y.tail(old_nodes));
   return result;
 }

@@ -1,6 +1,7 @@
 // Nodal fields from one mesh of a surface to another.
 #pragma once
 
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -16,14 +17,14 @@ namespace traceraft::fem {
 // step grows by a factor of hundreds, and steps shrink as much.
 class FieldTransfer {
  public:
-  // Serial spaces of one surface; neither is kept.
+  // Spaces of one surface, the old one whole on this rank; neither is kept.
   FieldTransfer(const SurfaceSpace& from, const SurfaceSpace& to);
 
   Vec field(VecView nodal) const;
   // Both halves of a state vector; the first keeps ∫ exactly, up to roundoff, by a constant.
   Vec state(VecView y) const;
 
-  int copied_nodes() const { return copied_; }
+  int copied_nodes() const { return copied_; }  // of this rank
 
  private:
   // Row i: the old nodes that make the new value at node i.
@@ -31,6 +32,7 @@ class FieldTransfer {
   std::vector<double> weight_;
   Vec old_area_, new_area_;  // of each node
   double area_;
+  std::shared_ptr<const Communicator> ranks_;
   int copied_ = 0;
 };
 

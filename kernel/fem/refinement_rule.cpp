@@ -5,7 +5,7 @@
 
 namespace traceraft::fem {
 
-std::vector<double> boundary_indicator(const SurfaceSpace& space, double epsilon, VecView c) {
+std::vector<double> boundary_indicator(const SurfaceSpace& space, double width, VecView c) {
   std::vector<double> indicator;
   indicator.reserve(space.elements.size());
   for (const CutElement& element : space.elements) {
@@ -15,7 +15,7 @@ std::vector<double> boundary_indicator(const SurfaceSpace& space, double epsilon
       const double difference = c[element.node[i]] - c[element.node[j]];
       square -= element.coupling[e] * difference * difference;
     }
-    indicator.push_back(epsilon * std::sqrt(std::max(0.0, square)));
+    indicator.push_back(width * std::sqrt(std::max(0.0, square)));
   }
   return indicator;
 }
@@ -25,7 +25,7 @@ int RefinementRule::generation(double indicator, double threshold_now) const {
   if (!(indicator < threshold_now)) return finest_generation;
   // Three generations halve the size.
   const double coarser = 1.5 * std::log2(threshold_now / std::max(indicator, 1e-300));
-  const double most = finest_generation - coarsest_generation;
+  const double most = finest_generation;
   return finest_generation - static_cast<int>(std::min(most, coarser + kRoundoff));
 }
 

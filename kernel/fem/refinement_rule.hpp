@@ -7,15 +7,14 @@
 
 namespace traceraft::fem {
 
-// ε |∇_Γ c| on each tetrahedron: at most 0.18 in a boundary at rest between phases 0 and 1.
-std::vector<double> boundary_indicator(const SurfaceSpace& space, double epsilon, VecView c);
+// `width` |∇_Γ c| on each tetrahedron.
+std::vector<double> boundary_indicator(const SurfaceSpace& space, double width, VecView c);
 
 // Sizes h_T = h √(θ/η) for an indicator η: the smallest, h, where η is above the threshold θ, and
 // larger ones towards both phases, as the gradient falls off. With the smallest ones in a band and
 // the largest beside it, coarsening is 8 % too fast: the tails of the boundaries carry the flux.
 struct RefinementRule {
-  double threshold;             // θ
-  int coarsest_generation = 0;  // largest tetrahedra
+  double threshold;  // θ
   int finest_generation = 0;
 
   int generation(double indicator, double threshold_now) const;

@@ -109,6 +109,10 @@ void add_element_matrix(const CutElement& element, const Eigen::Matrix4d& local,
   }
 }
 
+CsrMatrix graded_normal_stiffness(const SurfaceSpace& space) {
+  return normal_matrix(space, [](const mesh::TetShape& shape) { return shape.size * shape.size; });
+}
+
 void fill_symmetric(const std::vector<double>& edge, const std::vector<double>& diagonal,
                     CsrMatrix& matrix) {
   const SparsityPattern& pattern = *matrix.pattern;

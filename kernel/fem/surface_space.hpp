@@ -95,6 +95,9 @@ class SurfaceSpace {
                std::shared_ptr<const Communicator> communicator, double mass_stabilisation);
 };
 
+// Σ_T (h_T/h)² S_T: S where all tetrahedra are equal.
+CsrMatrix graded_normal_stiffness(const SurfaceSpace& space);
+
 // Adds the rows of a block that a 4×4 element matrix touches.
 void add_element_matrix(const CutElement& element, const Eigen::Matrix4d& local,
                         const RowBlock& block, CsrMatrix& matrix);

@@ -51,10 +51,8 @@ double resolved_at(fem::PotentialRule rule, double h) {
 }  // namespace
 
 ResolvedBoundary resolved_boundary(const problem::CahnHilliardModel& model, double h) {
-  const physics::DoubleWell& well = model.well;
-  const double width = model.epsilon / (2 * std::sqrt(well.rho) * (well.b - well.a));
-  const double resolved = resolved_at(model.rule, h / width);
-  return {resolved * well.interface_energy(), resolved};
+  const double resolved = resolved_at(model.rule, h / model.boundary_width());
+  return {resolved * model.well.interface_energy(), resolved};
 }
 
 }  // namespace traceraft::observables

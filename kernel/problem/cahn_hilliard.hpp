@@ -1,6 +1,7 @@
 // The trace finite element semi-discretisation of the surface Cahn–Hilliard equation as a DAE.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -24,6 +25,9 @@ struct CahnHilliardModel {
   // How fast lipids are in time, over `mobility`, where an effect changes that; empty: always 1.
   std::function<double(double)> diffusion_ratio;
   std::uint64_t seed = 1;  // of what effects draw at random
+
+  // w of a boundary at rest, a + (b − a)/2 (1 + tanh(s/(2√2 w))): ε for the default well.
+  double boundary_width() const { return epsilon / (2 * std::sqrt(well.rho) * (well.b - well.a)); }
 
   // β of the stabilised tangent: 1 for the default well, as in the reference code. Twice the
   // curvature in the wells, so steps decay while |f0''| ≤ 2β.

@@ -93,12 +93,18 @@ InitialEntry formula_field() {
 std::function<double(const Point&)> profile_around(const std::vector<CapRaft>& caps,
                                                    const physics::DoubleWell& well,
                                                    double epsilon) {
-  return [caps, well, epsilon](const Point& x) {
+  std::vector<Point> axis;
+  for (const CapRaft& cap : caps) axis.push_back(cap.direction.stableNormalized());
+  return [caps, axis, well, epsilon](const Point& x) {
+    constexpr double kRoundoff = 1e-7;
+    const double radius = x.norm();
     double outside = 1e300;  // arc length to the nearest raft, negative inside
-    for (const CapRaft& cap : caps) {
-      const Point axis = cap.direction.stableNormalized();
-      const double angle = std::atan2(axis.cross(x).norm(), axis.dot(x));
-      outside = std::min(outside, angle - cap.angle);
+    for (std::size_t k = 0; k < caps.size(); ++k) {
+      // A chord is shorter than its arc: rafts that are too far need no arctangent.
+      const double chord = std::sqrt(std::max(0.0, 2 - 2 * axis[k].dot(x) / radius));
+      if (chord - caps[k].angle > outside + kRoundoff) continue;
+      const double angle = std::atan2(axis[k].cross(x).norm(), axis[k].dot(x));
+      outside = std::min(outside, angle - caps[k].angle);
     }
     return well.profile(outside, epsilon);
   };

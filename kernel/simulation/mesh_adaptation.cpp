@@ -5,6 +5,7 @@
 #include <sstream>
 #include <utility>
 
+#include "kernel/core/stopwatch.hpp"
 #include "kernel/fem/field_transfer.hpp"
 
 namespace traceraft::simulation {
@@ -42,12 +43,16 @@ MeshAdaptation::MeshAdaptation(mesh::RefinementForest forest, const fem::Refinem
       make_space_(std::move(make_space)),
       make_rest_(std::move(make_rest)) {}
 
+std::vector<double> boundary_indicator(const fem::SurfaceSpace& space,
+                                       const problem::CahnHilliardModel& model, VecView c) {
+  return fem::boundary_indicator(space, model.boundary_width() / (model.well.b - model.well.a), c);
+}
+
 Status MeshAdaptation::before_step(Discretisation& on) {
+  const ScopedTimer timer(statistics_.seconds);
   const fem::SurfaceSpace& space = *on.space;
-  const problem::CahnHilliardModel& model = on.problem->model();
   const std::vector<double> indicator =
-      fem::boundary_indicator(space, model.epsilon / (model.well.b - model.well.a),
-                              on.problem->c_of(on.integrator->state()));
+      boundary_indicator(space, on.problem->model(), on.problem->c_of(on.integrator->state()));
   const std::vector<int> generation = forest_.leaf_generations();
   statistics_.node_steps += space.nodes();
   ++statistics_.steps;

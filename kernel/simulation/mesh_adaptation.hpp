@@ -11,11 +11,16 @@
 
 namespace traceraft::simulation {
 
+// (w/(b − a)) |∇_Γ c| on each tetrahedron: at most 0.18 in a boundary at rest, w being its width.
+std::vector<double> boundary_indicator(const fem::SurfaceSpace& space,
+                                       const problem::CahnHilliardModel& model, VecView c);
+
 // The changes of meshes in a run.
 struct RemeshStatistics {
   long remeshes = 0;
   double highest_jump = 0, lowest_jump = 0;  // of the energy, over that before the jump
   double node_steps = 0, steps = 0;          // Σ over steps of the nodes at them, and of 1
+  double seconds = 0;                        // of indicators, new meshes and transfers
 };
 
 // Decisions depend on accepted states and counters alone, so that a run that goes on from a

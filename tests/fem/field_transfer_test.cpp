@@ -121,15 +121,13 @@ TEST(NearestTriangleTest, FindsWhatALookAtAllFinds) {
 }
 
 TEST(RefinementRuleTest, GradesByTheGradient) {
-  const RefinementRule rule{0.08, 0, 9};
+  const RefinementRule rule{0.08, 9};
   EXPECT_EQ(rule.generation(0.2, rule.threshold), 9);
   EXPECT_EQ(rule.generation(0.08, rule.threshold), 9);
   EXPECT_EQ(rule.generation(0.02, rule.threshold), 6);     // a quarter: cells twice as large
   EXPECT_EQ(rule.generation(0.00125, rule.threshold), 0);  // 1/64: eight times
   EXPECT_EQ(rule.generation(0, rule.threshold), 0);
   EXPECT_EQ(rule.generation(0.04, 2 * rule.threshold), 6);
-  const RefinementRule bounded{0.08, 3, 9};
-  EXPECT_EQ(bounded.generation(0, bounded.threshold), 3);
 }
 
 TEST(RefinementRuleTest, MeasuresTheGradientAlongTheSurface) {

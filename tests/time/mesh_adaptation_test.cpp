@@ -42,7 +42,7 @@ class MeshAdaptationContract : public ::testing::TestWithParam<std::string> {
     };
   }
   MeshAdaptation adaptation(mesh::RefinementForest forest) const {
-    return {std::move(forest), {0.06, 0, kLevels.finest_generation()}, make_space(), make_rest()};
+    return {std::move(forest), {0.06, kLevels.finest_generation()}, make_space(), make_rest()};
   }
   // Two rafts on the finest mesh.
   Discretisation started(const mesh::RefinementForest& forest) const {
@@ -144,6 +144,25 @@ TEST_P(MeshAdaptationContract, HardlyChangesTheDissipation) {
       ASSERT_TRUE(on.integrator->advance().ok());
   }
   EXPECT_EQ(adaptation.statistics().remeshes, 1);
+}
+
+// Along normals c relaxes at a rate that goes with the gradient energy over M̃. It must not fall as
+// tetrahedra grow, or c wanders off the surface there.
+TEST(GradientEnergyTest, HoldsNormalsOfLargeTetrahedraAsFirmly) {
+  const geometry::LevelSetPtr surface = geometry::make_surface("sphere");
+  const mesh::RefinementLevels levels{64, 2};
+  const auto rate = [&](int generation) {
+    const fem::SurfaceSpace space(
+        surface,
+        mesh::build_active_mesh(*surface, mesh::RefinementForest(*surface, levels, generation)),
+        std::make_shared<ThreadTeam>(1), std::make_shared<SerialCommunicator>());
+    Vec distance(space.nodes());
+    for (int i = 0; i < space.nodes(); ++i) distance[i] = surface->value(space.mesh.position(i));
+    const problem::CahnHilliardModel model = testing::make_model("degenerate", 0.08);
+    return space.quadratic(problem::gradient_energy_matrix(space, model), distance) /
+           space.quadratic(space.stabilised_mass, distance);
+  };
+  EXPECT_GT(rate(0), rate(levels.finest_generation()));
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, MeshAdaptationContract,
