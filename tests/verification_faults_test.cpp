@@ -117,6 +117,7 @@ struct Fault {
   const char* seen_on_ranks = "";  // the claim that sees `program`, if solvers work on ranks
   const char* failure = "";        // words of why the computation fails
   std::function<void(discs::DiscModel&)> discs = {};
+  std::function<void(fem::RefinementRule&)> rule = {};
 };
 
 std::ostream& operator<<(std::ostream& out, const Fault& fault) {
@@ -151,6 +152,10 @@ class BrokenBench final : public bench::Bench {
   discs::DiscModel disc_model(discs::DiscModel model) const override {
     if (fault_.discs) fault_.discs(model);
     return model;
+  }
+  fem::RefinementRule refinement_rule(fem::RefinementRule rule) const override {
+    if (fault_.rule) fault_.rule(rule);
+    return rule;
   }
   time::IntegratorPtr make_integrator(const problem::DaeProblem& problem,
                                       const fem::SurfaceSpace& space, const std::string& name,
@@ -341,6 +346,19 @@ const Fault kFaults[] = {
      "",
      0,
      true},
+    {"adaptive",
+     "boundaries on cells that are too large",
+     {"time of vanishing, adaptive / uniform"},
+     {},
+     {},
+     "",
+     0,
+     false,
+     {},
+     "",
+     "",
+     {},
+     [](fem::RefinementRule& r) { r.threshold *= 60; }},
 };
 
 INSTANTIATE_TEST_SUITE_P(Broken, FaultTest, ::testing::ValuesIn(kFaults), [](const auto& info) {

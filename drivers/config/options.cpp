@@ -6,7 +6,9 @@
 #include "backends/list.hpp"
 #include "kernel/core/error.hpp"
 #include "kernel/core/named_list.hpp"
+#include "kernel/core/parameters.hpp"
 #include "kernel/core/text.hpp"
+#include "kernel/fem/refinement_rule.hpp"
 
 namespace traceraft::config {
 
@@ -129,7 +131,7 @@ const std::vector<OptionSpec>& run_options() {
       {"mesh-levels", &R::mesh_levels, "0", "Surface",
        "how often the cells of --mesh adaptive double; 0: as often as the area keeps to 1e-5", 0,
        8},
-      {"mesh-threshold", &R::mesh_threshold, "0.0675", "Surface",
+      {"mesh-threshold", &R::mesh_threshold, format_number(fem::kBoundaryThreshold), "Surface",
        "epsilon |grad c| above which the cells of --mesh adaptive are the smallest; 0.18 is the "
        "largest in a boundary at rest",
        1e-4, 0.17},

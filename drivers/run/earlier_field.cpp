@@ -35,8 +35,9 @@ void require_same_surface(const std::filesystem::path& run_folder,
 }
 
 // The mesh that a run ended on, as a whole on each rank.
-SpacePtr space_of(const config::Configuration& theirs, const Checkpoint& checkpoint,
-                  const fem::SurfaceSpace& ours) {
+std::shared_ptr<const fem::SurfaceSpace> space_of(const config::Configuration& theirs,
+                                                  const Checkpoint& checkpoint,
+                                                  const fem::SurfaceSpace& ours) {
   const geometry::LevelSetPtr surface = ours.level_set;
   mesh::ActiveMesh mesh =
       checkpoint.forest.empty()
@@ -66,7 +67,7 @@ Vec earlier_field(const std::filesystem::path& run_folder,
   const Checkpoint checkpoint = last_of(run_folder);
   const config::Configuration theirs(config::read_config_file(run_folder / "config.toml"), {});
   require_same_surface(run_folder, theirs, configuration);
-  const SpacePtr from = space_of(theirs, checkpoint, space);
+  const std::shared_ptr<const fem::SurfaceSpace> from = space_of(theirs, checkpoint, space);
   const Vec c = concentration_of(checkpoint, run_folder, from->nodes());
   const fem::FieldTransfer transfer(*from, space);
   if (space.communicator->sum(transfer.copied_nodes()) == space.totals.nodes &&

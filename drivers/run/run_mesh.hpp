@@ -1,9 +1,5 @@
-// The mesh that a run begins on: uniform, or fine along the boundaries of its initial state.
+// The mesh of a run, as options say it: uniform, or one that follows the boundaries.
 #pragma once
-
-#include <functional>
-#include <memory>
-#include <vector>
 
 #include "drivers/config/configuration.hpp"
 #include "kernel/fem/refinement_rule.hpp"
@@ -25,23 +21,7 @@ mesh::RefinementLevels refinement_levels(const config::Configuration& configurat
                                          const geometry::LevelSet& surface);
 
 fem::RefinementRule refinement_rule(const config::Configuration& configuration,
+                                    const problem::CahnHilliardModel& physics,
                                     const mesh::RefinementLevels& levels);
-
-using SpacePtr = std::shared_ptr<const fem::SurfaceSpace>;
-using MakeSpace = std::function<SpacePtr(mesh::ActiveMesh)>;
-
-// A field, and a mesh that is as fine as it needs.
-struct FieldOnMesh {
-  mesh::RefinementForest forest;
-  SpacePtr space;
-  Vec field;
-};
-
-// From a moderate mesh, which is refined and coarsened until it fits the field that make_field
-// gives on it.
-FieldOnMesh adapted_field(const geometry::LevelSet& surface, const mesh::RefinementLevels& levels,
-                          const fem::RefinementRule& rule,
-                          const problem::CahnHilliardModel& physics, const MakeSpace& make_space,
-                          const std::function<Vec(const fem::SurfaceSpace&)>& make_field);
 
 }  // namespace traceraft::run

@@ -14,6 +14,7 @@
 #include "drivers/run/physical_model.hpp"
 #include "drivers/run/run_mesh.hpp"
 #include "kernel/core/text.hpp"
+#include "kernel/simulation/adapted_mesh.hpp"
 
 namespace traceraft::run {
 namespace {
@@ -53,14 +54,16 @@ simulation::MeshAdaptation::MakeRest rest_of(const config::Configuration& config
 mesh::RefinementForest begin_adaptive(const config::Configuration& configuration,
                                       const geometry::LevelSetPtr& surface,
                                       const problem::CahnHilliardModel& physics,
-                                      const InitialState& initial, const MakeSpace& make_space,
+                                      const InitialState& initial,
+                                      const simulation::MeshAdaptation::MakeSpace& make_space,
                                       RunSetup& run) {
   const mesh::RefinementLevels levels = refinement_levels(configuration, *surface);
   if (!initial.from_checkpoint && !begins_finest(configuration)) {
-    FieldOnMesh begin = adapted_field(*surface, levels, refinement_rule(configuration, levels),
-                                      physics, make_space, [&](const fem::SurfaceSpace& space) {
-                                        return initial_field(configuration, physics, space);
-                                      });
+    simulation::FieldOnMesh begin =
+        simulation::adapted_field(*surface, levels, refinement_rule(configuration, physics, levels),
+                                  make_space, [&](const fem::SurfaceSpace& space) {
+                                    return initial_field(configuration, physics, space);
+                                  });
     run.space = std::move(begin.space);
     run.initial = std::move(begin.field);
     return std::move(begin.forest);
@@ -95,8 +98,10 @@ RunSetup build_run(const config::Configuration& configuration, const InitialStat
   const geometry::LevelSetPtr surface = surface_of(configuration);
   const bool adaptive = is_adaptive(configuration, physics, *run.ranks);
   if (begins_finest(configuration)) refuse_too_fine(configuration, *surface, *run.ranks);
-  const MakeSpace make_space = [surface, team = run.team, ranks = run.ranks,
-                                mass = physics.mass_stabilisation](mesh::ActiveMesh mesh) {
+  const simulation::MeshAdaptation::MakeSpace make_space = [surface, team = run.team,
+                                                            ranks = run.ranks,
+                                                            mass = physics.mass_stabilisation](
+                                                               mesh::ActiveMesh mesh) {
     return std::make_shared<const fem::SurfaceSpace>(surface, std::move(mesh), team, ranks, mass);
   };
   std::optional<mesh::RefinementForest> forest;
@@ -128,7 +133,7 @@ RunSetup build_run(const config::Configuration& configuration, const InitialStat
                      ": with these effects the second-order solution of euler is unstable; leave "
                      "the choice to it");
   if (forest) {
-    const fem::RefinementRule rule = refinement_rule(configuration, forest->levels());
+    const fem::RefinementRule rule = refinement_rule(configuration, physics, forest->levels());
     run.adaptation = std::make_unique<simulation::MeshAdaptation>(std::move(*forest), rule,
                                                                   make_space, make_rest);
   }

@@ -39,34 +39,26 @@ Status carry(const Discretisation& from, Discretisation& to) {
 MeshAdaptation::MeshAdaptation(mesh::RefinementForest forest, const fem::RefinementRule& rule,
                                MakeSpace make_space, MakeRest make_rest)
     : forest_(std::move(forest)),
+      generation_(forest_.leaf_generations()),
       rule_(rule),
       make_space_(std::move(make_space)),
       make_rest_(std::move(make_rest)) {}
 
-std::vector<double> boundary_indicator(const fem::SurfaceSpace& space,
-                                       const problem::CahnHilliardModel& model, VecView c) {
-  return fem::boundary_indicator(space, model.boundary_width() / (model.well.b - model.well.a), c);
-}
-
 Status MeshAdaptation::before_step(Discretisation& on) {
   const ScopedTimer timer(statistics_.seconds);
   const fem::SurfaceSpace& space = *on.space;
-  const std::vector<double> indicator =
-      boundary_indicator(space, on.problem->model(), on.problem->c_of(on.integrator->state()));
-  const std::vector<int> generation = forest_.leaf_generations();
+  const VecView c = on.problem->c_of(on.integrator->state());
   statistics_.node_steps += space.nodes();
   ++statistics_.steps;
-  const bool must = fem::too_coarse(rule_, indicator, generation);
+  const bool must = fem::too_coarse(space, rule_, c, generation_);
   if (!must && ++steps_since_ < kStepsBetweenLooks) return {};
   steps_since_ = 0;
-  std::vector<int> wanted = fem::wanted_generations(space, rule_, indicator, generation);
-  // A coarsened place may soon have to be refined again: coarsening waits for a look.
-  if (must)
-    for (std::size_t t = 0; t < wanted.size(); ++t) wanted[t] = std::max(wanted[t], generation[t]);
+  const std::vector<int> wanted = fem::wanted_generations(space, rule_, c, generation_);
+  if (!must && fem::least_share(wanted, generation_) > kWorthIt) return {};
   mesh::RefinementForest forest = forest_.refined(*space.level_set, wanted);
-  const double ratio = static_cast<double>(forest.leaf_cells().size()) /
+  const double share = static_cast<double>(forest.leaf_cells().size()) /
                        static_cast<double>(forest_.leaf_cells().size());
-  if (!must && ratio > kWorthIt) return {};
+  if (!must && share > kWorthIt) return {};
   mesh::ActiveMesh mesh = mesh::build_active_mesh(*space.level_set, forest);
   if (mesh.node_id == space.mesh.node_id && mesh.tets.size() == space.mesh.tets.size()) return {};
   return move_to(on, std::move(forest), std::move(mesh));
@@ -89,6 +81,7 @@ Status MeshAdaptation::move_to(Discretisation& on, mesh::RefinementForest forest
   statistics_.lowest_jump = std::min(statistics_.lowest_jump, jump);
   ++statistics_.remeshes;
   forest_ = std::move(forest);
+  generation_ = forest_.leaf_generations();
   std::swap(on, next);  // integrators go before the problems that they refer to
   return {};
 }

@@ -11,10 +11,6 @@
 
 namespace traceraft::simulation {
 
-// (w/(b − a)) |∇_Γ c| on each tetrahedron: at most 0.18 in a boundary at rest, w being its width.
-std::vector<double> boundary_indicator(const fem::SurfaceSpace& space,
-                                       const problem::CahnHilliardModel& model, VecView c);
-
 // The changes of meshes in a run.
 struct RemeshStatistics {
   long remeshes = 0;
@@ -51,6 +47,7 @@ class MeshAdaptation {
   Status move_to(Discretisation& on, mesh::RefinementForest forest, mesh::ActiveMesh mesh);
 
   mesh::RefinementForest forest_;
+  std::vector<int> generation_;  // of its leaves
   const fem::RefinementRule rule_;
   MakeSpace make_space_;
   MakeRest make_rest_;

@@ -121,7 +121,7 @@ TEST(NearestTriangleTest, FindsWhatALookAtAllFinds) {
 }
 
 TEST(RefinementRuleTest, GradesByTheGradient) {
-  const RefinementRule rule{0.08, 9};
+  const RefinementRule rule{0.08, 0.1, 9};
   EXPECT_EQ(rule.generation(0.2, rule.threshold), 9);
   EXPECT_EQ(rule.generation(0.08, rule.threshold), 9);
   EXPECT_EQ(rule.generation(0.02, rule.threshold), 6);     // a quarter: cells twice as large
@@ -133,11 +133,17 @@ TEST(RefinementRuleTest, GradesByTheGradient) {
 TEST(RefinementRuleTest, MeasuresTheGradientAlongTheSurface) {
   const auto space = testing::make_space(32);
   const Vec z = at_nodes(*space, [](const Point& x) { return x.z(); });
-  const std::vector<double> indicator = boundary_indicator(*space, 0.1, z);
-  for (std::size_t t = 0; t < indicator.size(); ++t) {
-    const Point x = space->mesh.position(space->elements[t].node[0]).normalized();
-    EXPECT_NEAR(indicator[t], 0.1 * std::sqrt(1 - x.z() * x.z()), 0.1 * 2 * space->h());
+  const RefinementRule rule{0.08, 0.1, 9};
+  for (const CutElement& element : space->elements) {
+    const Point x = space->mesh.position(element.node[0]).normalized();
+    EXPECT_NEAR(rule.indicator(element, z), 0.1 * std::sqrt(1 - x.z() * x.z()),
+                0.1 * 2 * space->h());
   }
+}
+
+TEST(RefinementRuleTest, BoundsWhatCoarseningLeaves) {
+  EXPECT_EQ(least_share({3, 3}, {3, 3}), 1);
+  EXPECT_EQ(least_share({3, 0, 2, 2}, {3, 3, 3, 3}), (1 + 1.0 / 8 + 0.5 + 0.5) / 4);
 }
 
 }  // namespace

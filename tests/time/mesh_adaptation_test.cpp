@@ -42,7 +42,8 @@ class MeshAdaptationContract : public ::testing::TestWithParam<std::string> {
     };
   }
   MeshAdaptation adaptation(mesh::RefinementForest forest) const {
-    return {std::move(forest), {0.06, kLevels.finest_generation()}, make_space(), make_rest()};
+    return {
+        std::move(forest), {0.06, 0.08, kLevels.finest_generation()}, make_space(), make_rest()};
   }
   // Two rafts on the finest mesh.
   Discretisation started(const mesh::RefinementForest& forest) const {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "kernel/discs/disc_model.hpp"
+#include "kernel/fem/refinement_rule.hpp"
 #include "kernel/problem/cahn_hilliard.hpp"
 #include "kernel/problem/initial_data.hpp"
 #include "kernel/time/integrator.hpp"
@@ -66,6 +67,8 @@ class Bench {
   virtual ProblemPtr problem(SpacePtr space, problem::CahnHilliardModel model) const;
   // The model of discs that a study asks for.
   virtual discs::DiscModel disc_model(discs::DiscModel model) const { return model; }
+  // The rule of a mesh that follows the boundaries.
+  virtual fem::RefinementRule refinement_rule(fem::RefinementRule rule) const { return rule; }
   virtual time::IntegratorPtr make_integrator(const problem::DaeProblem& problem,
                                               const fem::SurfaceSpace& space,
                                               const std::string& name,

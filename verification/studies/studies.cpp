@@ -26,6 +26,7 @@ const NamedList<StudyEntry>& studies() {
       large_teko_iterations_study(),
       operation_cost_study(),
       step_cost_study(),
+      adaptive_mesh_study(),
   };
   static const NamedList<StudyEntry> list("study", entries);
   return list;

@@ -28,6 +28,7 @@ StudyEntry teko_iterations_study();
 StudyEntry large_teko_iterations_study();
 StudyEntry operation_cost_study();
 StudyEntry step_cost_study();
+StudyEntry adaptive_mesh_study();
 
 const NamedList<StudyEntry>& studies();
 

@@ -1,0 +1,34 @@
+// The mesh that a field needs: how coarse it may be, and fine along the boundaries of the phases.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "kernel/fem/refinement_rule.hpp"
+#include "kernel/mesh/refinement_forest.hpp"
+#include "kernel/simulation/mesh_adaptation.hpp"
+
+namespace traceraft::simulation {
+
+// The most levels whose largest tetrahedra hold the area of a surface to 1e-5, as remeshes must
+// not change it; `cells` per edge of the box are those of the smallest. None if not even two sizes
+// do.
+std::optional<mesh::RefinementLevels> levels_that_keep_the_area(const geometry::LevelSet& surface,
+                                                                std::int64_t cells);
+
+// A field, and a mesh that is as fine as it needs.
+struct FieldOnMesh {
+  mesh::RefinementForest forest;
+  std::shared_ptr<const fem::SurfaceSpace> space;
+  Vec field;
+};
+
+// From a moderate mesh, which is refined and coarsened until it fits the field that make_field
+// gives on it.
+FieldOnMesh adapted_field(const geometry::LevelSet& surface, const mesh::RefinementLevels& levels,
+                          const fem::RefinementRule& rule,
+                          const MeshAdaptation::MakeSpace& make_space,
+                          const std::function<Vec(const fem::SurfaceSpace&)>& make_field);
+
+}  // namespace traceraft::simulation
