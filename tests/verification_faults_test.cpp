@@ -147,6 +147,7 @@ class BrokenBench final : public bench::Bench {
   bench::ProblemPtr problem(bench::SpacePtr space,
                             problem::CahnHilliardModel model) const override {
     if (fault_.model) fault_.model(model);
+    if (fault_.no_stabilisation) model.stabilisation = 0;
     return bench::Bench::problem(std::move(space), std::move(model));
   }
   discs::DiscModel disc_model(discs::DiscModel model) const override {
