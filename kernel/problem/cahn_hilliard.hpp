@@ -19,7 +19,7 @@ struct CahnHilliardModel {
   physics::DoubleWell well;
   double epsilon = 0.05;  // width of the phase boundary
   fem::PotentialRule rule = fem::PotentialRule::averaged;
-  double stabilisation = 1.0;                           // ρ = stabilisation · h
+  double stabilisation = 1.0;                           // ρ = stabilisation · h, of the smallest
   double mass_stabilisation = fem::kMassStabilisation;  // of the space that the problem is posed on
   std::vector<EffectPtr> effects;
   // How fast lipids are in time, over `mobility`, where an effect changes that; empty: always 1.
@@ -37,7 +37,8 @@ struct CahnHilliardModel {
 // The model without its RandomEffects.
 CahnHilliardModel without_noise(CahnHilliardModel model);
 
-// ε² (K + ρ S): the gradient energy is half its quadratic form.
+// ε² (K + ρ S) with ρ h_T²/h² in front of the S of a tetrahedron of size h_T: the gradient energy
+// is half its quadratic form.
 fem::CsrMatrix gradient_energy_matrix(const fem::SurfaceSpace& space,
                                       const CahnHilliardModel& model);
 
