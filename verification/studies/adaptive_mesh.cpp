@@ -1,7 +1,6 @@
 // A mesh that follows the boundaries beside uniform ones: when the smaller of two rafts vanishes,
 // and what that takes.
 #include "kernel/core/stopwatch.hpp"
-#include "kernel/core/text.hpp"
 #include "kernel/simulation/adapted_mesh.hpp"
 #include "verification/bench/bench.hpp"
 #include "verification/studies/studies.hpp"
@@ -9,8 +8,8 @@
 namespace traceraft::studies {
 namespace {
 
+using bench::SpacePtr;
 using simulation::Discretisation;
-using SpacePtr = std::shared_ptr<const fem::SurfaceSpace>;
 
 struct Sizes {
   double epsilon;
