@@ -25,7 +25,10 @@ void require_one_rank(const char* name, const fem::SurfaceSpace& space) {
 
 linear::LinearSolverFactory block(const fem::SurfaceSpace& space, const WordOptions&) {
   require_one_rank("block", space);
-  return [spd = suitesparse::supernodal_factory(space.pattern), size = 2 * space.nodes(),
+  // A mesh that is not uniform is one of many in a run.
+  const auto ordering =
+      space.mesh.uniform() ? suitesparse::Ordering::dissection : suitesparse::Ordering::quick;
+  return [spd = suitesparse::supernodal_factory(space.pattern, ordering), size = 2 * space.nodes(),
           team = space.team](int lanes) {
     return linear::make_block_solver(
         spd, [size] { return sundials::make_spfgmr(size); }, team, lanes);

@@ -254,14 +254,15 @@ void SupernodalSolver::solve(VecView b, VecRef x, const ThreadTeam& team, int la
 
 }  // namespace
 
-linear::SpdSolverFactory supernodal_factory(fem::PatternPtr pattern) {
+linear::SpdSolverFactory supernodal_factory(fem::PatternPtr pattern, Ordering ordering) {
   use_one_blas_thread();
   struct Analysis {
     std::once_flag once;
     std::shared_ptr<const SupernodalStructure> structure;
   };
-  return [pattern, analysis = std::make_shared<Analysis>()](int lanes) -> linear::SpdSolverPtr {
-    std::call_once(analysis->once, [&] { analysis->structure = analyse(*pattern); });
+  return [pattern, ordering,
+          analysis = std::make_shared<Analysis>()](int lanes) -> linear::SpdSolverPtr {
+    std::call_once(analysis->once, [&] { analysis->structure = analyse(*pattern, ordering); });
     return std::make_unique<SupernodalSolver>(analysis->structure, lanes);
   };
 }

@@ -22,12 +22,13 @@ struct Analysis {
   }
 };
 
-void analyse_by_cholmod(const fem::SparsityPattern& pattern, Analysis& analysis) {
+// By the minimum degree of CHOLMOD if no ordering is given.
+void analyse_by_cholmod(std::vector<int>* ordering, Analysis& analysis) {
   cholmod_common* common = &analysis.workspace.common;
-  std::vector<int> ordering = metis_ordering(pattern);
-  analysis.matrix = upper_triangle(pattern, common);
-  common->method[0].ordering = CHOLMOD_GIVEN;
-  analysis.factor = cholmod_analyze_p(analysis.matrix, ordering.data(), nullptr, 0, common);
+  common->method[0].ordering = ordering ? CHOLMOD_GIVEN : CHOLMOD_AMD;
+  cholmod_free_factor(&analysis.factor, common);
+  analysis.factor =
+      cholmod_analyze_p(analysis.matrix, ordering ? ordering->data() : nullptr, nullptr, 0, common);
   if (analysis.factor) return;
   if (common->status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
   if (common->status == CHOLMOD_TOO_LARGE)
@@ -35,6 +36,18 @@ void analyse_by_cholmod(const fem::SparsityPattern& pattern, Analysis& analysis)
         "linear solver block: its factors have more than 2^31 entries on this mesh; use a "
         "coarser mesh, or the linear solver teko");
   throw std::runtime_error("CHOLMOD: symbolic analysis failed");
+}
+
+void analyse_by_cholmod(const fem::SparsityPattern& pattern, Ordering ordering,
+                        Analysis& analysis) {
+  constexpr double kFewNumbers = 42;  // of L, for each row
+  analysis.matrix = upper_triangle(pattern, &analysis.workspace.common);
+  if (ordering == Ordering::quick) {
+    analyse_by_cholmod(nullptr, analysis);
+    if (analysis.workspace.common.lnz <= kFewNumbers * pattern.rows()) return;
+  }
+  std::vector<int> dissection = metis_ordering(pattern);
+  analyse_by_cholmod(&dissection, analysis);
 }
 
 void read_supernodes(const cholmod_factor& factor, SupernodalStructure& structure) {
@@ -162,9 +175,10 @@ void find_branches(const std::vector<std::vector<int>>& children, SupernodalStru
 
 }  // namespace
 
-std::shared_ptr<const SupernodalStructure> analyse(const fem::SparsityPattern& pattern) {
+std::shared_ptr<const SupernodalStructure> analyse(const fem::SparsityPattern& pattern,
+                                                   Ordering ordering) {
   Analysis analysis;
-  analyse_by_cholmod(pattern, analysis);
+  analyse_by_cholmod(pattern, ordering, analysis);
   auto structure = std::make_shared<SupernodalStructure>();
   read_supernodes(*analysis.factor, *structure);
   const std::vector<std::vector<int>> children = children_of(*structure);

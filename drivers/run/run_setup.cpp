@@ -55,8 +55,7 @@ mesh::RefinementForest begin_adaptive(const config::Configuration& configuration
                                       const geometry::LevelSetPtr& surface,
                                       const problem::CahnHilliardModel& physics,
                                       const InitialState& initial,
-                                      const simulation::MeshAdaptation::MakeSpace& make_space,
-                                      RunSetup& run) {
+                                      const simulation::MakeSpace& make_space, RunSetup& run) {
   const mesh::RefinementLevels levels = refinement_levels(configuration, *surface);
   if (!initial.from_checkpoint && !begins_finest(configuration)) {
     simulation::FieldOnMesh begin =
@@ -98,10 +97,9 @@ RunSetup build_run(const config::Configuration& configuration, const InitialStat
   const geometry::LevelSetPtr surface = surface_of(configuration);
   const bool adaptive = is_adaptive(configuration, physics, *run.ranks);
   if (begins_finest(configuration)) refuse_too_fine(configuration, *surface, *run.ranks);
-  const simulation::MeshAdaptation::MakeSpace make_space = [surface, team = run.team,
-                                                            ranks = run.ranks,
-                                                            mass = physics.mass_stabilisation](
-                                                               mesh::ActiveMesh mesh) {
+  const simulation::MakeSpace make_space = [surface, team = run.team, ranks = run.ranks,
+                                            mass =
+                                                physics.mass_stabilisation](mesh::ActiveMesh mesh) {
     return std::make_shared<const fem::SurfaceSpace>(surface, std::move(mesh), team, ranks, mass);
   };
   std::optional<mesh::RefinementForest> forest;
@@ -134,8 +132,8 @@ RunSetup build_run(const config::Configuration& configuration, const InitialStat
                      "the choice to it");
   if (forest) {
     const fem::RefinementRule rule = refinement_rule(configuration, physics, forest->levels());
-    run.adaptation = std::make_unique<simulation::MeshAdaptation>(std::move(*forest), rule,
-                                                                  make_space, make_rest);
+    run.adaptation =
+        std::make_unique<simulation::MeshAdaptation>(std::move(*forest), rule, make_rest);
   }
   return run;
 }

@@ -22,23 +22,24 @@ class ElementEnergy {
         mass_(space.moments[e].mass),
         p_(space.moments[e].mean.data()),
         root_(std::sqrt(2 * well.rho)) {
+    const double size = space.mesh.shapes[space.elements[e].shape].size;
+    const double larger = 1 - 1 / (size * size);
+    xi_ = kVarianceInMean + larger * (1 - kVarianceInMean);
+    eta_ = kSlopeTimesVariance + larger * (-1 - kSlopeTimesVariance);
     const Nodes value = values_at(space.elements[e], c);
     const Nodes product = mass_product(value);
     const double mean = p_.dot(value);
     variance_ = value.dot(product) - mean * mean;
     z_ = product - mean * p_;
     slope_ = root_ * (well.a + well.b - 2 * mean);
-    w_ = root_ * ((mean - well.a) * (well.b - mean) - kVarianceInMean * variance_);
+    w_ = root_ * ((mean - well.a) * (well.b - mean) - xi_ * variance_);
   }
 
-  double value() const {
-    return 0.5 * area_ * (w_ * w_ - kSlopeTimesVariance * slope_ * slope_ * variance_);
-  }
+  double value() const { return 0.5 * area_ * (w_ * w_ - eta_ * slope_ * slope_ * variance_); }
 
   Nodes gradient() const {
-    return area_ *
-           ((w_ * slope_ + 2 * kSlopeTimesVariance * root_ * slope_ * variance_) * p_ -
-            (2 * kVarianceInMean * root_ * w_ + kSlopeTimesVariance * slope_ * slope_) * z_);
+    return area_ * ((w_ * slope_ + 2 * eta_ * root_ * slope_ * variance_) * p_ -
+                    (2 * xi_ * root_ * w_ + eta_ * slope_ * slope_) * z_);
   }
 
   // ∂²E_T = α m + β p pᵀ + γ (p zᵀ + z pᵀ) + δ z zᵀ along a direction,
@@ -68,11 +69,10 @@ class ElementEnergy {
   };
 
   Second coefficients() const {
-    constexpr double xi = kVarianceInMean, eta = kSlopeTimesVariance;
     const double slope2 = slope_ * slope_, rw = 2 * root_ * w_, r2 = 4 * root_ * root_;
-    return {area_ * (-xi * rw - eta * slope2),
-            area_ * ((1 + eta) * slope2 + (xi - 1) * rw - eta * r2 * variance_),
-            area_ * (2 * (2 * eta - xi) * root_ * slope_), area_ * (r2 * xi * xi)};
+    return {area_ * (-xi_ * rw - eta_ * slope2),
+            area_ * ((1 + eta_) * slope2 + (xi_ - 1) * rw - eta_ * r2 * variance_),
+            area_ * (2 * (2 * eta_ - xi_) * root_ * slope_), area_ * (r2 * xi_ * xi_)};
   }
 
   Nodes mass_product(const Nodes& v) const {
@@ -87,9 +87,10 @@ class ElementEnergy {
 
   double area_;
   const std::array<double, 10>& mass_;
-  Eigen::Map<const Nodes> p_;    // ∂c̄/∂c
-  Nodes z_;                      // ½ ∂V/∂c
-  double root_;                  // −w''/2
+  Eigen::Map<const Nodes> p_;  // ∂c̄/∂c
+  Nodes z_;                    // ½ ∂V/∂c
+  double root_;                // −w''/2
+  double xi_, eta_;
   double variance_, slope_, w_;  // V, w'(c̄), w̄
 };
 

@@ -10,6 +10,10 @@
 // dimensions ∇c_h errs across a boundary too. That adds g ε² ∫ c''² s², with s² the second moment
 // of the element along the normal, which V is as well: 2ξ + η = 2(1 + g). The values below cancel
 // it on average over cuts of the Kuhn mesh, not in each direction: docs/decisions/0019.
+//
+// Larger elements, which lie in the phases, have ξ and η between these values and those of ∫
+// f0(c_h) to second order, 1 and −1. There the variance must cost energy: with η > 0 a pure phase
+// is unstable on elements longer than some 10 ε.
 #pragma once
 
 #include "kernel/fem/surface_space.hpp"
@@ -17,8 +21,9 @@
 
 namespace traceraft::fem::averaged_potential {
 
-inline constexpr double kVarianceInMean = 1.2;      // ξ
-inline constexpr double kSlopeTimesVariance = 0.4;  // η
+// ξ and η on elements of the smallest size.
+inline constexpr double kVarianceInMean = 1.2;
+inline constexpr double kSlopeTimesVariance = 0.4;
 // Large values of c make E_T ∝ (c̄² + ξV)² − 4η c̄² V ≥ 4 (ξ − η) c̄² V.
 static_assert(kSlopeTimesVariance < kVarianceInMean, "the energy has to be bounded from below");
 

@@ -1,6 +1,7 @@
 #include "kernel/fem/csr.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace traceraft::fem {
@@ -9,33 +10,43 @@ PatternPtr build_pattern(const mesh::ActiveMesh& mesh, std::shared_ptr<const Com
   auto pattern = std::make_shared<SparsityPattern>();
   pattern->halo = {mesh.owned_nodes, mesh.nodes(), mesh.halo, std::move(ranks)};
   const int rows = mesh.owned_nodes;
+  pattern->row_begin.assign(rows + 1, 0);
+  for (int i = 0; i < rows; ++i) ++pattern->row_begin[i + 1];  // the diagonal
+  for (const auto& [low, high] : mesh.edges)
+    for (const int i : {low, high})
+      if (i < rows) ++pattern->row_begin[i + 1];
+  std::partial_sum(pattern->row_begin.begin(), pattern->row_begin.end(),
+                   pattern->row_begin.begin());
   struct Entry {
     int column, edge;
   };
-  std::vector<std::vector<Entry>> row(rows);
-  for (int i = 0; i < rows; ++i) row[i].push_back({i, -1});
+  std::vector<Entry> entries(pattern->row_begin.back());
+  std::vector<int> next(pattern->row_begin.begin(), pattern->row_begin.end() - 1);
+  for (int i = 0; i < rows; ++i) entries[next[i]++] = {i, -1};
   for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
     const auto [low, high] = mesh.edges[e];
-    if (low < rows) row[low].push_back({high, static_cast<int>(e)});
-    if (high < rows) row[high].push_back({low, static_cast<int>(e)});
+    if (low < rows) entries[next[low]++] = {high, static_cast<int>(e)};
+    if (high < rows) entries[next[high]++] = {low, static_cast<int>(e)};
   }
-  pattern->row_begin.assign(1, 0);
+  pattern->column.reserve(entries.size());
+  pattern->edge_of_entry.reserve(entries.size());
+  pattern->diagonal.reserve(rows);
   pattern->low_high.assign(mesh.edges.size(), -1);
   pattern->high_low.assign(mesh.edges.size(), -1);
   for (int i = 0; i < rows; ++i) {
-    std::sort(row[i].begin(), row[i].end(), [&](const Entry& a, const Entry& b) {
-      return mesh.node_id[a.column] < mesh.node_id[b.column];
-    });
-    for (const auto& [column, edge] : row[i]) {
-      const int position = pattern->entries();
+    std::sort(entries.begin() + pattern->row_begin[i], entries.begin() + pattern->row_begin[i + 1],
+              [&](const Entry& a, const Entry& b) {
+                return mesh.node_id[a.column] < mesh.node_id[b.column];
+              });
+    for (int k = pattern->row_begin[i]; k < pattern->row_begin[i + 1]; ++k) {
+      const auto [column, edge] = entries[k];
       if (edge < 0)
-        pattern->diagonal.push_back(position);
+        pattern->diagonal.push_back(k);
       else
-        (mesh.edges[edge].low == i ? pattern->low_high : pattern->high_low)[edge] = position;
+        (mesh.edges[edge].low == i ? pattern->low_high : pattern->high_low)[edge] = k;
       pattern->column.push_back(column);
       pattern->edge_of_entry.push_back(edge);
     }
-    pattern->row_begin.push_back(pattern->entries());
   }
   return pattern;
 }

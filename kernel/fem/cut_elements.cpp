@@ -10,8 +10,7 @@ Eigen::Matrix<double, 4, 3> basis_gradients(const mesh::ActiveMesh& mesh,
 
 }  // namespace
 
-std::vector<CutElement> build_cut_elements(const mesh::ActiveMesh& mesh,
-                                           const std::vector<mesh::LiftedTriangle>& lifted) {
+std::vector<CutElement> find_cut_elements(const mesh::ActiveMesh& mesh) {
   std::vector<CutElement> elements;
   elements.reserve(mesh.tets.size());
   int triangle = 0;
@@ -19,24 +18,30 @@ std::vector<CutElement> build_cut_elements(const mesh::ActiveMesh& mesh,
     CutElement element{};
     element.node = tet.node;
     element.edge = tet.edge;
+    element.shape = tet.shape;
     const mesh::CutPolygon polygon = mesh::cut_polygon(mesh, tet);
     element.corners = polygon.count;
     for (int v = 0; v < polygon.count; ++v)
       element.cut_edge[v] = static_cast<signed char>(polygon.edge[v]);
     element.first_triangle = triangle;
-    Eigen::Matrix3d inverse_metric = Eigen::Matrix3d::Zero();
-    for (int t = 0; t < element.triangles(); ++t, ++triangle) {
-      element.area += lifted[triangle].area;
-      inverse_metric += lifted[triangle].area * lifted[triangle].inverse_metric;
-    }
-    const auto gradient = basis_gradients(mesh, tet);
-    const Eigen::Matrix4d products =
-        gradient * (inverse_metric / element.area) * gradient.transpose();
-    for (int e = 0; e < 6; ++e)
-      element.coupling[e] = products(mesh::kTetEdges[e][0], mesh::kTetEdges[e][1]);
+    triangle += element.triangles();
     elements.push_back(element);
   }
   return elements;
+}
+
+void set_metric(const mesh::ActiveMesh& mesh, const mesh::ActiveTet& tet,
+                const std::array<mesh::LiftedTriangle, 2>& lifted, CutElement& element) {
+  Eigen::Matrix3d inverse_metric = Eigen::Matrix3d::Zero();
+  for (int t = 0; t < element.triangles(); ++t) {
+    element.area += lifted[t].area;
+    inverse_metric += lifted[t].area * lifted[t].inverse_metric;
+  }
+  const auto gradient = basis_gradients(mesh, tet);
+  const Eigen::Matrix4d products =
+      gradient * (inverse_metric / element.area) * gradient.transpose();
+  for (int e = 0; e < 6; ++e)
+    element.coupling[e] = products(mesh::kTetEdges[e][0], mesh::kTetEdges[e][1]);
 }
 
 std::array<double, 6> normal_coupling(const mesh::ActiveMesh& mesh, const mesh::ActiveTet& tet) {
@@ -62,30 +67,24 @@ Eigen::Matrix4d trace_matrix(const mesh::CutSurface& surface, const CutElement& 
   return trace;
 }
 
-std::vector<TraceMoments> build_trace_moments(const mesh::CutSurface& surface,
-                                              const std::vector<CutElement>& elements) {
-  std::vector<TraceMoments> result;
-  result.reserve(elements.size());
-  for (const CutElement& element : elements) {
-    // A flat triangle adds (1 + δ_ab)/12 between two corners.
-    Eigen::Matrix4d at_corners = Eigen::Matrix4d::Zero();
-    for (int t = 0; t < element.triangles(); ++t) {
-      const double share = surface.triangle_area[element.first_triangle + t] / element.area;
-      for (const int a : kPolygonTriangles[t])
-        for (const int b : kPolygonTriangles[t]) at_corners(a, b) += share / (a == b ? 6 : 12);
-    }
-    const Eigen::Matrix4d nodal = trace_matrix(surface, element);
-    const Eigen::Matrix4d at_nodes = nodal.transpose() * at_corners * nodal;
-    TraceMoments moments{};
-    for (int i = 0; i < 4; ++i) {
-      moments.mean[i] = at_nodes.row(i).sum();  // the φ_j add up to 1
-      moments.mass[i] = at_nodes(i, i);
-    }
-    for (int e = 0; e < 6; ++e)
-      moments.mass[4 + e] = at_nodes(mesh::kTetEdges[e][0], mesh::kTetEdges[e][1]);
-    result.push_back(moments);
+TraceMoments trace_moments(const mesh::CutSurface& surface, const CutElement& element) {
+  // A flat triangle adds (1 + δ_ab)/12 between two corners.
+  Eigen::Matrix4d at_corners = Eigen::Matrix4d::Zero();
+  for (int t = 0; t < element.triangles(); ++t) {
+    const double share = surface.triangle_area[element.first_triangle + t] / element.area;
+    for (const int a : kPolygonTriangles[t])
+      for (const int b : kPolygonTriangles[t]) at_corners(a, b) += share / (a == b ? 6 : 12);
   }
-  return result;
+  const Eigen::Matrix4d nodal = trace_matrix(surface, element);
+  const Eigen::Matrix4d at_nodes = nodal.transpose() * at_corners * nodal;
+  TraceMoments moments{};
+  for (int i = 0; i < 4; ++i) {
+    moments.mean[i] = at_nodes.row(i).sum();  // the φ_j add up to 1
+    moments.mass[i] = at_nodes(i, i);
+  }
+  for (int e = 0; e < 6; ++e)
+    moments.mass[4 + e] = at_nodes(mesh::kTetEdges[e][0], mesh::kTetEdges[e][1]);
+  return moments;
 }
 
 EdgeCouplings build_edge_couplings(const std::vector<CutElement>& elements, std::size_t edges) {

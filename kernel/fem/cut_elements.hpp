@@ -19,15 +19,18 @@ struct CutElement {
   int first_triangle;                   // of Γ_h; the second, if there is one, follows
   int corners;                          // of the polygon: 3 or 4
   std::array<signed char, 4> cut_edge;  // local edges at the polygon's corners
+  int shape;                            // number in ActiveMesh::shapes
   int triangles() const { return corners - 2; }
 };
 
 // The polygon's corners that triangle 0 and 1 of an element join, in the order of CutSurface.
 inline constexpr std::array<std::array<int, 3>, 2> kPolygonTriangles = {{{0, 1, 2}, {0, 2, 3}}};
 
-// `lifted`: of each triangle of the surface.
-std::vector<CutElement> build_cut_elements(const mesh::ActiveMesh& mesh,
-                                           const std::vector<mesh::LiftedTriangle>& lifted);
+// The polygons of all elements; their areas and couplings are still to be set.
+std::vector<CutElement> find_cut_elements(const mesh::ActiveMesh& mesh);
+// Sets area and couplings, from the images of the element's triangles.
+void set_metric(const mesh::ActiveMesh& mesh, const mesh::ActiveTet& tet,
+                const std::array<mesh::LiftedTriangle, 2>& lifted, CutElement& element);
 
 // ∫_T (n·∇λ_i)(n·∇λ_j) dx of the edges of a tetrahedron: the element matrix of S off the diagonal.
 std::array<double, 6> normal_coupling(const mesh::ActiveMesh& mesh, const mesh::ActiveTet& tet);
@@ -39,8 +42,7 @@ struct TraceMoments {
   std::array<double, 4> mean;   // ∫ φ_i
   std::array<double, 10> mass;  // ∫ φ_i φ_j
 };
-std::vector<TraceMoments> build_trace_moments(const mesh::CutSurface& surface,
-                                              const std::vector<CutElement>& elements);
+TraceMoments trace_moments(const mesh::CutSurface& surface, const CutElement& element);
 
 // The traces at the polygon's corners (rows) of the element's four basis functions (columns).
 Eigen::Matrix4d trace_matrix(const mesh::CutSurface& surface, const CutElement& element);

@@ -34,6 +34,23 @@ int node_at(const mesh::ActiveMesh& mesh, const mesh::CubeMesh& other, std::int6
   return static_cast<int>(found - mesh.node_id.begin());
 }
 
+// The triangles of the old surface around what is no longer there: all new nodes are near them.
+std::vector<int> triangles_to_search(const SurfaceSpace& from, const SurfaceSpace& to) {
+  std::vector<bool> kept(from.mesh.tets.size(), false), near(from.mesh.node_id.size(), false);
+  for (const int tet : mesh::same_tetrahedra(to.mesh, from.mesh))
+    if (tet >= 0) kept[tet] = true;
+  for (std::size_t t = 0; t < kept.size(); ++t)
+    if (!kept[t])
+      for (const int node : from.mesh.tets[t].node) near[node] = true;
+  std::vector<int> triangles;
+  for (std::size_t k = 0; k < from.surface.triangles.size(); ++k) {
+    const std::array<int, 4>& node = from.mesh.tets[from.surface.triangle_tet[k]].node;
+    if (std::any_of(node.begin(), node.end(), [&](int i) { return near[i]; }))
+      triangles.push_back(static_cast<int>(k));
+  }
+  return triangles;
+}
+
 }  // namespace
 
 FieldTransfer::FieldTransfer(const SurfaceSpace& from, const SurfaceSpace& to)
@@ -42,7 +59,7 @@ FieldTransfer::FieldTransfer(const SurfaceSpace& from, const SurfaceSpace& to)
       new_area_(to.node_area),
       area_(to.area),
       ranks_(to.communicator) {
-  const mesh::NearestTriangle nearest(from.surface);
+  const mesh::NearestTriangle nearest(from.surface, triangles_to_search(from, to));
   const auto add = [&](int node, double weight) {
     node_.push_back(node);
     weight_.push_back(weight);

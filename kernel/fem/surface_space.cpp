@@ -27,41 +27,18 @@ SurfaceSpace::Totals totals_of(const mesh::ActiveMesh& mesh, const mesh::CutSurf
           mesh::euler_characteristic(mesh, surface, ranks)};
 }
 
-// From the entries off the diagonal, off_diagonal(element number) for the edges of an element.
-template <class OffDiagonal>
-CsrMatrix zero_row_sum_matrix(const SurfaceSpace& space, const OffDiagonal& off_diagonal) {
-  std::vector<double> edge(space.mesh.edges.size(), 0.0);
-  for (std::size_t t = 0; t < space.elements.size(); ++t) {
-    const std::array<double, 6> value = off_diagonal(t);
-    for (int e = 0; e < 6; ++e) edge[space.elements[t].edge[e]] += value[e];
-  }
+// From the entries off the diagonal.
+CsrMatrix zero_row_sum_matrix(const SurfaceSpace& space, const std::vector<double>& edge) {
   CsrMatrix matrix(space.pattern);
   fill_zero_row_sum(edge, space.blocks, *space.team, matrix);
   return matrix;
 }
 
 CsrMatrix stiffness_matrix(const SurfaceSpace& space) {
-  return zero_row_sum_matrix(space, [&](std::size_t t) {
-    std::array<double, 6> value = space.elements[t].coupling;
-    for (double& entry : value) entry *= space.elements[t].area;
-    return value;
-  });
-}
-
-// Σ_T weight(shape of T) S_T.
-template <class Weight>
-CsrMatrix normal_matrix(const SurfaceSpace& space, const Weight& weight) {
-  return zero_row_sum_matrix(space, [&](std::size_t t) {
-    const mesh::ActiveTet& tet = space.mesh.tets[t];
-    std::array<double, 6> value = normal_coupling(space.mesh, tet);
-    for (double& entry : value) entry *= weight(space.mesh.shape(tet));
-    return value;
-  });
-}
-
-CsrMatrix stabilised_mass_matrix(const SurfaceSpace& space) {
-  return combine(1.0, space.mass, space.mass_stabilisation * space.h(),
-                 normal_matrix(space, [](const mesh::TetShape& shape) { return shape.size; }));
+  std::vector<double> edge(space.mesh.edges.size(), 0.0);
+  for (const CutElement& element : space.elements)
+    for (int e = 0; e < 6; ++e) edge[element.edge[e]] += element.coupling[e] * element.area;
+  return zero_row_sum_matrix(space, edge);
 }
 
 CsrMatrix mass_matrix(const SurfaceSpace& space) {
@@ -83,14 +60,46 @@ struct SurfaceSpace::Geometry {
   mesh::ActiveMesh mesh;
   mesh::CutSurface surface;
   std::vector<CutElement> elements;
+  std::vector<TraceMoments> moments;
 
   Geometry(const geometry::LevelSet& level_set, mesh::ActiveMesh mesh_, const ThreadTeam& team,
-           const Communicator& ranks)
-      : mesh(std::move(mesh_)), surface(checked_surface(level_set, mesh, ranks)) {
-    const std::vector<mesh::LiftedTriangle> lifted =
-        mesh::lifted_triangles(level_set, mesh, surface, team);
-    elements = build_cut_elements(mesh, lifted);
-    for (std::size_t t = 0; t < lifted.size(); ++t) surface.triangle_area[t] = lifted[t].area;
+           const Communicator& ranks, const SurfaceSpace* earlier)
+      : mesh(std::move(mesh_)),
+        surface(checked_surface(level_set, mesh, ranks)),
+        elements(find_cut_elements(mesh)),
+        moments(elements.size()) {
+    const std::vector<int> same = earlier ? mesh::same_tetrahedra(mesh, earlier->mesh)
+                                          : std::vector<int>(elements.size(), -1);
+    team.for_range(elements.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t)
+        if (same[t] < 0)
+          integrate(level_set, t);
+        else
+          take_over(*earlier, same[t], t);
+    });
+  }
+
+ private:
+  void integrate(const geometry::LevelSet& level_set, std::size_t t) {
+    CutElement& element = elements[t];
+    std::array<mesh::LiftedTriangle, 2> lifted;
+    for (int k = 0; k < element.triangles(); ++k)
+      lifted[k] = mesh::lifted_triangle(level_set, mesh, surface, element.first_triangle + k);
+    set_metric(mesh, mesh.tets[t], lifted, element);
+    for (int k = 0; k < element.triangles(); ++k)
+      surface.triangle_area[element.first_triangle + k] = lifted[k].area;
+    moments[t] = trace_moments(surface, element);
+  }
+
+  void take_over(const SurfaceSpace& earlier, int same, std::size_t t) {
+    CutElement& element = elements[t];
+    const CutElement& known = earlier.elements[same];
+    element.area = known.area;
+    element.coupling = known.coupling;
+    for (int k = 0; k < element.triangles(); ++k)
+      surface.triangle_area[element.first_triangle + k] =
+          earlier.surface.triangle_area[known.first_triangle + k];
+    moments[t] = earlier.moments[same];
   }
 };
 
@@ -107,10 +116,6 @@ void add_element_matrix(const CutElement& element, const Eigen::Matrix4d& local,
     if (block.rows.contains(element.node[j]))
       matrix.values[pattern.high_low[element.edge[e]]] += local(j, i);
   }
-}
-
-CsrMatrix graded_normal_stiffness(const SurfaceSpace& space) {
-  return normal_matrix(space, [](const mesh::TetShape& shape) { return shape.size * shape.size; });
 }
 
 void fill_symmetric(const std::vector<double>& edge, const std::vector<double>& diagonal,
@@ -150,8 +155,15 @@ SurfaceSpace::SurfaceSpace(geometry::LevelSetPtr level_set_, mesh::ActiveMesh me
                            std::shared_ptr<const ThreadTeam> team_,
                            std::shared_ptr<const Communicator> communicator_,
                            double mass_stabilisation_)
-    : SurfaceSpace(level_set_, Geometry(*level_set_, std::move(mesh_), *team_, *communicator_),
-                   team_, communicator_, mass_stabilisation_) {}
+    : SurfaceSpace(level_set_,
+                   Geometry(*level_set_, std::move(mesh_), *team_, *communicator_, nullptr), team_,
+                   communicator_, mass_stabilisation_) {}
+
+SurfaceSpace::SurfaceSpace(const SurfaceSpace& earlier, mesh::ActiveMesh mesh_)
+    : SurfaceSpace(earlier.level_set,
+                   Geometry(*earlier.level_set, std::move(mesh_), *earlier.team,
+                            *earlier.communicator, &earlier),
+                   earlier.team, earlier.communicator, earlier.mass_stabilisation) {}
 
 SurfaceSpace::SurfaceSpace(geometry::LevelSetPtr level_set_, Geometry geometry,
                            std::shared_ptr<const ThreadTeam> team_,
@@ -161,7 +173,7 @@ SurfaceSpace::SurfaceSpace(geometry::LevelSetPtr level_set_, Geometry geometry,
       mesh(std::move(geometry.mesh)),
       surface(std::move(geometry.surface)),
       elements(std::move(geometry.elements)),
-      moments(build_trace_moments(surface, elements)),
+      moments(std::move(geometry.moments)),
       edge_couplings(build_edge_couplings(elements, mesh.edges.size())),
       team(std::move(team_)),
       communicator(std::move(communicator_)),
@@ -170,13 +182,34 @@ SurfaceSpace::SurfaceSpace(geometry::LevelSetPtr level_set_, Geometry geometry,
       mass_stabilisation(mass_stabilisation_),
       mass(mass_matrix(*this)),
       stiffness(stiffness_matrix(*this)),
-      normal_stiffness(normal_matrix(*this, [](const mesh::TetShape&) { return 1.0; })),
-      stabilised_mass(stabilised_mass_matrix(*this)),
+      normal_stiffness(pattern),
+      stabilised_mass(pattern),
+      graded_normal_stiffness(pattern),
       node_area(Vec::Zero(nodes())),
       totals(totals_of(mesh, surface, *communicator)),
       order({mesh.node_id.begin(), mesh.node_id.begin() + mesh.owned_nodes}, communicator) {
+  assemble_normal_matrices();
   mass.multiply(Vec::Ones(mesh.nodes()), node_area, *team);
   area = communicator->sum(node_area.sum());
+}
+
+void SurfaceSpace::assemble_normal_matrices() {
+  // Σ_T (h_T/h)^k S_T for k = 0, 1, 2, which are one on a uniform mesh.
+  std::array<std::vector<double>, 3> edge;
+  for (std::vector<double>& values : edge) values.assign(mesh.edges.size(), 0.0);
+  for (std::size_t t = 0; t < elements.size(); ++t) {
+    std::array<double, 6> value = normal_coupling(mesh, mesh.tets[t]);
+    const double size = mesh.shape(mesh.tets[t]).size;
+    for (std::vector<double>& values : edge)
+      for (int e = 0; e < 6; ++e) {
+        values[elements[t].edge[e]] += value[e];
+        value[e] *= size;
+      }
+  }
+  normal_stiffness = zero_row_sum_matrix(*this, edge[0]);
+  stabilised_mass =
+      combine(1.0, mass, mass_stabilisation * h(), zero_row_sum_matrix(*this, edge[1]));
+  graded_normal_stiffness = zero_row_sum_matrix(*this, edge[2]);
 }
 
 double SurfaceSpace::bilinear(const CsrMatrix& A, VecView u, VecView v) const {

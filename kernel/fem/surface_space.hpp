@@ -37,6 +37,9 @@ class SurfaceSpace {
                std::shared_ptr<const ThreadTeam> team,
                std::shared_ptr<const Communicator> communicator,
                double mass_stabilisation = kMassStabilisation);
+  // The same surface on another mesh. What both have in common is taken over, bit by bit what it
+  // would be without: integrals over tetrahedra that are there again.
+  SurfaceSpace(const SurfaceSpace& earlier, mesh::ActiveMesh mesh);
 
   const geometry::LevelSetPtr level_set;
   const mesh::ActiveMesh mesh;
@@ -50,12 +53,13 @@ class SurfaceSpace {
   const PatternPtr pattern;
   const double mass_stabilisation;
 
-  CsrMatrix mass;              // M_ij = ∫_Γ φ_i φ_j: singular, see stabilised_mass
-  CsrMatrix stiffness;         // K_ij = ∫_Γ ∇_Γφ_i·∇_Γφ_j
-  CsrMatrix normal_stiffness;  // S_ij = ∫_cut tets (n·∇φ_i)(n·∇φ_j) dx; S·1 = 0
-  CsrMatrix stabilised_mass;   // M̃ = M + mass_stabilisation Σ_T h_T S_T
-  Vec node_area;               // w_i = ∫_Γ φ_i, so ∫_Γ c_h = w·c
-  double area;                 // Σ w_i: of Γ, by lifted triangles
+  CsrMatrix mass;                     // M_ij = ∫_Γ φ_i φ_j: singular, see stabilised_mass
+  CsrMatrix stiffness;                // K_ij = ∫_Γ ∇_Γφ_i·∇_Γφ_j
+  CsrMatrix normal_stiffness;         // S_ij = ∫_cut tets (n·∇φ_i)(n·∇φ_j) dx; S·1 = 0
+  CsrMatrix stabilised_mass;          // M̃ = M + mass_stabilisation Σ_T h_T S_T
+  CsrMatrix graded_normal_stiffness;  // Σ_T (h_T/h)² S_T: S where all tetrahedra are equal
+  Vec node_area;                      // w_i = ∫_Γ φ_i, so ∫_Γ c_h = w·c
+  double area;                        // Σ w_i: of Γ, by lifted triangles
 
   // Over all ranks.
   struct Totals {
@@ -90,13 +94,12 @@ class SurfaceSpace {
   Status solve_mass(VecView b, VecRef x) const;
 
  private:
+  void assemble_normal_matrices();  // stabilised_mass, too
+
   SurfaceSpace(geometry::LevelSetPtr level_set, Geometry geometry,
                std::shared_ptr<const ThreadTeam> team,
                std::shared_ptr<const Communicator> communicator, double mass_stabilisation);
 };
-
-// Σ_T (h_T/h)² S_T: S where all tetrahedra are equal.
-CsrMatrix graded_normal_stiffness(const SurfaceSpace& space);
 
 // Adds the rows of a block that a 4×4 element matrix touches.
 void add_element_matrix(const CutElement& element, const Eigen::Matrix4d& local,

@@ -49,14 +49,33 @@ std::vector<GlobalTet> find_cut_tets(const geometry::LevelSet& surface, const Cu
   return tets;
 }
 
-std::vector<std::int64_t> collect_vertices(const std::vector<GlobalTet>& tets) {
+// Of a list that may name one again and again.
+std::vector<std::int64_t> ascending(std::vector<std::int64_t> vertices) {
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
+
+std::vector<std::int64_t> vertices_of(const std::vector<GlobalTet>& tets) {
   std::vector<std::int64_t> vertices;
   vertices.reserve(4 * tets.size());
   for (const GlobalTet& tet : tets)
     vertices.insert(vertices.end(), tet.vertex.begin(), tet.vertex.end());
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  return vertices;
+  return ascending(std::move(vertices));
+}
+
+// Those of the cut leaves.
+std::vector<std::int64_t> vertices_of(const RefinementForest& forest) {
+  const CubeMesh lattice = forest.levels().lattice();
+  std::vector<bool> seen(forest.vertices().size(), false);
+  std::vector<std::int64_t> vertices;
+  for (const int leaf : forest.leaf_cells())
+    for (const int vertex : forest.cells()[leaf].vertex) {
+      if (seen[vertex]) continue;
+      seen[vertex] = true;
+      vertices.push_back(lattice.vertex_id(forest.vertices()[vertex].at));
+    }
+  return ascending(std::move(vertices));
 }
 
 std::vector<double> nodal_level_set(const geometry::LevelSet& surface, const CubeMesh& mesh,
@@ -190,14 +209,15 @@ std::vector<TetShape> shapes_of_a_cell() {
   return shapes;
 }
 
-// The mesh of the tetrahedra at the nodes of this rank, in global order.
+// The mesh of the tetrahedra at the nodes of this rank, in global order; `ids` are their vertices,
+// ascending.
 ActiveMesh assembled(const geometry::LevelSet& surface, const CubeMesh& cube,
                      std::vector<TetShape> shapes, const std::vector<GlobalTet>& tets,
-                     const Partition& partition, const Communicator& ranks) {
+                     const std::vector<std::int64_t>& ids, const Partition& partition,
+                     const Communicator& ranks) {
   ActiveMesh mesh;
   mesh.cube = cube;
   mesh.shapes = std::move(shapes);
-  const std::vector<std::int64_t> ids = collect_vertices(tets);
   const VertexLookup node(mesh.cube, ids);
   mesh.tets.reserve(tets.size());
   for (const GlobalTet& tet : tets)
@@ -264,7 +284,7 @@ ActiveMesh build_active_mesh(const geometry::LevelSet& surface, std::int64_t cel
   if (!ranks.all(!cut.empty()))
     throw InputError(std::to_string(ranks.size()) + " ranks are too many for a mesh of " +
                      std::to_string(cells) + " cells per edge; use fewer ranks or more cells");
-  return assembled(surface, cube, shapes_of_a_cell(), cut, partition, ranks);
+  return assembled(surface, cube, shapes_of_a_cell(), cut, vertices_of(cut), partition, ranks);
 }
 
 ActiveMesh build_active_mesh(const geometry::LevelSet& surface, const RefinementForest& forest) {
@@ -283,12 +303,35 @@ ActiveMesh build_active_mesh(const geometry::LevelSet& surface, const Refinement
         {{id(vertex[0]), id(vertex[1]), id(vertex[2]), id(vertex[3])}, list.number(vertex)});
   }
   require_outside(surface, cube);
-  ActiveMesh mesh = assembled(surface, cube, std::move(list.shapes), tets, {}, kAlone);
+  ActiveMesh mesh =
+      assembled(surface, cube, std::move(list.shapes), tets, vertices_of(forest), {}, kAlone);
   if (!is_closed(mesh))
     throw InputError("mesh-levels: the largest tetrahedra, " +
                      std::to_string(forest.levels().coarsest_cells()) +
                      " per edge of the box, are too coarse for this surface; use fewer levels");
   return mesh;
+}
+
+std::vector<int> same_tetrahedra(const ActiveMesh& mesh, const ActiveMesh& earlier) {
+  std::vector<int> same(mesh.tets.size(), -1);
+  if (mesh.cube.cells != earlier.cube.cells) return same;
+  std::vector<int> node(mesh.node_id.size(), -1);  // in the earlier mesh
+  for (std::size_t i = 0, k = 0; i < node.size(); ++i) {
+    while (k < earlier.node_id.size() && earlier.node_id[k] < mesh.node_id[i]) ++k;
+    if (k < earlier.node_id.size() && earlier.node_id[k] == mesh.node_id[i] &&
+        earlier.phi[k] == mesh.phi[i])
+      node[i] = static_cast<int>(k);
+  }
+  // Both lists ascend.
+  std::size_t at = 0;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    std::array<int, 4> wanted;
+    for (std::size_t i = 0; i < 4; ++i) wanted[i] = node[mesh.tets[t].node[i]];
+    if (std::find(wanted.begin(), wanted.end(), -1) != wanted.end()) continue;
+    while (at < earlier.tets.size() && earlier.tets[at].node < wanted) ++at;
+    if (at < earlier.tets.size() && earlier.tets[at].node == wanted) same[t] = static_cast<int>(at);
+  }
+  return same;
 }
 
 }  // namespace traceraft::mesh

@@ -39,6 +39,7 @@ struct ActiveMesh {
   int owned_nodes = 0;
   HaloPlan halo;
 
+  bool uniform() const { return shapes.size() == 6; }
   int nodes() const { return static_cast<int>(node_id.size()); }
   bool owns(int node) const { return node < owned_nodes; }
   // A tetrahedron counts where its lowest node does, on one rank only.
@@ -61,5 +62,9 @@ ActiveMesh build_active_mesh(const geometry::LevelSet& surface, std::int64_t cel
 // The same of the cut leaves of a forest of the surface, in their order; serial. Throws InputError
 // if Γ_h is not closed, because the largest tetrahedra are too coarse for the surface.
 ActiveMesh build_active_mesh(const geometry::LevelSet& surface, const RefinementForest& forest);
+
+// For each tetrahedron the number of the same one, with the same φ, in an earlier mesh; −1: there
+// is none. For meshes of forests on one lattice; on others it may find none.
+std::vector<int> same_tetrahedra(const ActiveMesh& mesh, const ActiveMesh& earlier);
 
 }  // namespace traceraft::mesh

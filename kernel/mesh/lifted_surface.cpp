@@ -29,26 +29,6 @@ Eigen::Matrix2d first_form(const geometry::LevelSet& level_set, const Point& x,
   return slope.transpose() * slope;
 }
 
-LiftedTriangle lifted_triangle(const geometry::LevelSet& level_set,
-                               const std::array<Point, 3>& corner, double flat_area,
-                               const Point& normal, double h) {
-  Tangents plane;
-  plane.col(0) = normal.unitOrthogonal();
-  plane.col(1) = normal.cross(plane.col(0));
-  const LiftedTriangle flat{flat_area, plane * plane.transpose()};
-  double stretch = 0;
-  Eigen::Matrix2d inverse = Eigen::Matrix2d::Zero();
-  for (int k = 0; k < 3; ++k) {  // the rule of the midpoints of edges, of degree 2
-    const Point middle = 0.5 * (corner[k] + corner[(k + 1) % 3]);
-    const Eigen::Matrix2d g = first_form(level_set, middle, plane, h);
-    const double determinant = g.determinant();
-    if (!(determinant > 0.25 && determinant < 4)) return flat;
-    stretch += std::sqrt(determinant) / 3;
-    inverse += std::sqrt(determinant) / 3 * g.inverse();
-  }
-  return {stretch * flat_area, plane * (inverse / stretch) * plane.transpose()};
-}
-
 }  // namespace
 
 Point lifted(const geometry::LevelSet& level_set, const Point& x, double h) {
@@ -60,18 +40,34 @@ Point lifted(const geometry::LevelSet& level_set, const Point& x, double h) {
   return x + along * direction;
 }
 
+LiftedTriangle lifted_triangle(const geometry::LevelSet& level_set, const ActiveMesh& mesh,
+                               const CutSurface& surface, std::size_t t) {
+  const auto corner = [&](int k) { return surface.position[surface.triangles[t][k]]; };
+  const Point normal = cut_normal(mesh, mesh.tets[surface.triangle_tet[t]]);
+  Tangents plane;
+  plane.col(0) = normal.unitOrthogonal();
+  plane.col(1) = normal.cross(plane.col(0));
+  const LiftedTriangle flat{surface.triangle_area[t], plane * plane.transpose()};
+  double stretch = 0;
+  Eigen::Matrix2d inverse = Eigen::Matrix2d::Zero();
+  for (int k = 0; k < 3; ++k) {  // the rule of the midpoints of edges, of degree 2
+    const Point middle = 0.5 * (corner(k) + corner((k + 1) % 3));
+    const Eigen::Matrix2d g = first_form(level_set, middle, plane, mesh.cube.h());
+    const double determinant = g.determinant();
+    if (!(determinant > 0.25 && determinant < 4)) return flat;
+    stretch += std::sqrt(determinant) / 3;
+    inverse += std::sqrt(determinant) / 3 * g.inverse();
+  }
+  return {stretch * flat.area, plane * (inverse / stretch) * plane.transpose()};
+}
+
 std::vector<LiftedTriangle> lifted_triangles(const geometry::LevelSet& level_set,
                                              const ActiveMesh& mesh, const CutSurface& surface,
                                              const ThreadTeam& team) {
   std::vector<LiftedTriangle> result(surface.triangles.size());
   team.for_range(result.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) {
-      const auto& [a, b, c] = surface.triangles[t];
-      result[t] = lifted_triangle(
-          level_set, {surface.position[a], surface.position[b], surface.position[c]},
-          surface.triangle_area[t], cut_normal(mesh, mesh.tets[surface.triangle_tet[t]]),
-          mesh.cube.h());
-    }
+    for (std::size_t t = begin; t < end; ++t)
+      result[t] = lifted_triangle(level_set, mesh, surface, t);
   });
   return result;
 }

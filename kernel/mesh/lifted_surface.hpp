@@ -20,8 +20,11 @@ struct LiftedTriangle {
 // Where x, a point near Γ, is lifted to: along ∇φ(x), to φ = 0. `h` is the scale of differences.
 Point lifted(const geometry::LevelSet& level_set, const Point& x, double h);
 
-// The images of all triangles. A triangle stays flat where its image is not near it: at an edge of
-// Γ, on a mesh that is far too coarse, or where φ is not finite.
+// The image of triangle t. It stays flat where the image is not near it: at an edge of Γ, on a mesh
+// that is far too coarse, or where φ is not finite.
+LiftedTriangle lifted_triangle(const geometry::LevelSet& level_set, const ActiveMesh& mesh,
+                               const CutSurface& surface, std::size_t t);
+// Those of all triangles.
 std::vector<LiftedTriangle> lifted_triangles(const geometry::LevelSet& level_set,
                                              const ActiveMesh& mesh, const CutSurface& surface,
                                              const ThreadTeam& team);

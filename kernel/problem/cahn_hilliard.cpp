@@ -24,7 +24,7 @@ fem::CsrMatrix gradient_energy_matrix(const fem::SurfaceSpace& space,
                                       const CahnHilliardModel& model) {
   const double e2 = model.epsilon * model.epsilon;
   return fem::combine(e2, space.stiffness, e2 * model.stabilisation * space.h(),
-                      fem::graded_normal_stiffness(space));
+                      space.graded_normal_stiffness);
 }
 
 CahnHilliard::CahnHilliard(std::shared_ptr<const fem::SurfaceSpace> space, CahnHilliardModel model)

@@ -50,8 +50,7 @@ std::optional<mesh::RefinementLevels> levels_that_keep_the_area(const geometry::
 }
 
 FieldOnMesh adapted_field(const geometry::LevelSet& surface, const mesh::RefinementLevels& levels,
-                          const fem::RefinementRule& rule,
-                          const MeshAdaptation::MakeSpace& make_space,
+                          const fem::RefinementRule& rule, const MakeSpace& make_space,
                           const std::function<Vec(const fem::SurfaceSpace&)>& make_field) {
   int begin = 0;
   while (begin < levels.finest_generation() && (levels.coarsest_cells() << begin / 3) < kBeginCells)
@@ -69,7 +68,8 @@ FieldOnMesh adapted_field(const geometry::LevelSet& surface, const mesh::Refinem
                          static_cast<double>(forest.leaf_cells().size());
     if (ratio > kSettled && !fem::too_coarse(*space, rule, field, generation)) break;
     forest = std::move(next);
-    space = make_space(mesh::build_active_mesh(surface, forest));
+    space =
+        std::make_shared<const fem::SurfaceSpace>(*space, mesh::build_active_mesh(surface, forest));
     field = make_field(*space);
   }
   return {std::move(forest), std::move(space), std::move(field)};

@@ -7,7 +7,6 @@
 
 #include "kernel/fem/refinement_rule.hpp"
 #include "kernel/mesh/refinement_forest.hpp"
-#include "kernel/simulation/mesh_adaptation.hpp"
 
 namespace traceraft::simulation {
 
@@ -24,11 +23,12 @@ struct FieldOnMesh {
   Vec field;
 };
 
+using MakeSpace = std::function<std::shared_ptr<const fem::SurfaceSpace>(mesh::ActiveMesh mesh)>;
+
 // From a moderate mesh, which is refined and coarsened until it fits the field that make_field
 // gives on it.
 FieldOnMesh adapted_field(const geometry::LevelSet& surface, const mesh::RefinementLevels& levels,
-                          const fem::RefinementRule& rule,
-                          const MeshAdaptation::MakeSpace& make_space,
+                          const fem::RefinementRule& rule, const MakeSpace& make_space,
                           const std::function<Vec(const fem::SurfaceSpace&)>& make_field);
 
 }  // namespace traceraft::simulation

@@ -37,11 +37,10 @@ Status carry(const Discretisation& from, Discretisation& to) {
 }  // namespace
 
 MeshAdaptation::MeshAdaptation(mesh::RefinementForest forest, const fem::RefinementRule& rule,
-                               MakeSpace make_space, MakeRest make_rest)
+                               MakeRest make_rest)
     : forest_(std::move(forest)),
       generation_(forest_.leaf_generations()),
       rule_(rule),
-      make_space_(std::move(make_space)),
       make_rest_(std::move(make_rest)) {}
 
 Status MeshAdaptation::before_step(Discretisation& on) {
@@ -66,7 +65,8 @@ Status MeshAdaptation::before_step(Discretisation& on) {
 
 Status MeshAdaptation::move_to(Discretisation& on, mesh::RefinementForest forest,
                                mesh::ActiveMesh mesh) {
-  Discretisation next = make_rest_(make_space_(std::move(mesh)));
+  Discretisation next =
+      make_rest_(std::make_shared<const fem::SurfaceSpace>(*on.space, std::move(mesh)));
   const double before = on.problem->energy(on.integrator->state());
   try {
     if (Status status = carry(on, next); !status.ok())

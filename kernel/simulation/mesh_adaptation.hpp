@@ -23,13 +23,12 @@ struct RemeshStatistics {
 // checkpoint repeats them.
 class MeshAdaptation {
  public:
-  using MakeSpace = std::function<std::shared_ptr<const fem::SurfaceSpace>(mesh::ActiveMesh mesh)>;
   // Everything else on a space; the integrator is not started.
   using MakeRest = std::function<Discretisation(std::shared_ptr<const fem::SurfaceSpace>)>;
 
   // `forest`: of the mesh that the run is on.
   MeshAdaptation(mesh::RefinementForest forest, const fem::RefinementRule& rule,
-                 MakeSpace make_space, MakeRest make_rest);
+                 MakeRest make_rest);
 
   const mesh::RefinementForest& forest() const { return forest_; }
   const RemeshStatistics& statistics() const { return statistics_; }
@@ -49,7 +48,6 @@ class MeshAdaptation {
   mesh::RefinementForest forest_;
   std::vector<int> generation_;  // of its leaves
   const fem::RefinementRule rule_;
-  MakeSpace make_space_;
   MakeRest make_rest_;
   RemeshStatistics statistics_;
   int steps_since_ = 0;  // the last look for what can be saved

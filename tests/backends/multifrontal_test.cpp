@@ -44,6 +44,42 @@ std::shared_ptr<const fem::SurfaceSpace> two_spheres() {
                                              std::make_shared<SerialCommunicator>());
 }
 
+// Fine in a band around the equator.
+std::shared_ptr<const fem::SurfaceSpace> graded() {
+  const geometry::LevelSetPtr surface = geometry::make_surface("sphere");
+  const mesh::RefinementForest forest(*surface, {48, 2}, 0);
+  const mesh::ActiveMesh coarse = mesh::build_active_mesh(*surface, forest);
+  std::vector<int> wanted;
+  for (const mesh::ActiveTet& tet : coarse.tets)
+    wanted.push_back(std::fabs(coarse.position(tet.node[0]).z()) < 0.1 ? 6 : 0);
+  return std::make_shared<fem::SurfaceSpace>(
+      surface, mesh::build_active_mesh(*surface, forest.refined(*surface, wanted)),
+      std::make_shared<ThreadTeam>(1), std::make_shared<SerialCommunicator>());
+}
+
+std::size_t numbers_of(const suitesparse::SupernodalStructure& structure) {
+  std::size_t count = 0;
+  for (const suitesparse::Supernode& node : structure.supernodes)
+    count += static_cast<std::size_t>(node.rows) * node.columns;
+  return count;
+}
+
+// Minimum degree on a graded mesh; where its factor would be long, METIS.
+TEST(Multifrontal, OrdersQuicklyWhereTheFactorIsShort) {
+  using suitesparse::Ordering;
+  const auto whole = make_space(96), band = graded();
+  const auto dissected = suitesparse::analyse(*whole->pattern);
+  EXPECT_EQ(suitesparse::analyse(*whole->pattern, Ordering::quick)->permutation,
+            dissected->permutation);
+  const auto best = suitesparse::analyse(*band->pattern);
+  const auto quick = suitesparse::analyse(*band->pattern, Ordering::quick);
+  EXPECT_NE(quick->permutation, best->permutation);
+  EXPECT_LT(numbers_of(*quick), 1.3 * numbers_of(*best));
+  const fem::CsrMatrix A = fem::combine(0.01, band->stabilised_mass, 1, band->stiffness);
+  const Eigen::MatrixXd expected = permuted(*quick, A).llt().matrixL();
+  EXPECT_LT((factor(*quick, A) - expected).norm(), 1e-5 * expected.norm());
+}
+
 TEST(Multifrontal, IsTheCholeskyFactorInSinglePrecision) {
   for (const auto& space : {make_space(20), two_spheres()}) {
     const auto structure = suitesparse::analyse(*space->pattern);

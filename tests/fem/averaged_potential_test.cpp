@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <cmath>
 
+#include "tests/support/dense.hpp"
 #include "tests/support/relaxed_boundary.hpp"
 
 namespace traceraft::fem {
@@ -64,6 +66,24 @@ TEST(AveragedPotential, IsTheDensityOfAConstant) {
     const double energy =
         averaged_potential::energy(*space, well, Vec::Constant(space->nodes(), c));
     EXPECT_NEAR(energy, space->area * well.energy(c), 1e-12);
+  }
+}
+
+// The energy of a pure phase is a minimum, although elements are many times as long as ε.
+TEST(AveragedPotential, KeepsAPureOneStableOnLargeElements) {
+  const geometry::LevelSetPtr surface = geometry::make_surface("sphere");
+  const mesh::RefinementLevels levels{64, 2};
+  const auto space = std::make_shared<SurfaceSpace>(
+      surface, mesh::build_active_mesh(*surface, mesh::RefinementForest(*surface, levels, 0)),
+      std::make_shared<ThreadTeam>(1), std::make_shared<SerialCommunicator>());
+  const problem::CahnHilliardModel model =
+      make_model("degenerate", space->h() / kHOverEpsilon);  // 10 ε to the edge, and longer
+  for (const double phase : {model.well.a, model.well.b}) {
+    CsrMatrix second = problem::gradient_energy_matrix(*space, model);
+    add_potential_tangent(*space, model.well, PotentialRule::averaged, 1,
+                          Vec::Constant(space->nodes(), phase), second);
+    const Eigen::LLT<Eigen::MatrixXd> factor(testing::dense(second));
+    EXPECT_EQ(factor.info(), Eigen::Success) << phase;
   }
 }
 

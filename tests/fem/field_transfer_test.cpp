@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "kernel/fem/refinement_rule.hpp"
@@ -55,6 +56,20 @@ TEST_F(FieldTransferTest, ChangesNothingOnTheSameMesh) {
   const FieldTransfer same(*fine_, *fine_);
   EXPECT_EQ(same.copied_nodes(), fine_->nodes());
   EXPECT_LT((same.state(y) - y).lpNorm<Eigen::Infinity>(), 1e-14);
+}
+
+// What is taken over from another mesh is what it would be without.
+TEST_F(FieldTransferTest, TakesOverBitForBitWhatMeshesHaveInCommon) {
+  const std::vector<int> same = mesh::same_tetrahedra(graded_->mesh, fine_->mesh);
+  const auto shared = std::count_if(same.begin(), same.end(), [](int t) { return t >= 0; });
+  EXPECT_GT(shared, graded_->mesh.tets.size() / 4);
+  EXPECT_LT(shared, graded_->mesh.tets.size());
+  const SurfaceSpace next(*fine_, graded_->mesh);
+  EXPECT_EQ(next.mass.values, graded_->mass.values);
+  EXPECT_EQ(next.stiffness.values, graded_->stiffness.values);
+  EXPECT_EQ(next.stabilised_mass.values, graded_->stabilised_mass.values);
+  EXPECT_EQ(next.surface.triangle_area, graded_->surface.triangle_area);
+  EXPECT_EQ(next.area, graded_->area);
 }
 
 TEST_F(FieldTransferTest, KeepsTheValuesOfCommonNodesAndTheMass) {

@@ -18,11 +18,10 @@ constexpr double kEnd = 200;
 
 class MeshAdaptationContract : public ::testing::TestWithParam<std::string> {
  protected:
-  MeshAdaptation::MakeSpace make_space() const {
-    return [this](mesh::ActiveMesh mesh) {
-      return std::make_shared<const fem::SurfaceSpace>(surface_, std::move(mesh), team_,
-                                                       std::make_shared<SerialCommunicator>());
-    };
+  std::shared_ptr<const fem::SurfaceSpace> space_on(const mesh::RefinementForest& forest) const {
+    return std::make_shared<const fem::SurfaceSpace>(surface_,
+                                                     mesh::build_active_mesh(*surface_, forest),
+                                                     team_, std::make_shared<SerialCommunicator>());
   }
   MeshAdaptation::MakeRest make_rest() const {
     return [this](std::shared_ptr<const fem::SurfaceSpace> space) {
@@ -42,12 +41,11 @@ class MeshAdaptationContract : public ::testing::TestWithParam<std::string> {
     };
   }
   MeshAdaptation adaptation(mesh::RefinementForest forest) const {
-    return {
-        std::move(forest), {0.06, 0.08, kLevels.finest_generation()}, make_space(), make_rest()};
+    return {std::move(forest), {0.06, 0.08, kLevels.finest_generation()}, make_rest()};
   }
   // Two rafts on the finest mesh.
   Discretisation started(const mesh::RefinementForest& forest) const {
-    Discretisation on = make_rest()(make_space()(mesh::build_active_mesh(*surface_, forest)));
+    Discretisation on = make_rest()(space_on(forest));
     problem::InitialRequest request;
     request.caps = {{{0, 0, 1}, 0.6}, {{0, 0, -1}, 0.45}};
     request.epsilon = 0.08;
@@ -111,7 +109,7 @@ TEST_P(MeshAdaptationContract, GoesOnBitwiseFromWhatItSaved) {
     ASSERT_TRUE(on.integrator->advance().ok());
   }
   const mesh::RefinementForest forest(*surface_, kLevels, bits);
-  Discretisation again = make_rest()(make_space()(mesh::build_active_mesh(*surface_, forest)));
+  Discretisation again = make_rest()(space_on(forest));
   MeshAdaptation second = adaptation(forest);
   second.load(CheckpointIn(saved));
   again.integrator->load(CheckpointIn(saved));

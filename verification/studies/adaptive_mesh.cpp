@@ -2,6 +2,7 @@
 // and what that takes.
 #include "kernel/core/stopwatch.hpp"
 #include "kernel/simulation/adapted_mesh.hpp"
+#include "kernel/simulation/mesh_adaptation.hpp"
 #include "verification/bench/bench.hpp"
 #include "verification/studies/studies.hpp"
 
@@ -56,7 +57,7 @@ class TwoRafts {
     simulation::FieldOnMesh start =
         simulation::adapted_field(*surface_, *levels, rule, make_space,
                                   [this](const fem::SurfaceSpace& on) { return field_on(on); });
-    simulation::MeshAdaptation adaptation(std::move(start.forest), rule, make_space,
+    simulation::MeshAdaptation adaptation(std::move(start.forest), rule,
                                           [this](SpacePtr space) { return rest_on(space); });
     return followed(started(start.space, start.field), &adaptation, watch);
   }
