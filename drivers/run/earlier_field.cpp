@@ -1,7 +1,6 @@
 #include "drivers/run/earlier_field.hpp"
 
 #include "drivers/config/config_file.hpp"
-#include "drivers/run/checkpoint_store.hpp"
 #include "drivers/run/run_mesh.hpp"
 #include "kernel/fem/field_transfer.hpp"
 
@@ -61,22 +60,29 @@ Vec state_of(const problem::CahnHilliard& problem, VecView c) {
 
 }  // namespace
 
-Vec earlier_field(const std::filesystem::path& run_folder,
-                  const config::Configuration& configuration,
-                  const problem::CahnHilliardModel& model, const fem::SurfaceSpace& space) {
-  const Checkpoint checkpoint = last_of(run_folder);
-  const config::Configuration theirs(config::read_config_file(run_folder / "config.toml"), {});
-  require_same_surface(run_folder, theirs, configuration);
-  const std::shared_ptr<const fem::SurfaceSpace> from = space_of(theirs, checkpoint, space);
-  const Vec c = concentration_of(checkpoint, run_folder, from->nodes());
-  const fem::FieldTransfer transfer(*from, space);
+EarlierRun::EarlierRun(const std::filesystem::path& run_folder,
+                       const config::Configuration& configuration,
+                       const problem::CahnHilliardModel& model)
+    : folder_(run_folder),
+      model_(model),
+      checkpoint_(last_of(run_folder)),
+      theirs_(config::read_config_file(run_folder / "config.toml"), {}) {
+  require_same_surface(run_folder, theirs_, configuration);
+}
+
+Vec EarlierRun::field_on(const fem::SurfaceSpace& space) {
+  if (!from_) {
+    from_ = space_of(theirs_, checkpoint_, space);
+    c_ = concentration_of(checkpoint_, folder_, from_->nodes());
+  }
+  const fem::FieldTransfer transfer(*from_, space);
   if (space.communicator->sum(transfer.copied_nodes()) == space.totals.nodes &&
-      space.totals.nodes == from->nodes())
-    return transfer.field(c);
-  const problem::CahnHilliard before(from, model);
+      space.totals.nodes == from_->nodes())
+    return transfer.field(c_);
+  if (state_.size() == 0) state_ = state_of(problem::CahnHilliard(from_, model_), c_);
   const std::shared_ptr<const fem::SurfaceSpace> here(&space, [](const fem::SurfaceSpace*) {});
-  const problem::CahnHilliard after(here, model);
-  Vec y = transfer.state(state_of(before, c));
+  const problem::CahnHilliard after(here, model_);
+  Vec y = transfer.state(state_);
   if (const Status status = after.fit_concentration(0, y); !status.ok())
     throw InputError("restart: " + status.why);
   return after.c_of(y);

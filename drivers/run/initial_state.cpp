@@ -61,18 +61,26 @@ problem::InitialRequest initial_request(const config::Configuration& configurati
 
 }  // namespace
 
-Vec initial_field(const config::Configuration& configuration,
-                  const problem::CahnHilliardModel& model, const fem::SurfaceSpace& space) {
+FieldOnAnyMesh initial_field(const config::Configuration& configuration,
+                             const problem::CahnHilliardModel& model) {
   const std::string kind = configuration.options().initial;
   const problem::InitialRequest request = initial_request(configuration, model);
   const auto option = kind == "formula" ? &config::RunOptions::initial_formula
                       : kind == "caps"  ? &config::RunOptions::initial_caps
                                         : &config::RunOptions::initial;
-  return with_option_context(configuration, option, [&] {
+  return with_option_context(configuration, option, [&]() -> FieldOnAnyMesh {
     const auto [name, folder] = split_named_arguments(kind);
-    if (name == "restart") return earlier_field(folder, configuration, model, space);
+    if (name == "restart") {
+      const auto earlier = std::make_shared<EarlierRun>(folder, configuration, model);
+      return [&configuration, earlier, option](const fem::SurfaceSpace& space) {
+        return with_option_context(configuration, option, [&] { return earlier->field_on(space); });
+      };
+    }
     (void)problem::initial_fields().find(name, {"restart:DIR"});
-    return problem::make_initial_field(kind, space, request);
+    return [&configuration, kind, request, option](const fem::SurfaceSpace& space) {
+      return with_option_context(configuration, option,
+                                 [&] { return problem::make_initial_field(kind, space, request); });
+    };
   });
 }
 

@@ -1,6 +1,8 @@
 // The concentration that a run begins with, as options say it.
 #pragma once
 
+#include <functional>
+
 #include "drivers/config/configuration.hpp"
 #include "kernel/discs/random_discs.hpp"
 #include "kernel/fem/surface_space.hpp"
@@ -8,10 +10,11 @@
 
 namespace traceraft::run {
 
-// c at the nodes of this rank, projected. Throws InputError, also for data of another kind of
-// initial state than is asked for.
-Vec initial_field(const config::Configuration& configuration,
-                  const problem::CahnHilliardModel& model, const fem::SurfaceSpace& space);
+// c at the nodes of this rank, projected, on any mesh. Both throw InputError: for data of another
+// kind of initial state than is asked for, and for what no mesh or not this one can have.
+using FieldOnAnyMesh = std::function<Vec(const fem::SurfaceSpace&)>;
+FieldOnAnyMesh initial_field(const config::Configuration& configuration,
+                             const problem::CahnHilliardModel& model);
 
 // Is it the same field on any mesh, but for errors of the mesh? Noise is not.
 bool is_given_on_any_mesh(const config::Configuration& configuration);

@@ -60,9 +60,7 @@ mesh::RefinementForest begin_adaptive(const config::Configuration& configuration
   if (!initial.from_checkpoint && !begins_finest(configuration)) {
     simulation::FieldOnMesh begin =
         simulation::adapted_field(*surface, levels, refinement_rule(configuration, physics, levels),
-                                  make_space, [&](const fem::SurfaceSpace& space) {
-                                    return initial_field(configuration, physics, space);
-                                  });
+                                  make_space, initial_field(configuration, physics));
     run.space = std::move(begin.space);
     run.initial = std::move(begin.field);
     return std::move(begin.forest);
@@ -115,7 +113,7 @@ RunSetup build_run(const config::Configuration& configuration, const InitialStat
     return 0;
   });
   if (!initial.from_checkpoint) {
-    if (run.initial.size() == 0) run.initial = initial_field(configuration, physics, *run.space);
+    if (run.initial.size() == 0) run.initial = initial_field(configuration, physics)(*run.space);
     run.initial_mean = run.space->integral(run.initial) / run.space->area;
   }
   run.boundary = observables::resolved_boundary(physics, run.space->h());
