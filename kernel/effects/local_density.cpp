@@ -48,8 +48,8 @@ class LocalDensityEffect final : public problem::Effect {
         space, sign(),
         [&](const fem::QuadraturePoint& point) {
           const DensityValue value = at(point);
-          return value.by_c * Values::between(space, point, along_c) +
-                 value.by_mu * Values::between(space, point, along_mu);
+          return value.by_c * point.value(space.surface, along_c) +
+                 value.by_mu * point.value(space.surface, along_mu);
         },
         density_.slot == problem::Slot::source ? product_c : product_mu);
   }
@@ -75,13 +75,8 @@ class LocalDensityEffect final : public problem::Effect {
           c_(fem::trace(space, c)),
           mu_(fem::trace(space, mu)) {}
     DensityValue operator()(const fem::QuadraturePoint& point) const {
-      return value_({point.x, t_, between(space_, point, c_), between(space_, point, mu_)});
-    }
-    static double between(const fem::SurfaceSpace& space, const fem::QuadraturePoint& point,
-                          const Vec& values) {
-      const auto& rule = fem::kDegreeFourRule[point.number % fem::kDegreeFourRule.size()];
-      const int triangle = static_cast<int>(point.number / fem::kDegreeFourRule.size());
-      return fem::between_corners(fem::corner_values(space, triangle, values), rule.at);
+      return value_(
+          {point.x, t_, point.value(space_.surface, c_), point.value(space_.surface, mu_)});
     }
 
    private:

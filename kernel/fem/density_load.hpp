@@ -9,15 +9,42 @@ namespace traceraft::fem {
 // A point of the quadrature on Γ_h.
 struct QuadraturePoint {
   std::size_t number;  // triangle · (points per triangle) + point
+  std::size_t triangle;
+  std::array<double, 3> at;  // barycentric coordinates in the triangle
+  double weight;             // areas sum to that of Γ
   Point x;
+
+  // There, of a function that is linear on the triangle, by its values at the points of Γ_h.
+  double value(const mesh::CutSurface& surface, const Vec& point_value) const {
+    const auto& [i, j, k] = surface.triangles[triangle];
+    return at[0] * point_value[i] + at[1] * point_value[j] + at[2] * point_value[k];
+  }
 };
+
+inline constexpr std::size_t kPointsPerTriangle = kDegreeFourRule.size();
+inline std::size_t quadrature_points(const mesh::CutSurface& surface) {
+  return surface.triangles.size() * kPointsPerTriangle;
+}
 
 inline QuadraturePoint quadrature_point(const mesh::CutSurface& surface, std::size_t triangle,
                                         std::size_t point) {
   const auto& [i, j, k] = surface.triangles[triangle];
-  const auto& at = kDegreeFourRule[point].at;
-  return {triangle * kDegreeFourRule.size() + point,
+  const auto& [at, weight] = kDegreeFourRule[point];
+  return {triangle * kPointsPerTriangle + point, triangle, at,
+          weight * surface.triangle_area[triangle],
           at[0] * surface.position[i] + at[1] * surface.position[j] + at[2] * surface.position[k]};
+}
+
+// Calls use(QuadraturePoint) for the points of a triangle, or of all.
+template <class Use>
+void for_each_quadrature_point(const mesh::CutSurface& surface, std::size_t triangle,
+                               const Use& use) {
+  for (std::size_t p = 0; p < kPointsPerTriangle; ++p) use(quadrature_point(surface, triangle, p));
+}
+template <class Use>
+void for_each_quadrature_point(const mesh::CutSurface& surface, const Use& use) {
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    for_each_quadrature_point(surface, t, use);
 }
 
 // r_i += factor · ∫ g φ_i with g(QuadraturePoint).
@@ -26,12 +53,11 @@ void add_density_load(const SurfaceSpace& space, double factor, const Density& g
   const mesh::CutSurface& surface = space.surface;
   const Vec load = point_loads(space, [&](int triangle) {
     std::array<double, 3> corner_load{};
-    for (std::size_t p = 0; p < kDegreeFourRule.size(); ++p) {
-      const auto& [at, weight] = kDegreeFourRule[p];
-      const double value = weight * surface.triangle_area[triangle] *
-                           g(quadrature_point(surface, static_cast<std::size_t>(triangle), p));
-      for (int a = 0; a < 3; ++a) corner_load[a] += value * at[a];
-    }
+    for_each_quadrature_point(surface, static_cast<std::size_t>(triangle),
+                              [&](const QuadraturePoint& point) {
+                                const double value = point.weight * g(point);
+                                for (int a = 0; a < 3; ++a) corner_load[a] += value * point.at[a];
+                              });
     return corner_load;
   });
   add_trace_transpose(space, factor, load, r);

@@ -32,10 +32,9 @@ template <class Concentration>
 void require_finite(const fem::SurfaceSpace& space, const Concentration& c,
                     const std::string& name) {
   std::vector<double> bad;
-  for (std::size_t t = 0; t < space.surface.triangles.size() && bad.empty(); ++t)
-    for (std::size_t p = 0; p < fem::kDegreeFourRule.size(); ++p)
-      if (const Point x = fem::quadrature_point(space.surface, t, p).x; !std::isfinite(c(x)))
-        bad = {x[0], x[1], x[2]};
+  fem::for_each_quadrature_point(space.surface, [&](const fem::QuadraturePoint& at) {
+    if (bad.empty() && !std::isfinite(c(at.x))) bad = {at.x[0], at.x[1], at.x[2]};
+  });
   for (const std::vector<double>& other : gather_everywhere(*space.communicator, bad))
     bad = std::max(bad, other);
   if (bad.empty()) return;

@@ -49,14 +49,13 @@ problem::EffectPtr manufactured_source(const fem::SurfaceSpace& space, const std
   const auto function = surface_function(surface);
   // u = xyz and its derivatives do not change in time. They are computed once, at every point of
   // the quadrature.
-  const auto points = std::make_shared<std::vector<SurfacePoint>>(space.surface.triangles.size() *
-                                                                  fem::kDegreeFourRule.size());
+  const auto points =
+      std::make_shared<std::vector<SurfacePoint>>(fem::quadrature_points(space.surface));
   space.team->for_range(space.surface.triangles.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t triangle = begin; triangle < end; ++triangle)
-      for (std::size_t p = 0; p < fem::kDegreeFourRule.size(); ++p) {
-        const fem::QuadraturePoint at = fem::quadrature_point(space.surface, triangle, p);
+      fem::for_each_quadrature_point(space.surface, triangle, [&](const fem::QuadraturePoint& at) {
         (*points)[at.number] = function(at.x);
-      }
+      });
   });
   return problem::prescribed_density(
       "manufactured source", problem::Slot::source, [=](const fem::QuadraturePoint& at, double t) {

@@ -69,14 +69,9 @@ std::vector<double> spherical_spectrum(const fem::SurfaceSpace& space, VecView c
       }
     }
   };
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
-    for (std::size_t k = 0; k < fem::kDegreeFourRule.size(); ++k) {
-      const auto& [at, weight] = fem::kDegreeFourRule[k];
-      double value = 0;
-      for (int v = 0; v < 3; ++v) value += at[v] * values[surface.triangles[t][v]];
-      add(fem::quadrature_point(surface, t, k).x.normalized(),
-          weight * surface.triangle_area[t] * value);
-    }
+  fem::for_each_quadrature_point(surface, [&](const fem::QuadraturePoint& at) {
+    add(at.x.normalized(), at.weight * at.value(surface, values));
+  });
   std::vector<double> spectrum(size, 0);
   for (int l = 0; l <= highest; ++l)
     for (int m = 0; m <= l; ++m) spectrum[l] += even[m][l] * even[m][l] + odd[m][l] * odd[m][l];

@@ -10,14 +10,12 @@ MeshTransfer::MeshTransfer(const fem::SurfaceSpace& from, bench::SpacePtr to,
   const mesh::CutSurface& surface = to_->surface;
   std::vector<Point> points;
   std::vector<mesh::SurfacePlace> places;
-  Vec weights(static_cast<Eigen::Index>(surface.triangles.size() * fem::kDegreeFourRule.size()));
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
-    for (std::size_t p = 0; p < fem::kDegreeFourRule.size(); ++p) {
-      const auto& [at, weight] = fem::kDegreeFourRule[p];
-      weights[static_cast<Eigen::Index>(points.size())] = weight * surface.triangle_area[t];
-      points.push_back(rotation.transpose() * fem::quadrature_point(surface, t, p).x);
-      places.push_back({static_cast<int>(t), at});
-    }
+  Vec weights(static_cast<Eigen::Index>(fem::quadrature_points(surface)));
+  fem::for_each_quadrature_point(surface, [&](const fem::QuadraturePoint& at) {
+    weights[static_cast<Eigen::Index>(at.number)] = at.weight;
+    points.push_back(rotation.transpose() * at.x);
+    places.push_back({static_cast<int>(at.triangle), at.at});
+  });
   load_ = trace_at(*to_, places).transpose() * weights.asDiagonal() *
           point_trace(from, points, from.h() + to_->h());
 }
