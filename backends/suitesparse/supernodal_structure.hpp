@@ -47,8 +47,8 @@ struct SupernodalStructure {
 // How rows are ordered so that L fills little.
 enum class Ordering {
   dissection,  // by METIS
-  // By minimum degree, which takes a tenth of the time, where L has few numbers then: on a mesh
-  // that is fine only along boundaries a tenth more than by METIS, which orders where it has many.
+  // By minimum degree if L has few numbers then, else by METIS. It takes a tenth of the time of
+  // METIS. On a mesh that is fine only along boundaries L has a tenth more numbers.
   quick
 };
 

@@ -34,7 +34,7 @@ int node_at(const mesh::ActiveMesh& mesh, const mesh::CubeMesh& other, std::int6
   return static_cast<int>(found - mesh.node_id.begin());
 }
 
-// The triangles of the old surface around what is no longer there: all new nodes are near them.
+// The triangles of the old surface around what is no longer there, as all new nodes are near them.
 std::vector<int> triangles_to_search(const SurfaceSpace& from, const SurfaceSpace& to) {
   std::vector<bool> kept(from.mesh.tets.size(), false), near(from.mesh.node_id.size(), false);
   for (const int tet : mesh::same_tetrahedra(to.mesh, from.mesh))

@@ -49,7 +49,7 @@ std::vector<GlobalTet> find_cut_tets(const geometry::LevelSet& surface, const Cu
   return tets;
 }
 
-// Of a list that may name one again and again.
+// The list may name a vertex again and again.
 std::vector<std::int64_t> ascending(std::vector<std::int64_t> vertices) {
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());

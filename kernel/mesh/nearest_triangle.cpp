@@ -41,19 +41,14 @@ Barycentric nearest_in_triangle(const std::array<Point, 3>& corner, const Point&
   return best;
 }
 
-std::vector<int> all_numbers(std::size_t count) {
-  std::vector<int> numbers(count);
-  std::iota(numbers.begin(), numbers.end(), 0);
-  return numbers;
-}
-
 }  // namespace
-
-NearestTriangle::NearestTriangle(const CutSurface& surface)
-    : NearestTriangle(surface, all_numbers(surface.triangles.size())) {}
 
 NearestTriangle::NearestTriangle(const CutSurface& surface, std::vector<int> triangles)
     : surface_(surface), order_(std::move(triangles)) {
+  if (order_.empty()) {
+    order_.resize(surface.triangles.size());
+    std::iota(order_.begin(), order_.end(), 0);
+  }
   if (!order_.empty()) split(0, static_cast<int>(order_.size()));
 }
 

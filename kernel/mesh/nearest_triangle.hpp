@@ -16,12 +16,11 @@ struct SurfacePlace {
   std::array<double, 3> at;
 };
 
-// A tree of boxes around triangles of any size: those of a list, or all. The surface must outlive
-// it; finding is thread-safe.
+// A tree of boxes around triangles of any size: those of a list, or all if it is empty. The surface
+// must outlive it; finding is thread-safe.
 class NearestTriangle {
  public:
-  explicit NearestTriangle(const CutSurface& surface);
-  NearestTriangle(const CutSurface& surface, std::vector<int> triangles);
+  explicit NearestTriangle(const CutSurface& surface, std::vector<int> triangles = {});
 
   struct Found {
     SurfacePlace place{-1, {}};
