@@ -148,11 +148,11 @@ class ExplainPage {
         (both ? " The base model comes first, then the model with " +
                     found_.found.hypothesis.name() + "."
               : ""));
-    std::vector<Vec> frames;
+    std::vector<report::Frame> frames;
     report::View view{{}, -kColourEnd, kColourEnd, strongest(found_.base_maps), true};
     const auto add = [&](const std::string& model, const assimilation::DisagreementMaps& maps) {
       for (const assimilation::DisagreementMap& map : maps.snapshots) {
-        frames.push_back(map.z);
+        frames.push_back({0, map.z});
         view.labels.push_back(
             model +
             (setup_.series.size() > 1 ? ", vesicle " + setup_.series[map.vesicle].vesicle : "") +
@@ -163,7 +163,7 @@ class ExplainPage {
     };
     add("base model", found_.base_maps);
     if (both) add("with " + found_.found.hypothesis.name(), found_.found_maps);
-    missing_.add(report::add_viewer(page_, found_.map_mesh, frames, view));
+    missing_.add(report::add_viewer(page_, {found_.map_mesh}, frames, view));
     if (found_.disagreements.empty()) {
       page_.paragraph(
           "No single patch of the surface (inside rafts, outside or at their boundaries) disagrees "

@@ -41,9 +41,10 @@ void write_pictures(const ReportRequest& request) {
   const SurfaceFrames frames = read_frames(run, request.detail, request.frames);
   const std::vector<std::string> labels = time_labels(run, frames.times);
   std::vector<observables::Image> images;
-  for (std::size_t k = 0; k < frames.values.size(); ++k) {
+  for (std::size_t k = 0; k < frames.frames.size(); ++k) {
+    const auto& [mesh, values] = frames.frames[k];
     images.push_back(
-        observables::draw_front_and_back(frames.mesh, frames.values[k], low, high, request.pixels));
+        observables::draw_front_and_back(frames.meshes[mesh], values, low, high, request.pixels));
     if (!request.bare) gif::write_label(images.back(), labels[k]);
   }
   if (!request.animation.empty()) {

@@ -85,8 +85,8 @@ void add_surface(output::Page& page, const fs::path& run, const PageRequest& req
   page.heading("The surface");
   const auto [low, high] = phases_of(run);
   const SurfaceFrames frames = read_frames(run, request.detail, request.frames);
-  const View view{time_labels(run, frames.times), low, high, frames.values.size() - 1};
-  missing.add(add_viewer(page, frames.mesh, frames.values, view));
+  const View view{time_labels(run, frames.times), low, high, frames.frames.size() - 1};
+  missing.add(add_viewer(page, frames.meshes, frames.frames, view));
 }
 
 std::string value_text(const input::Json& value) {

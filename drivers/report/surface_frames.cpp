@@ -75,7 +75,18 @@ class Grid {
     return coarse;
   }
 
-  // Throws IoError if the field is on another mesh.
+  // Has the field the points that this grid was made of?
+  bool fits(const zlib::SurfaceField& field) const {
+    std::set<int> seen;
+    for (const Point& x : field.mesh.position) {
+      const auto cell = cells_.find(cell_of(x));
+      if (cell == cells_.end()) return false;
+      seen.insert(cell->second);
+    }
+    return seen.size() == cells_.size();
+  }
+
+  // Of a field that fits.
   Vec values(const zlib::SurfaceField& field) const {
     const std::vector<int> clusters = clusters_of(field);
     const auto cells = static_cast<Eigen::Index>(cells_.size());
@@ -84,7 +95,6 @@ class Grid {
       sum[clusters[p]] += field.values[static_cast<Eigen::Index>(p)];
       ++count[clusters[p]];
     }
-    if (count.size() > 0 && count.minCoeff() == 0) throw IoError("a field is on another mesh");
     return sum.cwiseQuotient(count);
   }
 
@@ -108,11 +118,7 @@ class Grid {
   }
   std::vector<int> clusters_of(const zlib::SurfaceField& field) const {
     std::vector<int> clusters;
-    for (const Point& x : field.mesh.position) {
-      const auto cell = cells_.find(cell_of(x));
-      if (cell == cells_.end()) throw IoError("a field is on another mesh");
-      clusters.push_back(cell->second);
-    }
+    for (const Point& x : field.mesh.position) clusters.push_back(cells_.at(cell_of(x)));
     return clusters;
   }
 
@@ -140,12 +146,12 @@ SurfaceFrames read_frames(const fs::path& run_folder, double detail, int most) {
   for (int k = 0; k < shown; ++k) {
     const auto& [time, name] = files[shown == 1 ? count - 1 : (count - 1) * k / (shown - 1)];
     const zlib::SurfaceField field = read_field(run_folder / name);
-    if (!grid) {
+    if (!grid || !grid->fits(field)) {
       grid.emplace(field, detail);
-      frames.mesh = grid->mesh(field);
+      frames.meshes.push_back(grid->mesh(field));
     }
     frames.times.push_back(time);
-    frames.values.push_back(grid->values(field));
+    frames.frames.push_back({frames.meshes.size() - 1, grid->values(field)});
   }
   return frames;
 }

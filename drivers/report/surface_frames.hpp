@@ -1,4 +1,4 @@
-// The fields that a run has written, as frames on one mesh for pictures.
+// The fields that a run has written, as frames for pictures.
 #pragma once
 
 #include <filesystem>
@@ -9,10 +9,15 @@
 
 namespace traceraft::report {
 
+struct Frame {
+  std::size_t mesh;  // number in a list
+  Vec values;        // at its points
+};
+
 struct SurfaceFrames {
-  observables::SurfaceMesh mesh;
-  std::vector<double> times;  // in the units of the run's files
-  std::vector<Vec> values;    // of each time, a concentration per point
+  std::vector<observables::SurfaceMesh> meshes;  // one, or those that a run has had
+  std::vector<double> times;                     // in the units of the run's files
+  std::vector<Frame> frames;                     // of each time, the concentration
 };
 
 // Corners of Γ_h nearer to each other than `detail` (a share of the surface's size) become one: cut

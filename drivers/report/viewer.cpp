@@ -28,26 +28,44 @@ std::string data_block(const char* id, const std::vector<T>& values) {
          zlib::base64(zlib::deflated(bytes)) + "</script>\n";
 }
 
-std::string mesh_blocks(const observables::SurfaceMesh& mesh) {
+// All meshes, one after the other.
+std::string mesh_blocks(const std::vector<observables::SurfaceMesh>& meshes) {
   double size = 0;
-  for (const Point& x : mesh.position) size = std::max(size, x.norm());
+  for (const observables::SurfaceMesh& mesh : meshes)
+    for (const Point& x : mesh.position) size = std::max(size, x.norm());
   std::vector<std::int16_t> positions;
-  for (const Point& x : mesh.position)
-    for (int k = 0; k < 3; ++k)
-      positions.push_back(static_cast<std::int16_t>(std::lround(x[k] / size * 32767)));
   std::vector<std::uint32_t> corners;
-  for (const auto& triangle : mesh.triangles)
-    for (const int corner : triangle) corners.push_back(static_cast<std::uint32_t>(corner));
+  for (const observables::SurfaceMesh& mesh : meshes) {
+    for (const Point& x : mesh.position)
+      for (int k = 0; k < 3; ++k)
+        positions.push_back(static_cast<std::int16_t>(std::lround(x[k] / size * 32767)));
+    for (const auto& triangle : mesh.triangles)
+      for (const int corner : triangle) corners.push_back(static_cast<std::uint32_t>(corner));
+  }
   return data_block("mesh-positions", positions) + data_block("mesh-triangles", corners);
 }
 
-std::string frame_block(const std::vector<Vec>& frames, const View& view) {
+std::string frame_block(const std::vector<Frame>& frames, const View& view) {
   std::vector<std::uint8_t> bytes;
-  for (const Vec& values : frames)
-    for (const double c : values)
+  for (const Frame& frame : frames)
+    for (const double c : frame.values)
       bytes.push_back(static_cast<std::uint8_t>(
           std::lround(255 * std::clamp((c - view.low) / (view.high - view.low), 0.0, 1.0))));
   return data_block("frames", bytes);
+}
+
+// What the script needs to know of the blocks.
+std::string scene(const std::vector<observables::SurfaceMesh>& meshes,
+                  const std::vector<Frame>& frames, const View& view) {
+  nlohmann::json json{{"labels", view.labels},
+                      {"differences", view.differences},
+                      {"meshes", nlohmann::json::array()},
+                      {"meshOf", nlohmann::json::array()}};
+  for (const observables::SurfaceMesh& mesh : meshes)
+    json["meshes"].push_back(
+        {{"points", mesh.position.size()}, {"triangles", mesh.triangles.size()}});
+  for (const Frame& frame : frames) json["meshOf"].push_back(frame.mesh);
+  return text::in_html_script(json.dump());
 }
 
 // The licence goes where the library goes. "--" must not be in a comment.
@@ -67,8 +85,8 @@ std::string script(std::string text) {
 
 }  // namespace
 
-std::string add_viewer(output::Page& page, const observables::SurfaceMesh& mesh,
-                       const std::vector<Vec>& frames, const View& view) {
+std::string add_viewer(output::Page& page, const std::vector<observables::SurfaceMesh>& meshes,
+                       const std::vector<Frame>& frames, const View& view) {
   for (const char* file : {kLibrary, kControls, kLicence})
     if (!fs::exists(file)) return "three.js is not installed (Debian package libjs-three)";
   const std::string last = std::to_string(frames.size() - 1);
@@ -80,16 +98,11 @@ std::string add_viewer(output::Page& page, const observables::SurfaceMesh& mesh,
       "<button id=\"play\">play</button> <span id=\"time-label\"></span><br>"
       "<label><input type=\"checkbox\" id=\"through\" checked> see through to "
       "the far side</label></p>");
-  page.raw(mesh_blocks(mesh) + frame_block(frames, view));
-  page.raw(
-      licence_comment() + script(posix::read_file(kLibrary, kLargestScript)) +
-      script(posix::read_file(kControls, kLargestScript)) +
-      script(
-          "window.traceraftScene = " +
-          text::in_html_script(
-              nlohmann::json{{"labels", view.labels}, {"differences", view.differences}}.dump()) +
-          ";") +
-      script(kViewerScript));
+  page.raw(mesh_blocks(meshes) + frame_block(frames, view));
+  page.raw(licence_comment() + script(posix::read_file(kLibrary, kLargestScript)) +
+           script(posix::read_file(kControls, kLargestScript)) +
+           script("window.traceraftScene = " + scene(meshes, frames, view) + ";") +
+           script(kViewerScript));
   return "";
 }
 

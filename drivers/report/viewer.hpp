@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "drivers/output/page.hpp"
-#include "kernel/observables/surface_view.hpp"
+#include "drivers/report/surface_frames.hpp"
 
 namespace traceraft::report {
 
@@ -17,8 +17,8 @@ struct View {
 };
 
 // Adds the view with all its data and scripts, three.js among them (Debian package libjs-three).
-// `frames`: a value per point of the mesh each. Returns "", or why there is no view.
-std::string add_viewer(output::Page& page, const observables::SurfaceMesh& mesh,
-                       const std::vector<Vec>& frames, const View& view);
+// Returns "", or why there is no view.
+std::string add_viewer(output::Page& page, const std::vector<observables::SurfaceMesh>& meshes,
+                       const std::vector<Frame>& frames, const View& view);
 
 }  // namespace traceraft::report

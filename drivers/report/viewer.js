@@ -51,6 +51,23 @@
     });
   }
 
+  // The blocks hold all meshes, one after the other.
+  function geometriesOf(positions, corners) {
+    let point = 0, triangle = 0;
+    return scene.meshes.map((mesh) => {
+      const geometry = new THREE.BufferGeometry();
+      const own = positions.subarray(3 * point, 3 * (point += mesh.points));
+      geometry.setAttribute('position',
+        new THREE.BufferAttribute(Float32Array.from(own, (x) => x / 32767), 3));
+      geometry.setIndex(new THREE.BufferAttribute(
+        corners.slice(3 * triangle, 3 * (triangle += mesh.triangles)), 1));
+      geometry.computeVertexNormals();
+      geometry.setAttribute('value',
+        new THREE.BufferAttribute(new Uint8Array(mesh.points), 1, true));
+      return geometry;
+    });
+  }
+
   // Are all points about as far from the centre?
   function round(positions) {
     let least = Infinity, most = 0;
@@ -66,15 +83,10 @@
     const [positions, indices, values] = await Promise.all(
       ['mesh-positions', 'mesh-triangles', 'frames'].map(bytesOf));
     const quantised = new Int16Array(positions);
-    const points = quantised.length / 3;
     const frames = new Uint8Array(values);
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute('position',
-      new THREE.BufferAttribute(Float32Array.from(quantised, (x) => x / 32767), 3));
-    geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(indices), 1));
-    geometry.computeVertexNormals();
-    const shown = new THREE.BufferAttribute(new Uint8Array(points), 1, true);
-    geometry.setAttribute('value', shown);
+    const geometries = geometriesOf(quantised, new Uint32Array(indices));
+    const starts = [0];  // of the values of each frame
+    scene.meshOf.forEach((mesh) => starts.push(starts[starts.length - 1] + scene.meshes[mesh].points));
 
     const renderer = new THREE.WebGLRenderer({antialias: true, preserveDrawingBuffer: true});
     renderer.setPixelRatio(window.devicePixelRatio);
@@ -104,10 +116,12 @@
     });
     const world = new THREE.Scene();
     const sides = [material(THREE.BackSide, 0.45), material(THREE.FrontSide, 0.0)];
+    const layers = [];
     const add = (side, order) => {
-      const mesh = new THREE.Mesh(geometry, side);
+      const mesh = new THREE.Mesh(geometries[0], side);
       mesh.renderOrder = order;
       world.add(mesh);
+      layers.push(mesh);
     };
     // Where triangles overlap a veil would be painted twice, as a dark speck. Of what is round each
     // side has one layer, and only what lies in it is painted.
@@ -131,8 +145,11 @@
       draw();
     }
     function show(frame) {
-      shown.array.set(frames.subarray(frame * points, (frame + 1) * points));
+      const geometry = geometries[scene.meshOf[frame]];
+      const shown = geometry.getAttribute('value');
+      shown.array.set(frames.subarray(starts[frame], starts[frame + 1]));
       shown.needsUpdate = true;
+      layers.forEach((mesh) => { mesh.geometry = geometry; });
       label.textContent = scene.labels[frame];
       slider.setAttribute('aria-valuetext', scene.labels[frame]);
       document.body.dataset.frame = frame;

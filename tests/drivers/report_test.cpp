@@ -31,6 +31,13 @@ class ReportTest : public ::testing::Test {
         traceraft("run --case two-rafts --cells 20 --epsilon 0.6 --quiet --out " + out(name));
     ASSERT_EQ(made.code, 0) << made.output;
   }
+  // The smaller raft vanishes, and its small cells with it.
+  void runs_adaptively(const std::string& name) const {
+    const ProgramEnd made = traceraft(
+        "run --case two-rafts --cells 64 --epsilon 0.2 --mesh adaptive --t-end 4 --quiet --out " +
+        out(name));
+    ASSERT_EQ(made.code, 0) << made.output;
+  }
 };
 
 TEST_F(ReportTest, MakesAPagePicturesAndAnAnimation) {
@@ -57,6 +64,24 @@ TEST_F(ReportTest, MakesAPagePicturesAndAnAnimation) {
   EXPECT_NE(content(folder.path / "bare/frame-0004.png"),
             content(folder.path / "pictures/frame-0004.png"));
   EXPECT_EQ(content(folder.path / "a.gif").substr(0, 6), "GIF89a");
+}
+
+// A frame has the mesh of its time.
+TEST_F(ReportTest, ShowsFieldsOnMeshesThatChange) {
+  runs_adaptively("a");
+  ASSERT_EQ(traceraft("report --quiet " + out("a") + " --frames 4 --pixels 64 --snapshots " +
+                      out("pictures"))
+                .code,
+            0);
+  const std::string page = content(folder.path / "a/report.html");
+  const std::string begin = "window.traceraftScene = ";
+  const std::size_t at = page.find(begin) + begin.size();
+  const json scene = json::parse(page.substr(at, page.find(";</script>", at) - at));
+  ASSERT_GT(scene["meshes"].size(), 1);
+  EXPECT_NE(scene["meshes"][0], scene["meshes"][1]);
+  EXPECT_EQ(scene["meshOf"].size(), scene["labels"].size());
+  EXPECT_EQ(scene["meshOf"].back(), scene["meshes"].size() - 1);
+  EXPECT_TRUE(fs::exists(folder.path / "pictures/frame-0003.png"));
 }
 
 TEST_F(ReportTest, ShowsMeasurementsBesideWhatIsInSeconds) {
@@ -274,6 +299,19 @@ TEST_F(ReportTest, WorksInABrowser) {
   expect_no_complaint();
   RecordProperty("milliseconds_to_open",
                  static_cast<int>(browser.evaluate("performance.now()").get<double>()));
+  // Meshes that change do so in the view.
+  runs_adaptively("changing");
+  ASSERT_EQ(traceraft("report --quiet " + out("changing")).code, 0);
+  browser.open(folder.path / "changing/report.html");
+  for (int i = 0; i < 100 && browser.evaluate("document.body.dataset.ready || ''") == ""; ++i)
+    usleep(100000);
+  ASSERT_EQ(browser.evaluate("document.body.dataset.ready"), "yes");
+  const std::string one_raft = browser.evaluate("document.querySelector('canvas').toDataURL()");
+  (void)browser.evaluate(
+      "(() => { const s = document.getElementById('time'); s.value = 0; s.dispatchEvent(new "
+      "Event('input')); })()");
+  EXPECT_NE(browser.evaluate("document.querySelector('canvas').toDataURL()"), one_raft);
+  expect_no_complaint();
   // Pages without a surface have their charts.
   const std::string data = TRACERAFT_ROOT "/verification/data/";
   const std::string kept = data + "ensembles/guv-2to1", measured = data + "synthetic/guv-2to1";
