@@ -10,7 +10,7 @@
 #include "backends/posix/process.hpp"
 #include "kernel/core/stopwatch.hpp"
 #include "kernel/core/text.hpp"
-#include "verification/bench/bench.hpp"
+#include "verification/bench/mesh_run.hpp"
 #include "verification/statistics/power_law.hpp"
 #include "verification/statistics/sample.hpp"
 #include "verification/studies/studies.hpp"
@@ -73,26 +73,29 @@ struct Simulation {
 
 Simulation simulate(const bench::Bench& bench, int cells, double t_end, double tolerance) {
   const Stopwatch watch;
-  problem::CahnHilliardModel model =
-      bench::bench_model("constant:value=1", std::sqrt(kKappa) / kRadius);
-  model.well = {5, 0.3, 0.7};
-  const bench::SpacePtr space = bench.space("sphere", cells);
-  const bench::ProblemPtr problem = bench.problem(space, model);
-  const time::IntegratorPtr integrator = bench.default_integrator(*problem, tolerance);
-  Simulation run{cells, problem->size(), space->team->size(), tolerance};
-  Vec y(problem->size());
-  bench::advance_to(
-      *integrator, bench::consistent_state(*problem, projected(*space)), t_end / kTimeUnit, [&] {
-        ++run.steps;
-        while (run.samples.size() < std::size(kSpectral)) {
-          const double t = kSpectral[run.samples.size()].t;
-          if (t > t_end || t / kTimeUnit > integrator->time()) break;
-          bench::require(integrator->interpolate(t / kTimeUnit, y));
-          const double unit = kRadius * kRadius;
-          run.samples.push_back({t, problem->energy(y) * unit});
-        }
-        bench.progress(std::log10(1 + integrator->time() * kTimeUnit) / std::log10(1 + t_end));
-      });
+  bench::MeshRunRequest request;
+  request.model = bench::bench_model("constant:value=1", std::sqrt(kKappa) / kRadius);
+  request.model.well = {5, 0.3, 0.7};
+  request.cells = cells;
+  request.threads = bench.request.threads;
+  request.tolerance = tolerance;
+  request.t_end = t_end / kTimeUnit;
+  request.field = projected;
+  bench::MeshRun on_mesh(bench, request);
+  Simulation run{cells, on_mesh.on().problem->size(), request.threads, tolerance};
+  while (!on_mesh.finished()) {
+    on_mesh.step();
+    const simulation::Discretisation& on = on_mesh.on();
+    while (run.samples.size() < std::size(kSpectral)) {
+      const double t = kSpectral[run.samples.size()].t;
+      if (t > t_end || t / kTimeUnit > on.integrator->time()) break;
+      Vec y(on.problem->size());
+      bench::require(on.integrator->interpolate(t / kTimeUnit, y));
+      run.samples.push_back({t, on.problem->energy(y) * kRadius * kRadius});
+    }
+    bench.progress(std::log10(1 + on.integrator->time() * kTimeUnit) / std::log10(1 + t_end));
+  }
+  run.steps = on_mesh.meshes().steps;
   run.wall_s = watch.seconds();
   return run;
 }
