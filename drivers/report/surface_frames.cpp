@@ -51,8 +51,22 @@ class Grid {
       cells_.emplace(cell_of(x), static_cast<int>(cells_.size()));
   }
 
-  observables::SurfaceMesh mesh(const zlib::SurfaceField& field) const {
-    const std::vector<int> clusters = clusters_of(field);
+  // The cell of each point of a field; none if they are not the cells of this grid.
+  std::optional<std::vector<int>> clusters(const zlib::SurfaceField& field) const {
+    std::vector<int> clusters;
+    std::vector<bool> seen(cells_.size(), false);
+    for (const Point& x : field.mesh.position) {
+      const auto cell = cells_.find(cell_of(x));
+      if (cell == cells_.end()) return std::nullopt;
+      clusters.push_back(cell->second);
+      seen[static_cast<std::size_t>(cell->second)] = true;
+    }
+    if (std::find(seen.begin(), seen.end(), false) != seen.end()) return std::nullopt;
+    return clusters;
+  }
+
+  observables::SurfaceMesh mesh(const zlib::SurfaceField& field,
+                                const std::vector<int>& clusters) const {
     observables::SurfaceMesh coarse;
     coarse.position.assign(cells_.size(), Point::Zero());
     std::vector<double> count(cells_.size(), 0);
@@ -75,20 +89,7 @@ class Grid {
     return coarse;
   }
 
-  // Has the field the points that this grid was made of?
-  bool fits(const zlib::SurfaceField& field) const {
-    std::set<int> seen;
-    for (const Point& x : field.mesh.position) {
-      const auto cell = cells_.find(cell_of(x));
-      if (cell == cells_.end()) return false;
-      seen.insert(cell->second);
-    }
-    return seen.size() == cells_.size();
-  }
-
-  // Of a field that fits.
-  Vec values(const zlib::SurfaceField& field) const {
-    const std::vector<int> clusters = clusters_of(field);
+  Vec values(const zlib::SurfaceField& field, const std::vector<int>& clusters) const {
     const auto cells = static_cast<Eigen::Index>(cells_.size());
     Vec sum = Vec::Zero(cells), count = Vec::Zero(cells);
     for (std::size_t p = 0; p < clusters.size(); ++p) {
@@ -116,12 +117,6 @@ class Grid {
   Cell cell_of(const Point& x) const {
     return {std::lround(x[0] / width_), std::lround(x[1] / width_), std::lround(x[2] / width_)};
   }
-  std::vector<int> clusters_of(const zlib::SurfaceField& field) const {
-    std::vector<int> clusters;
-    for (const Point& x : field.mesh.position) clusters.push_back(cells_.at(cell_of(x)));
-    return clusters;
-  }
-
   double width_;
   std::map<Cell, int> cells_;
 };
@@ -146,12 +141,15 @@ SurfaceFrames read_frames(const fs::path& run_folder, double detail, int most) {
   for (int k = 0; k < shown; ++k) {
     const auto& [time, name] = files[shown == 1 ? count - 1 : (count - 1) * k / (shown - 1)];
     const zlib::SurfaceField field = read_field(run_folder / name);
-    if (!grid || !grid->fits(field)) {
+    std::optional<std::vector<int>> clusters;
+    if (grid) clusters = grid->clusters(field);
+    if (!clusters) {
       grid.emplace(field, detail);
-      frames.meshes.push_back(grid->mesh(field));
+      clusters = grid->clusters(field);
+      frames.meshes.push_back(grid->mesh(field, *clusters));
     }
     frames.times.push_back(time);
-    frames.frames.push_back({frames.meshes.size() - 1, grid->values(field)});
+    frames.frames.push_back({frames.meshes.size() - 1, grid->values(field, *clusters)});
   }
   return frames;
 }

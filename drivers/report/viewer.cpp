@@ -54,7 +54,7 @@ std::string frame_block(const std::vector<Frame>& frames, const View& view) {
   return data_block("frames", bytes);
 }
 
-// What the script needs to know of the blocks.
+// The script needs to know what the blocks hold.
 std::string scene(const std::vector<observables::SurfaceMesh>& meshes,
                   const std::vector<Frame>& frames, const View& view) {
   nlohmann::json json{{"labels", view.labels},

@@ -4,7 +4,7 @@
 
 #include "backends/muparser/formula.hpp"
 #include "drivers/run/checked_options.hpp"
-#include "drivers/run/earlier_field.hpp"
+#include "drivers/run/earlier_run.hpp"
 #include "drivers/run/physical_model.hpp"
 #include "kernel/problem/initial_data.hpp"
 

@@ -58,7 +58,7 @@ TEST_F(FieldTransferTest, ChangesNothingOnTheSameMesh) {
   EXPECT_LT((same.state(y) - y).lpNorm<Eigen::Infinity>(), 1e-14);
 }
 
-// What is taken over from another mesh is what it would be without.
+// Integrals that are taken over from another mesh are those that it would have without.
 TEST_F(FieldTransferTest, TakesOverBitForBitWhatMeshesHaveInCommon) {
   const std::vector<int> same = mesh::same_tetrahedra(graded_->mesh, fine_->mesh);
   const auto shared = std::count_if(same.begin(), same.end(), [](int t) { return t >= 0; });

@@ -29,7 +29,7 @@ class MeshRun {
 
   // The present mesh and what is on it.
   const simulation::Discretisation& on() const { return on_; }
-  // Of a mesh that follows; nodes and steps are counted on any.
+  // The changes of a mesh that follows. Nodes and steps are counted on any mesh.
   simulation::RemeshStatistics meshes() const;
 
  private:

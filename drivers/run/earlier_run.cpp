@@ -1,4 +1,4 @@
-#include "drivers/run/earlier_field.hpp"
+#include "drivers/run/earlier_run.hpp"
 
 #include "drivers/config/config_file.hpp"
 #include "drivers/run/run_mesh.hpp"
