@@ -17,7 +17,7 @@ struct QuadraturePoint {
   // There, of a function that is linear on the triangle, by its values at the points of Γ_h.
   double value(const mesh::CutSurface& surface, const Vec& point_value) const {
     const auto& [i, j, k] = surface.triangles[triangle];
-    return at[0] * point_value[i] + at[1] * point_value[j] + at[2] * point_value[k];
+    return between_corners({point_value[i], point_value[j], point_value[k]}, at);
   }
 };
 

@@ -21,4 +21,10 @@ inline constexpr std::array<TrianglePoint, 6> kDegreeFourRule = [] {
                                        {{{b, b, 1 - 2 * b}}, wb}}};
 }();
 
+// The value at a point of the rule of a function that is linear on a triangle.
+inline double between_corners(const std::array<double, 3>& corner,
+                              const std::array<double, 3>& at) {
+  return at[0] * corner[0] + at[1] * corner[1] + at[2] * corner[2];
+}
+
 }  // namespace traceraft::fem

@@ -60,12 +60,6 @@ Eigen::Matrix4d weighted_element(const SurfaceSpace& space, const CutElement& el
 
 }  // namespace detail
 
-// The value at a point of the rule of a function that is linear on a triangle.
-inline double between_corners(const std::array<double, 3>& corner,
-                              const std::array<double, 3>& at) {
-  return at[0] * corner[0] + at[1] * corner[1] + at[2] * corner[2];
-}
-
 inline std::array<double, 3> corner_values(const SurfaceSpace& space, int triangle,
                                            const Vec& point_value) {
   const auto& [i, j, k] = space.surface.triangles[triangle];
