@@ -58,6 +58,19 @@ void refuse_forces(const EffectEntry& entry, const Parameters& given) {
                        entry.parameters.front().name);
 }
 
+// Temperatures are absolute. Degrees Celsius by mistake would be far below any membrane's.
+void refuse_celsius(const EffectEntry& entry, const Parameters& given) {
+  constexpr double kColdest = 200, kZeroCelsius = 273.15;
+  for (const ParameterSpec& spec : entry.parameters) {
+    const double value = given[spec.name];
+    if (spec.unit == "K" && value != 0 && value < kColdest)
+      throw InputError("effect " + entry.name + ": " + spec.name + " = " + format_number(value) +
+                       " K is out of range (allowed: 0 and " + format_number(kColdest) + " to " +
+                       format_number(spec.max) + "); " + format_number(value) + " C are " +
+                       format_number(value + kZeroCelsius) + " K");
+  }
+}
+
 EffectTerm read_term(const std::string& one, const physics::Units& units) {
   const NamedArguments named = split_named_arguments(one);
   const EffectEntry& entry = effects().find(named.name);
@@ -65,6 +78,7 @@ EffectTerm read_term(const std::string& one, const physics::Units& units) {
   const Parameters given = parse_parameters("effect " + entry.name, named.arguments, specs);
   require_strength(entry, given);
   if (units.scaled) refuse_forces(entry, given);
+  refuse_celsius(entry, given);
   EffectTerm term{entry.name, {}};
   for (const ParameterSpec& spec : entry.parameters)
     term.values.push_back(given[spec.name] * to_model_units(spec.unit, units));

@@ -223,7 +223,7 @@ TEST(Flow, RefusesWhatContradictsItself) {
        {"flow:water=1", "flow:line-tension=1", "flow:membrane-viscosity=4",
         "flow:membrane-viscosity=4,capillary=1", "flow:capillary=1,temperature=300",
         "flow:membrane-viscosity=4,line-tension=1,water=2", "flow:capillary=1,water-viscosity=2",
-        "flow:capillary=1,hold=4"})
+        "flow:capillary=1,hold=4", "flow:membrane-viscosity=4,temperature=25"})
     EXPECT_THROW(add_effects(bad, kPhysical, model), InputError) << bad;
   EXPECT_THROW(add_effects("flow:membrane-viscosity=4,line-tension=1", kScaled, model), InputError);
   EXPECT_NO_THROW(add_effects("flow:thermal=1e-3", kScaled, model));
