@@ -42,12 +42,4 @@ mesh::RefinementLevels refinement_levels(const config::Configuration& configurat
                    "--mesh uniform");
 }
 
-// The indicator is at most 0.18 in a boundary at rest, whatever the well.
-fem::RefinementRule refinement_rule(const config::Configuration& configuration,
-                                    const problem::CahnHilliardModel& physics,
-                                    const mesh::RefinementLevels& levels) {
-  return {configuration.options().mesh_threshold,
-          physics.boundary_width() / (physics.well.b - physics.well.a), levels.finest_generation()};
-}
-
 }  // namespace traceraft::run

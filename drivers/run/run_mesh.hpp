@@ -2,7 +2,6 @@
 #pragma once
 
 #include "drivers/config/configuration.hpp"
-#include "kernel/fem/refinement_rule.hpp"
 #include "kernel/mesh/refinement_forest.hpp"
 #include "kernel/problem/cahn_hilliard.hpp"
 
@@ -19,9 +18,5 @@ bool begins_finest(const config::Configuration& configuration);
 // --mesh-levels, or the most that change the area by less than 1e-5. Throws InputError.
 mesh::RefinementLevels refinement_levels(const config::Configuration& configuration,
                                          const geometry::LevelSet& surface);
-
-fem::RefinementRule refinement_rule(const config::Configuration& configuration,
-                                    const problem::CahnHilliardModel& physics,
-                                    const mesh::RefinementLevels& levels);
 
 }  // namespace traceraft::run

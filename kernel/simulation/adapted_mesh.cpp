@@ -40,6 +40,12 @@ bool keeps_the_area(const geometry::LevelSet& surface, const mesh::RefinementLev
 
 }  // namespace
 
+fem::RefinementRule boundary_rule(const problem::CahnHilliardModel& model,
+                                  const mesh::RefinementLevels& levels, double threshold) {
+  return {threshold, model.boundary_width() / (model.well.b - model.well.a),
+          levels.finest_generation()};
+}
+
 std::optional<mesh::RefinementLevels> levels_that_keep_the_area(const geometry::LevelSet& surface,
                                                                 std::int64_t cells) {
   for (int levels = kMostLevels; levels > 0; --levels)

@@ -7,6 +7,7 @@
 
 #include "kernel/fem/refinement_rule.hpp"
 #include "kernel/mesh/refinement_forest.hpp"
+#include "kernel/problem/cahn_hilliard.hpp"
 
 namespace traceraft::simulation {
 
@@ -15,6 +16,12 @@ namespace traceraft::simulation {
 // do.
 std::optional<mesh::RefinementLevels> levels_that_keep_the_area(const geometry::LevelSet& surface,
                                                                 std::int64_t cells);
+
+// Fine along the boundaries of this model's phases. The indicator is at most 0.18 in a boundary at
+// rest, whatever the well.
+fem::RefinementRule boundary_rule(const problem::CahnHilliardModel& model,
+                                  const mesh::RefinementLevels& levels,
+                                  double threshold = fem::kBoundaryThreshold);
 
 // A field, and a mesh that is as fine as it needs.
 struct FieldOnMesh {

@@ -26,8 +26,8 @@ Vec MeshRun::begin_adaptive() {
   const geometry::LevelSetPtr surface = geometry::make_surface(request_.surface);
   const auto levels = simulation::levels_that_keep_the_area(*surface, request_.cells);
   if (!levels) throw std::runtime_error("no larger tetrahedra hold the area");
-  const fem::RefinementRule rule = bench_.refinement_rule(
-      {fem::kBoundaryThreshold, request_.model.boundary_width(), levels->finest_generation()});
+  const fem::RefinementRule rule =
+      bench_.refinement_rule(simulation::boundary_rule(request_.model, *levels));
   const auto team = std::make_shared<ThreadTeam>(request_.threads);
   const auto make_space = [&](mesh::ActiveMesh mesh) {
     return std::make_shared<const fem::SurfaceSpace>(surface, std::move(mesh), team,
