@@ -18,7 +18,6 @@ const NamedList<StudyEntry>& studies() {
       rafts_as_discs_study(),
       published_vesicles_study(),
       pfhub_study(),
-      fine_pfhub_study(),
       integrator_agreement_study(),
       solver_iterations_study(),
       teko_iterations_study(),
@@ -27,6 +26,7 @@ const NamedList<StudyEntry>& studies() {
       operation_cost_study(),
       step_cost_study(),
       adaptive_mesh_study(),
+      boundary_width_study(),
   };
   static const NamedList<StudyEntry> list("study", entries);
   return list;

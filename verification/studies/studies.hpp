@@ -21,7 +21,6 @@ StudyEntry flow_coarsening_study();
 StudyEntry rafts_as_discs_study();
 StudyEntry published_vesicles_study();
 StudyEntry pfhub_study();
-StudyEntry fine_pfhub_study();
 StudyEntry solver_iterations_study();
 StudyEntry large_solver_iterations_study();
 StudyEntry teko_iterations_study();
@@ -29,6 +28,7 @@ StudyEntry large_teko_iterations_study();
 StudyEntry operation_cost_study();
 StudyEntry step_cost_study();
 StudyEntry adaptive_mesh_study();
+StudyEntry boundary_width_study();
 
 const NamedList<StudyEntry>& studies();
 
