@@ -104,7 +104,7 @@ selection::Explanation search(const fs::path& explained, explain::ExplainSetup& 
   const Stopwatch watch;
   setup.request.progress = [&](const std::string& step) {
     const double seconds = before + watch.seconds();
-    posix::write_durably(explained / "time.json", input::checked_text({{"seconds", seconds}}));
+    input::write_json(explained / "time.json", {{"seconds", seconds}});
     text::say("%s  %s\n", output::clock_text(seconds), step);
     text::flush_output();
   };
@@ -140,7 +140,7 @@ void write_score(const CampaignFolder& folder, const CampaignGroup& group, const
       {"deviations", strength ? input::Json(strength->deviations) : input::Json()},
       {"seconds", seconds_of(folder.of(id) / "explain")},
       {"program", output::program_checksum()}};
-  posix::write_durably(folder.score_of(id), input::checked_text(score));
+  input::write_json(folder.score_of(id), score);
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ input::Json plan_json(const CampaignPlan& plan) {
 }  // namespace
 
 void CampaignFolder::save(const CampaignPlan& plan) const {
-  posix::write_durably(plan_file(), input::checked_text(plan_json(plan)));
+  input::write_json(plan_file(), plan_json(plan));
 }
 
 CampaignPlan CampaignFolder::load() const {

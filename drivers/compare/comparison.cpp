@@ -55,7 +55,7 @@ void describe(Members& members, ComparisonFolder::Record& record) {
 }
 
 void ComparisonFolder::save(const ComparePlan& plan) const {
-  posix::write_durably(plan_file(), input::checked_text(input::object_of(plan)));
+  input::write_json(plan_file(), input::object_of(plan));
 }
 
 ComparePlan ComparisonFolder::load() const {
@@ -78,7 +78,7 @@ std::filesystem::path ComparisonFolder::record_of(const CompareJob& job) const {
 }
 
 void ComparisonFolder::record(const CompareJob& job, const Record& record) const {
-  posix::write_durably(record_of(job), input::checked_text(input::object_of(record), -1));
+  input::write_json(record_of(job), input::object_of(record), -1);
 }
 
 std::optional<ComparisonFolder::Record> ComparisonFolder::recorded(const CompareJob& job) const {

@@ -54,10 +54,9 @@ class ComparisonReport {
 
   void write() {
     fs::create_directories(request_.out);
-    posix::write_durably(
+    input::write_json(
         request_.out / "comparison.json",
-        input::checked_text(
-            {{"runs", runs_.size()}, {"missing_runs", ensemble_.missing}, {"data", data_.name}}));
+        {{"runs", runs_.size()}, {"missing_runs", ensemble_.missing}, {"data", data_.name}});
     posix::write_durably(request_.out / "comparison.csv",
                          output::csv_text(agreement_table(agreements_)));
     posix::write_durably(request_.out / "comparison.html", page().html());

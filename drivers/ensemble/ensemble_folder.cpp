@@ -49,7 +49,7 @@ void describe(Members& members, EnsemblePlan& plan) {
 }
 
 void EnsembleFolder::save(const EnsemblePlan& plan) const {
-  posix::write_durably(plan_file(), input::checked_text(input::object_of(plan)));
+  input::write_json(plan_file(), input::object_of(plan));
 }
 
 void EnsembleFolder::refuse_other_plan() const {

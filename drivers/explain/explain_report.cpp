@@ -53,8 +53,7 @@ void write_explanation(const std::filesystem::path& folder, const selection::Exp
             (setup.request.own.parts.empty()
                  ? ", with D refitted together with it"
                  : ", with D and the model's own effects refitted together with it"));
-  posix::write_durably(folder / "verdict.json",
-                       input::checked_text(verdict_json(verdict_of(found, setup))));
+  input::write_json(folder / "verdict.json", verdict_json(verdict_of(found, setup)));
 }
 
 std::string command_for_found(const std::filesystem::path& folder,

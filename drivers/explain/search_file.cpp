@@ -117,7 +117,7 @@ std::optional<selection::SearchState> SearchFile::load() const {
 void SearchFile::save(const selection::SearchState& state) const {
   input::Json json = search_json(state);
   json["subject"] = subject_;
-  posix::write_durably(path_, input::checked_text(std::move(json), -1));
+  input::write_json(path_, std::move(json), -1);
 }
 
 }  // namespace traceraft::explain

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "backends/posix/durable_file.hpp"
 #include "drivers/config/config_file.hpp"
 #include "drivers/explain/disc_plan.hpp"
 #include "drivers/input/json_members.hpp"
@@ -153,7 +152,7 @@ std::optional<std::vector<PlannedEffect>> plan_with(Sizes sizes, const fs::path&
       const std::optional<PlannedEffect> found = sizes.find(k);
       if (!found) return std::nullopt;
       levels[effect] = levels_json(*found);
-      posix::write_durably(file, input::checked_text(saved));
+      input::write_json(file, saved);
     }
     plan.push_back(saved_effect(file, effect, levels.at(effect), model.units()));
   }

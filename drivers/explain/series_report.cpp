@@ -284,8 +284,7 @@ void write_series_explanation(const fs::path& folder, const observations::Measur
   }
   page.paragraph(output::program_text() + "; simulations in " + simulated.folder.string() + ".");
   posix::write_durably(folder / "series.html", page.html());
-  posix::write_durably(folder / "series.json",
-                       input::checked_text(series_json(model, simulated, found, laws)));
+  input::write_json(folder / "series.json", series_json(model, simulated, found, laws));
   if (quiet) return;
   text::say("\n%s\n", verdict);
   for (const std::string& line : words) text::say("%s\n", line);

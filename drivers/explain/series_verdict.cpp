@@ -178,9 +178,8 @@ void write_series_verdict(const std::filesystem::path& folder,
     write_extended_model(folder / "model.toml", model_file, named_model(model, ensembles, found),
                          "found by traceraft explain: " + found.scores.front().effect +
                              ", with D fitted together with it");
-  posix::write_durably(
-      folder / "verdict.json",
-      input::checked_text(verdict_json(verdict_of(base, ensembles, found, request))));
+  input::write_json(folder / "verdict.json",
+                    verdict_json(verdict_of(base, ensembles, found, request)));
 }
 
 }  // namespace traceraft::explain

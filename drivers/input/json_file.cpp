@@ -1,6 +1,7 @@
 #include "drivers/input/json_file.hpp"
 
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "backends/zlib/checksum.hpp"
@@ -47,6 +48,10 @@ std::string checked_text(Json json, int indent) {
   const std::string checksum = checksum_of(json);  // before the member is there
   json[kChecksum] = checksum;
   return text_of(json, indent) + "\n";
+}
+
+void write_json(const std::filesystem::path& path, Json json, int indent) {
+  posix::write_durably(path, checked_text(std::move(json), indent));
 }
 
 Json parse_checked(const std::string& text) {

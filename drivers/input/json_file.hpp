@@ -19,6 +19,8 @@ inline Json number_or_null(const std::optional<double>& number) {
 
 // The text of a file, with a checksum of all members as the last one.
 std::string checked_text(Json json, int indent = 2);
+// A whole file of it, as posix::write_durably writes one. Throws IoError.
+void write_json(const std::filesystem::path& path, Json json, int indent = 2);
 // Its content without the checksum, which may be missing. Throws DamagedFile if it does not fit, or
 // if a name stands there twice, and what the parser throws.
 Json parse_checked(const std::string& text);

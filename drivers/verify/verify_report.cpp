@@ -130,8 +130,7 @@ void write_study(const fs::path& folder, const StudyResult& result, const std::s
   for (const bench::Table& table : result.report.tables)
     posix::write_durably(folder / (result.study.name + "-" + table.name + ".csv"),
                          output::csv_text(table));
-  posix::write_durably(folder / (result.study.name + ".json"),
-                       input::checked_text(to_json(result, with)));
+  input::write_json(folder / (result.study.name + ".json"), to_json(result, with));
 }
 
 std::string write_verification(const fs::path& folder, const VerificationContext& context,
@@ -144,7 +143,7 @@ std::string write_verification(const fs::path& folder, const VerificationContext
     studies.push_back(to_json(result, context.measured_with));
   all["studies"] = studies;
   // Folders may have names that are not UTF-8.
-  posix::write_durably(folder / "verify.json", input::checked_text(all));
+  input::write_json(folder / "verify.json", all);
 
   output::Page page("Verification");
   page.paragraph(context.conditions + " This command repeats it: " + context.command);
