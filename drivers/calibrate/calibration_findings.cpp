@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "drivers/calibrate/calibration_points.hpp"
-#include "drivers/input/json_file.hpp"
 #include "kernel/core/text.hpp"
 #include "verification/observations/differences.hpp"
 
@@ -122,7 +121,7 @@ config::Configuration found_model(const CalibrationRuns& runs,
   return {{}, given};
 }
 
-std::string calibration_json(const std::vector<CalibrationFinding>& parameters,
+input::Json calibration_json(const std::vector<CalibrationFinding>& parameters,
                              const calibration::Calibration& result) {
   input::Json json;
   for (const CalibrationFinding& found : parameters)
@@ -145,7 +144,7 @@ std::string calibration_json(const std::vector<CalibrationFinding>& parameters,
       row.push_back(result.correlation(i, j) * ((i == 0) != (j == 0) ? -1 : 1));
     json["correlation"].push_back(row);
   }
-  return input::checked_text(json);
+  return json;
 }
 
 CalibrationFindings findings_of(const observations::MeasuredVesicles& data,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "drivers/config/configuration.hpp"
+#include "drivers/input/json_file.hpp"
 #include "verification/calibration/calibration.hpp"
 #include "verification/observations/comparison.hpp"
 
@@ -66,7 +67,7 @@ config::Configuration found_model(const CalibrationRuns& runs,
                                   const std::vector<CalibrationFinding>& parameters);
 
 // calibration.json: see docs/formats.md.
-std::string calibration_json(const std::vector<CalibrationFinding>& parameters,
+input::Json calibration_json(const std::vector<CalibrationFinding>& parameters,
                              const calibration::Calibration& result);
 
 }  // namespace traceraft::calibrate

@@ -101,7 +101,7 @@ void write_calibration(const std::filesystem::path& folder,
   const std::vector<std::string> notes = notes_on(data, runs, found, result);
   const bench::Table table = points_table(runs, result);
   posix::write_durably(folder / "calibration.csv", output::csv_text(table));
-  posix::write_durably(folder / "calibration.json", calibration_json(found.parameters, result));
+  input::write_json(folder / "calibration.json", calibration_json(found.parameters, result));
   posix::write_durably(folder / "calibrated.toml", config::config_text(model));
   output::Page page("A model calibrated with measurements");
   page.paragraph(data::title_of(data));

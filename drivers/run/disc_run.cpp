@@ -100,8 +100,8 @@ class DiscRun {
     const observables::Observables row = now();
     const RunMoment end = moment(row, row.t * run_.units.time());
     const RunTotals totals{end, monitor_, sphere(), cost(), posix::peak_memory_mb()};
-    posix::write_durably(folder_.summary(), summary_json(configuration_, totals, result, false,
-                                                         tables_.extents_at_end(folder_)));
+    input::write_json(folder_.summary(), summary_json(configuration_, totals, result, false,
+                                                      tables_.extents_at_end(folder_)));
     if (quiet) return;
     const discs::DiscStatistics& statistics = run_.system->statistics();
     print_end(totals, result);

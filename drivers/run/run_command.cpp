@@ -91,7 +91,7 @@ int execute_run(const config::Configuration& configuration, RunSetup& run, const
   if (root) {
     const observables::Observables& row = state.observables;
     const RunMoment end = moment_of(run, row, row.t * run.units.time());
-    posix::write_durably(
+    input::write_json(
         folder.summary(),
         summary_json(configuration, {end, state.monitor, ground_of(run), cost, memory}, result,
                      run.integrator->promises_energy_decay(), tables->extents_at_end(folder)));

@@ -96,7 +96,7 @@ const std::vector<ReportedNumber<RunTotals>>& run_totals() {
       {"remeshes", U::count, "changes of a mesh that follows the boundaries",
        [](T r) { return number(r.ground.remeshing.remeshes); }},
       {"mean_nodes", U::count, "nodes of such a mesh, mean over the steps",
-       [](T r) { return r.ground.remeshing.node_steps / std::max(1.0, r.ground.remeshing.steps); }},
+       [](T r) { return r.ground.remeshing.mean_nodes(); }},
       {"highest_energy_jump", U::ratio,
        "largest rise of the energy from one mesh to the next, relative to it",
        [](T r) { return r.ground.remeshing.highest_jump; }},

@@ -50,12 +50,6 @@ simulation::MeshAdaptation::MakeRest rest_of(const config::Configuration& config
   };
 }
 
-fem::RefinementRule boundary_rule(const config::Configuration& configuration,
-                                  const problem::CahnHilliardModel& physics,
-                                  const mesh::RefinementLevels& levels) {
-  return simulation::boundary_rule(physics, levels, configuration.options().mesh_threshold);
-}
-
 // The mesh that follows the boundaries, and the initial state on it.
 mesh::RefinementForest begin_adaptive(const config::Configuration& configuration,
                                       const geometry::LevelSetPtr& surface,
@@ -64,9 +58,10 @@ mesh::RefinementForest begin_adaptive(const config::Configuration& configuration
                                       const simulation::MakeSpace& make_space, RunSetup& run) {
   const mesh::RefinementLevels levels = refinement_levels(configuration, *surface);
   if (!initial.from_checkpoint && !begins_finest(configuration)) {
-    simulation::FieldOnMesh begin =
-        simulation::adapted_field(*surface, levels, boundary_rule(configuration, physics, levels),
-                                  make_space, initial_field(configuration, physics));
+    const fem::RefinementRule rule =
+        simulation::boundary_rule(physics, levels, configuration.options().mesh_threshold);
+    simulation::FieldOnMesh begin = simulation::adapted_field(
+        *surface, levels, rule, make_space, initial_field(configuration, physics));
     run.space = std::move(begin.space);
     run.initial = std::move(begin.field);
     return std::move(begin.forest);
@@ -135,7 +130,8 @@ RunSetup build_run(const config::Configuration& configuration, const InitialStat
                      ": with these effects the second-order solution of euler is unstable; leave "
                      "the choice to it");
   if (forest) {
-    const fem::RefinementRule rule = boundary_rule(configuration, physics, forest->levels());
+    const fem::RefinementRule rule = simulation::boundary_rule(
+        physics, forest->levels(), configuration.options().mesh_threshold);
     run.adaptation =
         std::make_unique<simulation::MeshAdaptation>(std::move(*forest), rule, make_rest);
   }

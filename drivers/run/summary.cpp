@@ -7,7 +7,6 @@
 #include "backends/zlib/checksum.hpp"
 #include "drivers/config/config_file.hpp"
 #include "drivers/exit_codes.hpp"
-#include "drivers/input/json_file.hpp"
 #include "drivers/output/program.hpp"
 #include "drivers/run/physical_model.hpp"
 #include "drivers/run/progress.hpp"
@@ -109,11 +108,11 @@ std::string configuration_checksum(const config::Configuration& configuration) {
   return formatted("%08x", zlib::crc32_of(config::numerical_identity(configuration)));
 }
 
-std::string summary_json(const config::Configuration& configuration, const RunTotals& totals,
+input::Json summary_json(const config::Configuration& configuration, const RunTotals& totals,
                          const simulation::RunResult& result, bool decay_promised,
                          const TableExtents& tables) {
   const physics::Units& units = totals.at.units;
-  nlohmann::ordered_json json;
+  input::Json json;
   json["end"] = end_name(result.end);
   if (!result.why.empty()) json["why"] = result.why;
   json["version"] = kVersion;
@@ -137,7 +136,7 @@ std::string summary_json(const config::Configuration& configuration, const RunTo
   json["blas"] = suitesparse::blas_description();
   for (const auto& [name, extent] : tables)
     json["tables"][name] = {{"bytes", extent.bytes}, {"crc32", formatted("%08x", extent.checksum)}};
-  return input::checked_text(json);
+  return json;
 }
 
 // Nothing separates on a sphere where f0'' + ε² l(l + 1)/R² > 0 even for c halfway and l = 1. Other
@@ -239,8 +238,7 @@ void print_setup(const config::Configuration& configuration, const RunSetup& run
 
 std::string meshes_text(const simulation::RemeshStatistics& meshes) {
   return formatted("%ld changes, %.0f nodes in the mean of the steps, energy %+.1e to %+.1e in one",
-                   meshes.remeshes, meshes.node_steps / std::max(1.0, meshes.steps),
-                   meshes.lowest_jump, meshes.highest_jump);
+                   meshes.remeshes, meshes.mean_nodes(), meshes.lowest_jump, meshes.highest_jump);
 }
 
 void print_summary(const config::Configuration& configuration, const RunSetup& run,

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "drivers/input/json_file.hpp"
 #include "drivers/run/checkpoint_store.hpp"
 #include "drivers/run/run_folder.hpp"
 #include "drivers/run/run_numbers.hpp"
@@ -20,7 +21,7 @@ std::string configuration_checksum(const config::Configuration& configuration);
 // The exit code of the program that has carried out such a run.
 int exit_code(const simulation::RunResult& result);
 
-std::string summary_json(const config::Configuration& configuration, const RunTotals& totals,
+input::Json summary_json(const config::Configuration& configuration, const RunTotals& totals,
                          const simulation::RunResult& result, bool decay_promised,
                          const TableExtents& tables);
 

@@ -1,6 +1,7 @@
 // Keeps the mesh of a run fine along the phase boundaries while they move.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 
@@ -17,6 +18,8 @@ struct RemeshStatistics {
   double highest_jump = 0, lowest_jump = 0;  // of the energy, over that before the jump
   double node_steps = 0, steps = 0;          // Σ over steps of the nodes at them, and of 1
   double seconds = 0;                        // of indicators, new meshes and transfers
+
+  double mean_nodes() const { return node_steps / std::max(1.0, steps); }
 };
 
 // Decisions depend on accepted states and counters alone, so that a run that goes on from a

@@ -21,7 +21,6 @@ struct TwoRafts {
   double seconds;   // of the whole computation
   simulation::RemeshStatistics meshes;
 
-  double nodes() const { return meshes.node_steps / meshes.steps; }
   double steps_per_remesh() const;  // the time of a remesh in steps
 };
 

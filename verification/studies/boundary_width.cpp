@@ -1,6 +1,7 @@
 // Boundaries that become narrower: does coarsening go with ε² D, as the sharp limit has it, and
 // what does the lattice of the mesh do to boundaries whose driving force falls with ε?
 #include <cmath>
+#include <functional>
 
 #include "verification/bench/two_rafts.hpp"
 #include "verification/studies/studies.hpp"
@@ -10,7 +11,7 @@ namespace {
 
 constexpr double kFineMesh = 128 * 0.02;  // cells times ε: h/ε = 1.3
 constexpr double kLimit = 5;              // ε² t is less when the smaller raft vanishes
-const Point kAxis(3, 2, 10);  // no direction of the lattice: boundaries stick to it there
+const Point kAxis(3, 2, 10);              // boundaries stick most where they lie along the lattice
 
 int cells_for(double epsilon, double coarser) {
   return static_cast<int>(std::lround(kFineMesh / epsilon / coarser));
@@ -30,6 +31,22 @@ std::vector<Series> series_of(bool quick) {
           {"h/epsilon = 2.6", 2, {widths.begin(), widths.begin() + (quick ? 2 : 3)}}};
 }
 
+// (ε, ε² t of vanishing), and a row of the table for each. `advance` is called after each run.
+statistics::Points scaled_times(const bench::Bench& bench, const Series& series,
+                                bench::Table& table, const std::function<void()>& advance) {
+  statistics::Points scaled;
+  for (const double epsilon : series.widths) {
+    const int cells = cells_for(epsilon, series.coarser);
+    const bench::TwoRafts rafts = bench::follow_two_rafts(
+        bench, {epsilon, cells, true, bench.request.threads, kLimit / (epsilon * epsilon), kAxis});
+    scaled.emplace_back(epsilon, epsilon * epsilon * rafts.vanishes);
+    table.rows.push_back({epsilon, mesh::CubeMesh{cells}.h() / epsilon, rafts.meshes.mean_nodes(),
+                          rafts.meshes.steps, rafts.seconds, rafts.vanishes, scaled.back().second});
+    advance();
+  }
+  return scaled;
+}
+
 StudyReport run(const bench::Bench& bench) {
   StudyReport report;
   report.tables = {{"two rafts",
@@ -39,22 +56,12 @@ StudyReport run(const bench::Bench& bench) {
   report.charts = {
       {"two rafts", "epsilon / R", "epsilon^2 t of vanishing, R^4/D", true, false, {}}};
   const std::vector<Series> all = series_of(bench.quick());
+  const auto runs = static_cast<double>(all[0].widths.size() + all[1].widths.size());
   double done = 0;
-  for (const Series& series : all) {
-    statistics::Points scaled;
-    for (const double epsilon : series.widths) {
-      const int cells = cells_for(epsilon, series.coarser);
-      const bench::TwoRafts rafts = bench::follow_two_rafts(
-          bench,
-          {epsilon, cells, true, bench.request.threads, kLimit / (epsilon * epsilon), kAxis});
-      scaled.emplace_back(epsilon, epsilon * epsilon * rafts.vanishes);
-      report.tables[0].rows.push_back({epsilon, mesh::CubeMesh{cells}.h() / epsilon, rafts.nodes(),
-                                       rafts.meshes.steps, rafts.seconds, rafts.vanishes,
-                                       scaled.back().second});
-      bench.progress(++done / static_cast<double>(all[0].widths.size() + all[1].widths.size()));
-    }
-    report.charts[0].series.push_back({series.name, scaled});
-  }
+  for (const Series& series : all)
+    report.charts[0].series.push_back(
+        {series.name,
+         scaled_times(bench, series, report.tables[0], [&] { bench.progress(++done / runs); })});
   const statistics::Points& fine = report.charts[0].series[0].points;
   const auto change = [&](std::size_t k) { return fine[k].second - fine[k - 1].second; };
   const std::size_t last = fine.size() - 1;

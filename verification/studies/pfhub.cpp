@@ -147,7 +147,7 @@ void add_energies(const Simulation& run, StudyReport& report) {
       "results use another branch.",
       cells, 10.0 / 3 / cells * kRadius / std::sqrt(kKappa),
       adaptive ? "an adaptive mesh" : "a uniform mesh", tolerance, run.meshes.steps,
-      run.meshes.node_steps / run.meshes.steps));
+      run.meshes.mean_nodes()));
 }
 
 void add_cost(const Simulation& run, StudyReport& report) {
